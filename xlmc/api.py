@@ -49,15 +49,20 @@ class Simulation(simulation.Simulation):
 
         return save(self, Path(path), overwrite=overwrite)
 
-    def save_page(self, path: str | Path, *, overwrite: bool = False) -> Path:
+    def save_page(self, path: str | Path, *, beside: Simulation | None = None, overwrite: bool = False) -> Path:
         """Write the results as one page for a browser, which needs no network.
+
+        Args:
+            path: where to; it ends in `.html` or `.htm`.
+            beside: a second run, which is shown beside this one.
+            overwrite: replace any other file, too.
 
         Raises:
             WorkbookError: the file does not end in `.html`, or cannot be written.
         """
         from xlmc.report.page import save_page
 
-        return save_page(self, Path(path), overwrite=overwrite)
+        return save_page(self, Path(path), beside=beside, overwrite=overwrite)
 
     def keep(self, path: str | Path, *, overwrite: bool = False) -> Path:
         """Save the run in a file that ends in `.xlmcrun`; `xlmc.open_run` gives it back.

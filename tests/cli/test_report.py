@@ -56,6 +56,24 @@ def test_nothing_is_simulated(xlmc, case_book, monkeypatch):
     assert xlmc("report", "case.xlmcrun", "-o", "b.xlsx").code == 0
 
 
+def test_a_second_run_stands_beside_the_first_on_the_page(xlmc, case_book, tmp_path):
+    for seed in (1, 2):
+        xlmc("simulate", case_book, "-n", 5_000, "--seed", seed, "--save-run", f"{seed}.xlmcrun")
+    assert xlmc("report", "1.xlmcrun", "2.xlmcrun", "--html", "both.html").code == 0
+    assert "Beside a second run" in (tmp_path / "both.html").read_text("utf-8")
+    assert not (tmp_path / "1-results.xlsx").exists()
+    for options in ((), ("--json", "a.json"), ("--html", "a.html", "--pdf", "a.pdf")):
+        refused = xlmc("report", "1.xlmcrun", "2.xlmcrun", *options)
+        assert refused.code == 2
+        assert "give --html PAGE.html, and no other file" in refused.err
+    missing = xlmc("report", "1.xlmcrun", "3.xlmcrun", "--html", "more.html")
+    assert (missing.code, (tmp_path / "more.html").exists()) == (2, False)
+    shutil.copy(tmp_path / "2.xlmcrun", tmp_path / "two.html")
+    taken = xlmc("report", "1.xlmcrun", "two.html", "--html", "two.html", "--overwrite")
+    assert taken.code == 2
+    assert (tmp_path / "two.html").read_bytes() == (tmp_path / "2.xlmcrun").read_bytes()
+
+
 def test_by_default_it_writes_the_result_workbook(xlmc, book, tmp_path):
     xlmc("simulate", book, "--save-run", "first.xlmcrun")
     outcome = xlmc("report", "first.xlmcrun")

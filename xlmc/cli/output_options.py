@@ -153,6 +153,7 @@ class Outputs(NamedTuple):
         named: the person gave the result workbook its name; another one is numbered on where it is taken.
         reports: the reports to hand over.
         wishes: what they are to hold.
+        beside: the saved run that the page shows beside this one.
     """
 
     source: Path
@@ -167,6 +168,7 @@ class Outputs(NamedTuple):
     named: bool = True
     reports: Reports = Reports()
     wishes: Wishes = Wishes()
+    beside: Path | None = None
 
     def check_against(self, model: Model) -> None:
         """Refuse what cannot be written about this workbook.
@@ -247,7 +249,9 @@ class Outputs(NamedTuple):
         from xlmc.workbook.target import is_same_file
 
         for path in (self.book, *self._others):
-            if path is not None and not (self.in_place and path == self.book) and is_same_file(path, self.source):
+            if path is None or (self.in_place and path == self.book):
+                continue
+            if any(is_same_file(path, read) for read in (self.source, self.beside) if read is not None):
                 hint = "--in-place writes the result sheets into it" if path == self.book else None
                 raise WorkbookError("this is the file that is read", where=path, hint=hint or "Name another file")
 
@@ -311,13 +315,23 @@ class Outputs(NamedTuple):
         if self.run is not None:
             yield self.run, "The run is saved in", run.keep
         if self.html is not None:
-            yield self.html, "The page is", run.save_page
+            yield self.html, "The page is", partial(run.save_page, beside=self._second())
         if self.json is not None:
             yield self.json, "Results as JSON are in", run.save_json
         for path in self.reports.paths:
             yield path, "The report is", partial(self._write_report, run)
         for path in self.extract:
             yield path, "Accepted trials are in", run.extract
+
+    def _second(self) -> Simulation | None:
+        """The run that stands beside the one that is written.
+
+        Raises:
+            WorkbookError: it cannot be read.
+        """
+        from xlmc.api import open_run
+
+        return None if self.beside is None else open_run(self.beside)
 
     def _write_report(self, run: Simulation, path: Path, *, overwrite: bool = False) -> Path:
         found = self.wishes.wanted()

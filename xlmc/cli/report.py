@@ -20,6 +20,7 @@ NOT_TO_BE_USED = 1
 
 @click.command()
 @click.argument("run", metavar="RUN|RESULTS", type=click.Path(readable=False, path_type=Path))
+@click.argument("second", metavar="[RUN]", required=False, type=click.Path(readable=False, path_type=Path))
 @click.option(
     "-o",
     "--output",
@@ -30,6 +31,7 @@ NOT_TO_BE_USED = 1
 @click.option("--quiet", is_flag=True, help="Print no notes.")
 def report(
     run: Path,
+    second: Path | None,
     output: Path | None,
     html: Path | None,
     json_path: Path | None,
@@ -41,8 +43,13 @@ def report(
 ) -> None:
     """Write the results of a saved run, without simulating again: the same as when it was run.
 
-    RESULTS is a result workbook; its run is repeated for --pdf and --docx, and must be identical.
+    RESULTS is a result workbook; its run is repeated for --pdf and --docx, and must be identical. A second RUN stands
+    beside the first on the page that --html names.
     """
+    if second is not None and (html is None or output or json_path or extract or reports.paths):
+        raise click.UsageError(
+            "A second run is shown on a page, and there alone: give --html PAGE.html, and no other file."
+        )
     from xlmc.api import open_run
     from xlmc.cli.printing import notices, warnings
     from xlmc.cli.simulate import show_run
@@ -63,7 +70,7 @@ def report(
         target = results_beside(run, found.model.path.suffix)
     name, named = found.model.workbook.name, output is not None
     asked = Outputs(run, name, target, None, html, json_path, extract, overwrite, named=named)
-    outputs = asked._replace(reports=reports, wishes=wishes).check(found.model.path)
+    outputs = asked._replace(reports=reports, wishes=wishes, beside=second).check(found.model.path)
     outputs.check_against(found.model)
     written, lines = outputs.write(found)  # before the answer is printed, so that no terminal can cost a run
     show_run(found)

@@ -161,9 +161,9 @@ def chromium(browser):
 def shown(chromium, tmp_path):
     """Opens a run's page in the browser; whatever it complained of by the end of the test is an error."""
 
-    def show(simulation):
+    def show(simulation, **options):
         path = tmp_path / "page.html"
-        simulation.save_page(path)
+        simulation.save_page(path, **options)
         chromium.get("about:blank")
         for log in ("browser", "performance"):
             chromium.get_log(log)

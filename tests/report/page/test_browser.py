@@ -360,13 +360,64 @@ def test_bars_are_drawn_together_and_percentiles_marked(shown, run):
     after = browser.execute_script(pixels, chart.root)
     assert after != before
     assert chart.said == certainty
-    chart.one("input.percentiles").click()
+    chart.one("input.percentiles").send_keys("5, 50;95 %\t")
     assert browser.execute_script(pixels, chart.root) != after
     shown_at = dict(re.findall(r"· · (\d+) % ([-\d.]+)", chart.one(".readout").text))
     for percent, text in shown_at.items():
         exact = np.percentile(run["area"].values, float(percent))
         assert float(text) == pytest.approx(exact, abs=0.01 * np.ptp(run["area"].values))
     assert sorted(shown_at, key=float) == ["5", "50", "95"]
+    said = chart.one(".readout").text
+    chart.one("input.percentiles").send_keys(", half\t")
+    assert "from 0 to 100" in chart.one(".fault").text
+    assert chart.one(".readout").text == said
+    assert "Mean" in said
+    chart.one("input.line[value=Mean]").click()
+    assert "Mean" not in chart.one(".readout").text
+
+
+def test_a_fitted_distribution_is_drawn_and_named(shown, run):
+    from selenium.webdriver.support.select import Select
+
+    browser = shown(run)
+    chart = Chart(browser)
+    fits = Select(chart.one("select.fit"))
+    pixels = "return arguments[0].querySelector('canvas').toDataURL()"
+    for view in ("frequency", "cumulative", "reverse"):
+        chart.one(f".views input[value={view}]").click()
+        fits.select_by_index(0)
+        assert chart.one(".fitted").text == ""
+        before, certainty = browser.execute_script(pixels, chart.root), chart.said
+        fits.select_by_index(1)
+        assert browser.execute_script(pixels, chart.root) != before
+        assert chart.one(".fitted").text.startswith(f"Red line: {fits.options[1].text} (")
+        assert chart.said == certainty
+    points = browser.execute_script(
+        "return fittedLine({ shares: [0, 0.25, 0.5, 0.75, 1], parts: 2 }, { edges: [0, 2, 4] }, 100, 1, 'frequency')"
+    )
+    assert points == [[0.5, 50], [1.5, 50], [2.5, 50], [3.5, 50]]  # a uniform one: 50 trials in either bar
+
+
+def test_a_second_run_is_drawn_and_counted(shown, run, make):
+    other = make.simulate(
+        {"A1": 2.0, "A4": 10.0, "B1": "=A1*8+A4"},
+        [make.uniform("a", "A1", 0.0, 3.0, base=2.0)],
+        [make.forecast("area", "B1", units="ft")],
+        trials=3000,
+    )
+    browser = shown(run, beside=other)
+    chart = Chart(browser)
+    for low, high in ((chart.ends), (12.0, 20.0)):
+        chart.type("low", str(low))
+        chart.type("high", str(high))
+        check(chart, run["area"].values)
+        count, words, _ = in_words(other["area"].values, *chart.ends)
+        assert chart.one(".second").text == f"Second run: {words} ({count:,} of 3,000)."
+    line = browser.execute_script(
+        "return secondLine(new Trials({ trials: 4, values: [0, 1, 1.5, 3], counts: null, gaps: null }), "
+        "{ edges: [0, 1, 2, 3, 4] }, 8, 'frequency')"
+    )
+    assert line == [[0, 0], [0, 2], [1, 2], [1, 4], [2, 4], [2, 0], [3, 0], [3, 2], [4, 2], [4, 0]]
 
 
 def test_every_chart_is_saved_as_a_picture_with_its_own_styles(shown, run):

@@ -3,6 +3,7 @@
 
 const INK = "#1F3044", GRID = "#E3E8EE", DARK = "#2F6DA8", LIGHT = "#BCD3E8", BAND = "#F3EFE2";
 const MARKS = { "Mean": [], "Base case": [7, 4], "Threshold": [2, 3] }, PERCENTILE = [1, 4]; // dashes
+const FITTED = "#B3261E", SECOND = "#7B3FA0", MOST_BARS = 150;
 const FONT = "12px system-ui, sans-serif";
 const WIDEST = 660, HIGHEST = 300, POINTS = 600;
 
@@ -14,18 +15,25 @@ function widthOf(element) {
 /**
  * Draw a forecast with its bars into `element`; `state` has `view`, `low`, `high` and is read whenever the chart is drawn
  * again. `drawn()` is called then, and `pointed(value)` when the pointer is somewhere else; null when it has left.
- * `marks()` are the upright lines.
+ * `marks()` are the upright lines, `line` is a fitted distribution, `second` the
+ * line of a second run, if they are drawn.
  */
-function drawForecast(element, forecast, trials, bins, state, { drawn, pointed, marks }) {
+function drawForecast(element, forecast, trials, bins, state, { drawn, pointed, marks, line, second }) {
   const { edges, counts } = bins;
   const ends = [edges[0], edges[edges.length - 1]];
-  const top = state.view === "frequency" ? Math.max(...counts) * 1.08 : 100;
+  const highest = Math.max(...counts, ...[...(line ?? []), ...(second ?? [])].map(([, y]) => y));
+  const top = state.view === "frequency" ? highest * 1.08 : 100;
   const shape = state.view === "frequency" ? bars(edges, counts) : curve(trials, ends, state.view);
   const options = chartOptions(widthOf(element), ends, top, forecast.units, state.view);
   if (bins.whole) options.axes[0].incrs = [1, 2, 5, 10, 20, 50, 100];
   options.hooks = {
     drawClear: [(chart) => band(chart, forecast.range)],
-    draw: [(chart) => paint(chart, shape, marks(), bins.covered(state.low, state.high)), drawn],
+    draw: [
+      (chart) => paint(chart, shape, marks(), bins.covered(state.low, state.high)),
+      (chart) => line && trace(chart, line, FITTED, []),
+      (chart) => second && trace(chart, second, SECOND, [8, 4]),
+      drawn,
+    ],
     setCursor: [(chart) => pointed(chart.cursor.left < 0 ? null : chart.posToVal(chart.cursor.left, "x"))],
   };
   return new uPlot(options, [ends, [0, top]], element);
@@ -58,6 +66,41 @@ function merged(bins, together) {
     counts: groups.map(([, counts]) => counts.reduce((sum, count) => sum + count, 0)),
     numbers: together,
   };
+}
+
+/** The bars with empty ones on either side, so that the trials of a second run have room. */
+function widened(bins, second) {
+  const edges = [...bins.edges], counts = [...bins.counts];
+  const room = () => counts.length < MOST_BARS;
+  for (; edges[0] > second.values[0] && room(); counts.unshift(0)) edges.unshift(edges[0] - bins.width);
+  for (; edges.at(-1) <= second.values.at(-1) && room(); counts.push(0)) edges.push(edges.at(-1) + bins.width);
+  return { ...bins, edges, counts };
+}
+
+/** A second run as bars of its own, as if it had as many trials; or its curve. */
+function secondLine(second, { edges }, trials, view) {
+  if (view !== "frequency") return curve(second, [edges[0], edges.at(-1)], view);
+  const below = edges.map((edge) => second.reached(edge, false).count);
+  const heights = below.slice(1).map((count, i) => ((count - below[i]) * trials) / second.trials);
+  return [[edges[0], 0], ...bars(edges, heights), [edges.at(-1), 0]];
+}
+
+/** A fitted distribution as the trials it expects in each bar, or as the share that it expects up to a value. */
+function fittedLine({ shares, parts }, { edges }, trials, together, view) {
+  const at = shares.map((_, i) => {
+    const bar = Math.min(Math.floor(i / parts), edges.length - 2);
+    return edges[bar] + (edges[bar + 1] - edges[bar]) * (i / parts - bar);
+  });
+  if (view === "frequency") {
+    const scale = trials * parts * together;
+    return at.slice(1).map((x, i) => [(at[i] + x) / 2, (shares[i + 1] - shares[i]) * scale]);
+  }
+  return at.map((x, i) => [x, 100 * (view === "reverse" ? 1 - shares[i] : shares[i])]);
+}
+
+function fittedText({ name, parameters, distance }) {
+  const off = `its cumulative curve is ${distance} off at most`;
+  return `Red line: ${name} (${parameters}), fitted to the accepted trials; ${off}. No number of this page rests on it.`;
 }
 
 /** What all charts of the page have in common. */
@@ -134,6 +177,22 @@ function paint(chart, shape, marks, [from, to]) {
   ctx.fillStyle = DARK;
   ctx.fill(path);
   for (const { label, value } of marks) mark(ctx, chart.valToPos(value, "x", true), top, height, MARKS[label] ?? PERCENTILE);
+  ctx.restore();
+}
+
+/** A line through points, within the plot. */
+function trace(chart, points, colour, dashes) {
+  const { ctx } = chart;
+  const { left, right, top, height } = plot(chart);
+  ctx.save();
+  clip(ctx, left, top, right - left, height);
+  ctx.beginPath();
+  points.forEach(([x, y]) => ctx.lineTo(chart.valToPos(x, "x", true), chart.valToPos(y, "y", true)));
+  ctx.lineWidth = 2 * uPlot.pxRatio;
+  ctx.lineJoin = "round";
+  ctx.strokeStyle = colour;
+  ctx.setLineDash(dashes.map((dash) => dash * uPlot.pxRatio));
+  ctx.stroke();
   ctx.restore();
 }
 

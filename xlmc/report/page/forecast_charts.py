@@ -12,7 +12,7 @@ from xlmc.report.histogram import Figure
 from xlmc.report.page.element import EMPTY, Html, element, join, void
 from xlmc.report.page.flow import estimate_html
 from xlmc.report.page.payload import most_values, overlays_of
-from xlmc.report.summary import percent
+from xlmc.report.summary import SummaryRow, percent
 
 if TYPE_CHECKING:
     from xlmc.run.forecast_result import ForecastResult
@@ -71,7 +71,7 @@ def _chart(figure: Figure, result: ForecastResult) -> Html:
     panel = element(
         "div",
         _views(about),
-        _choices(),
+        _choices(answer),
         element("p", class_="certainty", role="status"),
         element(
             "div",
@@ -90,6 +90,7 @@ def _chart(figure: Figure, result: ForecastResult) -> Html:
         element("div", class_="chart", role="group", aria_label=f"Chart of {answer.name}, with two grabbers"),
         element("p", class_="readout"),
         element("p", figure.caption, class_="caption"),
+        element("p", class_="fitted", role="status"),
         class_="drawing",
     )
     return element(
@@ -131,15 +132,23 @@ def _views(about: str) -> Html:
     return element("fieldset", element("legend", "Chart"), *buttons, class_="views")
 
 
-def _choices() -> Html:
-    """How many bars are drawn as one, and whether percentiles are marked."""
+def _choices(answer: SummaryRow) -> Html:
+    """How many bars are drawn as one, what is marked, and what fitted distribution is drawn over them."""
     options = (
         element("option", label, value=str(together))
         for together, label in ((1, "each"), (2, "two as one"), (4, "four as one"))
     )
     bars = element("label", "Bars ", element("select", *options, class_="together"))
-    marked = element("label", void("input", type="checkbox", class_="percentiles"), "Mark 5, 50 and 95 %")
-    return element("p", bars, marked, class_="choices")
+    lines = {"Mean": answer.mean, "Base case": answer.base, "Threshold": answer.threshold}
+    marked = (
+        element("label", void("input", type="checkbox", class_="line", value=label, checked=""), label)
+        for label, value in lines.items()
+        if value is not None
+    )
+    hint = {"placeholder": "5, 50, 95", "size": "9", "autocomplete": "off"}
+    percentiles = element("label", "Mark at ", void("input", type="text", class_="percentiles", **hint), " %")
+    fits = element("label", "Fit ", element("select", element("option", "none"), class_="fit"))
+    return element("p", bars, *marked, percentiles, fits, class_="choices")
 
 
 def _box(label: str, key: str, units: str) -> Html:

@@ -20,6 +20,7 @@ from xlmc.report.page.answers import answers
 from xlmc.report.page.element import EMPTY, Html, element, join
 from xlmc.report.page.forecast_charts import charts, overlays
 from xlmc.report.page.payload import payload_text
+from xlmc.report.page.second_run import second_run
 from xlmc.report.page.sensitivity_sections import dependence, limits
 from xlmc.report.page.sheet_sections import assumptions, certainty, checks, filters, notices, pairs, record, statistics
 from xlmc.results.record import make_record
@@ -54,6 +55,7 @@ _LICENCE = "uplot/LICENSE"
 
 _LINKS = {
     "answer": "The answer",
+    "second": "Second run",
     "forecasts": "Forecasts",
     "overlay": "Overlay",
     "certainty": "Certainty",
@@ -69,12 +71,20 @@ _LINKS = {
 }
 
 
-def save_page(simulation: Simulation, path: Path, *, command: str | None = None, overwrite: bool = False) -> Path:
+def save_page(
+    simulation: Simulation,
+    path: Path,
+    *,
+    beside: Simulation | None = None,
+    command: str | None = None,
+    overwrite: bool = False,
+) -> Path:
     """Write the page whole or not at all; an untouched page of the same workbook is replaced.
 
     Args:
         simulation: the finished run.
         path: where to; it ends in `.html` or `.htm`.
+        beside: a second run, which stands beside it.
         command: what the person typed, for the record.
         overwrite: replace any other file too.
 
@@ -89,7 +99,7 @@ def save_page(simulation: Simulation, path: Path, *, command: str | None = None,
     target = Target(path, simulation.model.workbook.name, overwrite)
     target.check()
     # Half of a surrogate pair, which a damaged name can hold, has no UTF-8: the browser shows a reference's mark.
-    text = page_text(simulation, command=command).encode("utf-8", "xmlcharrefreplace")
+    text = page_text(simulation, beside=beside, command=command).encode("utf-8", "xmlcharrefreplace")
     write_workbook(path, sealed_text(text, ".html", target.book), target.check)
     return path
 
@@ -106,17 +116,19 @@ def check_page_path(path: Path) -> None:
     check_folder(path)
 
 
-def page_text(simulation: Simulation, *, command: str | None = None) -> str:
+def page_text(simulation: Simulation, *, beside: Simulation | None = None, command: str | None = None) -> str:
     """The page of a run; the same run gives the same text.
 
     Args:
         simulation: the finished run.
+        beside: a second run, which stands beside it.
         command: what the person typed, for the record.
     """
     figures, name = figures_of(simulation), simulation.model.workbook.name
     found = sensitivities(simulation)
     parts = {
         "answer": answers(simulation),
+        "second": EMPTY if beside is None else second_run(simulation, beside),
         "forecasts": charts(simulation, figures),
         "overlay": overlays(figures),
         "certainty": certainty(simulation),
@@ -138,7 +150,7 @@ def page_text(simulation: Simulation, *, command: str | None = None) -> str:
         styles="".join(f"<style>{style}</style>\n" for style in styles),
         header=_header(simulation, [key for key, part in parts.items() if part != EMPTY]).source,
         sections=join(list(parts.values())).source,
-        data=payload_text(simulation, figures),
+        data=payload_text(simulation, figures, beside),
         scripts="".join(f"<script>{script}</script>\n" for script in scripts),
     )
 

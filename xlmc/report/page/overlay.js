@@ -35,7 +35,7 @@ class Overlay {
       options.axes[1].label = `Accepted trials, % per ${units || "unit"}`;
       options.axes[1].values = (_, splits) => splits.map((split) => String(Number(split.toPrecision(6))));
     }
-    options.hooks = { draw: [(chart) => shapes.forEach((shape, i) => stroke(chart, shape, i))] };
+    options.hooks = { draw: [(chart) => shapes.forEach((shape, i) => trace(chart, shape, COLOURS[i % COLOURS.length], DASHES[i % DASHES.length]))] };
     this.chart = new uPlot(options, [ends, [0, top]], this.element);
   }
 
@@ -46,19 +46,6 @@ class Overlay {
     const heights = counts.map((count) => (100 * count) / forecast.trials / width);
     return [[edges[0], 0], ...bars(edges, heights), [edges.at(-1), 0]];
   }
-}
-
-function stroke(chart, shape, i) {
-  const { ctx } = chart;
-  ctx.save();
-  ctx.beginPath();
-  shape.forEach(([x, y]) => ctx.lineTo(chart.valToPos(x, "x", true), chart.valToPos(y, "y", true)));
-  ctx.lineWidth = 2 * uPlot.pxRatio;
-  ctx.lineJoin = "round";
-  ctx.strokeStyle = COLOURS[i % COLOURS.length];
-  ctx.setLineDash(DASHES[i % DASHES.length].map((dash) => dash * uPlot.pxRatio));
-  ctx.stroke();
-  ctx.restore();
 }
 
 function legendEntry(name, i) {

@@ -6,9 +6,13 @@ class Panel {
     this.forecast = forecast;
     this.z = z;
     this.trials = new Trials(forecast);
-    this.bars = this.bins = barsOf(forecast);
+    this.own = barsOf(forecast);
+    this.second = forecast.second && new Trials(forecast.second);
+    this.bars = this.bins = this.second ? widened(this.own, this.second) : this.own;
     this.step = stepOf(this.bins);
     this.percentiles = [];
+    this.hidden = new Set();
+    this.fit = null;
     this.decimals = Math.max(0, -Math.round(Math.log10(this.step)));
     this.find = (selector) => element.querySelector(selector);
     this.box = (key) => element.querySelector(`.boxes .${key}`);
@@ -29,10 +33,14 @@ class Panel {
       this.bins = merged(this.bars, Number(target.value));
       this.draw();
     });
-    this.find(".percentiles").addEventListener("change", ({ target }) => {
-      this.percentiles = target.checked ? [5, 50, 95].map((percent) => this.percentile(percent)) : [];
-      this.draw();
-    });
+    this.find(".percentiles").addEventListener("change", () => this.markPercentiles());
+    for (const box of element.querySelectorAll(".line")) {
+      box.addEventListener("change", () => {
+        this.hidden[box.checked ? "delete" : "add"](box.value);
+        this.draw();
+      });
+    }
+    this.listenToFits(this.find(".fit"));
     for (const key of ["low", "high", "share"]) {
       this.box(key).addEventListener("change", () => this.type(key));
     }
@@ -42,6 +50,31 @@ class Panel {
     }).observe(this.find(".chart"));
   }
 
+  /** A distribution fitted to the trials is drawn where one is chosen. */
+  listenToFits(choice) {
+    const { fits } = this.forecast;
+    choice.append(...fits.map(({ name }) => new Option(name)));
+    choice.closest("label").hidden = !fits.length;
+    choice.addEventListener("change", () => {
+      this.fit = fits[choice.selectedIndex - 1] ?? null;
+      this.find(".fitted").textContent = this.fit ? fittedText(this.fit) : "";
+      this.draw();
+    });
+  }
+
+  /** Lines at the percentages that were typed. */
+  markPercentiles() {
+    const box = this.find(".percentiles");
+    const percents = box.value.split(/[\s,;%]+/).filter(Boolean).map(Number);
+    const wrong = percents.some((percent) => !(percent >= 0 && percent <= 100));
+    if (wrong) box.setAttribute("aria-invalid", "true");
+    else box.removeAttribute("aria-invalid");
+    this.find(".fault").textContent = wrong ? "Type percentages from 0 to 100, such as 5, 50, 95." : "";
+    if (wrong) return;
+    this.percentiles = percents.map((percent) => this.percentile(percent));
+    this.draw();
+  }
+
   /** Draw everything again, as for another view or width. */
   draw() {
     this.chart?.destroy();
@@ -49,6 +82,8 @@ class Panel {
       drawn: () => this.element(),
       pointed: (value) => this.read(value),
       marks: () => this.marks(),
+      line: this.fit && fittedLine(this.fit, this.own, this.forecast.trials, this.bins.numbers ?? 1, this.state.view),
+      second: this.second && secondLine(this.second, this.bins, this.trials.trials, this.state.view),
     });
     const { step, state, bins } = this;
     const grid = { step, min: bins.edges[0], max: bins.edges.at(-1) };
@@ -69,7 +104,7 @@ class Panel {
   }
 
   marks() {
-    return [...this.forecast.marks, ...this.percentiles];
+    return [...this.forecast.marks.filter(({ label }) => !this.hidden.has(label)), ...this.percentiles];
   }
 
   /** The forecast's own central range, with the texts that the sheets have. */
@@ -165,9 +200,21 @@ class Panel {
     const counted = `${about} of ${countText(trials)}${off}`;
     detail.textContent = `of the accepted trials lie ${range}: ${counted}; 95 % interval ${ends.join(" to ")} %.`;
     element.replaceChildren(main, " ", detail);
+    if (this.second) element.append(this.besides());
     element.dataset.count = String(count);
     element.dataset.low = String(low);
     element.dataset.high = String(high);
+  }
+
+  /** The certainty of the same range in the second run. */
+  besides() {
+    const { count, doubt } = this.second.between(this.state.low, this.state.high);
+    const share = shareOf(count, this.second.trials, this.z);
+    const said = document.createElement("span");
+    const counted = `${doubt ? "about " : ""}${countText(count)} of ${countText(this.second.trials)}`;
+    said.className = "second";
+    said.textContent = `Second run: ${estimateText(100 * share.value, 100 * share.error)} % (${counted}).`;
+    return said;
   }
 
   /** What the pointer is at. */
@@ -197,6 +244,7 @@ class Panel {
     const { units } = this.forecast;
     const lines = { "Mean": "—", "Base case": "– –", "Threshold": "····" };
     const unit = units ? ` ${units}` : "";
-    return this.marks().map(({ label, text }) => `${lines[label] ?? "· ·"} ${label} ${text}${unit}`).join("    ");
+    const said = this.marks().map(({ label, text }) => `${lines[label] ?? "· ·"} ${label} ${text}${unit}`);
+    return [...said, ...(this.second ? ["purple – – Second run"] : [])].join("    ");
   }
 }

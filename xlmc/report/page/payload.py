@@ -1,8 +1,9 @@
 """What the page's charts are drawn and counted from, as JSON inside the page.
 
 `forecasts`: for each its trials (a `RankTable`; `counts` null where all are 1, `gaps` null where all are 0), its own
-central range, its bins as the sheet Bins has them, and the values to be marked. `overlays`: the numbers of forecasts in
-one unit. `z`: the quantile of the normal distribution that 95 % intervals are made with.
+central range, its bins as the sheet Bins has them, the values to be marked, and the distributions that describe it best
+(`FittedCurve`); `second`, the trials of the same forecast in a second run, or null. `overlays`: the numbers of
+forecasts in one unit. `z`: the quantile of the normal distribution that 95 % intervals are made with.
 
 A page has room for a limited number of trials. Of a forecast with no more than `most` trials every one is there, and
 every count is exact. Of one with more, the trials of `most` ranks at equal distances are there, each with how many
@@ -23,11 +24,14 @@ from numpy.typing import NDArray
 
 from xlmc.columns import picked, release
 from xlmc.report.histogram import Figure
+from xlmc.report.page.fitted_curves import FittedCurve, fitted_curves
+from xlmc.report.page.second_run import partner_of
 from xlmc.report.summary import percent
 from xlmc.statistics import Estimate, format_estimate
 from xlmc.statistics.estimate import t_quantile
 
 if TYPE_CHECKING:
+    from xlmc.run.forecast_result import ForecastResult
     from xlmc.run.simulation import Simulation
 
 __all__ = [
@@ -54,18 +58,20 @@ Floats = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
 
-def payload_text(simulation: Simulation, figures: Sequence[Figure]) -> str:
+def payload_text(simulation: Simulation, figures: Sequence[Figure], beside: Simulation | None = None) -> str:
     """The JSON, which holds no character that could end the element it stands in."""
-    text = json.dumps(payload(simulation, figures), allow_nan=False, separators=(",", ":"))
+    text = json.dumps(payload(simulation, figures, beside), allow_nan=False, separators=(",", ":"))
     return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
 
 
-def payload(simulation: Simulation, figures: Sequence[Figure]) -> dict[str, Any]:
-    """The payload as plain values."""
-    most = most_values(len(figures))
+def payload(simulation: Simulation, figures: Sequence[Figure], beside: Simulation | None = None) -> dict[str, Any]:
+    """The payload as plain values; `beside` is a second run."""
+    most = most_values(len(figures) * (1 if beside is None else 2))
     return {
         "z": t_quantile(math.inf, CONFIDENCE),
-        "forecasts": [_forecast(simulation, figure, most) for figure in figures],
+        "forecasts": [
+            {**_forecast(simulation, figure, most), "second": _second(figure, beside, most)} for figure in figures
+        ],
         "overlays": overlays_of(figures),
     }
 
@@ -82,14 +88,10 @@ def _forecast(simulation: Simulation, figure: Figure, most: int) -> dict[str, An
     answer = figure.answer
     low, high = answer.low.value, answer.high.value
     marks = [low, high] if answer.threshold is None else [low, high, answer.threshold]
-    table = rank_table(simulation.results[answer.name].sample.x, most, marks)
     return {
         "name": answer.name,
         "units": answer.units,
-        "trials": answer.trials,
-        "values": table.values.tolist(),
-        "counts": _unless_all(1, table.counts),
-        "gaps": _unless_all(0, table.gaps),
+        **_trials(simulation.results[answer.name], most, marks),
         "range": {
             "share": answer.share,
             "said": percent(answer.share),
@@ -99,7 +101,36 @@ def _forecast(simulation: Simulation, figure: Figure, most: int) -> dict[str, An
             "highText": _value_text(answer.high),
         },
         "bins": _bins(figure),
+        "fits": [_fit(each) for each in fitted_curves(simulation.results[answer.name].sample.x, figure.bins)],
         "marks": [{"label": label, "value": value, "text": text} for label, value, text in _marks(figure)],
+    }
+
+
+def _trials(result: ForecastResult, most: int, marks: Iterable[float] = ()) -> dict[str, Any]:
+    table = rank_table(result.sample.x, most, marks)
+    return {
+        "trials": int(result.sample.x.size),
+        "values": table.values.tolist(),
+        "counts": _unless_all(1, table.counts),
+        "gaps": _unless_all(0, table.gaps),
+    }
+
+
+def _second(figure: Figure, beside: Simulation | None, most: int) -> dict[str, Any] | None:
+    """The trials of the same forecast in the second run; None where there is none."""
+    partner = None if beside is None else partner_of(figure.answer, beside)
+    if beside is None or partner is None:
+        return None
+    return _trials(beside.results[partner.name], most, [figure.answer.low.value, figure.answer.high.value])
+
+
+def _fit(curve: FittedCurve) -> dict[str, Any]:
+    return {
+        "name": curve.name,
+        "parameters": curve.parameters,
+        "distance": f"{100 * curve.distance:.2g} %",
+        "parts": curve.parts,
+        "shares": curve.shares.tolist(),
     }
 
 

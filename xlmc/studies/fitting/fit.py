@@ -98,13 +98,14 @@ class Fitting:
     cautions: tuple[str, ...]
 
 
-def fit(values: ArrayLike, *, kind: str | None = None, by: str = "aic") -> Fitting:
+def fit(values: ArrayLike, *, kind: str | None = None, by: str = "aic", errors: bool = True) -> Fitting:
     """Fit the families of a kind.
 
     Args:
         values: `(n,)`, two or more, not all equal.
         kind: `continuous` or `counts`; None: counts where every value is a whole number from 0 up.
         by: one of `CRITERIA`.
+        errors: whether standard errors of the parameters are worked out.
 
     Raises:
         SimulationError: there are too few values, all are equal, or they are no counts where counts are asked for.
@@ -117,10 +118,12 @@ def fit(values: ArrayLike, *, kind: str | None = None, by: str = "aic") -> Fitti
         raise SimulationError("not every value is a whole number from 0 up", hint="Fit them as continuous values")
     found, unfit = _estimates(kind, x)
     best = min((_aic(candidate, top) for candidate, _, top in found), default=0.0)
-    fits = [
-        _judge_fit(candidate, params, top, x, kind, costly=_aic(candidate, top) - best < _IN_THE_RACE)
-        for candidate, params, top in found
-    ]
+    fits = []
+    for candidate, params, top in found:
+        told: tuple[Errors, str] = (None,) * len(params), "not worked out"
+        if errors:
+            told = _errors(candidate, params, x, _aic(candidate, top) - best < _IN_THE_RACE)
+        fits.append(_judge_fit(candidate, params, top, x, kind, *told))
     fits.sort(key=lambda each: (_criterion(each, by), each.aic))
     near = sorted(fits, key=lambda each: each.aic)
     rivals = [each.name for each in near if each.aic - near[0].aic < _NEAR]
@@ -160,8 +163,9 @@ def _aic(candidate: Candidate, top: float) -> float:
     return 2 * candidate.free - 2 * top
 
 
-def _judge_fit(candidate: Candidate, params: Params, top: float, x: Floats, kind: str, *, costly: bool) -> Fitted:
-    errors, errors_from = _errors(candidate, params, x, costly)
+def _judge_fit(
+    candidate: Candidate, params: Params, top: float, x: Floats, kind: str, errors: Errors, errors_from: str
+) -> Fitted:
     if kind == "counts":
         ad, ks = None, kolmogorov_smirnov_of_counts(x, lambda k: np.asarray(candidate.cdf(k, *params)))
     else:

@@ -129,6 +129,9 @@ def _show_definitions(definitions: Definitions, model: Model | None) -> None:
     if definitions.filters:
         rows = [(f.name, str(f.cell), limits_text(f), f.because) for f in definitions.filters]
         table("Filters", ("Name", "Cell", "Keeps", "Because"), rows)
+    if definitions.forecast_filters:
+        own = [(f.name, str(f.cell), limits_text(f), "; ".join(f.only_for)) for f in definitions.forecast_filters]
+        table("Filters of some forecasts only", ("Name", "Cell", "Keeps", "Only for"), own)
     if definitions.checks:
         table("Checks", ("Name", "Cell", "Because"), [(c.name, str(c.cell), c.because) for c in definitions.checks])
     if definitions.correlations:

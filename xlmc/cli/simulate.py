@@ -166,6 +166,9 @@ def show_run(run: Simulation) -> None:
     if run.model.filters:
         of = "Trials rejected" if run.rare is None else f"Trials rejected of {run.trials:,} drawn before the search"
         table(of, ("Filter", "Keeps", "Rejected", "Only by it"), _rejections(run), right=(2, 3))
+    if run.model.forecast_filters:
+        of = f"Discarded of {run.accepted:,} accepted trials, for one forecast only"
+        table(of, ("Filter", "Only for", "Keeps", "Discarded", "Share"), _discards(run), right=(3, 4))
     check_table(run)
     say(paragraph(ERROR_SENTENCE))
     for notice in run.notices_of_run:
@@ -182,10 +185,20 @@ def _acceptance_sentence(run: Simulation) -> str:
 
         return f"{run.accepted:,} accepted trials; a trial is accepted with probability {probability_text(run.rare)}"
     percent = format_estimate(100 * share.value, 100 * (share.error or 0))
-    if any(errors.total() for errors in run.faults.values()):
+    if any(errors.total() for errors in run.faults.values()) or run.model.forecast_filters:
         kept = [f"the filters kept {run.accepted:,}, {percent} %"] if run.accepted < run.trials else []
         return "; ".join((*rest_sentences(run), *kept))
     return f"Accepted {run.accepted:,} of {run.trials:,} trials, {percent} %"
+
+
+def _discards(run: Simulation) -> list[tuple[str, ...]]:
+    from xlmc.report.summary import share_text
+    from xlmc.results.record.in_words import discards_of, limits_text
+
+    return [
+        (found.filter.name, found.forecast, limits_text(found.filter), f"{found.trials:,}", share_text(found.share))
+        for found in discards_of(run)
+    ]
 
 
 def _rejections(run: Simulation) -> list[tuple[str, ...]]:

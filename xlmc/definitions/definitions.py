@@ -143,6 +143,7 @@ class Filter:
     Attributes:
         evidence: the row of `xlmc_evidence` that it comes from, which then says what it keeps; None for a row of
             `xlmc_filters`.
+        only_for: names of the forecasts that it discards trials for; empty where it rejects them for all.
     """
 
     name: str
@@ -155,6 +156,7 @@ class Filter:
     because: str = ""
     notes: Mapping[str, str] = field(default_factory=dict)
     evidence: Evidence | None = None
+    only_for: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,7 +211,8 @@ class Definitions:
     a cell cannot be computed; `results` are the cells that show results of the run, and `unavailable` are those that
     should, or belong to a what-if table of the run, and cannot be computed, each with the reason. `evidence` are the
     rows of `xlmc_evidence`; those that are used are also among `filters`. `refused` says why forecasts that the
-    workbook asks for cannot be computed, and what else was lost, while the others can be run.
+    workbook asks for cannot be computed, and what else was lost, while the others can be run. `forecast_filters` are
+    filters of some forecasts only, which are not among `filters`.
     """
 
     assumptions: tuple[Assumption, ...] = ()
@@ -225,3 +228,4 @@ class Definitions:
     checks: tuple[Check, ...] = ()
     evidence: tuple[Evidence, ...] = ()
     refused: tuple[DefinitionError, ...] = ()
+    forecast_filters: tuple[Filter, ...] = ()

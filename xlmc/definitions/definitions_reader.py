@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Final
 
 from xlmc.address import Cell
@@ -37,6 +38,7 @@ from xlmc.definitions.unavailable import (
     remark_on_unavailable,
     tables_of_run,
 )
+from xlmc.distributions.spelling import did_you_mean
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.formula.ir import Expression
 from xlmc.workbook.workbook import Workbook
@@ -83,6 +85,7 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
     correlations = *correlations, *_take_pairs(correlations, dialogs.correlations, findings)
     more = in_cell_correlations(workbook, calls.assumptions, calls.matrices, correlations, findings)
     forecasts = *forecasts, *dialogs.forecasts, *in_cell_forecasts(calls, computed, central, answers, findings)
+    filters, own = _by_reach(filters, dialogs.filters, forecasts, findings)
     _remark_on_calls(calls, settings, findings)
     drawn = {each.cell for each in assumptions if not each.frozen}
     what_if = tables_of_run(workbook, drawn, calls.results.keys() | calls.unavailable.keys(), calls.rewritten)
@@ -90,7 +93,8 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
     unavailable = {**calls.unavailable, **dict.fromkeys(faults_of(workbook, what_if.stale), TABLE_REASON)}
     remark_on_unavailable(calls.unavailable, findings)
     rewritten = {**dialogs.rewritten, **calls.rewritten, **faults_of(workbook, what_if.varying)}
-    forecasts, refused = _without_refused(workbook, dialogs, rewritten, assumptions, forecasts, filters, findings)
+    forecasts, refused = _without_refused(workbook, dialogs, rewritten, assumptions, forecasts, filters, own, findings)
+    own = _of_forecasts(own, forecasts)
     if not (calls.assumptions or dialogs.assumptions):
         _refuse_no_assumption(workbook, calls, tables["xlmc_assumptions"], findings)
     if calls and not (forecasts or tables["xlmc_forecasts"] or refused):
@@ -111,6 +115,7 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
         checks=checks,
         evidence=evidence,
         refused=refused,
+        forecast_filters=tuple(each for each in own if each.only_for),
     )
 
 
@@ -137,6 +142,32 @@ def _take_pairs(taken: Sequence[Correlation], more: Iterable[Correlation], findi
             findings.problem(message, row.row, "Keep one of them")
 
 
+def _by_reach(
+    filters: Iterable[Filter], of_dialogs: Iterable[Filter], forecasts: Sequence[Forecast], findings: Findings
+) -> tuple[tuple[Filter, ...], tuple[Filter, ...]]:
+    """The filters of all forecasts, and those of some only, with these forecasts as they are called."""
+    names = {name_key(each.name): each.name for each in forecasts}
+    everywhere: list[Filter] = []
+    own: list[Filter] = []
+    for each in (*filters, *of_dialogs):
+        unknown = [name for name in each.only_for if name_key(name) not in names]
+        if unknown:
+            hint = did_you_mean(unknown[0], names.values()) if names else "Define the forecast first"
+            findings.problem(f"Only for names {unknown[0]!r}, and no forecast is called so", each.row, hint)
+        elif each.only_for:
+            called = dict.fromkeys(names[name_key(name)] for name in each.only_for)
+            own.append(replace(each, only_for=tuple(called)))
+        else:
+            everywhere.append(each)
+    return tuple(everywhere), tuple(own)
+
+
+def _of_forecasts(own: Iterable[Filter], forecasts: Sequence[Forecast]) -> tuple[Filter, ...]:
+    """The filters of some forecasts only, of those that are left."""
+    left = {each.name for each in forecasts}
+    return tuple(replace(each, only_for=tuple(name for name in each.only_for if name in left)) for each in own)
+
+
 def _without_refused(
     workbook: Workbook,
     dialogs: FromDialogs,
@@ -144,10 +175,11 @@ def _without_refused(
     assumptions: Sequence[Assumption],
     forecasts: tuple[Forecast, ...],
     filters: Sequence[Filter],
+    own: Sequence[Filter],
     findings: Findings,
 ) -> tuple[tuple[Forecast, ...], tuple[DefinitionError, ...]]:
     """The forecasts that need no cell of Crystal Ball that cannot be read; and what of the others is to be told."""
-    found = refusals(workbook, dialogs.refused, rewritten, assumptions, forecasts, filters)
+    found = refusals(workbook, dialogs.refused, rewritten, assumptions, forecasts, filters, own)
     findings.problems += found.filters.values()
     for cell in found.idle:
         findings.notice(f"no forecast or filter needs this cell: {dialogs.refused[cell].message}", cell)

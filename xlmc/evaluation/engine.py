@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BLANK_RESULT",
+    "DISCARDED_FIRST",
     "TEXT_RESULT",
+    "UNDECIDED_RESULT",
     "BlockRunner",
     "Column",
     "Evaluator",
@@ -34,6 +36,12 @@ __all__ = [
 TEXT_RESULT: Final = 200
 BLANK_RESULT: Final = 201
 """Codes, beside those of `ErrorCode`, of a result that is no number."""
+
+UNDECIDED_RESULT: Final = 202
+"""Code of a forecast that a filter of its own cannot decide on, because the filter's cell is an error."""
+
+DISCARDED_FIRST: Final = 203
+"""Code of a forecast that its own first filter discards; the second's is the next, and so on."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,17 +39,23 @@ _DEFINITIONS: Final = (
     ("assumptions", "assumption", ("name",), ("cell", "status", "distribution", "parameters", "cutoffs")),
     ("forecasts", "forecast", ("name",), ("cell", "range_share", "threshold")),
     ("filters", "filter", ("name",), ("cell", "limits")),
+    ("forecast_filters", "filter", ("name", "only_for"), ("cell", "limits")),
     ("checks", "check", ("name",), ("cell", "base")),
     ("correlations", "correlation", ("first", "second"), ("rank_correlation",)),
 )
 """Section, what a row of it is, what names the row, and what a run depends on."""
 
 _COUNTS: Final = ("trials", "accepted", "error_trials", "undecided", "invalid")
-_COUNTED: Final = {"forecasts": ("trials",), "filters": ("rejected", "only", "errors"), "checks": ("tried", "failed")}
+_COUNTED: Final = {
+    "forecasts": ("trials",),
+    "filters": ("rejected", "only", "errors"),
+    "forecast_filters": ("discarded",),
+    "checks": ("tried", "failed"),
+}
 _STATISTICS: Final = ("mean", "standard_deviation", "low", "high")
 
-_LATER: Final = "checks"
-"""A section that records have where the workbook has such rows, and that older ones do not have at all."""
+_LATER: Final = ("checks", "forecast_filters")
+"""Sections that records have where the workbook has such rows, and that older ones do not have at all."""
 
 K = TypeVar("K", bound=Hashable)
 
@@ -202,8 +208,9 @@ def number_changes(recorded: Record, found: Record) -> list[NumberChange]:
         _number(f"trials: {key.replace('_', ' ')}", recorded[f"counts.{key}"], found[f"counts.{key}"], 0.0)
         for key in _COUNTS
     ]
-    for section in ("filters", "forecasts", "checks"):
-        old, new = (_rows(record, section, ("name",)) for record in (recorded, found))
+    for section in ("filters", "forecast_filters", "forecasts", "checks"):
+        naming = ("name", "only_for") if section == "forecast_filters" else ("name",)
+        old, new = (_rows(record, section, naming) for record in (recorded, found))
         for name in (name for name in old if name in new):
             scale = _as_number(new[name].get("standard_deviation")) or 0.0
             counted, measured = _COUNTED[section], _STATISTICS if section == "forecasts" else ()
@@ -233,7 +240,7 @@ def _as_number(value: Value) -> float | None:
 
 
 def _rows(record: Record, section: str, naming: Sequence[str]) -> dict[str, dict[str, Value]]:
-    if section not in record and section == _LATER:
+    if section not in record and section in _LATER:
         return {}
     return {" and ".join(str(row[key]) for key in naming): row for row in record.rows(section)}
 

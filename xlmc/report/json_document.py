@@ -17,7 +17,7 @@ from xlmc.report.summary import BaseCase, base_case
 from xlmc.results.record import make_record
 from xlmc.results.record.definition_tables import correlations_met
 from xlmc.results.record.errors_met import errors_met, lost_sentences
-from xlmc.results.record.in_words import cutoffs_text, limits_text, parameters_text, status
+from xlmc.results.record.in_words import cutoffs_text, discards_of, limits_text, parameters_text, status
 from xlmc.results.statements import certainties, pairs_of, statements
 from xlmc.statistics import Estimate, proportion
 from xlmc.studies.sensitivity import sensitivities
@@ -98,6 +98,18 @@ def document(simulation: Simulation, *, command: str | None = None) -> Json:
         "trials": _trials(simulation),
         "forecasts": [_forecast(result, base) for result in simulation.results.values()],
         "filters": [_filter(simulation, index, each) for index, each in enumerate(simulation.model.filters)],
+        "forecast_filters": [
+            {
+                "name": each.filter.name,
+                "only_for": each.forecast,
+                "cell": str(each.filter.cell),
+                "limits": limits_text(each.filter),
+                "because": each.filter.because,
+                "discarded": each.trials,
+                "share": estimate_json(each.share),
+            }
+            for each in discards_of(simulation)
+        ],
         "assumptions": [_assumption(simulation, each) for each in simulation.model.assumptions],
         "statements": [_as_json(each) for each in statements(simulation)],
         "pairs": [_pair(each) for each in pairs_of(simulation)],

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from xlmc.definitions.definitions import name_key
-from xlmc.results.record.in_words import limits_text
+from xlmc.evaluation.engine import UNDECIDED_RESULT
+from xlmc.results.record.in_words import discards_of, limits_text
 from xlmc.run.rare.account import probability_text
 from xlmc.statistics import Estimate, format_estimate
 
@@ -177,7 +178,9 @@ def _fails(column: Column) -> bool:
 
 
 def _number(column: Column) -> float | None:
-    value = float(column.as_floats()[0])
+    """The only value, also that of a forecast which its own filter discards: a base case is told all the same."""
+    discarded = column.codes is not None and column.codes[0] >= UNDECIDED_RESULT
+    value = float(column.values[0] if discarded else column.as_floats()[0])
     return value if np.isfinite(value) else None
 
 
@@ -197,7 +200,9 @@ def question(simulation: Simulation) -> Iterator[Said]:
         f"{simulation.evaluated:,} combinations of values from these ranges were tried. "
     )
     if not model.filters:
-        yield Said("The workbook has no filters: every trial is accepted.")
+        without = "no filters" if not model.forecast_filters else "no filters of all forecasts"
+        yield Said(f"The workbook has {without}: every trial is accepted.")
+        yield from _of_some(simulation)
         return
     if simulation.rare is None:
         yield Said(
@@ -212,6 +217,17 @@ def question(simulation: Simulation) -> Iterator[Said]:
         yield Said(filter_.name, is_name=True)
         yield Said(f" {limits_text(filter_)}")
     yield Said(". The answers are those of these accepted trials.")
+    yield from _of_some(simulation)
+
+
+def _of_some(simulation: Simulation) -> Iterator[Said]:
+    """What the filters of some forecasts only ask."""
+    for each in discards_of(simulation):
+        yield Said(" Of ")
+        yield Said(each.forecast, is_name=True)
+        yield Said(f" only those {simulation.accepted - each.trials:,} count in which ")
+        yield Said(each.filter.name, is_name=True)
+        yield Said(f" {limits_text(each.filter)}.")
 
 
 def _count_text(count: int, one: str, several: str) -> str:

@@ -7,7 +7,7 @@ depend on the other trials.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple, Protocol
 
@@ -17,7 +17,9 @@ from numpy.typing import NDArray
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.engine import (
     BLANK_RESULT,
+    DISCARDED_FIRST,
     TEXT_RESULT,
+    UNDECIDED_RESULT,
     BlockRunner,
     Column,
     Evaluator,
@@ -77,6 +79,7 @@ class Block:
         draws: assumption -> `(m,)`; empty when not asked for.
         forecasts: one a forecast, `(m,)`, NaN where it has no number.
         faults: per forecast, fault -> accepted trials in which it has no number.
+        discards: per forecast, number of one of its own filters -> accepted trials that this discards.
         invalid: assumption -> trials in which its parameters were no distribution.
         lost: trials with an error of any kind: in a draw, in an undecided filter, in a forecast that counts.
         prior: assumption -> `(n,)` draws of all trials; None when not asked for.
@@ -91,6 +94,7 @@ class Block:
     invalid: Counter[str]
     lost: int
     prior: dict[str, Floats] | None
+    discards: Sequence[Counter[int]] = ()
 
     def owned(self) -> Block:
         """The same with its columns in memory of their own."""
@@ -181,7 +185,7 @@ class ModelRunner:
         m = survivors.size
         for column in forecasts:
             if column.codes is not None:
-                lost[survivors] |= column.codes[:m] > 0
+                lost[survivors] |= (column.codes[:m] > 0) & (column.codes[:m] < DISCARDED_FIRST)
         return Block(
             trials,
             survivors + start,
@@ -194,6 +198,7 @@ class ModelRunner:
             Counter({name: int(np.count_nonzero(bad[:trials])) for name, bad in invalid.items() if bad[:trials].any()}),
             int(np.count_nonzero(lost)),
             {name: values[:trials] for name, values in draws.items()} if task.prior else None,
+            [_discards(column, m) for column in forecasts],
         )
 
     def _forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
@@ -274,15 +279,24 @@ def _false(column: Column) -> Bools:
 
 
 def _faults(column: Column, trials: int) -> Counter[str]:
-    if column.codes is None:
-        return Counter()
-    codes, counts = np.unique(column.codes[:trials], return_counts=True)
-    found = zip(codes.tolist(), counts.tolist(), strict=True)
-    return Counter({fault_text(code): count for code, count in found if code})
+    return Counter({fault_text(code): n for code, n in _codes(column, trials) if 0 < code < DISCARDED_FIRST})
+
+
+def _discards(column: Column, trials: int) -> Counter[int]:
+    return Counter({code - DISCARDED_FIRST: n for code, n in _codes(column, trials) if code >= DISCARDED_FIRST})
+
+
+def _codes(column: Column, trials: int) -> Iterator[tuple[int, int]]:
+    """The codes of a column's first trials, and in how many each stands."""
+    if column.codes is not None:
+        codes, counts = np.unique(column.codes[:trials], return_counts=True)
+        yield from zip(codes.tolist(), counts.tolist(), strict=True)
 
 
 def fault_text(code: int) -> str:
     """What a column's code stands for: an Excel error, `text` or `blank`."""
     if code == TEXT_RESULT:
         return "text"
+    if code == UNDECIDED_RESULT:
+        return "error in a filter of its own"
     return "blank" if code == BLANK_RESULT else ErrorCode(code).text

@@ -41,6 +41,7 @@ class ForecastResult:
 
     Attributes:
         faults: error, `text` or `blank` -> accepted trials in which it is none.
+        discards: filter of its own -> accepted trials that it discards.
     """
 
     def __init__(
@@ -49,8 +50,10 @@ class ForecastResult:
         column: Callable[[], Floats],
         faults: Counter[str],
         replicate: Callable[[], Replicates | None] = lambda: None,
+        discards: Counter[str] | None = None,
     ) -> None:
         self.definition, self.faults = definition, faults
+        self.discards: Counter[str] = Counter() if discards is None else discards
         self._column, self._replicate = column, replicate
 
     @cached_property

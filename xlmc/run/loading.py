@@ -72,7 +72,8 @@ def filter_faults(model: Model) -> list[DefinitionError]:
 
     The base case is looked at, where there is one; then, for quantities, some trials.
     """
-    rows = [each for each in model.filters if each.evidence is None or filter_limits(each)]
+    every = (*model.filters, *model.forecast_filters)
+    rows = [each for each in every if each.evidence is None or filter_limits(each)]
     filters = [each for each in rows if not filter_limits(each) or _may_be_text(model, each)]
     if not filters:
         return []

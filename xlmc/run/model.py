@@ -27,6 +27,7 @@ from xlmc.formula import Graph
 from xlmc.run.correlating import correlated_groups, repair_notices, tie_notices
 from xlmc.run.draw_binding import draw_of, dynamic_parameters, with_base_parameters
 from xlmc.run.evidence_filters import chances_of, with_evidence_numbers
+from xlmc.run.forecast_filters import FilteringProgram, conditions_of, filters_by_forecast
 from xlmc.run.needed import (
     Needed,
     definitions_of_checks,
@@ -120,7 +121,9 @@ def _asks_for_the_same(old: Definitions, new: Definitions, live: Collection[str]
         new: of the same one, changed.
         live: names of the assumptions that the old ones draw.
     """
-    if (old.forecasts, old.checks) != (new.forecasts, new.checks) or old.rewritten is not new.rewritten:
+    if (old.forecasts, old.checks, old.forecast_filters) != (new.forecasts, new.checks, new.forecast_filters):
+        return False
+    if old.rewritten is not new.rewritten:
         return False
     if len(old.assumptions) != len(new.assumptions) or len(old.filters) != len(new.filters):
         return False
@@ -156,6 +159,7 @@ class Model:
     Attributes:
         workbook, definitions, path: what it was made from.
         assumptions, forecasts, filters, checks: as defined.
+        forecast_filters: filters of some forecasts only, as defined.
         live: the assumptions that are drawn: needed and not frozen.
         chances: what decides which trials are kept by evidence whose error is no limit; drawn as assumptions are.
         draws: name of a live assumption or a chance -> how it is drawn.
@@ -182,6 +186,7 @@ class Model:
         self.definitions = definitions
         self.assumptions, self.forecasts = definitions.assumptions, definitions.forecasts
         self.filters, self.checks = definitions.filters, definitions.checks
+        self.forecast_filters = definitions.forecast_filters
         self.chances = chances_of(self.filters)
         named, chances = {a.name: a for a in self.assumptions}, {a.name: a for a in self.chances}
         drawn = [{**named, **chances}[name] for name in self.needed.live]
@@ -243,7 +248,8 @@ class Model:
         """What is needed of assumptions and filters, the row of each, and its source or reason."""
         idle = {a.name for a in self.needed.idle}
         found = [(f"{a.name!r}", a.row, a.source) for a in self.assumptions if a.name not in idle]
-        return found + [(f"{each.name!r} (a filter)", each.row, each.because) for each in self.filters]
+        filters = (*self.filters, *self.forecast_filters)
+        return found + [(f"{each.name!r} (a filter)", each.row, each.because) for each in filters]
 
     def _moving(self) -> set[Cell]:
         """The cells of the live assumptions whose range has more than one value, as far as it is known."""
@@ -346,10 +352,10 @@ class Model:
         row, known = ENGINES[engine], self._programs.get(engine)
         if known is None or (row.bounded and not known.holds_for(self._ends)):
             ends = self._ends if known is None else _hull(known.ends, self._ends)
-            parts = self.lowering, self.filter_targets, self._forecast_targets, self.fallible
+            parts = self.lowering, self.filter_targets, self._answer_targets, self.fallible
             more = {"bounds": NodeBounds(self.lowering.dag, ends)} if row.bounded else {}
             with paused_collection():
-                known = self._programs[engine] = _Compiled(row.load()(*parts, **more), ends)
+                known = self._programs[engine] = _Compiled(self._filtering(row.load()(*parts, **more)), ends)
         return known.program
 
     def evaluator(self, targets: Sequence[Target], block: int) -> Evaluator:
@@ -402,7 +408,13 @@ class Model:
 
     def program_of(self, filters: Sequence[Target]) -> Program:
         """Other targets instead of the filters, and the forecasts, compiled for the engine `numpy`."""
-        return NumpyProgram.of(self.lowering, filters, self._forecast_targets, self.fallible)
+        return self._filtering(NumpyProgram.of(self.lowering, filters, self._answer_targets, self.fallible))
+
+    def _filtering(self, program: Program) -> Program:
+        """The program that discards trials of forecasts with filters of their own, where there are any."""
+        if not self.forecast_filters:
+            return program
+        return FilteringProgram(program, filters_by_forecast(self.forecasts, self.forecast_filters))
 
     def check_program(self) -> Program:
         """The cells of the checks as filters, a function of the live assumptions; others stand at their base values."""
@@ -425,9 +437,14 @@ class Model:
     def _forecast_targets(self) -> list[Target]:
         return [Target(forecast.cell, forecast.cell) for forecast in self.forecasts]
 
+    @property
+    def _answer_targets(self) -> list[Target]:
+        """The forecasts, and what their own filters ask."""
+        return [*self._forecast_targets, *conditions_of(self.forecast_filters)]
+
     def _check_targets(self) -> None:
         """Lower every target once, so that a fault is reported when the workbook is loaded."""
-        for target in (*self.filter_targets, *self._forecast_targets):
+        for target in (*self.filter_targets, *self._answer_targets):
             self.lowering.target(target)
 
 

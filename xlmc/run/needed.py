@@ -86,7 +86,7 @@ def find_needed(
     needs = {a.cell: a.cells for a in definitions.assumptions if not a.frozen}
     held = frozenset(a.cell for a in definitions.assumptions if a.frozen)
     resolver = Resolver(workbook, [*needs, *held], rewritten=definitions.rewritten)
-    targets = targets_of(definitions.forecasts, definitions.filters)
+    targets = targets_of(definitions.forecasts, (*definitions.filters, *definitions.forecast_filters))
     while True:  # the parameters of needed assumptions may need more cells, and these more assumptions
         graph = build_graph(resolver, targets, frozenset(needs), held, more=more)
         wanted = [cell for drawn, cells in needs.items() if drawn in graph.reached for cell in cells]
@@ -135,7 +135,15 @@ def definitions_of_checks(definitions: Definitions, live: Collection[str]) -> De
     """
     assumptions = tuple(a if a.name in live else replace(a, frozen=True) for a in definitions.assumptions)
     asked = tuple(Forecast(check.name, check.cell, check.row) for check in definitions.checks)
-    return replace(definitions, assumptions=assumptions, forecasts=asked, filters=(), correlations=(), checks=())
+    return replace(
+        definitions,
+        assumptions=assumptions,
+        forecasts=asked,
+        filters=(),
+        correlations=(),
+        checks=(),
+        forecast_filters=(),
+    )
 
 
 def refuse_without_base(checks: Sequence[Check], needed: Needed, definitions: Definitions) -> None:

@@ -19,6 +19,7 @@ from xlmc.evaluation.engine import Room
 from xlmc.run.blocks import Block, FilterTally, ModelRunner, Task
 from xlmc.run.checking import LEAST_CHECKED
 from xlmc.run.disk_needed import disk_needed
+from xlmc.run.forecast_filters import discards_by_name
 from xlmc.run.rare.rare_switch import rare_switch
 from xlmc.run.scheduling.run_spec import model_runner
 from xlmc.run.scheduling.worker_pool import WorkerPool
@@ -175,6 +176,7 @@ def _with_search(plain: Simulation, found: Search, most_inputs: int) -> Simulati
         inputs=drawn.inputs,
         forecasts=drawn.forecasts,
         faults=drawn.faults,
+        discards=drawn.discards,
         rare=replace(found.account, kept=gathered.accepted, faulty=gathered.lost),
     )
 
@@ -224,6 +226,7 @@ class _Gathered:
         self._tally = FilterTally.empty(len(model.filters))
         self._invalid: Counter[str] = Counter()
         self._faults: list[Counter[str]] = [Counter() for _ in model.forecasts]
+        self._discards: list[Counter[int]] = [Counter() for _ in model.forecasts]
         self.trials = self.accepted = self.lost = 0
 
     @property
@@ -237,6 +240,8 @@ class _Gathered:
         self._invalid.update(block.invalid)
         for mine, theirs in zip(self._faults, block.faults, strict=True):
             mine.update(theirs)
+        for discarded, more in zip(self._discards, block.discards, strict=False):
+            discarded.update(more)
         self.trials += block.trials
         self.accepted += block.accepted.size
         self.lost += block.lost
@@ -285,5 +290,6 @@ class _Gathered:
             tally=self._tally,
             invalid=self._invalid,
             error_trials=self.lost,
+            discards=discards_by_name(self._model.forecasts, self._model.forecast_filters, self._discards),
             stopped=stopped,
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Final
 
@@ -105,6 +105,8 @@ class Simulation:
             number in some forecast. Each counts once.
         stopped: what ended it.
         origin: where it was made, if it was saved and opened again; None for one that was made here.
+        discards: forecast with filters of its own -> filter -> accepted trials that it discards for it alone; a trial
+            that several discard counts for the first.
         rare: where the accepted trials come from, where that is a learned proposal; None with plain trials.
     """
 
@@ -124,6 +126,7 @@ class Simulation:
     stopped: Stopped = ALL_TRIALS
     origin: Origin | None = None
     rare: RareAccount | None = None
+    discards: Mapping[str, Counter[str]] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> ForecastResult:
         """The result of a forecast, by name whatever its case.
@@ -146,7 +149,11 @@ class Simulation:
         """Every forecast's result, in the order of the workbook."""
         return {
             f.name: ForecastResult(
-                f, partial(self.forecasts.__getitem__, f.name), self.faults[f.name], lambda: self.replicate
+                f,
+                partial(self.forecasts.__getitem__, f.name),
+                self.faults[f.name],
+                lambda: self.replicate,
+                self.discards.get(f.name, Counter()),
             )
             for f in self.model.forecasts
         }

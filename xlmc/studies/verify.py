@@ -91,7 +91,11 @@ def verify(workbook: Workbook, definitions: Definitions | None = None) -> Verifi
         workbook: to check.
         definitions: checks only what its forecasts and filters need; every formula cell when None.
     """
-    wanted = _all_formulas(workbook) if definitions is None else targets_of(definitions.forecasts, definitions.filters)
+    wanted = (
+        _all_formulas(workbook)
+        if definitions is None
+        else targets_of(definitions.forecasts, (*definitions.filters, *definitions.forecast_filters))
+    )
     lowering = _lower(workbook, wanted)
     checked = sorted(wanted if definitions is None else lowering.graph.formulas)
     return Verification(tuple(_check(lowering, cell) for cell in checked if _has_formula(workbook, cell)))

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from crystal_ball_book import Asked, Decided, Drawn, Tied, object_guid, read_parts, save, write_parts
 
 from xlmc.api import load
 from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.evaluation.engines import ENGINES
+from xlmc.results.saved import keep, open_run
 from xlmc.workbook.reader import read_workbook
 
 S = "Sheet1"
@@ -193,3 +195,56 @@ def test_the_answers_are_those_of_the_distributions(tmp_path):
     assert abs(found["Sum"].mean.value - mean) < 4 * found["Sum"].mean.error
     assert abs(found["Sum"].standard_deviation.value - sd) < 4 * found["Sum"].standard_deviation.error
     assert abs(found["Total"].mean.value - 180) < 4 * found["Total"].mean.error
+
+
+FILTERS = {
+    "keeps what is above": ({"fFilterMin": 110.0}, (110.0, None), ("Total",), False),
+    "keeps what is between": ({"fFilterMin": 110.0, "fFilterMax": 200.0}, (110.0, 200.0), ("Total",), False),
+    "of all forecasts": ({"fFilterMax": 200.0, "fFilterAllOnDiscard": True}, (None, 200.0), (), True),
+    "keeps what is outside": (
+        {"fFilterMin": 110.0, "fFilterMax": 200.0, "fFilterInside": True, "fFilterOutside": False},
+        (None, None),
+        ("Total",),
+        True,
+    ),
+}
+
+
+@pytest.mark.parametrize(("members", "limits", "only_for", "told"), FILTERS.values(), ids=FILTERS)
+def test_a_filter_is_of_its_forecast_unless_it_says_all(read, members, limits, only_for, told):
+    filtered = replace(TOTAL, prefs={"fFilterPrefs": {"fUseFilter": True, **members}})
+    found = read(SKID, filtered, Asked(S, "$B$6", "Other"))
+    (each,) = (*found.filters, *found.forecast_filters)
+    assert (each.at_least, each.at_most, each.only_for) == (*limits, only_for)
+    assert bool(only_for) == bool(found.forecast_filters)
+    assert any("not yet met" in notice.message for notice in found.notices) == told
+
+
+def test_a_filter_of_one_forecast_is_saved_and_repeated(tmp_path):
+    filtered = replace(TOTAL, prefs={"fFilterPrefs": {"fUseFilter": True, "fFilterMin": 180.0, "fFilterMax": 200.0}})
+    inside = {
+        "fUseFilter": True,
+        "fFilterMin": 95.0,
+        "fFilterMax": 120.0,
+        "fFilterInside": True,
+        "fFilterOutside": False,
+    }
+    path = tmp_path / "book.xlsx"
+    save(
+        path,
+        CELLS,
+        [[SKID, OFFSET, filtered, replace(TOTAL, cell="$B$6", name="Other", prefs={"fFilterPrefs": inside})]],
+    )
+    run = load(path).simulate(3000)
+    total, other = run.forecasts["Total"], run.forecasts["Other"]
+    skid, offset = run.inputs["Skid"], run.inputs["Offset"]
+    np.testing.assert_array_equal(np.isnan(total), (total_of(skid, offset) < 180) | (total_of(skid, offset) > 200))
+    np.testing.assert_array_equal(np.isnan(other), (2 * offset >= 95) & (2 * offset <= 120))
+    assert run.discards["Total"].total() == np.count_nonzero(np.isnan(total))
+    opened = open_run(keep(run, tmp_path / "run.xlmcrun"))
+    assert opened.discards == run.discards
+    assert opened["Total"].statistics == run["Total"].statistics
+
+
+def total_of(skid, offset):
+    return 2 * skid - offset + 30

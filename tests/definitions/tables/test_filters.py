@@ -151,3 +151,12 @@ def test_a_table_without_rows_is_pointed_out(read, rows):
     assert found.problems == found.checks == ()
     (notice,) = found.notices
     assert str(notice) == "Answers!A40: The table xlmc_checks holds no check"
+
+
+def test_a_filter_may_be_for_some_forecasts_only(read, only_problem):
+    heading = {"Answers!H10": "Only for", "Answers!H11": " speed ; Speed"}
+    table = {"xlmc_filters": "Answers!A10:H12"}
+    found = read(heading, table)
+    assert [(each.name, each.only_for) for each in found.forecast_filters] == [("e", ("Speed",))]
+    assert [each.name for each in found.filters] == ["Positive"]
+    only_problem("Answers!A11", "Only for names 'Sped'", "Speed", {**heading, "Answers!H11": "Sped"}, table)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final, TypeVar
 
 from xlmc.address import Cell, InFormula
@@ -22,6 +22,7 @@ from xlmc.definitions.crystal_ball.stored_objects import (
     OF_NAMES,
     OF_PARAMETERS,
     CellReference,
+    ForecastFilter,
     Stored,
     StoredAssumption,
     StoredCorrelation,
@@ -29,7 +30,7 @@ from xlmc.definitions.crystal_ball.stored_objects import (
     StoredForecast,
     StoredOther,
 )
-from xlmc.definitions.definitions import Assumption, Correlation, Forecast, Parameter, name_key
+from xlmc.definitions.definitions import Assumption, Correlation, Filter, Forecast, Parameter, name_key
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.fields import number_in, static_value
 from xlmc.definitions.tables.identity import Claims
@@ -65,6 +66,7 @@ class FromDialogs:
 
     assumptions: list[Assumption] = field(default_factory=list)
     forecasts: list[Forecast] = field(default_factory=list)
+    filters: list[Filter] = field(default_factory=list)
     correlations: list[Correlation] = field(default_factory=list)
     rewritten: dict[Cell, ir.Expression | FormulaError] = field(default_factory=dict)
     damages: list[str] = field(default_factory=list)
@@ -290,14 +292,48 @@ class _Dialogs:
         name = self._shown(sheet, stored.name, stored.references, cell)
         if cell in self._answers.cells:
             message = f"Crystal Ball's forecast {name!r} is left out: {self._answers.cells[cell]} defines one of {cell}"
-            self._findings.notice(message, cell)
+            if stored.filter is None:
+                self._findings.notice(message, cell)
+            else:
+                self._findings.problem(f"{message}, and its filter would be lost", cell, "Delete that row")
             return
         self._answers.take_cell(cell, cell)
         name = _free_name(name, cell, self._answers, self._findings)
         threshold = self._threshold(stored.certainty, name, cell)
+        if stored.filter is not None:
+            self._filter(stored.filter, name, cell)
         self._found.forecasts.append(
             Forecast(name, cell, cell, stored.units, self._central, threshold, {"Crystal Ball": "a forecast"})
         )
+
+    def _filter(self, stored: ForecastFilter, name: str, cell: Cell) -> None:
+        """Take the filter of a forecast. The values that it discards lie inside or outside of its limits."""
+        endless = not (math.isfinite(stored.low) or math.isfinite(stored.high))
+        if not stored.inside and (endless or not stored.outside):
+            self._findings.notice(f"Crystal Ball's filter of {name!r} is on, and discards nothing", cell)
+            return
+        if stored.inside:
+            message = f"Crystal Ball's filter of {name!r} discards values inside its limits; {_UNPROVEN}"
+            self._findings.notice(message, cell)
+        if stored.everywhere:
+            message = f"Crystal Ball's filter of {name!r} discards the trial for all forecasts; {_UNPROVEN}"
+            self._findings.notice(message, cell)
+        self._found.filters.append(
+            replace(
+                self._kept_outside(stored, cell) if stored.inside else _kept_inside(stored, cell),
+                name=f"Filter of {name}",
+                because="Crystal Ball's filter of this forecast",
+                only_for=() if stored.everywhere else (name,),
+            )
+        )
+
+    def _kept_outside(self, stored: ForecastFilter, cell: Cell) -> Filter:
+        """A test in a cell of its own, because a filter's limits cannot say `or`."""
+        ends = [("<", stored.low)] * math.isfinite(stored.low) + [(">", stored.high)] * math.isfinite(stored.high)
+        parts = [ir.Binary(sign, cell, ir.Number(end), all_bits=True) for sign, end in ends]
+        site = InFormula.of(cell, "filter")
+        self._found.rewritten[site] = ir.Call("OR", tuple(parts)) if parts else ir.Logical(value=False)
+        return Filter("", site, cell)
 
     def _threshold(self, certainty: tuple[float, float], name: str, cell: Cell) -> float | None:
         low, high = certainty
@@ -438,3 +474,9 @@ def _free_name(name: str, cell: Cell, claims: Claims, findings: Findings) -> str
         findings.notice(f"another {claims.kind} is called {name!r}; this one is called '{name} ({cell})'", cell)
         name = f"{name} ({cell})"
     return claims.take_name(name, cell)
+
+
+def _kept_inside(stored: ForecastFilter, cell: Cell) -> Filter:
+    at_least = stored.low if math.isfinite(stored.low) else None
+    at_most = stored.high if math.isfinite(stored.high) else None
+    return Filter("", cell, cell, at_least=at_least, at_most=at_most)

@@ -33,6 +33,7 @@ def refusals(
     assumptions: Sequence[Assumption],
     forecasts: Sequence[Forecast],
     filters: Sequence[Filter],
+    own: Sequence[Filter],
 ) -> Refusals:
     """Which forecasts and filters need a refused cell.
 
@@ -42,13 +43,17 @@ def refusals(
         rewritten: as in `Definitions`, the refused cells among them.
         assumptions: of the workbook; one whose parameters need a refused cell passes that on.
         forecasts: of the workbook.
-        filters: of the workbook.
+        filters: of all forecasts.
+        own: filters of some forecasts only, which need what these need.
     """
     if not refused:
         return Refusals({}, {}, ())
     parameters = {a.cell: a.cells for a in assumptions if not a.frozen}
-    asked = {each.name: (each.cell,) for each in forecasts}
-    kept = {each.name: (each.cell, *_limits(each)) for each in filters}
+    asked = {
+        each.name: (each.cell, *(cell for filter_ in own if each.name in filter_.only_for for cell in _cells(filter_)))
+        for each in forecasts
+    }
+    kept = {each.name: tuple(_cells(each)) for each in filters}
     targets = [cell for cells in (*asked.values(), *kept.values(), *parameters.values()) for cell in cells]
     resolver = Resolver(workbook, parameters, strict=False, rewritten=rewritten)
     held = frozenset(a.cell for a in assumptions if a.frozen)
@@ -70,7 +75,8 @@ def refusals(
     )
 
 
-def _limits(filter_: Filter) -> Iterator[Cell]:
+def _cells(filter_: Filter) -> Iterator[Cell]:
+    yield filter_.cell
     for limit in (filter_.at_least, filter_.at_most, filter_.above, filter_.below):
         if isinstance(limit, Cell):
             yield limit

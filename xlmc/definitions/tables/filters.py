@@ -20,7 +20,7 @@ __all__ = ["LIMITS", "LIMIT_HINT", "contradiction", "read_checks", "read_filters
 
 LIMITS = {"at_least": "At least", "at_most": "At most", "above": "Above", "below": "Below"}
 """Limits of a filter and their headings."""
-_FILTER_COLUMNS = ("Name", "Value", "Cell", *LIMITS.values(), "Because")
+_FILTER_COLUMNS = ("Name", "Value", "Cell", *LIMITS.values(), "Because", "Only for")
 LIMIT_HINT = "Fill in At least, At most, Above or Below, or make the cell a test such as =B7>0"
 """What to do where the cell of a filter is no test."""
 
@@ -53,6 +53,7 @@ def _filter(row: Row, computed: Computed, claims: Claims, findings: Findings) ->
     identity = identify(row, claims, findings)
     limits = {key: findings.attempt(parameter, row, heading) for key, heading in LIMITS.items()}
     because = findings.attempt(optional_text, row, "Because") or ""
+    only_for = findings.attempt(optional_text, row, "Only for") or ""
     if len(findings.problems) > before or not identity:
         return None
     name, cell = identity
@@ -67,8 +68,18 @@ def _filter(row: Row, computed: Computed, claims: Claims, findings: Findings) ->
         findings.notice(
             f"The filter {name!r} gives no evidence under Because, the first thing an opponent asks for", where
         )
-    known: dict[str, Any] = {**limits, "because": because, "notes": row.notes(_FILTER_COLUMNS)}
+    known: dict[str, Any] = {
+        **limits,
+        "because": because,
+        "only_for": _listed(only_for),
+        "notes": row.notes(_FILTER_COLUMNS),
+    }
     return Filter(name=name, cell=cell, row=row.where, **known)
+
+
+def _listed(names: str) -> tuple[str, ...]:
+    """Names that semicolons separate."""
+    return tuple(name.strip() for name in names.split(";") if name.strip())
 
 
 def _refuse_contradiction(row: Row, limits: Mapping[str, Parameter | None]) -> None:

@@ -28,6 +28,7 @@ from xlmc.report.summary import (
 from xlmc.results.record.definition_tables import correlations_met
 from xlmc.results.record.in_words import (
     REJECTED_SENTENCE,
+    discards_of,
     distribution_text,
     limits_text,
     sampling_sentence,
@@ -160,9 +161,38 @@ def _forecasts(material: Material) -> Iterator[Block]:
 
 def _filters(material: Material) -> Iterator[Block]:
     simulation = material.simulation
-    tally, filters = simulation.tally, simulation.model.filters
-    if not filters:
+    if simulation.model.filters:
+        yield from _rejections(material)
+    if not simulation.model.forecast_filters:
         return
+    yield Paragraph(
+        "Some filters concern some forecasts only. They reject no trial: such a forecast counts the accepted trials "
+        "that its filters keep, and all other forecasts count them all."
+    )
+    lines = [
+        (
+            each.filter.name,
+            each.forecast,
+            limits_text(each.filter),
+            each.filter.because or _NONE,
+            f"{each.trials:,}",
+            share_text(each.share),
+        )
+        for each in discards_of(simulation)
+    ]
+    heads = ("Filter", "Only for", "Must be", "Because", "Discarded trials", "Share")
+    yield material.table(
+        "Filters of some forecasts only, and the accepted trials that they discard.",
+        heads,
+        lines,
+        (2, 1.7, 1.5, 2.5, 1.1, 1.7),
+        (4, 5),
+    )
+
+
+def _rejections(material: Material) -> Iterator[Block]:
+    simulation = material.simulation
+    tally, filters = simulation.tally, simulation.model.filters
     yield Paragraph(
         f"A trial is accepted when all filters hold. Of {simulation.trials:,} trials, "
         f"{simulation.accepted:,} were accepted ({share_text(simulation.acceptance)})."

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
 from xlmc.results.record.errors_met import ErrorMet, errors_met
-from xlmc.results.record.in_words import REJECTED_SENTENCE, limits_text
+from xlmc.results.record.in_words import REJECTED_SENTENCE, discards_of, limits_text
 from xlmc.run.checking import checks_sentence
 from xlmc.statistics import proportion
 
@@ -21,6 +21,10 @@ __all__ = ["write_accounting", "write_checks"]
 
 _FILTER_STARTS = (0, 1, 3, 5)
 """The columns that a filter, its cell, its limits and its reason begin in."""
+
+_DISCARD_HEADERS = ("Filter", "Only for", "Cell", "Must be", "Discarded", "Share", "±", "Because")
+
+_DISCARD_STARTS = (0, 1, 2, 3, 5, 6, 7, 8)
 
 _CHECK_HEADERS = ("Check", "Cell", "Base case", "Trials failing", "Share", "±", "Because")
 
@@ -48,6 +52,8 @@ def write_accounting(page: Page, simulation: Simulation, last: int) -> None:
             page.wide(said, "remark", last)
         if simulation.plan.size:
             page.wide(REJECTED_SENTENCE, "remark", last)
+    if simulation.model.forecast_filters:
+        _write_discards(page, simulation, last)
     _write_errors(page, simulation)
 
 
@@ -81,6 +87,27 @@ def _write_rejections(page: Page, simulation: Simulation) -> None:
 
 def _pair(simulation: Simulation, index: int, other: int) -> Shown:
     return Shown("") if index == other else cells.count(int(simulation.tally.together[index, other]))
+
+
+def _write_discards(page: Page, simulation: Simulation, last: int) -> None:
+    page.heading("Filters of some forecasts only")
+    said = (
+        f"These filters reject no trial. Of the {simulation.accepted:,} accepted trials, a forecast named here counts "
+        "those that its filters keep; all other forecasts count them all. A trial that two of its filters discard is "
+        "counted for the first."
+    )
+    page.wide(said, "paragraph", last)
+    page.line([Shown(header, look="header left") for header in _DISCARD_HEADERS], _DISCARD_STARTS, last)
+    for found in discards_of(simulation):
+        filter_ = found.filter
+        texts = (found.forecast, str(filter_.cell), limits_text(filter_))
+        line = [
+            Shown(filter_.name, look="name"),
+            *map(Shown, texts),
+            *_count_and_share(found.trials, simulation.accepted),
+        ]
+        page.line([*line, Shown(filter_.because or cells.NONE)], _DISCARD_STARTS, last)
+    page.row += 1
 
 
 def _count_and_share(trials: int, of: int) -> list[Shown]:

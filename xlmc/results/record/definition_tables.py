@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from xlmc.address import Cell
 from xlmc.definitions.definitions import name_key
-from xlmc.results.record.in_words import cutoffs_text, limits_text, notes_text, parameters_text, status
+from xlmc.results.record.in_words import cutoffs_text, discards_of, limits_text, notes_text, parameters_text, status
 from xlmc.results.record.record_parts import RecordTable, Section, Value
 from xlmc.run.correlating import CHANGED, drawn_correlation
 from xlmc.statistics import Estimate, rank_correlation
@@ -27,6 +27,7 @@ __all__ = [
     "correlation_section",
     "correlations_met",
     "filter_section",
+    "forecast_filter_section",
     "forecast_section",
     "plain",
 ]
@@ -53,6 +54,15 @@ _FILTER = (
     ("rejected", "Rejected"),
     ("only", "Rejected by it alone"),
     ("errors", "Errors in it"),
+    ("notes", "Notes"),
+)
+_FORECAST_FILTER = (
+    ("name", "Filter"),
+    ("only_for", "Only for"),
+    ("cell", "Cell"),
+    ("limits", "Must be"),
+    ("because", "Because"),
+    ("discarded", "Discarded"),
     ("notes", "Notes"),
 )
 _CHECK = (
@@ -131,6 +141,23 @@ def _filter_row(simulation: Simulation, index: int, filter_: Filter) -> tuple[Va
         sum(tally.errors[index].values()),
         notes_text(filter_.notes),
     )
+
+
+def forecast_filter_section(simulation: Simulation) -> Section:
+    """Every filter of some forecasts only, a row for each of them, with the accepted trials that it discards."""
+    rows = tuple(
+        (
+            each.filter.name,
+            each.forecast,
+            str(each.filter.cell),
+            limits_text(each.filter),
+            each.filter.because,
+            each.trials,
+            notes_text(each.filter.notes),
+        )
+        for each in discards_of(simulation)
+    )
+    return Section("forecast_filters", "Filters of some forecasts only", table=RecordTable(_FORECAST_FILTER, rows))
 
 
 def check_section(simulation: Simulation) -> Section:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from xlmc.address import Cell
 from xlmc.definitions.definitions import Assumption, DataRange, Filter, Parameter
 from xlmc.definitions.evidence import ERRORS, SIZES, Evidence, Within
 from xlmc.sampling.sampling_methods import GENERATOR, METHODS
+from xlmc.statistics import Estimate, proportion
 from xlmc.statistics.sample import MOST_GROUPS
 
 if TYPE_CHECKING:
@@ -17,7 +19,9 @@ if TYPE_CHECKING:
 
 __all__ = [
     "REJECTED_SENTENCE",
+    "Discarded",
     "cutoffs_text",
+    "discards_of",
     "distribution_text",
     "errors_text",
     "evidence_text",
@@ -82,6 +86,26 @@ def limits_text(filter_: Filter) -> str:
         ("below", filter_.below),
     )
     return " and ".join(f"{relation} {number_text(bound)}" for relation, bound in limits if bound is not None) or "TRUE"
+
+
+@dataclass(frozen=True, slots=True)
+class Discarded:
+    """What a filter of some forecasts only discards for one of them: so many of the accepted trials."""
+
+    filter: Filter
+    forecast: str
+    trials: int
+    share: Estimate
+
+
+def discards_of(simulation: Simulation) -> list[Discarded]:
+    """What such filters discard, filter by filter, forecast by forecast."""
+    found = []
+    for filter_ in simulation.model.forecast_filters:
+        for name in filter_.only_for:
+            trials = simulation.discards[name][filter_.name]
+            found.append(Discarded(filter_, name, trials, proportion(trials, simulation.accepted)))
+    return found
 
 
 def evidence_text(evidence: Evidence) -> str:

@@ -19,6 +19,7 @@ from xlmc.results.record.definition_tables import (
     check_section,
     correlation_section,
     filter_section,
+    forecast_filter_section,
     forecast_section,
     plain,
 )
@@ -122,6 +123,7 @@ def make_record(simulation: Simulation, command: str | None = None) -> Record:
             *([] if simulation.rare is None else [_rare(simulation.rare)]),
             forecast_section(simulation),
             filter_section(simulation),
+            *([forecast_filter_section(simulation)] if simulation.model.forecast_filters else []),
             *([check_section(simulation)] if simulation.checks else []),
             assumption_section(simulation),
             correlation_section(simulation),

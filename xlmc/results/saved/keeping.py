@@ -118,6 +118,7 @@ def _document(simulation: Simulation, columns: list[dict[str, Any]]) -> dict[str
         "tally": tally_document(simulation.tally),
         "invalid": dict(sorted(simulation.invalid.items())),
         "faults": {name: dict(sorted(faults.items())) for name, faults in simulation.faults.items()},
+        "discards": {name: dict(discards) for name, discards in simulation.discards.items()},
         "stopped": asdict(simulation.stopped),
         "rare": None if simulation.rare is None else asdict(simulation.rare),
         "origin": {"software": dict(origin.software), "processor": dict(origin.processor)},

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import zipfile
+from collections import Counter
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,6 +34,7 @@ from xlmc.results.saved.run_json import (
     tally_of,
     whole,
 )
+from xlmc.run.forecast_filters import filters_by_forecast
 from xlmc.run.loading import build_model
 from xlmc.run.model import Model
 from xlmc.run.simulation import Simulation
@@ -230,7 +232,23 @@ def _simulation(found: Document, model: Model, columns: _Columns) -> Simulation:
         stopped=stopped_of(found["stopped"]),
         rare=rare,
         origin=origin_of(found["origin"]),
+        discards=_discards(found.get("discards", {}), model),
     )
+
+
+def _discards(found: object, model: Model) -> dict[str, Counter[str]]:
+    """The counts of filters of some forecasts only; runs saved before there were any have none."""
+    given = mapping(found, "its discarded trials")
+    own = filters_by_forecast(model.forecasts, model.forecast_filters)
+    names = {
+        forecast.name: [model.forecast_filters[index].name for index in indices]
+        for forecast, indices in zip(model.forecasts, own, strict=True)
+        if indices
+    }
+    require(set(given) == set(names), "its discarded trials")
+    read = {name: counts(given[name], "its discarded trials") for name in given}
+    require(all(set(read[name]) == set(filters) for name, filters in names.items()), "its discarded trials")
+    return read
 
 
 def _holds_infinity(column: Column) -> bool:

@@ -67,7 +67,9 @@ def _of(result: ForecastResult) -> list[Statement]:
 
 def _part_text(result: ForecastResult) -> str:
     """Which of the accepted trials the shares are of, where a forecast is not a number in all of them."""
-    numbers, others = result.statistics.trials, result.faults.total()
+    numbers, others, discarded = result.statistics.trials, result.faults.total(), result.discards.total()
+    if discarded:
+        return f"; counted in the {numbers:,} of {numbers + others + discarded:,} accepted trials that its filters keep"
     if not others:
         return ""
     return f"; counted in the {numbers:,} of {numbers + others:,} accepted trials in which it is a number"

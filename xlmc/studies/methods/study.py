@@ -213,6 +213,10 @@ def _check(seed: int, replicates: int | None, trials: int | None, reference: int
         named = ", ".join(repr(each.name) for each in model.filters if each.evidence and each.evidence.bell)
         message = f"the methods that draw no trials cannot use evidence with a normal or lognormal error: {named}"
         raise SimulationError(message, hint="switch it off under Use in xlmc_evidence, or give it a uniform error")
+    if model.forecast_filters:
+        named = ", ".join(repr(each.name) for each in model.forecast_filters)
+        message = f"the methods that draw no trials cannot use filters of some forecasts only: {named}"
+        raise SimulationError(message, hint="take their forecasts out of a copy of the workbook, or empty Only for")
     if seed < 0:
         raise SimulationError(f"the seed {seed} is negative", hint="give a whole number from 0 up")
     if replicates is not None and replicates < 2:

@@ -1,0 +1,109 @@
+"""Filters of some forecasts only: a trial that one rejects is discarded for these, and stays for the others.
+
+The conditions of these filters are computed with the forecasts. A discarded trial gets a code of its own in the column
+of its forecast, so that whoever evaluates forecasts sees it as a trial without a number there.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.definitions.definitions import Filter, Forecast, name_key
+from xlmc.evaluation.engine import DISCARDED_FIRST, UNDECIDED_RESULT, Column, Evaluator, Program, Target
+from xlmc.run.needed import filter_condition
+
+if TYPE_CHECKING:
+    from xlmc.functions.values import Codes
+
+__all__ = ["FilteringProgram", "conditions_of", "discards_by_name", "filters_by_forecast"]
+
+Floats = NDArray[np.float64]
+
+_LAST: Final = 255
+
+
+def filters_by_forecast(forecasts: Sequence[Forecast], filters: Sequence[Filter]) -> tuple[tuple[int, ...], ...]:
+    """The indices of each forecast's own filters, in the order of both."""
+    return tuple(
+        tuple(index for index, each in enumerate(filters) if name_key(forecast.name) in map(name_key, each.only_for))
+        for forecast in forecasts
+    )
+
+
+def conditions_of(filters: Sequence[Filter]) -> list[Target]:
+    """What they ask, 1 where it holds."""
+    return [Target(filter_condition(each), each.cell) for each in filters]
+
+
+class FilteringProgram:
+    """A program whose last targets are the conditions of filters of some forecasts only.
+
+    Args:
+        program: computes the forecasts, and then the conditions.
+        own: the indices of each forecast's conditions.
+    """
+
+    def __init__(self, program: Program, own: tuple[tuple[int, ...], ...]) -> None:
+        self.largest_block = program.largest_block
+        self._program, self._own = program, own
+
+    def evaluator(self, block: int) -> Evaluator:
+        """See `Program`."""
+        return _FilteringEvaluator(self._program.evaluator(block), self._own)
+
+
+@dataclass(frozen=True, slots=True)
+class _FilteringEvaluator:
+    evaluator: Evaluator
+    own: tuple[tuple[int, ...], ...]
+
+    def filters(self, inputs: Mapping[str, Floats], n: int) -> list[Column]:
+        """See `Evaluator`."""
+        return self.evaluator.filters(inputs, n)
+
+    def forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
+        """See `Evaluator`."""
+        columns = self.evaluator.forecasts(survivors)
+        conditions = columns[len(self.own) :]
+        return [
+            _discarding(column, [conditions[index] for index in own]) if own else column
+            for column, own in zip(columns, self.own, strict=False)
+        ]
+
+
+def _discarding(column: Column, conditions: Sequence[Column]) -> Column:
+    """The column with a code where a condition is false, that of the first such condition, or is an error."""
+    codes: Codes = np.zeros(column.values.shape, np.uint8) if column.codes is None else column.codes.copy()
+    for condition in conditions:
+        if condition.codes is not None:
+            codes[(codes == 0) & (condition.codes > 0)] = UNDECIDED_RESULT
+    for number, condition in reversed([*enumerate(conditions)]):
+        false = condition.values == 0
+        if condition.codes is not None:
+            false = false & (condition.codes == 0)
+        codes[false] = min(DISCARDED_FIRST + number, _LAST)
+    return Column(column.values, codes)
+
+
+def discards_by_name(
+    forecasts: Sequence[Forecast], filters: Sequence[Filter], discards: Sequence[Counter[int]]
+) -> dict[str, Counter[str]]:
+    """Forecast -> its own filters by name -> accepted trials that each discarded; without a forecast that has none.
+
+    Args:
+        forecasts: of the model.
+        filters: of some forecasts only.
+        discards: per forecast, number of its own filter -> trials.
+    """
+    own = filters_by_forecast(forecasts, filters)
+    return {
+        forecast.name: Counter({filters[index].name: counts[number] for number, index in enumerate(mine)})
+        for forecast, mine, counts in zip(forecasts, own, discards, strict=True)
+        if mine
+    }

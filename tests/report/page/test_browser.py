@@ -458,6 +458,33 @@ def test_a_table_is_copied_as_a_table(shown, run):
     assert browser.execute_script("return String(getSelection())") == ""
 
 
+def test_pictures_are_copied_and_tables_saved(shown, run, make):
+    other = make.simulate(
+        {"A1": 2.0, "B1": "=A1*8"}, [make.uniform("a", "A1", 0.0, 3.0)], [make.forecast("area", "B1", units="ft")]
+    )
+    browser = shown(run, beside=other)
+    browser.execute_cdp_cmd(
+        "Browser.grantPermissions", {"permissions": ["clipboardReadWrite", "clipboardSanitizedWrite"]}
+    )
+    for what in (
+        "Copies.onWhite(document.querySelector('.chart canvas'))",
+        "Copies.painted(document.querySelector('svg.drawn'))",
+    ):
+        copied = f"Copies.copyPicture(async () => {what}).then(arguments[0])"
+        assert browser.execute_async_script(copied) is True
+    browser.execute_script(
+        "window.saved = []; Copies.save = (blob, name) => blob.text().then((text) => saved.push([name, text]));"
+        "const buttons = [...document.querySelectorAll('#second button')];"
+        "buttons.filter((each) => each.textContent === 'Save table').forEach((each) => each.click())"
+    )
+    [(name, text), *_] = browser.execute_async_script("setTimeout(() => arguments[0](saved), 200)")
+    assert name == "Beside-a-second-run.csv"
+    lines = [line.split(",") for line in text.splitlines()]
+    assert lines[0][-3:] == ["First", "Second", "Difference"]
+    assert [line[2] for line in lines[1:3]] == ["Mean", "Standard deviation"]  # the name stands in each line
+    assert {(line[0], line[1]) for line in lines[1:]} == {('"area', ' ft"')}
+
+
 def test_all_tables_are_opened_and_closed_at_once(shown, run):
     browser = shown(run)
     count = "return document.querySelectorAll('details%s').length"

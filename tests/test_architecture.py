@@ -17,7 +17,7 @@ def test_no_import_runs_up_the_table_not_even_a_lazy_one_or_one_for_type_checker
 
 
 def test_the_house_stays_as_low_as_it_is():
-    assert len(ROOMS) <= 18
+    assert len(ROOMS) <= 19
     assert max(floors().values()) <= 11
 
 
@@ -53,6 +53,12 @@ def importers(*modules: str) -> set[str]:
 
 def test_one_door_to_formulas():
     assert importers("formulas", "schedula") == {"formula/parse.py", "formula/formula_tokens.py"}
+
+
+def test_only_the_live_window_listens_and_only_its_command_imports_it():
+    serving = importers("socket", "starlette", "uvicorn", "websockets", "watchfiles")
+    assert {name for name in serving if not name.startswith("live/")} == set()
+    assert {name for name in importers("xlmc.live") if not name.startswith("live/")} == {"cli/open.py"}
 
 
 def test_rooms_that_must_not_see_each_other():

@@ -1,5 +1,5 @@
-"""The command line: `xlmc new`, `xlmc check`, `xlmc fit`, `xlmc verify`, `xlmc simulate`, `xlmc report`,
-`xlmc replay`, `xlmc compare`, `xlmc screen`, `xlmc methods`, `xlmc stability`.
+"""The command line: `xlmc new`, `xlmc check`, `xlmc fit`, `xlmc verify`, `xlmc simulate`, `xlmc open`,
+`xlmc report`, `xlmc replay`, `xlmc compare`, `xlmc screen`, `xlmc methods`, `xlmc stability`.
 
 Exit codes: 0 done; 1 the run finished but its answer must not be used as it stands; 2 bad input, with the cell and what
 to do; 130 interrupted by Ctrl-C; 143 ended by SIGTERM. Modules here import what costs time inside their functions.
@@ -25,6 +25,7 @@ from xlmc.cli.fit import fit
 from xlmc.cli.methods import methods
 from xlmc.cli.mistakes import did_you_mean, mistake
 from xlmc.cli.new import new
+from xlmc.cli.open import open_window
 from xlmc.cli.replay import replay
 from xlmc.cli.report import report
 from xlmc.cli.screen import screen
@@ -95,7 +96,7 @@ def xlmc(context: click.Context, no_kept_code: bool) -> None:
         say(context.get_help())
 
 
-for _command in (new, check, fit, verify, simulate, report, replay, compare, screen, methods, stability):
+for _command in (new, check, fit, verify, simulate, open_window, report, replay, compare, screen, methods, stability):
     xlmc.add_command(_command)
 
 

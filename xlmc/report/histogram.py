@@ -17,7 +17,7 @@ A `Figure` is the histogram of a forecast with its title and caption, as sheet, 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -248,10 +248,15 @@ class Figure:
         return text
 
 
-def figures_of(simulation: Simulation) -> list[Figure]:
-    """Every forecast that has a number in an accepted trial."""
+def figures_of(simulation: Simulation, names: Collection[str] | None = None) -> list[Figure]:
+    """Every forecast that has a number in an accepted trial.
+
+    Args:
+        simulation: the finished run.
+        names: of the forecasts; by default all.
+    """
     found: list[Figure] = []
-    for row in summarise(simulation):
+    for row in summarise(simulation, names):
         bins = histogram(simulation.results[row.name].sample, row.low.value, row.high.value)
         if bins is not None:
             found.append(Figure(len(found) + 1, row, bins))

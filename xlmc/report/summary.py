@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -69,8 +69,13 @@ class SummaryRow:
     above: Estimate | None
 
 
-def summarise(simulation: Simulation) -> list[SummaryRow]:
-    """One row for each forecast, in the order of the workbook."""
+def summarise(simulation: Simulation, names: Collection[str] | None = None) -> list[SummaryRow]:
+    """One row for each forecast, in the order of the workbook.
+
+    Args:
+        simulation: the finished run.
+        names: of the forecasts; by default all.
+    """
     base = base_case(simulation)
     return [
         SummaryRow(
@@ -87,6 +92,7 @@ def summarise(simulation: Simulation) -> list[SummaryRow]:
             above=result.statistics.probability_above,
         )
         for name, result in simulation.results.items()
+        if names is None or name in names
     ]
 
 

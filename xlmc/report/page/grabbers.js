@@ -4,12 +4,12 @@
 const ARROWS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 };
 
 /**
- * Put a grabber on a chart that reaches from `min` to `max`. `move(value)` is told where it wants to be, `step` is the
- * grid it moves on; at the edge of the chart the end is open: it takes in the trials that are not drawn.
+ * Put a grabber on a chart. `grid` says, whenever it is asked, what the chart reaches from and to (`min`, `max`) and in
+ * which `step` the grabber moves; `move(value)` is told where it wants to be. At the edge of the chart the end is open: it takes in the trials that are not drawn.
  *
  * Returns a function that puts it at a value, with a text beside it.
  */
-function addGrabber(chart, which, label, { step, min, max }, now, move) {
+function addGrabber(chart, which, label, grid, now, move) {
   const line = document.createElement("div");
   const grip = document.createElement("div");
   const tag = document.createElement("span");
@@ -22,8 +22,8 @@ function addGrabber(chart, which, label, { step, min, max }, now, move) {
   line.append(grip, tag);
   chart.over.append(line);
 
-  const snapped = (value) => Number((Math.round(value / step) * step).toPrecision(12));
-  const placed = (value) => (value <= min ? -Infinity : value >= max ? Infinity : snapped(value));
+  const snapped = (value) => Number((Math.round(value / grid.step) * grid.step).toPrecision(12));
+  const placed = (value) => (value <= grid.min ? -Infinity : value >= grid.max ? Infinity : snapped(value));
 
   grip.addEventListener("pointerdown", (event) => {
     const away = event.clientX - grip.getBoundingClientRect().left - grip.offsetWidth / 2;
@@ -46,7 +46,7 @@ function addGrabber(chart, which, label, { step, min, max }, now, move) {
 
   grip.addEventListener("keydown", (event) => {
     const steps = (ARROWS[event.key] ?? 0) * (event.shiftKey ? 10 : 1);
-    if (steps) move(placed(Math.min(max, Math.max(min, now())) + steps * step));
+    if (steps) move(placed(Math.min(grid.max, Math.max(grid.min, now())) + steps * grid.step));
     else if (event.key === "Home") move(-Infinity);
     else if (event.key === "End") move(Infinity);
     else return;
@@ -57,9 +57,9 @@ function addGrabber(chart, which, label, { step, min, max }, now, move) {
     const left = Math.min(chart.over.clientWidth, Math.max(0, chart.valToPos(value, "x")));
     line.style.left = `${value === -Infinity ? 0 : value === Infinity ? chart.over.clientWidth : left}px`;
     tag.textContent = text;
-    grip.setAttribute("aria-valuemin", String(min));
-    grip.setAttribute("aria-valuemax", String(max));
-    grip.setAttribute("aria-valuenow", String(Math.min(max, Math.max(min, value))));
+    grip.setAttribute("aria-valuemin", String(grid.min));
+    grip.setAttribute("aria-valuemax", String(grid.max));
+    grip.setAttribute("aria-valuenow", String(Math.min(grid.max, Math.max(grid.min, value))));
     grip.setAttribute("aria-valuetext", text);
   };
 }

@@ -38,6 +38,7 @@ __all__ = [
     "ALL_VALUES",
     "MOST_VALUES",
     "RankTable",
+    "forecast_payload",
     "most_values",
     "overlays_of",
     "payload",
@@ -70,7 +71,7 @@ def payload(simulation: Simulation, figures: Sequence[Figure], beside: Simulatio
     return {
         "z": t_quantile(math.inf, CONFIDENCE),
         "forecasts": [
-            {**_forecast(simulation, figure, most), "second": _second(figure, beside, most)} for figure in figures
+            {**forecast_payload(simulation, figure, most), "second": _second(figure, beside, most)} for figure in figures
         ],
         "overlays": overlays_of(figures),
     }
@@ -84,7 +85,8 @@ def overlays_of(figures: Sequence[Figure]) -> list[list[int]]:
     return [group for group in by_units.values() if len(group) > 1]
 
 
-def _forecast(simulation: Simulation, figure: Figure, most: int) -> dict[str, Any]:
+def forecast_payload(simulation: Simulation, figure: Figure, most: int) -> dict[str, Any]:
+    """What one forecast's chart is drawn and counted from, with so many values at most."""
     answer = figure.answer
     low, high = answer.low.value, answer.high.value
     marks = [low, high] if answer.threshold is None else [low, high, answer.threshold]

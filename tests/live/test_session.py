@@ -1,0 +1,222 @@
+"""A session without sockets, files or threads: what it tells, and that its numbers are those of `xlmc simulate`."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from live_window import CASE, SIMPLE, change, edited, settle
+
+from xlmc.errors import XlmcError
+from xlmc.live.adjustments import Adjustments
+from xlmc.live.protocol import Said, written
+from xlmc.live.session import MOVING_TRIALS, Session, SupersededError
+from xlmc.run.loading import load
+from xlmc.run.simulate import simulate
+
+FRICTION = "Chevrolet post-impact deceleration"
+
+TRIALS = {"Trials": 20_000}
+
+SCENARIOS = {
+    "a range wider above": {(FRICTION, "High"): 1.05},
+    "a range narrower": {(FRICTION, "Low"): 0.7, (FRICTION, "High"): 0.8},
+    "both cars": {(FRICTION, "High"): 0.9, ("Nissan post-impact deceleration", "High"): 0.9},
+    "one value": {("Orientation of tangent", "Low"): 101.0, ("Orientation of tangent", "High"): 101.0},
+    "a negative range": {("Chevrolet impact centre y", "Low"): -18.0, ("Chevrolet impact centre y", "High"): -9.5},
+    "weights": {("Chevrolet weight", "Low"): 6600.0, ("Nissan weight", "High"): 3600.0},
+    "frozen": {(FRICTION, "Frozen"): True},
+    "two frozen": {(FRICTION, "Frozen"): True, ("Chevrolet weight", "Frozen"): True},
+    "a limit of a filter": {("Restitution, tangential", "At most"): 0.3},
+    "all of it": {
+        (FRICTION, "High"): 0.85,
+        ("Nissan weight", "Frozen"): True,
+        ("Nissan impact speed", "Above"): 2.0,
+    },
+}
+KEYS = {"Low": "low", "High": "high", "Frozen": "frozen", "At most": "at_most", "Above": "above"}
+
+
+@pytest.fixture(scope="module")
+def case(tmp_path_factory):
+    """The case study with fewer trials: its file and its model."""
+    path = edited(CASE, tmp_path_factory.mktemp("case") / "case.xlsx", {}, TRIALS)
+    return path, load(path)
+
+
+def test_at_rest_the_numbers_are_those_of_simulate_with_the_same_numbers_in_the_workbook(case, tmp_path):
+    path, model = case
+    session = Session(model)
+    filters = {each.name for each in model.filters}
+    for name, changes in SCENARIOS.items():
+        session.receive(Said("reset", {"of": "assumption", "name": ""}))
+        for (row, heading), value in changes.items():
+            of = "filter" if row in filters else "assumption"
+            session.receive(change(row, KEYS[heading], value, of=of))
+        settle(session)
+        expected = simulate(load(edited(path, tmp_path / "edited.xlsx", changes)))
+        assert session.rest.accepted == expected.accepted, name
+        for forecast, values in expected.forecasts.items():
+            assert session.rest.forecasts[forecast].tobytes() == values.tobytes(), (name, forecast)
+        assert session.rest.tally.rejected.tolist() == expected.tally.rejected.tolist(), name
+
+
+def test_while_a_handle_moves_a_run_of_fifty_thousand_trials_comes_first(case):
+    session = Session(case[1])
+    settle(session)
+    session.receive(change(FRICTION, "high", 0.9, held=True, seq=7))
+    job = session.job()
+    assert (job.stage, job.held) == ("moving", True)
+    (frame,) = session.finish(job, job.run(lambda: True, lambda share: None, lambda: 0.0))
+    assert (frame["stage"], frame["trials"], frame["seq"]) == ("moving", MOVING_TRIALS, 7)
+    assert frame["shapes"][FRICTION]["high"] == pytest.approx(0.9, abs=1e-3)
+    drawn = frame["forecasts"]["Chevrolet delta-V"]
+    assert sum(drawn["bins"]["counts"]) + drawn["bins"]["below"] + drawn["bins"]["above"] == frame["accepted"]
+    assert session.job().stage == "rest"
+
+
+def test_the_newest_is_done_and_what_is_older_is_given_up(case):
+    session = Session(case[1])
+    settle(session)
+    session.receive(change(FRICTION, "high", 0.9))
+    moving = session.job()
+    session.finish(moving, moving.run(lambda: True, lambda share: None, lambda: 0.0))
+    old = session.job()
+    session.receive(change(FRICTION, "high", 0.91))
+    assert not session.wanted(old)
+    with pytest.raises(SupersededError):
+        old.run(lambda: session.wanted(old), lambda share: None, lambda: 0.0)
+    settle(session)
+    assert session.adjustments.assumptions[FRICTION] == {"high": 0.91}
+    assert session.job() is None
+
+
+def test_a_stopped_run_is_not_begun_again_until_something_changes(case):
+    session = Session(case[1])
+    session.receive(Said("stop", {}))
+    assert session.job() is None
+    session.receive(change(FRICTION, "high", 0.9))
+    assert session.job() is not None
+
+
+def test_a_state_that_is_no_distribution_is_told_and_the_last_good_answer_stays(case):
+    session = Session(case[1])
+    settle(session)
+    before = session.rest
+    session.receive(change(FRICTION, "high", 0.1))
+    (trouble,) = settle(session)
+    assert trouble["kind"] == "trouble"
+    assert "above High" in trouble["text"]
+    assert "Inputs!" in trouble["text"]
+    assert session.rest is before
+    session.receive(change(FRICTION, "high", 0.9))
+    told = settle(session)
+    assert [each["text"] for each in told if each["kind"] == "trouble"] == [""]
+    assert session.rest is not before
+
+
+def test_a_value_of_the_workbook_is_no_change(case):
+    session = Session(case[1])
+    own = next(each for each in case[1].assumptions if each.name == FRICTION).parameters["high"]
+    session.receive(change(FRICTION, "high", 0.9))
+    assert session.adjustments
+    session.receive(change(FRICTION, "high", own))
+    assert not session.adjustments
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "value"),
+    [("no such", "high", 1.0), (FRICTION, "mean", 1.0), (FRICTION, "frozen", 1.0), (FRICTION, "high", True)],
+)
+def test_what_the_workbook_does_not_have_cannot_be_set(case, name, key, value):
+    with pytest.raises(XlmcError):
+        Session(case[1]).receive(change(name, key, value))
+
+
+def test_the_state_behind_and_the_difference_in_numbers(case):
+    session = Session(case[1])
+    settle(session)
+    told = session._last["frame "]["forecasts"]["Nissan delta-V"]
+    assert told["behind"] is None
+    session.receive(change(FRICTION, "high", 0.85))
+    settle(session)
+    told = session._last["frame "]["forecasts"]["Nissan delta-V"]
+    assert told["said"].startswith("Nissan delta-V: mean 23.")
+    assert " → " in told["said"]
+    assert sum(told["behind"]["counts"]) <= told["behind"]["trials"] == session.behind.accepted
+    mean = {label: rest for label, *rest in told["beside"]}["Mean"]
+    assert mean[0].startswith(f"{session.rest['Nissan delta-V'].mean.value:.2f}"[:4])
+    assert mean[1].startswith(f"{session.behind['Nissan delta-V'].mean.value:.2f}"[:4])
+    session.receive(Said("pin", {}))
+    settle(session)
+    assert session._last["frame "]["forecasts"]["Nissan delta-V"]["behind"] is None
+
+
+def test_scenarios_are_kept_shown_and_dropped(case):
+    session = Session(case[1])
+    session.receive(change(FRICTION, "high", 0.85))
+    session.receive(Said("keep", {"name": " dry "}))
+    assert session.kept == {"dry": Adjustments({FRICTION: {"high": 0.85}})}
+    assert not session.unkept
+    session.receive(Said("show", {"name": ""}))
+    assert not session.adjustments
+    (state,) = session.receive(Said("show", {"name": "dry"})).all
+    assert state["shown"] == "dry"
+    assert state["changes"] == [f"{FRICTION}: High 0.95 → 0.85"]
+    session.receive(change(FRICTION, "high", 0.8))
+    assert session.shown == ""
+    assert session.unkept.assumptions == {FRICTION: {"high": 0.8}}
+    session.receive(Said("drop", {"name": "dry"}))
+    assert session.kept == {}
+    with pytest.raises(XlmcError):
+        session.receive(Said("show", {"name": "dry"}))
+
+
+def test_what_was_not_kept_is_offered(case):
+    lost = Adjustments().having("assumption", FRICTION, "high", 0.85).having("assumption", "gone", "high", 1.0)
+    session = Session(case[1], {}, lost)
+    (state,) = [each for each in session.greeting() if each["kind"] == "state"]
+    assert state["offered"] == [f"{FRICTION}: High 0.95 → 0.85"]
+    assert session.unkept.assumptions == {FRICTION: {"high": 0.85}}
+    session.receive(Said("restore", {"take": True}))
+    assert session.adjustments.assumptions == {FRICTION: {"high": 0.85}}
+
+
+def test_a_workbook_that_was_saved_keeps_what_was_moved_and_says_what_changed(case, tmp_path):
+    from xlmc.live.what_changed import what_changed
+
+    path, model = case
+    session = Session(model)
+    session.receive(change(FRICTION, "high", 0.85))
+    session.receive(change("Nissan weight", "high", 3600.0))
+    settle(session)
+    saved = load(edited(path, tmp_path / "saved.xlsx", {("Nissan weight", "High"): 3600.0, (FRICTION, "Low"): 0.65}))
+    told = session.replace_book(saved, what_changed(model, saved))
+    (news,) = [each["text"] for each in told if each["kind"] == "news"]
+    assert f"{FRICTION}: Low 0.6 → 0.65" in news
+    assert "Nissan weight: High 3510 → 3600" in news
+    assert session.adjustments.assumptions == {FRICTION: {"high": 0.85}}
+    settle(session)
+    now = next(each for each in session.rest.model.assumptions if each.name == FRICTION)
+    assert (now.parameters["low"], now.parameters["high"]) == (0.65, 0.85)
+
+
+def test_all_tabs_are_made_of_the_run_at_rest(case):
+    session = Session(case[1])
+    names = [each.name for each in case[1].forecasts]
+    for tab, first, second in (("matters", "", ""), ("tables", "", ""), ("pairs", FRICTION, names[1])):
+        session.receive(Said("view", {"forecasts": names, "tab": tab, "first": first, "second": second}))
+        (part,) = [each for each in settle(session) if each["kind"] == "part"]
+        assert part["tab"] == tab
+        if tab == "pairs":
+            run = session.rest
+            assert part["pair"]["x"][:5] == run.inputs[FRICTION][:5].tolist()
+            assert part["pair"]["y"][:5] == run.forecasts[names[1]][:5].tolist()
+        else:
+            assert names[0] in part["html"]
+
+
+def test_all_that_is_told_is_json_without_numbers_that_are_none():
+    session = Session(load(SIMPLE))
+    for message in (*session.greeting(), *settle(session), *session.greeting()):
+        written(message)
+    assert np.isfinite(session.rest.accepted)

@@ -1,0 +1,117 @@
+"""Workbooks with other numbers, sessions that are settled, and what talks to a server: for tests of the live window."""
+
+from __future__ import annotations
+
+import http.client
+import json
+import time
+from contextlib import contextmanager
+
+import openpyxl
+from committed_books import EXAMPLES
+from openpyxl.utils import range_boundaries
+from websockets.sync.client import connect
+
+from xlmc.live.protocol import Said
+
+CASE = EXAMPLES["intersection"]
+SIMPLE = EXAMPLES["skid-100-ft"]
+
+
+def edited(source, target, changes, settings=None):
+    """A copy of a workbook with other numbers in its tables: {(row's name, heading): value}."""
+    book = openpyxl.load_workbook(source)
+    changes = {**changes, **{(name, "Value"): value for name, value in (settings or {}).items()}}
+    left = dict(changes)
+    for sheet in book:
+        for table in sheet.tables.values():
+            if not table.name.startswith("xlmc_"):
+                continue
+            first, top, last, bottom = range_boundaries(table.ref)
+            headings = {sheet.cell(top, column).value: column for column in range(first, last + 1)}
+            name_column = headings.get("Name", headings.get("Setting"))
+            if name_column is None:
+                continue
+            for row in range(top + 1, bottom + 1):
+                for (name, heading), value in changes.items():
+                    if sheet.cell(row, name_column).value == name and heading in headings:
+                        sheet.cell(row, headings[heading]).value = value
+                        left.pop((name, heading), None)
+    assert not left, left
+    book.save(target)
+    return target
+
+
+def change(name, key, value, *, of="assumption", held=False, seq=1):
+    return Said("set", {"of": of, "name": name, "key": key, "value": value, "held": held, "seq": seq})
+
+
+def settle(session, clock=time.monotonic):
+    """Do all that a session asks for; what it told meanwhile."""
+    told = []
+    while (job := session.job()) is not None:
+        told += session.finish(job, job.run(lambda: True, lambda share: None, clock))
+    return told
+
+
+class Running:
+    """A server in a thread, and what talks to it."""
+
+    def __init__(self, server, library):
+        self.server, self.library, self.port = server, library, server.port
+        self.host = f"127.0.0.1:{server.port}"
+
+    def ask(self, path, method="GET", body=None, host=None, **headers):
+        """Status, headers and body of an answer."""
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=20)
+        try:
+            connection.putrequest(method, path, skip_host=True)
+            for name, value in {"Host": host or self.host, **headers}.items():
+                connection.putheader(name.replace("_", "-"), value)
+            connection.endheaders(body)
+            answer = connection.getresponse()
+            return answer.status, dict(answer.getheaders()), answer.read().decode()
+        finally:
+            connection.close()
+
+    @property
+    def cookie(self):
+        return f"{self.server.guard.cookie}={self.server.guard.secret}"
+
+    @property
+    def own(self):
+        """The headers of a page of this server."""
+        return {"Cookie": self.cookie, "Origin": f"http://{self.host}", "X-Xlmc-Page": self.server.guard.page}
+
+    @contextmanager
+    def window(self, key, hello=True, **headers):
+        """A connected WebSocket; `next(kind)` waits for a message."""
+        given = {"Cookie": self.cookie, "Origin": f"http://{self.host}", **headers}
+        origin = given.pop("Origin")
+        given = {name: value for name, value in given.items() if value is not None}
+        with connect(
+            f"ws://{self.host}/live/{key}", origin=origin, additional_headers=given, max_size=None, proxy=None
+        ) as socket:
+            if hello:
+                socket.send(json.dumps({"kind": "hello", "page": self.server.guard.page}))
+            yield Spoken(socket)
+
+
+class Spoken:
+    def __init__(self, socket):
+        self.socket, self.heard = socket, []
+
+    def say(self, kind, **fields):
+        self.socket.send(json.dumps({"kind": kind, **fields}))
+
+    def heard_last(self, kind):
+        return next(each for each in reversed(self.heard) if each["kind"] == kind)
+
+    def next(self, kind, fits=lambda message: True, seconds=20.0):
+        end = time.monotonic() + seconds
+        while (left := end - time.monotonic()) > 0:
+            message = json.loads(self.socket.recv(timeout=left))
+            self.heard.append(message)
+            if message["kind"] == kind and fits(message):
+                return message
+        raise TimeoutError(kind)

@@ -1,0 +1,75 @@
+"""`xlmc open`: the live window in a browser."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import threading
+import webbrowser
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from xlmc.cli.new import templates
+from xlmc.cli.options import WholeNumber
+from xlmc.cli.terminal import say
+from xlmc.errors import WorkbookError
+
+if TYPE_CHECKING:
+    from xlmc.live.library import Library
+    from xlmc.live.server import LiveServer
+
+__all__ = ["open_window"]
+
+_LAST_PORT = 65_535
+
+
+@click.command(name="open")
+@click.argument("book", required=False, type=click.Path(readable=False, path_type=Path), metavar="[BOOK|FOLDER]")
+@click.option("--no-browser", is_flag=True, help="Print the link, and open no browser.")
+@click.option("--port", type=WholeNumber(1, _LAST_PORT), help="Port of the window.  [default: a free one]")
+def open_window(book: Path | None, no_browser: bool, port: int | None) -> None:
+    """Open the live window on BOOK, or on the workbooks of FOLDER: move ranges, and watch the answer follow."""
+    from xlmc.live.server import LiveServer, bound_socket
+
+    library = _library(book)
+    server = LiveServer(bound_socket(port or 0), library)
+    link = server.link
+    say(f"The window is at {link}")
+    say("The link is good for one browser. Ctrl-C ends the window; so does closing it for ten minutes.")
+    if not no_browser:
+        threading.Thread(target=webbrowser.open, args=(link,), daemon=True).start()
+    _serve(server)
+    say("The window is closed. Scenarios are kept.")
+
+
+def _library(book: Path | None) -> Library:
+    from xlmc.live.kept_scenarios import Keeper, state_folder
+    from xlmc.live.library import Library, Sample
+
+    samples = [
+        Sample(name if units == "imperial" else f"{name} ({units.upper()})", template.question, path)
+        for name, template in templates().items()
+        for units, path in template.editions.items()
+    ]
+    keeper = Keeper(state_folder())
+    if book is None or os.path.isdir(book):
+        return Library(keeper, folder=book or Path.cwd(), samples=samples)
+    if not os.path.exists(book):
+        raise WorkbookError("there is no such file", where=book, hint="xlmc open alone shows what there is")
+    return Library(keeper, book=book, samples=samples)
+
+
+def _serve(server: LiveServer) -> None:
+    """Until Ctrl-C, or until nobody looks any more."""
+
+    def end(*_: object) -> None:
+        server.end()
+
+    before = signal.signal(signal.SIGINT, end)
+    try:
+        asyncio.run(server.serve())
+    finally:
+        signal.signal(signal.SIGINT, before)

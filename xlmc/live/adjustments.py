@@ -1,0 +1,183 @@
+"""What was changed in the window, beside the workbook: numbers and switches of assumptions, limits of filters.
+
+Keys of an assumption are those of its parameters and cutoffs, `base` for the value of its cell, and `frozen`; keys of a
+filter are those of its limits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Final
+
+from xlmc.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Parameter
+from xlmc.results.record.in_words import number_text
+from xlmc.run.model import Model
+
+__all__ = [
+    "LIMITS",
+    "Adjustments",
+    "Amount",
+    "adjusted",
+    "adjusted_definitions",
+    "assumption_numbers",
+    "in_words",
+    "own_values",
+]
+
+LIMITS: Final = {"at_least": "at least", "above": "above", "at_most": "at most", "below": "below"}
+"""Key of a filter's limit -> how it is read."""
+
+Amount = float | bool
+
+Changed = Mapping[str, Mapping[str, Amount]]
+"""Name -> key -> value."""
+
+
+@dataclass(frozen=True, slots=True)
+class Adjustments:
+    """All that differs from the workbook; nothing in it is as in the workbook."""
+
+    assumptions: Changed = field(default_factory=dict)
+    filters: Changed = field(default_factory=dict)
+
+    def __bool__(self) -> bool:
+        return bool(self.assumptions or self.filters)
+
+    def having(self, of: str, name: str, key: str, value: Amount | None) -> Adjustments:
+        """With one value set, or, where it is None, as in the workbook again."""
+        before = self._part(of)
+        own = {k: v for k, v in before.get(name, {}).items() if k != key}
+        if value is not None:
+            own[key] = value
+        return self._with(of, name, own)
+
+    def without(self, of: str, name: str) -> Adjustments:
+        """With everything of one assumption or filter as in the workbook."""
+        return self._with(of, name, {})
+
+    def only(self, definitions: Definitions) -> Adjustments:
+        """What is left for a workbook that was changed meanwhile: of what it no longer has, and of values that it now
+        has itself, nothing.
+        """
+        found = Adjustments()
+        for of, name, key, value in self._each():
+            own = own_values(definitions, of, name)
+            if key in own and own[key] != value:
+                found = found.having(of, name, key, value)
+        return found
+
+    def as_json(self) -> dict[str, Any]:
+        """Plain values, which `of_json` reads back."""
+        return {
+            "assumptions": {name: dict(each) for name, each in self.assumptions.items()},
+            "filters": {name: dict(each) for name, each in self.filters.items()},
+        }
+
+    @classmethod
+    def of_json(cls, found: Mapping[str, Any]) -> Adjustments:
+        """See `as_json`.
+
+        Raises:
+            ValueError, TypeError, AttributeError, KeyError: it is something else.
+        """
+        made = cls()
+        for of, part in (("assumption", "assumptions"), ("filter", "filters")):
+            for name, each in found[part].items():
+                for key, value in each.items():
+                    made = made.having(of, str(name), str(key), value if isinstance(value, bool) else float(value))
+        return made
+
+    def _part(self, of: str) -> Changed:
+        return self.assumptions if of == "assumption" else self.filters
+
+    def _with(self, of: str, name: str, own: Mapping[str, Amount]) -> Adjustments:
+        part = {other: each for other, each in self._part(of).items() if other != name}
+        if own:
+            part[name] = own
+        return replace(self, **{f"{of}s": part})
+
+    def _each(self) -> Iterator[tuple[str, str, str, Amount]]:
+        for of, part in (("assumption", self.assumptions), ("filter", self.filters)):
+            for name, each in part.items():
+                for key, value in each.items():
+                    yield of, name, key, value
+
+
+def assumption_numbers(assumption: Assumption) -> dict[str, tuple[str, Parameter]]:
+    """Key of each parameter and cutoff that is given -> its heading and its value."""
+    given = assumption.parameters
+    found = {spec.key: (spec.heading, given[spec.key]) for spec in assumption.family.parameters if spec.key in given}
+    return found | {key: (CUTOFFS[key], value) for key, value in assumption.cutoffs.items()}
+
+
+def own_values(definitions: Definitions, of: str, name: str) -> dict[str, Parameter | bool | None]:
+    """What can be set of an assumption or a filter, as the workbook has it; of a name that it has not, nothing."""
+    if of == "filter":
+        filter_ = next((each for each in definitions.filters if each.name == name), None)
+        limits = {} if filter_ is None else {key: getattr(filter_, key) for key in LIMITS}
+        return {key: value for key, value in limits.items() if value is not None}
+    assumption = next((each for each in definitions.assumptions if each.name == name), None)
+    if assumption is None:
+        return {}
+    numbers = {key: value for key, (_, value) in assumption_numbers(assumption).items()}
+    return {**numbers, "base": assumption.base, "frozen": assumption.frozen}
+
+
+def adjusted(model: Model, adjustments: Adjustments) -> Model:
+    """The model of the workbook with these values instead of its own.
+
+    Raises:
+        DefinitionError: they are no distribution, or a frozen assumption has no value to be held at.
+    """
+    if not adjustments:
+        return model
+    return type(model)(model.workbook, adjusted_definitions(model.definitions, adjustments), model.path)
+
+
+def adjusted_definitions(definitions: Definitions, adjustments: Adjustments) -> Definitions:
+    """The definitions with these values, whatever they are."""
+    return replace(
+        definitions,
+        assumptions=tuple(_assumption(each, adjustments.assumptions) for each in definitions.assumptions),
+        filters=tuple(_filter(each, adjustments.filters) for each in definitions.filters),
+    )
+
+
+def _assumption(assumption: Assumption, changed: Changed) -> Assumption:
+    given = dict(changed.get(assumption.name, {}))
+    if not given:
+        return assumption
+    rest: dict[str, Any] = {key: given.pop(key) for key in ("base", "frozen", *CUTOFFS) if key in given}
+    parameters = {**assumption.parameters, **{key: float(value) for key, value in given.items()}}
+    return replace(assumption, parameters=parameters, **rest)
+
+
+def _filter(filter_: Filter, changed: Changed) -> Filter:
+    return replace(filter_, **{key: float(value) for key, value in changed.get(filter_.name, {}).items()})  # type: ignore[arg-type]
+
+
+def in_words(definitions: Definitions, adjustments: Adjustments) -> list[str]:
+    """What differs, a phrase each: `friction: High 0.75 → 0.85`."""
+    found = []
+    for of, name, key, value in adjustments._each():
+        own = own_values(definitions, of, name).get(key)
+        found.append(f"{name}: {changed_text(definitions, of, name, key, own, value)}")
+    return found
+
+
+def changed_text(
+    definitions: Definitions, of: str, name: str, key: str, before: Parameter | bool | None, after: Amount
+) -> str:
+    """`High 0.75 → 0.85`, `frozen`, `at least 0 → 0.1`."""
+    if key == "frozen":
+        return "frozen" if after else "not frozen"
+    if of == "filter":
+        heading = LIMITS[key]
+    elif key == "base":
+        heading = "value"
+    else:
+        assumption = next(each for each in definitions.assumptions if each.name == name)
+        heading = assumption_numbers(assumption)[key][0]
+    shown = "none" if before is None else number_text(before)
+    return f"{heading} {shown} → {number_text(after)}"

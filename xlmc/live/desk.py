@@ -1,0 +1,291 @@
+"""One workbook that is open: its session, its windows, the thread that computes, the file that is watched."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import time
+from collections.abc import Callable, Coroutine, Iterable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from watchfiles import awatch
+
+from xlmc.errors import WorkbookError, XlmcError
+from xlmc.live.adjustments import Adjustments
+from xlmc.live.hand_over import save_result
+from xlmc.live.kept_scenarios import Keeper
+from xlmc.live.protocol import Message, Said, written
+from xlmc.live.session import Job, Outcome, Session, SupersededError, View
+from xlmc.live.what_changed import what_changed
+from xlmc.run.loading import load
+
+if TYPE_CHECKING:
+    from xlmc.run.model import Model
+
+__all__ = ["Desk", "Window"]
+
+_PAUSE: Final = 0.15
+"""Seconds that a held handle must be still before the longer runs begin."""
+
+_TOLD_EVERY: Final = 0.1
+"""Seconds between two messages on how far a run is."""
+
+_SETTLING: Final = (0.0, 0.1, 0.3, 0.6, 1.0)
+"""Seconds before each try to read a workbook that was just saved: a half-written one is whole a moment later."""
+
+_CHANGING: Final = frozenset({"set", "reset", "keep", "show", "drop", "restore"})
+"""Kinds after which what outlives the window is other."""
+
+_NEWEST: Final = frozenset({"frame", "running", "moved", "state"})
+"""Kinds of which a window that lags behind needs the newest alone."""
+
+
+class Window:
+    """What one window shows, and what is still to be sent to it."""
+
+    def __init__(self) -> None:
+        self.view: Said | None = None
+        self._waiting: list[tuple[str, str]] = []
+        self._more = asyncio.Event()
+
+    def put(self, kind: str, text: str) -> None:
+        """Add a message; it takes the place of an older one of its kind that was not sent yet."""
+        if kind in _NEWEST:
+            self._waiting = [each for each in self._waiting if each[0] != kind]
+        self._waiting.append((kind, text))
+        self._more.set()
+
+    async def next(self) -> str:
+        """The next message, when there is one."""
+        while not self._waiting:
+            self._more.clear()
+            await self._more.wait()
+        return self._waiting.pop(0)[1]
+
+
+class Desk:
+    """See the module.
+
+    Args:
+        path: of the workbook.
+        keeper: of scenarios.
+    """
+
+    def __init__(self, path: Path, keeper: Keeper) -> None:
+        self.path = path
+        self.session: Session | None = None
+        self._keeper, self._windows = keeper, set[Window]()
+        self._pool = ThreadPoolExecutor(1, thread_name_prefix="xlmc-window")
+        self._wake = asyncio.Event()
+        self._trouble: dict[str, str] = {}
+        self._tasks: list[asyncio.Task[None]] = []
+        self._stamp: tuple[int, ...] | None = None
+
+    @property
+    def windows(self) -> int:
+        """How many show it."""
+        return len(self._windows)
+
+    def start(self) -> None:
+        """Begin to read, to compute and to watch; in a running event loop."""
+        self._tasks = [asyncio.create_task(self._work()), asyncio.create_task(self._watch())]
+
+    async def close(self) -> None:
+        """End all of it."""
+        for task in self._tasks:
+            task.cancel()
+        if self.session is not None:
+            self.session.end()  # a run that is going on is not wanted any more
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        self._pool.shutdown(wait=False, cancel_futures=True)
+
+    def join(self) -> Window:
+        """A window that was opened, or came back."""
+        window = Window()
+        self._windows.add(window)
+        for message in self.session.greeting() if self.session is not None else ():
+            window.put(message["kind"], written(message))
+        for about, text in self._trouble.items():
+            window.put("trouble", written({"kind": "trouble", "about": about, "text": text}))
+        return window
+
+    def leave(self, window: Window) -> None:
+        """A window was closed."""
+        self._windows.discard(window)
+        self._look()
+
+    def _look(self) -> None:
+        """Tell the session what can be seen in all windows; with none, it goes on as before."""
+        views = [window.view for window in self._windows if window.view is not None]
+        if views and self.session is not None:
+            self.session.look(View.of(views, [each.name for each in self.session.own.forecasts]))
+            self._wake.set()
+
+    def hear(self, window: Window, said: Said) -> None:
+        """Take what a window says."""
+        if said.kind == "view":
+            window.view = said
+            self._look()
+        if self.session is None or said.kind in ("view", "hello"):
+            return
+        if said.kind == "save":
+            self._later(self._save(said["what"]))
+            return
+        try:
+            replies = self.session.receive(said)
+        except XlmcError as error:
+            window.put("trouble", written({"kind": "trouble", "about": "request", "text": str(error)}))
+            return
+        for message in replies.own:
+            window.put(message["kind"], written(message))
+        self._tell(replies.all)
+        if said.kind in ("set", "reset", "keep", "show", "drop", "restore") and not (
+            said.kind == "set" and said["held"]
+        ):
+            self._keep()
+        self._wake.set()
+
+    def _later(self, what: Coroutine[object, object, None]) -> None:
+        task = asyncio.create_task(what)
+        self._tasks.append(task)
+        task.add_done_callback(lambda done: self._tasks.remove(done) if done in self._tasks else None)
+
+    def _tell(self, messages: Iterable[Message]) -> None:
+        for message in messages:
+            text = written(message)
+            for window in self._windows:
+                window.put(message["kind"], text)
+
+    def _say(self, about: str, text: str) -> None:
+        """Tell of a trouble, or, with an empty text, that it is over."""
+        if text:
+            self._trouble[about] = text
+        elif self._trouble.pop(about, None) is None:
+            return
+        self._tell([{"kind": "trouble", "about": about, "text": text}])
+
+    def _keep(self) -> None:
+        if self.session is None:
+            return
+        try:
+            self._keeper.keep(self.path, self.session.kept, self.session.unkept)
+        except WorkbookError as error:
+            self._say("keeping", str(error))
+        else:
+            self._say("keeping", "")
+
+    async def _in_thread(self, what: Callable[[], object]) -> object:
+        return await asyncio.get_running_loop().run_in_executor(self._pool, what)
+
+    async def _read(self) -> Model | None:
+        """The workbook's model; None where it cannot be read or understood, which is told."""
+        trouble = ""
+        for seconds in _SETTLING:
+            await asyncio.sleep(seconds)
+            self._stamp = _stamp(self.path)
+            try:
+                model = await self._in_thread(lambda: load(self.path))
+            except (XlmcError, OSError) as error:
+                trouble = str(error)
+                if not isinstance(error, WorkbookError | OSError):
+                    break  # it was read, and is not what it must be
+            else:
+                self._say("book", "")
+                return model  # type: ignore[return-value]  # of `load`
+        self._say("book", trouble)
+        return None
+
+    async def _work(self) -> None:
+        while (model := await self._read()) is None:
+            await self._changed()
+        kept, unkept = self._kept_before()
+        self.session = Session(model, kept, unkept)
+        self._tell(self.session.greeting())
+        while True:
+            job = self.session.job()
+            if job is None or (job.held and job.stage in ("rest", "part")):
+                try:
+                    await asyncio.wait_for(self._wake.wait(), None if job is None else _PAUSE)
+                    self._wake.clear()
+                    continue
+                except TimeoutError:
+                    pass
+            if job is not None:
+                await self._do(self.session, job)
+
+    def _kept_before(self) -> tuple[dict[str, Adjustments], Adjustments]:
+        try:
+            return self._keeper.scenarios(self.path)
+        except WorkbookError as error:
+            self._say("keeping", str(error))
+            return {}, Adjustments()
+
+    async def _do(self, session: Session, job: Job) -> None:
+        loop, told = asyncio.get_running_loop(), [time.monotonic()]
+
+        def tell(share: float) -> None:
+            if time.monotonic() - told[0] > _TOLD_EVERY:
+                told[0] = time.monotonic()
+                said = {"kind": "running", "version": job.version, "stage": job.stage, "share": share}
+                loop.call_soon_threadsafe(self._tell, [said])
+
+        def run() -> Outcome:
+            return job.run(lambda: session.wanted(job), tell, time.monotonic)
+
+        try:
+            outcome = await self._in_thread(run)
+        except SupersededError:
+            self._tell(session.superseded(job))
+            return
+        except Exception as error:  # a fault of xlmc's own must not end the window
+            outcome = Outcome(problem=f"xlmc has failed: {type(error).__name__}: {error}")
+        self._tell(session.finish(job, outcome))  # type: ignore[arg-type]  # of `run`
+
+    async def _save(self, what: str) -> None:
+        session = self.session
+        if session is None or session.rest is None:
+            self._say("save", "There is no finished run to save yet.")
+            return
+        run, changes = session.rest, session.changes_at_rest
+        try:
+            path = await self._in_thread(lambda: save_result(run, self.path, what, changes))
+        except (XlmcError, OSError) as error:
+            self._say("save", str(error))
+        else:
+            self._say("save", "")
+            self._tell([{"kind": "news", "text": f"Written: {path}", "link": ""}])
+
+    # The file
+
+    async def _watch(self) -> None:
+        """Read the workbook again whenever it was saved, in place or by a rename."""
+        folder, name = self.path.parent, self.path.name
+        async for changes in awatch(folder, recursive=False, debounce=100, step=20, rust_timeout=1000):
+            if any(os.path.basename(each) == name for _, each in changes) and _stamp(self.path) != self._stamp:
+                await self._again()
+
+    async def _changed(self) -> None:
+        """Wait until the file is another."""
+        while _stamp(self.path) == self._stamp:
+            await asyncio.sleep(0.2)
+
+    async def _again(self) -> None:
+        session = self.session
+        if session is None:
+            return  # `_work` is still reading it
+        before = session.own
+        model = await self._read()
+        if model is not None:
+            self._tell(session.replace_book(model, what_changed(before, model)))
+            self._wake.set()
+
+
+def _stamp(path: Path) -> tuple[int, ...] | None:
+    """What a file that was saved has another of."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_ino, found.st_size

@@ -1,0 +1,194 @@
+"""A run as the window draws it: charts, the numbers beside them, and how far they are from the state drawn behind."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from xlmc.live.protocol import Message, plain
+from xlmc.report.histogram import Figure, figures_of, multiples
+from xlmc.report.page.element import join
+from xlmc.report.page.payload import forecast_payload
+from xlmc.report.page.sensitivity_sections import dependence, limits
+from xlmc.report.page.sheet_sections import assumptions, certainty, checks, filters, notices, record, statistics
+from xlmc.report.sheets.results_sheet import opening_sentences
+from xlmc.report.summary import ERROR_SENTENCE, share_text
+from xlmc.results.record import make_record
+from xlmc.results.record.in_words import sampling_sentence
+from xlmc.results.statements import statements
+from xlmc.statistics import Estimate, Sample, format_estimate, rank_correlation
+from xlmc.studies.sensitivity import sensitivities
+
+if TYPE_CHECKING:
+    from xlmc.run.forecast_result import ForecastResult
+    from xlmc.run.simulation import Simulation
+
+__all__ = ["frame_of", "matters_html", "pair_of", "rest_of", "tables_html"]
+
+_VALUES_MOVING: Final = 400
+_VALUES_AT_REST: Final = 4_000
+"""Values of a forecast that a chart counts between its grabbers from: `xlmc.report.page.payload` says how exactly."""
+
+_PERCENTS: Final = (5.0, 25.0, 50.0, 75.0, 95.0)
+_POINTS: Final = 2_000
+"""Accepted trials that a scatter shows."""
+
+
+def frame_of(simulation: Simulation, behind: Simulation | None, names: Collection[str], *, moving: bool) -> Message:
+    """The charts of some forecasts.
+
+    Args:
+        simulation: the run.
+        behind: the run of the state that is drawn behind it; None where there is none.
+        names: of the forecasts.
+        moving: while a handle moves: fewer values to count from.
+    """
+    most = _VALUES_MOVING if moving else _VALUES_AT_REST
+    figures = {figure.answer.name: figure for figure in figures_of(simulation, names)}
+    return {
+        "trials": simulation.evaluated,
+        "accepted": simulation.accepted,
+        "share": share_text(simulation.acceptance),
+        "forecasts": {
+            name: _forecast(simulation, figures[name], behind, most) if name in figures else None
+            for name in names
+            if name in simulation.results
+        },
+    }
+
+
+def _forecast(simulation: Simulation, figure: Figure, behind: Simulation | None, most: int) -> dict[str, Any]:
+    name = figure.answer.name
+    result = simulation.results[name]
+    before = None if behind is None else behind.results.get(name)
+    if before is not None and not before.sample.n:
+        before = None
+    return {
+        **forecast_payload(simulation, figure, most),
+        "beside": [
+            [label, *_texts(estimate, None if before is None else old)]
+            for (label, estimate), (_, old) in zip(
+                _numbers(result), _numbers(result if before is None else before), strict=True
+            )
+        ],
+        "said": None if before is None else _moved(figure, result, before),
+        "behind": None if before is None else _bars_behind(figure, before.sample),
+    }
+
+
+def _numbers(result: ForecastResult) -> Iterator[tuple[str, Estimate]]:
+    """The numbers that a reader of the chart asks for first."""
+    found = result.statistics
+    yield "Mean", found.mean
+    yield "Standard deviation", found.standard_deviation
+    yield "Minimum", found.minimum
+    for percent in _PERCENTS:
+        yield f"{percent:g} %", found.percentiles[percent]
+    yield "Maximum", found.maximum
+
+
+def _texts(now: Estimate, before: Estimate | None) -> tuple[str, str, str]:
+    """The number, the one before, and by how much it has changed."""
+    shown = _text(now)
+    if before is None:
+        return shown, "", ""
+    apart = now.value - before.value
+    if not math.isfinite(apart):
+        return shown, _text(before), ""
+    sign = "+" if apart > 0 else "−" if apart < 0 else ""
+    return shown, _text(before), sign + _text(Estimate(abs(apart), now.error)).partition(" ± ")[0]
+
+
+def _text(estimate: Estimate) -> str:
+    return "" if math.isnan(estimate.value) else format_estimate(estimate.value, estimate.error)
+
+
+def _moved(figure: Figure, now: ForecastResult, before: ForecastResult) -> str:
+    """`Nissan impact speed: mean 4.72 → 5.31 mph`."""
+    units = f" {figure.answer.units}" if figure.answer.units else ""
+    old, new = (_text(each.statistics.mean).partition(" ± ")[0] for each in (before, now))
+    return f"{figure.answer.name}: mean {old} → {new}{units}"
+
+
+def _bars_behind(figure: Figure, sample: Sample) -> dict[str, Any]:
+    """The bars of the state behind, as wide as those before it, so that the two compare."""
+    x, width = sample.x, figure.bins.width
+    first, last = np.quantile(x, [0.001, 0.999])
+    start, stop = math.floor(first / width), math.floor(last / width) + 1
+    while stop - start > 400:  # it is much wider than the one before it
+        width, start, stop = 2.0 * width, start // 2, stop // 2 + 1
+    edges = multiples(width, start, stop - start + 1)
+    counts = np.diff(np.searchsorted(x, edges, side="left"))
+    return {
+        "edges": edges.tolist(),
+        "counts": counts.tolist(),
+        "trials": sample.n,
+        "parts": figure.bins.width / width,
+        "curve": [[float(x[round(share * (sample.n - 1))]), 100.0 * share] for share in np.linspace(0.0, 1.0, 101)],
+        "mean": plain(float(np.mean(x))),
+    }
+
+
+def rest_of(simulation: Simulation) -> Message:
+    """What is said of a run that is done: the answer in sentences, warnings, checks, what the filters rejected."""
+    counts = zip(simulation.model.filters, simulation.tally.rejected, simulation.tally.only, strict=True)
+    return {
+        "sentences": [each.text for each in statements(simulation)],
+        "meaning": ERROR_SENTENCE,
+        "warnings": [str(each) for each in opening_sentences(simulation)],
+        "notices": [str(each) for each in simulation.notices_of_run],
+        "sampling": sampling_sentence(simulation),
+        "evaluated": simulation.trials,
+        "rejected": {each.name: [int(rejected), int(only)] for each, rejected, only in counts},
+        "checks": [
+            {"name": each.name, "cell": str(each.cell), "holds": each.holds, "failing": each.warnings}
+            for each in simulation.checks
+        ],
+    }
+
+
+def matters_html(simulation: Simulation) -> str:
+    """Which assumptions the answer depends on, and what another limit of a filter would change."""
+    found = sensitivities(simulation)
+    return join([dependence(found), limits(found)]).source
+
+
+def tables_html(simulation: Simulation) -> str:
+    """All tables that the page of results has."""
+    parts = (statistics, certainty, assumptions, filters, checks, notices)
+    return join([*(part(simulation) for part in parts), record(make_record(simulation, None))]).source
+
+
+def pair_of(simulation: Simulation, first: str, second: str) -> dict[str, Any] | None:
+    """Two quantities in the same accepted trials, for a scatter and an overlay; None where either is unknown.
+
+    Args:
+        simulation: the run.
+        first: name of a forecast, or of an assumption that is drawn.
+        second: likewise.
+    """
+    columns: Mapping[str, Any] = {**simulation.inputs, **simulation.forecasts}
+    if first not in columns or second not in columns:
+        return None
+    n = min(columns[first].size, columns[second].size, 50 * _POINTS)
+    x, y = np.asarray(columns[first][:n]), np.asarray(columns[second][:n])
+    both = np.isfinite(x) & np.isfinite(y)
+    x, y = x[both], y[both]
+    return {
+        "first": first,
+        "second": second,
+        "x": x[:_POINTS].tolist(),
+        "y": y[:_POINTS].tolist(),
+        "trials": int(x.size),
+        "correlation": plain(rank_correlation(x, y).value) if x.size > 2 else None,
+        "units": [_units(simulation, first), _units(simulation, second)],
+    }
+
+
+def _units(simulation: Simulation, name: str) -> str:
+    model = simulation.model
+    found = {each.name: each.units for each in model.assumptions} | {each.name: each.units for each in model.forecasts}
+    return found.get(name, "")

@@ -1,0 +1,234 @@
+"use strict";
+// Handles on an axis: the numbers of one assumption or filter, which are dragged or moved with the arrow keys.
+
+const RISING = [["low", "low_likeliest", "likeliest", "high_likeliest", "high"], ["lower_cutoff", "upper_cutoff"],
+  ["at_least", "above", "at_most", "below"]];
+const KNOB_SIDE = { low: "lower", lower_cutoff: "lower", at_least: "lower", above: "lower",
+  high: "upper", upper_cutoff: "upper", at_most: "upper", below: "upper" };
+const WIDE = 100, TALL = 26;
+
+/** A number with the decimals of its step, and no more than it has. */
+function stepText(value, step) {
+  if (value === null || value === undefined) return "";
+  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  const rounded = Number(value.toFixed(Math.min(decimals, 12)));
+  return Math.abs(rounded - value) <= 1e-9 * Math.abs(value) ? valueText(value, decimals) : String(value);
+}
+
+/** A value on the grid of its step. */
+function onStep(value, step) {
+  return Number((Math.round(value / step) * step).toPrecision(12));
+}
+
+/**
+ * The axis with its knobs. `moved(key, value, held, event)` is told of each move; `numbers` are those with a handle:
+ * `key`, `heading`, `value`, `own`.
+ */
+class Track {
+  constructor(about, units, moved) {
+    Object.assign(this, { about, units, moved, held: null, knobs: new Map() });
+    this.drawing = makeSvg("svg", { viewBox: `0 0 ${WIDE} ${TALL}`, preserveAspectRatio: "none", "aria-hidden": "true" });
+    this.root = make("div", { class: "track" }, this.drawing);
+    this.ends = make("p", { class: "ends", "aria-hidden": "true" }, make("span"), make("span"));
+    this.box = make("div", { class: "axis" }, this.root, this.ends);
+  }
+
+  /** Bring it up to date: the numbers, the step, the distribution now and in the workbook, a value to be marked. */
+  update({ numbers, step, shape, own, mark, off }) {
+    Object.assign(this, { numbers, step, shape, own, mark, off });
+    if (this.held === null) this.fit();
+    for (const number of numbers) this.place(this.knob(number), number);
+    for (const [key, knob] of this.knobs) {
+      if (!numbers.some((each) => each.key === key)) {
+        knob.remove();
+        this.knobs.delete(key);
+      }
+    }
+    this.draw();
+  }
+
+  /** Choose an axis with room on both sides; one that is still good stays, so that nothing jumps. */
+  fit() {
+    const values = this.numbers.flatMap(({ value, own }) => [value, own]).filter((each) => each !== null);
+    for (const each of [this.shape, this.own]) if (each) values.push(each.low, each.high);
+    if (this.mark !== null && this.mark !== undefined) values.push(this.mark);
+    if (!values.length) values.push(0, 1);
+    const [low, high] = [Math.min(...values), Math.max(...values)];
+    const span = high - low || Math.abs(low) * 0.2 || 1;
+    const [from, to] = this.axis ?? [0, 0];
+    const good = from < low - 0.08 * span && to > high + 0.08 * span && to - from < 4 * span;
+    if (!good) this.axis = [low - 0.3 * span, high + 0.3 * span];
+    const shown = this.axis.map((end) => `${Number(end.toPrecision(3))}`);
+    [...this.ends.children].forEach((place, i) => { place.textContent = shown[i]; });
+  }
+
+  at(value) {
+    const [from, to] = this.axis;
+    return Math.min(100, Math.max(0, (100 * (value - from)) / (to - from)));
+  }
+
+  knob(number) {
+    if (this.knobs.has(number.key)) return this.knobs.get(number.key);
+    const made = make("div", { class: `knob ${KNOB_SIDE[number.key] ?? "middle"}`, role: "slider", tabindex: "0",
+      "aria-label": `${number.heading} of ${this.about}` });
+    made.addEventListener("pointerdown", (event) => this.grab(made, number.key, event));
+    made.addEventListener("keydown", (event) => this.press(number.key, event));
+    made.addEventListener("keyup", (event) => {
+      if (ARROWS[event.key]) this.moved(number.key, this.number(number.key).value, false, event);
+    });
+    this.knobs.set(number.key, made);
+    this.root.append(made);
+    return made;
+  }
+
+  number(key) {
+    return this.numbers.find((each) => each.key === key);
+  }
+
+  place(knob, { value }) {
+    knob.hidden = value === null;
+    if (value === null) return;
+    const [least, most] = this.room(knob);
+    knob.style.left = `${this.at(value)}%`;
+    knob.setAttribute("aria-valuemin", String(Math.min(least, value)));
+    knob.setAttribute("aria-valuemax", String(Math.max(most, value)));
+    knob.setAttribute("aria-valuenow", String(value));
+    knob.setAttribute("aria-valuetext", `${stepText(value, this.step)}${this.units ? ` ${this.units}` : ""}`);
+    knob.setAttribute("aria-disabled", String(Boolean(this.off)));
+  }
+
+  room() {
+    return this.axis;
+  }
+
+  /** The nearest place where a handle may be: those that rise stay in their order. */
+  allowed(key, value) {
+    const order = RISING.find((keys) => keys.includes(key));
+    if (!order) return value;
+    const place = order.indexOf(key);
+    let found = value;
+    for (const other of this.numbers) {
+      const where = order.indexOf(other.key);
+      if (where < 0 || other.value === null) continue;
+      if (where < place) found = Math.max(found, other.value);
+      if (where > place) found = Math.min(found, other.value);
+    }
+    return found;
+  }
+
+  grab(knob, key, event) {
+    if (this.off || event.button) return;
+    const box = this.root.getBoundingClientRect();
+    const away = event.clientX - (box.left + (box.width * this.at(this.number(key).value)) / 100);
+    const [from, to] = this.axis;
+    const follow = (moved) => {
+      const part = Math.min(1, Math.max(0, (moved.clientX - away - box.left) / box.width));
+      this.move(key, from + part * (to - from), true, moved);
+    };
+    const letGo = (moved) => {
+      knob.removeEventListener("pointermove", follow);
+      for (const each of ["pointerup", "pointercancel"]) knob.removeEventListener(each, letGo);
+      this.held = null;
+      this.moved(key, this.number(key).value, false, moved);
+    };
+    event.preventDefault();
+    knob.focus({ preventScroll: true });
+    knob.setPointerCapture(event.pointerId);
+    this.held = key;
+    knob.addEventListener("pointermove", follow);
+    for (const each of ["pointerup", "pointercancel"]) knob.addEventListener(each, letGo);
+  }
+
+  press(key, event) {
+    const steps = (ARROWS[event.key] ?? 0) * (event.shiftKey ? 10 : 1);
+    const [from, to] = this.axis;
+    const ends = { Home: from, End: to };
+    if (this.off || (!steps && !(event.key in ends))) return;
+    const wanted = steps ? this.number(key).value + steps * this.step : ends[event.key];
+    event.preventDefault();
+    this.move(key, wanted, Boolean(steps), event);
+    this.fit();
+    this.show();
+  }
+
+  move(key, wanted, held, event) {
+    const number = this.number(key);
+    const value = this.allowed(key, onStep(wanted, this.step));
+    if (value === number.value) return;
+    number.value = value;
+    this.place(this.knob(number), number);
+    this.draw();
+    this.moved(key, value, held, event);
+  }
+
+  show() {
+    for (const number of this.numbers) this.place(this.knob(number), number);
+    this.draw();
+  }
+
+  /** The distribution of the workbook as a line, the one now as an area, the value of the cell as an upright line. */
+  draw() {
+    const parts = [makeSvg("path", { class: "ground", d: `M0 ${TALL}H${WIDE}` })];
+    if (this.shape) parts.push(makeSvg("path", { class: "now", d: this.outline(this.shape) }));
+    if (this.own && this.own !== this.shape) parts.push(makeSvg("path", { class: "own", d: this.outline(this.own) }));
+    if (this.mark !== null && this.mark !== undefined) {
+      parts.push(makeSvg("path", { class: "mark", d: `M${this.at(this.mark)} 0V${TALL}` }));
+    }
+    this.drawing.replaceChildren(...parts);
+  }
+
+  outline({ low, high, heights }) {
+    if (!(high > low)) return `M${this.at(low)} ${TALL}V1`;
+    const top = (height) => (TALL - (TALL - 2) * height).toFixed(2);
+    const end = (i) => this.at(low + ((high - low) * i) / heights.length).toFixed(2);
+    const bars = heights.map((height, i) => `V${top(height)}H${end(i + 1)}`).join("");
+    return `M${end(0)} ${TALL}${bars}V${TALL}Z`;
+  }
+}
+
+/** A box for one number: typed, or stepped with the arrow keys. `set(value, held)` takes it. */
+class NumberBox {
+  constructor(label, units, set, { hidden = "" } = {}) {
+    Object.assign(this, { set, step: 1, value: null });
+    this.input = make("input", { type: "text", inputmode: "decimal", autocomplete: "off", spellcheck: "false" });
+    const shown = make("span", { text: label });
+    if (hidden) shown.append(make("span", { class: "aside", text: ` of ${hidden}` }));
+    this.root = make("label", { class: "number-box" }, shown, this.input,
+      make("span", { class: "unit", text: units }));
+    this.input.addEventListener("change", () => this.type());
+    this.input.addEventListener("keydown", (event) => this.press(event));
+  }
+
+  update(value, step, { off = false, why = "" } = {}) {
+    Object.assign(this, { value, step });
+    if (document.activeElement !== this.input || this.input.value === this.shown) {
+      this.shown = why || stepText(value, step);
+      this.input.value = this.shown;
+    }
+    this.input.disabled = off;
+    this.input.title = why;
+    this.input.removeAttribute("aria-invalid");
+  }
+
+  type() {
+    const value = typed(this.input.value, null);
+    const good = value !== null && Number.isFinite(value);
+    this.input.toggleAttribute("aria-invalid", !good);
+    if (!good) {
+      this.input.setAttribute("aria-invalid", "true");
+      return;
+    }
+    this.shown = this.input.value = stepText(value, this.step);
+    this.set(value, false);
+  }
+
+  press(event) {
+    const direction = { ArrowUp: 1, ArrowDown: -1, PageUp: 10, PageDown: -10 }[event.key];
+    if (!direction || this.value === null) return;
+    event.preventDefault();
+    const value = onStep(this.value + direction * (event.shiftKey ? 10 : 1) * this.step, this.step);
+    this.update(value, this.step);
+    this.shown = this.input.value = stepText(value, this.step);
+    this.set(value, false);
+  }
+}

@@ -1,0 +1,192 @@
+"use strict";
+// The left side: a card for every assumption and every filter, and the list of checks.
+
+class AssumptionCard {
+  constructor(row, wire, sent) {
+    Object.assign(this, { row, wire, sent, boxes: new Map() });
+    this.track = new Track(row.name, row.units, (key, value, held, event) => this.set(key, value, held, event));
+    this.numbers = make("div", { class: "numbers" });
+    this.frozen = make("input", { type: "checkbox", role: "switch" });
+    this.frozen.addEventListener("change", (event) => this.set("frozen", this.frozen.checked, false, event));
+    this.base = new NumberBox("at", "", (value) => this.set("base", value, false, null), { hidden: row.name });
+    this.back = make("button", { type: "button", class: "back", text: "As in the workbook",
+      "aria-label": `${row.name} as in the workbook`,
+      on: { click: () => wire.say({ kind: "reset", of: "assumption", name: row.name }) } });
+    this.status = make("span", { class: "status" });
+    this.about = make("p", { class: "about" });
+    this.root = make("article", { class: "card", "aria-label": row.name },
+      make("h3", {}, named(row.name), make("span", { class: "units", text: row.units ? `, ${row.units}` : "" }),
+        this.status, this.back),
+      this.track.box, this.numbers, this.about);
+    this.held = make("div", { class: "frozen" }, make("label", {}, this.frozen, " Frozen ",
+      make("span", { class: "aside", text: `: ${row.name}` })), this.base.root);
+    this.numbers.append(this.held);
+  }
+
+  set(key, value, held, event) {
+    const number = this.row.numbers.find((each) => each.key === key);
+    if (number) {
+      number.value = value;
+      this.boxes.get(key)?.update(value, this.stepOf(number));
+    }
+    this.sent(this.wire.set("assumption", this.row.name, key, value, held), event);
+  }
+
+  stepOf(number) {
+    return number.drags ? this.row.step : number.step;
+  }
+
+  /** Another window moved a handle, or this one did. */
+  moved(key, value) {
+    if (this.track.held !== null) return;
+    const number = this.row.numbers.find((each) => each.key === key);
+    if (!number) return;
+    number.value = value;
+    this.update(this.row, this.shape, this.own);
+  }
+
+  reshape(shape) {
+    this.shape = shape;
+    this.track.shape = shape;
+    this.track.draw();
+  }
+
+  update(row, shape, own) {
+    if (this.track.held !== null) return;
+    Object.assign(this, { row, shape, own });
+    const off = row.frozen || row.status === "not needed";
+    this.track.update({
+      numbers: row.numbers.filter((each) => each.drags), step: row.step, shape: off ? null : shape, own,
+      mark: row.base, off: row.frozen,
+    });
+    for (const number of row.numbers) {
+      if (!this.boxes.has(number.key)) {
+        const box = new NumberBox(number.heading, "", (value) => this.set(number.key, value, false, null), { hidden: row.name });
+        this.boxes.set(number.key, box);
+        this.held.before(box.root);
+      }
+      const why = number.value === null ? `computed in ${number.cell}` : "";
+      this.boxes.get(number.key).update(number.value, this.stepOf(number), { off: row.frozen, why });
+    }
+    this.frozen.checked = row.frozen;
+    this.base.update(row.base, row.step, { off: !row.frozen });
+    this.root.classList.toggle("changed", row.changed);
+    this.back.hidden = !row.changed;
+    this.status.textContent = row.status === "not needed" ? " not needed by any answer" : "";
+    this.about.textContent = [row.distribution, row.cell, row.source].filter(Boolean).join(" · ");
+  }
+}
+
+class FilterCard {
+  constructor(row, wire, sent) {
+    Object.assign(this, { row, wire, sent, boxes: new Map() });
+    this.track = new Track(row.name, "", (key, value, held, event) => this.set(key, value, held, event));
+    this.numbers = make("div", { class: "numbers" });
+    this.rejected = make("p", { class: "rejected" });
+    this.back = make("button", { type: "button", class: "back", text: "As in the workbook",
+      "aria-label": `${row.name} (filter) as in the workbook`,
+      on: { click: () => wire.say({ kind: "reset", of: "filter", name: row.name }) } });
+    this.about = make("p", { class: "about" });
+    this.root = make("article", { class: "card", "aria-label": `Filter ${row.name}` },
+      make("h3", {}, named(row.name), this.back), this.rejected, this.track.box, this.numbers, this.about);
+  }
+
+  set(key, value, held, event) {
+    const limit = this.row.limits.find((each) => each.key === key);
+    limit.value = value;
+    this.boxes.get(key)?.update(value, this.row.step);
+    this.sent(this.wire.set("filter", this.row.name, key, value, held), event);
+  }
+
+  moved(key, value) {
+    if (this.track.held !== null) return;
+    const limit = this.row.limits.find((each) => each.key === key);
+    if (!limit) return;
+    limit.value = value;
+    this.update(this.row);
+  }
+
+  update(row) {
+    if (this.track.held !== null) return;
+    this.row = row;
+    const numbers = row.limits.filter((each) => each.value !== null);
+    this.track.box.hidden = !numbers.length;
+    this.track.update({ numbers, step: row.step, shape: row.shape ?? null, own: null, mark: null, off: false });
+    for (const limit of row.limits) {
+      if (!this.boxes.has(limit.key)) {
+        const heading = limit.heading[0].toUpperCase() + limit.heading.slice(1);
+        const box = new NumberBox(heading, "", (value) => this.set(limit.key, value, false, null), { hidden: row.name });
+        this.boxes.set(limit.key, box);
+        this.numbers.append(box.root);
+      }
+      this.boxes.get(limit.key).update(limit.value, row.step, { why: limit.value === null ? `computed in ${limit.cell}` : "" });
+    }
+    this.root.classList.toggle("changed", row.changed);
+    this.back.hidden = !row.changed;
+    this.about.textContent = [`keeps ${row.keeps}`, row.cell, row.because].filter(Boolean).join(" · ");
+  }
+
+  count(rejected, trials) {
+    const [all, only] = rejected;
+    const share = trials ? ` (${((100 * all) / trials).toPrecision(3)} %)` : "";
+    this.rejected.textContent = `rejects ${countText(all)} of ${countText(trials)} trials${share}, ${countText(only)} of them alone`;
+  }
+}
+
+class LeftSide {
+  constructor(wire, sent) {
+    Object.assign(this, { wire, sent, assumptions: new Map(), filters: new Map(), own: {}, shapes: {} });
+  }
+
+  /** A workbook that was read, again perhaps. */
+  book({ shapes }) {
+    this.own = shapes;
+    this.shapes = { ...shapes };
+  }
+
+  state({ assumptions, filters }) {
+    this.rows("assumptions", AssumptionCard, assumptions, (card, row) => {
+      if (!row.changed) this.shapes[row.name] = this.own[row.name];
+      card.update(row, this.shapes[row.name] ?? null, this.own[row.name] ?? null);
+    });
+    this.rows("filters", FilterCard, filters, (card, row) => card.update(row));
+    document.getElementById("filters-head").hidden = !filters.length;
+  }
+
+  rows(what, Card, rows, update) {
+    const cards = this[what];
+    const names = new Set(rows.map((row) => row.name));
+    for (const [name, card] of cards) {
+      if (names.has(name)) continue;
+      card.root.remove();
+      cards.delete(name);
+    }
+    for (const row of rows) {
+      if (!cards.has(row.name)) cards.set(row.name, new Card(row, this.wire, this.sent));
+      const card = cards.get(row.name);
+      update(card, row);
+      if (!card.root.isConnected) document.getElementById(what).append(card.root);
+    }
+  }
+
+  moved({ of, name, key, value }) {
+    this[`${of}s`].get(name)?.moved(key, value);
+  }
+
+  /** The distributions that differ from the workbook's, with an answer. */
+  reshape(shapes) {
+    for (const [name, shape] of Object.entries(shapes ?? {})) {
+      this.shapes[name] = shape;
+      this.assumptions.get(name)?.reshape(shape);
+    }
+  }
+
+  rest({ rejected, checks, evaluated }) {
+    for (const [name, counts] of Object.entries(rejected)) this.filters.get(name)?.count(counts, evaluated);
+    document.getElementById("checks-head").hidden = !checks.length;
+    document.getElementById("checks").replaceChildren(...checks.map(({ name, cell, failing }) => make("li",
+      { class: failing.length ? "fails" : "holds" }, make("b", { text: failing.length ? "Fails: " : "Holds: " }),
+      named(name), make("span", { class: "about", text: ` · ${cell}` }),
+      ...failing.map((text) => make("p", { text })))));
+  }
+}

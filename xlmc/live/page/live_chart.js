@@ -1,0 +1,188 @@
+"use strict";
+// A forecast's chart that is brought up to date without being made anew, with the state that is compared behind it.
+
+const BEHIND = "#6B4F9E";
+
+/** The elements of one forecast; `Panel` of the page of results works on them. */
+function forecastElement({ name, units }, number) {
+  const about = `chart-${number}`;
+  const view = (key, label) => make("label", {},
+    make("input", { type: "radio", name: `${about}-view`, value: key, checked: key === "frequency" }), label);
+  const box = (label, key, unit) => make("label", {}, make("span", { text: label }),
+    make("input", { type: "text", inputmode: "text", autocomplete: "off", spellcheck: "false", class: key }),
+    make("span", { class: "unit", text: unit }));
+  const together = make("select", { class: "together" },
+    ...[[1, "each"], [2, "two as one"], [4, "four as one"]].map(([value, text]) => make("option", { value, text })));
+  const views = make("div", { class: "views-and-bars" },
+    make("fieldset", { class: "views" }, make("legend", { text: "Chart" }), view("frequency", "Frequency"),
+      view("cumulative", "Cumulative"), view("reverse", "Reverse cumulative")),
+    make("p", { class: "choices" }, make("label", {}, "Bars ", together),
+      make("label", {}, make("input", { type: "checkbox", class: "percentiles" }), "Mark 5, 50 and 95 %")));
+  const ends = make("div", { class: "grabbed" },
+    make("div", { class: "boxes" }, box("Lower end", "low", units), box("Upper end", "high", units),
+      box("Certainty", "share", "%"), make("button", { type: "button", class: "reset", text: "Central range" })),
+    make("p", { class: "fault", role: "alert" }), make("p", { class: "certainty" }));
+  const chart = make("div", { class: "chart", role: "group", "aria-label": `Chart of ${name}, with two grabbers` });
+  const picture = (label, act) => make("button", { type: "button", class: "copy", text: label, "aria-label":
+    `${label} of ${name}`, on: { click: act } });
+  return make("article", { class: "forecast", id: about },
+    make("h3", {}, named(name)),
+    make("p", { class: "moved" }),
+    make("div", { class: "figure" },
+      make("div", { class: "drawing" }, views, chart, make("p", { class: "readout" }), ends),
+      make("div", { class: "beside-chart" }, make("table", { class: "beside" },
+        make("caption", { text: "Accepted trials" }), make("thead"), make("tbody")),
+        make("p", { class: "pictures" }, picture("Save PNG", () => savePng(chart)),
+          picture("Save SVG", () => saveSvg(chart))))),
+  );
+}
+
+class LivePanel extends Panel {
+  constructor(element, forecast, z) {
+    super(element, forecast, z);
+    this.article = element;
+    this.tell();
+  }
+
+  listen(element) {
+    super.listen(element);
+    this.find(".together").addEventListener("change", ({ target }) => { this.together = Number(target.value); });
+  }
+
+  /** Take another run's numbers; `held`: while a handle is held, the axes only grow. */
+  update(forecast, held) {
+    const before = this.bars;
+    this.forecast = forecast;
+    this.trials = new Trials(forecast);
+    this.bars = barsOf(forecast);
+    this.bins = merged(this.bars, this.together ?? 1);
+    this.step = stepOf(this.bins);
+    this.decimals = Math.max(0, -Math.round(Math.log10(this.step)));
+    if (this.percentiles.length) this.percentiles = [5, 50, 95].map((percent) => this.percentile(percent));
+    if (before.whole !== this.bars.whole) this.draw();
+    this.reach(held);
+    this.chart.setData([this.ends, [0, this.top]]);
+    if (this.following) this.toOwnRange();
+    else if (this.state.share !== null) this.toCentral(this.state.share);
+    else this.show();
+    this.read(null);
+    this.tell();
+  }
+
+  draw() {
+    this.chart?.destroy();
+    this.reach(false);
+    const { state, bins } = this;
+    const options = chartOptions(widthOf(this.find(".chart")), this.ends, this.top, this.forecast.units, state.view);
+    options.scales = { x: { time: false, range: () => this.ends }, y: { range: () => [0, this.top] } };
+    if (bins.whole) options.axes[0].incrs = [1, 2, 5, 10, 20, 50, 100];
+    options.hooks = {
+      drawClear: [(chart) => band(chart, this.forecast.range)],
+      draw: [(chart) => this.paint(chart), () => this.element()],
+      setCursor: [(chart) => this.read(chart.cursor.left < 0 ? null : chart.posToVal(chart.cursor.left, "x"))],
+    };
+    this.chart = new uPlot(options, [this.ends, [0, this.top]], this.find(".chart"));
+    const grid = {
+      get step() { return panel.step; }, get min() { return panel.ends[0]; }, get max() { return panel.ends[1]; },
+    };
+    const panel = this;
+    const toLow = (value) => this.set(Math.min(value, state.high), state.high);
+    const toHigh = (value) => this.set(state.low, Math.max(value, state.low));
+    this.grabbers = {
+      low: addGrabber(this.chart, "low", `Lower end of the range of ${this.forecast.name}`, grid, () => state.low, toLow),
+      high: addGrabber(this.chart, "high", `Upper end of the range of ${this.forecast.name}`, grid, () => state.high, toHigh),
+    };
+    this.read(null);
+    if (state.low !== undefined) this.show();
+  }
+
+  /** How far the axes reach: both states have room, and while a handle is held nothing shrinks. */
+  reach(held) {
+    const { behind } = this.forecast;
+    const ends = [this.bins.edges[0], this.bins.edges.at(-1)];
+    if (behind) {
+      ends[0] = Math.min(ends[0], behind.edges[0]);
+      ends[1] = Math.max(ends[1], behind.edges.at(-1));
+    }
+    const heights = [...this.bins.counts, ...(behind ? this.heights(behind) : [])];
+    const top = this.state.view === "frequency" ? Math.max(...heights) * 1.08 : 100;
+    const old = held && this.ends ? this.ends : ends;
+    this.ends = [Math.min(old[0], ends[0]), Math.max(old[1], ends[1])];
+    this.top = this.state.view === "frequency" && held && this.top > 0.6 * top ? Math.max(top, this.top * 0.98) : top;
+  }
+
+  /** The bars behind, as high as if they held as many trials as those now. */
+  heights({ counts, trials, parts }) {
+    const factor = (this.forecast.trials / trials) * parts * (this.bins.numbers ?? 1);
+    return counts.map((count) => count * factor);
+  }
+
+  paint(chart) {
+    const { state, bins, forecast: { behind } } = this;
+    const shape = state.view === "frequency" ? bars(bins.edges, bins.counts) : curve(this.trials, this.ends, state.view);
+    paint(chart, shape, this.marks(), bins.covered(state.low, state.high));
+    if (!behind) return;
+    const line = state.view === "frequency"
+      ? [[behind.edges[0], 0], ...bars(behind.edges, this.heights(behind)), [behind.edges.at(-1), 0]]
+      : behind.curve.map(([x, y]) => [x, state.view === "reverse" ? 100 - y : y]);
+    strokeBehind(chart, line);
+  }
+
+  toOwnRange() {
+    super.toOwnRange();
+    this.following = true;
+  }
+
+  set(low, high, texts = {}) {
+    this.following = false;
+    super.set(low, high, texts);
+  }
+
+  /** The numbers beside the chart, now and behind, and how the mean has moved. */
+  tell() {
+    const { beside, said } = this.forecast;
+    const compared = beside.some(([, , before]) => before);
+    const table = this.find(".beside");
+    const heads = compared ? ["", "Now", "Behind", "Difference"] : ["", "Now"];
+    table.tHead.replaceChildren(make("tr", {}, ...heads.map((text) => (text
+      ? make("th", { scope: "col", class: "number", text }) : make("td")))));
+    table.tBodies[0].replaceChildren(...beside.map(([label, now, before, apart]) => make("tr", {},
+      make("th", { scope: "row", text: label }),
+      ...(compared ? [now, before, apart] : [now]).map((text) => make("td", { class: "number", text })))));
+    this.find(".moved").textContent = said ?? "";
+    this.find(".reset").textContent = `Central ${this.forecast.range.said} range`;
+  }
+
+  legend() {
+    return `${super.legend()}${this.forecast.behind ? "    violet line: the state behind" : ""}`;
+  }
+}
+
+function strokeBehind(chart, line) {
+  const { ctx } = chart;
+  const { left, top, width, height } = chart.bbox;
+  ctx.save();
+  clip(ctx, left, top, width, height);
+  ctx.beginPath();
+  for (const [x, y] of line) ctx.lineTo(chart.valToPos(x, "x", true), chart.valToPos(y, "y", true));
+  ctx.lineWidth = 1.75 * uPlot.pxRatio;
+  ctx.lineJoin = "round";
+  ctx.strokeStyle = BEHIND;
+  ctx.stroke();
+  ctx.restore();
+}
+
+function savePng(chart) {
+  Copies.onWhite(chart.querySelector("canvas")).toBlob((picture) => Copies.save(picture, Copies.name(chart, "png")));
+}
+
+/** The chart as it stands, as an SVG that holds it as one sharp picture. */
+function saveSvg(chart) {
+  const canvas = Copies.onWhite(chart.querySelector("canvas"));
+  const [width, height] = [canvas.width / devicePixelRatio, canvas.height / devicePixelRatio];
+  const picture = makeSvg("image", { href: canvas.toDataURL("image/png"), width, height });
+  const made = makeSvg("svg", { xmlns: "http://www.w3.org/2000/svg", viewBox: `0 0 ${width} ${height}`, width, height },
+    picture);
+  const text = new XMLSerializer().serializeToString(made);
+  Copies.save(new Blob([text], { type: "image/svg+xml" }), Copies.name(chart, "svg"));
+}

@@ -1,0 +1,155 @@
+"use strict";
+// The right side: tabs with the charts, what matters, pairs, tables, scenarios, and what is handed over.
+
+const TABS = { charts: "Answers", matters: "What matters", pairs: "Pairs", tables: "Tables", scenarios: "Scenarios",
+  studies: "Hand over" };
+
+class RightSide {
+  constructor(wire) {
+    Object.assign(this, { wire, tab: "charts", panels: new Map(), seen: new Set(), open: null, forecasts: [] });
+    this.places = {};
+    const bar = document.getElementById("tabs");
+    const all = document.getElementById("panels");
+    for (const [key, label] of Object.entries(TABS)) {
+      const tab = make("button", { type: "button", role: "tab", id: `tab-${key}`, "aria-controls": `panel-${key}`,
+        text: label, on: { click: () => this.choose(key) } });
+      bar.append(tab);
+      this.places[key] = make("div", { role: "tabpanel", id: `panel-${key}`, "aria-labelledby": `tab-${key}`, tabindex: "0" });
+      all.append(this.places[key]);
+    }
+    bar.addEventListener("keydown", (event) => this.walk(event));
+    this.sentences = make("ul", { class: "statements" });
+    this.meaning = make("p", { class: "remark" });
+    this.choice = make("fieldset", { class: "which" }, make("legend", { text: "Charts of" }));
+    this.charts = make("div", { class: "live-charts" });
+    const split = make("input", { type: "checkbox", checked: true, on: { change: ({ target }) => {
+      this.charts.classList.toggle("alone", !target.checked);
+    } } });
+    this.places.charts.append(this.sentences, this.choice,
+      make("p", { class: "choices" }, make("label", {}, split, "Numbers beside the charts")), this.charts, this.meaning);
+    this.watch = new IntersectionObserver((entries) => {
+      for (const { target, isIntersecting } of entries) {
+        if (isIntersecting) this.seen.add(target.dataset.name);
+        else this.seen.delete(target.dataset.name);
+      }
+      this.look();
+    });
+    this.choose("charts", false);
+  }
+
+  choose(key, tell = true) {
+    this.tab = key;
+    for (const each of Object.keys(TABS)) {
+      const tab = document.getElementById(`tab-${each}`);
+      tab.setAttribute("aria-selected", String(each === key));
+      tab.tabIndex = each === key ? 0 : -1;
+      this.places[each].hidden = each !== key;
+    }
+    if (tell) this.look();
+  }
+
+  /** Arrow keys go from tab to tab. */
+  walk(event) {
+    const keys = Object.keys(TABS);
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    const next = keys[(keys.indexOf(this.tab) + step + keys.length) % keys.length];
+    this.choose(next);
+    document.getElementById(`tab-${next}`).focus();
+  }
+
+  /** Tell the server what can be seen, once things have come to rest. */
+  look() {
+    clearTimeout(this.looking);
+    this.looking = setTimeout(() => {
+      const names = this.forecasts.map((each) => each.name).filter((name) => this.open.has(name) && this.seen.has(name));
+      const { first = "", second = "" } = this.pair ?? {};
+      this.wire.say({ kind: "view", forecasts: names, tab: this.tab, first, second });
+    }, 60);
+  }
+
+  book({ forecasts, z }) {
+    this.z = z;
+    this.forecasts = forecasts;
+    const known = new Set(forecasts.map((each) => each.name));
+    this.open = new Set([...(this.open ?? forecasts.slice(0, 3).map((each) => each.name))].filter((name) => known.has(name)));
+    this.choice.replaceChildren(this.choice.firstElementChild, ...forecasts.map(({ name }) => make("label", {},
+      make("input", { type: "checkbox", checked: this.open.has(name), on: { change: ({ target }) => {
+        if (target.checked) this.open.add(name);
+        else this.open.delete(name);
+        this.arrange();
+      } } }), named(name))));
+    this.choice.hidden = forecasts.length < 2;
+    this.arrange();
+  }
+
+  /** A place for each open forecast, in the order of the workbook. */
+  arrange() {
+    const wanted = this.forecasts.filter(({ name }) => this.open.has(name));
+    for (const [name, { place }] of this.panels) {
+      if (wanted.some((each) => each.name === name)) continue;
+      this.watch.unobserve(place);
+      place.remove();
+      this.seen.delete(name);
+      this.panels.delete(name);
+    }
+    for (const forecast of wanted) {
+      if (!this.panels.has(forecast.name)) {
+        const place = make("div", { class: "place", "data-name": forecast.name });
+        this.panels.set(forecast.name, { place, panel: null });
+        this.watch.observe(place);
+      }
+      this.charts.append(this.panels.get(forecast.name).place);
+    }
+    this.look();
+  }
+
+  frame({ forecasts, stage }) {
+    for (const [name, forecast] of Object.entries(forecasts)) {
+      const entry = this.panels.get(name);
+      if (!entry) continue;
+      if (forecast === null) {
+        entry.panel = null;
+        entry.place.replaceChildren(make("h3", {}, named(name)), make("p", { class: "alarm", text: "no accepted trial has a number" }));
+      } else if (entry.panel) {
+        entry.panel.update(forecast, stage === "moving");
+      } else {
+        const element = forecastElement(forecast, Numbered.id("forecast"));
+        entry.place.replaceChildren(element);
+        entry.panel = new LivePanel(element, forecast, this.z);
+      }
+    }
+  }
+
+  rest({ sentences, meaning, sampling, warnings, notices }) {
+    this.sentences.replaceChildren(...warnings.map((text) => make("li", { class: "warning", text })),
+      ...sentences.map((text) => sentence(text, this.forecasts)));
+    this.meaning.replaceChildren(meaning, make("br"), sampling, ...notices.flatMap((text) => [make("br"), text]));
+  }
+
+  part({ tab, html, pair }) {
+    if (html !== undefined) showTables(this.places[tab], html);
+    if (pair !== undefined) this.drawPair?.(pair);
+  }
+}
+
+/** A sentence with the name before its colon in bold. */
+function sentence(text, forecasts) {
+  const found = forecasts.find(({ name }) => text.startsWith(`${name}: `));
+  if (!found) return make("li", {}, named(text));
+  return make("li", {}, make("b", {}, named(found.name)), text.slice(found.name.length));
+}
+
+/** Tables that the server wrote, which escapes every name; with buttons that copy them. */
+function showTables(place, html) {
+  const open = [...place.querySelectorAll("details")].map((each) => each.open);
+  place.innerHTML = html;
+  place.querySelectorAll("details").forEach((each, i) => { if (i in open) each.open = open[i]; });
+  for (const table of place.querySelectorAll("table")) {
+    table.before(Copies.button("Copy table", (button) => Copies.copy(table, button)));
+  }
+  for (const drawn of place.querySelectorAll("svg.drawn")) {
+    drawn.after(Copies.button("Save SVG", () => Copies.save(Copies.standalone(drawn), Copies.name(drawn, "svg"))));
+  }
+}

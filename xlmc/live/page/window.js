@@ -1,0 +1,111 @@
+"use strict";
+// The window begins here: what the server says goes to the left and the right side.
+
+const Live = {
+  moves: new Map(), // number of a change -> when its event happened
+  latencies: [], // milliseconds from an event to the frame that shows its answer
+
+  start() {
+    const { key, page } = document.body.dataset;
+    this.wire = new Wire(key, page, (message) => this.heard(message), (open) => this.stands(open));
+    this.left = new LeftSide(this.wire, (seq, event) => { if (event) this.moves.set(seq, event.timeStamp); });
+    this.right = new RightSide(this.wire);
+    const say = (id, message) => document.getElementById(id).addEventListener("click", () => this.wire.say(message));
+    say("stop", { kind: "stop" });
+    say("pin", { kind: "pin" });
+    say("reset", { kind: "reset", of: "assumption", name: "" });
+  },
+
+  stands(open) {
+    document.body.classList.toggle("away", !open);
+    if (!open) this.stand("The connection is lost; trying again. Nothing is lost.");
+  },
+
+  stand(text) {
+    document.getElementById("stand").textContent = text;
+  },
+
+  heard(message) {
+    this[`on_${message.kind}`]?.(message);
+  },
+
+  on_book(message) {
+    document.getElementById("book").textContent = message.name;
+    document.title = `${message.name}: live`;
+    this.settings = message.settings;
+    this.left.book(message);
+    this.right.book(message);
+  },
+
+  on_state(message) {
+    this.state = message;
+    this.left.state(message);
+    this.right.state?.(message);
+    const changed = message.changes.length;
+    document.getElementById("reset").disabled = !changed;
+    this.offer(message.offered);
+  },
+
+  on_moved(message) {
+    this.left.moved(message);
+  },
+
+  on_frame(message) {
+    this.right.frame(message);
+    this.left.reshape(message.shapes);
+    const run = `${countText(message.trials)} trials, ${countText(message.accepted)} accepted (${message.share})`;
+    this.stand(message.stage === "rest" ? `Done: ${run}` : `Refining: ${run} so far`);
+    document.getElementById("stop").hidden = true;
+    document.body.dataset.stage = message.stage;
+    document.body.dataset.version = String(message.version);
+    this.measure(message.seq);
+  },
+
+  on_rest(message) {
+    this.left.rest(message);
+    this.right.rest(message);
+  },
+
+  on_part(message) {
+    this.right.part(message);
+  },
+
+  on_running({ stage, share }) {
+    document.getElementById("stop").hidden = stage === "stopped" || share >= 1;
+    this.stand(stage === "stopped" ? "Stopped" : `Running: ${Math.round(100 * share)} % of the trials`);
+  },
+
+  on_trouble({ about, text }) {
+    const place = document.getElementById("troubles");
+    [...place.children].find((each) => each.dataset.about === about)?.remove();
+    if (text) place.append(make("p", { class: "warning", "data-about": about, text }));
+  },
+
+  on_news({ text }) {
+    const place = document.getElementById("news");
+    const close = make("button", { type: "button", class: "close", text: "Close" });
+    const line = make("p", { class: "notice" }, named(text), " ", close);
+    close.addEventListener("click", () => line.remove());
+    place.prepend(line);
+    while (place.children.length > 3) place.lastElementChild.remove();
+  },
+
+  /** What was set when the window was last closed, and not kept as a scenario. */
+  offer(changes) {
+    const place = document.getElementById("offer");
+    const answer = (take) => () => this.wire.say({ kind: "restore", take });
+    place.replaceChildren(...(changes.length ? [make("p", { class: "notice" },
+      "When the window was last closed, this was changed: ", named(changes.join("; ")), " ",
+      make("button", { type: "button", text: "Bring it back", on: { click: answer(true) } }), " ",
+      make("button", { type: "button", text: "Forget it", on: { click: answer(false) } }))] : []));
+  },
+
+  /** From the event of a move to the frame in which its answer is drawn. */
+  measure(seq) {
+    const began = this.moves.get(seq);
+    for (const each of this.moves.keys()) if (each <= seq) this.moves.delete(each);
+    if (began !== undefined) requestAnimationFrame(() => this.latencies.push(performance.now() - began));
+  },
+};
+
+Live.start();

@@ -1,0 +1,51 @@
+"use strict";
+// The connection to the server, which comes back by itself: after a reload, a sleep, a pause of the network.
+
+class Wire {
+  /** `heard(message)` takes what the server says; `stands(open)` hears whether there is a connection. */
+  constructor(key, page, heard, stands) {
+    Object.assign(this, { key, page, heard, stands, seq: 0, delay: 250, waiting: [] });
+    this.connect();
+    addEventListener("online", () => this.again());
+    document.addEventListener("visibilitychange", () => this.again());
+  }
+
+  connect() {
+    const socket = new WebSocket(`ws://${location.host}/live/${this.key}`);
+    this.socket = socket;
+    socket.addEventListener("open", () => {
+      this.delay = 250;
+      socket.send(JSON.stringify({ kind: "hello", page: this.page }));
+      for (const text of this.waiting.splice(0)) socket.send(text);
+      this.stands(true);
+    });
+    socket.addEventListener("message", ({ data }) => this.heard(JSON.parse(data)));
+    socket.addEventListener("close", () => {
+      if (this.socket !== socket) return;
+      this.stands(false);
+      this.timer = setTimeout(() => this.connect(), this.delay);
+      this.delay = Math.min(2 * this.delay, 5000);
+    });
+  }
+
+  /** Do not wait for the next try where something says that it would work now. */
+  again() {
+    if (document.hidden || this.socket.readyState <= WebSocket.OPEN) return;
+    clearTimeout(this.timer);
+    this.connect();
+  }
+
+  /** What is said while there is no connection is said when there is one. */
+  say(message) {
+    const text = JSON.stringify(message);
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(text);
+    else this.waiting.push(text);
+  }
+
+  /** Set a number or a switch; gives the number of the change, which comes back with the answer to it. */
+  set(of, name, key, value, held) {
+    this.seq += 1;
+    this.say({ kind: "set", of, name, key, value, held, seq: this.seq });
+    return this.seq;
+  }
+}

@@ -1,0 +1,164 @@
+"""What the page and the server tell each other: JSON objects over one WebSocket, each with its `kind`.
+
+**The page says**
+
+| kind | fields | meaning |
+|---|---|---|
+| `hello` | `page` | first of all: the token that stands in the page; anything else before it ends the connection |
+| `set` | `of`, `name`, `key`, `value`, `held`, `seq` | a number or a switch of an assumption or a filter; `value` \
+null: as in the book; `held`: a handle is still held; `seq`: counts the page's changes, and comes back with the frame |
+| `reset` | `of`, `name` | everything of one assumption or filter as in the book; with an empty `name`: of all |
+| `view` | `forecasts`, `tab`, `first`, `second` | which charts can be seen, which tab is open, whose pairs it shows |
+| `pin` | | the state now becomes the one that is drawn behind |
+| `restore` | `take` | bring back what was set when the window was last closed, or forget it |
+| `stop` | | end the run that is going on |
+| `keep` | `name` | keep the state now as a scenario of that name |
+| `show` | `name` | bring a kept scenario back; with an empty name the book's own state |
+| `drop` | `name` | forget a kept scenario |
+| `compare` | | run every kept scenario, and put them into one table |
+| `save` | `what` | write `book`, `page`, `json` or `run` beside the workbook |
+| `study` | `what` | start `verify`, `stability`, `screen`, `methods` on the state now |
+
+**The server says**
+
+| kind | fields | meaning |
+|---|---|---|
+| `book` | `name`, `folder`, `forecasts`, `notices`, `settings`, `shapes` | the workbook as it is now |
+| `state` | `version`, `assumptions`, `filters`, `changes`, `scenarios`, `shown`, `offered`, `behind` | what is set; \
+`changes` in words |
+| `moved` | `of`, `name`, `key`, `value` | what was set while a handle is held; `state` follows when it is let go |
+| `frame` | `stage`, `version`, `seq`, `trials`, `accepted`, `share`, `shapes`, `forecasts` | an answer; `stage`: \
+`moving` or `rest`; `shapes`: the distributions that differ from those of the workbook |
+| `rest` | `version`, `sentences`, `warnings`, `checks`, `filters`, `sampling` | what is said of a run at rest |
+| `part` | `tab`, `version`, `html` or `pairs` | the contents of the open tab |
+| `running` | `version`, `stage`, `share` | how far a run is; `share` 1: done |
+| `trouble` | `about`, `text` | why something could not be done; an empty text: the trouble is over |
+| `news` | `text`, `link` | what was done, such as a file that was written |
+
+Numbers that are no numbers are null. What the page sends is checked here before anything looks at it.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+from xlmc.errors import XlmcError
+
+__all__ = ["MOST_BYTES", "Message", "ProtocolError", "Said", "plain", "read_message", "written"]
+
+MOST_BYTES: Final = 1 << 16
+"""Of a message from the page."""
+
+_LONGEST: Final = 2_000
+"""Characters of a name; Excel's cells hold more, its names fewer."""
+
+_MOST_NAMES: Final = 500
+
+Message = dict[str, Any]
+"""From the server."""
+
+
+class ProtocolError(XlmcError):
+    """A message that no page of xlmc sends."""
+
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """A message from the page, checked."""
+
+    kind: str
+    fields: Mapping[str, Any]
+
+    def __getitem__(self, name: str) -> Any:
+        return self.fields[name]
+
+
+def _is_text(value: object) -> bool:
+    return isinstance(value, str) and len(value) <= _LONGEST
+
+
+def _is_value(value: object) -> bool:
+    return value is None or isinstance(value, bool) or (isinstance(value, int | float) and math.isfinite(value))
+
+
+def _is_flag(value: object) -> bool:
+    return isinstance(value, bool)
+
+
+def _is_count(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and 0 <= value < 1 << 53
+
+
+def _are_texts(value: object) -> bool:
+    return isinstance(value, list) and len(value) <= _MOST_NAMES and all(map(_is_text, value))
+
+
+def _one_of(*words: str) -> Callable[[object], bool]:
+    return lambda value: isinstance(value, str) and value in words
+
+
+_OF: Final = _one_of("assumption", "filter")
+
+_FIELDS: Final[Mapping[str, Mapping[str, Callable[[object], bool]]]] = {
+    "hello": {"page": _is_text},
+    "set": {
+        "of": _OF,
+        "name": _is_text,
+        "key": _is_text,
+        "value": _is_value,
+        "held": _is_flag,
+        "seq": _is_count,
+    },
+    "reset": {"of": _OF, "name": _is_text},
+    "view": {
+        "forecasts": _are_texts,
+        "tab": _one_of("charts", "matters", "pairs", "tables", "scenarios", "studies"),
+        "first": _is_text,
+        "second": _is_text,
+    },
+    "pin": {},
+    "restore": {"take": _is_flag},
+    "stop": {},
+    "keep": {"name": _is_text},
+    "show": {"name": _is_text},
+    "drop": {"name": _is_text},
+    "compare": {},
+    "save": {"what": _one_of("book", "page", "json", "run")},
+    "study": {"what": _one_of("verify", "stability", "screen", "methods")},
+}
+
+
+def read_message(text: str | bytes) -> Said:
+    """What the page said.
+
+    Raises:
+        ProtocolError: it is nothing that a page says.
+    """
+    if len(text) > MOST_BYTES:
+        raise ProtocolError(f"a message of {len(text):,} characters is too long")
+    try:
+        found = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise ProtocolError("a message is no JSON") from error
+    kind = found.get("kind") if isinstance(found, dict) else None
+    wanted = _FIELDS.get(kind) if isinstance(kind, str) else None
+    if wanted is None:
+        raise ProtocolError("a message has no kind that is known")
+    for name, fits in wanted.items():
+        if name not in found or not fits(found[name]):
+            raise ProtocolError(f"{name!r} of a message {kind!r} is not what it must be")
+    return Said(str(kind), {name: found[name] for name in wanted})
+
+
+def plain(value: float | None) -> float | None:
+    """The number; None where it is no finite one, which JSON does not have."""
+    return None if value is None or not math.isfinite(value) else float(value)
+
+
+def written(message: Message) -> str:
+    """The message as text."""
+    return json.dumps(message, allow_nan=False, separators=(",", ":"), ensure_ascii=True)

@@ -13,6 +13,7 @@ from openpyxl.utils import range_boundaries
 from websockets.sync.client import connect
 
 from xlmc.live.protocol import Said
+from xlmc.run.loading import load
 
 CASE = EXAMPLES["intersection"]
 SIMPLE = EXAMPLES["skid-100-ft"]
@@ -20,26 +21,27 @@ SIMPLE = EXAMPLES["skid-100-ft"]
 
 def edited(source, target, changes, settings=None):
     """A copy of a workbook with other numbers in its tables: {(row's name, heading): value}."""
-    book = openpyxl.load_workbook(source)
-    changes = {**changes, **{(name, "Value"): value for name, value in (settings or {}).items()}}
-    left = dict(changes)
+    model, book = load(source), openpyxl.load_workbook(source)
+    rows = {each.name: each.row for each in (*model.assumptions, *model.filters)}
+    for (name, heading), value in changes.items():
+        sheet, row = book[rows[name].sheet], rows[name].row
+        sheet.cell(row, _headings_above(sheet, row)[heading]).value = value
     for sheet in book:
-        for table in sheet.tables.values():
-            if not table.name.startswith("xlmc_"):
-                continue
-            first, top, last, bottom = range_boundaries(table.ref)
-            headings = {sheet.cell(top, column).value: column for column in range(first, last + 1)}
-            name_column = headings.get("Name", headings.get("Setting"))
-            if name_column is None:
-                continue
-            for row in range(top + 1, bottom + 1):
-                for (name, heading), value in changes.items():
-                    if sheet.cell(row, name_column).value == name and heading in headings:
-                        sheet.cell(row, headings[heading]).value = value
-                        left.pop((name, heading), None)
-    assert not left, left
+        for row in sheet.iter_rows():
+            for cell in row:
+                if cell.value in (settings or {}):
+                    sheet.cell(cell.row, cell.column + 1).value = settings[cell.value]
     book.save(target)
     return target
+
+
+def _headings_above(sheet, row):
+    """Heading -> column, of the table that holds a row."""
+    for table in sheet.tables.values():
+        first, top, last, bottom = range_boundaries(table.ref)
+        if top < row <= bottom:
+            return {sheet.cell(top, column).value: column for column in range(first, last + 1)}
+    raise AssertionError(row)
 
 
 def change(name, key, value, *, of="assumption", held=False, seq=1):

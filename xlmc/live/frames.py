@@ -46,28 +46,27 @@ def frame_of(simulation: Simulation, behind: Simulation | None, names: Collectio
         names: of the forecasts.
         moving: while a handle moves: fewer values to count from.
     """
-    most = _VALUES_MOVING if moving else _VALUES_AT_REST
     figures = {figure.answer.name: figure for figure in figures_of(simulation, names)}
     return {
         "trials": simulation.evaluated,
         "accepted": simulation.accepted,
         "share": share_text(simulation.acceptance),
         "forecasts": {
-            name: _forecast(simulation, figures[name], behind, most) if name in figures else None
+            name: _forecast(simulation, figures[name], behind, moving) if name in figures else None
             for name in names
             if name in simulation.results
         },
     }
 
 
-def _forecast(simulation: Simulation, figure: Figure, behind: Simulation | None, most: int) -> dict[str, Any]:
+def _forecast(simulation: Simulation, figure: Figure, behind: Simulation | None, moving: bool) -> dict[str, Any]:
     name = figure.answer.name
     result = simulation.results[name]
     before = None if behind is None else behind.results.get(name)
     if before is not None and not before.sample.n:
         before = None
     return {
-        **forecast_payload(simulation, figure, most),
+        **forecast_payload(simulation, figure, _VALUES_MOVING if moving else _VALUES_AT_REST, fits=not moving),
         "beside": [
             [label, *_texts(estimate, None if before is None else old)]
             for (label, estimate), (_, old) in zip(

@@ -4,7 +4,8 @@
 const BEHIND = "#6B4F9E";
 
 /** The elements of one forecast; `Panel` of the page of results works on them. */
-function forecastElement({ name, units }, number) {
+function forecastElement({ name, units, marks }, number) {
+  const lines = marks.map(({ label }) => label);
   const about = `chart-${number}`;
   const view = (key, label) => make("label", {},
     make("input", { type: "radio", name: `${about}-view`, value: key, checked: key === "frequency" }), label);
@@ -17,7 +18,11 @@ function forecastElement({ name, units }, number) {
     make("fieldset", { class: "views" }, make("legend", { text: "Chart" }), view("frequency", "Frequency"),
       view("cumulative", "Cumulative"), view("reverse", "Reverse cumulative")),
     make("p", { class: "choices" }, make("label", {}, "Bars ", together),
-      make("label", {}, make("input", { type: "checkbox", class: "percentiles" }), "Mark 5, 50 and 95 %")));
+      ...lines.map((label) => make("label", {}, make("input", { type: "checkbox", class: "line", value: label, checked: true }),
+        label)),
+      make("label", {}, "Mark at ", make("input", { type: "text", class: "percentiles", placeholder: "5, 50, 95", size: 8,
+        autocomplete: "off" }), " %"),
+      make("label", {}, "Fit ", make("select", { class: "fit" }, make("option", { text: "none" })))));
   const ends = make("div", { class: "grabbed" },
     make("div", { class: "boxes" }, box("Lower end", "low", units), box("Upper end", "high", units),
       box("Certainty", "share", "%"), make("button", { type: "button", class: "reset", text: "Central range" })),
@@ -29,7 +34,8 @@ function forecastElement({ name, units }, number) {
     make("h3", {}, named(name)),
     make("p", { class: "moved" }),
     make("div", { class: "figure" },
-      make("div", { class: "drawing" }, views, chart, make("p", { class: "readout" }), ends),
+      make("div", { class: "drawing" }, views, chart, make("p", { class: "readout" }),
+        make("p", { class: "fitted" }), ends),
       make("div", { class: "beside-chart" }, make("table", { class: "beside" },
         make("caption", { text: "Accepted trials" }), make("thead"), make("tbody")),
         make("p", { class: "pictures" }, picture("Save PNG", () => savePng(chart)),
@@ -49,16 +55,38 @@ class LivePanel extends Panel {
     this.find(".together").addEventListener("change", ({ target }) => { this.together = Number(target.value); });
   }
 
+  /** The fitted distributions of a run at rest; there are none while a handle moves. */
+  offerFits() {
+    const choice = this.find(".fit");
+    const { fits } = this.forecast;
+    const wanted = choice.value;
+    this.fit = fits.find(({ name }) => name === wanted) ?? null;
+    if (!fits.length) return;
+    choice.replaceChildren(new Option("none"), ...fits.map(({ name }) => new Option(name)));
+    choice.value = this.fit ? wanted : "none";
+    choice.closest("label").hidden = false;
+    this.find(".fitted").textContent = this.fit ? fittedText(this.fit) : "";
+  }
+
+  listenToFits(choice) {
+    choice.addEventListener("change", () => {
+      this.offerFits();
+      this.draw();
+    });
+    this.offerFits();
+  }
+
   /** Take another run's numbers; `held`: while a handle is held, the axes only grow. */
   update(forecast, held) {
     const before = this.bars;
     this.forecast = forecast;
     this.trials = new Trials(forecast);
-    this.bars = barsOf(forecast);
+    this.own = this.bars = barsOf(forecast);
     this.bins = merged(this.bars, this.together ?? 1);
     this.step = stepOf(this.bins);
     this.decimals = Math.max(0, -Math.round(Math.log10(this.step)));
-    if (this.percentiles.length) this.percentiles = [5, 50, 95].map((percent) => this.percentile(percent));
+    this.percentiles = this.percentiles.map(({ label }) => this.percentile(parseFloat(label)));
+    this.offerFits();
     if (before.whole !== this.bars.whole) this.draw();
     this.reach(held);
     this.chart.setData([this.ends, [0, this.top]]);
@@ -121,11 +149,14 @@ class LivePanel extends Panel {
     const { state, bins, forecast: { behind } } = this;
     const shape = state.view === "frequency" ? bars(bins.edges, bins.counts) : curve(this.trials, this.ends, state.view);
     paint(chart, shape, this.marks(), bins.covered(state.low, state.high));
+    if (this.fit) {
+      trace(chart, fittedLine(this.fit, this.own, this.forecast.trials, bins.numbers ?? 1, state.view), FITTED, []);
+    }
     if (!behind) return;
     const line = state.view === "frequency"
       ? [[behind.edges[0], 0], ...bars(behind.edges, this.heights(behind)), [behind.edges.at(-1), 0]]
       : behind.curve.map(([x, y]) => [x, state.view === "reverse" ? 100 - y : y]);
-    strokeBehind(chart, line);
+    trace(chart, line, BEHIND, []);
   }
 
   toOwnRange() {
@@ -156,20 +187,6 @@ class LivePanel extends Panel {
   legend() {
     return `${super.legend()}${this.forecast.behind ? "    violet line: the state behind" : ""}`;
   }
-}
-
-function strokeBehind(chart, line) {
-  const { ctx } = chart;
-  const { left, top, width, height } = chart.bbox;
-  ctx.save();
-  clip(ctx, left, top, width, height);
-  ctx.beginPath();
-  for (const [x, y] of line) ctx.lineTo(chart.valToPos(x, "x", true), chart.valToPos(y, "y", true));
-  ctx.lineWidth = 1.75 * uPlot.pxRatio;
-  ctx.lineJoin = "round";
-  ctx.strokeStyle = BEHIND;
-  ctx.stroke();
-  ctx.restore();
 }
 
 function savePng(chart) {

@@ -85,15 +85,23 @@ def overlays_of(figures: Sequence[Figure]) -> list[list[int]]:
     return [group for group in by_units.values() if len(group) > 1]
 
 
-def forecast_payload(simulation: Simulation, figure: Figure, most: int) -> dict[str, Any]:
-    """What one forecast's chart is drawn and counted from, with so many values at most."""
+def forecast_payload(simulation: Simulation, figure: Figure, most: int, *, fits: bool = True) -> dict[str, Any]:
+    """What one forecast's chart is drawn and counted from.
+
+    Args:
+        simulation: the finished run.
+        figure: of the forecast.
+        most: how many of its values at most.
+        fits: with fitted distributions, which take some hundredths of a second.
+    """
     answer = figure.answer
+    result = simulation.results[answer.name]
     low, high = answer.low.value, answer.high.value
     marks = [low, high] if answer.threshold is None else [low, high, answer.threshold]
     return {
         "name": answer.name,
         "units": answer.units,
-        **_trials(simulation.results[answer.name], most, marks),
+        **_trials(result, most, marks),
         "range": {
             "share": answer.share,
             "said": percent(answer.share),
@@ -103,7 +111,7 @@ def forecast_payload(simulation: Simulation, figure: Figure, most: int) -> dict[
             "highText": _value_text(answer.high),
         },
         "bins": _bins(figure),
-        "fits": [_fit(each) for each in fitted_curves(simulation.results[answer.name].sample.x, figure.bins)],
+        "fits": [_fit(each) for each in fitted_curves(result.sample.x, figure.bins)] if fits else [],
         "marks": [{"label": label, "value": value, "text": text} for label, value, text in _marks(figure)],
     }
 

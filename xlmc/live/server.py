@@ -40,6 +40,7 @@ _FULL: Final = 4429
 
 _ENTERED: Final = (
     '<!doctype html><html lang="en"><head><meta charset="utf-8"><title>xlmc</title>'
+    '<link rel="icon" href="data:,">'
     '<meta http-equiv="refresh" content="0;url=/"></head><body><p><a href="/">To the window</a></p></body></html>'
 )
 

@@ -71,7 +71,7 @@ def payload(simulation: Simulation, figures: Sequence[Figure], beside: Simulatio
     return {
         "z": t_quantile(math.inf, CONFIDENCE),
         "forecasts": [
-            {**forecast_payload(simulation, figure, most), "second": _second(figure, beside, most)} for figure in figures
+            {**forecast_payload(simulation, each, most), "second": _second(each, beside, most)} for each in figures
         ],
         "overlays": overlays_of(figures),
     }

@@ -114,7 +114,7 @@ def _error_lines(model: Model, errors: BaseErrors) -> Iterator[str]:
 def _show_definitions(definitions: Definitions, model: Model | None) -> None:
     from xlmc.cli.printing import table
     from xlmc.report.summary import percent
-    from xlmc.results.record.in_words import distribution_text, limits_text
+    from xlmc.results.record.in_words import distribution_text, evidence_text, limits_text
 
     table(
         "Assumptions",
@@ -126,12 +126,17 @@ def _show_definitions(definitions: Definitions, model: Model | None) -> None:
         ("Name", "Cell", "Units", "Central range"),
         [(f.name, str(f.cell), f.units, percent(f.central)) for f in definitions.forecasts],
     )
-    if definitions.filters:
-        rows = [(f.name, str(f.cell), limits_text(f), f.because) for f in definitions.filters]
+    if any(f.evidence is None for f in definitions.filters):
+        filters = [f for f in definitions.filters if f.evidence is None]
+        rows = [(f.name, str(f.cell), limits_text(f), f.because) for f in filters]
         table("Filters", ("Name", "Cell", "Keeps", "Because"), rows)
     if definitions.forecast_filters:
         own = [(f.name, str(f.cell), limits_text(f), "; ".join(f.only_for)) for f in definitions.forecast_filters]
         table("Filters of some forecasts only", ("Name", "Cell", "Keeps", "Only for"), own)
+    evidence = definitions.evidence if model is None else model.evidence
+    if evidence:
+        rows = [(each.name, str(each.cell), evidence_text(each), each.source) for each in evidence]
+        table("Evidence", ("Name", "Cell", "Reading", "Source"), rows)
     if definitions.checks:
         table("Checks", ("Name", "Cell", "Because"), [(c.name, str(c.cell), c.because) for c in definitions.checks])
     if definitions.correlations:
@@ -157,11 +162,13 @@ def _show_need(model: Model, workbook: Workbook) -> None:
 
 
 def show_first(run: Simulation) -> None:
-    """Print the checks that fail, then the cells that trials were lost in."""
+    """Print the checks that fail, then evidence that contradicts, then the cells that trials were lost in."""
     from xlmc.results.record.errors_met import lost_sentences
 
     name = run.model.workbook.name
     _show_lines(f"{name}: checks that fail", failing_lines(run))
+    conflict = [] if run.agreement is None or not run.agreement.conflicts else [run.agreement.sentence]
+    _show_lines(f"{name}: evidence that contradicts", [f"{each[0].upper()}{each[1:]}." for each in conflict])
     _show_lines(f"{name}: trials lost to errors", [f"{sentence}." for sentence in lost_sentences(run)])
 
 

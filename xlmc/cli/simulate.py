@@ -22,6 +22,9 @@ __all__ = ["show_run", "simulate"]
 NOT_TO_BE_USED = 1
 INTERRUPTED = 130
 
+_MOST_MOVED = 4
+"""Forecasts of which the terminal shows what evidence moves; the sheet Evidence shows all."""
+
 
 @click.command()
 @click.argument("book", type=click.Path(readable=False, path_type=Path))
@@ -169,10 +172,27 @@ def show_run(run: Simulation) -> None:
     if run.model.forecast_filters:
         of = f"Discarded of {run.accepted:,} accepted trials, for one forecast only"
         table(of, ("Filter", "Only for", "Keeps", "Discarded", "Share"), _discards(run), right=(3, 4))
+    _show_evidence(run)
     check_table(run)
     say(paragraph(ERROR_SENTENCE))
     for notice in run.notices_of_run:
         say(paragraph(f"{notice}."))
+
+
+def _show_evidence(run: Simulation) -> None:
+    """Print whether the evidence agrees, and what each item moves; nothing where none is used."""
+    from xlmc.cli.printing import table
+    from xlmc.report.evidence_tables import ITEM_HEADS, item_rows, move_rows, trials_sentence
+
+    found = run.agreement
+    if found is None:
+        return
+    table("Evidence", ITEM_HEADS, item_rows(found), right=range(2, 7))
+    said = [] if found.sentence in found.remarks else [f"{found.sentence[0].upper()}{found.sentence[1:]}."]
+    say(paragraph(" ".join([*said, trials_sentence(found)])) + "\n")  # remarks come with the other notices
+    names = list(found.found.forecasts)[:_MOST_MOVED]
+    heads = ("Means with", "Effective trials", *names)
+    table("What each item of evidence moves", heads, move_rows(found, names), right=range(1, len(heads)))
 
 
 def _acceptance_sentence(run: Simulation) -> str:

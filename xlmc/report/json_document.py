@@ -17,7 +17,7 @@ from xlmc.report.summary import BaseCase, base_case
 from xlmc.results.record import make_record
 from xlmc.results.record.definition_tables import correlations_met
 from xlmc.results.record.errors_met import errors_met, lost_sentences
-from xlmc.results.record.in_words import cutoffs_text, discards_of, limits_text, parameters_text, status
+from xlmc.results.record.in_words import cutoffs_text, discards_of, evidence_text, limits_text, parameters_text, status
 from xlmc.results.statements import certainties, pairs_of, statements
 from xlmc.statistics import Estimate, proportion
 from xlmc.studies.sensitivity import sensitivities
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from xlmc.definitions.definitions import Assumption, Filter
     from xlmc.results.record.definition_tables import CorrelationMet
     from xlmc.results.statements import Pair
+    from xlmc.run.agreement import Agreement, Answer, ItemAgreement
     from xlmc.run.checking import CheckResult
     from xlmc.run.forecast_result import ForecastResult
     from xlmc.run.simulation import Simulation
@@ -110,6 +111,7 @@ def document(simulation: Simulation, *, command: str | None = None) -> Json:
             }
             for each in discards_of(simulation)
         ],
+        "evidence": None if simulation.agreement is None else _evidence(simulation.agreement),
         "assumptions": [_assumption(simulation, each) for each in simulation.model.assumptions],
         "statements": [_as_json(each) for each in statements(simulation)],
         "pairs": [_pair(each) for each in pairs_of(simulation)],
@@ -211,6 +213,53 @@ def _filter(simulation: Simulation, index: int, each: Filter) -> Json:
         "share_only": estimate_json(proportion(only, simulation.trials)),
         "also_by": {other.name: count for other, count in together if other is not each},
         "errors": sum(tally.errors[index].values()),
+    }
+
+
+def _evidence(found: Agreement) -> Json:
+    return {
+        "verdict": found.verdict.value,
+        "sentence": found.sentence,
+        "remarks": found.remarks,
+        "trials": found.trials,
+        "past_filters": found.past,
+        "effective_trials": found.effective,
+        "kept_together": estimate_json(found.together),
+        "ratio": estimate_json(found.ratio),
+        "z_of_best_trial": found.best_z,
+        "items": [_item(each) for each in found.items],
+        "pressed": [_as_json(each) for each in found.pressed],
+        "answers": [_evidence_answer(each) for each in found.answers],
+    }
+
+
+def _item(each: ItemAgreement) -> Json:
+    return {
+        "name": each.name,
+        "cell": str(each.evidence.cell),
+        "reading": each.evidence.reading,
+        "error": evidence_text(each.evidence),
+        "source": each.evidence.source,
+        "kept_alone": estimate_json(each.alone),
+        "kept_given_others": estimate_json(each.given_others),
+        "ratio": estimate_json(each.ratio),
+        "chance": number_json(each.chance),
+        "z_of_best_trial": each.best_z,
+        "mean_z": each.mean_z,
+        "verdict": each.verdict.value,
+    }
+
+
+def _evidence_answer(each: Answer) -> Json:
+    return {
+        "forecast": each.forecast,
+        "with": each.used,
+        "items": list(each.items),
+        "effective_trials": each.effective,
+        "mean": estimate_json(each.mean),
+        "standard_deviation": estimate_json(each.standard_deviation),
+        "low": estimate_json(each.low),
+        "high": estimate_json(each.high),
     }
 
 

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from xlmc.address import Cell
 from xlmc.definitions.definitions import Assumption, Definitions, Forecast, name_key
+from xlmc.definitions.evidence import Evidence
 from xlmc.distributions.base import Member
 from xlmc.errors import Notice, SimulationError
 from xlmc.evaluation.engine import Evaluator, Program, Target
@@ -255,6 +256,13 @@ class Model:
         """The cells of the live assumptions whose range has more than one value, as far as it is known."""
         still = {key for key, (low, high) in self._ends.items() if low >= high}
         return {a.cell for a in self.live if name_key(a.name) not in still}
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        """The rows of `xlmc_evidence`, with numbers where they are used; those that are not used among them."""
+        used = {each.name: each.evidence for each in self.filters if each.evidence is not None}
+        found = (each if not each.used else used.get(each.name) for each in self.definitions.evidence)
+        return tuple(each for each in found if each is not None)
 
     @property
     def drawn_keys(self) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from xlmc import statistics
 from xlmc.columns import parts
 from xlmc.definitions.definitions import Settings, name_key
 from xlmc.errors import Notice, SimulationError
+from xlmc.run.agreement import Agreement, agreement
 from xlmc.run.blocks import FilterTally
 from xlmc.run.cell_errors import Root, error_roots
 from xlmc.run.checking import CheckResult, check_results
@@ -206,6 +207,7 @@ class Simulation:
         if not self.plan.replicates and 0 < self.accepted < FEW:
             found.append(Notice(f"only {_trials(self.accepted)} accepted. {_OF_FEW}"))
         samples = {name: result.sample for name, result in self.results.items()}
+        found += [Notice(f"{each[0].upper()}{each[1:]}") for each in self.agreement.remarks] if self.agreement else []
         return (*found, *tail_notices(samples, METHODS[self.plan.method].name))
 
     @property
@@ -222,6 +224,8 @@ class Simulation:
             share = self.error_trials / self.trials
             found.append(f"{self.error_trials:,} trials ({share:.2%}) were lost to errors in cells")
         failing = [warning for check in self.checks for warning in check.warnings]
+        if self.agreement is not None and self.agreement.conflicts:
+            failing.append(self.agreement.sentence)
         rare = () if self.rare is None else self.rare.warnings
         missing = self.shown_results.warning
         refused = [str(each).rstrip(".") for each in self.model.definitions.refused]
@@ -244,6 +248,11 @@ class Simulation:
     def checks(self) -> tuple[CheckResult, ...]:
         """The workbook's checks at the base case and in the accepted trials; evaluated when they are first asked."""
         return check_results(self.model, self.inputs, self.accepted)
+
+    @cached_property
+    def agreement(self) -> Agreement | None:
+        """Whether the evidence agrees with the model and with itself; None where none is used."""
+        return agreement(self.model, self.settings.seed, self.evaluated)
 
     @cached_property
     def _lost_digits(self) -> list[str]:

@@ -12,6 +12,8 @@ from xlmc.report.document.equations import equations_of
 from xlmc.report.document.glossary import GLOSSARY
 from xlmc.report.document.parts import Block, Bullets, Code, Content, Drawing, Figure, Paragraph, Table
 from xlmc.report.document.scene_drawing import scene_drawing
+from xlmc.report.evidence_tables import ITEM_HEADS, MOVES_MEANING, item_rows, move_rows, trials_sentence
+from xlmc.report.evidence_tables import MEANING as MEANING_OF_EVIDENCE
 from xlmc.report.filter_effect import filter_effect_of
 from xlmc.report.histogram import figures_of
 from xlmc.report.sheets.results_sheet import base_sentences, opening_sentences, range_sentences
@@ -30,6 +32,7 @@ from xlmc.results.record.in_words import (
     REJECTED_SENTENCE,
     discards_of,
     distribution_text,
+    evidence_text,
     limits_text,
     sampling_sentence,
     status,
@@ -219,6 +222,32 @@ def _rejections(material: Material) -> Iterator[Block]:
         yield Paragraph(REJECTED_SENTENCE, "small")
 
 
+def _evidence(material: Material) -> Iterator[Block]:
+    found = material.simulation.agreement
+    if found is None:
+        return
+    look = "warning" if found.conflicts else "text"
+    yield Paragraph(f"{found.sentence[0].upper()}{found.sentence[1:]}.", look)
+    remarks = tuple(f"{each[0].upper()}{each[1:]}." for each in found.remarks if each != found.sentence)
+    if remarks:
+        yield Bullets(remarks)
+    widths = (1.7, 2.2, 1.3, 1.3, 1.3, 1.1, 0.7, 1.3)
+    yield material.table(
+        "The evidence, each item alone and with the others.", ITEM_HEADS, item_rows(found), widths, range(2, 7)
+    )
+    yield Paragraph(f"{trials_sentence(found)} {MEANING_OF_EVIDENCE}", "small")
+    names = [each for each in found.found.forecasts if each in material.forecasts]
+    for first in range(0, len(names), _FEW):
+        shown = names[first : first + _FEW]
+        heads = ("With", "Effective trials", *shown)
+        caption = "What each item of evidence moves: the means of the forecasts."
+        wide = (1.8, 1.0, *[1.5] * len(shown))
+        yield material.table(caption, heads, move_rows(found, shown), wide, range(1, len(heads)))
+    yield Paragraph(MOVES_MEANING, "small")
+    lines = [(each.name, evidence_text(each), each.source or _NONE) for each in material.simulation.model.evidence]
+    yield material.table("The readings and their sources.", ("Evidence", "Reading", "Source"), lines, (2, 3, 4))
+
+
 def _assumptions(material: Material) -> Iterator[Block]:
     simulation = material.simulation
     yield Paragraph(
@@ -380,6 +409,7 @@ SECTIONS: Final[dict[str, tuple[str, Callable[[Material], Iterator[Block]]]]] = 
     "scene": ("The scene", _scene),
     "forecasts": ("The forecasts", _forecasts),
     "filters": ("Filters: what a possible crash must meet", _filters),
+    "evidence": ("Evidence, and whether it agrees", _evidence),
     "assumptions": ("Assumptions", _assumptions),
     "sensitivity": ("What the answers depend on", _sensitivity),
     "checks": ("Physics checks", _checks),

@@ -22,7 +22,17 @@ from xlmc.report.page.forecast_charts import charts, overlays
 from xlmc.report.page.payload import payload_text
 from xlmc.report.page.second_run import second_run
 from xlmc.report.page.sensitivity_sections import dependence, limits
-from xlmc.report.page.sheet_sections import assumptions, certainty, checks, filters, notices, pairs, record, statistics
+from xlmc.report.page.sheet_sections import (
+    assumptions,
+    certainty,
+    checks,
+    evidence,
+    filters,
+    notices,
+    pairs,
+    record,
+    statistics,
+)
 from xlmc.results.record import make_record
 from xlmc.studies.sensitivity import sensitivities
 from xlmc.workbook.seal import sealed_text
@@ -63,6 +73,7 @@ _LINKS = {
     "statistics": "Statistics",
     "sensitivity": "Sensitivity",
     "checks": "Checks",
+    "evidence": "Evidence",
     "filters": "Filters",
     "limits": "Filter limits",
     "assumptions": "Assumptions",
@@ -136,6 +147,7 @@ def page_text(simulation: Simulation, *, beside: Simulation | None = None, comma
         "statistics": statistics(simulation),
         "sensitivity": dependence(found),
         "checks": checks(simulation),
+        "evidence": evidence(simulation),
         "filters": filters(simulation),
         "limits": limits(found),
         "assumptions": assumptions(simulation),

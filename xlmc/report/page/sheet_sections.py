@@ -13,6 +13,7 @@ from xlmc.report.sheets.accounting import write_accounting, write_checks
 from xlmc.report.sheets.assumptions_sheet import MEANING, MOVED, NARROWED, STRATIFIED, write_correlations
 from xlmc.report.sheets.cells import NONE
 from xlmc.report.sheets.certainty_sheet import write_ranges
+from xlmc.report.sheets.evidence_sheet import write_agreement
 from xlmc.report.sheets.pairs_sheet import pair_sentences, write_pair_table
 from xlmc.report.sheets.results_sheet import LAST, write_counts
 from xlmc.report.sheets.statistics_sheet import write_forecast
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from xlmc.definitions.definitions import Assumption
     from xlmc.run.simulation import Simulation
 
-__all__ = ["assumptions", "certainty", "checks", "filters", "notices", "pairs", "record", "statistics"]
+__all__ = ["assumptions", "certainty", "checks", "evidence", "filters", "notices", "pairs", "record", "statistics"]
 
 _HEADS = ("Assumption", "Trials", "Mean", "Standard deviation", *(f"{each:g} %" for each in PERCENTS))
 
@@ -80,6 +81,15 @@ def checks(simulation: Simulation) -> Html:
     flow = Flow()
     write_checks(flow, simulation, LAST)
     return element("section", element("h2", "Checks"), flow.html, id="checks")
+
+
+def evidence(simulation: Simulation) -> Html:
+    """Whether the evidence agrees, and what each item moves; nothing where none is used."""
+    if simulation.agreement is None:
+        return EMPTY
+    flow = Flow()
+    write_agreement(flow, simulation)
+    return element("section", element("h2", "Evidence"), flow.html, id="evidence")
 
 
 def filters(simulation: Simulation) -> Html:

@@ -18,6 +18,7 @@ from xlmc.report.sheets import (
     bins_sheet,
     certainty_sheet,
     charts_sheet,
+    evidence_sheet,
     limits_sheet,
     pairs_sheet,
     record_sheet,
@@ -138,6 +139,12 @@ def _record(page: Page, run: Writing) -> None:
 
 SHEETS: Final[tuple[ResultSheet, ...]] = (
     ResultSheet("Results", lambda page, run: results_sheet.write_results(page, run.simulation), results_sheet.WIDTHS),
+    ResultSheet(
+        "Evidence",
+        lambda page, run: evidence_sheet.write_evidence(page, run.simulation),
+        evidence_sheet.WIDTHS,
+        wanted=lambda run: run.simulation.agreement is not None,
+    ),
     ResultSheet("Charts", _charts, charts_sheet.WIDTHS, after=("Bins",)),
     ResultSheet(
         "Statistics", lambda page, run: statistics_sheet.write_statistics(page, run.simulation), statistics_sheet.WIDTHS

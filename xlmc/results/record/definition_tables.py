@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING
 
 from xlmc.address import Cell
 from xlmc.definitions.definitions import name_key
-from xlmc.results.record.in_words import cutoffs_text, discards_of, limits_text, notes_text, parameters_text, status
+from xlmc.results.record.in_words import (
+    cutoffs_text,
+    discards_of,
+    evidence_text,
+    limits_text,
+    notes_text,
+    parameters_text,
+    status,
+)
 from xlmc.results.record.record_parts import RecordTable, Section, Value
 from xlmc.run.correlating import CHANGED, drawn_correlation
 from xlmc.statistics import Estimate, rank_correlation
@@ -26,6 +34,7 @@ __all__ = [
     "check_section",
     "correlation_section",
     "correlations_met",
+    "evidence_section",
     "filter_section",
     "forecast_filter_section",
     "forecast_section",
@@ -72,6 +81,16 @@ _CHECK = (
     ("tried", "Trials"),
     ("failed", "Failing"),
     ("because", "Because"),
+    ("notes", "Notes"),
+)
+_EVIDENCE = (
+    ("name", "Evidence"),
+    ("cell", "Cell"),
+    ("reading", "Reading and error"),
+    ("source", "Source"),
+    ("kept", "Share kept alone"),
+    ("chance", "Chance of such a reading"),
+    ("verdict", "Verdict"),
     ("notes", "Notes"),
 )
 _ASSUMPTION = (
@@ -158,6 +177,20 @@ def forecast_filter_section(simulation: Simulation) -> Section:
         for each in discards_of(simulation)
     )
     return Section("forecast_filters", "Filters of some forecasts only", table=RecordTable(_FORECAST_FILTER, rows))
+
+
+def evidence_section(simulation: Simulation) -> Section:
+    """Every row of `xlmc_evidence`, and what was found of those that are used."""
+    found = {} if simulation.agreement is None else {each.name: each for each in simulation.agreement.items}
+    rows = []
+    for each in simulation.model.evidence:
+        judged = found.get(each.name)
+        told: tuple[Value, ...] = (None, None, "not used")
+        if judged is not None:
+            told = plain(judged.alone.value), plain(judged.chance), judged.verdict.value
+        said = (each.name, str(each.cell), evidence_text(each), each.source)
+        rows.append((*said, *told, notes_text(each.notes)))
+    return Section("evidence", "Evidence", table=RecordTable(_EVIDENCE, tuple(rows)))
 
 
 def check_section(simulation: Simulation) -> Section:

@@ -1,0 +1,112 @@
+"""What a person sees of evidence: on the terminal, the sheets, the page, in JSON, the report and the record."""
+
+from __future__ import annotations
+
+import json
+
+import jsonschema
+import openpyxl
+import pytest
+from openpyxl.worksheet.table import Table
+
+from xlmc.report.json_document import SCHEMA
+
+HEADINGS = ["Name", "Cell", "Reading", "Error", "±", "Std dev", "Source", "Use"]
+EDR = ["EDR", "=Inputs!F1", 2, "Normal", None, 0.5, "CDR report, p. 4"]
+VIDEO = ["video", "=Inputs!F1", 2.4, None, 0.5, None, "camera 3"]
+FAR = ["video", "=Inputs!F1", -2.4, None, 0.3, None, "camera 3"]
+OFF = ["damage", "=Inputs!F1", 9, "Normal", None, 0.5, "crush", "off"]
+
+
+@pytest.fixture
+def book(tmp_path):
+    def make(*items):
+        made = openpyxl.Workbook()
+        sheet = made.active
+        sheet.title = "Inputs"
+        for row in (["Name", "Value", "Low", "High", "Source"], ["a", 1, -1, 3, "tape"], ["b", 0, -2, 2, "tape"]):
+            sheet.append(row)
+        sheet["F1"] = "=B2+B3"
+        sheet.add_table(Table(displayName="xlmc_assumptions", ref="A1:E3"))
+        answers = made.create_sheet("Answers")
+        answers.append(["Name", "Cell", "Units"])
+        answers.append(["Speed", "=Inputs!F1", "mph"])
+        answers.add_table(Table(displayName="xlmc_forecasts", ref="A1:C2"))
+        facts = made.create_sheet("Facts")
+        for row in (HEADINGS, *items):
+            facts.append(row)
+        facts.add_table(Table(displayName="xlmc_evidence", ref=f"A1:H{len(items) + 1}"))
+        made.save(tmp_path / "book.xlsx")
+        return tmp_path / "book.xlsx"
+
+    return make
+
+
+def words(path):
+    sheet = openpyxl.load_workbook(path)["Evidence"]
+    return " ".join(str(cell.value) for row in sheet for cell in row if cell.value is not None)
+
+
+def test_evidence_that_agrees_is_shown_everywhere_with_what_it_moves(xlmc, book, tmp_path):
+    page, found, report, kept = (tmp_path / f"book{ending}" for ending in (".html", ".json", ".docx", ".xlmcrun"))
+    outputs = ("--html", page, "--json", found, "--docx", report, "--save-run", kept)
+    outcome = xlmc("simulate", book(EDR, VIDEO, OFF), "-n", 20_000, *outputs)
+    assert outcome.code == 0, outcome.err
+    out = " ".join(outcome.out.split())
+    assert "note: Facts!A4: Evidence that is not used, because Use is off: 'damage'" in outcome.err
+    assert "The items corroborate each other" in out
+    assert "EDR alone, without video" in out
+    data = json.loads(found.read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(data)
+    evidence = data["evidence"]
+    assert evidence["verdict"] == "corroborates"
+    assert [item["reading"] for item in evidence["items"]] == [2, 2.4]
+    assert [answer["with"] for answer in evidence["answers"]][:2] == ["no evidence", "all evidence"]
+    assert [row["verdict"] for row in data["record"]["evidence"]["rows"]] == [
+        "corroborates",
+        "corroborates",
+        "not used",
+    ]
+    assert all(each["name"] in ("a", "b") for each in data["assumptions"])
+    told = words(tmp_path / "book-results.xlsx")
+    for said in (
+        "The items corroborate each other",
+        "What each item moves",
+        "CDR report, p. 4",
+        "not used: Use is off",
+    ):
+        assert said in told
+        assert said in page.read_text(encoding="utf-8")
+    assert "evidence\x1f" not in page.read_text(encoding="utf-8") + found.read_text(encoding="utf-8")
+    docx = pytest.importorskip("docx")
+    paragraphs = [each.text for each in docx.Document(report).paragraphs]
+    assert "Evidence, and whether it agrees" in paragraphs
+    for repeated in (tmp_path / "book-results.xlsx", kept):
+        assert "identical" in xlmc("replay", repeated).out
+
+
+def test_evidence_that_contradicts_stands_first_and_is_no_success(xlmc, book, tmp_path):
+    outcome = xlmc("simulate", book(EDR, FAR), "-n", 20_000, "--until-accepted", 100, "--rare", "never", "-n", 40_000)
+    assert outcome.code == 1
+    first = " ".join(outcome.out.partition("accepted trials")[0].split())
+    assert first.startswith(
+        "book.xlsx: evidence that contradicts The evidence is inconsistent: 'video' is out of reach"
+    )
+    assert "warning: the evidence is inconsistent" in outcome.err
+    assert "Do not use these results as they stand: the evidence is inconsistent" in " ".join(
+        str(cell.value) for cell in openpyxl.load_workbook(tmp_path / "book-results.xlsx")["Results"]["A"]
+    )
+
+
+def test_a_book_whose_evidence_is_off_has_no_sheet_of_it_and_check_lists_its_rows(xlmc, book, tmp_path):
+    path = book(OFF)
+    assert xlmc("simulate", path, "-n", 2_000).code == 0
+    assert "Evidence" not in openpyxl.load_workbook(tmp_path / "book-results.xlsx").sheetnames
+    assert "not used: Use is off" in " ".join(xlmc("check", path).out.split())
+    assert "reads 2, normal (Std dev 0.5)" in " ".join(xlmc("check", book(EDR)).out.split())
+
+
+def test_methods_that_draw_no_trials_say_that_they_cannot_use_a_normal_error(xlmc, book):
+    outcome = xlmc("methods", book(EDR))
+    assert outcome.code == 2
+    assert "cannot use evidence with a normal or lognormal error: 'EDR'" in outcome.err

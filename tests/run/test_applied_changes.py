@@ -237,7 +237,6 @@ def test_a_draw_in_a_cell(tmp_path, subtests):
         ([Limits(TANGENT, {"at_most": -1})], f"{TANGENT}: At least (0) and At most (-1) contradict each other"),
         ([Held(FRICTION, 0.7), Range(FRICTION, 0.6, 0.7)], f"{FRICTION!r} is frozen"),
         ([Band(FRICTION, 10, 10)], "a band from P10 to P10 holds nothing"),
-        (typed(D17=0.7), f"Inputs!D17 is the cell of the assumption {FRICTION!r}"),
         ([Typed(parse_address("Input!D28"), 1.0)], "the workbook has no sheet 'Input'"),
         ([Limits(TANGENT, {"at_least": None, "at_most": None})], "has no limit, and its cell is"),
     ],

@@ -8,6 +8,7 @@ from typing import Final
 
 from xlmc.address import Area, Cell
 from xlmc.definitions.evidence import Evidence
+from xlmc.definitions.scenarios import Scenario
 from xlmc.definitions.stopping import NO_GOAL, Stopping
 from xlmc.distributions import FAMILIES, Family
 from xlmc.errors import DefinitionError, FormulaError, Notice
@@ -229,3 +230,4 @@ class Definitions:
     evidence: tuple[Evidence, ...] = ()
     refused: tuple[DefinitionError, ...] = ()
     forecast_filters: tuple[Filter, ...] = ()
+    scenarios: tuple[Scenario, ...] = ()

@@ -28,6 +28,7 @@ from xlmc.definitions.tables.evidence_rows import as_filter, read_evidence
 from xlmc.definitions.tables.filters import read_checks, read_filters
 from xlmc.definitions.tables.forecasts import read_forecasts
 from xlmc.definitions.tables.identity import Claims
+from xlmc.definitions.tables.scenario_rows import read_scenarios
 from xlmc.definitions.tables.settings import read_settings
 from xlmc.definitions.tables.table_rows import DefinitionTable, definition_tables, holds_rows
 from xlmc.definitions.unavailable import (
@@ -101,6 +102,7 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
         _say_how_to_mark(workbook, findings)
     elif not (forecasts or refused):
         _refuse_none(workbook, "forecast", tables["xlmc_forecasts"], findings)
+    scenarios = read_scenarios(workbook, tables, assumptions, filters, findings)
     return Definitions(
         assumptions=assumptions,
         forecasts=forecasts,
@@ -116,6 +118,7 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
         evidence=evidence,
         refused=refused,
         forecast_filters=tuple(each for each in own if each.only_for),
+        scenarios=scenarios,
     )
 
 

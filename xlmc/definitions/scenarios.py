@@ -75,7 +75,7 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Typed:
-    """Something else is typed into a cell, which may hold anything but the value of an assumption."""
+    """Something else is typed into a cell; into that of a drawn assumption, another base value."""
 
     cell: Cell
     value: CellValue

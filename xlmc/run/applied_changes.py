@@ -93,11 +93,7 @@ def changed_cells(model: Model, definitions: Definitions) -> tuple[dict[Cell, Ce
 
 
 def _refuse_cell(model: Model, change: Typed) -> None:
-    """An assumption's cell is drawn, whatever is typed into it; and a sheet must be there."""
-    own = next((a for a in model.assumptions if a.cell == change.cell), None)
-    if own is not None:
-        message = f"{change.cell} is the cell of the assumption {own.name!r}, which is drawn"
-        raise DefinitionError(message, where=change.where, hint=f"change {own.name!r} instead: hold it at a value")
+    """Refuse a cell of a sheet that is not there."""
     if change.cell.sheet not in model.workbook.sheets:
         message = f"the workbook has no sheet {change.cell.sheet!r}"
         raise DefinitionError(message, where=change.where, hint=did_you_mean(change.cell.sheet, model.workbook.sheets))

@@ -32,6 +32,7 @@ KINDS = (
     "xlmc_evidence",
     "xlmc_checks",
     "xlmc_correlations",
+    "xlmc_scenarios",
     "xlmc_settings",
 )
 """What the names of the tables start with; a copied sheet's `xlmc_assumptions3` counts too."""

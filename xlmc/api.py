@@ -15,7 +15,9 @@ from xlmc.run import loading, model, simulation
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from xlmc.definitions.scenarios import Scenario
     from xlmc.run.simulate import OnProgress
+    from xlmc.studies.scenario_answers import ScenarioAnswers
 
 __all__ = ["Model", "Simulation", "load", "open_run"]
 
@@ -24,6 +26,17 @@ class Simulation(simulation.Simulation):
     """A finished run that can write files and draw figures: `xlmc.run.simulation.Simulation` says what it holds."""
 
     model: Model
+
+    @property
+    def scenarios(self) -> tuple[ScenarioAnswers, ...]:
+        """The answers of the workbook as it is, then of each scenario; none unless `simulate(scenarios=True)` ran them.
+
+        Each has a `name`, its `run`, the `acceptance`, and for each forecast `mean`, `low`, `high`, `above` and their
+        `differences` to the workbook as it is.
+        """
+        from xlmc.studies.scenario_answers import scenario_answers
+
+        return scenario_answers(self)
 
     @classmethod
     def of(cls, run: simulation.Simulation) -> Simulation:
@@ -152,6 +165,18 @@ class Model(model.Model):
         found.__dict__.update(known.__dict__)
         return found
 
+    def scenario(self, scenario: str | Scenario) -> Model:
+        """The model of the workbook in a scenario: one of the table `xlmc_scenarios` by its name, or one made here.
+
+        Raises:
+            SimulationError: there is no scenario of this name.
+            DefinitionError: the scenario is not possible.
+            FormulaError: a cell cannot be computed in it.
+        """
+        from xlmc.studies.scenario_answers import model_of
+
+        return Model.of(model_of(self, scenario))
+
     def simulate(
         self,
         trials: int | None = None,
@@ -167,6 +192,7 @@ class Model(model.Model):
         time_limit: str | float | None = None,
         engine: str | None = None,
         sampling: str | None = None,
+        scenarios: bool = False,
         jobs: int = 1,
         scheduler: str | None = None,
         workers: int | None = None,
@@ -197,6 +223,8 @@ class Model(model.Model):
             sampling: `mc`, Monte Carlo; `lhs`, Latin hypercube; `lhs500`, the same in blocks of 500; or `sobol`,
                 scrambled Sobol. All but the first run whole replicates (independent parts of the run), and so
                 sometimes a few more trials.
+            scenarios: run the scenarios of the table `xlmc_scenarios`, too, when `scenarios` of the run is asked for,
+                or the first of its files is written.
             jobs: threads or processes.
             scheduler: `threads`; `processes`; `local`, a Dask cluster of this machine; or the address of a Dask
                 scheduler. By default processes for a long run with several jobs, else threads.
@@ -213,6 +241,10 @@ class Model(model.Model):
         """
         from xlmc.run.simulate import simulate
 
+        if scenarios:
+            from xlmc.studies.scenario_answers import models_of
+
+            models_of(self)  # a scenario that is not possible is refused before the run
         run = simulate(
             self,
             trials=trials,
@@ -230,6 +262,7 @@ class Model(model.Model):
             ),
             engine=engine,
             sampling=sampling,
+            scenarios=scenarios,
             jobs=jobs,
             scheduler=scheduler,
             workers=workers,

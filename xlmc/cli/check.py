@@ -42,6 +42,7 @@ def check(book: Path) -> None:
     from xlmc.run.labels import calculate_labels
     from xlmc.run.loading import filter_faults
     from xlmc.run.model import Model
+    from xlmc.studies.scenario_answers import models_of
     from xlmc.workbook.reader import read_workbook
 
     workbook = calculate_labels(read_workbook(book))
@@ -52,6 +53,8 @@ def check(book: Path) -> None:
         try:
             model = Model(workbook, definitions, book)
             problems += filter_faults(model)
+            if definitions.scenarios and not problems:
+                models_of(model)
         except XlmcError as error:
             problems.append(error)
     faults = [] if model is None else _show_base_case(model)
@@ -114,7 +117,7 @@ def _error_lines(model: Model, errors: BaseErrors) -> Iterator[str]:
 def _show_definitions(definitions: Definitions, model: Model | None) -> None:
     from xlmc.cli.printing import table
     from xlmc.report.summary import percent
-    from xlmc.results.record.in_words import distribution_text, evidence_text, limits_text
+    from xlmc.results.record.in_words import changes_text, distribution_text, evidence_text, limits_text
 
     table(
         "Assumptions",
@@ -142,6 +145,9 @@ def _show_definitions(definitions: Definitions, model: Model | None) -> None:
     if definitions.correlations:
         pairs = [(c.first, c.second, f"{c.value:g}", _drawn_with(model, c)) for c in definitions.correlations]
         table("Rank correlations", ("First", "Second", "Asked for", "Drawn with"), pairs, right=(2, 3))
+    if definitions.scenarios:
+        changes = [(each.name, changes_text(each), each.note) for each in definitions.scenarios]
+        table("Scenarios", ("Name", "Changes", "Note"), changes)
 
 
 def _drawn_with(model: Model | None, correlation: Correlation) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from xlmc.api import Simulation
     from xlmc.errors import Notice
     from xlmc.run.model import Model
+    from xlmc.studies.scenario_answers import ScenarioAnswers
 
 __all__ = ["show_run", "simulate"]
 
@@ -58,6 +60,11 @@ _MOST_MOVED = 4
     help="Save the run, for xlmc report and xlmc replay.",
 )
 @output_options
+@click.option(
+    "--scenarios",
+    is_flag=True,
+    help="Also run the scenarios of the table xlmc_scenarios, and compare their answers with the book's own.",
+)
 @click.option("--quiet", is_flag=True, help="Print no progress bar and no notes.")
 def simulate(
     book: Path,
@@ -77,14 +84,16 @@ def simulate(
     overwrite: bool,
     reports: Reports,
     wishes: Wishes,
+    scenarios: bool,
     quiet: bool,
     **length: Any,
 ) -> None:
     """Run BOOK, print the summary, and write result sheets and charts into a copy of it."""
     from xlmc.api import load
     from xlmc.cli.printing import notices, warnings
-    from xlmc.cli.progress_bar import progress_bar
+    from xlmc.cli.progress_bar import progress_bar, step_line
     from xlmc.run.simulation import KEPT_INPUTS
+    from xlmc.studies.scenario_answers import models_of, scenario_answers
 
     if in_place and output is not None:
         raise click.UsageError("--in-place and --output cannot both be given.")
@@ -108,6 +117,8 @@ def simulate(
     outputs = asked.check(book) if os.path.exists(book) else asked  # `load` says that there is no book
     model = load(book)
     outputs.check_against(model)
+    if scenarios:
+        models_of(model)  # what is wrong with one is said before anything else
     if not quiet:
         notices([*model.notices, *_hints(model, trials, engine)])
     with progress_bar(quiet) as progress:
@@ -117,6 +128,7 @@ def simulate(
             **length,
             engine=engine,
             sampling=sampling,
+            scenarios=scenarios,
             jobs=jobs,
             scheduler=scheduler,
             workers=workers,
@@ -125,11 +137,14 @@ def simulate(
             progress=progress,
             tell=None if quiet else lambda sentence: say(sentence, err=True),
         )
+    with step_line(quiet) as told:
+        answers = scenario_answers(run, jobs=jobs, told=told)
     written, lines = outputs.write(run)  # before the answer is printed, so that no terminal can cost a run
     show_run(run)
     for line in lines:
         say(line)
-    warnings(run.warnings)
+    of_scenarios = _of_scenarios(answers)
+    warnings([*run.warnings, *of_scenarios])
     if run.stopped.interrupted:
         kept = "; what was accepted of them was written" if written else ""
         say(f"xlmc: interrupted after {run.trials:,} trials{kept}.", err=True)
@@ -137,8 +152,14 @@ def simulate(
         raise click.exceptions.Exit(NOT_WRITTEN)
     if run.stopped.interrupted:
         raise click.exceptions.Exit(INTERRUPTED)
-    if run.warnings:
+    if run.warnings or of_scenarios:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
+
+
+def _of_scenarios(answers: Sequence[ScenarioAnswers]) -> list[str]:
+    """Why the answers of scenarios must not be used, but for what is said of the workbook itself already."""
+    own = answers[0].warnings if answers else []
+    return [f"scenario {each.name!r}: {said}" for each in answers[1:] for said in each.warnings if said not in own]
 
 
 def _hints(model: Model, trials: int | None, engine: str | None) -> list[Notice]:
@@ -156,6 +177,7 @@ def show_run(run: Simulation) -> None:
     """Print the paper's table, the acceptance and what each filter rejected."""
     from xlmc.cli.check import check_table, show_first
     from xlmc.cli.printing import table
+    from xlmc.cli.scenario_tables import show_scenarios
     from xlmc.report.summary import ERROR_SENTENCE, summarise, summary_text
     from xlmc.results.record.in_words import sampling_sentence
     from xlmc.run.stopping.stopped import ALL_TRIALS
@@ -174,6 +196,7 @@ def show_run(run: Simulation) -> None:
         table(of, ("Filter", "Only for", "Keeps", "Discarded", "Share"), _discards(run), right=(3, 4))
     _show_evidence(run)
     check_table(run)
+    show_scenarios(run)
     say(paragraph(ERROR_SENTENCE))
     for notice in run.notices_of_run:
         say(paragraph(f"{notice}."))

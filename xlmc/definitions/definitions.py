@@ -193,6 +193,7 @@ class Settings:
         trials: how many; at most, where `stopping` has a goal or a time.
         stopping: what else ends the run.
         lognorm: whose `RiskLognorm` is meant, `@RISK` (also where it is empty) or `XLRisk`.
+        scenarios: whether the workbook's scenarios are run, too, and compared with it.
     """
 
     trials: int = 200_000
@@ -201,6 +202,7 @@ class Settings:
     engine: str = "numpy"
     stopping: Stopping = NO_GOAL
     lognorm: str = ""
+    scenarios: bool = False
 
 
 @dataclass(frozen=True, slots=True)

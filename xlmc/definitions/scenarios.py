@@ -75,11 +75,16 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Typed:
-    """Something else is typed into a cell; into that of a drawn assumption, another base value."""
+    """Something else is typed into a cell; into that of a drawn assumption, another base value.
+
+    Attributes:
+        named: what a person calls the cell; empty for its address.
+    """
 
     cell: Cell
     value: CellValue
     where: Cell | None = None
+    named: str = ""
 
 
 Change = Held | Drawn | Range | Band | Numbers | Limits | Typed

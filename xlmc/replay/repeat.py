@@ -268,6 +268,7 @@ def _repeat(model: Model, record: Record, settings: Settings, jobs: int, progres
         stopping=stopping(until_accepted=goal if waited else None, rare=settings.stopping.rare),
         engine=settings.engine,
         sampling=settings.sampling,
+        scenarios=settings.scenarios,
         jobs=jobs,
         keep_inputs=kept if kept < accepted else max(kept, KEPT_INPUTS),
         progress=progress,

@@ -17,9 +17,18 @@ from xlmc.report.summary import BaseCase, base_case
 from xlmc.results.record import make_record
 from xlmc.results.record.definition_tables import correlations_met
 from xlmc.results.record.errors_met import errors_met, lost_sentences
-from xlmc.results.record.in_words import cutoffs_text, discards_of, evidence_text, limits_text, parameters_text, status
+from xlmc.results.record.in_words import (
+    changes_text,
+    cutoffs_text,
+    discards_of,
+    evidence_text,
+    limits_text,
+    parameters_text,
+    status,
+)
 from xlmc.results.statements import certainties, pairs_of, statements
 from xlmc.statistics import Estimate, proportion
+from xlmc.studies.scenario_answers import ForecastAnswer, ScenarioAnswers, scenario_answers
 from xlmc.studies.sensitivity import sensitivities
 from xlmc.workbook.seal import sealed_text
 from xlmc.workbook.target import Target
@@ -89,7 +98,7 @@ def document(simulation: Simulation, *, command: str | None = None) -> Json:
         simulation: the finished run.
         command: what the person typed, for the record.
     """
-    base = base_case(simulation)
+    base, scenarios = base_case(simulation), [_scenario(each) for each in scenario_answers(simulation)]
     return {
         "format": FORMAT,
         "version": VERSION,
@@ -123,6 +132,7 @@ def document(simulation: Simulation, *, command: str | None = None) -> Json:
             for met in errors_met(simulation)
         ],
         "base_case": None if base is None else {"rejected_by": list(base.rejected_by)},
+        **({"scenarios": scenarios} if scenarios else {}),
         "notices": [
             {"message": notice.message, "where": None if notice.where is None else str(notice.where)}
             for notice in simulation.notices
@@ -162,6 +172,36 @@ def check_json_path(path: Path) -> None:
     """
     if path.suffix.casefold() != ".json":
         raise WorkbookError("JSON is written to a .json file", where=path, hint=f"Name it {path.stem + '.json'!r}")
+
+
+def _scenario(each: ScenarioAnswers) -> Json:
+    return {
+        "name": None if each.scenario is None else each.scenario.name,
+        "changes": "" if each.scenario is None else changes_text(each.scenario),
+        "note": "" if each.scenario is None else each.scenario.note,
+        "warnings": each.warnings,
+        "paired": each.paired,
+        "run": each.run.trials,
+        "accepted": each.run.accepted,
+        "acceptance": estimate_json(each.acceptance),
+        "acceptance_difference": _estimate_or_none(each.acceptance_difference),
+        "forecasts": [_scenario_forecast(found) for found in each.forecasts],
+    }
+
+
+def _scenario_forecast(found: ForecastAnswer) -> Json:
+    answers = {"mean": found.mean, "low": found.low, "high": found.high, "above": found.above}
+    return {"name": found.forecast.name, "units": found.forecast.units} | {
+        key: {
+            "estimate": _estimate_or_none(value),
+            "difference": _estimate_or_none(found.differences.get(key)),
+        }
+        for key, value in answers.items()
+    }
+
+
+def _estimate_or_none(found: Estimate | None) -> _EstimateJson | None:
+    return None if found is None else estimate_json(found)
 
 
 def _trials(simulation: Simulation) -> Json:

@@ -63,6 +63,7 @@ def simulate(
     stopping: Stopping = NO_GOAL,
     engine: str | None = None,
     sampling: str | None = None,
+    scenarios: bool = False,
     jobs: int = 1,
     scheduler: str | None = None,
     workers: int | None = None,
@@ -73,6 +74,7 @@ def simulate(
 ) -> Simulation:
     """Run a model; see `Model.simulate`."""
     settings = _settings(model, trials, seed, engine, sampling, stopping)
+    settings = replace(settings, scenarios=scenarios)
     program = model.program(settings.engine)
     plan = plan_sampling(model, settings)
     rule, looks = chosen_rule(settings.stopping, model.forecasts), rare_switch(model, settings)

@@ -179,7 +179,7 @@ class _Headings:
             rest = key.removeprefix(f"{name} ") if key.startswith(f"{name} ") else ""
             if rest and row.has(rest) and plain(rest) != "name":
                 cell = row.cell(rest)
-                found[cell] = _Column(heading, cell, _typed(cell, clears=_is_number_column(rest)))
+                found[cell] = _Column(heading, cell, _typed(cell, heading, clears=_is_number_column(rest)))
         if found:
             yield from found.values()
             return
@@ -209,7 +209,7 @@ class _Headings:
         own = next((each for each in self._assumptions.values() if each.cell == cell), None)
         if own is not None:
             return _of_assumption(heading, own)
-        return _Column(heading, cell, _typed(cell, clears=False))
+        return _Column(heading, cell, _typed(cell, heading, clears=False))
 
 
 def _named_rows(workbook: Workbook, tables: Mapping[str, Sequence[DefinitionTable]]) -> Iterator[tuple[str, Row]]:
@@ -264,12 +264,12 @@ def _of_filter(heading: str, filter_: Filter) -> _Column:
     return _Column(heading, ("filter", name_key(name)), take)
 
 
-def _typed(cell: Cell, *, clears: bool) -> Take:
+def _typed(cell: Cell, heading: str, *, clears: bool) -> Take:
     def take(content: CellContent, where: Cell) -> Change:
         value: CellValue = content.value
         if clears and isinstance(value, str) and value.strip().casefold() == _NOTHING:
             value = None
-        return Typed(cell, value, where)
+        return Typed(cell, value, where, heading)
 
     return take
 

@@ -31,6 +31,7 @@ from xlmc.report.page.sheet_sections import (
     notices,
     pairs,
     record,
+    scenarios,
     statistics,
 )
 from xlmc.results.record import make_record
@@ -69,6 +70,7 @@ _LINKS = {
     "forecasts": "Forecasts",
     "overlay": "Overlay",
     "certainty": "Certainty",
+    "scenarios": "Scenarios",
     "pairs": "Pairs",
     "statistics": "Statistics",
     "sensitivity": "Sensitivity",
@@ -143,6 +145,7 @@ def page_text(simulation: Simulation, *, beside: Simulation | None = None, comma
         "forecasts": charts(simulation, figures),
         "overlay": overlays(figures),
         "certainty": certainty(simulation),
+        "scenarios": scenarios(simulation),
         "pairs": pairs(simulation),
         "statistics": statistics(simulation),
         "sensitivity": dependence(found),

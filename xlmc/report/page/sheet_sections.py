@@ -16,18 +16,31 @@ from xlmc.report.sheets.certainty_sheet import write_ranges
 from xlmc.report.sheets.evidence_sheet import write_agreement
 from xlmc.report.sheets.pairs_sheet import pair_sentences, write_pair_table
 from xlmc.report.sheets.results_sheet import LAST, write_counts
+from xlmc.report.sheets.scenarios_sheet import write_scenario_tables
 from xlmc.report.sheets.statistics_sheet import write_forecast
 from xlmc.results.record import Entry, Record, RecordTable, Section, Value
 from xlmc.results.record.in_words import distribution_text, number_text, status
 from xlmc.results.statements import pairs_of
 from xlmc.statistics import Estimate
+from xlmc.studies.scenario_answers import scenario_answers
 from xlmc.workbook.printable import printable
 
 if TYPE_CHECKING:
     from xlmc.definitions.definitions import Assumption
     from xlmc.run.simulation import Simulation
 
-__all__ = ["assumptions", "certainty", "checks", "evidence", "filters", "notices", "pairs", "record", "statistics"]
+__all__ = [
+    "assumptions",
+    "certainty",
+    "checks",
+    "evidence",
+    "filters",
+    "notices",
+    "pairs",
+    "record",
+    "scenarios",
+    "statistics",
+]
 
 _HEADS = ("Assumption", "Trials", "Mean", "Standard deviation", *(f"{each:g} %" for each in PERCENTS))
 
@@ -59,6 +72,16 @@ def pairs(simulation: Simulation) -> Html:
     write_pair_table(flow, found)
     remarks = (element("p", said, class_="remark") for said in pair_sentences(simulation, found))
     return element("section", element("h2", "Forecasts two at a time"), flow.html, *remarks, id="pairs")
+
+
+def scenarios(simulation: Simulation) -> Html:
+    """The answers of the workbook's scenarios beside its own; nothing where they were not run."""
+    found = scenario_answers(simulation)
+    if not found:
+        return EMPTY
+    flow = Flow()
+    write_scenario_tables(flow, found)
+    return element("section", element("h2", "Scenarios"), flow.html, id="scenarios")
 
 
 def statistics(simulation: Simulation) -> Html:

@@ -23,6 +23,7 @@ from xlmc.report.sheets import (
     pairs_sheet,
     record_sheet,
     results_sheet,
+    scenarios_sheet,
     sensitivity_sheet,
     statistics_sheet,
     trials_sheet,
@@ -144,6 +145,12 @@ SHEETS: Final[tuple[ResultSheet, ...]] = (
         lambda page, run: evidence_sheet.write_evidence(page, run.simulation),
         evidence_sheet.WIDTHS,
         wanted=lambda run: run.simulation.agreement is not None,
+    ),
+    ResultSheet(
+        "Scenarios",
+        lambda page, run: scenarios_sheet.write_scenarios(page, run.simulation),
+        scenarios_sheet.WIDTHS,
+        wanted=lambda run: run.simulation.settings.scenarios,
     ),
     ResultSheet("Charts", _charts, charts_sheet.WIDTHS, after=("Bins",)),
     ResultSheet(

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Final
 from xlmc.address import Cell
 from xlmc.definitions.definitions import Assumption, DataRange, Filter, Parameter
 from xlmc.definitions.evidence import ERRORS, SIZES, Evidence, Within
+from xlmc.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Scenario, Typed
+from xlmc.definitions.tables.table_rows import as_text
 from xlmc.sampling.sampling_methods import GENERATOR, METHODS
 from xlmc.statistics import Estimate, proportion
 from xlmc.statistics.sample import MOST_GROUPS
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
 __all__ = [
     "REJECTED_SENTENCE",
     "Discarded",
+    "changes_text",
     "cutoffs_text",
     "discards_of",
     "distribution_text",
@@ -120,6 +123,39 @@ def evidence_text(evidence: Evidence) -> str:
         kept = ": " + " ".join(f"{word} {end:.6g}" for word, end in ends if end is not None)
     given = f" ({sizes})" if sizes else ""
     return f"reads {number_text(evidence.reading)}, {ERRORS[evidence.error].lower()}{given}{kept}"
+
+
+def changes_text(scenario: Scenario) -> str:
+    """What a scenario changes: `Friction from 0.6 to 0.8; Restitution at most 0.5; Inputs!D28 = -20`."""
+    return "; ".join(map(_change_text, scenario.changes)) or "nothing"
+
+
+def _change_text(change: Change) -> str:
+    match change:
+        case Held(name, None):
+            return f"{name} frozen"
+        case Held(name, value):
+            return f"{name} = {_plain_number(value)}"
+        case Drawn(name):
+            return f"{name} drawn"
+        case Range(name, low, high):
+            ends = [("from", low), ("to", high)] if None not in (low, high) else [("at least", low), ("at most", high)]
+            return " ".join([name, *(f"{word} {_plain_number(end)}" for word, end in ends if end is not None)])
+        case Band(name, low, high):
+            return f"{name} from P{low:g} to P{high:g}"
+        case Numbers(name, values) | Limits(name, values):
+            words = (
+                f"{key.replace('_', ' ')} {_plain_number(value)}" for key, value in values.items() if value is not None
+            )
+            return f"{name} {' and '.join(words) or 'without ' + ', '.join(key.replace('_', ' ') for key in values)}"
+        case Typed(cell, value, _, named):
+            return (
+                f"{named or cell} = {_plain_number(value) if isinstance(value, float) else as_text(value) or 'nothing'}"
+            )
+
+
+def _plain_number(value: float | None) -> str:
+    return "" if value is None else number_text(value)
 
 
 def notes_text(notes: Mapping[str, str]) -> str:

@@ -329,6 +329,8 @@ def repeat_command(simulation: Simulation) -> str:
         options.append(f"--rare {settings.stopping.rare}")
     if settings.engine != own.engine:
         options.append(f"--engine {settings.engine}")
+    if settings.scenarios:
+        options.append("--scenarios")
     return " ".join(["xlmc simulate", quoted_argument(f"./{book}" if book.startswith("-") else book), *options])
 
 

@@ -49,6 +49,7 @@ def settings_section(simulation: Simulation) -> Section:
         ),
         Entry("time_limit", "Seconds at most", asked.seconds),
         Entry("rare", "Search for rare trials", asked.rare),
+        *([Entry("scenarios", "Scenarios are run, too", True)] if settings.scenarios else []),
     )
     return Section("settings", "Settings", entries)
 
@@ -78,6 +79,7 @@ def recorded_settings(record: Record) -> Settings:
             sampling=str(section["sampling"]),
             engine=str(section["engine"]),
             lognorm=str(section["lognorm"] or ""),
+            scenarios=bool(section.get("scenarios")),
             stopping=_stopping(section),
         )
     except (TypeError, ValueError, XlmcError) as error:

@@ -132,10 +132,16 @@ class Pair:
     Attributes:
         both: `(c, 2)` rows, in the first and in the second, of the trials that both accept.
         only: the rows of those that only the first accepts, and of those that only the second does.
+
+    Args:
+        first: the accepted trials of one run.
+        second: those of the other.
+        size: trials in a replicate, within which they depend on each other; 0 where the trials are independent.
+        replicates: how many there are.
     """
 
-    def __init__(self, first: Accepted, second: Accepted) -> None:
-        self.first, self.second = first, second
+    def __init__(self, first: Accepted, second: Accepted, size: int = 0, replicates: int = 0) -> None:
+        self.first, self.second, self._size, self._replicates = first, second, size, replicates
         _, mine, theirs = np.intersect1d(first.trials, second.trials, assume_unique=True, return_indices=True)
         self.both: tuple[Indices, Indices] = (mine, theirs)
         self.only: tuple[Indices, Indices] = (_others(mine, first.m), _others(theirs, second.m))
@@ -159,14 +165,22 @@ class Pair:
         step = max(first.influence.spacing, second.influence.spacing)
         if step and self.apart.size:
             error = max(error, min(step, float(self.apart.std())))
-        return with_error(value, error, n - 1.0, 0.95, n)
+        units = min(n, self._replicates) if self._size else n
+        return with_error(value, error, units - 1.0, 0.95, n)
 
     def error(self, first: Floats, second: Floats) -> float:
         """The standard error of a difference, from the pulls `(m,)` on either side."""
+        if self._size:
+            sums = self._by_replicate(self.second.trials, second) - self._by_replicate(self.first.trials, first)
+            return float((np.sum(sums * sums) * sums.size / max(sums.size - 1, 1)) ** 0.5)
         (mine, theirs), (mine_only, theirs_only) = self.both, self.only
         n = min(self.first.m, self.second.m)
         parts = second[theirs] - first[mine], first[mine_only], second[theirs_only]
         return float((sum(float(np.sum(part * part)) for part in parts) * n / max(n - 1, 1)) ** 0.5)
+
+    def _by_replicate(self, trials: NDArray[np.int64], pulls: Floats) -> Floats:
+        """`(replicates,)` the sums of the pulls."""
+        return np.asarray(np.bincount(trials // self._size, pulls, self._replicates), np.float64)
 
 
 def _others(rows: Indices, m: int) -> Indices:

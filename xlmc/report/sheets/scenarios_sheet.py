@@ -1,0 +1,106 @@
+"""The sheet Scenarios: the answers of each scenario beside the workbook's own, and how far they lie apart."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Final
+
+from xlmc.report.sheets import cells
+from xlmc.report.sheets.cells import BLANK, Shown
+from xlmc.report.summary import percent
+from xlmc.results.record.in_words import changes_text
+from xlmc.statistics import Estimate
+from xlmc.studies.scenario_answers import ForecastAnswer, ScenarioAnswers, scenario_answers
+
+if TYPE_CHECKING:
+    from xlmc.report.sheets.page import Page
+    from xlmc.run.simulation import Simulation
+
+__all__ = ["POINTS", "WIDTHS", "scenario_sentences", "write_scenario_tables", "write_scenarios"]
+
+WIDTHS = (30, *[11] * 16)
+
+POINTS: Final = "Difference, points"
+"""The heading of a difference of two shares, in percentage points."""
+
+_LAST: Final = 12
+_CHANGES: Final = 6
+"""The column that what a scenario changes begins in; it reaches to the last one."""
+
+
+def write_scenarios(page: Page, simulation: Simulation) -> None:
+    """Write the sheet."""
+    name = simulation.model.workbook.name
+    found = scenario_answers(simulation)
+    page.title("Scenarios", f"{name}, seed {simulation.settings.seed}: the workbook as it is, and with changes")
+    write_scenario_tables(page, found)
+    page.set_up_printing(name)
+
+
+def write_scenario_tables(page: Page, found: Sequence[ScenarioAnswers]) -> None:
+    """Write what each scenario changes and how much is accepted; then its answers, a table a forecast."""
+    for each in found[1:]:
+        for warning in each.warnings:
+            page.wide(f"Do not use the answers of {each.name!r} as they stand: {warning}", "warning", _LAST)
+    page.heading("What is changed, and how many trials are accepted")
+    heads = ("Scenario", "Accepted", "Share", "±", POINTS, "±", "What is changed")
+    starts = range(_CHANGES + 1)
+    page.line([Shown(head, look="header left" if head == heads[0] else "header") for head in heads], starts, _LAST)
+    for each in found:
+        page.line([*_accepted(each), Shown(_changes(each))], starts, _LAST)
+    for index, forecast in enumerate(found[0].forecasts):
+        definition = forecast.forecast
+        units = f", {definition.units}" if definition.units else ""
+        page.heading(f"{definition.name}{units}")
+        page.table(_heads(forecast), [_answers(each.name, each.forecasts[index]) for each in found])
+    page.row += 1
+    for sentence in scenario_sentences(found):
+        page.wide(sentence, "remark", _LAST)
+
+
+def scenario_sentences(found: Sequence[ScenarioAnswers]) -> Iterator[str]:
+    """What the differences are, and what their errors."""
+    yield "Differences are those to the workbook as it is: a positive one means that the scenario gives more."
+    if all(each.paired for each in found):
+        yield (
+            "All runs draw the same random numbers: each assumption has its own stream. What they have in common "
+            "cancels in a difference, so that its ± is mostly smaller than those of the two numbers."
+        )
+    else:
+        yield (
+            "Where accepted trials are rare, the runs share none of them: the ± of a difference adds up those of both "
+            "numbers, as the root of the sum of their squares."
+        )
+
+
+def _changes(each: ScenarioAnswers) -> str:
+    if each.scenario is None:
+        return "–"
+    note = f" ({each.scenario.note})" if each.scenario.note else ""
+    return f"{changes_text(each.scenario)}{note}"
+
+
+def _accepted(each: ScenarioAnswers) -> list[Shown]:
+    change = [BLANK, BLANK] if each.acceptance_difference is None else cells.share(each.acceptance_difference)
+    return [Shown(each.name, look="name"), cells.count(each.run.accepted), *cells.share(each.acceptance), *change]
+
+
+def _heads(answer: ForecastAnswer) -> list[str]:
+    share = percent(answer.forecast.central)
+    names = ["Mean", f"{share} range from", "to"]
+    found = ["Scenario", *(head for name in names for head in (name, "±", "Difference", "±"))]
+    return found if answer.above is None else [*found, f"Above {answer.forecast.threshold:g}", "±", POINTS, "±"]
+
+
+def _answers(name: str, answer: ForecastAnswer) -> list[Shown]:
+    found = [Shown(name, look="name")]
+    for key, value in (("mean", answer.mean), ("low", answer.low), ("high", answer.high)):
+        found += [*cells.estimate(value, "answer"), *_difference(answer.differences.get(key))]
+    if answer.above is not None:
+        change = answer.differences.get("above")
+        found += [*cells.share(answer.above), *([BLANK, BLANK] if change is None else cells.share(change))]
+    return found
+
+
+def _difference(found: Estimate | None) -> list[Shown]:
+    return [BLANK, BLANK] if found is None else cells.estimate(found)

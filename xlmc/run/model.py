@@ -230,8 +230,9 @@ class Model:
             FormulaError: a cell that is needed now cannot be computed.
         """
         own = self.definitions
-        grown = len(self.lowering.dag.nodes) - self._nodes
-        if grown > _MOST_GROWN * self._nodes or not _asks_for_the_same(own, definitions, frozenset(self.needed.live)):
+        if len(self.lowering.dag.nodes) > (1 + _MOST_GROWN) * self._nodes:
+            self._make_anew()
+        if not _asks_for_the_same(own, definitions, frozenset(self.needed.live)):
             found = type(self)(workbook, definitions, self.path)
             found._folded = self._folded
             return found
@@ -244,6 +245,12 @@ class Model:
             found._check_targets()
         found._take_notices()
         return found
+
+    def _make_anew(self) -> None:
+        """Leave the nodes that changed limits added to the models that have them, and go on with nodes of one's own."""
+        folded = self._folded
+        self.__dict__.update(type(self)(self.workbook, self.definitions, self.path).__dict__)
+        self._folded = folded
 
     def _sources(self) -> list[tuple[str, Cell, str]]:
         """What is needed of assumptions and filters, the row of each, and its source or reason."""

@@ -11,7 +11,9 @@ from xlmc.definitions.tables.filters import LIMITS
 from xlmc.definitions.tables.table_rows import Row, definition_tables
 from xlmc.workbook.workbook import CellValue, Workbook
 
-__all__ = ["cells_that_change"]
+__all__ = ["NO_TABLE", "cells_that_change"]
+
+NO_TABLE = "of a table"
 
 
 def cells_that_change(
@@ -20,12 +22,12 @@ def cells_that_change(
     """The cells to be typed into, so that a row says what `new` says in place of `old`.
 
     Returns:
-        Cell -> what it would hold, None for nothing; and the headings of the columns that the table lacks. A draw in a
-        cell has no row, and none of its numbers has a cell.
+        Cell -> what it would hold, None for nothing; and the headings of the columns that the table lacks. What is in
+        no table, as a draw in a cell, has no cells: that is `NO_TABLE`.
     """
-    if isinstance(old.cell, InFormula):
-        return {}, ["of a table"]
     row = _row_of(workbook, old.row)
+    if row is None or isinstance(old.cell, InFormula):
+        return {}, [NO_TABLE]
     found: dict[Cell, CellValue] = {}
     lacking: list[str] = []
     for headings, value in _columns(old, new):
@@ -39,9 +41,10 @@ def cells_that_change(
     return found, lacking
 
 
-def _row_of(workbook: Workbook, first: Cell) -> Row:
+def _row_of(workbook: Workbook, first: Cell) -> Row | None:
     tables = (each for kind in definition_tables(workbook, Findings()).values() for each in kind)
-    return Row(workbook, next(each for each in tables if first in each.table.area), first.row)
+    table = next((each for each in tables if first in each.table.area), None)
+    return None if table is None else Row(workbook, table, first.row)
 
 
 def _columns(old: Assumption | Filter, new: Assumption | Filter) -> Iterator[tuple[tuple[str, ...], CellValue]]:

@@ -1,0 +1,120 @@
+"""`xlmc simulate --scenarios`, from the workbook to the terminal, the sheets, the page, JSON and the record."""
+
+from __future__ import annotations
+
+import json
+import shutil
+
+import jsonschema
+import openpyxl
+import pytest
+from openpyxl.worksheet.table import Table
+
+from xlmc.report.json_document import SCHEMA
+
+ROWS = [
+    ["Name", "Note", "width", "root", "Rate", "area Threshold"],
+    ["narrow", "measured", "1.5 to 2"],
+    ["held", None, 2.5],
+    ["looser", None, None, "at most 1.5"],
+    ["higher rate", None, None, None, 3, 22],
+]
+
+
+def with_scenarios(small_book, path, rows=ROWS):
+    book = openpyxl.load_workbook(small_book)
+    sheet = book.create_sheet("Other states")
+    for row in rows:
+        sheet.append(row)
+    last = f"{chr(64 + len(rows[0]))}{len(rows)}"
+    sheet.add_table(Table(displayName="xlmc_scenarios", ref=f"A1:{last}"))
+    book.save(path)
+    return path
+
+
+@pytest.fixture
+def book(small_book, tmp_path):
+    return with_scenarios(small_book, tmp_path / "book.xlsx")
+
+
+def lines_of(out, title):
+    """The rows of a table of the terminal, as lists of words."""
+    rows = out[out.index(f"\n{title}\n") :].split("─\n", 1)[1].split("\n\n", 1)[0]
+    return [line.split("  ") for line in rows.splitlines()]
+
+
+def test_from_the_workbook_to_all_outputs(xlmc, book, tmp_path):
+    plain = xlmc("simulate", book, "-o", tmp_path / "plain.xlsx")
+    outputs = ("--html", tmp_path / "p.html", "--json", tmp_path / "r.json", "--save-run", tmp_path / "r.xlmcrun")
+    outcome = xlmc("simulate", book, "--scenarios", *outputs)
+    assert outcome.code == plain.code
+    assert outcome.out.startswith(plain.out[: plain.out.index("± is the standard error")])
+    names = ["as it is", "narrow", "held", "looser", "higher rate"]
+    for title in ("Scenarios", "area, ft²", "inverse"):
+        assert [line[0].strip() for line in lines_of(outcome.out, title)] == names
+
+    found = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(found)
+    assert [each["name"] for each in found["scenarios"]] == [None, *names[1:]]
+    base, narrow, held, looser, higher = found["scenarios"]
+    assert (narrow["changes"], narrow["note"]) == ("width from 1.5 to 2", "measured")
+    assert higher["changes"] == "Rate = 3; area Threshold = 22"
+    assert looser["accepted"] > base["accepted"]
+    for each in (narrow, held, looser, higher):
+        for mine, theirs in zip(each["forecasts"], base["forecasts"], strict=True):
+            gap = mine["mean"]["estimate"]["value"] - theirs["mean"]["estimate"]["value"]
+            assert mine["mean"]["difference"]["value"] == pytest.approx(gap)
+            assert theirs["mean"]["difference"] is None
+
+    results = openpyxl.load_workbook(tmp_path / "book-results.xlsx")["Scenarios"]
+    cells = [[cell.value for cell in row] for row in results.iter_rows()]
+    assert [row[0] for row in cells if row[0] in names] == names * 3
+    means = [row[1] for row in cells if row[0] == "narrow"]
+    assert narrow["accepted"] in means
+    assert narrow["forecasts"][0]["mean"]["estimate"]["value"] in means
+    page = (tmp_path / "p.html").read_text(encoding="utf-8")
+    assert '<section id="scenarios">' in page
+    assert "width from 1.5 to 2" in page
+
+    for kept in ("book-results.xlsx", "r.xlmcrun"):
+        assert xlmc("replay", tmp_path / kept).code == 0
+    xlmc("report", tmp_path / "r.xlmcrun", "-o", tmp_path / "again.xlsx")
+    assert (tmp_path / "again.xlsx").read_bytes() == (tmp_path / "book-results.xlsx").read_bytes()
+
+
+def test_a_number_edited_on_the_sheet_is_found(xlmc, book, tmp_path):
+    xlmc("simulate", book, "--scenarios")
+    path = tmp_path / "book-results.xlsx"
+    results = openpyxl.load_workbook(path)
+    sheet = results["Scenarios"]
+    row = next(row for row in sheet.iter_rows() if row[0].value == "held")
+    row[1].value += 1
+    results.save(path)
+    outcome = xlmc("replay", path)
+    assert outcome.code == 1
+    assert f"Scenarios!{row[1].coordinate}" in outcome.out
+
+
+def test_check_shows_them_and_says_what_is_not_possible(xlmc, small_book, tmp_path):
+    good = xlmc("check", with_scenarios(small_book, tmp_path / "good.xlsx"))
+    assert lines_of(good.out, "Scenarios")[0][0].strip() == "narrow"
+    bad = with_scenarios(small_book, tmp_path / "bad.xlsx", [ROWS[0], ["wrong", None, "2 to 1"]])
+    message = "'Other states'!C2: In the scenario 'wrong': width: Low (2) is above High (1)"
+    for outcome in (xlmc("check", bad), xlmc("simulate", bad, "--scenarios")):
+        assert outcome.code == 2
+        assert message in outcome.err.replace("\n", " ")
+    assert not (tmp_path / "bad-results.xlsx").exists()
+
+
+def test_a_workbook_without_scenarios(xlmc, small_book, tmp_path):
+    outcome = xlmc("simulate", shutil.copy(small_book, tmp_path / "b.xlsx"), "--scenarios")
+    assert outcome.code == 2
+    assert "The workbook defines no scenario" in outcome.err
+    assert "xlmc_scenarios" in outcome.err
+
+
+def test_a_scenario_that_accepts_nothing_gives_exit_code_1(xlmc, small_book, tmp_path):
+    none = with_scenarios(small_book, tmp_path / "b.xlsx", [ROWS[0], ["none", None, None, "at most -1"]])
+    outcome = xlmc("simulate", none, "--scenarios")
+    assert outcome.code == 1
+    assert "scenario 'none': no trial was accepted" in outcome.err.replace("\n", " ")

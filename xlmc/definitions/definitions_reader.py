@@ -102,7 +102,7 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
         _say_how_to_mark(workbook, findings)
     elif not (forecasts or refused):
         _refuse_none(workbook, "forecast", tables["xlmc_forecasts"], findings)
-    scenarios = read_scenarios(workbook, tables, assumptions, filters, findings)
+    scenarios = read_scenarios(workbook, tables, assumptions, (*filters, *own), findings)
     return Definitions(
         assumptions=assumptions,
         forecasts=forecasts,

@@ -64,9 +64,13 @@ def applied(model: Model, changes: Iterable[Change]) -> Model:
         definitions = _merged(again.definitions, before.definitions, definitions)
         before = again
     found = before.changed(workbook, definitions)
-    if found.filter_targets != before.filter_targets and (faults := filter_faults(found)):
+    if _filters_of(found) != _filters_of(before) and (faults := filter_faults(found)):
         raise faults[0]
     return found
+
+
+def _filters_of(model: Model) -> tuple[Filter, ...]:
+    return (*model.filters, *model.forecast_filters)
 
 
 def changed_cells(model: Model, definitions: Definitions) -> tuple[dict[Cell, CellValue], dict[str, list[str]]]:
@@ -81,8 +85,12 @@ def changed_cells(model: Model, definitions: Definitions) -> tuple[dict[Cell, Ce
     """
     cells: dict[Cell, CellValue] = {}
     lacking: dict[str, list[str]] = {}
-    before: tuple[Assumption | Filter, ...] = (*model.assumptions, *model.filters)
-    after: tuple[Assumption | Filter, ...] = (*definitions.assumptions, *definitions.filters)
+    before: tuple[Assumption | Filter, ...] = (*model.assumptions, *model.filters, *model.forecast_filters)
+    after: tuple[Assumption | Filter, ...] = (
+        *definitions.assumptions,
+        *definitions.filters,
+        *definitions.forecast_filters,
+    )
     for old, new in zip(before, after, strict=True):
         if old is not new:
             found, missing = cells_that_change(model.workbook, old, new)
@@ -102,7 +110,7 @@ def _refuse_cell(model: Model, change: Typed) -> None:
 def _changed(model: Model, changes: Iterable[Change]) -> Definitions:
     """The definitions with the changes of assumptions and filters."""
     assumptions = {name_key(each.name): each for each in model.assumptions}
-    filters = {name_key(each.name): each for each in model.filters}
+    filters = {name_key(each.name): each for each in (*model.filters, *model.forecast_filters)}
     last: dict[str, Change] = {}
     for change in changes:
         if isinstance(change, Limits):
@@ -119,7 +127,13 @@ def _changed(model: Model, changes: Iterable[Change]) -> Definitions:
             last[key] = change
     for key, change in last.items():
         _check(assumptions[key], change)
-    return replace(model.definitions, assumptions=tuple(assumptions.values()), filters=tuple(filters.values()))
+    count, changed = len(model.filters), tuple(filters.values())
+    return replace(
+        model.definitions,
+        assumptions=tuple(assumptions.values()),
+        filters=changed[:count],
+        forecast_filters=changed[count:],
+    )
 
 
 def _merged(again: Definitions, old: Definitions, new: Definitions) -> Definitions:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import ChainMap
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from copy import copy
@@ -151,5 +152,6 @@ def with_values(workbook: Workbook, values: Mapping[Cell, CellValue]) -> Workboo
         typed.setdefault(cell.sheet, {})[cell[1:]] = CellContent(value)
     sheets = workbook.sheets
     changed = {name: replace(sheets[name], cells={**sheets[name].cells, **cells}) for name, cells in typed.items()}
-    more = sheets.with_sheets(changed) if isinstance(sheets, LazySheets) else {**sheets, **changed}
+    # A ChainMap reads a sheet when it is looked up, and nobody writes to this one.
+    more = sheets.with_sheets(changed) if isinstance(sheets, LazySheets) else ChainMap(changed, sheets)  # type: ignore[arg-type]
     return replace(workbook, sheets=more, parts={}, sha256="", data=b"")

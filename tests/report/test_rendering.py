@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import subprocess
+import sys
 from dataclasses import dataclass
 from html import unescape
 from pathlib import Path
@@ -11,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import openpyxl
 import pytest
+from committed_books import TEMPLATES
 from fewer_sheets import CHARTS, SENSITIVITY, leave_out
 from needed_programs import missing
 
@@ -18,7 +20,12 @@ import xlmc
 from xlmc.report import save
 from xlmc.report.sheets.exact_book import ExactSheet
 
-EXAMPLE = Path(__file__).resolve().parents[2] / "examples/intersection.xlsx"
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT))
+
+from templates.build import TEMPLATES as DESCRIBED  # noqa: E402 - the path above finds it
+
+EXAMPLE = ROOT / "examples/intersection.xlsx"
 OWN = {
     *("Results", "Charts", "Statistics", "Certainty", "Pairs", "Assumptions", "Sensitivity", "Filter limits"),
     *("Trials", "Bins", "Curves", "Record"),
@@ -46,10 +53,10 @@ class Printed:
         return " ".join(word for word, _, _ in self.words)
 
 
-def converted(book, to, folder):
+def converted(book, to, folder, *more):
     profile = f"-env:UserInstallation={(folder / 'profile').as_uri()}"
-    command = ["soffice", profile, "--headless", "--convert-to", to, "--outdir", str(folder / "out"), str(book)]
-    subprocess.run(command, check=True, capture_output=True, timeout=300)
+    command = ["soffice", profile, "--headless", "--convert-to", to, "--outdir", str(folder / "out")]
+    subprocess.run([*command, *map(str, (book, *more))], check=True, capture_output=True, timeout=300)
     return folder / "out" / f"{book.stem}.{to}"
 
 
@@ -65,11 +72,16 @@ def book(case, tmp_path_factory):
 
 def _pages(book):
     pdf = converted(book, "pdf", book.parent)
-    shown = subprocess.run(["pdftotext", "-bbox", str(pdf), "-"], check=True, capture_output=True, text=True).stdout
     subprocess.run(["pdftoppm", "-r", str(DPI), str(pdf), str(book.parent / "page")], check=True)
     pictures = sorted(book.parent.glob("page-*.ppm"))
-    pieces = re.split(r"<page [^>]*>", shown)[1:]
+    pieces = _pieces(pdf)
     return [_printed(piece, _pixels(picture)) for piece, picture in zip(pieces, pictures, strict=True)]
+
+
+def _pieces(pdf):
+    """The words of each page, with their boxes."""
+    shown = subprocess.run(["pdftotext", "-bbox", str(pdf), "-"], check=True, capture_output=True, text=True).stdout
+    return re.split(r"<page [^>]*>", shown)[1:]
 
 
 @pytest.fixture(scope="module")
@@ -165,6 +177,22 @@ def test_the_sentences_are_printed_whole(pages, case):
 )
 def test_no_table_is_broken_across_pages_and_details_are_not_printed(pages, sheet, count):
     assert [page.sheet for page in pages].count(sheet) == count
+
+
+def test_the_case_prints_on_15_pages(pages):
+    assert sum(page.sheet in OWN for page in pages) <= 15
+
+
+def test_the_largest_books_print_on_25_pages(tmp_path):
+    """Those of the templates that ask for most: the pages grow with the forecasts."""
+    asked = {name: (len(each.forecasts), len(each.assumptions)) for name, each in DESCRIBED.items()}
+    books = [tmp_path / f"{name}.xlsx" for name in sorted(asked, key=asked.__getitem__)[-2:]]
+    for book in books:
+        save(xlmc.load(TEMPLATES[book.stem]).simulate(trials=2_000), book)
+    converted(books[0], "pdf", tmp_path, books[1])
+    for book in books:
+        printed = [_printed(piece, None).sheet for piece in _pieces(tmp_path / "out" / f"{book.stem}.pdf")]
+        assert 15 < sum(sheet in OWN for sheet in printed) <= 25
 
 
 def test_no_cell_is_too_narrow_for_its_number(pages):

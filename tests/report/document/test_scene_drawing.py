@@ -49,6 +49,15 @@ def test_a_square_stays_a_square_where_both_axes_have_the_same_units():
     assert b[0] - a[0] != pytest.approx(b[1] - c[1], abs=5.0)
 
 
+def test_a_flat_scene_has_room_and_numbers_on_both_axes():
+    drawn = scene_drawing(book(series([-30, 30], [0, 4])))
+    root = ElementTree.fromstring(drawn.svg)
+    marked = [each.text for each in root.iter("{http://www.w3.org/2000/svg}text") if each.text.lstrip("−").isdigit()]
+    assert {"−20", "0", "20"} <= {*marked}
+    assert 5 <= len(marked) <= 9  # those of the upright axis, too
+    assert float(root.get("viewBox").split()[3]) > 120
+
+
 def test_up_is_up_and_right_is_right():
     ((a, b),) = paths(scene_drawing(book(series([0, 10], [0, 10]))))
     assert b[0] > a[0]

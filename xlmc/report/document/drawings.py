@@ -117,10 +117,21 @@ def before_and_after(name: str, prior: Floats, accepted: Floats) -> Drawing | No
         path_of([(1.0, bottom), *outline, (width - 1.0, bottom)], DARK, 1.3),
         line_to(1, bottom, width - 1, bottom, INK),
     ]
-    found.append(text_at(1.0, height - 2, f"{low:.4g}", anchor="start", size=13))
-    found.append(text_at(width - 1.0, height - 2, f"{high:.4g}", anchor="end", size=13))
-    said = f"{name}: before filtering pale, accepted as a line, from {low:.4g} to {high:.4g}"
+    first, last = (_end_text(end, high - low) for end in (low, high))
+    found.append(text_at(1.0, height - 2, first, anchor="start", size=13))
+    found.append(text_at(width - 1.0, height - 2, last, anchor="end", size=13))
+    said = f"{name}: before filtering pale, accepted as a line, from {first} to {last}"
     return drawing(found, width, height, said, 28.0)
+
+
+def _end_text(end: float, span: float) -> str:
+    """An end of the draws, to some thousandths of what they reach over.
+
+    >>> _end_text(0.0002339, 10.0), _end_text(0.60003, 0.35)
+    ('0', '0.6')
+    """
+    digits = 2 - math.floor(math.log10(span)) if span > 0 else 6
+    return f"{round(end, digits) + 0.0:.10g}"
 
 
 def influence_drawing(found: ForecastSensitivity, most: int) -> Drawing:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 from xml.etree.ElementTree import Element
 
@@ -26,7 +26,7 @@ _SHEET: Final = re.compile(r"'?scene'?!", re.IGNORECASE)
 _COLOUR: Final = re.compile("[0-9A-Fa-f]{6}")
 _MOST_SERIES, _MOST_POINTS = 40, 2_000
 """What a scene has at most; a chart with more is another kind of picture, and is not drawn."""
-_WIDTH, _HIGHEST = 400.0, 330.0
+_WIDTH, _HIGHEST, _LOWEST = 400.0, 330.0, 90.0
 _LEFT, _TOP = 44.0, 10.0
 
 _Points = list[tuple[float, float]]
@@ -95,18 +95,31 @@ def _numbers(axis: Element | None) -> dict[int, float]:
     return found
 
 
+def _widened(scale: Scale, least: float) -> Scale:
+    """The scale with room above and below, so that it reaches over so much at least."""
+    room = (least - (scale.high - scale.low)) / 2
+    return scale if room <= 0 else scale_of([scale.low - room, scale.high + room], 0.0, 1.0, most=4)
+
+
+def _with_step(scale: Scale, step: float) -> Scale:
+    """The scale with a coarser step, where that leaves it two ticks."""
+    coarser = replace(scale, step=step)
+    return coarser if len(coarser.ticks) > 1 else scale
+
+
 def _drawn(lines: list[_Line], axes: list[str]) -> Drawing:
     points = [point for line in lines for point in line.points]
     across = scale_of([x for x, _ in points], 0.0, 1.0)
     up = scale_of([y for _, y in points], 0.0, 1.0)
     wide, high = (_WIDTH - _LEFT) / (across.high - across.low), _HIGHEST / (up.high - up.low)
-    steps = across.step, up.step
     if len({title.rpartition(",")[2].strip() for title in axes}) == 1:
         wide = high = min(wide, high)
-        steps = max(steps), max(steps)
+        up = _widened(up, _LOWEST / high)
+        step = max(across.step, up.step)
+        across, up = _with_step(across, step), _with_step(up, step)
     right, bottom = _LEFT + wide * (across.high - across.low), _TOP + high * (up.high - up.low)
-    x = Scale(across.low, across.high, _LEFT, right, steps[0])
-    y = Scale(up.low, up.high, bottom, _TOP, steps[1])
+    x = Scale(across.low, across.high, _LEFT, right, across.step)
+    y = Scale(up.low, up.high, bottom, _TOP, up.step)
     found = []
     for tick in x.ticks:
         found += [line_to(x(tick), _TOP, x(tick), bottom, GRID), text_at(x(tick), bottom + 14, x.text(tick))]

@@ -7,6 +7,7 @@ import pytest
 from xlmc.live.protocol import MOST_BYTES, ProtocolError, plain, read_message
 
 SET = {"kind": "set", "of": "assumption", "name": "a", "key": "high", "value": 1.5, "held": True, "seq": 3}
+VIEW = {"kind": "view", "forecasts": [], "tab": "charts", "first": "", "second": "", "fits": False}
 
 WRONG = {
     "no JSON": "{",
@@ -25,7 +26,8 @@ WRONG = {
     "too long": json.dumps({**SET, "more": "a" * MOST_BYTES}),
     "nested without end": "[" * 60_000,
     "another file": '{"kind": "save", "what": "../../x"}',
-    "names that are no list": '{"kind": "view", "forecasts": "a", "tab": "charts", "first": "", "second": ""}',
+    "names that are no list": json.dumps({**VIEW, "forecasts": "a"}),
+    "another tab": json.dumps({**VIEW, "tab": "x"}),
 }
 
 

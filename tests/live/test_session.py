@@ -204,7 +204,7 @@ def test_all_tabs_are_made_of_the_run_at_rest(case):
     session = Session(case[1])
     names = [each.name for each in case[1].forecasts]
     for tab, first, second in (("matters", "", ""), ("tables", "", ""), ("pairs", FRICTION, names[1])):
-        session.receive(Said("view", {"forecasts": names, "tab": tab, "first": first, "second": second}))
+        session.receive(Said("view", {"forecasts": names, "tab": tab, "first": first, "second": second, "fits": True}))
         (part,) = [each for each in settle(session) if each["kind"] == "part"]
         assert part["tab"] == tab
         if tab == "pairs":

@@ -1,7 +1,7 @@
 """What was changed in the window, beside the workbook: numbers and switches of assumptions, limits of filters.
 
-Keys of an assumption are those of its parameters and cutoffs, `base` for the value of its cell, and `frozen`; keys of a
-filter are those of its limits.
+Keys of an assumption are those of its parameters and cutoffs, `base` for the value that it is held at, `frozen`, and
+those of a band of its distribution that it is confined to; keys of a filter are those of its limits.
 """
 
 from __future__ import annotations
@@ -11,22 +11,30 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from xlmc.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Parameter
+from xlmc.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers
 from xlmc.results.record.in_words import number_text
+from xlmc.run.applied_changes import applied
 from xlmc.run.model import Model
 
 __all__ = [
+    "BAND",
     "LIMITS",
     "Adjustments",
     "Amount",
     "adjusted",
     "adjusted_definitions",
     "assumption_numbers",
+    "changes_of",
     "in_words",
     "own_values",
+    "usual_variants",
 ]
 
 LIMITS: Final = {"at_least": "at least", "above": "above", "at_most": "at most", "below": "below"}
 """Key of a filter's limit -> how it is read."""
+
+BAND: Final = {"band_low": 0.0, "band_high": 100.0}
+"""Key of each end of a band of a distribution, in percent -> where it is with no band."""
 
 Amount = float | bool
 
@@ -121,18 +129,43 @@ def own_values(definitions: Definitions, of: str, name: str) -> dict[str, Parame
     if assumption is None:
         return {}
     numbers = {key: value for key, (_, value) in assumption_numbers(assumption).items()}
-    return {**numbers, "base": assumption.base, "frozen": assumption.frozen}
+    return {**numbers, **BAND, "base": assumption.base, "frozen": assumption.frozen}
 
 
 def adjusted(model: Model, adjustments: Adjustments) -> Model:
-    """The model of the workbook with these values instead of its own.
+    """The model of the workbook with these values instead of its own; from one thread at a time.
 
     Raises:
         DefinitionError: they are no distribution, or a frozen assumption has no value to be held at.
+        FormulaError: a cell cannot be computed then.
     """
-    if not adjustments:
-        return model
-    return type(model)(model.workbook, adjusted_definitions(model.definitions, adjustments), model.path)
+    return applied(model, changes_of(model.definitions, adjustments)) if adjustments else model
+
+
+def changes_of(definitions: Definitions, adjustments: Adjustments) -> list[Change]:
+    """What is to be changed in the workbook. What has no effect, a number of what is frozen, is left out."""
+    found: list[Change] = []
+    for assumption in definitions.assumptions:
+        found += _of_assumption(assumption, dict(adjustments.assumptions.get(assumption.name, {})))
+    for name, limits in adjustments.filters.items():
+        found.append(Limits(name, {key: float(value) for key, value in limits.items()}))
+    return found
+
+
+def _of_assumption(assumption: Assumption, given: dict[str, Amount]) -> Iterator[Change]:
+    name, base = assumption.name, given.pop("base", None)
+    frozen = given.pop("frozen", assumption.frozen)
+    if frozen:
+        if base is not None or not assumption.frozen:
+            yield Held(name, None if base is None else float(base))
+        return
+    if assumption.frozen:
+        yield Drawn(name)
+    low, high = (float(given.pop(key, end)) for key, end in BAND.items())
+    if given:
+        yield Numbers(name, {key: float(value) for key, value in given.items()})
+    if (low, high) != (*BAND.values(),):
+        yield Band(name, low, high)
 
 
 def adjusted_definitions(definitions: Definitions, adjustments: Adjustments) -> Definitions:
@@ -149,6 +182,8 @@ def _assumption(assumption: Assumption, changed: Changed) -> Assumption:
     if not given:
         return assumption
     rest: dict[str, Any] = {key: given.pop(key) for key in ("base", "frozen", *CUTOFFS) if key in given}
+    for key in BAND:
+        given.pop(key, None)
     parameters = {**assumption.parameters, **{key: float(value) for key, value in given.items()}}
     return replace(assumption, parameters=parameters, **rest)
 
@@ -174,6 +209,9 @@ def changed_text(
         return "frozen" if after else "not frozen"
     if of == "filter":
         heading = LIMITS[key]
+    elif key in BAND:
+        heading = "band from" if key == "band_low" else "band to"
+        return f"{heading} {number_text(after)} %"
     elif key == "base":
         heading = "value"
     else:
@@ -181,3 +219,35 @@ def changed_text(
         heading = assumption_numbers(assumption)[key][0]
     shown = "none" if before is None else number_text(before)
     return f"{heading} {shown} → {number_text(after)}"
+
+
+def usual_variants(definitions: Definitions) -> dict[str, Adjustments]:
+    """What people try to see how firm an answer is: all ranges wider and narrower, each limit halved and doubled.
+
+    Ranges are those of the assumptions with numbers `low` and `high`; a limit of 0 stays.
+    """
+    found: dict[str, Adjustments] = {}
+    for said, factor in (("half as wide", 0.5), ("half again as wide", 1.5)):
+        made = Adjustments()
+        for name, low, high in _ranges(definitions):
+            middle, half = 0.5 * (low + high), 0.5 * (high - low) * factor
+            made = made.having("assumption", name, "low", middle - half).having(
+                "assumption", name, "high", middle + half
+            )
+        if made:
+            found[f"every range {said}"] = made
+    for filter_ in definitions.filters:
+        for key, heading in LIMITS.items():
+            limit = getattr(filter_, key)
+            for said, factor in (("half", 0.5), ("twice", 2.0)) if isinstance(limit, float) and limit else ():
+                name = f"{filter_.name} {heading} {number_text(limit * factor)} ({said})"
+                found[name] = Adjustments().having("filter", filter_.name, key, limit * factor)
+    return found
+
+
+def _ranges(definitions: Definitions) -> Iterator[tuple[str, float, float]]:
+    """Name, low and high of the drawn assumptions that are given by these two numbers."""
+    for each in definitions.assumptions:
+        low, high = each.parameters.get("low"), each.parameters.get("high")
+        if not each.frozen and len(each.parameters) == 2 and isinstance(low, float) and isinstance(high, float):
+            yield each.name, low, high

@@ -15,9 +15,10 @@ from watchfiles import awatch
 from xlmc.errors import WorkbookError, XlmcError
 from xlmc.live.adjustments import Adjustments
 from xlmc.live.hand_over import save_result
-from xlmc.live.kept_scenarios import Keeper
+from xlmc.live.library import Library
 from xlmc.live.protocol import Message, Said, written
 from xlmc.live.session import Job, Outcome, Session, SupersededError, View
+from xlmc.live.study_run import StudyRun
 from xlmc.live.what_changed import what_changed
 from xlmc.run.loading import load
 
@@ -35,10 +36,10 @@ _TOLD_EVERY: Final = 0.1
 _SETTLING: Final = (0.0, 0.1, 0.3, 0.6, 1.0)
 """Seconds before each try to read a workbook that was just saved: a half-written one is whole a moment later."""
 
-_CHANGING: Final = frozenset({"set", "reset", "keep", "show", "drop", "restore"})
+_CHANGING: Final = frozenset({"set", "reset", "keep", "show", "drop", "restore", "variants"})
 """Kinds after which what outlives the window is other."""
 
-_NEWEST: Final = frozenset({"frame", "running", "moved", "state"})
+_NEWEST: Final = frozenset({"frame", "running", "state", "study"})
 """Kinds of which a window that lags behind needs the newest alone."""
 
 
@@ -70,13 +71,14 @@ class Desk:
 
     Args:
         path: of the workbook.
-        keeper: of scenarios.
+        library: of the workbooks that may be opened beside it.
     """
 
-    def __init__(self, path: Path, keeper: Keeper) -> None:
+    def __init__(self, path: Path, library: Library) -> None:
         self.path = path
         self.session: Session | None = None
-        self._keeper, self._windows = keeper, set[Window]()
+        self._library, self._keeper, self._windows = library, library.keeper, set[Window]()
+        self._study: StudyRun | None = None
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="xlmc-window")
         self._wake = asyncio.Event()
         self._trouble: dict[str, str] = {}
@@ -109,6 +111,10 @@ class Desk:
             window.put(message["kind"], written(message))
         for about, text in self._trouble.items():
             window.put("trouble", written({"kind": "trouble", "about": about, "text": text}))
+        others = [each for each in self._library.books() if self._library.path(each["key"]) != self.path]
+        window.put("others", written({"kind": "others", "books": others}))
+        if self._study is not None:
+            window.put("study", written(self._study.last))
         return window
 
     def leave(self, window: Window) -> None:
@@ -129,6 +135,13 @@ class Desk:
             window.view = said
             self._look()
         if self.session is None or said.kind in ("view", "hello"):
+            return
+        if said.kind == "study":
+            self._ask(window, said["what"], said["other"])
+            return
+        if said.kind == "cancel":
+            if self._study is not None:
+                self._later(self._study.cancel())
             return
         if said.kind == "save":
             self._later(self._save(said["what"]))
@@ -256,6 +269,21 @@ class Desk:
         else:
             self._say("save", "")
             self._tell([{"kind": "news", "text": f"Written: {path}", "link": ""}])
+
+    def _ask(self, window: Window, what: str, other: str) -> None:
+        """Start a study, unless one is going on."""
+        trouble = "A study is going on: cancel it, or wait." if self._study and self._study.is_running else ""
+        books = [self.path]
+        if what == "compare":
+            second = self._library.path(other)
+            books += [] if second is None else [second]
+            trouble = trouble or ("" if second else "Choose the workbook to compare this one with.")
+        if trouble:
+            window.put("trouble", written({"kind": "trouble", "about": "study", "text": trouble}))
+            return
+        self._say("study", "")
+        self._study = StudyRun(what, books, lambda message: self._tell([message]))
+        self._later(self._study.run())
 
     # The file
 

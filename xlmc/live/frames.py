@@ -37,7 +37,9 @@ _POINTS: Final = 2_000
 """Accepted trials that a scatter shows."""
 
 
-def frame_of(simulation: Simulation, behind: Simulation | None, names: Collection[str], *, moving: bool) -> Message:
+def frame_of(
+    simulation: Simulation, behind: Simulation | None, names: Collection[str], *, moving: bool, fits: bool
+) -> Message:
     """The charts of some forecasts.
 
     Args:
@@ -45,36 +47,32 @@ def frame_of(simulation: Simulation, behind: Simulation | None, names: Collectio
         behind: the run of the state that is drawn behind it; None where there is none.
         names: of the forecasts.
         moving: while a handle moves: fewer values to count from.
+        fits: with fitted distributions, which take their time.
     """
+    most = _VALUES_MOVING if moving else _VALUES_AT_REST
     figures = {figure.answer.name: figure for figure in figures_of(simulation, names)}
+    charts: dict[str, Any] = dict.fromkeys(name for name in names if name in simulation.results)
+    for name, figure in figures.items():
+        payload = forecast_payload(simulation, figure, most, fits=fits)
+        charts[name] = payload | _beside(figure, simulation.results[name], behind)
     return {
         "trials": simulation.evaluated,
         "accepted": simulation.accepted,
         "share": share_text(simulation.acceptance),
-        "forecasts": {
-            name: _forecast(simulation, figures[name], behind, moving) if name in figures else None
-            for name in names
-            if name in simulation.results
-        },
+        "forecasts": charts,
     }
 
 
-def _forecast(simulation: Simulation, figure: Figure, behind: Simulation | None, moving: bool) -> dict[str, Any]:
-    name = figure.answer.name
-    result = simulation.results[name]
-    before = None if behind is None else behind.results.get(name)
-    if before is not None and not before.sample.n:
-        before = None
+def _beside(figure: Figure, now: ForecastResult, behind: Simulation | None) -> dict[str, Any]:
+    """The numbers beside a chart, and the state behind it."""
+    before = None if behind is None else behind.results.get(figure.answer.name)
+    if before is None or not before.sample.n:
+        return {"beside": [[label, *_texts(each, None)] for label, each in _numbers(now)], "said": None, "behind": None}
+    pairs = zip(_numbers(now), _numbers(before), strict=True)
     return {
-        **forecast_payload(simulation, figure, _VALUES_MOVING if moving else _VALUES_AT_REST, fits=not moving),
-        "beside": [
-            [label, *_texts(estimate, None if before is None else old)]
-            for (label, estimate), (_, old) in zip(
-                _numbers(result), _numbers(result if before is None else before), strict=True
-            )
-        ],
-        "said": None if before is None else _moved(figure, result, before),
-        "behind": None if before is None else _bars_behind(figure, before.sample),
+        "beside": [[label, *_texts(new, old)] for (label, new), (_, old) in pairs],
+        "said": _moved(figure, now, before),
+        "behind": _bars_behind(figure, before.sample),
     }
 
 
@@ -184,7 +182,16 @@ def pair_of(simulation: Simulation, first: str, second: str) -> dict[str, Any] |
         "trials": int(x.size),
         "correlation": plain(rank_correlation(x, y).value) if x.size > 2 else None,
         "units": [_units(simulation, first), _units(simulation, second)],
+        "together": _together(simulation, (first, second)),
     }
+
+
+def _together(simulation: Simulation, names: tuple[str, str]) -> list[dict[str, Any]]:
+    """Both as charts to be laid over each other; none where they are not two forecasts in one unit."""
+    figures = figures_of(simulation, names) if names[0] != names[1] else []
+    if len(figures) < 2 or len({figure.answer.units for figure in figures}) > 1:
+        return []
+    return [forecast_payload(simulation, figure, _VALUES_MOVING, fits=False) for figure in figures]
 
 
 def _units(simulation: Simulation, name: str) -> str:

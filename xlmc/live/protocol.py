@@ -8,7 +8,8 @@
 | `set` | `of`, `name`, `key`, `value`, `held`, `seq` | a number or a switch of an assumption or a filter; `value` \
 null: as in the book; `held`: a handle is still held; `seq`: counts the page's changes, and comes back with the frame |
 | `reset` | `of`, `name` | everything of one assumption or filter as in the book; with an empty `name`: of all |
-| `view` | `forecasts`, `tab`, `first`, `second` | which charts can be seen, which tab is open, whose pairs it shows |
+| `view` | `forecasts`, `tab`, `first`, `second`, `fits` | which charts can be seen, which tab is open, whose pairs it \
+shows, whether fitted distributions are wanted |
 | `pin` | | the state now becomes the one that is drawn behind |
 | `restore` | `take` | bring back what was set when the window was last closed, or forget it |
 | `stop` | | end the run that is going on |
@@ -17,13 +18,17 @@ null: as in the book; `held`: a handle is still held; `seq`: counts the page's c
 | `drop` | `name` | forget a kept scenario |
 | `compare` | | run every kept scenario, and put them into one table |
 | `save` | `what` | write `book`, `page`, `json` or `run` beside the workbook |
-| `study` | `what` | start `verify`, `stability`, `screen`, `methods` on the state now |
+| `variants` | | keep the usual variants of the workbook as scenarios |
+| `study` | `what`, `other` | start `verify`, `stability`, `screen`, `methods` or `compare` on the workbook's file; \
+`other`: the key of the workbook to compare it with |
+| `cancel` | | end the study that is going on |
 
 **The server says**
 
 | kind | fields | meaning |
 |---|---|---|
 | `book` | `name`, `folder`, `forecasts`, `notices`, `settings`, `shapes` | the workbook as it is now |
+| `others` | `books` | the workbooks beside it that it can be compared with: `name` and `key` |
 | `state` | `version`, `assumptions`, `filters`, `changes`, `scenarios`, `shown`, `offered`, `behind` | what is set; \
 `changes` in words |
 | `moved` | `of`, `name`, `key`, `value` | what was set while a handle is held; `state` follows when it is let go |
@@ -32,6 +37,8 @@ null: as in the book; `held`: a handle is still held; `seq`: counts the page's c
 | `rest` | `version`, `sentences`, `warnings`, `checks`, `filters`, `sampling` | what is said of a run at rest |
 | `part` | `tab`, `version`, `html` or `pairs` | the contents of the open tab |
 | `running` | `version`, `stage`, `share` | how far a run is; `share` 1: done |
+| `study` | `what`, `state`, `step`, `seconds`, `text` | how far a study is; `state`: `running`, `done`, `cancelled`, \
+`failed`; `text`: its answer |
 | `trouble` | `about`, `text` | why something could not be done; an empty text: the trouble is over |
 | `news` | `text`, `link` | what was done, such as a file that was written |
 
@@ -119,6 +126,7 @@ _FIELDS: Final[Mapping[str, Mapping[str, Callable[[object], bool]]]] = {
         "tab": _one_of("charts", "matters", "pairs", "tables", "scenarios", "studies"),
         "first": _is_text,
         "second": _is_text,
+        "fits": _is_flag,
     },
     "pin": {},
     "restore": {"take": _is_flag},
@@ -128,7 +136,9 @@ _FIELDS: Final[Mapping[str, Mapping[str, Callable[[object], bool]]]] = {
     "drop": {"name": _is_text},
     "compare": {},
     "save": {"what": _one_of("book", "page", "json", "run")},
-    "study": {"what": _one_of("verify", "stability", "screen", "methods")},
+    "variants": {},
+    "study": {"what": _one_of("verify", "stability", "screen", "methods", "compare"), "other": _is_text},
+    "cancel": {},
 }
 
 

@@ -69,6 +69,7 @@ SCRIPTS: Final = {
     "live_chart.js": (_LIVE, "live_chart.js"),
     "left_side.js": (_LIVE, "left_side.js"),
     "right_side.js": (_LIVE, "right_side.js"),
+    "further_tabs.js": (_LIVE, "further_tabs.js"),
     "window.js": (_LIVE, "window.js"),
 }
 START_SCRIPTS: Final = {"making.js": (_LIVE, "making.js"), "start_page.js": (_LIVE, "start_page.js")}
@@ -267,7 +268,7 @@ class LiveServer:
 
     def _desk(self, key: str, path: Path) -> Desk:
         if key not in self._desks:
-            self._desks[key] = Desk(path, self._library.keeper)
+            self._desks[key] = Desk(path, self._library)
             self._library.opened(path)
             self._desks[key].start()
         return self._desks[key]

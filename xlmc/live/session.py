@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, Literal
 
 from xlmc.errors import XlmcError
-from xlmc.live.adjustments import Adjustments, adjusted, in_words, own_values
+from xlmc.live.adjustments import Adjustments, adjusted, in_words, own_values, usual_variants
 from xlmc.live.frames import frame_of, matters_html, pair_of, rest_of, tables_html
 from xlmc.live.protocol import Message, Said
 from xlmc.live.window_book import assumption_rows, filter_rows, forecast_rows, shapes_of
@@ -43,6 +43,9 @@ _MANY_CELLS: Final = 5_000
 """Formulas that are needed; with more, the first run of all is a short one."""
 
 _MODELS: Final = 4
+
+Sight = tuple[int, tuple[str, ...], bool, int]
+"""Version, forecasts, whether with fits, and what is behind."""
 
 Stage = Literal["quick", "moving", "rest", "shown", "part"]
 
@@ -81,10 +84,11 @@ class Tab:
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """What can be seen in all windows together: the charts of these forecasts, and these tabs."""
+    """What can be seen in all windows together: the charts of these forecasts, these tabs, fitted distributions."""
 
     forecasts: tuple[str, ...]
     tabs: tuple[Tab, ...] = (Tab(),)
+    fits: bool = False
 
     @classmethod
     def of(cls, said: Iterable[Said], order: Sequence[str]) -> View:
@@ -92,7 +96,7 @@ class View:
         views = list(said)
         seen = {name for each in views for name in each["forecasts"]}
         tabs = dict.fromkeys(Tab(each["tab"], each["first"], each["second"]) for each in views)
-        return cls(tuple(name for name in order if name in seen), tuple(tabs))
+        return cls(tuple(name for name in order if name in seen), tuple(tabs), any(each["fits"] for each in views))
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,6 +241,9 @@ class Session:
                 return self._keep(said["name"].strip())
             case "show":
                 return self._show(said["name"])
+            case "variants":
+                self.kept |= usual_variants(self.own.definitions)
+                return Replies(all=[self._state()])
             case "drop":
                 self.kept.pop(said["name"], None)
                 self.shown = "" if self.shown == said["name"] else self.shown
@@ -330,9 +337,9 @@ class Session:
         return None if self._behind_of == self._now else self.behind
 
     @property
-    def _sight(self) -> tuple[int, tuple[str, ...], int]:
+    def _sight(self) -> Sight:
         """What the charts at rest depend on."""
-        return self.version, self.view.forecasts, id(self._compared)
+        return self.version, self.view.forecasts, self.view.fits, id(self._compared)
 
     def _wants(self, stage: str) -> bool:
         if self._done.get(stage) == self.version:
@@ -374,27 +381,32 @@ class Session:
                     found = simulate(known, progress=watch)
                 else:
                     trials = MOVING_TRIALS if stage == "moving" else quick
-                    found = simulate(known, trials=trials, sampling="mc", progress=watch if slow else None)
+                    found = simulate(
+                        known, trials=trials, sampling="mc", engine="numpy", progress=watch if slow else None
+                    )
                 seconds = (clock() - begun) / max(found.evaluated, 1)
                 resting = stage == "rest"
-                frame = frame_of(found, behind, view.forecasts, moving=not resting)
+                frame = frame_of(found, behind, view.forecasts, moving=not resting, fits=resting and view.fits)
                 messages = [_frame("rest" if resting else "moving", version, seq, frame)]
+                messages += [_pairs(found, version, tab) for tab in view.tabs if tab.key == "pairs" and not resting]
                 messages[0]["shapes"] = shapes_of(known, list(adjustments.assumptions))
                 if resting:
                     messages.append({"kind": "rest", "version": version, **rest_of(found)})
             except XlmcError as error:
                 return Outcome(problem=str(error))
-            return Outcome(tuple(messages), known, found, seconds, done=(version, view.forecasts, id(behind)))
+            return Outcome(
+                tuple(messages), known, found, seconds, done=(version, view.forecasts, view.fits, id(behind))
+            )
 
         return run
 
-    def _shown(self, simulation: Simulation, sight: tuple[int, tuple[str, ...], int]) -> Callable[..., Outcome]:
+    def _shown(self, simulation: Simulation, sight: Sight) -> Callable[..., Outcome]:
         """The charts of a run that is done, for what can be seen now."""
         behind, seq, names = self._compared, self._seq, self.view.forecasts
 
         def run(*_: object) -> Outcome:
-            frame = _frame("rest", sight[0], seq, frame_of(simulation, behind, names, moving=False))
-            return Outcome((frame,), done=sight)
+            frame = frame_of(simulation, behind, names, moving=False, fits=sight[2])
+            return Outcome((_frame("rest", sight[0], seq, frame),), done=sight)
 
         return run
 
@@ -462,6 +474,10 @@ class Session:
 
 def _frame(stage: str, version: int, seq: int, charts: Message) -> Message:
     return {"kind": "frame", "stage": stage, "version": version, "seq": seq, **charts}
+
+
+def _pairs(simulation: Simulation, version: int, tab: Tab) -> Message:
+    return {"kind": "part", "tab": "pairs", "version": version, **_PARTS["pairs"](simulation, tab)}
 
 
 def _settings_text(model: Model) -> str:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from xlmc.address import Cell
 from xlmc.definitions.definitions import CUTOFFS, Assumption, Filter, Parameter
 from xlmc.distributions.whole_numbers import WholeNumbers
-from xlmc.live.adjustments import LIMITS, Adjustments, adjusted_definitions, assumption_numbers
+from xlmc.live.adjustments import BAND, LIMITS, Adjustments, adjusted_definitions, assumption_numbers
 from xlmc.live.protocol import plain
 from xlmc.results.record.in_words import distribution_text, limits_text, status
 from xlmc.run.model import Model
@@ -63,6 +63,7 @@ def _assumption(model: Model, assumption: Assumption, own: Assumption, changed: 
         "ownBase": own.base,
         "step": max(step, 1.0) if isinstance(assumption.family, WholeNumbers) else step,
         "numbers": numbers,
+        "band": None if assumption.data is not None else [changed.get(key, end) for key, end in BAND.items()],
         "changed": bool(changed),
     }
 

@@ -12,7 +12,7 @@ function stepText(value, step) {
   if (value === null || value === undefined) return "";
   const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   const rounded = Number(value.toFixed(Math.min(decimals, 12)));
-  return Math.abs(rounded - value) <= 1e-9 * Math.abs(value) ? valueText(value, decimals) : String(value);
+  return Math.abs(rounded - value) <= 1e-9 * Math.abs(value) ? valueText(value, decimals) : String(Number(value.toPrecision(12)));
 }
 
 /** A value on the grid of its step. */

@@ -6,6 +6,12 @@ class AssumptionCard {
     Object.assign(this, { row, wire, sent, boxes: new Map() });
     this.track = new Track(row.name, row.units, (key, value, held, event) => this.set(key, value, held, event));
     this.numbers = make("div", { class: "numbers" });
+    const end = (label, key) => new NumberBox(label, "%", (value) => this.set(key, value, false, null),
+      { hidden: `the band of ${row.name}` });
+    this.band = { band_low: end("Band from", "band_low"), band_high: end("to", "band_high") };
+    this.bands = make("details", { class: "band" },
+      make("summary", {}, "Band", make("span", { class: "aside", text: ` of ${row.name}` })),
+      ...Object.values(this.band).map((box) => box.root));
     this.frozen = make("input", { type: "checkbox", role: "switch" });
     this.frozen.addEventListener("change", (event) => this.set("frozen", this.frozen.checked, false, event));
     this.base = new NumberBox("at", "", (value) => this.set("base", value, false, null), { hidden: row.name });
@@ -20,7 +26,7 @@ class AssumptionCard {
       this.track.box, this.numbers, this.about);
     this.held = make("div", { class: "frozen" }, make("label", {}, this.frozen, " Frozen ",
       make("span", { class: "aside", text: `: ${row.name}` })), this.base.root);
-    this.numbers.append(this.held);
+    this.numbers.append(this.held, this.bands);
   }
 
   set(key, value, held, event) {
@@ -68,6 +74,9 @@ class AssumptionCard {
       const why = number.value === null ? `computed in ${number.cell}` : "";
       this.boxes.get(number.key).update(number.value, this.stepOf(number), { off: row.frozen, why });
     }
+    this.bands.hidden = row.band === null;
+    if (row.band?.some((end, i) => end !== 100 * i)) this.bands.open = true;
+    Object.values(this.band).forEach((box, i) => box.update(row.band?.[i] ?? null, 1, { off: row.frozen }));
     this.frozen.checked = row.frozen;
     this.base.update(row.base, row.step, { off: !row.frozen });
     this.root.classList.toggle("changed", row.changed);

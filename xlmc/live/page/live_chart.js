@@ -44,6 +44,8 @@ function forecastElement({ name, units, marks }, number) {
 }
 
 class LivePanel extends Panel {
+  static behind = "";
+
   constructor(element, forecast, z) {
     super(element, forecast, z);
     this.article = element;
@@ -180,6 +182,7 @@ class LivePanel extends Panel {
     table.tBodies[0].replaceChildren(...beside.map(([label, now, before, apart]) => make("tr", {},
       make("th", { scope: "row", text: label }),
       ...(compared ? [now, before, apart] : [now]).map((text) => make("td", { class: "number", text })))));
+    table.caption.textContent = compared ? `Accepted trials. Behind: ${LivePanel.behind}` : "Accepted trials";
     this.find(".moved").textContent = said ?? "";
     this.find(".reset").textContent = `Central ${this.forecast.range.said} range`;
   }

@@ -27,6 +27,12 @@ class RightSide {
     } } });
     this.places.charts.append(this.sentences, this.choice,
       make("p", { class: "choices" }, make("label", {}, split, "Numbers beside the charts")), this.charts, this.meaning);
+    this.pairs = new PairView(this.places.pairs, (pair) => {
+      this.pair = pair;
+      this.look();
+    });
+    this.scenarios = new ScenarioView(this.places.scenarios, wire);
+    this.hand = new HandView(this.places.studies, wire);
     this.watch = new IntersectionObserver((entries) => {
       for (const { target, isIntersecting } of entries) {
         if (isIntersecting) this.seen.add(target.dataset.name);
@@ -65,7 +71,7 @@ class RightSide {
     this.looking = setTimeout(() => {
       const names = this.forecasts.map((each) => each.name).filter((name) => this.open.has(name) && this.seen.has(name));
       const { first = "", second = "" } = this.pair ?? {};
-      this.wire.say({ kind: "view", forecasts: names, tab: this.tab, first, second });
+      this.wire.say({ kind: "view", forecasts: names, tab: this.tab, first, second, fits: Boolean(this.fits) });
     }, 60);
   }
 
@@ -118,6 +124,11 @@ class RightSide {
         const element = forecastElement(forecast, Numbered.id("forecast"));
         entry.place.replaceChildren(element);
         entry.panel = new LivePanel(element, forecast, this.z);
+        element.querySelector(".fit").addEventListener("focus", () => {
+          if (this.fits) return;
+          this.fits = true;
+          this.look();
+        });
       }
     }
   }
@@ -129,8 +140,19 @@ class RightSide {
   }
 
   part({ tab, html, pair }) {
-    if (html !== undefined) showTables(this.places[tab], html);
-    if (pair !== undefined) this.drawPair?.(pair);
+    if (tab === "scenarios") this.scenarios.part(html);
+    else if (html !== undefined) showTables(this.places[tab], html);
+    if (pair !== undefined) this.pairs.show(pair);
+  }
+
+  state(message) {
+    LivePanel.behind = message.behind;
+    this.scenarios.state(message);
+    const drawn = message.assumptions.filter(({ status }) => status === "drawn").map(({ name }) => name);
+    const names = [...this.forecasts.map(({ name }) => name), ...drawn];
+    if (names.join("\n") === this.offered) return;
+    this.offered = names.join("\n");
+    this.pairs.offer(names);
   }
 }
 

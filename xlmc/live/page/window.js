@@ -40,7 +40,7 @@ const Live = {
   on_state(message) {
     this.state = message;
     this.left.state(message);
-    this.right.state?.(message);
+    this.right.state(message);
     const changed = message.changes.length;
     document.getElementById("reset").disabled = !changed;
     this.offer(message.offered);
@@ -68,6 +68,14 @@ const Live = {
 
   on_part(message) {
     this.right.part(message);
+  },
+
+  on_others(message) {
+    this.right.hand.others(message);
+  },
+
+  on_study(message) {
+    this.right.hand.study(message);
   },
 
   on_running({ stage, share }) {

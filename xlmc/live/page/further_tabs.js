@@ -1,0 +1,175 @@
+"use strict";
+// The tabs beside the charts: pairs of quantities, scenarios, and what is handed over.
+
+const MOST_DOTS = 2000;
+
+/** A scatter of two quantities in the same accepted trials, and both in one chart where they have one unit. */
+class PairView {
+  constructor(place, chosen) {
+    this.chosen = chosen;
+    this.selects = [0, 1].map((i) => make("select", { "aria-label": i ? "upwards" : "to the right",
+      on: { change: () => this.choose() } }));
+    this.said = make("p", { class: "pair-said" });
+    this.chart = make("div", { class: "chart", role: "img" });
+    this.overlay = make("div", { class: "overlay" });
+    const save = make("button", { type: "button", class: "copy", text: "Save PNG", on: { click: () => savePng(this.chart) } });
+    place.append(make("p", { class: "choices" }, make("label", {}, "To the right ", this.selects[0]),
+      make("label", {}, "Upwards ", this.selects[1])), this.said, this.chart, save, this.overlay);
+  }
+
+  /** Names to choose from: forecasts first. */
+  offer(names) {
+    const before = this.selects.map((select) => select.value);
+    this.selects.forEach((select, i) => {
+      select.replaceChildren(...names.map((name) => new Option(name)));
+      select.value = names.includes(before[i]) ? before[i] : names[Math.min(i, names.length - 1)] ?? "";
+    });
+    this.choose();
+  }
+
+  choose() {
+    const [first, second] = this.selects.map((select) => select.value);
+    this.chosen({ first, second });
+  }
+
+  show(pair) {
+    if (!pair || pair.first !== this.selects[0].value || pair.second !== this.selects[1].value) {
+      if (!pair) this.said.textContent = "This quantity is not drawn now.";
+      return;
+    }
+    const shown = Math.min(pair.x.length, MOST_DOTS);
+    const related = pair.correlation === null ? "" : `; rank correlation ${pair.correlation.toFixed(2)}`;
+    this.said.textContent = `${countText(shown)} of ${countText(pair.trials)} accepted trials${related}`;
+    this.chart.setAttribute("aria-label", `${pair.second} against ${pair.first}: ${this.said.textContent}`);
+    this.draw(pair);
+    this.layOver(pair.together);
+  }
+
+  draw({ x, y, first, second, units }) {
+    this.scatter?.destroy();
+    if (!x.length) return;
+    const reach = (values) => {
+      const [low, high] = [Math.min(...values), Math.max(...values)];
+      const room = 0.04 * (high - low || Math.abs(low) || 1);
+      return [low - room, high + room];
+    };
+    const [ends, sides] = [reach(x), reach(y)];
+    const options = chartOptions(widthOf(this.chart), ends, 1, "", "frequency");
+    const named = (name, unit) => (unit ? `${name}, ${unit}` : name);
+    options.scales.y.range = sides;
+    options.axes[0].label = named(first, units[0]);
+    options.axes[1].label = named(second, units[1]);
+    options.axes[1].values = (_, splits) => splits.map((split) => String(Number(split.toPrecision(6))));
+    options.hooks = { draw: [(chart) => {
+      const { ctx } = chart;
+      ctx.fillStyle = "rgba(47, 109, 168, .45)";
+      for (let i = 0; i < Math.min(x.length, MOST_DOTS); i++) {
+        ctx.fillRect(chart.valToPos(x[i], "x", true) - 2, chart.valToPos(y[i], "y", true) - 2, 4, 4);
+      }
+    }] };
+    this.scatter = new uPlot(options, [ends, sides], this.chart);
+  }
+
+  layOver(together) {
+    if (!together.length) {
+      this.overlay.replaceChildren();
+      return;
+    }
+    const about = Numbered.id("together");
+    const view = (value, label) => make("label", {}, make("input", { type: "radio", name: about, value,
+      checked: value === "frequency" }), label);
+    const chart = make("div", { class: "chart", role: "img", "aria-label": `Chart of ${together.map(({ name }) => name).join(", ")}` });
+    this.overlay.replaceChildren(make("h3", { text: "Both in one chart" }),
+      make("fieldset", { class: "views" }, make("legend", { text: "Chart" }), view("frequency", "Frequency"),
+        view("cumulative", "Cumulative"), view("reverse", "Reverse cumulative")),
+      chart, make("ul", { class: "legend" }));
+    new Overlay(this.overlay, together.map((forecast) => ({ forecast, trials: new Trials(forecast), bins: barsOf(forecast) })));
+  }
+}
+
+/** Kept states of the window, and all of them in one table. */
+class ScenarioView {
+  constructor(place, wire) {
+    this.wire = wire;
+    this.now = make("p");
+    this.name = make("input", { type: "text", id: "scenario-name", autocomplete: "off", maxlength: 200 });
+    const form = make("form", { class: "keep", on: { submit: (event) => {
+      event.preventDefault();
+      if (this.name.value.trim()) wire.say({ kind: "keep", name: this.name.value });
+      this.name.value = "";
+    } } }, make("label", { for: "scenario-name", text: "Keep this state as " }), this.name, make("button", { text: "Keep" }));
+    const button = (text, kind) => make("button", { type: "button", text, on: { click: () => wire.say({ kind }) } });
+    this.list = make("ul", { class: "scenarios" });
+    this.table = make("div");
+    this.compare = button("Compare all in one table", "compare");
+    place.append(this.now, form, this.list, make("p", { class: "actions-left" }, this.compare,
+      button("Add the usual variants", "variants")), this.table);
+  }
+
+  state({ changes, scenarios, shown }) {
+    this.now.replaceChildren(make("b", { text: shown ? `Shown: ${shown}. ` : "Shown: " }),
+      changes.length ? named(changes.join("; ")) : "the workbook as it stands");
+    const act = (kind, name, text) => make("button", { type: "button", text, "aria-label": `${text} ${name || "the workbook"}`,
+      on: { click: () => this.wire.say({ kind, name }) } });
+    const lines = [{ name: "", changes: [] }, ...scenarios].map(({ name, changes: own }) => make("li",
+      { class: name === shown ? "shown" : null },
+      name ? make("b", {}, named(name)) : make("b", { text: "The workbook as it stands" }), " ",
+      changesOf(own), " ", act("show", name, "Show"),
+      ...(name ? [" ", act("drop", name, "Forget")] : [])));
+    this.list.replaceChildren(...lines);
+    this.compare.disabled = !scenarios.length;
+  }
+
+  part(html) {
+    showTables(this.table, html);
+  }
+}
+
+/** What a scenario changes; much of it behind its number. */
+function changesOf(changes) {
+  const said = make("span", { class: "about" }, named(changes.join("; ")));
+  if (changes.length <= 4) return said;
+  return make("details", {}, make("summary", { text: `${changes.length} changes` }), said);
+}
+
+/** Files to hand over, and further questions on the workbook. */
+class HandView {
+  constructor(place, wire) {
+    this.wire = wire;
+    const save = (text, what) => make("button", { type: "button", text, on: { click: () => wire.say({ kind: "save", what }) } });
+    const ask = (text, what) => make("button", { type: "button", text, on: { click: () => this.ask(what) } });
+    this.other = make("select", { "aria-label": "workbook to compare with" });
+    this.stand = make("p", { role: "status" });
+    this.cancel = make("button", { type: "button", text: "Cancel", hidden: true, on: { click: () => wire.say({ kind: "cancel" }) } });
+    this.answer = make("pre", { tabindex: "0", hidden: true, "aria-label": "Answer of the study" });
+    this.comparing = make("span", { hidden: true }, ask("Compare with", "compare"), " ", this.other);
+    place.append(
+      make("h2", { text: "Files" }),
+      make("p", { class: "remark", text: "Written beside the workbook, of the workbook as it stands." }),
+      make("p", { class: "actions-left" }, save("Result workbook", "book"), save("Page", "page"), save("JSON", "json"),
+        save("Saved run", "run"), make("button", { type: "button", text: "Print", on: { click: () => print() } })),
+      make("h2", { text: "Further questions" }),
+      make("p", { class: "remark", text: "Asked of the workbook's file, not of what was moved here. They run beside the window." }),
+      make("p", { class: "actions-left" }, ask("Verify against Excel", "verify"), ask("Stability", "stability"),
+        ask("Screen", "screen"), ask("Methods", "methods"), this.comparing),
+      make("p", { class: "actions-left" }, this.stand, this.cancel), this.answer);
+  }
+
+  ask(what) {
+    this.wire.say({ kind: "study", what, other: this.other.value });
+  }
+
+  others({ books }) {
+    this.other.replaceChildren(...books.map(({ name, key }) => new Option(name, key)));
+    this.comparing.hidden = !books.length;
+  }
+
+  study({ what, state, step, seconds, text }) {
+    const how = { running: `xlmc ${what} is running, ${Math.round(seconds)} s`, done: `xlmc ${what}, ${seconds} s`,
+      cancelled: `xlmc ${what} was cancelled`, failed: `xlmc ${what} has failed` }[state];
+    this.stand.textContent = step && state === "running" ? `${how}: ${step}` : how;
+    this.cancel.hidden = state !== "running";
+    this.answer.hidden = !text;
+    this.answer.textContent = text;
+  }
+}

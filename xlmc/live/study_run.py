@@ -1,0 +1,133 @@
+"""A further question on a workbook, asked of xlmc's own command in a process of its own, which can be ended."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import re
+import signal
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Final
+
+from xlmc.live.protocol import Message
+from xlmc.workbook.printable import printable
+
+__all__ = ["STUDIES", "StudyRun"]
+
+STUDIES: Final = {
+    "verify": (),
+    "stability": (),
+    "screen": (),
+    "methods": ("--quick",),
+    "compare": (),
+}
+"""Command -> what it is given beside the workbook."""
+
+_COLUMNS: Final = "108"
+_STEP: Final = re.compile(r"running: ([^\x1b\r\n]+)")
+_MOST: Final = 400_000
+"""Characters of an answer."""
+
+_GRACE: Final = 3.0
+"""Seconds that a command has to end in order."""
+
+
+class StudyRun:
+    """See the module.
+
+    Args:
+        what: a key of `STUDIES`.
+        books: the workbook, and another to compare it with.
+        tell: takes a message whenever there is something new.
+    """
+
+    def __init__(self, what: str, books: Sequence[Path], tell: Callable[[Message], None]) -> None:
+        self.what = what
+        self._books, self._tell = books, tell
+        self._step, self._begun, self._cancelled = "", time.monotonic(), False
+        self._process: asyncio.subprocess.Process | None = None
+        self.last: Message = self._message("running", "")
+
+    async def run(self) -> None:
+        """Until it is done, or cancelled."""
+        command = [sys.executable, "-m", "xlmc", self.what, *map(str, self._books), *STUDIES[self.what]]
+        given = {**os.environ, "COLUMNS": _COLUMNS, "NO_COLOR": "1", "PYTHONIOENCODING": "utf-8", "TERM": "dumb"}
+        steps, of_command = _step_pipe()
+        loop = asyncio.get_running_loop()
+        try:
+            self._process = await asyncio.create_subprocess_exec(
+                *command, stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.PIPE, stderr=of_command, env=given
+            )
+        finally:
+            os.close(of_command)
+        noted: list[str] = []
+        loop.add_reader(steps, self._read_steps, steps, noted)
+        self._say("running", "")
+        telling = asyncio.create_task(self._tick())
+        try:
+            out, _ = await self._process.communicate()
+        except asyncio.CancelledError:
+            await self.cancel()
+            raise
+        finally:
+            telling.cancel()
+            loop.remove_reader(steps)
+            os.close(steps)
+        said = out.decode("utf-8", "replace")[:_MOST] or "".join(noted)[-_MOST:]
+        state = "cancelled" if self._cancelled else "done" if self._process.returncode in (0, 1) else "failed"
+        self._say(state, "\n".join(map(printable, said.splitlines())))
+
+    @property
+    def is_running(self) -> bool:
+        """Whether it is going on."""
+        return bool(self.last["state"] == "running")
+
+    async def cancel(self) -> None:
+        """End it."""
+        self._cancelled = True
+        if self._process is None or self._process.returncode is not None:
+            return
+        with contextlib.suppress(ProcessLookupError):  # it has just ended
+            self._process.send_signal(signal.SIGTERM)
+            try:
+                await asyncio.wait_for(self._process.wait(), _GRACE)
+            except TimeoutError:
+                self._process.kill()
+
+    async def _tick(self) -> None:
+        while True:
+            await asyncio.sleep(1.0)
+            self._say("running", "")
+
+    def _read_steps(self, steps: int, noted: list[str]) -> None:
+        """Take what the command says of how far it is."""
+        try:
+            text = os.read(steps, 1 << 16).decode("utf-8", "replace")
+        except OSError:  # its other end was closed
+            asyncio.get_running_loop().remove_reader(steps)
+            return
+        noted.append(text)
+        found = _STEP.findall(text)
+        if found and found[-1].strip() != self._step:
+            self._step = found[-1].strip()
+            self._say("running", "")
+
+    def _message(self, state: str, text: str) -> Message:
+        seconds = time.monotonic() - self._begun
+        known = {"what": self.what, "state": state, "step": printable(self._step), "text": text}
+        return {"kind": "study", **known, "seconds": round(seconds, 1)}
+
+    def _say(self, state: str, text: str) -> None:
+        self.last = self._message(state, text)
+        self._tell(self.last)
+
+
+def _step_pipe() -> tuple[int, int]:
+    """Our end, and the command's standard error: a terminal where the system has such, so that it tells its steps."""
+    if hasattr(os, "openpty"):
+        return os.openpty()
+    return os.pipe()

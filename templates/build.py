@@ -10,7 +10,7 @@ if __name__ == "__main__":
     sys.path.append(str(HERE.parent))
 
 # The path above makes a plain `python templates/build.py` work.
-from templates import collinear, critical_speed_yaw, crush_energy, pedestrian_throw, skid  # noqa: E402
+from templates import collinear, critical_speed_yaw, crush_energy, pedestrian_throw, skid, time_distance  # noqa: E402
 from templates.description import Template  # noqa: E402
 from templates.editions import Edition, edition  # noqa: E402
 from templates.momentum import describe as momentum  # noqa: E402
@@ -30,6 +30,7 @@ TEMPLATES: dict[str, Template] = {
     "planar-forward": planar_forward(FORWARD_EXAMPLE),
     "crush-energy": crush_energy.TEMPLATE,
     "pedestrian-throw": pedestrian_throw.TEMPLATE,
+    "time-distance": time_distance.TEMPLATE,
 }
 """Name of the template -> what its workbooks say, both editions in one."""
 

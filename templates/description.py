@@ -19,6 +19,7 @@ __all__ = [
     "Curve",
     "Diagram",
     "Equation",
+    "EvidenceRow",
     "FilterRow",
     "ForecastRow",
     "GuideSection",
@@ -114,18 +115,21 @@ class Section:
 
 @dataclass(frozen=True, slots=True)
 class ForecastRow:
-    """A row of `xlmc_forecasts`; `symbol` is the equation whose cell is the answer."""
+    """A row of `xlmc_forecasts`; `symbol` is the equation whose cell is the answer.
+
+    A threshold is a number, or the symbol of the input that holds it.
+    """
 
     name: str
     symbol: str
     unit: str
     central_percent: float | None = 51
-    threshold: float | None = None
+    threshold: Number | str | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class FilterRow:
-    """A row of `xlmc_filters`; a limit that is None is a blank cell."""
+    """A row of `xlmc_filters`; a limit that is None is a blank cell. `only_for` names the one forecast it is about."""
 
     name: str
     symbol: str
@@ -134,6 +138,26 @@ class FilterRow:
     at_most: Number | None = None
     above: Number | None = None
     below: Number | None = None
+    only_for: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class EvidenceRow:
+    """A row of `xlmc_evidence`: a reading of the quantity `symbol`, None while there is none.
+
+    Attributes:
+        error: the kind of error, such as Normal.
+        off_by: column of the table -> how far the reading may be off.
+        use: whether trials are kept by it.
+    """
+
+    name: str
+    symbol: str
+    reading: Number | None
+    error: str
+    off_by: Mapping[str, Number]
+    source: str
+    use: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,6 +245,7 @@ class Template:
     guide: tuple[GuideSection, ...]
     diagram: Diagram | None = None
     vehicles: tuple[str, ...] = ()
+    evidence: tuple[EvidenceRow, ...] = ()
 
     @property
     def inputs(self) -> tuple[Input, ...]:

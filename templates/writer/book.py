@@ -12,6 +12,7 @@ from xlsxwriter.workbook import Workbook
 from templates.description import Template
 from templates.vehicles import name_cell
 from templates.writer.cached import Values, computed
+from templates.writer.evidence_sheet import draw_evidence
 from templates.writer.fixed_size import fix_chart_sizes
 from templates.writer.guide_sheet import draw_guide
 from templates.writer.inputs_sheet import draw_inputs
@@ -62,6 +63,8 @@ def _write(template: Template, path: Path, values: Values) -> None:
         draw_model(model, styles, template, at, values)
         if template.diagram is not None:
             draw_scene(workbook, workbook.add_worksheet("Scene"), styles, template.diagram, values)
+        if template.evidence:
+            draw_evidence(workbook.add_worksheet("Evidence"), styles, template, at, values)
         wanted, guide = map(workbook.add_worksheet, ("Results wanted", "Guide"))
         draw_results_wanted(wanted, styles, template, at, values)
         draw_guide(guide, styles, template, values)

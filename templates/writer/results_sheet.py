@@ -23,7 +23,9 @@ _FILTERS = ("Name", "Cell", "At least", "At most", "Above", "Below", "Because")
 _CHECKS = ("Name", "Cell", "Because")
 _CORRELATIONS = ("First", "Second", "Correlation")
 _SETTINGS = ("Setting", "Value")
-_WIDTHS = (38, 22, 12, 12, 12, 12, 76)
+_WIDTHS = (38, 22, 12, 12, 12, 12, 76, 34)
+_ONLY_FOR = 7
+"""Column of the last of both headings that only a template needs in which a filter is about one forecast."""
 _SUBTITLE = "What a run collects, which trials it keeps, how many it makes. The Cell columns point into sheet Model."
 _ROOM = 3
 """Blank rows below a table, into which Excel lets it grow by typing."""
@@ -34,7 +36,8 @@ def draw_results_wanted(
     sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: Values
 ) -> None:
     """Write the sheet; `values` are what the formulas give at the base case."""
-    begin_sheet(sheet, styles, template.title, _SUBTITLE, _WIDTHS)
+    one_forecast = any(kept.only_for for kept in template.filters)
+    begin_sheet(sheet, styles, template.title, _SUBTITLE, _WIDTHS if one_forecast else _WIDTHS[:_ONLY_FOR])
     row = _draw_forecasts(sheet, styles, template, at, values, 3)
     row = _draw_filters(sheet, styles, template, at, values, row + _ROOM)
     row = _draw_checks(sheet, styles, template, at, values, row + _ROOM)
@@ -53,10 +56,15 @@ def _draw_forecasts(
     """Write the table under its heading in row `top`; the row below it is returned, here and in the others."""
     remark = "Range % is the central range reported; a Threshold also reports the probability of exceeding it."
     _head(sheet, styles, top, "Forecasts", remark, values)
-    add_table(sheet, styles, "xlmc_forecasts", top + 1, _FORECASTS, len(template.forecasts))
+    only_if = {kept.only_for: kept.name for kept in template.filters if kept.only_for}
+    headers = (*_FORECASTS, "Only if") if only_if else _FORECASTS
+    add_table(sheet, styles, "xlmc_forecasts", top + 1, headers, len(template.forecasts))
     equations = {equation.symbol: equation for equation in template.equations}
     for row, forecast in enumerate(template.forecasts, top + 2):
         _draw_forecast(sheet, styles, forecast, row, equations[forecast.symbol].notation, values)
+        _draw_threshold(sheet, styles, forecast, row, at, values)
+        if only_if:
+            sheet.write_string(row, _ONLY_FOR, only_if.get(forecast.name, ""), styles("text"))
         shown = styles("answer", equations[forecast.symbol].number_format)
         write_formula(sheet, row, 1, reference(at[forecast.symbol]), shown, values)
     guard(sheet, (top + 2, 1, top + 1 + len(template.forecasts), 1), "A formula", _POINTS)
@@ -69,9 +77,17 @@ def _draw_forecast(
     _draw_name(sheet, styles, forecast.name, row, values)
     sheet.write_string(row, 2, forecast.unit, styles("centred"))
     _number(sheet, styles, row, 3, forecast.central_percent)
-    _number(sheet, styles, row, 4, forecast.threshold)
     sheet.write_string(row, 5, notation, styles("centred"))
     sheet.write_blank(row, 6, None, styles("text"))
+
+
+def _draw_threshold(
+    sheet: Worksheet, styles: Styles, forecast: ForecastRow, row: int, at: dict[str, Place], values: Values
+) -> None:
+    if isinstance(forecast.threshold, str):
+        write_formula(sheet, row, 4, reference(at[forecast.threshold]), styles("number"), values)
+    else:
+        _number(sheet, styles, row, 4, forecast.threshold)
 
 
 def _draw_filters(
@@ -79,10 +95,14 @@ def _draw_filters(
 ) -> int:
     remark = "A trial is kept when every row holds. Red: the base case itself would be rejected."
     _head(sheet, styles, top, "Filters", remark, values)
-    add_table(sheet, styles, "xlmc_filters", top + 1, _FILTERS, len(template.filters))
+    one_forecast = any(kept.only_for for kept in template.filters)
+    headers = (*_FILTERS, "Only for") if one_forecast else _FILTERS
+    add_table(sheet, styles, "xlmc_filters", top + 1, headers, len(template.filters))
     formats = {equation.symbol: equation.number_format for equation in template.equations}
     for row, kept in enumerate(template.filters, top + 2):
         _draw_filter(sheet, styles, kept, row, values)
+        if one_forecast:
+            sheet.write_string(row, _ONLY_FOR, kept.only_for, styles("open text"))
         shown = styles("step", formats[kept.symbol])
         write_formula(sheet, row, 1, reference(at[kept.symbol]), shown, values)
     last = top + 1 + len(template.filters)
@@ -97,7 +117,7 @@ def _draw_filter(sheet: Worksheet, styles: Styles, kept: FilterRow, row: int, va
     for column, limit in enumerate((kept.at_least, kept.at_most, kept.above, kept.below), 2):
         _number(sheet, styles, row, column, limit)
     sheet.write_string(row, 6, kept.because, styles("open text"))
-    fit_row(sheet, row, [(kept.name, _WIDTHS[0]), (kept.because, _WIDTHS[6])])
+    fit_row(sheet, row, [(kept.name, _WIDTHS[0]), (kept.because, _WIDTHS[6]), (kept.only_for, _WIDTHS[7])])
 
 
 def _rejected(excel_row: int) -> str:

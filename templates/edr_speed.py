@@ -1,0 +1,425 @@
+"""An event data recorder kept speeds before the crash: the speed at the impact, and the way since the brakes went on."""
+
+from __future__ import annotations
+
+from templates.checks import check, checks_section
+from templates.description import (
+    Curve,
+    Diagram,
+    Equation,
+    EvidenceRow,
+    FilterRow,
+    ForecastRow,
+    GuideSection,
+    Input,
+    Look,
+    Role,
+    Section,
+    Template,
+)
+from templates.editions import Both
+from templates.guidance import CAVEATS, FIRST_STEPS, SIGNS
+from templates.units import CONVERSIONS, GRAVITY, MPH
+
+__all__ = ["TEMPLATE"]
+
+_SAMPLES = range(1, 11)
+"""Samples before the last one: 5 s at two a second."""
+_EXAMPLE = {1: Both(47, 76), 2: Both(55, 88), 3: Both(56, 90), 4: Both(56, 90)}
+
+_ASSUMPTIONS = (
+    Input(
+        "q",
+        "q",
+        "Recorded speeds are rounded: true less recorded",
+        "[mph|km/h]",
+        0,
+        "One sample's resolution, 1 [mph|km/h]; 49 CFR 563.8 asks for 1 km/h",
+        {"Low": -0.5, "High": 0.5},
+        number_format="0.00",
+    ),
+    Input(
+        "kappa",
+        "κ",
+        "Share by which slipping wheels under-report, while braking",
+        "",
+        0.13,
+        "8 to 18 % low at maximum or ABS braking, GM modules (Reust and Morgan, Collision 2(2):32, 2007)",
+        {"Low": 0.08, "High": 0.18},
+        number_format="0.000",
+    ),
+    Input(
+        "bias",
+        "b",
+        "True less recorded speed, before braking",
+        "[mph|km/h]",
+        Both(0.75, 1.2),
+        "Coasting, above [30 mph|50 km/h]: recorded speeds from [0.5 mph|0.8 km/h] above to [2.0 mph|3.2 km/h] below the "
+        "true one (Reust and Morgan, 2007)",
+        {"Low": Both(-0.5, -0.8), "High": Both(2.0, 3.2)},
+        number_format="0.00",
+    ),
+    Input(
+        "f",
+        "f",
+        "Deceleration while braking",
+        "g",
+        0.70,
+        "Example. Enter: friction of this surface",
+        {"Low": 0.65, "High": 0.75},
+        number_format="0.000",
+    ),
+    Input(
+        "tau",
+        "τ",
+        "From the last sample to the impact",
+        "s",
+        0.25,
+        "The impact lies anywhere between the last sample and the next: Low 0, High the interval between samples, and "
+        "the delay of the recorder where the report gives one",
+        {"Low": 0, "High": 0.5},
+        number_format="0.00",
+    ),
+)
+
+
+def _sample(number: int) -> Input:
+    return Input(
+        f"v_{number}",
+        f"v{number}",
+        f"Recorded speed, {number} before the last sample",
+        "[mph|km/h]",
+        _EXAMPLE.get(number),
+        "Example. Enter: the report of the recorder" if number == 1 else "",
+        number_format="0",
+    )
+
+
+_CONSTANTS = (
+    Input(
+        "v_last",
+        "v0",
+        "Recorded speed, last sample before the impact",
+        "[mph|km/h]",
+        Both(40, 64),
+        "Example. Enter: the report of the recorder",
+        number_format="0",
+    ),
+    Input(
+        "n_brake",
+        "nb",
+        "Samples before the last at which the brake first shows on",
+        "",
+        2,
+        "Example. 0: the brake was off in every sample",
+        number_format="0",
+    ),
+    Input(
+        "T_s",
+        "Ts",
+        "Interval between samples",
+        "s",
+        0.5,
+        "0.5 s in most recorders; 0.1 s under the rule of December 2024 (89 FR 102810)",
+        number_format="0.00",
+    ),
+    GRAVITY,
+    *CONVERSIONS,
+)
+
+_OPTIONAL = (
+    *(_sample(number) for number in _SAMPLES),
+    Input(
+        "dv_long",
+        "ΔV",
+        "Recorded delta-V, along the vehicle",
+        "[mph|km/h]",
+        None,
+        "Optional. Where what was struck stood or approached, and the vehicle did not rebound, the impact speed was more",
+    ),
+    Input("w_own", "w1", "Weight of this vehicle", "[lb|kg]", None, "Optional. For the closing speed from the delta-V"),
+    Input("w_other", "w2", "Weight of the other vehicle", "[lb|kg]", None, "Optional. The same"),
+    Input("e", "e", "Restitution", "", None, "Optional. The same; along one line only"),
+)
+
+_SPEEDS = (
+    Equation(
+        "braked",
+        "",
+        "The brake was on at the last sample (1 = yes)",
+        "",
+        "IF(n_brake>0,1,0)",
+        "input",
+        number_format="0",
+    ),
+    Equation(
+        "t_0",
+        "v0,true",
+        "True speed at the last sample",
+        "[mph|km/h]",
+        "IF(braked=1,(v_last+q)/(1-kappa),v_last+q+bias)",
+        "(v + q)/(1 − κ)",
+        "Recorded is (1 − κ) of the true speed while wheels slip; otherwise the difference of coasting tests holds.",
+    ),
+    Equation(
+        "v_impact_s",
+        "vi",
+        "Speed at the impact",
+        "[ft|m]/s",
+        f"t_0/({MPH})-braked*f*g*tau",
+        "vtrue − a·τ",
+        "The deceleration goes on after the last sample where the brake was on.",
+    ),
+)
+
+
+def _true(number: int) -> Equation:
+    return Equation(
+        f"t_{number}",
+        f"v{number},true",
+        f"True speed, {number} before the last sample",
+        "[mph|km/h]",
+        f'IF(ISNUMBER(v_{number}),IF({number}<n_brake,(v_{number}+q)/(1-kappa),v_{number}+q+bias),"–")',
+        "as above",
+        "One sensor: the same q, κ and b in all samples." if number == 1 else "",
+    )
+
+
+def _way(number: int) -> Equation:
+    return Equation(
+        f"x_{number}",
+        f"x{number}",
+        f"Way between samples {number} and {number - 1} before the last, brake on",
+        "[ft|m]",
+        f"IF({number}<=n_brake,(t_{number}+t_{number - 1})/2*T_s/({MPH}),0)",
+        "mean speed · Ts",
+        "Off by at most a·Ts²/8 in an interval." if number == 1 else "",
+        number_format="0.00",
+    )
+
+
+_RECORD = (
+    *(_true(number) for number in _SAMPLES),
+    *(_way(number) for number in _SAMPLES),
+)
+
+_ANSWERS = (
+    Equation(
+        "vi_[mph|kmh]",
+        "vi",
+        "Speed at the impact",
+        "[mph|km/h]",
+        f"v_impact_s*{MPH}",
+        "conversion",
+        "",
+        Role.ANSWER,
+        "0.00",
+    ),
+    Equation(
+        "v_on_[mph|kmh]",
+        "von",
+        "Speed at the sample at which the brake was first on",
+        "[mph|km/h]",
+        "IF(n_brake>0,CHOOSE(n_brake," + ",".join(f"t_{number}" for number in _SAMPLES) + "),t_0)",
+        "record",
+        "",
+        Role.ANSWER,
+        "0.00",
+    ),
+    Equation(
+        "x_on",
+        "xon",
+        "Way from that sample to the impact",
+        "[ft|m]",
+        "+".join(f"x_{number}" for number in _SAMPLES) + "+(t_0/(" + MPH + ")+v_impact_s)/2*tau",
+        "Σ x",
+        "",
+        Role.ANSWER,
+        "0.0",
+    ),
+)
+
+_DELTA_V = (
+    Equation(
+        "above_dv",
+        "vi − ΔV",
+        "Speed at the impact, less the recorded delta-V",
+        "[mph|km/h]",
+        f"IF(ISNUMBER(dv_long),v_impact_s*{MPH}-ABS(dv_long),0)",
+        "definition",
+        number_format="0.00",
+    ),
+    Equation(
+        "closing",
+        "Vc",
+        "Closing speed from the recorded delta-V, along one line",
+        "[mph|km/h]",
+        'IF(AND(ISNUMBER(dv_long),w_own>0,w_other>0,ISNUMBER(e)),ABS(dv_long)*(1+w_own/w_other)/(1+e),"–")',
+        "ΔV1·(1 + m1/m2)/(1 + e)",
+        number_format="0.00",
+    ),
+)
+
+_CHECKS = checks_section(
+    5,
+    check(
+        "check_samples",
+        "The brake was first on at a sample that is given",
+        "AND(v_last>0,n_brake>=0,n_brake<=10,n_brake=INT(n_brake),ISNUMBER(v_on_[mph|kmh]),ISNUMBER(x_on))",
+        "record",
+        "FALSE: fill in the recorded speeds back to the sample at which the brake was first on.",
+    ),
+    check(
+        "check_share",
+        "The share of slip is that of braking wheels",
+        "AND(kappa>=0,kappa<0.5)",
+        "published values",
+        "FALSE: more than half. A percentage entered as a number?",
+    ),
+    check(
+        "check_friction",
+        "The deceleration is that of road tyres, up to 1.2",
+        "AND(f>0,f<=1.2)",
+        "published values",
+        "FALSE: more than road tyres hold. A percentage entered as a number?",
+    ),
+    check(
+        "check_time",
+        "The impact lies at the last sample or after it",
+        "AND(tau>=0,T_s>0)",
+        "record",
+        "FALSE: a time below 0.",
+    ),
+    check(
+        "check_forward",
+        "The vehicle still moves forward at the impact",
+        "v_impact_s>0",
+        "physics",
+        "FALSE: it would have stopped before the impact.",
+    ),
+)
+
+_DIAGRAM = Diagram(
+    "Speed before the impact, base case",
+    "Time before the impact, s",
+    "Speed, [mph|km/h]",
+    (
+        Curve(
+            "True",
+            Look.FIRST,
+            (
+                *(
+                    (f"IF(ISNUMBER(v_{k}),-tau-{k}*T_s,-tau)", f"IF(ISNUMBER(v_{k}),t_{k},t_0)")
+                    for k in reversed(_SAMPLES)
+                ),
+                ("-tau", "t_0"),
+                ("0", f"v_impact_s*{MPH}"),
+            ),
+        ),
+        Curve(
+            "Recorded",
+            Look.SECOND,
+            (
+                *(
+                    (f"IF(ISNUMBER(v_{k}),-tau-{k}*T_s,-tau)", f"IF(ISNUMBER(v_{k}),v_{k},v_last)")
+                    for k in reversed(_SAMPLES)
+                ),
+                ("-tau", "v_last"),
+            ),
+        ),
+    ),
+    remark="Drawn from the cells below.",
+)
+
+_GUIDE = (
+    GuideSection(
+        "This workbook",
+        ("A template. The numbers in it are an example: replace every green cell, every range, every source.",),
+    ),
+    FIRST_STEPS,
+    SIGNS,
+    GuideSection(
+        "When to use this model",
+        (
+            "The recorder of a vehicle kept its speed for some seconds before the event. It answers the speed at the "
+            "impact, which lies after the last sample, and the way since the brake went on, for time-distance.",
+            "Recorded speed is that of wheels. Braking wheels slip, and the recorded speed is low; in a yaw with "
+            "steering only it was 2 to 7 % low, with braking too 3 to 18 % (Reust and Morgan, 2007): choose the range "
+            "by what the brake and stability flags say.",
+            "Deceleration and slip are both a matter of how hard the driver braked: a correlation between them (sheet "
+            "Results wanted) keeps impossible pairs apart.",
+            "Another tyre size or axle ratio than the factory's: multiply the recorded speeds (Nagel, Collision 3(2):22, "
+            "2008). Older recorders of some makers sample asynchronously, up to a second off: widen τ.",
+            "Samples ten times a second: enter every fifth, or the last ten, and set the interval.",
+        ),
+    ),
+    GuideSection(
+        "Recorded and true speed: published values",
+        ("Above [30 mph|50 km/h], recorders of GM (Reust and Morgan, Collision 2(2):32, 2007).",),
+        (
+            ("What the vehicle did", "Recorded speed"),
+            ("Accelerated", "within [1.5 mph|2.4 km/h]"),
+            ("Coasted", "[0.5 mph|0.8 km/h] high to [2.0 mph|3.2 km/h] low"),
+            ("Yaw, steering only", "2 to 7 % low"),
+            ("Yaw, braking too", "3 to 18 % low"),
+            ("Maximum or ABS braking", "8 to 18 % low"),
+            ("49 CFR 563.8, Table III", "speed within 1 km/h; delta-V within 10 %; both in steps of 1 km/h"),
+        ),
+    ),
+    CAVEATS,
+)
+
+TEMPLATE = Template(
+    title="Speed at the impact from an event data recorder",
+    subtitle="vtrue = (v + q)/(1 − κ); vi = vtrue − a·τ",
+    rung=11,
+    question="How fast was it at the impact, by its EDR?",
+    needs="recorded speeds, brake flag, friction",
+    assumptions=_ASSUMPTIONS,
+    constants=_CONSTANTS,
+    optional=_OPTIONAL,
+    sections=(
+        Section("1  Speed at the last sample and at the impact", _SPEEDS),
+        Section("2  The record", _RECORD),
+        Section("3  Answers (the forecasts)", _ANSWERS),
+        Section("4  Recorded delta-V", _DELTA_V),
+        _CHECKS,
+    ),
+    forecasts=(
+        ForecastRow("Speed at the impact", "vi_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("Speed when the brake was first on", "v_on_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("Way from brake on to the impact", "x_on", "[ft|m]"),
+    ),
+    filters=(
+        FilterRow("Forward at the impact", "v_impact_s", "The vehicle had not stopped", above=0),
+        FilterRow(
+            "Not below the recorded delta-V",
+            "above_dv",
+            "What was struck stood or approached, and the vehicle did not rebound. Without a delta-V: no effect",
+            at_least=0,
+        ),
+    ),
+    evidence=(
+        EvidenceRow(
+            "Impact speed from another source",
+            "vi_[mph|kmh]",
+            None,
+            "Normal",
+            {},
+            "Enter a speed from momentum, crush or a video, and its standard deviation",
+        ),
+        EvidenceRow(
+            "Skid marks from brake on to the impact",
+            "x_on",
+            None,
+            "Uniform",
+            {},
+            "Enter the length surveyed, and how far it may be off: marks begin after the brake does",
+        ),
+    ),
+    settings=(("Trials", 200_000), ("Seed", 999)),
+    correlations=(),
+    correlation_note="Slip and deceleration are both how hard it braked: First = Share by which …, Second = Deceleration …",
+    guide=_GUIDE,
+    diagram=_DIAGRAM,
+)

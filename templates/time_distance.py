@@ -1,0 +1,489 @@
+"""A through vehicle and an intruder: speed before braking, response time, and whether the limit would have avoided it."""
+
+from __future__ import annotations
+
+from templates.checks import check, checks_section
+from templates.description import (
+    Curve,
+    Diagram,
+    Equation,
+    EvidenceRow,
+    FilterRow,
+    ForecastRow,
+    GuideSection,
+    Input,
+    Look,
+    Role,
+    Section,
+    Template,
+)
+from templates.editions import Both
+from templates.guidance import CAVEATS, FIRST_STEPS, SIGNS
+from templates.units import CONVERSIONS, GRAVITY, MPH
+
+__all__ = ["TEMPLATE"]
+
+_RESPONSE = "To brake lights, surprise: mean 1.25 s, SD 0.46 s (Ergonomics, 1993); cut off at 0.5 and 3 s"
+
+_ASSUMPTIONS = (
+    Input(
+        "v_impact",
+        "vi",
+        "Through vehicle: speed at the impact",
+        "[mph|km/h]",
+        Both(40, 64),
+        "Example. Enter: from momentum, crush or throw; 0 cannot be",
+        {"Low": Both(37, 60), "High": Both(43, 68)},
+        number_format="0.0",
+    ),
+    Input(
+        "d_brake",
+        "db",
+        "Through vehicle: braking distance before the impact",
+        "[ft|m]",
+        Both(60, 18),
+        "Example. Enter: skid or ABS marks up to the point of impact; 0 where it did not brake",
+        {"Low": Both(57, 17), "High": Both(63, 19)},
+        number_format="0.0",
+    ),
+    Input(
+        "f",
+        "f",
+        "Through vehicle: deceleration while braking",
+        "g",
+        0.70,
+        "Example. Enter: friction of this surface, less the grade where it runs downhill",
+        {"Low": 0.65, "High": 0.75},
+        number_format="0.000",
+    ),
+    Input(
+        "d_intruder",
+        "dI",
+        "Intruder: distance from becoming a hazard to the point of impact",
+        "[ft|m]",
+        Both(22, 6.7),
+        "Example. Enter: from where a driver can tell that it moves, such as the stop line or the kerb",
+        {"Low": Both(21, 6.4), "High": Both(23, 7.0)},
+        number_format="0.0",
+    ),
+    Input(
+        "u",
+        "u",
+        "Intruder: speed when it became a hazard",
+        "[mph|km/h]",
+        0,
+        "Example, held at 0: it started from rest. Enter for a pedestrian the walking speed (see sheet Guide)",
+        {"Low": 0, "High": Both(3, 5)},
+        number_format="0.0",
+        frozen=True,
+    ),
+    Input(
+        "a_intruder",
+        "aI",
+        "Intruder: acceleration",
+        "g",
+        0.17,
+        "Cars starting from rest: comfortable .15 to .20 g (Hawkins, review of papers 1938 to 2010), over some "
+        "[30 ft|10 m]. 0 for a pedestrian",
+        {"Mean": 0.17, "Std dev": 0.035, "Lower cutoff": 0.08, "Upper cutoff": 0.30},
+        "Normal",
+        "0.000",
+    ),
+    Input(
+        "clearance",
+        "c",
+        "Intruder: further distance until it has cleared",
+        "[ft|m]",
+        Both(12, 3.7),
+        "Example. Enter: how far it still had to go for the through vehicle to pass behind it",
+        {"Low": Both(11, 3.4), "High": Both(13, 4.0)},
+        number_format="0.0",
+    ),
+    Input(
+        "t_fresh",
+        "tf",
+        "Response time of an ordinary driver",
+        "s",
+        1.25,
+        _RESPONSE,
+        {"Mean": 1.25, "Std dev": 0.46, "Lower cutoff": 0.5, "Upper cutoff": 3},
+        "Normal",
+        "0.00",
+    ),
+)
+
+_CONSTANTS = (
+    Input(
+        "limit",
+        "V",
+        "Speed that the question is about, such as the limit",
+        "[mph|km/h]",
+        Both(45, 70),
+        "Enter: the posted limit, or the speed that was prudent there",
+        number_format="0.0",
+    ),
+    GRAVITY,
+    *CONVERSIONS,
+)
+
+_AS_IT_WAS = (
+    Equation("v_i", "vi", "Speed at the impact", "[ft|m]/s", f"v_impact/({MPH})", "input"),
+    Equation("b", "b", "Deceleration while braking", "[ft|m]/s²", "f*g", "f·g"),
+    Equation("v_0", "v0", "Speed before braking", "[ft|m]/s", "SQRT(v_i^2+2*b*d_brake)", "v0² = vi² + 2·b·db"),
+    Equation(
+        "t_brake",
+        "tb",
+        "Time of braking before the impact",
+        "s",
+        "2*d_brake/(v_0+v_i)",
+        "distance / mean speed",
+        "Not (v0 − vi)/b, which loses digits for short marks.",
+    ),
+    Equation("u_s", "u", "Intruder's speed at the start", "[ft|m]/s", f"u/({MPH})", "input"),
+    Equation(
+        "t_intruder",
+        "tI",
+        "From becoming a hazard to the impact",
+        "s",
+        "2*d_intruder/(u_s+SQRT(u_s^2+2*a_intruder*g*d_intruder))",
+        "d = u·t + aI·g·t²/2",
+        "The root without a division by the acceleration, which may be 0.",
+    ),
+    Equation(
+        "t_clear",
+        "tc",
+        "From becoming a hazard to having cleared",
+        "s",
+        "2*(d_intruder+clearance)/(u_s+SQRT(u_s^2+2*a_intruder*g*(d_intruder+clearance)))",
+        "the same, further on",
+    ),
+    Equation(
+        "t_response",
+        "tr",
+        "Response time that this crash implies",
+        "s",
+        "t_intruder-t_brake",
+        "tI − tb",
+        "Rise of the brakes included. Below 0: braking began before there was a hazard.",
+    ),
+    Equation(
+        "D_0",
+        "D0",
+        "Distance from the point of impact when the hazard began",
+        "[ft|m]",
+        "v_0*t_response+d_brake",
+        "v0·tr + db",
+        number_format="0.00",
+    ),
+    Equation("V_s", "V", "The speed in question", "[ft|m]/s", f"limit/({MPH})", "input"),
+)
+
+
+def _instead(driver: str, who: str, response: str) -> tuple[Equation, ...]:
+    """Steps of the same approach at the speed in question; `driver` ends the symbols."""
+    return (
+        Equation(
+            f"s_{driver}",
+            f"s{driver}",
+            f"{who}: distance left when braking begins",
+            "[ft|m]",
+            f"D_0-V_s*{response}",
+            "D0 − V·t",
+            "0 or less: the vehicle arrives before it brakes." if driver == "same" else "",
+            number_format="0.00",
+        ),
+        Equation(
+            f"stops_{driver}",
+            "",
+            f"{who}: stops before the point of impact (1 = yes)",
+            "",
+            f"IF(AND(s_{driver}>0,V_s^2<=2*b*s_{driver}),1,0)",
+            "V² ≤ 2·b·s",
+            number_format="0",
+        ),
+        Equation(
+            f"v_hit_{driver}",
+            f"vhit,{driver}",
+            f"{who}: speed at the point of impact",
+            "[ft|m]/s",
+            f"IF(s_{driver}<=0,V_s,SQRT(MAX(V_s^2-2*b*s_{driver},0)))",
+            "√(V² − 2·b·s)",
+            "Steep near a stop: give its percentiles rather than its mean." if driver == "same" else "",
+        ),
+        Equation(
+            f"t_arrive_{driver}",
+            f"ta,{driver}",
+            f"{who}: arrives after",
+            "s",
+            f"IF(s_{driver}<=0,D_0/V_s,{response}+2*MAX(s_{driver},0)/(V_s+v_hit_{driver}))",
+            "t + 2·s/(V + vhit)",
+            "Where the vehicle stops short, this is only a bound: it never arrives." if driver == "same" else "",
+        ),
+        Equation(
+            f"avoided_{driver}",
+            "",
+            f"{who}: avoided (1 = yes)",
+            "",
+            f"IF(OR(stops_{driver}=1,t_arrive_{driver}>=t_clear),1,0)",
+            "stops, or ta ≥ tc",
+            number_format="0",
+        ),
+    )
+
+
+_ANSWERS = (
+    Equation(
+        "v0_[mph|kmh]",
+        "v0",
+        "Speed before braking",
+        "[mph|km/h]",
+        f"v_0*{MPH}",
+        "conversion",
+        "",
+        Role.ANSWER,
+        "0.00",
+    ),
+    Equation(
+        "v_stop_[mph|kmh]",
+        "vstop",
+        "Highest speed from which the same driver still stops",
+        "[mph|km/h]",
+        f"2*D_0/(t_response+SQRT(t_response^2+2*D_0/b))*{MPH}",
+        "D0 = v·tr + v²/(2·b)",
+        "The root that does not subtract nearly equal numbers.",
+        Role.ANSWER,
+        "0.00",
+    ),
+    Equation(
+        "v_hit_[mph|kmh]",
+        "vhit",
+        "Same driver: speed at the point of impact",
+        "[mph|km/h]",
+        f"v_hit_same*{MPH}",
+        "conversion",
+        "",
+        Role.ANSWER,
+        "0.00",
+    ),
+    Equation(
+        "margin",
+        "ta − tc",
+        "Same driver: time by which the intruder has cleared, if the vehicle arrives",
+        "s",
+        "t_arrive_same-t_clear",
+        "ta − tc",
+        "Below 0: a collision.",
+        Role.ANSWER,
+        "0.00",
+    ),
+)
+
+_SELF_TEST = (
+    Equation(
+        "v_again",
+        "vi′",
+        "Speed at the impact, from the speed before braking",
+        "[ft|m]/s",
+        "SQRT(MAX(v_0^2-2*b*(D_0-v_0*t_response),0))",
+        "as above, with V = v0",
+        "A test of the sheet itself: at V = v0 it must give the crash that happened.",
+    ),
+    Equation(
+        "t_again",
+        "tI′",
+        "Time of the impact, from the speed before braking",
+        "s",
+        "t_response+2*(D_0-v_0*t_response)/(v_0+v_again)",
+        "as above, with V = v0",
+    ),
+)
+
+_CHECKS = checks_section(
+    6,
+    check(
+        "check_inputs",
+        "Speeds, distances and times are not negative",
+        "AND(v_impact>0,d_brake>=0,d_intruder>0,u>=0,a_intruder>=0,clearance>=0,limit>0,t_fresh>0)",
+        "geometry",
+        "FALSE: a distance or a speed below 0, or an impact at 0.",
+    ),
+    check(
+        "check_moves",
+        "The intruder reaches the point of impact",
+        "u+a_intruder>0",
+        "physics",
+        "FALSE: neither speed nor acceleration: it stands still.",
+    ),
+    check(
+        "check_friction",
+        "The deceleration is that of road tyres, up to 1.2",
+        "AND(f>0,f<=1.2)",
+        "published values",
+        "FALSE: more than road tyres hold. A percentage entered as a number?",
+    ),
+    check(
+        "check_response",
+        "The hazard began before the braking",
+        "t_response>0",
+        "physics",
+        "FALSE: the driver braked before there was a hazard. Look at the intruder's distance and acceleration.",
+    ),
+    check(
+        "check_identity",
+        "At its own speed the vehicle has the crash that happened",
+        "AND(ABS(v_again-v_i)<=0.000001*v_0,ABS(t_again-t_intruder)<=0.000001*t_intruder)",
+        "identity",
+        "FALSE: a formula was typed over.",
+    ),
+)
+
+_STEPS = tuple(range(13))
+
+
+def _seen_at(share: str, speed: str, response: str, end: str) -> tuple[str, str]:
+    """Time, and distance still to go: constant speed while responding, then braking, at `share` of the time `end`."""
+    time = f"{share}*({end})"
+    gone = f"{speed}*MIN({time},{response})"
+    braking = f"MAX(MIN({time}-{response},{speed}/b),0)"
+    return time, f"D_0-({gone}+{speed}*{braking}-b*{braking}^2/2)"
+
+
+_DIAGRAM = Diagram(
+    "Distance to the point of impact, base case",
+    "Time since the hazard began, s",
+    "Distance still to go, [ft|m]",
+    (
+        Curve(
+            "As it was",
+            Look.FIRST,
+            tuple(_seen_at(f"{step}/12", "v_0", "t_response", "t_intruder") for step in _STEPS),
+        ),
+        Curve(
+            "At the speed in question, same driver",
+            Look.SECOND,
+            tuple(_seen_at(f"{step}/12", "V_s", "t_response", "t_clear") for step in _STEPS),
+        ),
+        Curve("Intruder at the point of impact", Look.LINE, (("t_intruder", "0"), ("t_intruder", "D_0"))),
+        Curve("Intruder has cleared", Look.LINE, (("t_clear", "0"), ("t_clear", "D_0"))),
+    ),
+    remark="Drawn from the cells below. A curve that reaches 0 after the intruder has cleared, or never, is no crash.",
+)
+
+_GUIDE = (
+    GuideSection(
+        "This workbook",
+        ("A template. The numbers in it are an example: replace every green cell, every range, every source.",),
+    ),
+    FIRST_STEPS,
+    SIGNS,
+    GuideSection(
+        "When to use this model",
+        (
+            "A vehicle on its way, and an intruder that crosses its path: a left turn, a pull-out, a pedestrian. It "
+            "answers how fast the vehicle was before it braked, how long its driver took to respond, and whether the "
+            "crash would have been avoided at another speed, by stopping or because the intruder had cleared.",
+            "A pedestrian: set the acceleration to 0 and Frozen to TRUE, enter the walking speed as the intruder's "
+            "speed, with its range, and set its Frozen to FALSE.",
+            "The speed at the impact comes from another model (momentum, crush-energy, pedestrian-throw) or from an "
+            "EDR (edr-speed): use its mean and standard deviation, Distribution Normal.",
+            "Not where the through vehicle braked in parts, steered, or was itself accelerating.",
+        ),
+    ),
+    GuideSection(
+        "Same driver, or an ordinary driver: two questions",
+        (
+            "Same driver: would this crash have been avoided, had this driver been at the speed in question and "
+            "responded as here? The response time that the crash implies is kept. This answers but for the speed.",
+            "Ordinary driver: would a driver drawn from the published distribution have avoided it from there? Another "
+            "question, with another answer, often a very different one. Say which one you answer.",
+            "The implied response time is evidence: below 0.5 s nobody responds, and a filter rejects it. The row on "
+            "sheet Results wanted weighs it by the published distribution of response times, if you set Use to TRUE; "
+            "do so only if nothing else in the workbook already uses that distribution for this driver.",
+            "Yes and no (1 and 0): the mean is the probability. So is Above threshold, with its interval.",
+        ),
+    ),
+    GuideSection(
+        "Published values",
+        ("A constant acceleration is for the first [30 ft|10 m] or so: it falls as speed grows.",),
+        (
+            ("Quantity", "Values"),
+            ("Response to brake lights, surprise", "mean 1.25 s, SD 0.46 s"),
+            (
+                "Of drivers who braked in 122 events of left turns across the path",
+                "100, 99, 90, 58, 30 % reached .4, .5, .6, .7, .8 g (SAE 2019-01-0414, tallied by Peck)",
+            ),
+            ("Cars starting from rest, comfortable", ".15 to .20 g"),
+            (
+                "Walking, older than 65 years",
+                "mean [3.81 ft/s = 2.60 mph|1.16 m/s = 4.18 km/h], 15th percentile [3.02 ft/s = 2.06 mph|0.92 m/s = "
+                "3.31 km/h] (Gates and others, TRB 06-1826)",
+            ),
+        ),
+    ),
+    CAVEATS,
+)
+
+TEMPLATE = Template(
+    title="Time and distance: would it have been avoided?",
+    subtitle="v0 = √(vi² + 2 f g db); D0 = v0·tr + db; the same approach at another speed",
+    rung=9,
+    question="Would the crash have been avoided at the limit?",
+    needs="impact speed, braking distance, the intruder's path",
+    assumptions=_ASSUMPTIONS,
+    constants=_CONSTANTS,
+    optional=(),
+    sections=(
+        Section("1  As it was", _AS_IT_WAS),
+        Section("2  The same driver at the speed in question", _instead("same", "Same driver", "t_response")),
+        Section("3  An ordinary driver at the speed in question", _instead("fresh", "Ordinary driver", "t_fresh")),
+        Section("4  Answers (the forecasts)", _ANSWERS),
+        Section("5  Test of the sheet itself", _SELF_TEST),
+        _CHECKS,
+    ),
+    forecasts=(
+        ForecastRow("Speed before braking", "v0_[mph|kmh]", "[mph|km/h]", threshold="limit"),
+        ForecastRow("Implied response time", "t_response", "s"),
+        ForecastRow("Distance when the hazard began", "D_0", "[ft|m]"),
+        ForecastRow("Highest speed that still stops", "v_stop_[mph|kmh]", "[mph|km/h]", threshold="limit"),
+        ForecastRow("Same driver: stops (1 = yes)", "stops_same", "", threshold=0.5),
+        ForecastRow("Same driver: avoided (1 = yes)", "avoided_same", "", threshold=0.5),
+        ForecastRow("Same driver: impact speed if not avoided", "v_hit_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("Same driver: margin if it arrives", "margin", "s", threshold=0),
+        ForecastRow("Ordinary driver: avoided (1 = yes)", "avoided_fresh", "", threshold=0.5),
+    ),
+    filters=(
+        FilterRow(
+            "Response time", "t_response", "Nobody responds sooner; later would be another story", at_least=0.5, at_most=3
+        ),
+        FilterRow(
+            "Not avoided",
+            "avoided_same",
+            "The impact speed is that of the trials in which there is an impact",
+            below=0.5,
+            only_for="Same driver: impact speed if not avoided",
+        ),
+        FilterRow(
+            "Arrives",
+            "stops_same",
+            "The margin is that of the trials in which the vehicle arrives",
+            below=0.5,
+            only_for="Same driver: margin if it arrives",
+        ),
+    ),
+    evidence=(
+        EvidenceRow(
+            "Response time of surprised drivers",
+            "t_response",
+            1.25,
+            "Normal",
+            {"Std dev": 0.46},
+            "Ergonomics, 1993. Set Use to TRUE to weigh the implied response time by it",
+            use=False,
+        ),
+    ),
+    settings=(("Trials", 200_000), ("Seed", 999)),
+    correlations=(),
+    correlation_note="A driver who brakes harder may respond sooner: correlate them, if you know how much.",
+    guide=_GUIDE,
+    diagram=_DIAGRAM,
+)

@@ -10,7 +10,19 @@ if __name__ == "__main__":
     sys.path.append(str(HERE.parent))
 
 # The path above makes a plain `python templates/build.py` work.
-from templates import collinear, critical_speed_yaw, crush_energy, pedestrian_throw, skid, time_distance  # noqa: E402
+from templates import (  # noqa: E402
+    airborne,
+    collinear,
+    critical_speed_yaw,
+    crush_energy,
+    edr_speed,
+    momentum_energy,
+    pedestrian,
+    pedestrian_throw,
+    skid,
+    time_distance,
+    video_speed,
+)
 from templates.description import Template  # noqa: E402
 from templates.editions import Edition, edition  # noqa: E402
 from templates.momentum import describe as momentum  # noqa: E402
@@ -31,6 +43,11 @@ TEMPLATES: dict[str, Template] = {
     "crush-energy": crush_energy.TEMPLATE,
     "pedestrian-throw": pedestrian_throw.TEMPLATE,
     "time-distance": time_distance.TEMPLATE,
+    "airborne": airborne.TEMPLATE,
+    "edr-speed": edr_speed.TEMPLATE,
+    "video-speed": video_speed.TEMPLATE,
+    "momentum-energy": momentum_energy.TEMPLATE,
+    "pedestrian": pedestrian.TEMPLATE,
 }
 """Name of the template -> what its workbooks say, both editions in one."""
 

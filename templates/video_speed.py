@@ -57,7 +57,7 @@ _ASSUMPTIONS = (
         number_format="0.00",
     ),
     Input(
-        "r",
+        "rate",
         "r",
         "Frame rate",
         "1/s",
@@ -98,7 +98,7 @@ _STEPS = (
         "Each crossing lies within one frame: their difference is one frame either way, and most likely none.",
         number_format="0.000",
     ),
-    Equation("T", "T", "Time between the crossings", "s", "frames/r", "N / r"),
+    Equation("T", "T", "Time between the crossings", "s", "frames/rate", "N / r"),
     Equation("v_mean", "v̄", "Mean speed between the marks", "[ft|m]/s", "d/T", "d / T"),
     Equation(
         "v_end",
@@ -128,7 +128,7 @@ _CHECKS = checks_section(
     check(
         "check_order",
         "The last mark is passed after the first",
-        "AND(d>0,n>=1,frames>0,r>0)",
+        "AND(d>0,n>=1,frames>0,rate>0)",
         "geometry",
         "FALSE: count the frames from the first mark to the last.",
     ),
@@ -173,7 +173,7 @@ _DIAGRAM = Diagram(
         Curve(
             "Speed",
             Look.FIRST,
-            tuple((f"n-2+{count}/4", f"d*r/MAX(n-2+{count}/4,0.1)*{MPH}") for count in _COUNTS),
+            tuple((f"n-2+{count}/4", f"d*rate/MAX(n-2+{count}/4,0.1)*{MPH}") for count in _COUNTS),
         ),
         Curve("As counted", Look.POINT, (("frames", f"v_mean*{MPH}"),)),
     ),

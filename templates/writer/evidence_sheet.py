@@ -6,7 +6,15 @@ from xlsxwriter.worksheet import Worksheet
 
 from templates.description import EvidenceRow, Template
 from templates.writer.cached import Values
-from templates.writer.page import add_table, begin_sheet, fit_row, guard, repeat_header, write_formula
+from templates.writer.page import (
+    add_table,
+    begin_sheet,
+    fit_row,
+    guard,
+    repeat_header,
+    write_formula,
+    write_label,
+)
 from templates.writer.places import HEADER_ROW, Place, reference
 from templates.writer.styles import Styles
 
@@ -17,7 +25,7 @@ _HEADERS = ("Name", "Cell", "Units", "Reading", "Error", *_OFF_BY, "Use", "Sourc
 _WIDTHS = (44, 16, 11, 11, 13, 13, 11, 11, 12, 9, 84)
 _ERRORS = ("Uniform", "Instrument", "Normal", "Lognormal", "At least", "At most")
 _SUBTITLE = (
-    "What was measured of the crash itself. A row is used once it has a reading and Use is not FALSE. "
+    "What was measured of the crash itself. A row is used once it has a reading, unless Use is FALSE. "
     "Decide how far a reading may be off before you look at the answers, and use each fact once."
 )
 _POINTS = "This formula says which quantity was read. Change it only to speak of another one."
@@ -34,6 +42,7 @@ def draw_evidence(sheet: Worksheet, styles: Styles, template: Template, at: dict
         write_formula(
             sheet, row, 1, reference(at[reading.symbol]), styles("step", quantity.number_format), values
         )
+        write_label(sheet, row, 0, reading.name, styles("open text"), values)
         _draw_reading(sheet, styles, reading, quantity.unit, row)
     first, last = HEADER_ROW + 1, HEADER_ROW + len(template.evidence)
     guard(sheet, (first, 1, last, 1), "A formula", _POINTS)
@@ -43,7 +52,6 @@ def draw_evidence(sheet: Worksheet, styles: Styles, template: Template, at: dict
 
 
 def _draw_reading(sheet: Worksheet, styles: Styles, reading: EvidenceRow, unit: str, row: int) -> None:
-    sheet.write_string(row, 0, reading.name, styles("open text"))
     sheet.write_string(row, 2, unit, styles("centred"))
     numbers = (reading.reading, *(reading.off_by.get(header) for header in _OFF_BY))
     for column, value in zip((3, 5, 6, 7, 8), numbers, strict=True):
@@ -52,7 +60,10 @@ def _draw_reading(sheet: Worksheet, styles: Styles, reading: EvidenceRow, unit: 
         else:
             sheet.write_number(row, column, value, styles("number"))
     sheet.write_string(row, 4, reading.error, styles("open centred"))
-    sheet.write_string(row, 9, "TRUE" if reading.use else "FALSE", styles("open centred"))
+    if reading.use:
+        sheet.write_blank(row, 9, None, styles("open centred"))
+    else:
+        sheet.write_string(row, 9, "FALSE", styles("open centred"))
     sheet.write_string(row, 10, reading.source, styles("open text"))
     fit_row(sheet, row, [(reading.name, _WIDTHS[0]), (reading.source, _WIDTHS[10])])
 

@@ -1,0 +1,406 @@
+"""A braking vehicle strikes a pedestrian: skid, throw and walking on one sheet."""
+
+from __future__ import annotations
+
+from templates.checks import check, checks_section
+from templates.description import (
+    Curve,
+    Diagram,
+    Equation,
+    EvidenceRow,
+    FilterRow,
+    ForecastRow,
+    GuideSection,
+    Input,
+    Look,
+    Role,
+    Section,
+    Template,
+)
+from templates.editions import Both
+from templates.guidance import CAVEATS, FIRST_STEPS, SIGNS
+from templates.units import CONVERSIONS, GRAVITY, MPH
+
+__all__ = ["TEMPLATE"]
+
+_ASSUMPTIONS = (
+    Input(
+        "f",
+        "f",
+        "Vehicle: deceleration while braking",
+        "g",
+        0.70,
+        "Example. Enter: friction of this surface, less the grade where it runs downhill",
+        {"Low": 0.65, "High": 0.75},
+        number_format="0.000",
+    ),
+    Input(
+        "d_before",
+        "db",
+        "Vehicle: marks before the impact",
+        "[ft|m]",
+        Both(30, 9),
+        "Example. Enter: surveyed up to the point of impact; 0 where there are none",
+        {"Low": Both(27, 8), "High": Both(33, 10)},
+        number_format="0.0",
+    ),
+    Input(
+        "d_after",
+        "da",
+        "Vehicle: braking after the impact, to rest",
+        "[ft|m]",
+        Both(50, 15),
+        "Example. Enter: from the point of impact to rest, where it braked all the way",
+        {"Low": Both(47, 14), "High": Both(53, 16)},
+        number_format="0.0",
+    ),
+    Input(
+        "s",
+        "s",
+        "Throw distance, from the impact to rest",
+        "[ft|m]",
+        Both(54, 16.5),
+        "Example. Enter: surveyed; as wide as the point of impact is uncertain",
+        {"Low": Both(50, 15.5), "High": Both(58, 17.5)},
+        number_format="0.0",
+    ),
+    Input(
+        "mu",
+        "μ",
+        "Friction of the body on the ground",
+        "",
+        0.66,
+        "Placeholder, not a published value. Enter: tests of clothed dummies on this surface, as wide as they scatter",
+        {"Low": 0.5, "Low likeliest": 0.6, "High likeliest": 0.7, "High": 0.8},
+        "Trapezoid",
+        "0.00",
+    ),
+    Input(
+        "angle",
+        "θ",
+        "Angle of projection above the ground",
+        "deg",
+        15,
+        "Example. Seldom known: 0 where the body was pushed forward; wide where it was lifted",
+        {"Low": 0, "High": 30},
+        number_format="0.0",
+    ),
+    Input(
+        "efficiency",
+        "η",
+        "Projection speed over vehicle speed",
+        "",
+        0.9,
+        "Example. 1: the body reached the vehicle's speed. Less where it was lifted, or hit at the edge",
+        {"Low": 0.8, "High": 1},
+        number_format="0.00",
+    ),
+    Input(
+        "walked",
+        "dw",
+        "Pedestrian: way from becoming a hazard to the impact",
+        "[ft|m]",
+        Both(10, 3.0),
+        "Example. Enter: from the kerb, or from where a driver could see that they would cross",
+        {"Low": Both(9, 2.7), "High": Both(11, 3.3)},
+        number_format="0.0",
+    ),
+    Input(
+        "walking",
+        "u",
+        "Pedestrian: walking speed",
+        "[ft|m]/s",
+        Both(4.5, 1.4),
+        "Experts' reports take 4 to 5 ft/s; see sheet Guide for age",
+        {"Low": Both(4, 1.2), "High": Both(5, 1.5)},
+        number_format="0.00",
+    ),
+)
+
+_CONSTANTS = (
+    Input(
+        "known",
+        "",
+        "Impact speed taken from: 1 = marks after the impact, 2 = throw",
+        "",
+        1,
+        "Choose the better one. The other stands beside it as evidence (sheet Evidence)",
+        number_format="0",
+        choices=(1, 2),
+    ),
+    Input(
+        "limit",
+        "V",
+        "Speed that the question is about, such as the limit",
+        "[mph|km/h]",
+        Both(30, 50),
+        "Enter: the posted limit",
+        number_format="0.0",
+    ),
+    GRAVITY,
+    *CONVERSIONS,
+)
+
+_SPEED = (
+    Equation("b", "b", "Deceleration while braking", "[ft|m]/s²", "f*g", "f·g"),
+    Equation(
+        "v_marks", "vs", "Impact speed, from the marks after it", "[ft|m]/s", "SQRT(2*b*d_after)", "√(2·b·da)",
+    ),
+    Equation(
+        "v_projected",
+        "vp",
+        "Projection speed of the body",
+        "[ft|m]/s",
+        "SQRT(2*mu*g*s)/(COS(RADIANS(angle))+mu*SIN(RADIANS(angle)))",
+        "Searle, SAE 831622: √(2 μ g s)/(cos θ + μ sin θ)",
+    ),
+    Equation(
+        "v_thrown",
+        "vt",
+        "Impact speed, from the throw",
+        "[ft|m]/s",
+        "v_projected/efficiency",
+        "vp / η",
+        "A vehicle is never slower than the body that it throws.",
+    ),
+    Equation("v_i", "vi", "Impact speed", "[ft|m]/s", "IF(known=2,v_thrown,v_marks)", "input"),
+    Equation("v_0", "v0", "Speed before braking", "[ft|m]/s", "SQRT(v_i^2+2*b*d_before)", "√(vi² + 2·b·db)"),
+)
+
+_TIME = (
+    Equation("t_walk", "tw", "From becoming a hazard to the impact", "s", "walked/walking", "dw / u"),
+    Equation(
+        "t_brake",
+        "tb",
+        "Time of braking before the impact",
+        "s",
+        "2*d_before/(v_0+v_i)",
+        "distance / mean speed",
+        "Not (v0 − vi)/b, which loses digits for short marks.",
+    ),
+    Equation("t_response", "tr", "Response time that this crash implies", "s", "t_walk-t_brake", "tw − tb"),
+    Equation(
+        "D_0",
+        "D0",
+        "Vehicle's distance from the point of impact when the hazard began",
+        "[ft|m]",
+        "v_0*t_response+d_before",
+        "v0·tr + db",
+        number_format="0.00",
+    ),
+    Equation("V_s", "V", "The speed in question", "[ft|m]/s", f"limit/({MPH})", "input"),
+    Equation(
+        "stops",
+        "",
+        "Same driver at that speed: stops before the point of impact (1 = yes)",
+        "",
+        "IF(AND(D_0-V_s*t_response>0,V_s^2<=2*b*(D_0-V_s*t_response)),1,0)",
+        "V² ≤ 2·b·(D0 − V·tr)",
+        "The template time-distance also asks whether the pedestrian would have cleared.",
+        number_format="0",
+    ),
+)
+
+_ANSWERS = (
+    Equation(
+        "vs_[mph|kmh]", "vs", "Impact speed, from the marks", "[mph|km/h]", f"v_marks*{MPH}", "conversion", "",
+        Role.ANSWER, "0.00",
+    ),
+    Equation(
+        "vt_[mph|kmh]", "vt", "Impact speed, from the throw", "[mph|km/h]", f"v_thrown*{MPH}", "conversion", "",
+        Role.ANSWER, "0.00",
+    ),
+    Equation(
+        "v0_[mph|kmh]", "v0", "Speed before braking", "[mph|km/h]", f"v_0*{MPH}", "conversion", "",
+        Role.ANSWER, "0.00",
+    ),
+    Equation(
+        "v_stop_[mph|kmh]",
+        "vstop",
+        "Highest speed from which the same driver still stops",
+        "[mph|km/h]",
+        f"2*D_0/(t_response+SQRT(t_response^2+2*D_0/b))*{MPH}",
+        "D0 = v·tr + v²/(2·b)",
+        "The root that does not subtract nearly equal numbers.",
+        Role.ANSWER,
+        "0.00",
+    ),
+    Equation(
+        "apart",
+        "vt − vs",
+        "Impact speed from the throw, less that from the marks",
+        "[mph|km/h]",
+        f"(v_thrown-v_marks)*{MPH}",
+        "definition",
+        "Two answers to one question: near 0 where both are right.",
+        Role.ANSWER,
+        "0.00",
+    ),
+)
+
+_CHECKS = checks_section(
+    4,
+    check(
+        "check_lengths",
+        "No length or time is negative",
+        "AND(d_before>=0,d_after>=0,s>0,walked>0,walking>0,limit>0)",
+        "geometry",
+        "FALSE: a length below 0, or none.",
+    ),
+    check(
+        "check_friction",
+        "The deceleration is that of road tyres, up to 1.2",
+        "AND(f>0,f<=1.2)",
+        "published values",
+        "FALSE: more than road tyres hold. A percentage entered as a number?",
+    ),
+    check(
+        "check_body",
+        "Friction of the body is up to 1.2",
+        "AND(mu>0,mu<=1.2)",
+        "plausibility",
+        "FALSE: more than a body on the ground can have. A percentage entered as a number?",
+    ),
+    check(
+        "check_angle",
+        "The angle of projection is that of a throw",
+        "AND(angle>=0,angle<=2*DEGREES(ATAN(mu)))",
+        "physics",
+        "FALSE: steeper than twice the angle that throws farthest; a vehicle does not project so.",
+    ),
+    check(
+        "check_efficiency",
+        "The body is not faster than the vehicle",
+        "AND(efficiency>0,efficiency<=1)",
+        "physics",
+        "FALSE: an inelastic body cannot leave faster than what pushes it.",
+    ),
+    check(
+        "check_walking",
+        "The walking speed is that of a person, up to [15 ft/s|5 m/s]",
+        "walking<=[15|5]",
+        "plausibility",
+        "FALSE: faster than people run. In other units?",
+    ),
+    check(
+        "check_response",
+        "The hazard began before the braking",
+        "t_response>0",
+        "physics",
+        "FALSE: the driver braked before there was a hazard. Look at the way walked and the walking speed.",
+    ),
+)
+
+_STEPS = tuple(range(13))
+
+
+def _still_to_go(share: str) -> tuple[str, str]:
+    time = f"{share}*t_walk"
+    braking = f"MAX({time}-t_response,0)"
+    return time, f"D_0-v_0*({time})+b*{braking}^2/2"
+
+
+_DIAGRAM = Diagram(
+    "Both on their way to the point of impact, base case",
+    "Time since the hazard began, s",
+    "Distance still to go, [ft|m]",
+    (
+        Curve("Vehicle", Look.FIRST, tuple(_still_to_go(f"{step}/12") for step in _STEPS)),
+        Curve("Pedestrian", Look.SECOND, (("0", "walked"), ("t_walk", "0"))),
+        Curve("Braking begins", Look.POINT, (("t_response", "d_before"),)),
+    ),
+    remark="Drawn from the cells below.",
+)
+
+_GUIDE = (
+    GuideSection(
+        "This workbook",
+        ("A template. The numbers in it are an example: replace every green cell, every range, every source.",),
+    ),
+    FIRST_STEPS,
+    SIGNS,
+    GuideSection(
+        "When to use this model",
+        (
+            "A vehicle braked, struck a pedestrian with its front, and braked on to rest. Marks and throw each give "
+            "the impact speed; marks before the impact the speed before braking; the way walked, the response time.",
+            "Marks and throw answer one question twice. Choose the better one; sheet Evidence has a row in which "
+            "their difference must be 0, within an error that you decide on before you look.",
+            "Not for a body carried on the vehicle, thrown over the roof, or struck by its corner; not where the "
+            "vehicle did not brake to rest (then choose the throw, 2).",
+            "Next: time-distance, which asks whether the pedestrian would have cleared, and what an ordinary driver "
+            "would have done.",
+        ),
+    ),
+    GuideSection(
+        "Walking: published values",
+        ("Use the pedestrian's age and what witnesses saw.",),
+        (
+            ("Pedestrian", "Walking speed"),
+            (
+                "Older than 65 years (Gates and others, TRB 06-1826, 2006)",
+                "mean [3.81 ft/s|1.16 m/s], 15th percentile [3.02 ft/s|0.92 m/s]",
+            ),
+            ("Experts' reports", "[4 to 5 ft/s|1.2 to 1.5 m/s]"),
+        ),
+    ),
+    CAVEATS,
+)
+
+TEMPLATE = Template(
+    title="A braking vehicle and a pedestrian",
+    subtitle="Skid: v = √(2 f g d); throw, after Searle; walking: tr = dw/u − tb",
+    rung=14,
+    question="How fast, and when was the pedestrian seen?",
+    needs="marks, throw distance, way walked, frictions",
+    assumptions=_ASSUMPTIONS,
+    constants=_CONSTANTS,
+    optional=(),
+    sections=(
+        Section("1  Speed", _SPEED),
+        Section("2  Time", _TIME),
+        Section("3  Answers (the forecasts)", _ANSWERS),
+        _CHECKS,
+    ),
+    forecasts=(
+        ForecastRow("Impact speed, from the marks", "vs_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("Impact speed, from the throw", "vt_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("Speed before braking", "v0_[mph|kmh]", "[mph|km/h]", threshold="limit"),
+        ForecastRow("Implied response time", "t_response", "s"),
+        ForecastRow("Distance when the hazard began", "D_0", "[ft|m]"),
+        ForecastRow("Highest speed that still stops", "v_stop_[mph|kmh]", "[mph|km/h]", threshold="limit"),
+        ForecastRow("Same driver at the limit: stops (1 = yes)", "stops", "", threshold=0.5),
+    ),
+    filters=(
+        FilterRow(
+            "Response time",
+            "t_response",
+            "Nobody responds sooner; later would be another story",
+            at_least=0.5,
+            at_most=3,
+        ),
+    ),
+    evidence=(
+        EvidenceRow(
+            "Throw and marks agree",
+            "apart",
+            None,
+            "Normal",
+            {},
+            "Enter 0, and a standard deviation for what neither model has in it",
+        ),
+        EvidenceRow(
+            "Impact speed in an EDR or a video",
+            "vs_[mph|kmh]",
+            None,
+            "Normal",
+            {},
+            "Enter the mean and the standard deviation of edr-speed or video-speed",
+        ),
+    ),
+    settings=(("Trials", 200_000), ("Seed", 999)),
+    correlations=(),
+    correlation_note="A lifted body has a steeper angle and a lower efficiency: correlate them, if you know how much.",
+    guide=_GUIDE,
+    diagram=_DIAGRAM,
+)

@@ -103,7 +103,15 @@ _STEPS = (
         "Not √(g·(√(d² + h²) − h)), which loses digits for a deep fall.",
     ),
     Equation("v_land", "vl", "Speed at landing", "[ft|m]/s", "SQRT(v^2+2*g*h)", "energy"),
-    Equation("steepness", "d/q", "Distance, in units of the fall below the line", "", "d/q", "definition", number_format="0.0"),
+    Equation(
+        "steepness",
+        "d/q",
+        "Distance, in units of the fall below the line",
+        "",
+        "d/q",
+        "definition",
+        number_format="0.0",
+    ),
 )
 
 _ANSWERS = (
@@ -155,7 +163,9 @@ _ANSWERS = (
 
 _CHECKS = checks_section(
     3,
-    check("check_fall", "The landing lies below the line of take-off", "q>0", "geometry", "FALSE: no speed lands there."),
+    check(
+        "check_fall", "The landing lies below the line of take-off", "q>0", "geometry", "FALSE: no speed lands there."
+    ),
     check(
         "check_distance",
         "It flew forward, and braked over no negative length",
@@ -180,21 +190,21 @@ _CHECKS = checks_section(
     check(
         "check_least",
         "The speed is not below the least that reaches the landing",
-        "v>=v_min*(1-0.000001)",
+        "IF(q>0,v>=v_min*(1-0.000001),TRUE)",
         "physics",
         "FALSE: a formula was typed over.",
     ),
     check(
         "check_time",
         "It was in the air for less than 3 s",
-        "t<3",
+        "IF(q>0,t<3,TRUE)",
         "physics",
         "FALSE: over such a time air drag and rotation matter.",
     ),
     check(
         "check_steepness",
         "The fall below the line of take-off is not small against the distance",
-        "steepness<=10",
+        "IF(q>0,steepness<=10,TRUE)",
         "conditioning",
         "FALSE: d/q is above 10. A degree of slope changes the speed by 9 % or more: give percentiles, not the mean.",
     ),
@@ -210,9 +220,7 @@ _DIAGRAM = Diagram(
         Curve(
             "Flight",
             Look.FIRST,
-            tuple(
-                (f"{share}*d", f"h+{share}*d*TAN(RADIANS(theta))-q*({share})^2") for share in _SHARES
-            ),
+            tuple((f"{share}*d", f"h+{share}*d*TAN(RADIANS(theta))-q*({share})^2") for share in _SHARES),
         ),
         Curve("Line of take-off", Look.LINE, (("0", "h"), ("d", "h+d*TAN(RADIANS(theta))"))),
         Curve("Landing", Look.POINT, (("d", "0"),)),
@@ -273,9 +281,9 @@ TEMPLATE = Template(
         _CHECKS,
     ),
     forecasts=(
-        ForecastRow("Speed at take-off", "v_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow("Speed before braking", "v1_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow("Take-off speed, at least", "vmin_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("«1» speed at take-off", "v_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("«1» speed before braking", "v1_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("«1» take-off speed, at least", "vmin_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("Time in the air", "t", "s"),
         ForecastRow("Direction of flight at landing", "landing_slope", "deg"),
     ),
@@ -303,4 +311,5 @@ TEMPLATE = Template(
     correlation_note="Distance and drop are measured apart: none.",
     guide=_GUIDE,
     diagram=_DIAGRAM,
+    vehicles=("Vehicle",),
 )

@@ -115,16 +115,13 @@ class Section:
 
 @dataclass(frozen=True, slots=True)
 class ForecastRow:
-    """A row of `xlmc_forecasts`; `symbol` is the equation whose cell is the answer.
-
-    A threshold is a number, or the symbol of the input that holds it.
-    """
+    """A row of `xlmc_forecasts`; `symbol` is the equation whose cell is the answer."""
 
     name: str
     symbol: str
     unit: str
     central_percent: float | None = 51
-    threshold: Number | str | None = None
+    threshold: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

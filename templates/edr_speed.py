@@ -1,4 +1,4 @@
-"""An event data recorder kept speeds before the crash: the speed at the impact, and the way since the brakes went on."""
+"""An event data recorder kept speeds before the crash: the speed at the impact, and the way since the brake was on."""
 
 from __future__ import annotations
 
@@ -54,8 +54,8 @@ _ASSUMPTIONS = (
         "True less recorded speed, before braking",
         "[mph|km/h]",
         Both(0.75, 1.2),
-        "Coasting, above [30 mph|50 km/h]: recorded speeds from [0.5 mph|0.8 km/h] above to [2.0 mph|3.2 km/h] below the "
-        "true one (Reust and Morgan, 2007)",
+        "Coasting, above [30 mph|50 km/h]: recorded speeds from [0.5 mph|0.8 km/h] above to [2.0 mph|3.2 km/h] below "
+        "the true one (Reust and Morgan, 2007)",
         {"Low": Both(-0.5, -0.8), "High": Both(2.0, 3.2)},
         number_format="0.00",
     ),
@@ -90,7 +90,7 @@ def _sample(number: int) -> Input:
         f"Recorded speed, {number} before the last sample",
         "[mph|km/h]",
         _EXAMPLE.get(number),
-        "Example. Enter: the report of the recorder" if number == 1 else "",
+        "Example. Enter: the report of the recorder" if number in _EXAMPLE else "Optional. The same",
         number_format="0",
     )
 
@@ -135,7 +135,7 @@ _OPTIONAL = (
         "Recorded delta-V, along the vehicle",
         "[mph|km/h]",
         None,
-        "Optional. Where what was struck stood or approached, and the vehicle did not rebound, the impact speed was more",
+        "Optional. Where what was struck stood or approached, without rebound, the impact speed was more",
     ),
     Input("w_own", "w1", "Weight of this vehicle", "[lb|kg]", None, "Optional. For the closing speed from the delta-V"),
     Input("w_other", "w2", "Weight of the other vehicle", "[lb|kg]", None, "Optional. The same"),
@@ -348,7 +348,7 @@ _GUIDE = (
             "by what the brake and stability flags say.",
             "Deceleration and slip are both a matter of how hard the driver braked: a correlation between them (sheet "
             "Results wanted) keeps impossible pairs apart.",
-            "Another tyre size or axle ratio than the factory's: multiply the recorded speeds (Nagel, Collision 3(2):22, "
+            "Another tyre size or axle ratio than the factory's: multiply the recorded speeds (Nagel, Collision 3(2), "
             "2008). Older recorders of some makers sample asynchronously, up to a second off: widen τ.",
             "Samples ten times a second: enter every fifth, or the last ten, and set the interval.",
         ),
@@ -386,9 +386,9 @@ TEMPLATE = Template(
         _CHECKS,
     ),
     forecasts=(
-        ForecastRow("Speed at the impact", "vi_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow("Speed when the brake was first on", "v_on_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow("Way from brake on to the impact", "x_on", "[ft|m]"),
+        ForecastRow("«1» speed at the impact", "vi_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("«1» speed when the brake was first on", "v_on_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("«1» way from brake on to the impact", "x_on", "[ft|m]"),
     ),
     filters=(
         FilterRow("Forward at the impact", "v_impact_s", "The vehicle had not stopped", above=0),
@@ -419,7 +419,8 @@ TEMPLATE = Template(
     ),
     settings=(("Trials", 200_000), ("Seed", 999)),
     correlations=(),
-    correlation_note="Slip and deceleration are both how hard it braked: First = Share by which …, Second = Deceleration …",
+    correlation_note="Slip and deceleration both tell how hard it braked: correlate them, if you know how much.",
     guide=_GUIDE,
     diagram=_DIAGRAM,
+    vehicles=("Vehicle",),
 )

@@ -207,7 +207,7 @@ _SPEEDS = (
         "[lb·s|N·s]",
         "m_1*V1_f*SIN(RADIANS(beta_1-alpha_1))+m_2*V2_f*SIN(RADIANS(beta_2-alpha_1))",
         "definition",
-        "All of it was vehicle 2's before the impact.",
+        "All of it was that of «2» before the impact.",
         number_format="#,##0.00",
     ),
     Equation(
@@ -270,9 +270,7 @@ _CHANGES = (
         "V1_f*SIN(RADIANS(beta_1-alpha_1))",
         "definition",
     ),
-    Equation(
-        "dV_1", "ΔV1", "«1» change in velocity", "[ft|m]/s", "SQRT(dV1_along^2+dV1_across^2)", "definition"
-    ),
+    Equation("dV_1", "ΔV1", "«1» change in velocity", "[ft|m]/s", "SQRT(dV1_along^2+dV1_across^2)", "definition"),
     Equation("dV_2", "ΔV2", "«2» change in velocity", "[ft|m]/s", "dV_1*m_1/m_2", "the opposite impulse"),
     Equation(
         "dV1_x",
@@ -361,7 +359,7 @@ _WHEN = GuideSection(
         "Two vehicles whose approaches are near-parallel, head-on or from behind, where momentum alone is blind: there "
         "an angle uncertain by 3° can make a speed uncertain by hundreds of [mph|km/h]. The energy that crush took "
         "gives the closing speed at any angle; momentum gives only its direction.",
-        "The approach angle of vehicle 2 is an answer. Compare it with its lane: sheet Evidence has a row for it.",
+        "The approach angle of the other vehicle is an answer. Compare it with its lane: sheet Evidence has a row for it.",
         "The reverse: where the closing momentum m2·c is hardly more than the momentum across (the quantity m2·c − "
         "|p⊥| on sheet Model, near 0), energy says little, and momentum is better. Run both templates and compare "
         "their standard deviations; the smaller one answers.",
@@ -398,9 +396,7 @@ TEMPLATE = Template(
         *direction_forecasts(yaw=False),
     ),
     filters=(
-        FilterRow(
-            "Closing momentum", "reach", "The closing speed can carry the momentum across", at_least=0
-        ),
+        FilterRow("Closing momentum", "reach", "The closing speed can carry the momentum across", at_least=0),
         FilterRow(f"{vehicle(1)} impact speed", "V1_[mph|kmh]", "It was moving forward", above=0),
     ),
     evidence=(

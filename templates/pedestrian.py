@@ -27,7 +27,7 @@ _ASSUMPTIONS = (
     Input(
         "f",
         "f",
-        "Vehicle: deceleration while braking",
+        "«1» deceleration while braking",
         "g",
         0.70,
         "Example. Enter: friction of this surface, less the grade where it runs downhill",
@@ -37,7 +37,7 @@ _ASSUMPTIONS = (
     Input(
         "d_before",
         "db",
-        "Vehicle: marks before the impact",
+        "«1» marks before the impact",
         "[ft|m]",
         Both(30, 9),
         "Example. Enter: surveyed up to the point of impact; 0 where there are none",
@@ -47,7 +47,7 @@ _ASSUMPTIONS = (
     Input(
         "d_after",
         "da",
-        "Vehicle: braking after the impact, to rest",
+        "«1» braking after the impact, to rest",
         "[ft|m]",
         Both(50, 15),
         "Example. Enter: from the point of impact to rest, where it braked all the way",
@@ -88,7 +88,7 @@ _ASSUMPTIONS = (
     Input(
         "efficiency",
         "η",
-        "Projection speed over vehicle speed",
+        "Projection speed over that of «1»",
         "",
         0.9,
         "Example. 1: the body reached the vehicle's speed. Less where it was lifted, or hit at the edge",
@@ -144,7 +144,12 @@ _CONSTANTS = (
 _SPEED = (
     Equation("b", "b", "Deceleration while braking", "[ft|m]/s²", "f*g", "f·g"),
     Equation(
-        "v_marks", "vs", "Impact speed, from the marks after it", "[ft|m]/s", "SQRT(2*b*d_after)", "√(2·b·da)",
+        "v_marks",
+        "vs",
+        "Impact speed, from the marks after it",
+        "[ft|m]/s",
+        "SQRT(2*b*d_after)",
+        "√(2·b·da)",
     ),
     Equation(
         "v_projected",
@@ -182,7 +187,7 @@ _TIME = (
     Equation(
         "D_0",
         "D0",
-        "Vehicle's distance from the point of impact when the hazard began",
+        "«1» distance from the point of impact when the hazard began",
         "[ft|m]",
         "v_0*t_response+d_before",
         "v0·tr + db",
@@ -203,16 +208,37 @@ _TIME = (
 
 _ANSWERS = (
     Equation(
-        "vs_[mph|kmh]", "vs", "Impact speed, from the marks", "[mph|km/h]", f"v_marks*{MPH}", "conversion", "",
-        Role.ANSWER, "0.00",
+        "vs_[mph|kmh]",
+        "vs",
+        "Impact speed, from the marks",
+        "[mph|km/h]",
+        f"v_marks*{MPH}",
+        "conversion",
+        "",
+        Role.ANSWER,
+        "0.00",
     ),
     Equation(
-        "vt_[mph|kmh]", "vt", "Impact speed, from the throw", "[mph|km/h]", f"v_thrown*{MPH}", "conversion", "",
-        Role.ANSWER, "0.00",
+        "vt_[mph|kmh]",
+        "vt",
+        "Impact speed, from the throw",
+        "[mph|km/h]",
+        f"v_thrown*{MPH}",
+        "conversion",
+        "",
+        Role.ANSWER,
+        "0.00",
     ),
     Equation(
-        "v0_[mph|kmh]", "v0", "Speed before braking", "[mph|km/h]", f"v_0*{MPH}", "conversion", "",
-        Role.ANSWER, "0.00",
+        "v0_[mph|kmh]",
+        "v0",
+        "Speed before braking",
+        "[mph|km/h]",
+        f"v_0*{MPH}",
+        "conversion",
+        "",
+        Role.ANSWER,
+        "0.00",
     ),
     Equation(
         "v_stop_[mph|kmh]",
@@ -291,7 +317,7 @@ _CHECKS = checks_section(
     ),
 )
 
-_STEPS = tuple(range(13))
+_STEPS = tuple(range(12))
 
 
 def _still_to_go(share: str) -> tuple[str, str]:
@@ -305,7 +331,7 @@ _DIAGRAM = Diagram(
     "Time since the hazard began, s",
     "Distance still to go, [ft|m]",
     (
-        Curve("Vehicle", Look.FIRST, tuple(_still_to_go(f"{step}/12") for step in _STEPS)),
+        Curve("«1»", Look.FIRST, (*(_still_to_go(f"{step}/12") for step in _STEPS), ("t_walk", "0"))),
         Curve("Pedestrian", Look.SECOND, (("0", "walked"), ("t_walk", "0"))),
         Curve("Braking begins", Look.POINT, (("t_response", "d_before"),)),
     ),
@@ -363,12 +389,12 @@ TEMPLATE = Template(
         _CHECKS,
     ),
     forecasts=(
-        ForecastRow("Impact speed, from the marks", "vs_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow("Impact speed, from the throw", "vt_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow("Speed before braking", "v0_[mph|kmh]", "[mph|km/h]", threshold="limit"),
+        ForecastRow("«1» impact speed, from the marks", "vs_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("«1» impact speed, from the throw", "vt_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("«1» speed before braking", "v0_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("Implied response time", "t_response", "s"),
         ForecastRow("Distance when the hazard began", "D_0", "[ft|m]"),
-        ForecastRow("Highest speed that still stops", "v_stop_[mph|kmh]", "[mph|km/h]", threshold="limit"),
+        ForecastRow("Highest speed that still stops", "v_stop_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("Same driver at the limit: stops (1 = yes)", "stops", "", threshold=0.5),
     ),
     filters=(
@@ -403,4 +429,5 @@ TEMPLATE = Template(
     correlation_note="A lifted body has a steeper angle and a lower efficiency: correlate them, if you know how much.",
     guide=_GUIDE,
     diagram=_DIAGRAM,
+    vehicles=("Vehicle",),
 )

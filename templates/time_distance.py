@@ -1,4 +1,4 @@
-"""A through vehicle and an intruder: speed before braking, response time, and whether the limit would have avoided it."""
+"""A vehicle and an intruder: speed before braking, response time, and whether another speed had avoided the crash."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _ASSUMPTIONS = (
     Input(
         "v_impact",
         "vi",
-        "Through vehicle: speed at the impact",
+        "«1» speed at the impact",
         "[mph|km/h]",
         Both(40, 64),
         "Example. Enter: from momentum, crush or throw; 0 cannot be",
@@ -39,7 +39,7 @@ _ASSUMPTIONS = (
     Input(
         "d_brake",
         "db",
-        "Through vehicle: braking distance before the impact",
+        "«1» braking distance before the impact",
         "[ft|m]",
         Both(60, 18),
         "Example. Enter: skid or ABS marks up to the point of impact; 0 where it did not brake",
@@ -49,7 +49,7 @@ _ASSUMPTIONS = (
     Input(
         "f",
         "f",
-        "Through vehicle: deceleration while braking",
+        "«1» deceleration while braking",
         "g",
         0.70,
         "Example. Enter: friction of this surface, less the grade where it runs downhill",
@@ -95,7 +95,7 @@ _ASSUMPTIONS = (
         "Intruder: further distance until it has cleared",
         "[ft|m]",
         Both(12, 3.7),
-        "Example. Enter: how far it still had to go for the through vehicle to pass behind it",
+        "Example. Enter: how far it still had to go until the vehicle could pass behind it",
         {"Low": Both(11, 3.4), "High": Both(13, 4.0)},
         number_format="0.0",
     ),
@@ -244,6 +244,17 @@ _ANSWERS = (
         "0.00",
     ),
     Equation(
+        "over_[mph|kmh]",
+        "v0 − V",
+        "Speed before braking, less the speed in question",
+        "[mph|km/h]",
+        f"v_0*{MPH}-limit",
+        "definition",
+        "",
+        Role.ANSWER,
+        "0.00",
+    ),
+    Equation(
         "v_stop_[mph|kmh]",
         "vstop",
         "Highest speed from which the same driver still stops",
@@ -324,14 +335,14 @@ _CHECKS = checks_section(
     check(
         "check_response",
         "The hazard began before the braking",
-        "t_response>0",
+        "IF(check_moves,t_response>0,TRUE)",
         "physics",
         "FALSE: the driver braked before there was a hazard. Look at the intruder's distance and acceleration.",
     ),
     check(
         "check_identity",
         "At its own speed the vehicle has the crash that happened",
-        "AND(ABS(v_again-v_i)<=0.000001*v_0,ABS(t_again-t_intruder)<=0.000001*t_intruder)",
+        "IF(check_moves,AND(ABS(v_again-v_i)<=0.000001*v_0,ABS(t_again-t_intruder)<=0.000001*t_intruder),TRUE)",
         "identity",
         "FALSE: a formula was typed over.",
     ),
@@ -356,7 +367,10 @@ _DIAGRAM = Diagram(
         Curve(
             "As it was",
             Look.FIRST,
-            tuple(_seen_at(f"{step}/12", "v_0", "t_response", "t_intruder") for step in _STEPS),
+            (
+                *(_seen_at(f"{step}/12", "v_0", "t_response", "t_intruder") for step in _STEPS[:-1]),
+                ("t_intruder", "0"),
+            ),
         ),
         Curve(
             "At the speed in question, same driver",
@@ -386,7 +400,7 @@ _GUIDE = (
             "speed, with its range, and set its Frozen to FALSE.",
             "The speed at the impact comes from another model (momentum, crush-energy, pedestrian-throw) or from an "
             "EDR (edr-speed): use its mean and standard deviation, Distribution Normal.",
-            "Not where the through vehicle braked in parts, steered, or was itself accelerating.",
+            "Not where the vehicle braked in parts, steered, or was itself accelerating.",
         ),
     ),
     GuideSection(
@@ -441,10 +455,11 @@ TEMPLATE = Template(
         _CHECKS,
     ),
     forecasts=(
-        ForecastRow("Speed before braking", "v0_[mph|kmh]", "[mph|km/h]", threshold="limit"),
+        ForecastRow("«1» speed before braking", "v0_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("«1» speed before braking, above the limit", "over_[mph|kmh]", "[mph|km/h]", threshold=0),
         ForecastRow("Implied response time", "t_response", "s"),
         ForecastRow("Distance when the hazard began", "D_0", "[ft|m]"),
-        ForecastRow("Highest speed that still stops", "v_stop_[mph|kmh]", "[mph|km/h]", threshold="limit"),
+        ForecastRow("Highest speed that still stops", "v_stop_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("Same driver: stops (1 = yes)", "stops_same", "", threshold=0.5),
         ForecastRow("Same driver: avoided (1 = yes)", "avoided_same", "", threshold=0.5),
         ForecastRow("Same driver: impact speed if not avoided", "v_hit_[mph|kmh]", "[mph|km/h]"),
@@ -453,7 +468,11 @@ TEMPLATE = Template(
     ),
     filters=(
         FilterRow(
-            "Response time", "t_response", "Nobody responds sooner; later would be another story", at_least=0.5, at_most=3
+            "Response time",
+            "t_response",
+            "Nobody responds sooner; later would be another story",
+            at_least=0.5,
+            at_most=3,
         ),
         FilterRow(
             "Not avoided",
@@ -486,4 +505,5 @@ TEMPLATE = Template(
     correlation_note="A driver who brakes harder may respond sooner: correlate them, if you know how much.",
     guide=_GUIDE,
     diagram=_DIAGRAM,
+    vehicles=("Vehicle",),
 )

@@ -81,8 +81,15 @@ _ASSUMPTIONS = (
 )
 
 _CONSTANTS = (
-    Input("n", "n", "Frames counted between the marks", "", 40, "Example. Count: the frame after the last mark less "
-          "the frame after the first", number_format="0"),
+    Input(
+        "n",
+        "n",
+        "Frames counted between the marks",
+        "",
+        40,
+        "Example. Count: the frame after the last mark less the frame after the first",
+        number_format="0",
+    ),
     GRAVITY,
     *CONVERSIONS,
 )
@@ -114,12 +121,26 @@ _STEPS = (
 
 _ANSWERS = (
     Equation(
-        "v_[mph|kmh]", "v̄", "Mean speed between the marks", "[mph|km/h]", f"v_mean*{MPH}", "conversion", "",
-        Role.ANSWER, "0.00",
+        "v_[mph|kmh]",
+        "v̄",
+        "Mean speed between the marks",
+        "[mph|km/h]",
+        f"v_mean*{MPH}",
+        "conversion",
+        "",
+        Role.ANSWER,
+        "0.00",
     ),
     Equation(
-        "vend_[mph|kmh]", "ve", "Speed at the last mark", "[mph|km/h]", f"v_end*{MPH}", "conversion", "",
-        Role.ANSWER, "0.00",
+        "vend_[mph|kmh]",
+        "ve",
+        "Speed at the last mark",
+        "[mph|km/h]",
+        f"v_end*{MPH}",
+        "conversion",
+        "",
+        Role.ANSWER,
+        "0.00",
     ),
 )
 
@@ -231,8 +252,8 @@ TEMPLATE = Template(
         _CHECKS,
     ),
     forecasts=(
-        ForecastRow("Mean speed between the marks", "v_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow("Speed at the last mark", "vend_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("«1» mean speed between the marks", "v_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("«1» speed at the last mark", "vend_[mph|kmh]", "[mph|km/h]"),
     ),
     filters=(
         FilterRow("Order of the marks", "frames", "The last mark is passed after the first", above=0),
@@ -245,8 +266,8 @@ TEMPLATE = Template(
             None,
             "Instrument",
             {"Resolution": Both(1.24, 2)},
-            "Enter the recorded speed. 49 CFR 563.8: within 1 km/h, in steps of 1 km/h. Braking wheels under-report it: "
-            "see the template edr-speed",
+            "Enter the recorded speed. 49 CFR 563.8: within 1 km/h, in steps of 1 km/h. Braking wheels "
+            "under-report it: see the template edr-speed",
         ),
     ),
     settings=(("Trials", 200_000), ("Seed", 999)),
@@ -254,4 +275,5 @@ TEMPLATE = Template(
     correlation_note="Distances that share one calibration are correlated: enter how much.",
     guide=_GUIDE,
     diagram=_DIAGRAM,
+    vehicles=("Vehicle",),
 )

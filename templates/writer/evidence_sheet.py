@@ -5,6 +5,7 @@ from __future__ import annotations
 from xlsxwriter.worksheet import Worksheet
 
 from templates.description import EvidenceRow, Template
+from templates.vehicles import names_a_vehicle
 from templates.writer.cached import Values
 from templates.writer.page import (
     add_table,
@@ -39,10 +40,9 @@ def draw_evidence(sheet: Worksheet, styles: Styles, template: Template, at: dict
     quantities = {equation.symbol: equation for equation in template.equations}
     for row, reading in enumerate(template.evidence, HEADER_ROW + 1):
         quantity = quantities[reading.symbol]
-        write_formula(
-            sheet, row, 1, reference(at[reading.symbol]), styles("step", quantity.number_format), values
-        )
-        write_label(sheet, row, 0, reading.name, styles("open text"), values)
+        write_formula(sheet, row, 1, reference(at[reading.symbol]), styles("step", quantity.number_format), values)
+        look = "text" if names_a_vehicle(reading.name) else "open text"
+        write_label(sheet, row, 0, reading.name, styles(look), values, asks=True)
         _draw_reading(sheet, styles, reading, quantity.unit, row)
     first, last = HEADER_ROW + 1, HEADER_ROW + len(template.evidence)
     guard(sheet, (first, 1, last, 1), "A formula", _POINTS)

@@ -62,7 +62,6 @@ def _draw_forecasts(
     equations = {equation.symbol: equation for equation in template.equations}
     for row, forecast in enumerate(template.forecasts, top + 2):
         _draw_forecast(sheet, styles, forecast, row, equations[forecast.symbol].notation, values)
-        _draw_threshold(sheet, styles, forecast, row, at, values)
         if only_if:
             sheet.write_string(row, _ONLY_FOR, only_if.get(forecast.name, ""), styles("text"))
         shown = styles("answer", equations[forecast.symbol].number_format)
@@ -77,17 +76,9 @@ def _draw_forecast(
     _draw_name(sheet, styles, forecast.name, row, values)
     sheet.write_string(row, 2, forecast.unit, styles("centred"))
     _number(sheet, styles, row, 3, forecast.central_percent)
+    _number(sheet, styles, row, 4, forecast.threshold)
     sheet.write_string(row, 5, notation, styles("centred"))
     sheet.write_blank(row, 6, None, styles("text"))
-
-
-def _draw_threshold(
-    sheet: Worksheet, styles: Styles, forecast: ForecastRow, row: int, at: dict[str, Place], values: Values
-) -> None:
-    if isinstance(forecast.threshold, str):
-        write_formula(sheet, row, 4, reference(at[forecast.threshold]), styles("number"), values)
-    else:
-        _number(sheet, styles, row, 4, forecast.threshold)
 
 
 def _draw_filters(
@@ -102,7 +93,7 @@ def _draw_filters(
     for row, kept in enumerate(template.filters, top + 2):
         _draw_filter(sheet, styles, kept, row, values)
         if one_forecast:
-            sheet.write_string(row, _ONLY_FOR, kept.only_for, styles("open text"))
+            write_label(sheet, row, _ONLY_FOR, kept.only_for, styles("open text"), values, asks=True)
         shown = styles("step", formats[kept.symbol])
         write_formula(sheet, row, 1, reference(at[kept.symbol]), shown, values)
     last = top + 1 + len(template.filters)

@@ -17,6 +17,12 @@ TEMPLATES = [
     "planar-forward",
     "crush-energy",
     "pedestrian-throw",
+    "time-distance",
+    "airborne",
+    "edr-speed",
+    "video-speed",
+    "momentum-energy",
+    "pedestrian",
 ]
 """The simplest first."""
 

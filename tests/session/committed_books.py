@@ -21,14 +21,20 @@ _EXAMPLES: Final = (
     "yaw-mark",
 )
 _TEMPLATES: Final = (
+    "airborne",
     "collinear",
     "critical-speed-yaw",
     "crush-energy",
+    "edr-speed",
     "momentum",
+    "momentum-energy",
+    "pedestrian",
     "pedestrian-throw",
     "planar-forward",
     "planar-impact",
     "skid",
+    "time-distance",
+    "video-speed",
 )
 
 EXAMPLES: Final = {name: ROOT / "examples" / f"{name}.xlsx" for name in _EXAMPLES}

@@ -16,12 +16,19 @@ FRICTION = {
     "planar-impact": ("f_1", "f_2"),
     "planar-forward": ("f_1", "f_2", "mu"),
     "pedestrian-throw": ("mu",),
+    "time-distance": ("f",),
+    "airborne": ("f",),
+    "edr-speed": ("f",),
+    "momentum-energy": ("f_1", "f_2"),
+    "pedestrian": ("f", "mu"),
 }
 ANGLE = {
     "momentum": ("alpha_1",),
     "planar-impact": ("alpha_1",),
     "crush-energy": ("theta_1", "theta_2"),
     "pedestrian-throw": ("angle",),
+    "airborne": ("theta",),
+    "pedestrian": ("angle",),
 }
 RESTITUTION = {"collinear": ("e",), "planar-forward": ("e_n", "e_t"), "crush-energy": ("e",)}
 CASES = [

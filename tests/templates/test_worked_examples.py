@@ -19,6 +19,16 @@ THROW = {"s": 60, "mu": 0.66, "g": 32.174}
 YAW = {"chord": 52, "ordinate": 6, "f": 0.2, "bank": 0, "offset": 0, "g": 32.174}
 SKID = {"f_1": 0.75, "d_1": 100, "d_2": 0, "d_3": 0, "v_end": 0, "grade": 0, "g": 32.174}
 
+LEFT_TURN = {"v_impact": 40, "d_brake": 60, "f": 0.7, "d_intruder": 22, "u": 0, "a_intruder": 0.2, "clearance": 12}
+LEFT_TURN |= {"g": 32.174, "limit": 45, "t_fresh": 1.25}
+AMY = {"d": 44.6, "h": 8.3, "theta": 0, "f": 0.45, "s": 32.7, "g": 32.2}
+HEAD_ON = {"m_1": 880, "I_1": 998.348, "EES_1": 66, "phi_1": 200, "mu_1": 0.4, "R_1": 2.4, "alpha_1": 0, "beta_1": -9}
+HEAD_ON |= {"m_2": 1600, "I_2": 2681.42, "EES_2": 42, "phi_2": 64, "mu_2": 0.3, "R_2": 2.795, "beta_2": 182, "g": 9.81}
+HEAD_ON |= {f"f_{j}": 0.7 for j in (1, 2)} | {"s_1": (35 / KMH) ** 2 / 13.734, "s_2": (51 / KMH) ** 2 / 13.734}
+STICK = {"m_1": 1200, "m_2": 850, "alpha_1": 270, "beta_1": 213.6, "beta_2": 213.6, "f_1": 1, "f_2": 1, "g": 9.8}
+STICK |= {"phi_1": 0, "phi_2": 0, "s_1": 8.46**2 / 19.6, "s_2": 8.46**2 / 19.6}
+STICK |= {"EES_1": (2 * 8.78e4 / 2050) ** 0.5 * KMH, "EES_2": (2 * 8.78e4 / 2050) ** 0.5 * KMH}
+
 # Template, inputs, what must come out, tolerance: half a unit of the last digit printed.
 EXAMPLES = [
     ("skid", SKID, {"v_mph": 47.366}, 5e-4),
@@ -93,6 +103,127 @@ EXAMPLES = [
     ("pedestrian-throw", THROW | {"angle": 0}, {"v_mph": 34.4178}, 5e-5),
     ("pedestrian-throw", THROW | {"angle": 33.42480}, {"v_mph": 28.7255}, 5e-5),  # atan .66
     ("pedestrian-throw", THROW | {"angle": 0, "efficiency": 0.8}, {"V_vehicle_mph": 34.4178 / 0.8}, 1e-4),
+    # A left turn from rest; a time-stepping run of 10 µs agrees.
+    (
+        "time-distance",
+        LEFT_TURN,
+        {
+            "v0_mph": 53.4451,
+            "t_brake": 0.875575,
+            "t_intruder": 2.614922,
+            "t_response": 1.739348,
+            "D_0": 196.3408,
+            "v_stop_mph": 42.7510,
+            "v_hit_mph": 17.8184,
+            "t_arrive_same": 3.509468,
+            "t_clear": 3.250775,
+            "margin": 0.2587,
+            "stops_same": 0,
+            "avoided_same": 1,
+        },
+        6e-5,
+    ),
+    (
+        "time-distance",
+        LEFT_TURN | {"limit": 50},
+        {"v_hit_mph": 32.5513, "margin": -0.3751, "stops_same": 0, "avoided_same": 0},
+        6e-5,
+    ),
+    ("time-distance", LEFT_TURN | {"limit": 40}, {"stops_same": 1, "avoided_same": 1}, 0),
+    # At its own speed, the crash that happened.
+    (
+        "time-distance",
+        LEFT_TURN | {"limit": 53.44506},
+        {"v_hit_mph": 40, "t_arrive_same": 2.614922, "check_identity": 1},
+        2e-4,
+    ),
+    # 27 m/s, 0.4 s, 10 m/s² toward an obstacle 40 m away: struck at 12.04 m/s.
+    (
+        "time-distance-si",
+        {"limit": 27 * KMH, "f": 1, "g": 10, "t_fresh": 0.4, "v_impact": 20 * KMH, "d_brake": 0}
+        | {"u": 40 / 2 * KMH, "a_intruder": 0, "d_intruder": 40},
+        {"D_0": 40, "s_fresh": 40 - 10.8, "v_hit_fresh": 12.04, "stops_fresh": 0},
+        5e-3,
+    ),
+    # 25 mph, a pedestrian who walks 20 ft at 4 to 5 ft/s: the car is 145 to 180 ft away.
+    *(
+        (
+            "time-distance",
+            {"v_impact": 25, "d_brake": 0, "a_intruder": 0, "u": speed * MPH, "d_intruder": 20},
+            {"D_0": 25 / MPH * 20 / speed},
+            1e-9,
+        )
+        for speed in (4, 5)
+    ),
+    # The case of airborne Amy (Design News, 19 August 2002).
+    (
+        "airborne",
+        AMY,
+        {"t": 0.718003, "v": 62.1168, "v_mph": 42.3523, "v_1": 69.3263, "v1_mph": 47.2679, "vmin_mph": 23.555},
+        5e-4,
+    ),
+    ("airborne", AMY | {"theta": 1}, {"v_mph": 40.5019}, 5e-5),
+    ("airborne", AMY | {"theta": -1}, {"v_mph": 44.4969}, 5e-5),
+    # 57 m down and 130 m away; 18.7 m and 60 m.
+    ("airborne-si", {"h": 57, "d": 130, "theta": 0, "g": 9.8}, {"t": 3.41, "v": 38.12}, 5e-3),
+    ("airborne-si", {"h": 18.7, "d": 60, "theta": 0, "g": 9.8}, {"t": 1.953, "v": 30.7, "v_land": 36.2}, 5e-2),
+    ("airborne", {"h": 453, "d": 33, "theta": 0, "g": 32.2, "f": 0.45, "s": 0}, {"v": 6.22}, 5e-3),
+    # The last sample under hard braking.
+    (
+        "edr-speed",
+        {"v_last": 40, "q": 0, "kappa": 0.13, "f": 0.7, "tau": 0.25, "g": 32.174, "n_brake": 2},
+        {"t_0": 45.9770, "vi_mph": 42.1381},
+        5e-5,
+    ),
+    # Delta-V 20 mph, 3500 lb into 4000 lb, e = 0.1, along one line.
+    (
+        "edr-speed",
+        {"dv_long": 20, "w_own": 3500, "w_other": 4000, "e": 0.1},
+        {"closing": 34.0909, "above_dv": 22.138},
+        5e-4,
+    ),
+    # 10 ft in two frames at ten a second: 34.1 mph.
+    (
+        "video-speed",
+        {"d": 10, "n": 2, "u_1": 0.5, "u_2": 0.5, "rate": 10, "a": 0},
+        {"v_mean": 50, "v_mph": 34.0909},
+        5e-5,
+    ),
+    # 100 ft over 20 frames at ten a second: from one frame more to one less, 32.47 to 35.89 mph.
+    ("video-speed", {"d": 100, "n": 20, "u_1": 1, "u_2": 0, "rate": 10, "a": 0}, {"v_mph": 100 / 2.1 * MPH}, 1e-9),
+    # From 60 ft/s, slowing by 16.087 ft/s² for 1 s.
+    (
+        "video-speed",
+        {"d": 60 - 16.087 / 2, "n": 30, "u_1": 0, "u_2": 0, "rate": 30, "a": 0.5, "g": 32.174},
+        {"v_first": 60, "v_end": 60 - 16.087},
+        1e-9,
+    ),
+    # Rabbit and MB 240 TD, nearly head-on (inputs of SAE Transactions 96, 1987, page 152).
+    (
+        "momentum-energy-si",
+        HEAD_ON,
+        {
+            "omega1_f": 5.3830,
+            "omega2_f": 2.3415,
+            "V1_kmh": 70.6832,
+            "V2_kmh": 70.9936,
+            "closing_kmh": 141.596,
+            "alpha_2": 183.8697,
+        },
+        6e-4,
+    ),
+    ("momentum-energy-si", HEAD_ON, {"E_crush": 256_778, "E_spin": 21_815}, 0.6),
+    # OpenStax College Physics, chapter 8, problem 50: 1200 kg south at 8 m/s and 850 kg west at 17 m/s stick together;
+    # rounded inputs give 8.0015 and 16.9945 m/s, 179.983° here.
+    ("momentum-energy-si", STICK, {"V1_i": 8.0015, "V2_i": 16.9945, "alpha_2": 179.983}, 6e-4),
+    # All skid, no throw in it: as the template skid. Walking: as time-distance without acceleration.
+    ("pedestrian", {"d_after": 60, "f": 0.66, "g": 32.174, "known": 1}, {"vs_mph": 34.4178}, 5e-5),
+    (
+        "pedestrian",
+        {"s": 60, "mu": 0.66, "angle": 0, "efficiency": 0.8, "g": 32.174, "known": 2},
+        {"vt_mph": 34.4178 / 0.8, "v_i": 34.4178 / 0.8 / MPH},
+        1e-4,
+    ),
     # 1500 kg into 2500 kg at rest, which leaves at 15 m/s; e = 0.5.
     ("collinear-si", TEXTBOOK, {"V1_i": 26.6667, "V1_kmh": 96, "dV_2": 15, "V1_f": 1.6667}, 5e-5),
     # Equal cars, one struck off centre: delta-V overstated by .6, 2.3 and 8.6 % at .5, 1 and 2 ft.

@@ -104,7 +104,7 @@ def templates(package: Path = _PACKAGE) -> dict[str, Template]:
         names = [name for name in books if not any(end and name.endswith(end) for end in _UNITS.values())]
         if names:
             found = {name: _template(name, books) for name in names}
-            return dict(sorted(found.items(), key=lambda item: (item[1].rung, item[0])))
+            return dict(sorted(found.items(), key=lambda item: (len(item[1].rung), item[1].rung, item[0])))
     raise WorkbookError("the templates are missing", where=package, hint="install xlmc again")
 
 

@@ -359,7 +359,7 @@ _WHEN = GuideSection(
         "Two vehicles whose approaches are near-parallel, head-on or from behind, where momentum alone is blind: there "
         "an angle uncertain by 3° can make a speed uncertain by hundreds of [mph|km/h]. The energy that crush took "
         "gives the closing speed at any angle; momentum gives only its direction.",
-        "The approach angle of the other vehicle is an answer. Compare it with its lane: sheet Evidence has a row for it.",
+        "The approach angle of the other vehicle is an answer. Compare it with its lane: sheet Evidence has a row.",
         "The reverse: where the closing momentum m2·c is hardly more than the momentum across (the quantity m2·c − "
         "|p⊥| on sheet Model, near 0), energy says little, and momentum is better. Run both templates and compare "
         "their standard deviations; the smaller one answers.",

@@ -96,7 +96,7 @@ def test_tables_stand_where_they_belong(name, book_path, described, subtests):
     for table, (sheet, headers) in TABLES.items():
         with subtests.test(table):
             if one_forecast:
-                headers = [*headers, *MORE.get(table, ())]  # noqa: PLW2901
+                headers = [*headers, *MORE.get(table, ())]
             assert [column.name for column in book[sheet].tables[table].tableColumns] == headers
             assert list(rows(book, table)[0]) == headers
 

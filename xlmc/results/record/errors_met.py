@@ -103,10 +103,14 @@ def rest_sentences(simulation: Simulation) -> list[str]:
     for name, result in simulation.results.items():
         counts.setdefault(int(result.values.size), []).append(name)
     of = f"{simulation.trials:,}" if simulation.rare is None else f"{simulation.accepted:,} accepted"
-    if len(counts) == 1:
-        (count,) = counts
-        return [f"Statistics rest on {count:,} of {of} trials"]
-    return [
-        f"Statistics of {', '.join(map(repr, names))} rest on {count:,} of {of} trials"
-        for count, names in counts.items()
-    ]
+    if not counts:
+        return []
+    most = max(counts, key=lambda count: len(counts[count]))
+    if len(counts) > 1 and len(counts[most]) == 1:
+        return [f"Statistics of {names[0]!r} rest on {count:,} of {of} trials" for count, names in counts.items()]
+    others = [f"those of {_listed(names)} on {count:,}" for count, names in counts.items() if count != most]
+    return [f"Statistics rest on {most:,} of {of} trials", *others]
+
+
+def _listed(names: list[str]) -> str:
+    return ", ".join(map(repr, names))

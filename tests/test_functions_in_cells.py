@@ -323,7 +323,7 @@ def test_parameters_that_are_no_distribution_are_error_trials(model):
 @pytest.mark.parametrize(
     ("cells", "where", "message"),
     [
-        ({"A1": "=RiskSplice(1,2)", "A2": "=A1+RiskOutput()"}, "S!A1", "RISKSPLICE is not supported"),
+        ({"A1": "=RiskSplice(1,2)", "A2": "=A1+RiskOutput()"}, "S!A1", "RiskSplice is not supported"),
         ({"A1": "=RiskNormal(1,-1)+RiskOutput()"}, "S!A1", "Std dev (-1) must be above 0"),
         ({"A1": "=RiskMean(A3)", "A2": "=RAND()+A1", "A3": "=A2*2"}, "S!A1", "RiskMean shows results of the run"),
         ({"A1": "=RiskNormal(A2,1)", "A2": "=A1+RiskOutput()"}, "S!A1", "need each other in a circle"),
@@ -385,3 +385,71 @@ def test_draws_that_nothing_needs_are_told_of_together(model):
     assert [(str(n.where), n.message) for n in notices] == [
         ("S!A2#1", "no forecast or filter needs 4 draws in cells, of which this is the first")
     ]
+
+
+SUMS = {
+    # claims of a year: mean 5·10,000, variance 5·(mean square of an amount)
+    '=RiskOutput("a")+RiskCompound(RiskPoisson(5),RiskLognorm(10000,10000))': (50_000, math.sqrt(5 * 2e8)),
+    # of each amount, 500 are deducted, and at most 2,000 count
+    '=RiskOutput("b")+RiskCompound(RiskPoisson(5),RiskExpon(1000),500,2000)': (
+        5 * 1000 * (math.exp(-0.5) - math.exp(-2.5)),
+        math.sqrt(5 * math.exp(-0.5) * 2e6 * (1 - 3 * math.exp(-2))),
+    ),
+    # a risk that occurs or not
+    '=RiskOutput("c")+RiskCompound(RiskBinomial(1,0.4),RiskNormal(100,10))': (40, math.sqrt(0.4 * 100 + 0.24 * 1e4)),
+    # frequency and severity in cells of their own; a frequency whose rate is drawn
+    '=RiskOutput("d")+RiskCompound(B1,B2)': (30, math.sqrt(3 * 20 + 3 * 100)),
+    '=RiskOutput("e")+RiskCompound(RiskPoisson(RiskGamma(3,2)),RiskUniform(0,2))': (6, math.sqrt(6 / 3 + 18)),
+    # a value of each trial that stays the same for all amounts
+    '=RiskOutput("f")+RiskCompound(RiskPoisson(4),B3)': (40, math.sqrt(20 * (100 + 4) - 1600)),
+    # amounts cut off and shifted, counts of a continuous distribution cut to whole numbers
+    '=RiskOutput("g")+RiskCompound(RiskUniform(0,4),RiskNormal(0,1,RiskTruncate(0,),RiskShift(10)))': (
+        1.5 * (10 + math.sqrt(2 / math.pi)),
+        math.sqrt(1.5 * (1 - 2 / math.pi) + 1.25 * (10 + math.sqrt(2 / math.pi)) ** 2),
+    ),
+    '=RiskOutput("h")+RiskMakeInput(RiskNormal(5,1)+RiskNormal(3,1),RiskName("x"))': (8, math.sqrt(2)),
+    '=RiskOutput("i")+RiskNormal(0,1)+RiskSimtable({10,20,30})': (10, 1),
+    '=RiskOutput("j")+RiskNormal(0,1)+RiskSimtable(C1:C3)': (7, 1),
+}
+
+
+def test_sums_and_values(model):
+    """Within 5 standard errors, as the books above."""
+    cells = {f"A{row}": formula for row, formula in enumerate(SUMS, start=1)}
+    cells |= {"B1": "=RiskPoisson(3)", "B2": "=RiskNormal(10,SQRT(20))", "B3": "=B4*2", "B4": "=RiskNormal(5,1)"}
+    made = model({**cells, "C1": 7, "C2": 8, "C3": 9})
+    told = [str(notice.where) for notice in made.notices if "this run uses the first" in notice.message]
+    assert told == ["S!A9", "S!A10"]
+    run = made.simulate(trials=TRIALS, seed=999)
+    for name, (mean, deviation) in zip("abcdefghij", SUMS.values(), strict=True):
+        assert abs(run[name].mean.value - mean) < 5 * deviation / math.sqrt(TRIALS), name
+        assert abs(run[name].standard_deviation.value - deviation) < 5 * run[name].standard_deviation.error, name
+    bases = {a.name: a.base for a in made.assumptions}
+    assert bases["S!A1#1"] == pytest.approx(50_000)
+    assert bases["S!A2#1"] == pytest.approx(SUMS[cells["A2"]][0], rel=1e-9)
+
+
+def test_a_correlated_frequency(model):
+    """The ranks of the counts have the correlation; a compound that is correlated itself is refused."""
+    cells = {
+        "F1": 1, "F2": 0.7, "G2": 1,
+        "A1": "=RiskCompound(RiskPoisson(50,RiskCorrmat(F1:G2,1)),1)",
+        "A2": "=RiskNormal(0,1,RiskCorrmat(F1:G2,2))",
+        "A3": "=A1+A2+RiskOutput()",
+    }  # fmt: skip
+    inputs = model(cells).simulate(trials=TRIALS, seed=999).inputs
+    found = stats.spearmanr(inputs["S!A1#1"], inputs["S!A2#1"]).statistic
+    assert abs(found - 0.7) < 5 / math.sqrt(TRIALS)
+    for formula, message in (
+        ("=RiskCompound(RiskPoisson(50),1,RiskCorrmat(F1:G2,1))", "RiskCompound itself cannot be correlated"),
+        ("=RiskCompound(3,RiskNormal(1,1,RiskCorrmat(F1:G2,1)))", "the severity of RiskCompound cannot be correlated"),
+        ("=RiskCompound(RiskPoisson(5),2*RiskExpon(3))", "the severity of RiskCompound is a formula that draws"),
+        ("=RiskCompound(RiskPoisson(5),RiskExpon(3),RiskTruncate(1,2))", "RiskCompound cannot be cut off"),
+        ("=RiskCompound(RiskPoisson(5))", "RiskCompound has 1 arguments"),
+        ("=RiskNormal(1,1,RiskLibrary(1,2))", "RiskLibrary replaces the distribution"),
+        ("=RiskSimtable()", "RiskSimtable has 0 arguments"),
+    ):
+        with pytest.raises(XlmcError) as refused:
+            model({**cells, "A1": formula})
+        assert str(refused.value).startswith(f"S!A1: {message}"), formula
+        assert refused.value.hint

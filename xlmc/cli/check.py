@@ -142,8 +142,10 @@ def _show_definitions(definitions: Definitions, model: Model | None) -> None:
         table("Evidence", ("Name", "Cell", "Reading", "Source"), rows)
     if definitions.checks:
         table("Checks", ("Name", "Cell", "Because"), [(c.name, str(c.cell), c.because) for c in definitions.checks])
-    if definitions.correlations:
-        pairs = [(c.first, c.second, f"{c.value:g}", _drawn_with(model, c)) for c in definitions.correlations]
+    correlations = (model.definitions if model else definitions).correlations
+    if correlations:
+        asked = [f"{c.value:g}" if isinstance(c.value, float) else str(c.value) for c in correlations]
+        pairs = [(c.first, c.second, a, _drawn_with(model, c)) for c, a in zip(correlations, asked, strict=True)]
         table("Rank correlations", ("First", "Second", "Asked for", "Drawn with"), pairs, right=(2, 3))
     if definitions.scenarios:
         changes = [(each.name, changes_text(each), each.note) for each in definitions.scenarios]

@@ -19,6 +19,7 @@ __all__ = [
     "CUTOFFS",
     "Assumption",
     "Check",
+    "Copula",
     "Correlation",
     "DataRange",
     "Definitions",
@@ -177,12 +178,39 @@ class Check:
 
 @dataclass(frozen=True, slots=True)
 class Correlation:
-    """A Spearman rank correlation between two assumptions, by name as defined."""
+    """A Spearman rank correlation between two assumptions, by name as defined; of a model, `value` is a number."""
 
     first: str
     second: str
-    value: float
+    value: Parameter
     row: Cell
+
+    @property
+    def number(self) -> float:
+        """The coefficient, which is a number once a model has been made."""
+        assert not isinstance(self.value, Cell), "the formula of a correlation has not been computed"
+        return self.value
+
+
+@dataclass(frozen=True, slots=True)
+class Copula:
+    """How assumptions are joined beside rank correlations.
+
+    Attributes:
+        kind: `Gaussian`, `t`, `Clayton`, `Gumbel` or `Frank`.
+        names: of the assumptions, in order.
+        row: the cell that names its kind.
+        parameter: theta, or the degrees of freedom of t; None for Gaussian.
+        matrix: of Gaussian and t, the correlations of the underlying variables, `(k, k)`; empty for others.
+        turned: which assumptions are turned over, as those of ClaytonR are.
+    """
+
+    kind: str
+    names: tuple[str, ...]
+    row: Cell
+    parameter: float | None = None
+    matrix: tuple[tuple[float, ...], ...] = ()
+    turned: tuple[bool, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,6 +250,7 @@ class Definitions:
     forecasts: tuple[Forecast, ...] = ()
     filters: tuple[Filter, ...] = ()
     correlations: tuple[Correlation, ...] = ()
+    copulas: tuple[Copula, ...] = ()
     settings: Settings = Settings()
     notices: tuple[Notice, ...] = ()
     problems: tuple[DefinitionError, ...] = ()

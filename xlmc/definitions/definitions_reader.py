@@ -20,7 +20,8 @@ from xlmc.definitions.definitions import (
     Settings,
     name_key,
 )
-from xlmc.definitions.in_cells.calls import InCells, in_cell_correlations, in_cell_forecasts, read_in_cells
+from xlmc.definitions.in_cells.calls import InCells, in_cell_forecasts, read_in_cells
+from xlmc.definitions.in_cells.joined_draws import in_cell_copulas, in_cell_correlations
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.assumptions import read_assumptions
 from xlmc.definitions.tables.correlations import read_correlations
@@ -84,7 +85,8 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
     frozen = [name_key(each.name) for each in assumptions if each.frozen]
     correlations = read_correlations(workbook, tables["xlmc_correlations"], names, frozen, findings)
     correlations = *correlations, *_take_pairs(correlations, dialogs.correlations, findings)
-    more = in_cell_correlations(workbook, calls.assumptions, calls.matrices, correlations, findings)
+    more = in_cell_correlations(workbook, calls.assumptions, calls.draws, correlations, findings)
+    copulas = in_cell_copulas(workbook, calls.assumptions, calls.draws, (*correlations, *more), findings)
     forecasts = *forecasts, *dialogs.forecasts, *in_cell_forecasts(calls, computed, central, answers, findings)
     filters, own = _by_reach(filters, dialogs.filters, forecasts, findings)
     _remark_on_calls(calls, settings, findings)
@@ -108,6 +110,7 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
         forecasts=forecasts,
         filters=filters,
         correlations=(*correlations, *more),
+        copulas=copulas,
         settings=settings,
         notices=tuple(findings.notices),
         problems=tuple(findings.problems),
@@ -125,6 +128,11 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
 def _remark_on_calls(calls: InCells, settings: Settings, findings: Findings) -> None:
     for name, cell in calls.idle.items():
         findings.notice(f"{name} has no effect: every draw has its own stream, by its name and the run's seed", cell)
+    for cell, tables in calls.simtables.items():
+        count = max(map(len, tables))
+        message = f"RiskSimtable has {count} values, and this run uses the first"
+        if count > 1:
+            findings.notice(message, cell)
     if calls.lognorms and not settings.lognorm:
         message = (
             "RiskLognorm is read as @RISK's: its numbers are the mean and standard deviation of the draw. XLRisk means "

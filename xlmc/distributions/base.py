@@ -54,6 +54,7 @@ class Family(ABC):
         elsewhere: what other programs call it, such as `@RISK Gamma(shape, scale)`.
         given_by: what its member is searched by, such as `percentiles`, which takes too long for each trial: a workbook
             may not let such parameters depend on an assumption. Empty where nothing is searched.
+        truncates: whether it may have cutoffs.
     """
 
     name: str
@@ -68,6 +69,7 @@ class Family(ABC):
     source: str = ""
     elsewhere: tuple[str, ...] = ()
     given_by: str = ""
+    truncates: bool = True
 
     def __init_subclass__(cls) -> None:
         """Refuse a family whose upper tail nobody has written: cutoffs would meet it in the midst of a run.
@@ -193,6 +195,14 @@ class Family(ABC):
         """
         return (lower, lower), (upper, upper)
 
+    def order(self, u: Array, *values: Values) -> Array:
+        """What ranks the draws that are made of uniforms, which rises with them; most often the draws themselves."""
+        return self._ppf(u, *values)
+
+    def percentile(self, p: Array, *values: Values) -> Array:
+        """The values that are not exceeded with these probabilities, `(q,)`; most often what these uniforms draw."""
+        return self._ppf(p, *values)
+
     @abstractmethod
     def _ppf(self, u: Array, *args: Any, **kwargs: Any) -> Array:
         """The quantile function. `u` belongs to the hook, which may overwrite it and return it."""
@@ -255,9 +265,7 @@ class Member:
         own = _own_copy(u, self.values) if out is None else out
         if out is not None and out is not u:
             out[...] = u
-        if self.family.open_below:
-            np.copyto(own, SMALLEST_U, where=own == 0.0)
-        x = self._evaluate(self.family._ppf, own)
+        x = self._evaluate(self.family._ppf, _open(self.family, own))
         if any(map(np.ndim, self.values)):
             x = np.where(np.isfinite(x), x, np.nan)
         if out is None:
@@ -268,6 +276,14 @@ class Member:
 
     def isf(self, q: Values) -> Array:
         return self._evaluate(self.family._isf, _own_copy(q, self.values))
+
+    def order(self, u: Values) -> Array:
+        """See `Family.order`."""
+        return self._evaluate(self.family.order, _open(self.family, _own_copy(u, self.values)))
+
+    def percentile(self, p: Values) -> Array:
+        """See `Family.percentile`."""
+        return self._evaluate(self.family.percentile, _open(self.family, _own_copy(p, self.values)))
 
     def cdf(self, x: Values) -> Array:
         return self._evaluate(self.family._cdf, x)
@@ -294,6 +310,13 @@ class Member:
         if self.invalid is not None:
             result = np.where(self.invalid, np.nan, result)
         return np.asarray(result, dtype=float)
+
+
+def _open(family: Family, u: Array) -> Array:
+    """The same, changed in place where the quantile of 0 is infinite."""
+    if family.open_below:
+        np.copyto(u, SMALLEST_U, where=u == 0.0)
+    return u
 
 
 def _own_copy(u: Values, values: tuple[Any, ...]) -> Array:

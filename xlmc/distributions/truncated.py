@@ -37,6 +37,9 @@ class Truncated:
         values = self.family.bind(params, named)
         if fault := self.family.broken_rule(*values):
             return fault
+        if not self.family.truncates:
+            key = "upper_cutoff" if np.isinf(lower) else "lower_cutoff"
+            return Fault(key, f"{self.family.name} cannot be cut off", "Let a formula limit the draws: MIN, MAX or IF")
         for key, label, cutoff in (("lower_cutoff", "Lower", lower), ("upper_cutoff", "Upper", upper)):
             if np.isnan(cutoff):
                 return Fault(key, f"{label} cutoff must be a number", "Correct the number, or leave the cell blank")
@@ -112,6 +115,14 @@ class Slice:
             return np.asarray(x, dtype=float)
         out[...] = x
         return out
+
+    def order(self, u: Values) -> Array:
+        """See `Family.order`."""
+        return self.ppf(u)
+
+    def percentile(self, p: Values) -> Array:
+        """See `Family.percentile`."""
+        return self.ppf(p)
 
     def cdf(self, x: Values) -> Array:
         """P(X <= x), shapes as in `ppf`."""

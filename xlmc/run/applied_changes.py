@@ -212,7 +212,7 @@ def _cutoffs(assumption: Assumption, band: Band, lowering: Lowering) -> dict[str
         message = f"a band from P{band.low:g} to P{band.high:g} holds nothing of a distribution"
         raise DefinitionError(message, where=band.where or assumption.row, hint="give two percentiles that rise")
     given = {key: percent for key, percent in zip(CUTOFFS, (band.low, band.high), strict=True) if 0 < percent < 100}
-    values = draw.distribution.ppf(np.array([*given.values()]) / 100)
+    values = draw.distribution.percentile(np.array([*given.values()]) / 100)
     return dict(zip(given, values.tolist(), strict=True))
 
 

@@ -2,18 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 
-from xlmc.definitions.definitions import Correlation, name_key
+from xlmc.address import Cell
+from xlmc.definitions.definitions import Copula, Correlation, Definitions, name_key
+from xlmc.distributions.parameters import show
 from xlmc.distributions.whole_numbers import WholeNumbers
-from xlmc.errors import Notice
+from xlmc.errors import DefinitionError, Notice
+from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
+from xlmc.formula import Resolver, build_graph
+from xlmc.run.draw_binding import fold_cell
 from xlmc.sampling.copula import GaussianCopula
+from xlmc.sampling.copulas import Clayton, Frank, Gumbel, Joining, Reflected, StudentTCopula
 from xlmc.sampling.draws import CorrelatedGroup, Draw
+from xlmc.workbook.workbook import Workbook
 
-__all__ = ["CHANGED", "correlated_groups", "drawn_correlation", "repair_notices", "tie_notices"]
+__all__ = [
+    "CHANGED",
+    "copula_groups",
+    "copula_notices",
+    "correlated_groups",
+    "drawn_correlation",
+    "repair_notices",
+    "tie_notices",
+    "with_correlation_numbers",
+]
 
 _ROUNDING = 1e-9
 """An eigenvalue so little below 0 is one of 0."""
@@ -41,10 +58,91 @@ def correlated_groups(correlations: Sequence[Correlation], draws: Mapping[str, D
         for (first, second), correlation in pairs.items():
             if first in names:
                 i, j = names.index(first), names.index(second)
-                matrix[i, j] = matrix[j, i] = correlation.value
+                matrix[i, j] = matrix[j, i] = correlation.number
         ties = [draws[name].ties() for name in names]
         groups.append(CorrelatedGroup(names, GaussianCopula(matrix, ties if any(ties) else ())))
     return groups
+
+
+def copula_groups(copulas: Sequence[Copula], draws: Mapping[str, Draw]) -> list[CorrelatedGroup]:
+    """The assumptions that copulas join, those left out that are not drawn.
+
+    Args:
+        copulas: as defined.
+        draws: key of a drawn assumption -> how it is drawn.
+    """
+    groups = []
+    for copula in copulas:
+        kept = [i for i, name in enumerate(copula.names) if name_key(name) in draws]
+        if len(kept) > 1:
+            names = tuple(name_key(copula.names[i]) for i in kept)
+            groups.append(CorrelatedGroup(names, _joining(copula, kept), copula.row))
+    return groups
+
+
+def _joining(copula: Copula, kept: Sequence[int]) -> Joining:
+    if copula.kind in ("Gaussian", "t"):
+        matrix = np.array(copula.matrix)[np.ix_(kept, kept)]
+        if copula.parameter is None:
+            return GaussianCopula(6 / np.pi * np.arcsin(matrix / 2))
+        return StudentTCopula(matrix, copula.parameter)
+    assert copula.parameter is not None
+    families: dict[str, Callable[[int, float], Joining]] = {"Clayton": Clayton, "Gumbel": Gumbel, "Frank": Frank}
+    joined = families[copula.kind](len(kept), copula.parameter)
+    turned = [copula.turned[i] for i in kept]
+    return Reflected(joined, turned) if any(turned) else joined
+
+
+def copula_notices(groups: Sequence[CorrelatedGroup], copulas: Sequence[Copula]) -> Iterator[Notice]:
+    """What is drawn with the copulas of a workbook; that a matrix contradicts itself, where one does."""
+    for copula in copulas:
+        group = next((each for each in groups if each.where == copula.row), None)
+        if group is None:
+            continue
+        of = "" if copula.parameter is None else f" of {'theta' if not copula.matrix else 'df'} {copula.parameter:g}"
+        reflected = {(): "", (False, False): "", (True, True): "R", (True, False): "RX", (False, True): "RY"}[
+            copula.turned[:2] or ()
+        ]
+        named = ", ".join(map(repr, copula.names[:-1]))
+        message = f"{named} and {copula.names[-1]!r} are joined by the copula {copula.kind}{reflected}{of}"
+        if group.copula.repaired:
+            message += (
+                "; no variables can have all of its correlations at once, so the nearest that they can have are used"
+            )
+        yield Notice(message, copula.row)
+
+
+def with_correlation_numbers(workbook: Workbook, definitions: Definitions) -> Definitions:
+    """The definitions with a number for each rank correlation that a formula computes.
+
+    Raises:
+        DefinitionError: it depends on an assumption, is no number, or not from -1 to 1.
+        FormulaError: it cannot be computed.
+    """
+    cells = [row.value for row in definitions.correlations if isinstance(row.value, Cell)]
+    if not cells:
+        return definitions
+    drawn = {a.cell: name_key(a.name) for a in definitions.assumptions if not a.frozen}
+    held = {a.cell: a.base for a in definitions.assumptions if a.frozen and a.base is not None}
+    resolver = Resolver(workbook, [a.cell for a in definitions.assumptions], rewritten=definitions.rewritten)
+
+    def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
+        return Lowering(build_graph(resolver, cells, frozenset(drawn), frozenset(held), more=more), drawn, held)
+
+    lowering = lower_until_complete(lower)
+    rows = (replace(row, value=_coefficient(row, lowering)) for row in definitions.correlations)
+    return replace(definitions, correlations=tuple(rows))
+
+
+def _coefficient(row: Correlation, lowering: Lowering) -> float:
+    value = fold_cell(row.value, lowering) if isinstance(row.value, Cell) else row.value
+    if isinstance(value, Cell):
+        message = f"The rank correlation of {row.first!r} and {row.second!r} varies with an assumption"
+        raise DefinitionError(message, where=value, hint="A correlation is one number for all trials: type it")
+    if not -1 <= value <= 1:
+        message = f"Correlation ({show(value)}) must lie between -1 and 1"
+        raise DefinitionError(message, where=row.row, hint="Correct the formula: a rank correlation is from -1 to 1")
+    return value
 
 
 def drawn_correlation(groups: Sequence[CorrelatedGroup], first: str, second: str) -> float | None:
@@ -74,14 +172,14 @@ def tie_notices(
             continue
         i, j = (group.names.index(name) for name in pair)
         wanted = float(group.copula.wanted[i, j])
-        if abs(wanted - row.value) >= CHANGED:
+        if abs(wanted - row.number) >= CHANGED:
             yield _out_of_reach(row, wanted, float(group.copula.spearman[i, j]))
         vary = [each for name, each in zip(pair, (row.first, row.second), strict=True) if _takes_few(draws[name])]
         if vary:
             message = (
                 f"{' and '.join(map(repr, vary))} may take few values, and the parameters vary from trial to trial: "
                 f"equal draws share ranks, so the rank correlation of {row.first!r} and {row.second!r} may be nearer "
-                f"to 0 than the {row.value:g} that was asked for; Assumptions shows what the accepted trials have"
+                f"to 0 than the {row.number:g} that was asked for; Assumptions shows what the accepted trials have"
             )
             yield Notice(message, row.row)
 
@@ -93,8 +191,8 @@ def _takes_few(draw: Draw) -> bool:
 def _out_of_reach(row: Correlation, wanted: float, drawn: float) -> Notice:
     used = "that" if abs(drawn - wanted) < CHANGED else f"{drawn:.3g}, for the other correlations leave no more"
     message = (
-        f"{row.first!r} and {row.second!r} cannot have the rank correlation {row.value:g}: equal draws share ranks, "
-        f"and with the few values that one of them takes, {wanted:.3g} is the {'most' if row.value > 0 else 'least'} "
+        f"{row.first!r} and {row.second!r} cannot have the rank correlation {row.number:g}: equal draws share ranks, "
+        f"and with the few values that one of them takes, {wanted:.3g} is the {'most' if row.number > 0 else 'least'} "
         f"that any two can have; they are drawn with {used}"
     )
     return Notice(message, row.row)
@@ -113,7 +211,7 @@ def repair_notices(
     asked = {frozenset((name_key(c.first), name_key(c.second))): c for c in correlations}
     spelt = {name_key(name): name for name in names}
     for group in groups:
-        if group.copula.repaired:
+        if group.copula.repaired and group.where is None:
             yield _repair(group, asked, spelt)
 
 

@@ -25,7 +25,14 @@ from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.evaluation.passes.bounds import Bounds, NodeBounds
 from xlmc.formula import Graph
-from xlmc.run.correlating import correlated_groups, repair_notices, tie_notices
+from xlmc.run.correlating import (
+    copula_groups,
+    copula_notices,
+    correlated_groups,
+    repair_notices,
+    tie_notices,
+    with_correlation_numbers,
+)
 from xlmc.run.draw_binding import draw_of, dynamic_parameters, with_base_parameters
 from xlmc.run.evidence_filters import chances_of, with_evidence_numbers
 from xlmc.run.forecast_filters import FilteringProgram, conditions_of, filters_by_forecast
@@ -172,6 +179,7 @@ class Model:
     def __init__(self, workbook: Workbook, definitions: Definitions, path: Path) -> None:
         given = definitions
         definitions = with_evidence_numbers(workbook, with_base_parameters(workbook, definitions))
+        definitions = with_correlation_numbers(workbook, definitions)
         self._folded = definitions is not given
         self.workbook, self.path = workbook, path
         self.needed, self.lowering = lower_needed(workbook, definitions)
@@ -198,7 +206,10 @@ class Model:
         rows = definitions.correlations
         tied = {name_key(name) for row in rows for name in (row.first, row.second)}
         self._correlated = {draw.name: draw for draw in self.draws.values() if draw.name in tied}
-        self.groups: tuple[CorrelatedGroup, ...] = tuple(correlated_groups(rows, self._correlated))
+        self.groups: tuple[CorrelatedGroup, ...] = (
+            *correlated_groups(rows, self._correlated),
+            *copula_groups(definitions.copulas, {draw.name: draw for draw in self.draws.values()}),
+        )
 
     def _take_notices(self) -> None:
         rows = self.definitions.correlations
@@ -209,6 +220,7 @@ class Model:
             *self.lowering.notices,
             *tie_notices(self.groups, rows, self._correlated),
             *repair_notices(self.groups, rows, self.needed.live),
+            *copula_notices(self.groups, self.definitions.copulas),
             *_still_notices(self.needed, self._moving(), self.forecasts),
             *_heavy_notices(self.live, self.draws),
             *_example_notices(self._sources()),
@@ -416,7 +428,7 @@ class Model:
                 varying = dynamic_parameters([self.draws[name] for name in names], self.lowering, 1)(held, 1)
             for name in (name for name in names if name in bases):
                 values, base = np.append(wanted, 0.5), bases[name]
-                self.draws[name].fill(values, varying)
+                values = self.draws[name].percentiles(values, varying)
                 found[name] = values[:-1]
                 held[name_key(name)] = values[-1:] if base is None else np.full(1, base)
         return found

@@ -11,6 +11,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.address import Cell
 from xlmc.distributions import Family, Truncated
 from xlmc.distributions.base import Member
 from xlmc.distributions.parameters import Fault
@@ -18,7 +19,8 @@ from xlmc.distributions.truncated import Slice
 from xlmc.distributions.uniform import Uniform
 from xlmc.errors import SimulationError
 from xlmc.functions.denormals import TINIEST, flush
-from xlmc.sampling.copula import GaussianCopula, Ties, ties_of
+from xlmc.sampling.copula import Ties, ties_of
+from xlmc.sampling.copulas import Joining
 from xlmc.sampling.sampling_methods import Margin
 from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.sampling.streams import Stream
@@ -78,8 +80,7 @@ class Draw:
         A draw that is too small a number for a cell is 0.
         """
         (self.distribution if self.fixed else self._of_trials(dynamic)).ppf(u, out=u)
-        if not u.min(initial=np.inf) >= TINIEST:
-            flush(u)
+        _flush(u)
 
     @cached_property
     def distribution(self) -> Member | Slice:
@@ -125,9 +126,11 @@ class Draw:
         return ties_of(self._quantiles) if self.fixed else None
 
     def _quantiles(self, u: Floats) -> Floats:
-        found = u.copy()
-        self.fill(found, {})
-        return found
+        return _flush(self.distribution.order(u))
+
+    def percentiles(self, p: Floats, dynamic: Mapping[Hashable, Floats]) -> Floats:
+        """The values that are not exceeded with these probabilities, `(q,)`, where the parameters are these."""
+        return _flush((self.distribution if self.fixed else self._of_trials(dynamic)).percentile(p))
 
     def support(self) -> tuple[float, float] | None:
         """The least and the largest draw; None where either is infinite, or where the parameters vary."""
@@ -148,6 +151,13 @@ class Draw:
         return self.family.offset_and_factor(low, high)
 
 
+def _flush(draws: Floats) -> Floats:
+    """The same, changed in place: a number that is too small for a cell is 0."""
+    if not draws.min(initial=np.inf) >= TINIEST:
+        flush(draws)
+    return draws
+
+
 @dataclass(frozen=True, slots=True)
 class DrawStage:
     """Assumptions whose parameters depend on earlier stages only; the first stage's on nothing."""
@@ -158,10 +168,11 @@ class DrawStage:
 
 @dataclass(frozen=True, slots=True)
 class CorrelatedGroup:
-    """Assumptions with rank correlations among them."""
+    """Assumptions that are joined: by rank correlations, or by a copula that stands somewhere."""
 
     names: tuple[str, ...]
-    copula: GaussianCopula
+    copula: Joining
+    where: Cell | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -329,7 +329,7 @@ def test_lognorm_of_xlrisk(workbook, table, setting, family, noticed):
 
 
 REFUSED = {
-    "RiskSplice(1,2)": "the function RISKSPLICE is not supported",
+    "RiskSplice(1,2)": "the function RiskSplice is not supported",
     "CB.Bang(1)": "the function CB.BANG is not supported",
     "RiskTruncate(1,2)": "the function RISKTRUNCATE is not supported",
     "RiskNormal(1)": "RiskNormal has 1 arguments",
@@ -480,7 +480,7 @@ def test_crystal_balls_hidden_sheet_is_pointed_out(workbook):
 def test_an_answer_that_cannot_be_read_is_never_left_out(workbook):
     found = read_definitions(workbook({"A1": '=RiskOutput("x")+RiskSplice(1)', "A2": "=RiskOutput()+RAND()"}), ENGINES)
     (problem,) = found.problems
-    assert (problem.where, problem.message) == ("S!A1", "the function RISKSPLICE is not supported")
+    assert (problem.where, problem.message) == ("S!A1", "the function RiskSplice is not supported")
 
 
 def test_a_refused_cell_that_nothing_needs_is_left_alone(workbook):

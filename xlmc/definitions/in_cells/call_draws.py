@@ -19,7 +19,17 @@ from xlmc.distributions import FAMILIES, Family, Truncated
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.formula import ir
 
-__all__ = ["Arguments", "Drawn", "MatrixRow", "Properties", "Signature", "base_of", "percentile_cutoffs"]
+__all__ = [
+    "Arguments",
+    "Drawn",
+    "MatrixRow",
+    "Partner",
+    "Properties",
+    "Signature",
+    "base_of",
+    "built_family",
+    "percentile_cutoffs",
+]
 
 Arguments = Mapping[str, ir.Expression]
 """The arguments of a call by what they are called."""
@@ -40,6 +50,19 @@ class MatrixRow:
 
 
 @dataclass(frozen=True, slots=True)
+class Partner:
+    """@RISK's older way to correlate: draws that depend on one that is independent, all known by one name.
+
+    Attributes:
+        name: theirs.
+        coefficient: the rank correlation of a dependent draw with the independent one; None for the latter.
+    """
+
+    name: str
+    coefficient: ir.Expression | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Properties:
     """What a call says of its draw beside the distribution.
 
@@ -53,6 +76,8 @@ class Properties:
         locked: the draw is held at the base case.
         units: for the report.
         matrix: its correlations.
+        copula: its place in a copula.
+        partner: the draw whose rank it follows, or is followed by, in @RISK's older way.
         idle: property functions without an effect here.
     """
 
@@ -66,6 +91,8 @@ class Properties:
     locked: bool = False
     units: ir.Expression | None = None
     matrix: MatrixRow | None = None
+    copula: MatrixRow | None = None
+    partner: Partner | None = None
     idle: tuple[str, ...] = ()
 
 
@@ -142,6 +169,21 @@ def _listed(function: str, sources: tuple[ir.Expression, ...]) -> tuple[tuple[ir
         lengths = " and ".join(str(len(column)) for column in columns)
         raise FormulaError(f"the lists of {function} have {lengths} elements", hint="give lists of the same length")
     return tuple(zip(*columns, strict=True))
+
+
+def built_family(drawn: Drawn, data: DataRange | None, saved: Callable[[Cell], float | None]) -> Family:
+    """The family of a draw within another, with its data.
+
+    Raises:
+        FormulaError: a cell of the data is not a number, or they are no distribution.
+    """
+    if data is None:
+        return drawn.family
+    family = _built(drawn.family, data, saved)
+    if family is None:
+        hint = "give it lists of numbers, or cells that hold numbers"
+        raise FormulaError(f"the data of {drawn.function} are no distribution", hint=hint)
+    return family
 
 
 def base_of(

@@ -11,35 +11,28 @@ of rank correlations.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field, replace
-from itertools import combinations
 from typing import Final
 
-from xlmc.address import Area, Cell
+from xlmc.address import Cell
 from xlmc.definitions.computed import Computed
-from xlmc.definitions.definitions import Assumption, Correlation, Forecast, name_key
-from xlmc.definitions.in_cells.call_draws import MatrixRow
-from xlmc.definitions.in_cells.reading import CellReading, Output
+from xlmc.definitions.definitions import Assumption, Forecast, name_key
+from xlmc.definitions.in_cells.reading import CellDraw, CellReading, Output
 from xlmc.definitions.in_cells.result_functions import ResultCall, mentions_result
 from xlmc.definitions.problems import Findings
-from xlmc.definitions.tables.fields import number_in
 from xlmc.definitions.tables.identity import Claims
-from xlmc.definitions.tables.table_rows import is_blank
-from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.formula import Resolver, ir
 from xlmc.workbook.lazy_sheets import LazySheets
 from xlmc.workbook.workbook import Formula, Workbook
 
-__all__ = ["InCells", "holds_call", "in_cell_correlations", "in_cell_forecasts", "read_in_cells"]
+__all__ = ["InCells", "holds_call", "in_cell_forecasts", "read_in_cells"]
 
 _CALL: Final = re.compile(r"(?<![\w.])(?:_xl\w+\.)*(?:RAND|RANDBETWEEN|RANDARRAY|Risk\w+|CB\.\w+)\s*\(", re.IGNORECASE)
 _OUTPUT: Final = re.compile(r"RiskOutput\s*\(", re.IGNORECASE)
 _TEXTS: Final = re.compile(r'"(?:[^"]|"")*"')
 _MARKS: Final = (b"rand", b"risk", b"cb.")
-
-_Row = tuple[Assumption, MatrixRow]
 
 
 def holds_call(text: str) -> bool:
@@ -59,21 +52,23 @@ class InCells:
         assumptions: in the order of sheets, rows and columns.
         outputs: the cells that are marked as outputs, by their cell.
         rewritten: the formulas with assumptions instead of calls; or why a cell cannot be computed.
-        matrices: name of an assumption -> its row in a matrix of correlations.
+        draws: name of an assumption -> what its call says beside the distribution.
         results: the cells that show results -> what they ask for.
         unavailable: the cells that should show results and cannot -> why.
         idle: property functions without an effect -> the first cell that has one.
         lognorms: the cells with `RiskLognorm`.
+        simtables: the cells with `RiskSimtable` -> the values of each.
     """
 
     assumptions: list[Assumption] = field(default_factory=list)
     outputs: dict[Cell, Output] = field(default_factory=dict)
     rewritten: dict[Cell, ir.Expression | FormulaError] = field(default_factory=dict)
-    matrices: dict[str, MatrixRow] = field(default_factory=dict)
+    draws: dict[str, CellDraw] = field(default_factory=dict)
     results: dict[Cell, list[ResultCall]] = field(default_factory=dict)
     unavailable: dict[Cell, str] = field(default_factory=dict)
     idle: dict[str, Cell] = field(default_factory=dict)
     lognorms: list[Cell] = field(default_factory=list)
+    simtables: dict[Cell, list[tuple[ir.Expression, ...]]] = field(default_factory=dict)
 
     def __bool__(self) -> bool:
         return bool(self.rewritten)
@@ -123,14 +118,15 @@ def _take(reading: CellReading, found: InCells, claims: Claims, findings: Findin
         draw = reading.draws[position]
         assumption = replace(draw.assumption, name=_free_name(draw.assumption, claims, findings))
         found.assumptions.append(assumption)
-        if draw.matrix is not None:
-            found.matrices[assumption.name] = draw.matrix
+        found.draws[assumption.name] = draw
     for name in reading.idle:
         found.idle.setdefault(name, host)
     if reading.output is not None:
         found.outputs[host] = reading.output
     if reading.has_lognorm:
         found.lognorms.append(host)
+    if reading.simtables:
+        found.simtables[host] = reading.simtables
 
 
 def _free_name(assumption: Assumption, claims: Claims, findings: Findings) -> str:
@@ -189,71 +185,6 @@ def _any_of(names: Collection[str]) -> re.Pattern[str] | None:
     if not names:
         return None
     return re.compile(rf"(?<![\w.\\])(?:{'|'.join(map(re.escape, sorted(names)))})(?![\w.])", re.IGNORECASE)
-
-
-def in_cell_correlations(
-    workbook: Workbook,
-    assumptions: Iterable[Assumption],
-    matrices: Mapping[str, MatrixRow],
-    rows: Iterable[Correlation],
-    findings: Findings,
-) -> list[Correlation]:
-    """The correlations between draws that name rows of one matrix, in one instance of it; those of 0 left out.
-
-    Args:
-        workbook: holds the matrices.
-        assumptions: drawn in cells.
-        matrices: name of an assumption -> its row in a matrix.
-        rows: the correlations of tables, which may be about other pairs only.
-        findings: takes mistakes.
-    """
-    groups: dict[tuple[Area, str], list[_Row]] = {}
-    for assumption in assumptions:
-        named_row = matrices.get(assumption.name)
-        if named_row is not None and not assumption.frozen:
-            groups.setdefault((named_row.area, named_row.instance), []).append((assumption, named_row))
-    taken = {frozenset((row.first, row.second)): row for row in rows}
-    found = []
-    for first, second in (pair for group in groups.values() for pair in _pairs(group, findings)):
-        row = taken.get(frozenset((first[0].name, second[0].name)))
-        if row is not None:
-            message = f"{row.first!r} and {row.second!r} are correlated by this row and by the matrix {first[1].area}"
-            findings.problem(message, row.row, "Keep one of them")
-            continue
-        found.append(findings.attempt(_correlation, workbook, first, second))
-    return [each for each in found if each is not None and each.value != 0]
-
-
-def _pairs(group: list[_Row], findings: Findings) -> Iterator[tuple[_Row, _Row]]:
-    for first, second in combinations(group, 2):
-        if first[1].position == second[1].position:
-            message = f"{first[0].name!r} and {second[0].name!r} have the same row of the matrix {first[1].area}"
-            hint = "Give each draw its own position, or its own instance of the matrix"
-            findings.problem(message, second[0].row, hint)
-        else:
-            yield first, second
-
-
-def _correlation(workbook: Workbook, first: _Row, second: _Row) -> Correlation:
-    """The number below the diagonal; the one above where that cell is blank.
-
-    Raises:
-        DefinitionError: neither holds a number from -1 to 1.
-    """
-    area, (upper, lower) = first[1].area, sorted((first[1].position, second[1].position))
-    below, above = (
-        Cell(area.sheet, area.top + row - 1, area.left + column - 1) for row, column in ((lower, upper), (upper, lower))
-    )
-    cell = above if is_blank(workbook.content(below)) else below
-    content = workbook.content(cell)
-    if is_blank(content):
-        hint = "Fill it in, or the one beside it across the diagonal"
-        raise DefinitionError("The cell of a rank correlation is blank", where=below, hint=hint)
-    value = number_in("The matrix of rank correlations", content, cell)
-    if not -1 <= value <= 1:
-        message = f"Correlation ({show(value)}) must lie between -1 and 1"
-        raise DefinitionError(message, where=cell, hint="Type a rank correlation from -1 to 1")
-    return Correlation(first[0].name, second[0].name, value, cell)
 
 
 def in_cell_forecasts(

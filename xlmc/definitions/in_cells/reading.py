@@ -2,31 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Final
 
 from xlmc.address import Area, Cell, InFormula
 from xlmc.definitions.computed import Computed
 from xlmc.definitions.definitions import Assumption, DataRange, Parameter
 from xlmc.definitions.in_cells.call_arguments import difference, is_left_out, number_of, total
-from xlmc.definitions.in_cells.call_draws import Drawn, MatrixRow, base_of, percentile_cutoffs
+from xlmc.definitions.in_cells.call_draws import Drawn, Properties, base_of, built_family, percentile_cutoffs
+from xlmc.definitions.in_cells.compound_calls import COMPOUND, compound_of
 from xlmc.definitions.in_cells.crystal_ball_functions import crystal_ball_draw
 from xlmc.definitions.in_cells.random_functions import random_draw
 from xlmc.definitions.in_cells.result_functions import NOT_COMPUTED, ResultCall, is_result, not_computed, result_call
 from xlmc.definitions.in_cells.risk_functions import risk_draw
-from xlmc.definitions.in_cells.risk_properties import is_property
+from xlmc.definitions.in_cells.risk_properties import is_property, properties_of
+from xlmc.definitions.in_cells.stand_ins import STAND_INS, stand_in, unsupported
 from xlmc.definitions.tables.fields import number_in, static_value
 from xlmc.definitions.tables.table_rows import as_text, is_blank
 from xlmc.distributions import FAMILIES
 from xlmc.errors import FormulaError
-from xlmc.formula import formula_text, ir
+from xlmc.formula import Resolver, formula_text, ir
 from xlmc.formula.substitute import is_bound, substitute
 from xlmc.workbook.workbook import Workbook
 
-__all__ = ["CellReading", "Output"]
-
-_SUPPORTED: Final = 'see "Functions in cells" in docs/workbooks.md for what is; replace the call by one of those'
+__all__ = ["CellDraw", "CellReading", "Output"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,9 +37,12 @@ class Output:
 
 
 @dataclass(frozen=True, slots=True)
-class _Draw:
+class CellDraw:
+    """A draw: the assumption, what its call says beside, and the coefficient of its `RiskDepC`."""
+
     assumption: Assumption
-    matrix: MatrixRow | None
+    properties: Properties
+    coefficient: Parameter | None = None
 
 
 class CellReading:
@@ -51,6 +53,7 @@ class CellReading:
         draws: by their position in the formula.
         trees: of the arguments that are expressions, by the cells that stand for them.
         output, asked, idle, has_lognorm: see `in_cells.InCells`.
+        simtables: the values of each `RiskSimtable`.
         unavailable: why it cannot show the results that it should show; empty where it can, or should show none.
     """
 
@@ -59,13 +62,14 @@ class CellReading:
     ) -> None:
         self._workbook, self._computed, self._lognorm, self._bases = workbook, computed, lognorm, bases
         self.host = host
-        self.draws: dict[tuple[int, int], _Draw] = {}
+        self.draws: dict[tuple[int, int], CellDraw] = {}
         self.trees: dict[Cell, ir.Expression] = {}
         self.output: Output | None = None
         self.asked: list[ResultCall] = []
         self.unavailable = ""
         self.idle: tuple[str, ...] = ()
         self.has_lognorm = False
+        self.simtables: list[tuple[ir.Expression, ...]] = []
         self._count = self._depth = 0
 
     def rewrite(self, tree: ir.Expression) -> ir.Expression:
@@ -103,11 +107,10 @@ class CellReading:
                 raise FormulaError("the formula both draws and shows results of the run", hint=hint)
             self.asked = [result_call(call) for call in calls if is_result(call)]
             if missing := [each for call in calls if (each := not_computed(call))]:
-                known = missing[0] in NOT_COMPUTED
-                what = (
-                    f"{missing[0]} is not computed by xlmc" if known else f"the function {missing[0]} is not supported"
-                )
-                raise FormulaError(what, hint=_SUPPORTED)
+                refused = unsupported(missing[0].upper())
+                if missing[0] in NOT_COMPUTED:
+                    raise FormulaError(f"{missing[0]} is not computed by xlmc", hint=refused.hint)
+                raise refused
         except FormulaError as error:
             self.unavailable = error.message
             raise
@@ -130,15 +133,79 @@ class CellReading:
 
     def _program_call(self, call: ir.Call) -> ir.Expression:
         """What stands instead of a call of Crystal Ball or @RISK."""
+        if call.name in STAND_INS:
+            value, values = stand_in(call)
+            if values:
+                self.simtables.append(values)
+            return substitute(value, self._replacement)
         number = self._next()
-        self._depth += 1
-        rewritten = ir.Call(call.name, tuple(substitute(argument, self._replacement) for argument in call.arguments))
-        self._depth -= 1
+        drawn = self._compound(call, number) if call.name == COMPOUND else self._drawn(call)
+        return self._take_draw(replace(drawn, text=formula_text(call)), number)
+
+    def _drawn(self, call: ir.Call) -> Drawn:
+        """What a call draws whose arguments may draw, too."""
+        rewritten = ir.Call(call.name, self._rewritten(call.arguments))
         drawn = crystal_ball_draw(rewritten) or risk_draw(rewritten, self._lognorm)
         if drawn is None:
-            raise FormulaError(f"the function {call.name} is not supported", hint=_SUPPORTED)
+            raise unsupported(call.name)
         self.has_lognorm = self.has_lognorm or drawn.function == "RiskLognorm"
-        return self._take_draw(replace(drawn, text=formula_text(call)), number)
+        return drawn
+
+    def _rewritten(self, trees: Iterable[ir.Expression]) -> tuple[ir.Expression, ...]:
+        """The arguments of a call with assumptions instead of the calls in them."""
+        self._depth += 1
+        found = tuple(substitute(tree, self._replacement) for tree in trees)
+        self._depth -= 1
+        return found
+
+    def _compound(self, call: ir.Call, number: int) -> Drawn:
+        """What `RiskCompound` draws; the draws within it are no assumptions of their own."""
+        count = next((i for i, part in enumerate(call.arguments) if is_property(part)), len(call.arguments))
+        if count < 2:
+            raise FormulaError(
+                f"RiskCompound has {count} arguments", hint="it takes a frequency and a severity at least"
+            )
+        frequency, severity, *ends = call.arguments[:count]
+        properties = properties_of("RiskCompound", self._rewritten(call.arguments[count:]))
+        return compound_of(
+            self._inner(frequency),
+            self._inner(self._formula_of(severity)),
+            self._rewritten(ends),
+            properties,
+            lambda drawn: built_family(drawn, self._data(drawn, number) if drawn.data else None, self._constant),
+            self._percent_trees,
+        )
+
+    def _inner(self, tree: ir.Expression) -> Drawn | ir.Expression:
+        """What an argument of `RiskCompound` draws; the argument itself, rewritten, where it is a value."""
+        if isinstance(tree, ir.Call) and _is_draw_of_a_program(tree) and tree.name != COMPOUND:
+            return self._drawn(tree)
+        (rewritten,) = self._rewritten([tree])
+        return rewritten
+
+    def _formula_of(self, severity: ir.Expression) -> ir.Expression:
+        """The call in a cell that holds nothing else: its draws are made anew for each amount.
+
+        Raises:
+            FormulaError: it draws by a larger formula.
+        """
+        content = self._workbook.content(severity) if isinstance(severity, Cell) else None
+        tree = severity
+        if isinstance(severity, Cell) and content is not None and content.formula is not None:
+            formula = Resolver(self._workbook).formula(severity, content.formula)
+            tree = formula if _draws(formula) else severity
+        if _draws(tree) and not (isinstance(tree, ir.Call) and _is_draw_of_a_program(tree)):
+            where = f" ({severity})" if isinstance(severity, Cell) else ""
+            hint = "let the severity be one distribution, and multiply or add to what RiskCompound gives"
+            raise FormulaError(f"the severity of RiskCompound is a formula that draws{where}", hint=hint)
+        return tree
+
+    def _percent_trees(self, drawn: Drawn) -> tuple[ir.Expression | None, ir.Expression | None]:
+        """The cutoffs of an inner draw that `RiskTruncateP` gives, as trees."""
+        assert drawn.properties.percents is not None
+        numbers = {key: number_of(tree, self._constant) for key, tree in drawn.parameters.items()}
+        low, high = percentile_cutoffs(drawn, numbers, drawn.properties.percents)
+        return _as_tree(low), _as_tree(high)
 
     def _next(self) -> int:
         self._count += 1
@@ -191,7 +258,10 @@ class CellReading:
     def _drawn_at(self, plan: Assumption, drawn: Drawn, label: str, position: tuple[int, int]) -> Cell:
         site = InFormula.of(self.host, label)
         name = plan.name or str(site)
-        self.draws[position] = _Draw(replace(plan, cell=site, name=name), drawn.properties.matrix)
+        partner = drawn.properties.partner
+        asked = None if partner is None else partner.coefficient
+        coefficient = None if asked is None else self._parameter(asked, f"{label} coefficient")
+        self.draws[position] = CellDraw(replace(plan, cell=site, name=name), drawn.properties, coefficient)
         self._bases[site] = plan.base
         return site
 
@@ -230,12 +300,14 @@ class CellReading:
             source=f"{drawn.function} in the cell{'' if properties.shift is None else ', before its shift'}",
             frozen=properties.locked,
             notes={"Call": drawn.text},
-            own_family=None if drawn.family is FAMILIES[drawn.family.name] else drawn.family,
+            own_family=None if drawn.family is FAMILIES.get(drawn.family.name) else drawn.family,
             data=data,
         )
 
     def _cutoffs(self, drawn: Drawn, number: int) -> tuple[Parameter | None, Parameter | None]:
         properties = drawn.properties
+        if not drawn.family.truncates and (properties.percents or properties.lower or properties.upper):
+            raise FormulaError(f"{drawn.function} cannot be cut off", hint="limit it by a formula: MIN, MAX or IF")
         if properties.percents is not None:
             numbers = {key: number_of(tree, self._constant) for key, tree in drawn.parameters.items()}
             return percentile_cutoffs(drawn, numbers, properties.percents)
@@ -295,6 +367,10 @@ class CellReading:
     def _constant(self, cell: Cell) -> float | None:
         """What a cell holds that nothing changes."""
         return None if cell in self._bases or self._computed.at_all(cell) else static_value(cell, self._workbook)
+
+
+def _as_tree(parameter: Parameter | None) -> ir.Expression | None:
+    return ir.Number(parameter) if isinstance(parameter, float) else parameter
 
 
 def _draws(tree: ir.Expression) -> bool:

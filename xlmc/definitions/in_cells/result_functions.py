@@ -13,7 +13,7 @@ from xlmc.address import Area, Cell
 from xlmc.definitions.in_cells.call_arguments import is_left_out
 from xlmc.definitions.in_cells.crystal_ball_functions import CRYSTAL_BALL
 from xlmc.definitions.in_cells.risk_functions import RISK
-from xlmc.definitions.in_cells.risk_properties import is_property
+from xlmc.definitions.in_cells.risk_properties import is_property, is_property_name
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
 
@@ -187,7 +187,7 @@ def not_computed(tree: ir.Expression) -> str | None:
 
 def _shows(name: str) -> bool:
     """Whether a function may show a result, by its name in capitals."""
-    if not name.startswith(("RISK", "CB.")) or name in _DRAWS:
+    if not name.startswith(("RISK", "CB.")) or name in _DRAWS or is_property_name(name):
         return False
     return not (name.startswith("RISKTS") or name.endswith(("ALT", "ALTD")))
 

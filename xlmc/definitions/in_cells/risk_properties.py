@@ -10,6 +10,8 @@
 | RiskStatic(x) | the base case |
 | RiskLock() | hold the draw at its base case |
 | RiskCorrmat(matrix, position, [instance]) | rank correlations |
+| RiskCopula(range, position, [instance]) | the same in the shape of a copula |
+| RiskIndepC("name"), RiskDepC("name", r) | the draw that others depend on, and one that does |
 | RiskSeed(…) | has no effect: every draw has a stream of its own |
 
 Source: Palisade's @RISK manual, "Distribution Property Functions".
@@ -23,14 +25,21 @@ from typing import Final
 
 from xlmc.address import Area, Cell
 from xlmc.definitions.in_cells.call_arguments import is_left_out, number_of
-from xlmc.definitions.in_cells.call_draws import MatrixRow, Properties
+from xlmc.definitions.in_cells.call_draws import MatrixRow, Partner, Properties
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
 
-__all__ = ["is_property", "properties_of"]
+__all__ = ["is_property", "is_property_name", "properties_of"]
+
+_MOST_JOINED: Final = 250
 
 _Given = tuple[ir.Expression, ...]
 _Taken = Callable[[Properties, _Given], Properties]
+
+
+def is_property_name(name: str) -> bool:
+    """Whether a function, by its name in capitals, is a property function."""
+    return name in _BY_NAME
 
 
 def is_property(tree: ir.Expression) -> bool:
@@ -107,6 +116,39 @@ def _corrmat(found: Properties, arguments: _Given) -> Properties:
     )
 
 
+def _copula(found: Properties, arguments: _Given) -> Properties:
+    area, position, instance = arguments[0], number_of(arguments[1]), _filled(arguments, 2)
+    if isinstance(area, Cell) or not isinstance(area, Area):
+        hint = "name the range that says which copula it is, such as K1:L3 with Clayton, and Theta and its number"
+        raise FormulaError("RiskCopula's first argument is not a range of cells", hint=hint)
+    if position is None or not position.is_integer() or not 1 <= position <= _MOST_JOINED:
+        message = f"RiskCopula's position must be a whole number from 1 to {_MOST_JOINED}"
+        raise FormulaError(message, hint="write which of the joined draws this is, as a number")
+    if instance is not None and not isinstance(instance, ir.Number | ir.Text):
+        raise FormulaError("RiskCopula's instance must be a number or a text", hint="write it, or leave it out")
+    text = "" if instance is None else str(instance.value).casefold()
+    return replace(found, copula=MatrixRow(area, int(position), text))
+
+
+def _partner(depends: bool) -> _Taken:
+    def taken(found: Properties, arguments: _Given) -> Properties:
+        name = arguments[0]
+        function = "RiskDepC" if depends else "RiskIndepC"
+        if not isinstance(name, ir.Text | ir.Number):
+            hint = 'write the same text in both, such as RiskIndepC("price") and RiskDepC("price", 0.8)'
+            raise FormulaError(f"{function} needs a text", hint=hint)
+        return replace(found, partner=Partner(str(name.value).casefold(), arguments[1] if depends else None))
+
+    return taken
+
+
+def _library(_found: Properties, _arguments: _Given) -> Properties:
+    hint = "to draw from the distribution as it is written in this cell, take RiskLibrary out"
+    raise FormulaError(
+        "RiskLibrary replaces the distribution by one of a library that is not in the workbook", hint=hint
+    )
+
+
 def _idle(name: str) -> _Taken:
     return lambda found, _: replace(found, idle=(*found.idle, name))
 
@@ -125,13 +167,16 @@ _PROPERTIES: Final[dict[str, tuple[int, int, _Taken]]] = {
     "RiskStatic": (1, 1, lambda found, given: replace(found, static=given[0])),
     "RiskLock": (0, 1, lambda found, _: replace(found, locked=True)),
     "RiskCorrmat": (2, 3, _corrmat),
+    "RiskCopula": (2, 3, _copula),
+    "RiskIndepC": (1, 1, _partner(False)),
+    "RiskDepC": (2, 2, _partner(True)),
     "RiskSeed": (0, 2, _idle("RiskSeed")),
     "RiskCollect": (0, 1, _ignored),
     "RiskCategory": (0, 1, _ignored),
     "RiskFit": (0, 9, _ignored),
     "RiskIsDate": (0, 1, _ignored),
     "RiskIsDiscrete": (0, 1, _ignored),
-    "RiskLibrary": (0, 9, _ignored),
+    "RiskLibrary": (0, 9, _library),
 }
 """Property function -> fewest arguments, most, and what it says."""
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import Correlation, name_key
+from xlmc.definitions.definitions import Correlation, Parameter, name_key
 from xlmc.definitions.problems import Findings
-from xlmc.definitions.tables.fields import number, required_text
+from xlmc.definitions.tables.fields import parameter, required_text, static_value
 from xlmc.definitions.tables.table_rows import DefinitionTable, Row, rows_of
 from xlmc.distributions.parameters import show
 from xlmc.distributions.spelling import did_you_mean
@@ -70,13 +70,14 @@ def _assumption_named(row: Row, heading: str, names: Mapping[str, str]) -> str:
     raise DefinitionError(f"There is no assumption {typed!r}", where=row.cell(heading), hint=hint)
 
 
-def _coefficient(row: Row) -> float:
-    value = number(row, "Correlation")
+def _coefficient(row: Row) -> Parameter:
+    value = parameter(row, "Correlation")
     where = row.cell("Correlation")
     if value is None:
         raise DefinitionError("Correlation is blank", where=where, hint="Type a number from -1 to 1")
-    if not -1 <= value <= 1:
-        message = f"Correlation ({show(value)}) must lie between -1 and 1"
+    known = static_value(value, row.workbook)
+    if known is not None and not -1 <= known <= 1:
+        message = f"Correlation ({show(known)}) must lie between -1 and 1"
         raise DefinitionError(message, where=where, hint="Type a rank correlation from -1 to 1")
     return value
 

@@ -252,8 +252,8 @@ class CorrelationMet:
     """A pair of assumptions.
 
     Attributes:
-        asked: the rank correlation in its row; 0 where it has no row.
-        row: the first cell of the row; None where a repair of other pairs changed a pair that no row names.
+        asked: the rank correlation in its row, or that of its copula; 0 where it has neither.
+        row: its first cell, or that of the copula; None where a repair changed a pair that no row names.
         used: the rank correlation that it was drawn with; None where one of the two was not drawn.
         accepted: that of the accepted trials whose draws are kept; None where one of the two was not drawn.
     """
@@ -269,11 +269,11 @@ class CorrelationMet:
 def correlations_met(simulation: Simulation) -> list[CorrelationMet]:
     """The pairs in the order of the rows, then those that a repair changed without a row."""
     model = simulation.model
-    pairs = [(c.first, c.second, c.value, c.row) for c in model.definitions.correlations]
+    pairs = [(c.first, c.second, c.number, c.row) for c in model.definitions.correlations]
     return [_met(simulation, *pair) for pair in (*pairs, *_unnamed(simulation))]
 
 
-def _unnamed(simulation: Simulation) -> Iterator[tuple[str, str, float, None]]:
+def _unnamed(simulation: Simulation) -> Iterator[tuple[str, str, float, Cell | None]]:
     model = simulation.model
     named = {frozenset((name_key(c.first), name_key(c.second))) for c in model.definitions.correlations}
     spelt = {name_key(a.name): a.name for a in model.live}
@@ -281,7 +281,7 @@ def _unnamed(simulation: Simulation) -> Iterator[tuple[str, str, float, None]]:
         for first, second in combinations(group.names, 2):
             found = drawn_correlation(model.groups, first, second)
             if frozenset((first, second)) not in named and found is not None and abs(found) >= CHANGED:
-                yield spelt[first], spelt[second], 0.0, None
+                yield spelt[first], spelt[second], 0.0 if group.where is None else found, group.where
 
 
 def _met(simulation: Simulation, first: str, second: str, asked: float, row: Cell | None) -> CorrelationMet:

@@ -1,0 +1,75 @@
+"""@RISK's functions that stand for a value without drawing one, and what is said of those that xlmc refuses.
+
+| function | stands for |
+|---|---|
+| RiskMakeInput(formula) | the formula: what it draws is drawn as elsewhere |
+| RiskSimtable({values}) | the first of the values |
+
+Source: @RISK's manual, "Simulation Functions" and "Miscellaneous Functions".
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from xlmc.definitions.in_cells.call_arguments import elements, is_left_out
+from xlmc.definitions.in_cells.risk_properties import is_property
+from xlmc.errors import FormulaError
+from xlmc.formula import ir
+
+__all__ = ["REFUSED", "SIMTABLE", "STAND_INS", "stand_in", "unsupported"]
+
+SIMTABLE: Final = "RISKSIMTABLE"
+STAND_INS: Final = frozenset((SIMTABLE, "RISKMAKEINPUT"))
+
+_SUPPORTED: Final = 'see "Functions in cells" in docs/workbooks.md for what is; replace the call by one of those'
+
+REFUSED: Final = {
+    "RiskSplice": "draw from both distributions, and choose between them by a third draw: IF(RAND()<p,…,…)",
+    "RiskResample": "use RiskDUniform, which draws from the same values at random",
+    "RiskVary": "write RiskTriang or RiskUniform around the value",
+    "RiskLibrary": "write the distribution itself into the cell",
+    "RiskTSAR1": "write the series into cells, each with RiskNormal and the cell before it",
+    "RiskCurrentIter": "let no formula depend on the number of the trial: trials are independent",
+    "RiskCurrentSim": "use RiskSimtable with the values themselves",
+    "RiskStopRun": "end the run by a setting of xlmc_settings, such as Seconds or Precision",
+    "RiskSensitivity": "look at the sheet Sensitivity of the result workbook",
+    "RiskSensitivityStatChange": "look at the sheet Sensitivity of the result workbook",
+    "RiskResultsGraph": "look at the sheet Charts of the result workbook, or at the page",
+    "RiskSimulationInfo": "look at the sheet Record of the result workbook",
+    "RiskConvergenceLevel": "look at the standard errors in the sheet Statistics, or set Precision in xlmc_settings",
+    "RiskFitDistribution": "use xlmc fit, and write the distribution that it finds",
+    "RiskFitParameter": "use xlmc fit, and write the numbers that it finds",
+    "RiskFitStatistic": "use xlmc fit, which shows these numbers",
+    "CB.GetDecVarFN": "name the decision's own cell",
+    "CB.CheckDataFN": "take it out: xlmc check looks the workbook over",
+}
+"""Function -> what to use instead."""
+
+_BY_NAME: Final = {name.upper(): (name, hint) for name, hint in REFUSED.items()}
+
+
+def unsupported(name: str) -> FormulaError:
+    """What is said of a function that xlmc does not know, by its name in capitals."""
+    if name.startswith("RISKTS"):
+        name, hint = name, REFUSED["RiskTSAR1"]
+    else:
+        name, hint = _BY_NAME.get(name, (name, _SUPPORTED))
+    return FormulaError(f"the function {name} is not supported", hint=hint)
+
+
+def stand_in(call: ir.Call) -> tuple[ir.Expression, tuple[ir.Expression, ...]]:
+    """What a call of one of `STAND_INS` stands for, and the values of a `RiskSimtable`.
+
+    Raises:
+        FormulaError: it has no argument, or more than it takes.
+    """
+    given = [argument for argument in call.arguments if not is_property(argument)]
+    if len(given) != 1 or is_left_out(given[0]):
+        name = "RiskSimtable" if call.name == SIMTABLE else "RiskMakeInput"
+        takes = "a list of values, such as {10,20,30} or a range" if call.name == SIMTABLE else "one formula"
+        raise FormulaError(f"{name} has {len(given)} arguments", hint=f"it takes {takes}")
+    if call.name != SIMTABLE:
+        return given[0], ()
+    values = tuple(elements(given[0]))
+    return values[0], values

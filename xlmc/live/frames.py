@@ -3,23 +3,32 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any, Final
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from xlmc.live.protocol import Message, plain
-from xlmc.report.histogram import Figure, figures_of, multiples
+from xlmc.report.histogram import Figure, figures_of, histogram, multiples
 from xlmc.report.page.element import join
 from xlmc.report.page.payload import forecast_payload
 from xlmc.report.page.sensitivity_sections import dependence, limits
 from xlmc.report.page.sheet_sections import assumptions, certainty, checks, filters, notices, record, statistics
 from xlmc.report.sheets.results_sheet import opening_sentences
-from xlmc.report.summary import ERROR_SENTENCE, share_text
+from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, base_case, share_text
 from xlmc.results.record import make_record
 from xlmc.results.record.in_words import sampling_sentence
 from xlmc.results.statements import statements
-from xlmc.statistics import Estimate, Sample, format_estimate, rank_correlation
+from xlmc.statistics import (
+    Estimate,
+    Sample,
+    format_estimate,
+    maximum,
+    minimum,
+    percentiles,
+    rank_correlation,
+)
 from xlmc.studies.sensitivity import sensitivities
 
 if TYPE_CHECKING:
@@ -33,6 +42,9 @@ _VALUES_AT_REST: Final = 4_000
 """Values of a forecast that a chart counts between its grabbers from: `xlmc.report.page.payload` says how exactly."""
 
 _PERCENTS: Final = (5.0, 25.0, 50.0, 75.0, 95.0)
+_KNOWN: Final[WeakKeyDictionary[ForecastResult, list[tuple[str, Estimate]]]] = WeakKeyDictionary()
+"""Those of the state behind are asked for with every frame."""
+
 _POINTS: Final = 2_000
 """Accepted trials that a scatter shows."""
 
@@ -50,17 +62,42 @@ def frame_of(
         fits: with fitted distributions, which take their time.
     """
     most = _VALUES_MOVING if moving else _VALUES_AT_REST
-    figures = {figure.answer.name: figure for figure in figures_of(simulation, names)}
     charts: dict[str, Any] = dict.fromkeys(name for name in names if name in simulation.results)
-    for name, figure in figures.items():
-        payload = forecast_payload(simulation, figure, most, fits=fits)
-        charts[name] = payload | _beside(figure, simulation.results[name], behind)
+    base = base_case(simulation)
+    for name in charts:
+        figure = _figure(simulation.results[name], None if base is None else base.forecasts[name])
+        if figure is not None:
+            payload = forecast_payload(simulation, figure, most, fits=fits)
+            charts[name] = payload | _beside(figure, simulation.results[name], behind)
     return {
         "trials": simulation.evaluated,
         "accepted": simulation.accepted,
         "share": share_text(simulation.acceptance),
         "forecasts": charts,
     }
+
+
+def _figure(result: ForecastResult, base: float | None) -> Figure | None:
+    """A forecast to draw, with no other statistics than the window shows; None where it has no number."""
+    definition, (low, high) = result.definition, result.central()
+    bins = histogram(result.sample, low.value, high.value) if result.sample.n else None
+    if bins is None:
+        return None
+    threshold = definition.threshold
+    row = SummaryRow(
+        name=definition.name,
+        units=definition.units,
+        trials=result.sample.n,
+        mean=result.mean,
+        standard_deviation=result.standard_deviation,
+        share=definition.central,
+        low=low,
+        high=high,
+        base=base,
+        threshold=threshold,
+        above=None if threshold is None else result.probability_above(threshold),
+    )
+    return Figure(1, row, bins)
 
 
 def _beside(figure: Figure, now: ForecastResult, behind: Simulation | None) -> dict[str, Any]:
@@ -76,15 +113,19 @@ def _beside(figure: Figure, now: ForecastResult, behind: Simulation | None) -> d
     }
 
 
-def _numbers(result: ForecastResult) -> Iterator[tuple[str, Estimate]]:
+def _numbers(result: ForecastResult) -> list[tuple[str, Estimate]]:
     """The numbers that a reader of the chart asks for first."""
-    found = result.statistics
-    yield "Mean", found.mean
-    yield "Standard deviation", found.standard_deviation
-    yield "Minimum", found.minimum
-    for percent in _PERCENTS:
-        yield f"{percent:g} %", found.percentiles[percent]
-    yield "Maximum", found.maximum
+    if result not in _KNOWN:
+        sample = result.sample
+        found = percentiles(sample, _PERCENTS)
+        _KNOWN[result] = [
+            ("Mean", result.mean),
+            ("Standard deviation", result.standard_deviation),
+            ("Minimum", minimum(sample)),
+            *((f"{percent:g} %", found[percent]) for percent in _PERCENTS),
+            ("Maximum", maximum(sample)),
+        ]
+    return _KNOWN[result]
 
 
 def _texts(now: Estimate, before: Estimate | None) -> tuple[str, str, str]:
@@ -106,14 +147,14 @@ def _text(estimate: Estimate) -> str:
 def _moved(figure: Figure, now: ForecastResult, before: ForecastResult) -> str:
     """`Nissan impact speed: mean 4.72 → 5.31 mph`."""
     units = f" {figure.answer.units}" if figure.answer.units else ""
-    old, new = (_text(each.statistics.mean).partition(" ± ")[0] for each in (before, now))
+    old, new = (_text(each.mean).partition(" ± ")[0] for each in (before, now))
     return f"{figure.answer.name}: mean {old} → {new}{units}"
 
 
 def _bars_behind(figure: Figure, sample: Sample) -> dict[str, Any]:
     """The bars of the state behind, as wide as those before it, so that the two compare."""
     x, width = sample.x, figure.bins.width
-    first, last = np.quantile(x, [0.001, 0.999])
+    first, last = x[round(0.001 * (sample.n - 1))], x[round(0.999 * (sample.n - 1))]
     start, stop = math.floor(first / width), math.floor(last / width) + 1
     while stop - start > 400:  # it is much wider than the one before it
         width, start, stop = 2.0 * width, start // 2, stop // 2 + 1

@@ -29,7 +29,7 @@ _SHAPE_BARS: Final = 40
 _PROBABILITIES: Final = (np.arange(_SHAPE_DRAWS) + 0.5) / _SHAPE_DRAWS
 _OUTSIDE: Final = 0.35
 """Room that an axis leaves on either side of the distribution, as a part of its width."""
-_STEPS: Final = 20.0
+_STEPS: Final = 50.0
 """A step of a key is a power of ten, the largest of which a range has at least so many."""
 
 

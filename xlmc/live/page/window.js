@@ -4,6 +4,7 @@
 const Live = {
   moves: new Map(), // number of a change -> when its event happened
   latencies: [], // milliseconds from an event to the frame that shows its answer
+  fewest: Infinity, // trials of such an answer
 
   start() {
     const { key, page } = document.body.dataset;
@@ -58,7 +59,7 @@ const Live = {
     document.getElementById("stop").hidden = true;
     document.body.dataset.stage = message.stage;
     document.body.dataset.version = String(message.version);
-    this.measure(message.seq);
+    this.measure(message);
   },
 
   on_rest(message) {
@@ -109,10 +110,12 @@ const Live = {
   },
 
   /** From the event of a move to the frame in which its answer is drawn. */
-  measure(seq) {
+  measure({ seq, trials }) {
     const began = this.moves.get(seq);
     for (const each of this.moves.keys()) if (each <= seq) this.moves.delete(each);
-    if (began !== undefined) requestAnimationFrame(() => this.latencies.push(performance.now() - began));
+    if (began === undefined) return;
+    this.fewest = Math.min(this.fewest, trials);
+    requestAnimationFrame(() => this.latencies.push(performance.now() - began));
   },
 };
 

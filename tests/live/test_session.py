@@ -220,3 +220,40 @@ def test_all_that_is_told_is_json_without_numbers_that_are_none():
     for message in (*session.greeting(), *settle(session), *session.greeting()):
         written(message)
     assert np.isfinite(session.rest.accepted)
+
+
+def test_all_scenarios_are_compared_in_one_table(case):
+    session = Session(case[1])
+    settle(session)
+    session.receive(change(FRICTION, "high", 0.85))
+    session.receive(Said("keep", {"name": "dry <b>road"}))
+    session.receive(Said("compare", {}))
+    (part,) = [each for each in settle(session) if each["kind"] == "part"]
+    assert part["tab"] == "scenarios"
+    assert "dry &lt;b&gt;road" in part["html"]
+    assert "as it is" in part["html"]
+    expected = simulate(session._models[session.version])
+    assert f"{expected.accepted:,}" in part["html"]
+
+
+def test_the_usual_variants_are_scenarios(case):
+    session = Session(case[1])
+    session.receive(Said("variants", {}))
+    names = [*session.kept]
+    assert names[:2] == ["every range half as wide", "every range half again as wide"]
+    assert "Restitution, tangential at most 0.125 (half)" in names
+    narrow = session.kept["every range half as wide"].assumptions
+    assert narrow[FRICTION] == {"low": 0.6875, "high": 0.8625}
+    assert len(narrow) == len(case[1].live)
+
+
+def test_a_band_of_a_distribution_is_a_range_of_its_percentiles(case):
+    session = Session(case[1])
+    session.receive(change(FRICTION, "band_high", 50.0))
+    settle(session)
+    other = Session(case[1])
+    other.receive(change(FRICTION, "high", 0.775))
+    settle(other)
+    assert session.rest.inputs[FRICTION].max() < 0.775
+    drawn, expected = session.rest.inputs[FRICTION], other.rest.inputs[FRICTION]
+    assert np.allclose(drawn, expected, rtol=1e-12)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from xlmc.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Parameter
-from xlmc.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers
+from xlmc.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Scenario
 from xlmc.results.record.in_words import number_text
 from xlmc.run.applied_changes import applied
 from xlmc.run.model import Model
@@ -23,10 +23,12 @@ __all__ = [
     "Amount",
     "adjusted",
     "adjusted_definitions",
+    "adjustments_of",
     "assumption_numbers",
     "changes_of",
     "in_words",
     "own_values",
+    "scenario_of",
     "usual_variants",
 ]
 
@@ -168,6 +170,45 @@ def _of_assumption(assumption: Assumption, given: dict[str, Amount]) -> Iterator
         yield Band(name, low, high)
 
 
+def scenario_of(definitions: Definitions, name: str, adjustments: Adjustments) -> Scenario:
+    """A state of the window as a scenario, such as the workbook's table `xlmc_scenarios` holds."""
+    return Scenario(name, tuple(changes_of(definitions, adjustments)))
+
+
+def adjustments_of(definitions: Definitions, scenario: Scenario) -> Adjustments | None:
+    """A scenario of the workbook as a state of the window; None where it changes what the window has no handle for."""
+    assumptions = {each.name: each for each in definitions.assumptions}
+    found = Adjustments()
+    for change in scenario.changes:
+        values = _values(change, assumptions)
+        if values is None:
+            return None
+        of = "filter" if isinstance(change, Limits) else "assumption"
+        name = change.filter if isinstance(change, Limits) else change.assumption  # type: ignore[union-attr]
+        for key, value in values.items():
+            if key not in own_values(definitions, of, name):
+                return None
+            found = found.having(of, name, key, value)
+    return found
+
+
+def _values(change: Change, assumptions: Mapping[str, Assumption]) -> dict[str, Amount] | None:
+    """Key -> value of one change; None where it is none of these."""
+    match change:
+        case Held(_, value):
+            return {"frozen": True} | ({} if value is None else {"base": value})
+        case Drawn():
+            return {"frozen": False}
+        case Band(_, low, high):
+            return dict(zip(BAND, (low, high), strict=True))
+        case Range(name, low, high) if name in assumptions and {"low", "high"} <= {*assumptions[name].parameters}:
+            ends = {"low": low, "high": high}
+            return {key: end for key, end in ends.items() if end is not None}
+        case Numbers(_, values) | Limits(_, values) if None not in values.values():
+            return {key: value for key, value in values.items() if value is not None}
+    return None
+
+
 def adjusted_definitions(definitions: Definitions, adjustments: Adjustments) -> Definitions:
     """The definitions with these values, whatever they are."""
     return replace(
@@ -231,9 +272,8 @@ def usual_variants(definitions: Definitions) -> dict[str, Adjustments]:
         made = Adjustments()
         for name, low, high in _ranges(definitions):
             middle, half = 0.5 * (low + high), 0.5 * (high - low) * factor
-            made = made.having("assumption", name, "low", middle - half).having(
-                "assumption", name, "high", middle + half
-            )
+            for key, end in (("low", middle - half), ("high", middle + half)):
+                made = made.having("assumption", name, key, float(f"{end:.12g}"))  # 0.6875, not 0.6874999999999999
         if made:
             found[f"every range {said}"] = made
     for filter_ in definitions.filters:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING, Any, Final
 from weakref import WeakKeyDictionary
 
@@ -14,7 +14,16 @@ from xlmc.report.histogram import Figure, figures_of, histogram, multiples
 from xlmc.report.page.element import join
 from xlmc.report.page.payload import forecast_payload
 from xlmc.report.page.sensitivity_sections import dependence, limits
-from xlmc.report.page.sheet_sections import assumptions, certainty, checks, filters, notices, record, statistics
+from xlmc.report.page.sheet_sections import (
+    assumptions,
+    certainty,
+    checks,
+    filters,
+    notices,
+    record,
+    scenarios,
+    statistics,
+)
 from xlmc.report.sheets.results_sheet import opening_sentences
 from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, base_case, share_text
 from xlmc.results.record import make_record
@@ -29,13 +38,15 @@ from xlmc.statistics import (
     percentiles,
     rank_correlation,
 )
+from xlmc.studies.scenario_answers import scenario_answers
 from xlmc.studies.sensitivity import sensitivities
 
 if TYPE_CHECKING:
     from xlmc.run.forecast_result import ForecastResult
+    from xlmc.run.model import Model
     from xlmc.run.simulation import Simulation
 
-__all__ = ["frame_of", "matters_html", "pair_of", "rest_of", "tables_html"]
+__all__ = ["frame_of", "matters_html", "pair_of", "rest_of", "scenarios_html", "tables_html"]
 
 _VALUES_MOVING: Final = 400
 _VALUES_AT_REST: Final = 4_000
@@ -198,6 +209,22 @@ def tables_html(simulation: Simulation) -> str:
     """All tables that the page of results has."""
     parts = (statistics, certainty, assumptions, filters, checks, notices)
     return join([*(part(simulation) for part in parts), record(make_record(simulation, None))]).source
+
+
+def scenarios_html(model: Model, run: Callable[[Model], Simulation], told: Callable[[str], None]) -> str:
+    """The answers of the scenarios of a model beside its own, in tables.
+
+    Args:
+        model: with the scenarios.
+        run: makes the run of the model's own state, with its scenarios asked for.
+        told: called before each scenario with its name.
+
+    Raises:
+        DefinitionError, FormulaError: a scenario is not possible.
+    """
+    base = run(model)
+    scenario_answers(base, told=told)
+    return scenarios(base).source
 
 
 def pair_of(simulation: Simulation, first: str, second: str) -> dict[str, Any] | None:

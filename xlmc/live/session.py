@@ -10,16 +10,26 @@ seed, and assumptions streams of their own: what is not moved is drawn as before
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final, Literal
 
 from xlmc.errors import XlmcError
-from xlmc.live.adjustments import Adjustments, adjusted, in_words, own_values, usual_variants
-from xlmc.live.frames import frame_of, matters_html, pair_of, rest_of, tables_html
+from xlmc.live.adjustments import (
+    Adjustments,
+    adjusted,
+    adjustments_of,
+    in_words,
+    own_values,
+    scenario_of,
+    usual_variants,
+)
+from xlmc.live.frames import frame_of, matters_html, pair_of, rest_of, scenarios_html, tables_html
 from xlmc.live.protocol import Message, Said
 from xlmc.live.window_book import assumption_rows, filter_rows, forecast_rows, shapes_of
+from xlmc.report.page.element import element, join
 from xlmc.report.page.payload import CONFIDENCE
+from xlmc.results.record.in_words import changes_text
 from xlmc.run.simulate import simulate
 from xlmc.statistics.estimate import t_quantile
 
@@ -47,7 +57,7 @@ _MODELS: Final = 4
 Sight = tuple[int, tuple[str, ...], bool, int]
 """Version, forecasts, whether with fits, and what is behind."""
 
-Stage = Literal["quick", "moving", "rest", "shown", "part"]
+Stage = Literal["quick", "moving", "rest", "shown", "part", "compare"]
 
 OPENS_WITH: Final = 3
 """Forecasts whose charts are open at first."""
@@ -169,6 +179,7 @@ class Session:
         self._seconds: float | None = None
         self._stopped_at = -1
         self._ended = False
+        self._compare = 0
 
     # What windows are told
 
@@ -196,13 +207,29 @@ class Session:
             "assumptions": assumption_rows(self.own, self.adjustments),
             "filters": filter_rows(self.own, self.adjustments),
             "changes": in_words(self.own.definitions, self.adjustments),
-            "scenarios": [
-                {"name": name, "changes": in_words(self.own.definitions, each)} for name, each in self.kept.items()
-            ],
+            "scenarios": list(self._scenarios()),
             "shown": self.shown,
             "offered": in_words(self.own.definitions, self.offered),
             "behind": self.behind_is,
         }
+
+    def _scenarios(self) -> Iterator[Message]:
+        """Those of the workbook, then those that are kept here, which take the place of one of the same name."""
+        definitions = self.own.definitions
+        for scenario in definitions.scenarios:
+            if scenario.name not in self.kept:
+                shows = adjustments_of(definitions, scenario) is not None
+                yield {"name": scenario.name, "changes": [changes_text(scenario)], "own": True, "shows": shows}
+        for name, each in self.kept.items():
+            yield {"name": name, "changes": in_words(definitions, each), "own": False, "shows": True}
+
+    def _known(self, name: str) -> Adjustments | None:
+        """A scenario by name; None where there is none, or none that can be shown."""
+        if name in self.kept:
+            return self.kept[name].only(self.own.definitions)
+        definitions = self.own.definitions
+        found = next((each for each in definitions.scenarios if each.name == name), None)
+        return None if found is None else adjustments_of(definitions, found)
 
     def _trouble(self) -> list[Message]:
         return [{"kind": "trouble", "about": "state", "text": self._problem or ""}]
@@ -241,6 +268,8 @@ class Session:
                 return self._keep(said["name"].strip())
             case "show":
                 return self._show(said["name"])
+            case "compare":
+                self._compare += 1
             case "variants":
                 self.kept |= usual_variants(self.own.definitions)
                 return Replies(all=[self._state()])
@@ -262,7 +291,7 @@ class Session:
 
     def _change(self, adjustments: Adjustments) -> None:
         self.adjustments = adjustments
-        if self.shown and self.kept.get(self.shown) != adjustments:
+        if self.shown and self._known(self.shown) != adjustments:
             self.shown = ""
         self.version += 1
 
@@ -274,10 +303,11 @@ class Session:
         return Replies(all=[self._state()])
 
     def _show(self, name: str) -> Replies:
-        if name and name not in self.kept:
-            raise XlmcError(f"there is no scenario {name!r}")
+        found = self._known(name) if name else Adjustments()
+        if found is None:
+            raise XlmcError(f"there is no scenario {name!r} that can be shown")
         self._held = False
-        self._change(self.kept[name].only(self.own.definitions) if name else Adjustments())
+        self._change(found)
         self.shown = name
         return Replies(all=[self._state()])
 
@@ -302,6 +332,8 @@ class Session:
     def job(self) -> Job | None:
         """What comes next; None where all is done."""
         version, stopped = self.version, self._stopped_at == self.version
+        if self._done.get("compare", 0) != self._compare:
+            return Job("compare", version, False, self._comparing())
         if self._problem is not None and self._done.get("tried") == version:
             return None
         if not stopped:
@@ -420,8 +452,38 @@ class Session:
 
         return run
 
+    def _comparing(self) -> Callable[..., Outcome]:
+        """All scenarios in one table, those of the workbook and those that are kept here."""
+        own, asked = self.own, self._compare
+        scenarios = tuple(scenario_of(own.definitions, name, each) for name, each in self.kept.items())
+
+        def run(wanted: Callable[[], bool], tell: Callable[[float], None], clock: Callable[[], float]) -> Outcome:
+            known = [each for each in own.definitions.scenarios if each.name not in self.kept]
+            all_of_them = (*known, *scenarios)
+            model = own.changed(own.workbook, replace(own.definitions, scenarios=all_of_them))
+            begun: list[str] = []
+
+            def told(name: str) -> None:
+                if not wanted():
+                    raise SupersededError
+                begun.append(name)
+                tell(len(begun) / (len(all_of_them) + 1))
+
+            try:
+                html = scenarios_html(model, lambda model: simulate(model, scenarios=True), told)
+            except XlmcError as error:
+                html = join([element("p", str(error), class_="warning")]).source
+            message = {"kind": "part", "tab": "scenarios", "version": asked, "html": html}
+            return Outcome((message,), done=asked)
+
+        return run
+
     def finish(self, job: Job, outcome: Outcome) -> list[Message]:
         """Take what a job found; what windows are told of it."""
+        if job.stage == "compare":
+            self._done["compare"] = self._compare if outcome.done is None else outcome.done
+            self._remember(outcome.messages)
+            return list(outcome.messages)
         if job.stage in ("shown", "part"):
             if isinstance(outcome.done, tuple) and isinstance(outcome.done[0], Tab):
                 tab, version = outcome.done
@@ -456,11 +518,14 @@ class Session:
 
     def superseded(self, job: Job) -> list[Message]:
         """A job was given up: something newer is wanted, or a person stopped it."""
+        if job.stage == "compare":
+            self._done["compare"] = self._compare
         return [{"kind": "running", "version": job.version, "stage": "stopped", "share": 1.0}]
 
     def wanted(self, job: Job) -> bool:
         """Whether a job's outcome is still wanted."""
-        return not self._ended and job.version == self.version and self._stopped_at != job.version
+        newest = job.version == self.version or job.stage == "compare"
+        return not self._ended and newest and self._stopped_at != job.version
 
     def end(self) -> None:
         """Want nothing any more."""

@@ -111,11 +111,11 @@ class ScenarioView {
       changes.length ? named(changes.join("; ")) : "the workbook as it stands");
     const act = (kind, name, text) => make("button", { type: "button", text, "aria-label": `${text} ${name || "the workbook"}`,
       on: { click: () => this.wire.say({ kind, name }) } });
-    const lines = [{ name: "", changes: [] }, ...scenarios].map(({ name, changes: own }) => make("li",
+    const lines = [{ name: "", changes: [], own: true, shows: true }, ...scenarios].map(({ name, changes: said, own, shows }) => make("li",
       { class: name === shown ? "shown" : null },
       name ? make("b", {}, named(name)) : make("b", { text: "The workbook as it stands" }), " ",
-      changesOf(own), " ", act("show", name, "Show"),
-      ...(name ? [" ", act("drop", name, "Forget")] : [])));
+      changesOf(said), " ", ...(shows ? [act("show", name, "Show")] : []),
+      ...(own ? [name ? make("small", { text: " of the workbook" }) : ""] : [" ", act("drop", name, "Forget")])));
     this.list.replaceChildren(...lines);
     this.compare.disabled = !scenarios.length;
   }

@@ -177,6 +177,25 @@ class Model(model.Model):
 
         return Model.of(model_of(self, scenario))
 
+    def save_scenario(self, scenario: str | Scenario, path: str | Path, *, overwrite: bool = False) -> Path:
+        """Write a copy of the workbook with a scenario typed into its cells, and give the path back.
+
+        Formulas that depend on these cells get their new values; every other byte stays as it is.
+
+        Args:
+            scenario: a name in the table `xlmc_scenarios`, or one made here.
+            path: where to.
+            overwrite: replace any other file, and type into the workbook itself where the path is its own.
+
+        Raises:
+            SimulationError: there is no scenario of this name.
+            DefinitionError: the scenario is not possible, or a table lacks a column for it.
+            WorkbookError: a cell holds a formula, or the file cannot be written.
+        """
+        from xlmc.studies.scenario_workbook import edited_workbook, write_edited
+
+        return write_edited(edited_workbook(self, scenario), Path(path), overwrite=overwrite)
+
     def simulate(
         self,
         trials: int | None = None,

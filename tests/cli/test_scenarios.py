@@ -39,7 +39,7 @@ def book(small_book, tmp_path):
 
 def lines_of(out, title):
     """The rows of a table of the terminal, as lists of words."""
-    rows = out[out.index(f"\n{title}\n") :].split("─\n", 1)[1].split("\n\n", 1)[0]
+    rows = f"\n{out}"[f"\n{out}".index(f"\n{title}\n") :].split("─\n", 1)[1].split("\n\n", 1)[0]
     return [line.split("  ") for line in rows.splitlines()]
 
 
@@ -118,3 +118,58 @@ def test_a_scenario_that_accepts_nothing_gives_exit_code_1(xlmc, small_book, tmp
     outcome = xlmc("simulate", none, "--scenarios")
     assert outcome.code == 1
     assert "scenario 'none': no trial was accepted" in outcome.err.replace("\n", " ")
+
+
+def test_typing_a_scenario_into_a_workbook(xlmc, book, tmp_path):
+    listed = xlmc("scenario", book)
+    assert [line[0].strip() for line in lines_of(listed.out, "Scenarios")] == [
+        "narrow",
+        "held",
+        "looser",
+        "higher rate",
+    ]
+    before = book.read_bytes()
+    shown = xlmc("scenario", book, "narrow")
+    assert (shown.code, book.read_bytes()) == (0, before)
+    for words in ("Inputs!C2", "Inputs!D2", "1.5", "Nothing was written"):
+        assert words in shown.out
+    copy = tmp_path / "copy.xlsx"
+    assert xlmc("scenario", book, "NARROW", "-o", copy).code == 0
+    assert "exists already" in xlmc("scenario", book, "narrow", "-o", copy).err
+    inputs = openpyxl.load_workbook(copy)["Inputs"]
+    assert [inputs["C2"].value, inputs["D2"].value] == [1.5, 2]
+    run = json.loads(_json(xlmc, book, tmp_path, "--scenarios"))["scenarios"][1]
+    own = json.loads(_json(xlmc, copy, tmp_path))
+    assert run["accepted"] == own["trials"]["accepted"]
+    assert run["forecasts"][0]["mean"]["estimate"] == own["forecasts"][0]["statistics"]["mean"]
+
+    (tmp_path / "~$book.xlsx").touch()
+    held = xlmc("scenario", book, "narrow", "--in-place")
+    assert (held.code, book.read_bytes()) == (2, before)
+    assert "Excel holds the workbook open" in held.err
+    (tmp_path / "~$book.xlsx").unlink()
+    assert xlmc("scenario", book, "narrow", "--in-place").code == 0
+    assert "the workbook holds all of them already" in xlmc("scenario", book, "narrow").out
+
+
+def _json(xlmc, book, tmp_path, *options):
+    xlmc("simulate", book, *options, "--json", tmp_path / "x.json", "-o", tmp_path / "x.xlsx", "--overwrite")
+    return (tmp_path / "x.json").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("nope",), "there is no scenario 'nope'"),
+        (("held", "-o", "new.xlsx"), "needs a column Frozen for 'width'"),
+        (("narrow", "-o", "new.xlsm"), "and so must its copy"),
+        (("narrow", "-o", "new.xlsx", "--in-place"), "cannot both be given"),
+        (("--in-place",), "which scenario?"),
+    ],
+)
+def test_what_cannot_be_typed(xlmc, book, tmp_path, monkeypatch, arguments, message):
+    monkeypatch.chdir(tmp_path)
+    outcome = xlmc("scenario", book, *arguments)
+    assert outcome.code == 2
+    assert message in outcome.err.replace("\n", " ")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["book.xlsx"]

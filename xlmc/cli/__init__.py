@@ -28,6 +28,7 @@ from xlmc.cli.new import new
 from xlmc.cli.open import open_window
 from xlmc.cli.replay import replay
 from xlmc.cli.report import report
+from xlmc.cli.scenario import scenario
 from xlmc.cli.screen import screen
 from xlmc.cli.simulate import INTERRUPTED, simulate
 from xlmc.cli.stability import stability
@@ -96,7 +97,21 @@ def xlmc(context: click.Context, no_kept_code: bool) -> None:
         say(context.get_help())
 
 
-for _command in (new, check, fit, verify, simulate, open_window, report, replay, compare, screen, methods, stability):
+for _command in (
+    new,
+    check,
+    fit,
+    verify,
+    simulate,
+    scenario,
+    open_window,
+    report,
+    replay,
+    compare,
+    screen,
+    methods,
+    stability,
+):
     xlmc.add_command(_command)
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from xlmc.run.simulation import Simulation
     from xlmc.workbook.workbook import Workbook
 
-__all__ = ["check", "check_table", "failing_lines", "show_first"]
+__all__ = ["check", "check_table", "failing_lines", "scenario_table", "show_first"]
 
 _MOST_CELLS = 12
 """Cells of one kind that are listed."""
@@ -117,7 +117,7 @@ def _error_lines(model: Model, errors: BaseErrors) -> Iterator[str]:
 def _show_definitions(definitions: Definitions, model: Model | None) -> None:
     from xlmc.cli.printing import table
     from xlmc.report.summary import percent
-    from xlmc.results.record.in_words import changes_text, distribution_text, evidence_text, limits_text
+    from xlmc.results.record.in_words import distribution_text, evidence_text, limits_text
 
     table(
         "Assumptions",
@@ -147,8 +147,16 @@ def _show_definitions(definitions: Definitions, model: Model | None) -> None:
         asked = [f"{c.value:g}" if isinstance(c.value, float) else str(c.value) for c in correlations]
         pairs = [(c.first, c.second, a, _drawn_with(model, c)) for c, a in zip(correlations, asked, strict=True)]
         table("Rank correlations", ("First", "Second", "Asked for", "Drawn with"), pairs, right=(2, 3))
-    if definitions.scenarios:
-        changes = [(each.name, changes_text(each), each.note) for each in definitions.scenarios]
+    scenario_table(definitions)
+
+
+def scenario_table(definitions: Definitions) -> None:
+    """Print what each scenario changes; nothing where there are none."""
+    from xlmc.cli.printing import table
+    from xlmc.results.record.in_words import changes_text
+
+    changes = [(each.name, changes_text(each), each.note) for each in definitions.scenarios]
+    if changes:
         table("Scenarios", ("Name", "Changes", "Note"), changes)
 
 

@@ -18,7 +18,7 @@ Draws are keyed by the seed and an assumption's name, so those of assumptions th
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -38,7 +38,7 @@ from xlmc.sampling.draws import Draw
 from xlmc.workbook.lazy_sheets import with_values
 from xlmc.workbook.workbook import CellValue
 
-__all__ = ["applied", "changed_cells"]
+__all__ = ["applied", "changed_cells", "edits"]
 
 
 def applied(model: Model, changes: Iterable[Change]) -> Model:
@@ -51,11 +51,7 @@ def applied(model: Model, changes: Iterable[Change]) -> Model:
         FormulaError: a cell cannot be computed then.
     """
     changes = tuple(changes)
-    typed = {change.cell: change.value for change in changes if isinstance(change, Typed)}
-    for change in changes:
-        if isinstance(change, Typed):
-            _refuse_cell(model, change)
-    before = build_model(with_values(model.workbook, typed), model.path) if typed else model
+    before = _with_typed(model, changes)
     definitions = _changed(before, changes)
     cells = changed_cells(before, definitions)[0]
     workbook = with_values(before.workbook, cells)
@@ -67,6 +63,34 @@ def applied(model: Model, changes: Iterable[Change]) -> Model:
     if _filters_of(found) != _filters_of(before) and (faults := filter_faults(found)):
         raise faults[0]
     return found
+
+
+def edits(model: Model, changes: Iterable[Change]) -> tuple[dict[Cell, CellValue], dict[str, list[str]]]:
+    """What to type into the workbook, so that it says what the changes say.
+
+    Returns:
+        Cell -> what to type, None for nothing; and name of a row -> the columns that its table lacks for it.
+
+    Raises:
+        DefinitionError, FormulaError: as for `applied`.
+    """
+    changes = tuple(changes)
+    before = _with_typed(model, changes)
+    cells, lacking = changed_cells(before, _changed(before, changes))
+    return {**_typed(changes), **cells}, lacking
+
+
+def _typed(changes: Iterable[Change]) -> dict[Cell, CellValue]:
+    return {change.cell: change.value for change in changes if isinstance(change, Typed)}
+
+
+def _with_typed(model: Model, changes: Sequence[Change]) -> Model:
+    """The model with what is typed into cells, before any other change."""
+    for change in changes:
+        if isinstance(change, Typed):
+            _refuse_cell(model, change)
+    typed = _typed(changes)
+    return build_model(with_values(model.workbook, typed), model.path) if typed else model
 
 
 def _filters_of(model: Model) -> tuple[Filter, ...]:

@@ -28,7 +28,7 @@ from xlmc.run.forecast_result import ForecastResult
 from xlmc.workbook.injection.formula_values import with_values
 from xlmc.workbook.workbook import CellValue, Workbook
 
-__all__ = ["ShownResults", "filled_sheets", "shown_results"]
+__all__ = ["ShownResults", "filled_sheets", "recalculated", "shown_results"]
 
 _ANYWHERE: Final = re.compile(r"\b(?:OFFSET|INDIRECT|CELL)\s*\(", re.IGNORECASE)
 """Functions that look for their cells while they are computed."""
@@ -69,7 +69,7 @@ class ShownResults:
 
 
 def filled_sheets(workbook: Workbook, shown: ShownResults) -> dict[str, bytes]:
-    """The parts of the sheets that show results, with the run's values: name -> bytes."""
+    """The parts of the sheets that hold these cells, with their values: name -> bytes."""
     by_sheet: dict[str, dict[tuple[int, int], CellValue]] = {}
     for cell, value in shown.cells.items():
         by_sheet.setdefault(cell.sheet, {})[cell.row, cell.column] = value
@@ -93,16 +93,33 @@ def shown_results(
     return _Showing(workbook, trees, unavailable).found() if trees or unavailable else ShownResults()
 
 
+def recalculated(workbook: Workbook, cells: Iterable[Cell]) -> ShownResults:
+    """The values of the formulas that depend on cells which hold something else than when Excel saved the workbook.
+
+    Args:
+        workbook: with the new contents.
+        cells: that have them; no formulas.
+    """
+    found = _Recalculating(workbook, {}, {}, frozenset(cells)).found()
+    formulas = {cell: why for cell, why in found.missing.items() if workbook.content(cell).formula is not None}
+    return ShownResults(found.values, formulas)
+
+
 class _Showing:
     """The workbook's formulas, those that show results with numbers instead of the calls that ask for them."""
 
     def __init__(
-        self, workbook: Workbook, trees: Mapping[Cell, ir.Expression], unavailable: Mapping[Cell, str]
+        self,
+        workbook: Workbook,
+        trees: Mapping[Cell, ir.Expression],
+        unavailable: Mapping[Cell, str],
+        constants: frozenset[Cell] = frozenset(),
     ) -> None:
         self._workbook, self._trees = workbook, trees
-        self._missing = dict(unavailable)
+        self._missing, self._constants = dict(unavailable), constants
+        self._start = constants | trees.keys()
         self._formulas = frozenset(_formulas(workbook))
-        inputs = frozenset(trees) | unavailable.keys()
+        inputs = self._start | unavailable.keys()
         whole = build_graph(Resolver(workbook, strict=False), self._formulas, inputs, strict=False)
         self._needs: dict[Cell, set[Cell]] = {cell: set(needs) for cell, needs in whole.needs.items()}
         for cell in whole.faults:
@@ -115,12 +132,13 @@ class _Showing:
         """Compute until no further cell turns out to depend on a result, or to be one that cannot be computed."""
         while True:
             missing = self._downstream(self._missing)
-            changed = self._downstream(self._trees) - missing
+            changed = self._downstream(self._start) - missing - self._constants
             lowering, faults = self._lowered(changed)
             for cell, needs in lowering.graph.needs.items():
                 self._needs.setdefault(cell, set()).update(needs)
             self._missing |= {cell: reason for cell, reason in faults.items() if cell in changed}
-            if self._downstream(self._missing) == missing and self._downstream(self._trees) - missing == changed:
+            now = self._downstream(self._missing), self._downstream(self._start)
+            if now[0] == missing and now[1] - missing - self._constants == changed:
                 break
         values = {cell: _value(lowering, cell) for cell in sorted(changed & lowering.graph.formulas.keys())}
         reasons = {cell: self._missing.get(cell, _DEPENDS) for cell in sorted(missing)}
@@ -181,7 +199,7 @@ class _Showing:
         resolver = Resolver(self._workbook, strict=False, rewritten=self._trees)
 
         def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
-            given = (self._formulas - targets) | stuck.keys()
+            given = self._given(targets) | stuck.keys()
             graph = build_graph(resolver, targets - stuck.keys(), frozenset(), given, more=more, strict=False)
             return Lowering(graph, {}, self._saved(graph))
 
@@ -195,6 +213,18 @@ class _Showing:
                 stuck |= dict.fromkeys(found, error.message)
             else:
                 return lowering, stuck | _faults(lowering)
+
+    def _given(self, targets: frozenset[Cell]) -> frozenset[Cell]:
+        """The other formulas, whose values are those that Excel saved."""
+        return self._formulas - targets
+
+
+class _Recalculating(_Showing):
+    """The formulas of a workbook in which constants were changed; a cell that was never calculated is computed, too."""
+
+    def _given(self, targets: frozenset[Cell]) -> frozenset[Cell]:
+        others = self._formulas - targets
+        return frozenset(cell for cell in others if self._workbook.content(cell).value is not None)
 
 
 class _Watching(Lowering):

@@ -31,7 +31,7 @@ from xlmc.statistics import Estimate
 from xlmc.statistics.estimate import with_error
 from xlmc.studies.comparison.paired_statistics import Accepted, Pair, Statistic, mean_of, quantile_of, share_above
 
-__all__ = ["ForecastAnswer", "ScenarioAnswers", "model_of", "models_of", "scenario_answers"]
+__all__ = ["ForecastAnswer", "ScenarioAnswers", "model_of", "models_of", "scenario_answers", "scenario_named"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,19 +131,29 @@ def model_of(model: Model, scenario: Scenario | str) -> Model:
         SimulationError: there is no scenario of this name.
         DefinitionError, FormulaError: it is not possible.
     """
-    if isinstance(scenario, str):
-        known = {name_key(each.name): each for each in model.definitions.scenarios}
-        if name_key(scenario) not in known:
-            names = ", ".join(repr(each.name) for each in known.values())
-            hint = f"there are {names}" if names else "the workbook has no table xlmc_scenarios"
-            raise SimulationError(f"there is no scenario {scenario!r}", where=model.workbook.name, hint=hint)
-        scenario = known[name_key(scenario)]
+    scenario = scenario_named(model, scenario)
     try:
         return applied(model, scenario.changes)
     except XlmcError as error:
         message = f"In the scenario {scenario.name!r}: {error.message}"
         where = scenario.row if error.where is None else error.where
         raise type(error)(message, where=where, hint=error.hint) from error
+
+
+def scenario_named(model: Model, scenario: Scenario | str) -> Scenario:
+    """The scenario of this name, or itself.
+
+    Raises:
+        SimulationError: there is no scenario of this name.
+    """
+    if not isinstance(scenario, str):
+        return scenario
+    known = {name_key(each.name): each for each in model.definitions.scenarios}
+    if name_key(scenario) not in known:
+        names = ", ".join(repr(each.name) for each in known.values())
+        hint = f"there are {names}" if names else "the workbook has no table xlmc_scenarios"
+        raise SimulationError(f"there is no scenario {scenario!r}", where=model.workbook.name, hint=hint)
+    return known[name_key(scenario)]
 
 
 def _answers(run: Simulation, jobs: int, told: Callable[[str], None] | None) -> Iterator[ScenarioAnswers]:

@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from xlmc.errors import WorkbookError
+from xlmc.errors import SimulationError, WorkbookError
 from xlmc.report.sheets.book import build_sheets
 from xlmc.report.sheets.trials_sheet import TRIAL_ROWS
 from xlmc.run.model import paused_collection
@@ -49,14 +49,19 @@ def save(
         TakenError: the file is not ours to replace, is open in a program, or is the workbook itself and has changed
             since it was read.
         WorkbookError: the file cannot be written, or has another ending than the workbook.
+        SimulationError: the run is of a scenario, which no file holds.
         DefinitionError: the workbook's table `xlmc_case` is not what it must be.
     """
+    book = simulation.model.workbook
+    if not book.parts:
+        hint = "Type the scenario into a workbook first (xlmc scenario, or save_scenario in Python), and run that"
+        raise SimulationError("no file holds the workbook of this run", hint=hint)
     check = partial(_check, simulation, path, overwrite=overwrite)
     check_ending(path, simulation.model.path)
     check()
     with paused_collection():
         sheets = build_sheets(simulation, command=command, rows=rows)
-        own = {**simulation.model.workbook.parts, **filled_sheets(simulation.model.workbook, simulation.shown_results)}
+        own = {**book.parts, **filled_sheets(book, simulation.shown_results)}
         parts = inject(own, sheets)
     if not _is_source(simulation, path):  # the person's own file, which is never ours to replace
         parts = sealed_parts(parts, result_sheets(parts)[-1], simulation.model.workbook.name)

@@ -13,7 +13,20 @@ from xlmc.errors import WorkbookError
 from xlmc.workbook.injection.splice import Element, SplicedXml, render
 from xlmc.workbook.safe_xml import REPAIR
 
-__all__ = ["Content", "with_contents", "with_last_row"]
+__all__ = ["Content", "with_calculation_on_load", "with_contents", "with_last_row"]
+
+_BEHIND_CALCULATION: Final = (
+    "oleSize",
+    "customWorkbookViews",
+    "pivotCaches",
+    "smartTagPr",
+    "smartTagTypes",
+    "webPublishing",
+    "fileRecoveryPr",
+    "webPublishObjects",
+    "extLst",
+)
+"""What stands behind `calcPr` in a workbook part (ECMA-376, part 1, 18.2.27)."""
 
 _ESCAPE: Final = re.compile("_(?=x[0-9A-Fa-f]{4}_)")
 """What begins an escape: Excel would read the letter that it stands for."""
@@ -75,6 +88,22 @@ def with_last_row(xml: bytes, part: str, last: int) -> bytes:
         if not isinstance(area, Area):
             raise WorkbookError(f"{part} is no table", hint=REPAIR)
         document.set(element, "ref", Area("-", area.top, area.left, last, area.right).a1)
+    return document.result()
+
+
+def with_calculation_on_load(xml: bytes, part: str) -> bytes:
+    """A workbook's part that has Excel calculate all formulas when it opens the file."""
+    document = SplicedXml(xml, part)
+    found = document.root.find("calcPr")
+    if found is not None:
+        document.set(found, "fullCalcOnLoad", "1")
+        return document.result()
+    new = render(f"{document.prefix(document.root)}calcPr", {"fullCalcOnLoad": "1"})
+    behind = next((each for each in document.root.children if each.local in _BEHIND_CALCULATION), None)
+    if behind is None:
+        document.append(document.root, new)
+    else:
+        document.before(behind, new)
     return document.result()
 
 

@@ -1,0 +1,82 @@
+"""`xlmc scenario`: type a scenario into a workbook, a copy of it or the workbook itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from xlmc.cli.terminal import paragraph, say
+
+if TYPE_CHECKING:
+    from xlmc.run.model import Model
+    from xlmc.studies.scenario_workbook import EditedWorkbook
+
+__all__ = ["scenario"]
+
+_MOST_TOLD = 8
+
+
+@click.command()
+@click.argument("book", type=click.Path(path_type=Path))
+@click.argument("name", required=False)
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Write a copy of BOOK that says what NAME says.")
+@click.option("--in-place", is_flag=True, help="Type it into BOOK itself.")
+@click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")
+def scenario(book: Path, name: str | None, output: Path | None, in_place: bool, overwrite: bool) -> None:
+    """Type the scenario NAME of BOOK's table xlmc_scenarios into a workbook; without NAME, list the scenarios.
+
+    The very cells that it changes are typed into, and the formulas that depend on them get their new values. Without
+    --output and --in-place nothing is written, and the cells are shown.
+    """
+    from xlmc.cli.check import scenario_table
+    from xlmc.run.loading import load
+    from xlmc.studies.scenario_answers import models_of
+    from xlmc.studies.scenario_workbook import edited_workbook, write_edited
+    from xlmc.workbook.writer import refuse_if_open
+
+    if in_place and output is not None:
+        raise click.UsageError("--in-place and --output cannot both be given.")
+    if name is None and (in_place or output is not None):
+        raise click.UsageError(f"which scenario? xlmc scenario {book} lists them.")
+    if in_place:
+        refuse_if_open(book)
+    model = load(book)
+    if name is None:
+        models_of(model)
+        scenario_table(model.definitions)
+        return
+    edited = edited_workbook(model, name)
+    _show(edited, model)
+    target = book if in_place else output
+    if target is None:
+        say("Nothing was written: -o NEW.xlsx writes a copy, --in-place the workbook itself.")
+        return
+    write_edited(edited, target, overwrite=overwrite or in_place)
+    say(f"Written: {target}")
+
+
+def _show(edited: EditedWorkbook, model: Model) -> None:
+    """Print the cells with what they held and hold, and what could not be computed."""
+    from xlmc.cli.printing import table
+    from xlmc.definitions.tables.table_rows import as_text
+
+    rows = [
+        (str(cell), as_text(old) or "nothing", as_text(new) or "nothing") for cell, (old, new) in edited.cells.items()
+    ]
+    title = f"{model.workbook.name}: the cells of the scenario {edited.scenario.name!r}"
+    if rows:
+        table(title, ("Cell", "Holds", "Is to hold"), rows)
+    else:
+        say(f"{title}: the workbook holds all of them already.")
+    many = "1 formula gets a new value" if edited.computed == 1 else f"{edited.computed:,} formulas get new values"
+    if edited.computed:
+        say(paragraph(f"{many}, computed by xlmc."))
+    if edited.left:
+        told = [f"{cell} ({why})" for cell, why in list(edited.left.items())[:_MOST_TOLD]]
+        more = f" and {len(edited.left) - _MOST_TOLD:,} more" if len(edited.left) > _MOST_TOLD else ""
+        message = f"could not be computed: {'; '.join(told)}{more}. Excel calculates the workbook when it opens it"
+        say(f"note: {message}", err=True)
+    if edited.has_results:
+        say("note: the workbook's result sheets are those of the run before, and stay as they are.", err=True)

@@ -10,6 +10,12 @@ from openpyxl.worksheet.table import Table
 FRICTION = np.random.default_rng(999).normal(0.75, 0.06, 40).round(3)
 
 
+@pytest.fixture(autouse=True)
+def few_samples(monkeypatch):
+    """No test here looks at the standard errors of the triangular distribution, which take most of a fit."""
+    monkeypatch.setattr("xlmc.studies.fitting.solved_forms._BOOTSTRAP_SAMPLES", 6)
+
+
 @pytest.fixture
 def measured(tmp_path):
     """Friction in Tests!A2:A41 (a table) with two blanks below, counts in Tests!C2:C21, and a second sheet."""

@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-import pytest
-
 TESTS = """
 import subprocess, sys, time
 
@@ -11,33 +9,32 @@ def work(seconds):
         pass
 
 def test_works():
-    work(0.3)
+    work(0.15)
 
 def test_waits():
-    time.sleep(0.3)
+    time.sleep(0.15)
 
 def test_starts_a_process():
-    subprocess.run([sys.executable, "-c", "import time\\nwhile time.process_time() < 0.6: pass"], check=True)
+    subprocess.run([sys.executable, "-c", "import time\\nwhile time.process_time() < 0.3: pass"], check=True)
 """
 
 
-@pytest.mark.parametrize("workers", [[], ["-n", "1"]])
-def test_a_file_has_the_processor_time_of_each_test_and_of_what_it_starts(run_tests, workers, tmp_path):
-    code, shown = run_tests(TESTS, *workers, "--costs", str(tmp_path / "costs.txt"), plugin="costliest")
+def test_a_file_has_the_processor_time_of_each_test_and_of_what_it_starts(run_tests, tmp_path):
+    code, shown = run_tests(TESTS, "-n", "1", "--costs", str(tmp_path / "costs.txt"), plugin="costliest")
     assert code == 0, shown
     assert "Processor time" not in shown
     rows = [line.split("\t") for line in (tmp_path / "costs.txt").read_text("utf-8").splitlines()]
     costs = {name.partition("::")[2]: float(cost) for cost, name in rows}
     assert list(costs) == ["test_starts_a_process", "test_works", "test_waits"]
-    assert costs["test_starts_a_process"] >= 0.55
-    assert costs["test_works"] >= 0.25
-    assert costs["test_waits"] < 0.2
+    assert costs["test_starts_a_process"] >= 0.28
+    assert costs["test_works"] >= 0.13
+    assert costs["test_waits"] < 0.1
 
 
 def test_a_long_run_names_the_files(run_tests):
-    long = TESTS + "\nimport costliest\ncostliest.LONG = 0.1\n"
+    long = TESTS + "\nimport costliest\ncostliest.LONG = 0.2\n"
     code, shown = run_tests(long, plugin="costliest")
     assert code == 0, shown
     said = shown.partition("Processor time: ")[2]
-    assert said.startswith("1 s; most of it"), shown
+    assert " s; most of it" in said, shown
     assert " s  test_given.py" in said

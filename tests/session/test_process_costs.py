@@ -8,6 +8,7 @@ import gc, subprocess, sys
 def test_a():
     assert gc.isenabled()
     assert gc.get_freeze_count() > 1000
+    assert gc.get_threshold()[0] > 10_000
     told = subprocess.run([sys.executable, "-c", "import sys; print(sys.dont_write_bytecode)"], capture_output=True)
     assert told.stdout.split() == [b"False"]
 """

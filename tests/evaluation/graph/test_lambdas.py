@@ -323,7 +323,6 @@ def test_results_of_all_kinds_stay_with_their_trials(drawn):
 @pytest.mark.parametrize(
     ("formula", "expected"),
     [
-        ("Sum.Down(5000)", 12_502_500.0),
         ("Sum.Down(8191)", 33_550_336.0),
         ("Sum.Down(8192)", ErrorCode.NUM),
         ("Tail(5460,0)", 14_908_530.0),

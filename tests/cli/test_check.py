@@ -3,6 +3,8 @@ from __future__ import annotations
 import openpyxl
 import pytest
 
+pytestmark = pytest.mark.usefixtures("short_books")
+
 
 def test_shows_what_was_understood(xlmc, case_study):
     outcome = xlmc("check", case_study)

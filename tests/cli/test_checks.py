@@ -8,6 +8,8 @@ import openpyxl
 import pytest
 from openpyxl.worksheet.table import Table
 
+pytestmark = pytest.mark.usefixtures("short_books")
+
 
 @pytest.fixture
 def failing(tmp_path):

@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 from openpyxl import Workbook, load_workbook
 
+pytestmark = pytest.mark.usefixtures("short_books")
+
 
 @pytest.fixture
 def risk_book(tmp_path):

@@ -10,6 +10,8 @@ from xml.etree import ElementTree
 import openpyxl
 import pytest
 
+pytestmark = pytest.mark.usefixtures("short_books")
+
 RAW = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069\ufffe\uffff]")
 # openpyxl writes `_x001B_` as it stands, which is how Excel writes the character.
 MARKS = '_x001B_[2J_x0007_\x9b\u202e_xFFFF_<&">'
@@ -28,7 +30,7 @@ def hostile(case_study, tmp_path):
     return tmp_path / "case.xlsx"
 
 
-def test_every_part_is_well_formed_and_no_control_is_raw(xlmc, hostile, tmp_path):
+def test_every_part_is_well_formed_and_no_control_is_raw(xlmc, whole_book, hostile, tmp_path):
     outputs = ("-o", "r.xlsx", "--html", "p.html", "--json", "j.json", "--extract", "t.csv", "--save-run", "s.xlmcrun")
     outcome = xlmc("simulate", hostile, "-n", 20_000, *outputs)
     assert outcome.code == 0, outcome.err

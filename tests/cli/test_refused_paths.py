@@ -11,6 +11,8 @@ import xlmc as package
 from xlmc.errors import WorkbookError
 from xlmc.workbook.seal import read_seal
 
+pytestmark = pytest.mark.usefixtures("short_books")
+
 LONG = "x" * 300
 
 

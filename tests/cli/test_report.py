@@ -12,6 +12,8 @@ import xlmc as package
 from xlmc.errors import WorkbookError
 from xlmc.run.simulation import KEPT_INPUTS
 
+pytestmark = pytest.mark.usefixtures("short_books")
+
 
 @pytest.fixture
 def book(small_book, tmp_path):
@@ -23,7 +25,7 @@ def case_book(case_study, tmp_path):
     return shutil.copy(case_study, tmp_path / "case.xlsx")
 
 
-def test_what_is_reported_is_what_simulate_wrote(xlmc, case_book, tmp_path):
+def test_what_is_reported_is_what_simulate_wrote(xlmc, whole_book, case_book, tmp_path):
     options = ("--save-run", "case.xlmcrun", "--json", "a.json", "--extract", "a.csv", "--extract", "a.parquet")
     run = xlmc("simulate", case_book, "-n", 20_000, *options)
     assert run.code == 0

@@ -153,6 +153,9 @@ MUTANTS = {
     "rounding elsewhere": Mutant(
         "_ROUNDING * max(size, scale) if self.elsewhere else 0.0", "_ROUNDING * max(size, scale)", ("replay",)
     ),
+    # live
+    "a link is good once": Mutant("                self._tokens.discard(known)\n", "", ("live",)),
+    "a page from elsewhere": Mutant('origin.lower() == f"http://{host.lower()}"', "True", ("live",)),
     # cli
     "the exit code of a signal": Mutant(
         "raise SystemExit(_FROM_SIGNAL + number)", "raise SystemExit(number)", ("cli", "faults")

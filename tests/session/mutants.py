@@ -4,13 +4,15 @@ python tests/session/mutants.py            plants all, in a copy of `xlmc/`, and
 python tests/session/mutants.py ROOM …     those of these rooms
 
 A mutant replaces one text, which stands once in `xlmc/`, by another, and runs the tests that mirror its module until
-the first fails. A mutant that lives shows what no test holds: write the test, or say in `MUTANTS` why none can.
+the first fails. A test that fails without the defect, too, finds nothing: it ends the whole, to be mended first. A
+mutant that lives shows what no test holds: write the test, or say in `MUTANTS` why none can.
 """
 
 from __future__ import annotations
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -181,11 +183,15 @@ def killer(mutant: Mutant) -> str | None:
         Path(folder, "templates").symlink_to(ROOT / "templates")  # which the package looks for beside itself
         changed = Path(folder, path.relative_to(ROOT))
         changed.write_text(changed.read_text("utf-8").replace(mutant.before, mutant.after), "utf-8")
-        return next((found for tests in mutant.tests if (found := _first_failure(tests, folder))), None)
+        found = next((found for tests in mutant.tests if (found := _first_failure(f"tests/{tests}", folder))), None)
+    if found and _first_failure(found, str(ROOT)) == found:
+        raise SystemExit(f"{found} fails without a defect, too: mend it first")
+    return found
 
 
 def _first_failure(tests: str, folder: str) -> str | None:
-    command = [sys.executable, "-P", "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", f"tests/{tests}"]
+    """The first of these tests that fails where `xlmc/` lies in that folder."""
+    command = [sys.executable, "-P", "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", tests]
     path = os.pathsep.join(filter(None, (folder, os.environ.get("PYTHONPATH"))))
     done = subprocess.run(
         command,
@@ -198,8 +204,9 @@ def _first_failure(tests: str, folder: str) -> str | None:
     )
     if done.returncode == 0:
         return None
-    failed = [line.split(" ")[1] for line in done.stdout.splitlines() if line.startswith(("FAILED ", "ERROR "))]
-    return failed[0] if failed else f"tests/{tests} (exit code {done.returncode})"
+    lines = (line.partition(" ") for line in done.stdout.splitlines())
+    failed = [said.partition(" - ")[0] for what, _, said in lines if what in ("FAILED", "ERROR")]
+    return failed[0] if failed else f"{tests} (exit code {done.returncode})"
 
 
 def report(rooms: Sequence[str]) -> Iterator[tuple[str, str, str | None]]:
@@ -212,6 +219,7 @@ def report(rooms: Sequence[str]) -> Iterator[tuple[str, str, str | None]]:
 
 def main() -> None:
     """Plant them; exit code 1 where one lives."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # which a shell's background ignores, and tests send
     alive = 0
     for room, name, found in report(sys.argv[1:]):
         alive += found is None

@@ -14,12 +14,12 @@ from xlmc.evaluation.llvm.loop_rules import LoopRule, Operand
 from xlmc.evaluation.llvm.machine import Machine, NativeLoop, while_flushing
 from xlmc.functions import Kind
 
-__all__ = ["Load", "compile_loop"]
+__all__ = ["SIDE_BY_SIDE", "Load", "compile_loop"]
 
 _NAME: Final = "over_trials"
-_SIDE_BY_SIDE: Final = 2
+SIDE_BY_SIDE: Final = 2
 """Vectors of trials that are computed at once. Cells follow from each other, and so the processor waits for one result
-after another; a second vector gives it something to do meanwhile."""
+after another; a second vector gives it something to do meanwhile. It doubles the time to compile."""
 
 _BYTE, _BIT, _LONG = ir.IntType(8), ir.IntType(1), ir.IntType(64)
 _DOUBLE = ir.DoubleType()
@@ -49,15 +49,16 @@ def compile_loop(
     loads: Sequence[Load],
     stores: Sequence[int],
     numbers: Mapping[tuple[int, int], int],
+    side_by_side: int = SIDE_BY_SIDE,
 ) -> NativeLoop:
     """The loop that computes the nodes of `rules`, as native code.
 
     It takes the addresses of: the loads, the stores, the survivors (int64; not read where no load is picked), one byte
     a trial, which it sets to 1 where the trial must be computed again, and the constants that are not part of the code:
-    `numbers` gives their indices by node and position of the operand.
+    `numbers` gives their indices by node and position of the operand. So many vectors of trials are computed at once.
     """
     module = ir.Module()
-    inner = _inner(dag, module, machine, rules, loads, stores, numbers)
+    inner = _inner(dag, module, machine, rules, loads, stores, numbers, side_by_side)
     _entry(module, inner, machine)
     return machine.native(module, _NAME)
 
@@ -74,6 +75,7 @@ def _inner(
     loads: Sequence[Load],
     stores: Sequence[int],
     numbers: Mapping[tuple[int, int], int],
+    side_by_side: int,
 ) -> ir.Function:
     """The loop itself; its arrays do not overlap, so that it can run several trials at once."""
     arrays = [*(load.stored for load in loads), *(dag.types[node] for node in stores)]
@@ -115,7 +117,7 @@ def _inner(
     count.add_incoming(_LONG(0), before)
     count.add_incoming(counted, body_block)
     again = builder.cbranch(builder.icmp_signed("<", following, n), body_block, after)
-    again.set_metadata("llvm.loop", _interleaved(module))
+    again.set_metadata("llvm.loop", _interleaved(module, side_by_side))
 
     builder.position_at_end(after)
     total = builder.phi(_LONG)
@@ -125,9 +127,9 @@ def _inner(
     return function
 
 
-def _interleaved(module: ir.Module) -> Any:
-    """What asks LLVM to compute two vectors of trials side by side."""
-    count = [ir.MetaDataString(module, "llvm.loop.interleave.count"), ir.Constant(ir.IntType(32), _SIDE_BY_SIDE)]
+def _interleaved(module: ir.Module, side_by_side: int) -> Any:
+    """What asks LLVM to compute so many vectors of trials side by side."""
+    count = [ir.MetaDataString(module, "llvm.loop.interleave.count"), ir.Constant(ir.IntType(32), side_by_side)]
     found = module.add_metadata([module.add_metadata(count)])
     found.operands = (found, *found.operands)  # LLVM wants the first to be itself, so that no two loops share one
     return found

@@ -6,8 +6,8 @@ They are divided into stages: loops, and between them what the loops cannot comp
 from __future__ import annotations
 
 import ctypes
-from collections import defaultdict
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from typing import Any, Final
@@ -19,11 +19,11 @@ from xlmc.evaluation.engine import Column, column_of
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select, evaluate_node, in_own_memory
 from xlmc.evaluation.graph.readiness import order_by_need
-from xlmc.evaluation.llvm.loop import Load, compile_loop
+from xlmc.evaluation.llvm.loop import SIDE_BY_SIDE, Load, compile_loop
 from xlmc.evaluation.llvm.loop_rules import LoopRule, Operand
 from xlmc.evaluation.llvm.machine import Machine, NativeLoop
 from xlmc.evaluation.llvm.memory import Memory, assign_slots
-from xlmc.evaluation.llvm.shapes import cut, shape_of
+from xlmc.evaluation.llvm.shapes import Shape, cut, shape_of
 from xlmc.functions import Kind
 from xlmc.functions.denormals import tiny_to_zero
 from xlmc.functions.values import Floats, Value
@@ -127,6 +127,19 @@ class Loop:
     numbers: Floats
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Plan:
+    """A loop to be compiled: the rules of its nodes in order, the arrays it reads, and the nodes it writes."""
+
+    rules: Mapping[int, LoopRule]
+    loads: tuple[Load, ...]
+    stores: tuple[int, ...]
+
+    def shape(self, dag: Dag) -> Shape:
+        loads = [(load.operand, (load.operand.kind, load.stored, load.picked, load.fallible)) for load in self.loads]
+        return shape_of(dag, self.rules, loads, self.stores)
+
+
 class Phase:
     """Computes the nodes of `nodes`.
 
@@ -157,12 +170,14 @@ class Phase:
         computed = [node for node in nodes if not isinstance(dag.nodes[node], Input)]
         parts = _in_order(_stages(dag, computed, rules, needed), self._read_from_outside)
         read = [self._read_from_outside(stage) for stage in parts]
-        self._alone = sum(stage.loop for stage in parts) < _FEWEST
-        self._compiled: dict[tuple[object, ...], NativeLoop] = {}
-        self._steps: list[Loop | tuple[int, ...]] = []
         wanted = set(keep).union(*read)
-        for stage, found in zip(parts, read, strict=True):
-            self._steps.append(self._loop(stage, found, wanted) if stage.loop else stage.nodes)
+        plans = [
+            self._plan(stage, found, wanted) if stage.loop else None for stage, found in zip(parts, read, strict=True)
+        ]
+        made = self._make_loops([plan for plan in plans if plan is not None])
+        self._steps: list[Loop | tuple[int, ...]] = [
+            stage.nodes if plan is None else next(made) for stage, plan in zip(parts, plans, strict=True)
+        ]
         kept, late = frozenset(keep), early is not None
         written = [step.stores if isinstance(step, Loop) else () for step in self._steps]
         self.slots = assign_slots(dag, list(zip(read, written, strict=True)), kept, late=late)
@@ -173,7 +188,7 @@ class Phase:
     def _read_from_outside(self, stage: _LoopStage) -> set[int]:
         return set(chain.from_iterable(map(self._needed, stage.nodes))).difference(stage.nodes)
 
-    def _loop(self, stage: _LoopStage, read: set[int], wanted: set[int]) -> Loop:
+    def _plan(self, stage: _LoopStage, read: set[int], wanted: set[int]) -> _Plan:
         rules = {node: self._rules[node] for node in stage.nodes}
         loads: dict[Operand, Load] = {}
         for rule in rules.values():
@@ -182,15 +197,26 @@ class Phase:
                     load = self._load(part)
                     if load is not None:
                         loads[load.operand] = load
-        stores = tuple(node for node in stage.nodes if node in wanted)
-        found = tuple(loads.values())
-        if self._alone:
-            return Loop(compile_loop(self._dag, self._machine, rules, found, stores, {}), found, stores, np.empty(0))
-        attributes = [(load.operand, (load.operand.kind, load.stored, load.picked, load.fallible)) for load in found]
-        shape = shape_of(self._dag, rules, attributes, stores)
-        if shape.key not in self._compiled:
-            self._compiled[shape.key] = compile_loop(self._dag, self._machine, rules, found, stores, shape.slots)
-        return Loop(self._compiled[shape.key], found, stores, np.array(shape.numbers))
+        return _Plan(rules, tuple(loads.values()), tuple(node for node in stage.nodes if node in wanted))
+
+    def _make_loops(self, plans: Sequence[_Plan]) -> Iterator[Loop]:
+        if len(plans) < _FEWEST:
+            for plan in plans:
+                yield Loop(self._compile(plan, {}), plan.loads, plan.stores, np.empty(0))
+            return
+        shapes = [plan.shape(self._dag) for plan in plans]
+        uses = Counter(shape.key for shape in shapes)
+        repeats = max(uses.values()) >= _FEWEST
+        compiled: dict[tuple[object, ...], NativeLoop] = {}
+        for plan, shape in zip(plans, shapes, strict=True):
+            if shape.key not in compiled:
+                compiled[shape.key] = self._compile(plan, shape.slots, once=repeats and uses[shape.key] == 1)
+            yield Loop(compiled[shape.key], plan.loads, plan.stores, np.array(shape.numbers))
+
+    def _compile(self, plan: _Plan, numbers: Mapping[tuple[int, int], int], once: bool = False) -> NativeLoop:
+        """The code of a loop; the code of one that runs once beside many alike is soon made, and a little slower."""
+        side_by_side = 1 if once else SIDE_BY_SIDE
+        return compile_loop(self._dag, self._machine, plan.rules, plan.loads, plan.stores, numbers, side_by_side)
 
     def _load(self, part: Operand) -> Load | None:
         """How a node from outside is read; None for a constant."""

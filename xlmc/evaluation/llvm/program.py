@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -73,14 +74,14 @@ class JitProgram:
         # Where no filter can reject a trial, nothing needs to be picked from the survivors.
         first = self.dag.upstream(self.filter_nodes or self.forecast_nodes, needed)
         early = frozenset(first)
-        late = [node for node in self.dag.upstream(self.forecast_nodes, needed) if node not in early]
+        further = self.dag.upstream(self.forecast_nodes, needed) if self.filter_nodes else []
+        late = [node for node in further if node not in early]
         carried = {used for node in late for used in needed(node)} | set(self.forecast_nodes)
         keep = {*self.filter_nodes, *(carried & early)}
         self.first = Phase(self.dag, machine(), rules, needed, _in_order(first, needed, keep), keep, None, may_err)
         wanted = set(self.forecast_nodes)
         self.late = Phase(self.dag, machine(), rules, needed, _in_order(late, needed, wanted), wanted, early, may_err)
         self.inputs = _inputs(self.dag, [*first, *late])
-        self.careful_inputs = _inputs(self.dag, self.dag.upstream([*self.filter_nodes, *self.forecast_nodes]))
         self.slots = self.first.slots | self.late.slots
         arrays = len(set(self.slots.values())) + self.first.outside + self.late.outside
         self.largest_block = _LARGEST_BLOCK
@@ -92,6 +93,11 @@ class JitProgram:
             self.largest_block //= 2
         in_arrays = array_bytes(lowering, self.filter_nodes, self.forecast_nodes, needed)
         self.largest_block = fitting_block(self.largest_block, in_arrays, 8 * arrays)
+
+    @cached_property
+    def careful_inputs(self) -> dict[int, str]:
+        """The names of the inputs that the careful path reads, by their nodes."""
+        return _inputs(self.dag, self.dag.upstream([*self.filter_nodes, *self.forecast_nodes]))
 
     def evaluator(self, block: int) -> Evaluator:
         """See `Program`."""

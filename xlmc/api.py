@@ -289,6 +289,7 @@ class Model(model.Model):
             keep_interrupted=keep_interrupted,
             progress=progress,
             tell=tell,
+            evidence=None,
         )
         return Simulation.of(run)
 

@@ -110,3 +110,34 @@ def test_methods_that_draw_no_trials_say_that_they_cannot_use_a_normal_error(xlm
     outcome = xlmc("methods", book(EDR))
     assert outcome.code == 2
     assert "cannot use evidence with a normal or lognormal error: 'EDR'" in outcome.err
+
+
+def test_a_weighted_run_says_so_everywhere_and_leaves_out_what_cannot_weight(xlmc, book, tmp_path):
+    path = book([*EDR[:2], 6.5, *EDR[3:]])
+    page, found, rows = (tmp_path / f"book{ending}" for ending in (".html", ".json", ".csv"))
+    kept = tmp_path / "book.xlmcrun"
+    outcome = xlmc(
+        "simulate", path, "-n", 5_000, "--html", page, "--json", found, "--extract", rows, "--save-run", kept
+    )
+    out = " ".join(outcome.out.split())
+    assert "Each accepted trial counts with the chance that the evidence would keep it (weights)" in out
+    assert "Left out of weighted results" in out
+    data = json.loads(found.read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(data)
+    assert data["record"]["settings"]["evidence"] == "weights"
+    assert data["sensitivity"] is None
+    assert 0 < data["weights"]["effective_trials"] < data["trials"]["accepted"] == 5_000
+    assert data["weights"]["effective_trials"] == data["record"]["counts"]["effective"]
+    results = openpyxl.load_workbook(tmp_path / "book-results.xlsx")
+    assert not {"Certainty", "Pairs", "Sensitivity", "Filter limits"} & set(results.sheetnames)
+    assert "Weight" in [cell.value for row in results["Trials"].iter_rows(max_row=8) for cell in row]
+    text = page.read_text(encoding="utf-8")
+    assert 'id="sensitivity"' not in text
+    assert "Left out of weighted results" in text
+    heading, *lines = rows.read_text(encoding="utf-8").splitlines()
+    assert heading == "Trial,a,b,Weight,Speed"
+    weights, values = zip(*((float(w), float(v)) for *_, w, v in (line.split(",") for line in lines)), strict=True)
+    mean = sum(w * v for w, v in zip(weights, values, strict=True)) / sum(weights)
+    assert mean == pytest.approx(data["forecasts"][0]["statistics"]["mean"]["value"])
+    for repeated in (tmp_path / "book-results.xlsx", kept):
+        assert "identical" in xlmc("replay", repeated).out

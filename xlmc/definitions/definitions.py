@@ -17,6 +17,7 @@ from xlmc.sampling.draws import Draw
 
 __all__ = [
     "CUTOFFS",
+    "EVIDENCE_WAYS",
     "Assumption",
     "Check",
     "Copula",
@@ -33,6 +34,9 @@ __all__ = [
 Parameter = float | Cell
 """A number, or the cell that holds it because that cell holds a formula (it may then vary with other assumptions)."""
 
+
+EVIDENCE_WAYS: Final = ("auto", "rejection", "weights")
+"""How a run uses evidence whose error is no limit; `auto` decides by the run's first trials."""
 
 CUTOFFS: Final = {"lower_cutoff": "Lower cutoff", "upper_cutoff": "Upper cutoff"}
 """Key of a cutoff -> its heading."""
@@ -220,6 +224,8 @@ class Settings:
     Attributes:
         trials: how many; at most, where `stopping` has a goal or a time.
         stopping: what else ends the run.
+        evidence: how evidence whose error is no limit is used: one of `EVIDENCE_WAYS`; empty where nothing is said, or
+            where a run has no such evidence.
         lognorm: whose `RiskLognorm` is meant, `@RISK` (also where it is empty) or `XLRisk`.
         scenarios: whether the workbook's scenarios are run, too, and compared with it.
     """
@@ -231,6 +237,7 @@ class Settings:
     stopping: Stopping = NO_GOAL
     lognorm: str = ""
     scenarios: bool = False
+    evidence: str = ""
 
 
 @dataclass(frozen=True, slots=True)

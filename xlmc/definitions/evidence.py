@@ -154,6 +154,7 @@ class Evidence:
         error: a key of `ERRORS`.
         sizes: key of `SIZES` -> number or cell, of those that are filled in.
         unused: why it does not count, in words; empty where it does.
+        weighed: a run weights its trials by it, where its error is no limit, instead of rejecting some.
         notes: the table's other columns.
     """
 
@@ -166,6 +167,7 @@ class Evidence:
     source: str = ""
     unused: str = ""
     notes: Mapping[str, str] = field(default_factory=dict)
+    weighed: bool = False
 
     @property
     def used(self) -> bool:
@@ -205,6 +207,11 @@ class Evidence:
         """Its law where it is no limit."""
         law = self.law if self.error in ("normal", "lognormal") else None
         return law if isinstance(law, Bell) else None
+
+    @property
+    def by_chance(self) -> bool:
+        """Whether a uniform number decides if it keeps a trial."""
+        return self.bell is not None and not self.weighed
 
     @property
     def chance(self) -> InFormula:

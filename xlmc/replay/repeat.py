@@ -272,6 +272,7 @@ def _repeat(model: Model, record: Record, settings: Settings, jobs: int, progres
         jobs=jobs,
         keep_inputs=kept if kept < accepted else max(kept, KEPT_INPUTS),
         progress=progress,
+        evidence=settings.evidence or "rejection",
     )
 
 

@@ -119,6 +119,10 @@ def _columns(simulation: Simulation) -> list[Column]:
         for a in simulation.model.live
         for values in [simulation.inputs[a.name]]
     ]
+    if simulation.weighting is not None:
+        taken = {*forecasts, *(each.name for each in found)}
+        name = "Weight" if "Weight" not in taken else "Weight of the trial"
+        found.append(Column(name, "weight", "", "", simulation.weighting.weights))
     return found + [
         Column(forecast_heading(f.name), "forecast", f.units, str(f.cell), simulation.forecasts[f.name])
         for f in simulation.model.forecasts

@@ -22,7 +22,17 @@ from xlmc.statistics import Estimate
 if TYPE_CHECKING:
     from xlmc.run.simulation import Simulation
 
-__all__ = ["PERCENTS", "FilterEffect", "Marginal", "Shapes", "filter_effect", "filter_effect_of", "marginal", "shapes"]
+__all__ = [
+    "PERCENTS",
+    "FilterEffect",
+    "Marginal",
+    "Shapes",
+    "filter_effect",
+    "filter_effect_of",
+    "marginal",
+    "shapes",
+    "shapes_of",
+]
 
 PERCENTS = (5.0, 50.0, 95.0)
 
@@ -73,16 +83,20 @@ class Shapes:
     accepted: NDArray[np.float64]
 
 
-def shapes(prior: NDArray[np.float64], accepted: NDArray[np.float64]) -> Shapes | None:
+def shapes(
+    prior: NDArray[np.float64], accepted: NDArray[np.float64], weights: NDArray[np.float64] | None = None
+) -> Shapes | None:
     """The shapes of `(n,)` draws before filtering and of `(m,)` accepted ones; None where they are one value."""
     before, after = numbers(prior), numbers(accepted)
-    if not before.size or not after.size:
+    w = np.ones(after.size) if weights is None else weights[~np.isnan(accepted)]
+    if not before.size or not after.size or not w.any():
         return None
     low, high = _shown(before)
     if not (math.isfinite(low) and math.isfinite(high) and high > low):
         return None
     edges = np.linspace(low, high, _BINS + 1)
-    return Shapes(edges, *(np.histogram(draws, edges)[0] / draws.size for draws in (before, after)))
+    shares = np.histogram(after, edges, weights=w)[0] / w.sum()
+    return Shapes(edges, np.histogram(before, edges)[0] / before.size, shares)
 
 
 def _shown(draws: NDArray[np.float64]) -> tuple[float, float]:
@@ -92,10 +106,15 @@ def _shown(draws: NDArray[np.float64]) -> tuple[float, float]:
     return (least, most) if most - least <= _LONG * (high - low) else (low, high)
 
 
-def marginal(draws: NDArray[np.float64], replicate: NDArray[np.int64] | None = None) -> Marginal:
+def marginal(
+    draws: NDArray[np.float64],
+    replicate: NDArray[np.int64] | None = None,
+    weights: NDArray[np.float64] | None = None,
+) -> Marginal:
     """The marginal of `(n,)` draws; NaN, a trial whose parameters were no distribution, is left out."""
     ids = None if replicate is None else replicate[~np.isnan(draws)]
-    sample = statistics.Sample.of(numbers(draws), None, ids)
+    w = None if weights is None else weights[~np.isnan(draws)]
+    sample = statistics.Sample.of(numbers(draws), w, ids)
     return Marginal(
         trials=sample.n,
         mean=statistics.mean(sample),
@@ -108,20 +127,32 @@ def filter_effect_of(simulation: Simulation, assumption: str) -> FilterEffect | 
     """What the filters of a run did to one of its assumptions; None where the assumption is not drawn."""
     if assumption not in simulation.inputs:
         return None
-    accepted, replicate = simulation.inputs[assumption], simulation.replicate
+    accepted, replicate, weighting = simulation.inputs[assumption], simulation.replicate, simulation.weighting
     kept = None if replicate is None else replicate[: accepted.size]
-    return filter_effect(simulation.prior[assumption], accepted, kept)
+    return filter_effect(simulation.prior[assumption], accepted, kept, None if weighting is None else weighting.weights)
+
+
+def shapes_of(simulation: Simulation, assumption: str) -> Shapes | None:
+    """The shapes of one of a run's assumptions; None where it is not drawn, or is one value."""
+    prior, accepted = simulation.prior.get(assumption), simulation.inputs.get(assumption)
+    if prior is None or accepted is None:
+        return None
+    return shapes(prior, accepted, None if simulation.weighting is None else simulation.weighting.weights)
 
 
 def filter_effect(
-    prior: NDArray[np.float64], accepted: NDArray[np.float64], replicate: NDArray[np.int64] | None = None
+    prior: NDArray[np.float64],
+    accepted: NDArray[np.float64],
+    replicate: NDArray[np.int64] | None = None,
+    weights: NDArray[np.float64] | None = None,
 ) -> FilterEffect:
     """Compare `(n,)` draws before filtering with the `(m,)` accepted ones.
 
     Errors are those of independent samples; they are a little too large, because accepted draws may be among the
-    others. With the `(m,)` replicates of the accepted draws, those of the accepted come from the replicates.
+    others. With the `(m,)` replicates of the accepted draws, those of the accepted come from the replicates; with their
+    `(m,)` weights, from the effective sample size.
     """
-    before, after = marginal(prior), marginal(accepted, replicate)
+    before, after = marginal(prior), marginal(accepted, replicate, weights)
     return FilterEffect(before, after, _shift(before, after), _narrowing(before, after))
 
 

@@ -73,6 +73,11 @@ class Histogram:
     decimals: int
 
     @property
+    def counted(self) -> int:
+        """All trials, those that are not drawn among them; of weighted ones, as many as carry as much."""
+        return int(self.inside.sum() + self.outside.sum()) + self.below + self.above
+
+    @property
     def upper_edges(self) -> Floats:
         return multiples(self.width, round(float(self.edges[0] / self.width)) + 1, self.edges.size)
 
@@ -103,8 +108,11 @@ class Histogram:
 
 
 def histogram(values: Values, low: float, high: float) -> Histogram | None:
-    """Count finite values `(n,)`, or a `Sample` of them, apart for those in [low, high]; None where there are none."""
-    x = Sample.of(values).x
+    """Count finite values `(n,)`, or a `Sample` of them, apart for those in [low, high]; None where there are none.
+
+    Of weighted trials as many are counted as carry as much.
+    """
+    x = Sample.of(values).even
     if x.size == 0:
         return None
     first, last = _shown(x)
@@ -243,6 +251,8 @@ class Figure:
             f"{percent(row.share)} of {row.trials:,} accepted trials lie from {estimate_text(row.low)} to "
             f"{estimate_text(row.high)}{units}."
         )
+        if bins.counted < row.trials:
+            text += f" Trials are weighted; drawn are as many as carry as much, {bins.counted:,}."
         if bins.below or bins.above:
             text += f" Not drawn: {bins.below:,} trials below and {bins.above:,} above."
         return text
@@ -258,7 +268,8 @@ def figures_of(simulation: Simulation, names: Collection[str] | None = None) -> 
     found: list[Figure] = []
     for row in summarise(simulation, names):
         bins = histogram(simulation.results[row.name].sample, row.low.value, row.high.value)
-        if bins is not None:
+        refused = math.isnan(row.low.value) or math.isnan(row.high.value)  # too few effective trials to draw
+        if bins is not None and not refused:
             found.append(Figure(len(found) + 1, row, bins))
     return found
 

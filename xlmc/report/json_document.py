@@ -18,6 +18,7 @@ from xlmc.results.record import make_record
 from xlmc.results.record.definition_tables import correlations_met
 from xlmc.results.record.errors_met import errors_met, lost_sentences
 from xlmc.results.record.in_words import (
+    UNWEIGHTED,
     changes_text,
     cutoffs_text,
     discards_of,
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     from xlmc.run.checking import CheckResult
     from xlmc.run.forecast_result import ForecastResult
     from xlmc.run.simulation import Simulation
+    from xlmc.run.weighing import Weighting
     from xlmc.statistics import Estimate
 
 __all__ = [
@@ -120,11 +122,12 @@ def document(simulation: Simulation, *, command: str | None = None) -> Json:
             }
             for each in discards_of(simulation)
         ],
+        "weights": _weights(simulation.weighting),
         "evidence": None if simulation.agreement is None else _evidence(simulation.agreement),
         "assumptions": [_assumption(simulation, each) for each in simulation.model.assumptions],
         "statements": [_as_json(each) for each in statements(simulation)],
-        "pairs": [_pair(each) for each in pairs_of(simulation)],
-        "sensitivity": _as_json(sensitivities(simulation)),
+        "pairs": [] if simulation.weighting is not None else [_pair(each) for each in pairs_of(simulation)],
+        "sensitivity": None if simulation.weighting is not None else _as_json(sensitivities(simulation)),
         "correlations": [_correlation(met) for met in correlations_met(simulation)],
         "errors": [
             {"in": met.kind, "name": met.name, "cell": str(met.cell), "error": met.error, "trials": met.trials}
@@ -254,6 +257,13 @@ def _filter(simulation: Simulation, index: int, each: Filter) -> Json:
         "also_by": {other.name: count for other, count in together if other is not each},
         "errors": sum(tally.errors[index].values()),
     }
+
+
+def _weights(found: Weighting | None) -> Json | None:
+    if found is None:
+        return None
+    told = {"mean": found.mean, "largest": found.largest, "effective_trials": found.effective}
+    return {**told, "left_out": UNWEIGHTED}
 
 
 def _evidence(found: Agreement) -> Json:

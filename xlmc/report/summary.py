@@ -210,7 +210,10 @@ def question(simulation: Simulation) -> Iterator[Said]:
         yield Said(f"The workbook has {without}: every trial is accepted.")
         yield from _of_some(simulation)
         return
-    if simulation.rare is None:
+    if simulation.weighting is not None:
+        yield Said(f"{simulation.accepted:,} of them ({share_text(simulation.acceptance)}) pass all limits, and each ")
+        yield Said("counts with the chance that the evidence would keep it. The evidence ")
+    elif simulation.rare is None:
         yield Said(
             f"{simulation.accepted:,} of them ({share_text(simulation.acceptance)}) agree with the evidence, which "
         )

@@ -73,5 +73,5 @@ def chances_of(filters: Iterable[Filter]) -> tuple[Assumption, ...]:
     return tuple(
         Assumption(each.stream, each.chance, "Uniform", {"low": 0.0, "high": 1.0}, each.row, base=0.0)
         for each in items
-        if each.bell is not None
+        if each.by_chance
     )

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import cached_property
 from typing import Final
 
@@ -24,6 +26,9 @@ TELLING: Final = 1_000
 
 FARTHEST_PART: Final = 0.1
 """Above this part in the sum of squares mean and standard deviation hang on a single trial."""
+
+LEAST_BEYOND: Final = 10.0
+"""Effective trials that must lie beyond a quantile, if it is to be given where trials are weighted."""
 
 _MOST_NAMED: Final = 4
 
@@ -51,10 +56,11 @@ class ForecastResult:
         faults: Counter[str],
         replicate: Callable[[], Replicates | None] = lambda: None,
         discards: Counter[str] | None = None,
+        weights: Callable[[], Floats | None] = lambda: None,
     ) -> None:
         self.definition, self.faults = definition, faults
         self.discards: Counter[str] = Counter() if discards is None else discards
-        self._column, self._replicate = column, replicate
+        self._column, self._replicate, self._weights = column, replicate, weights
 
     @cached_property
     def values(self) -> Floats:
@@ -63,9 +69,14 @@ class ForecastResult:
 
     @cached_property
     def sample(self) -> Sample:
-        """The same in ascending order with their replicates, from which the statistics come."""
-        replicate, column = self._replicate(), self._column()
-        return Sample.of(self.values, None, None if replicate is None else replicate[~np.isnan(column)])
+        """The same in ascending order with their weights and replicates, from which the statistics come."""
+        replicate, weights, column = self._replicate(), self._weights(), self._column()
+        known = None if replicate is None and weights is None else ~np.isnan(column)
+        return Sample.of(
+            self.values,
+            None if weights is None else weights[known],
+            None if replicate is None else replicate[known],
+        )
 
     def __repr__(self) -> str:
         return f"<{self.definition.name}: {self.values.size} accepted trials>"
@@ -74,7 +85,22 @@ class ForecastResult:
     def statistics(self) -> Description:
         """Every statistic at once."""
         d = self.definition
-        return statistics.describe(self.sample, central=d.central, threshold=d.threshold)
+        found = statistics.describe(self.sample, central=d.central, threshold=d.threshold)
+        if self.sample.w is None:
+            return found
+        low, high = found.central
+        tail = (1.0 - d.central) / 2.0
+        return replace(
+            found,
+            median=self._where_told(found.median, 0.5),
+            percentiles={key: self._where_told(each, key / 100.0) for key, each in found.percentiles.items()},
+            central=(self._where_told(low, tail), self._where_told(high, tail)),
+        )
+
+    def _where_told(self, found: Estimate, share: float) -> Estimate:
+        """A quantile; nan where trials are weighted and too few lie beyond it in effect."""
+        few = self.sample.w is not None and self.sample.effective * min(share, 1.0 - share) < LEAST_BEYOND
+        return Estimate(math.nan, n=found.n) if few else found
 
     @property
     def mean(self) -> Estimate:
@@ -82,7 +108,7 @@ class ForecastResult:
 
     @property
     def median(self) -> Estimate:
-        return statistics.median(self.sample)
+        return self._where_told(statistics.median(self.sample), 0.5)
 
     @property
     def standard_deviation(self) -> Estimate:
@@ -90,11 +116,13 @@ class ForecastResult:
 
     def percentile(self, percent: float) -> Estimate:
         """The value that `percent` (0 to 100) of the trials do not exceed, as Excel's PERCENTILE.INC."""
-        return statistics.percentile(self.sample, percent)
+        return self._where_told(statistics.percentile(self.sample, percent), percent / 100.0)
 
     def central(self, share: float | None = None) -> tuple[Estimate, Estimate]:
         """Both ends of the central range that holds `share` of the trials; the forecast's own share by default."""
-        return statistics.central_interval(self.sample, self.definition.central if share is None else share)
+        share = self.definition.central if share is None else share
+        low, high = statistics.central_interval(self.sample, share)
+        return self._where_told(low, (1.0 - share) / 2.0), self._where_told(high, (1.0 - share) / 2.0)
 
     def probability_above(self, threshold: float) -> Estimate:
         """P(forecast > threshold)."""

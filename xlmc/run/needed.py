@@ -176,7 +176,7 @@ def targets_of(forecasts: Iterable[Forecast], filters: Iterable[Filter]) -> list
     targets = [forecast.cell for forecast in forecasts]
     for filter_ in filters:
         targets += [filter_.cell, *(bound for _, bound in filter_limits(filter_) if isinstance(bound, Cell))]
-        if filter_.evidence is not None and filter_.evidence.bell is not None:
+        if filter_.evidence is not None and filter_.evidence.by_chance:
             targets.append(filter_.evidence.chance)
     return targets
 
@@ -197,7 +197,11 @@ def filter_condition(filter_: Filter, *, certain: bool = False) -> ir.Expression
         certain: evidence whose error is no limit keeps every trial whose probability is above 0.
     """
     if filter_.evidence is not None and (bell := filter_.evidence.bell) is not None:
-        return kept_by_chance(bell, filter_.cell, ir.Number(0.0) if certain else filter_.evidence.chance)
+        return kept_by_chance(
+            bell,
+            filter_.cell,
+            filter_.evidence.chance if filter_.evidence.by_chance and not certain else ir.Number(0.0),
+        )
     number = ir.Binary("+", filter_.cell, ir.Number(0.0))
     limits = filter_limits(filter_)
     if not limits:

@@ -35,6 +35,7 @@ from xlmc.run.stopping import (
     may_end_early,
     refuse_other_sampling,
 )
+from xlmc.run.weighing import chosen_way, weighing
 from xlmc.sampling.sampling_methods import METHODS
 
 if TYPE_CHECKING:
@@ -71,10 +72,18 @@ def simulate(
     keep_interrupted: bool = False,
     progress: OnProgress | None = None,
     tell: Callable[[str], None] | None = None,
+    evidence: str | None = "rejection",
 ) -> Simulation:
-    """Run a model; see `Model.simulate`."""
+    """Run a model; see `Model.simulate`.
+
+    With `evidence`, one of `EVIDENCE_WAYS`, the workbook is not asked how evidence is used; None asks it.
+    """
     settings = _settings(model, trials, seed, engine, sampling, stopping)
     settings = replace(settings, scenarios=scenarios)
+    settings = replace(settings, evidence=settings.evidence if evidence is None else evidence)
+    settings = replace(settings, evidence=chosen_way(model, settings))
+    if settings.evidence == "weights":
+        model, keep_inputs = weighing(model), None  # weights are computed from the draws
     program = model.program(settings.engine)
     plan = plan_sampling(model, settings)
     rule, looks = chosen_rule(settings.stopping, model.forecasts), rare_switch(model, settings)

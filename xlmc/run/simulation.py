@@ -24,6 +24,7 @@ from xlmc.run.forecast_result import ForecastResult, Replicates, tail_notices
 from xlmc.run.result_cells import ShownResults, shown_results
 from xlmc.run.stopping import Stopped
 from xlmc.run.stopping.stopped import ALL_TRIALS
+from xlmc.run.weighing import Weighting, weighting_of
 from xlmc.sampling.sampling_methods import METHODS
 from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.statistics import Estimate
@@ -155,9 +156,15 @@ class Simulation:
                 self.faults[f.name],
                 lambda: self.replicate,
                 self.discards.get(f.name, Counter()),
+                lambda: None if self.weighting is None else self.weighting.weights,
             )
             for f in self.model.forecasts
         }
+
+    @cached_property
+    def weighting(self) -> Weighting | None:
+        """The weights of the accepted trials; None where they count alike."""
+        return weighting_of(self.model, self.inputs)
 
     @property
     def replicate(self) -> Replicates | None:
@@ -204,8 +211,11 @@ class Simulation:
     def notices_of_run(self) -> tuple[Notice, ...]:
         """What the person should know of this run alone."""
         found: list[Notice] = []
-        if not self.plan.replicates and 0 < self.accepted < FEW:
-            found.append(Notice(f"only {_trials(self.accepted)} accepted. {_OF_FEW}"))
+        effective = self.accepted if self.weighting is None else round(self.weighting.effective)
+        if not self.plan.replicates and 0 < effective < FEW:
+            few = f"only {_trials(self.accepted)} accepted" if self.weighting is None else ""
+            few = few or f"the accepted trials carry as much as {effective} of equal weight"
+            found.append(Notice(f"{few}. {_OF_FEW}"))
         samples = {name: result.sample for name, result in self.results.items()}
         found += [Notice(f"{each[0].upper()}{each[1:]}") for each in self.agreement.remarks] if self.agreement else []
         return (*found, *tail_notices(samples, METHODS[self.plan.method].name))

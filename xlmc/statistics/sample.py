@@ -72,6 +72,14 @@ class Sample:
         """Effective sample size (Σw)²/Σw²: how many equally weighted trials carry as much."""
         return float(self.n) if self.w is None else float(1.0 / np.sum(self.w * self.w)) if self.n else 0.0
 
+    @cached_property
+    def even(self) -> Floats:
+        """The values; with weights, as many as carry as much, of equal weight: quantiles at even distances."""
+        if self.w is None:
+            return self.x
+        count = max(1, round(self.effective))
+        return self.quantile((np.arange(count) + 0.5) / count)
+
     @property
     def units(self) -> float:
         """Independent units: replicates, or else (effective) trials."""

@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
 from xlmc.definitions.amounts import as_seconds, typed_whole_number
-from xlmc.definitions.definitions import Settings
+from xlmc.definitions.definitions import EVIDENCE_WAYS, Settings
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.stopping import GOALS, LIMIT, MOST_TRIALS, NO_GOAL, RARE, Option, Stopping, stopping
 from xlmc.definitions.tables.fields import central_share, number_in, required_text
@@ -127,6 +127,14 @@ def _lognorm(row: Row, _findings: Findings) -> str:
     return found
 
 
+def _evidence(row: Row, _findings: Findings) -> str:
+    typed = required_text(row, "Value")
+    if plain(typed) not in EVIDENCE_WAYS:
+        message = f"{typed!r} is no way to use evidence"
+        raise DefinitionError(message, where=row.cell("Value"), hint=f"Use {', '.join(EVIDENCE_WAYS)}")
+    return plain(typed)
+
+
 def _arithmetic(row: Row, _findings: Findings) -> None:
     """A row of earlier books, which could ask for float32."""
     typed = required_text(row, "Value")
@@ -150,6 +158,7 @@ def _settings(engines: Collection[str]) -> dict[str, _Setting]:
         "Range %": _range,
         **_stopping_settings(),
         "Lognorm": _lognorm,
+        "Evidence": _evidence,
     }
     return {plain(name): _Setting(name, read) for name, read in readers.items()}
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.report.document.parts import Drawing
-from xlmc.report.filter_effect import shapes
+from xlmc.report.filter_effect import Shapes
 from xlmc.report.histogram import Figure
 from xlmc.report.page.svg import Scale, scale_of
 from xlmc.report.sheets.styles import DARK, GRID, INK, LIGHT
@@ -90,15 +90,13 @@ def forecast_drawing(figure: Figure, result: ForecastResult, width: float) -> Dr
     return drawing(found, 570.0, bottom + 40, said, width)
 
 
-def before_and_after(name: str, prior: Floats, accepted: Floats) -> Drawing | None:
+def before_and_after(name: str, shown: Shapes | None) -> Drawing | None:
     """How often an assumption has each value before filtering (pale), and in accepted trials (the line).
 
     Args:
         name: of the assumption.
-        prior: `(n,)` draws before filtering.
-        accepted: `(m,)` accepted draws.
+        shown: its shapes; None where there are none to draw.
     """
-    shown = shapes(prior, accepted)
     if shown is None:
         return None
     edges, pale, dark = shown.edges, shown.before, shown.accepted

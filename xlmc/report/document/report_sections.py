@@ -14,7 +14,7 @@ from xlmc.report.document.parts import Block, Bullets, Code, Content, Drawing, F
 from xlmc.report.document.scene_drawing import scene_drawing
 from xlmc.report.evidence_tables import ITEM_HEADS, MOVES_MEANING, item_rows, move_rows, trials_sentence
 from xlmc.report.evidence_tables import MEANING as MEANING_OF_EVIDENCE
-from xlmc.report.filter_effect import filter_effect_of
+from xlmc.report.filter_effect import filter_effect_of, shapes_of
 from xlmc.report.histogram import figures_of
 from xlmc.report.sheets.results_sheet import base_sentences, opening_sentences, range_sentences
 from xlmc.report.summary import (
@@ -157,6 +157,8 @@ def _forecasts(material: Material) -> Iterator[Block]:
             f"{estimate_text(row.low)} to {estimate_text(row.high)}{units}. Upright line: the mean, "
             f"{estimate_text(row.mean)}{units}."
         )
+        if bins.counted < row.trials:
+            caption += f" Trials are weighted; drawn are as many as carry as much, {bins.counted:,}."
         if bins.below or bins.above:
             caption += f" Not drawn: {bins.below:,} trials below and {bins.above:,} above."
         yield material.figure(forecast_drawing(figure, simulation.results[row.name], width), caption)
@@ -293,7 +295,7 @@ def _assumption_row(simulation: Simulation, each: Assumption) -> list[Content]:
         base = "" if each.base is None else f"{each.base:.9g}"
         return [name, words, f"{status(simulation.model, each.name, each.frozen)}: {base}", _NONE, _NONE]
     both = (found.prior, found.accepted)
-    drawing = before_and_after(each.name, simulation.prior[each.name], simulation.inputs[each.name])
+    drawing = before_and_after(each.name, shapes_of(simulation, each.name))
     return [
         name,
         words,
@@ -304,6 +306,8 @@ def _assumption_row(simulation: Simulation, each: Assumption) -> list[Content]:
 
 
 def _sensitivity(material: Material) -> Iterator[Block]:
+    if material.simulation.weighting is not None:
+        return
     found = sensitivities(material.simulation)
     shown = [each for each in found.forecasts if each.forecast in material.forecasts]
     if not shown:

@@ -138,7 +138,7 @@ def page_text(simulation: Simulation, *, beside: Simulation | None = None, comma
         command: what the person typed, for the record.
     """
     figures, name = figures_of(simulation), simulation.model.workbook.name
-    found = sensitivities(simulation)
+    found = None if simulation.weighting is not None else sensitivities(simulation)
     parts = {
         "answer": answers(simulation),
         "second": EMPTY if beside is None else second_run(simulation, beside),
@@ -148,11 +148,11 @@ def page_text(simulation: Simulation, *, beside: Simulation | None = None, comma
         "scenarios": scenarios(simulation),
         "pairs": pairs(simulation),
         "statistics": statistics(simulation),
-        "sensitivity": dependence(found),
+        "sensitivity": EMPTY if found is None else dependence(found),
         "checks": checks(simulation),
         "evidence": evidence(simulation),
         "filters": filters(simulation),
-        "limits": limits(found),
+        "limits": EMPTY if found is None else limits(found),
         "assumptions": assumptions(simulation),
         "notices": notices(simulation),
         "record": record(make_record(simulation, command)),

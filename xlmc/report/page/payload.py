@@ -111,15 +111,15 @@ def forecast_payload(simulation: Simulation, figure: Figure, most: int, *, fits:
             "highText": _value_text(answer.high),
         },
         "bins": _bins(figure),
-        "fits": [_fit(each) for each in fitted_curves(result.sample.x, figure.bins)] if fits else [],
+        "fits": [_fit(each) for each in fitted_curves(result.sample.even, figure.bins)] if fits else [],
         "marks": [{"label": label, "value": value, "text": text} for label, value, text in _marks(figure)],
     }
 
 
 def _trials(result: ForecastResult, most: int, marks: Iterable[float] = ()) -> dict[str, Any]:
-    table = rank_table(result.sample.x, most, marks)
+    table = rank_table(result.sample.even, most, marks)
     return {
-        "trials": int(result.sample.x.size),
+        "trials": int(result.sample.even.size),
         "values": table.values.tolist(),
         "counts": _unless_all(1, table.counts),
         "gaps": _unless_all(0, table.gaps),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from xlmc.report.filter_effect import PERCENTS, FilterEffect, Marginal, filter_effect_of, shapes
+from xlmc.report.filter_effect import PERCENTS, FilterEffect, Marginal, filter_effect_of, shapes_of
 from xlmc.report.page.element import EMPTY, Html, element
 from xlmc.report.page.flow import Flow, estimate_html, number
 from xlmc.report.page.svg import before_after
@@ -65,7 +65,7 @@ def certainty(simulation: Simulation) -> Html:
 
 def pairs(simulation: Simulation) -> Html:
     """Forecasts two at a time; nothing where there are no two that vary."""
-    found = pairs_of(simulation)
+    found = pairs_of(simulation) if simulation.weighting is None else []
     if not found:
         return EMPTY
     flow = Flow()
@@ -165,7 +165,7 @@ def _assumption(simulation: Simulation, assumption: Assumption) -> Html:
 
 def _shape(simulation: Simulation, name: str) -> Html:
     """Its draws before filtering and the accepted ones as a small picture; nothing where they are one value."""
-    found = shapes(simulation.prior[name], simulation.inputs[name])
+    found = shapes_of(simulation, name)
     if found is None:
         return EMPTY
     said = f"{name}: before filtering pale, accepted as a line"

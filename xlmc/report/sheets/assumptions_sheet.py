@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from xlmc.report.filter_effect import FilterEffect, Marginal, filter_effect_of, shapes
+from xlmc.report.filter_effect import FilterEffect, Marginal, filter_effect_of, shapes_of
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.curves_sheet import SHARE
@@ -98,8 +98,7 @@ def _draw_shapes(page: Page, book: Workbook, simulation: Simulation, curves: Cur
     """Draw how often each assumption has each value, beside its lines."""
     drawn = []
     for index, assumption in enumerate(simulation.model.assumptions[:_DRAWN]):
-        prior, accepted = simulation.prior.get(assumption.name), simulation.inputs.get(assumption.name)
-        found = None if prior is None or accepted is None else shapes(prior, accepted)
+        found = shapes_of(simulation, assumption.name)
         if found is not None:
             drawn.append((HEADER + 1 + 2 * index, assumption.name, found))
     if not drawn:

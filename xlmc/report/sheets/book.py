@@ -122,8 +122,15 @@ def _limits(page: Page, run: Writing) -> None:
 
 def _has_limits(run: Writing) -> bool:
     """Whether a limit could be moved."""
+    if not _is_even(run):
+        return False
     found = run.dependence
     return bool(found.filter_limits or found.varying_limits or found.omitted_limits)
+
+
+def _is_even(run: Writing) -> bool:
+    """Whether all trials count alike, which some sheets take for granted."""
+    return run.simulation.weighting is None
 
 
 def _trials(page: Page, run: Writing) -> None:
@@ -161,15 +168,16 @@ SHEETS: Final[tuple[ResultSheet, ...]] = (
         lambda page, run: certainty_sheet.write_certainty(page, run.simulation, run.trials),
         certainty_sheet.WIDTHS,
         after=("Trials",),
+        wanted=_is_even,
     ),
-    ResultSheet("Pairs", _pairs, pairs_sheet.WIDTHS, after=("Charts", "Trials")),
+    ResultSheet("Pairs", _pairs, pairs_sheet.WIDTHS, after=("Charts", "Trials"), wanted=_is_even),
     ResultSheet(
         "Assumptions",
         lambda page, run: assumptions_sheet.write_assumptions(page, run.book, run.simulation, run.curves),
         assumptions_sheet.WIDTHS,
         after=("Pairs",),
     ),
-    ResultSheet("Sensitivity", _sensitivity, sensitivity_sheet.WIDTHS),
+    ResultSheet("Sensitivity", _sensitivity, sensitivity_sheet.WIDTHS, wanted=_is_even),
     ResultSheet("Filter limits", _limits, limits_sheet.WIDTHS, wanted=_has_limits),
     ResultSheet("Trials", _trials, trials_sheet.WIDTHS),
     ResultSheet("Bins", _bins),

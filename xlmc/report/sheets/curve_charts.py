@@ -121,14 +121,15 @@ def _cumulative(sample: Sample, bins: Histogram, low: float, high: float) -> _Cu
     first = round(float(bins.edges[0] / bins.width)) * pieces
     at = multiples(bins.width / pieces, first, bins.edges.size * pieces + 1)
     at[::pieces] = [*bins.edges, bins.upper_edges[-1]]
-    reached = np.searchsorted(sample.x, at, side="right")
-    release(sample.x)
+    x = sample.even
+    reached = np.searchsorted(x, at, side="right")
+    release(x)
     labels = [""] * at.size
     labels[::pieces] = [*bins.labels, bins.last_label]
     return _Cumulative(
         at=at,
-        at_most=reached / sample.n,
-        above=(sample.n - reached) / sample.n,
+        at_most=reached / x.size,
+        above=(x.size - reached) / x.size,
         central=(at >= low) & (at <= high),
         labels=labels,
         step=bins.step * pieces,
@@ -176,7 +177,7 @@ def overlay_chart(book: Workbook, curves: Curves, group: Sequence[Figure]) -> Ch
 
 def _polygon(figure: Figure) -> Iterator[list[Shown]]:
     """The middles of the bars and their density, closed with a bar of none at either end."""
-    bins, trials = figure.bins, figure.answer.trials
+    bins, trials = figure.bins, figure.bins.counted
     middles = [*(float(edge) + bins.width / 2.0 for edge in bins.edges)]
     density = [float(count) / trials / bins.width for count in bins.inside + bins.outside]
     at = [middles[0] - bins.width, *middles, middles[-1] + bins.width]

@@ -142,12 +142,21 @@ def write_counts(page: Page, simulation: Simulation) -> None:
             cells.count(simulation.accepted),
             *_share(simulation.acceptance),
         ],
+        *_weight_lines(simulation),
         [Shown("Lost to errors in cells", look="name"), cells.count(simulation.error_trials), *_share(lost)],
     ):
         page.line(line, starts, 6)
     if simulation.stopped != ALL_TRIALS:
         page.row += 1
         page.wide(f"The run ended when {simulation.stopped.sentence}.", "remark", LAST)
+
+
+def _weight_lines(simulation: Simulation) -> list[list[Shown]]:
+    """How many trials of equal weight carry as much, where evidence weights them."""
+    found = simulation.weighting
+    if found is None:
+        return []
+    return [[Shown("Effective", look="name"), cells.count(round(found.effective)), *[cells.BLANK] * 4]]
 
 
 def _search_lines(simulation: Simulation) -> list[list[Shown]]:

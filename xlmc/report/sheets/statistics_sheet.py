@@ -54,6 +54,9 @@ def write_forecast(page: Page, result: ForecastResult) -> None:
 def _statistics(result: ForecastResult) -> list[list[Shown]]:
     found, units = result.statistics, result.definition.units
     rows = [[Shown("Trials"), Shown(""), cells.count(found.trials), *[cells.BLANK] * 3]]
+    if result.sample.w is not None:
+        effective = round(result.sample.effective)
+        rows.append([Shown("Effective trials"), Shown(""), cells.count(effective), *[cells.BLANK] * 3])
     for label, unit, estimate in (
         ("Mean", units, found.mean),
         ("Median", units, found.median),

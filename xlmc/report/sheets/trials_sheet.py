@@ -97,7 +97,9 @@ def _columns(simulation: Simulation, shown: int) -> list[tuple[Shown, NDArray[np
     live, forecasts = simulation.model.live, simulation.model.forecasts
     inputs = [column(_heading(a.name, a.units, "header assumption"), simulation.inputs[a.name]) for a in live]
     outputs = [column(_heading(f.name, f.units, "header forecast"), simulation.forecasts[f.name]) for f in forecasts]
-    return inputs + outputs
+    weighting = simulation.weighting
+    weights = [] if weighting is None else [column(Shown("Weight", look="header"), weighting.weights)]
+    return inputs + outputs + weights
 
 
 def _heading(name: str, units: str, look: str) -> Shown:

@@ -255,7 +255,8 @@ class CorrelationMet:
         asked: the rank correlation in its row, or that of its copula; 0 where it has neither.
         row: its first cell, or that of the copula; None where a repair changed a pair that no row names.
         used: the rank correlation that it was drawn with; None where one of the two was not drawn.
-        accepted: that of the accepted trials whose draws are kept; None where one of the two was not drawn.
+        accepted: that of the accepted trials whose draws are kept; None where one of the two was not drawn, or where
+            trials are weighted.
     """
 
     first: str
@@ -288,6 +289,8 @@ def _met(simulation: Simulation, first: str, second: str, asked: float, row: Cel
     drawn = drawn_correlation(simulation.model.groups, first, second)
     if drawn is None:
         return CorrelationMet(first, second, asked, row)
+    if simulation.weighting is not None:
+        return CorrelationMet(first, second, asked, row, drawn)
     columns = {name_key(name): values for name, values in simulation.inputs.items()}
     x, y = columns[name_key(first)], columns[name_key(second)]
     replicate = simulation.replicate

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "REJECTED_SENTENCE",
+    "UNWEIGHTED",
     "Discarded",
     "changes_text",
     "cutoffs_text",
@@ -38,6 +39,12 @@ __all__ = [
     "status",
 ]
 
+
+UNWEIGHTED: Final = (
+    "Left out of weighted results, because it takes trials of equal weight: what the answers depend on, filter limits, "
+    "forecasts two at a time, ranges of your own on the sheet Certainty, and rank correlations of accepted trials."
+)
+"""What results by weights do not hold."""
 
 REJECTED_SENTENCE: Final = (
     "± of the trials that a filter rejects is that of independent trials, which these samples hardly ever exceed."
@@ -121,8 +128,8 @@ def evidence_text(evidence: Evidence) -> str:
     if isinstance(known, Within):
         ends = [("from", known.low), ("to", known.high)]
         kept = ": " + " ".join(f"{word} {end:.6g}" for word, end in ends if end is not None)
-    given = f" ({sizes})" if sizes else ""
-    return f"reads {number_text(evidence.reading)}, {ERRORS[evidence.error].lower()}{given}{kept}"
+    given, weights = f" ({sizes})" if sizes else "", ", as weights" if evidence.weighed else ""
+    return f"reads {number_text(evidence.reading)}, {ERRORS[evidence.error].lower()}{given}{kept}{weights}"
 
 
 def changes_text(scenario: Scenario) -> str:
@@ -195,7 +202,11 @@ def errors_text(simulation: Simulation) -> str:
 def sampling_sentence(simulation: Simulation) -> str:
     """How the run was sampled and where its errors come from, in one sentence."""
     done = "" if simulation.rare is None else f" {simulation.rare.sentence}"
-    return f"{method_text(simulation)}; errors come {errors_text(simulation)}.{done}"
+    weighting = simulation.weighting
+    weighed = "" if weighting is None else f" {weighting.sentence}. {UNWEIGHTED}"
+    if simulation.model.chances:
+        weighed = " Evidence with a normal error keeps a trial by chance, so those kept count alike (rejection)."
+    return f"{method_text(simulation)}; errors come {errors_text(simulation)}.{done}{weighed}"
 
 
 def generator_text(simulation: Simulation) -> str:

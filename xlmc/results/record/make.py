@@ -182,11 +182,24 @@ def _counts(simulation: Simulation) -> Section:
         Entry("inputs_kept", "Accepted trials whose draws are kept", simulation.kept_inputs),
         Entry("acceptance", "Share accepted", plain(simulation.acceptance.value)),
         Entry("acceptance_error", "Its standard error", plain(simulation.acceptance.error)),
+        *_weight_entries(simulation),
         Entry("error_trials", "Lost to errors", simulation.error_trials),
         Entry("undecided", "Not decided by a filter", simulation.tally.by_error),
         Entry("invalid", "Draws whose parameters are no distribution", sum(simulation.invalid.values())),
     )
     return Section("counts", "Trials", entries)
+
+
+def _weight_entries(simulation: Simulation) -> tuple[Entry, ...]:
+    """The weights that evidence gives the accepted trials, where they do not count alike."""
+    found = simulation.weighting
+    if found is None:
+        return ()
+    return (
+        Entry("effective", "Effective sample size", found.effective),
+        Entry("mean_weight", "Mean weight", found.mean),
+        Entry("largest_weight", "Largest weight", found.largest),
+    )
 
 
 def _end(simulation: Simulation) -> Section:

@@ -43,6 +43,7 @@ def settings_section(simulation: Simulation) -> Section:
         Entry("sampling", "Sampling", settings.sampling),
         Entry("engine", "Engine", settings.engine),
         Entry("lognorm", "RiskLognorm is that of", settings.lognorm or None),
+        *([Entry("evidence", "Evidence by", settings.evidence)] if settings.evidence else []),
         *(entry for kind in GOALS.values() for entry in _goal_entries(kind, asked.goal)),
         Entry(
             "for", "Of these forecasts", json.dumps(asked.forecasts, ensure_ascii=False) if asked.forecasts else None
@@ -81,6 +82,7 @@ def recorded_settings(record: Record) -> Settings:
             lognorm=str(section["lognorm"] or ""),
             scenarios=bool(section.get("scenarios")),
             stopping=_stopping(section),
+            evidence=str(section.get("evidence") or ""),
         )
     except (TypeError, ValueError, XlmcError) as error:
         hint = "The record was edited: use a copy of the result workbook as xlmc wrote it"

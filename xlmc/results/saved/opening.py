@@ -38,6 +38,7 @@ from xlmc.run.forecast_filters import filters_by_forecast
 from xlmc.run.loading import build_model
 from xlmc.run.model import Model
 from xlmc.run.simulation import Simulation
+from xlmc.run.weighing import weighing
 from xlmc.workbook.package import LIMITS
 from xlmc.workbook.reader import read_workbook
 
@@ -75,6 +76,8 @@ def open_run(path: str | Path) -> Simulation:
         found = _document(package, path)
         model = _model(package, found, path)
         try:
+            if settings_of(found["settings"]).evidence == "weights":
+                model = weighing(model)
             columns = _Columns(found["columns"], model, path)
             columns.read(package)
             return _simulation(found, model, columns)

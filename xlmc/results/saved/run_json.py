@@ -76,6 +76,7 @@ def settings_of(found: object) -> Settings:
     require(settings.seed >= 0, "its seed")
     require(settings.sampling in METHODS, "its sampling")
     require(settings.engine in ENGINES, "its engine")
+    require(settings.evidence in ("", "rejection", "weights"), "how it used evidence")
     require(settings.lognorm in ("", "@RISK", "XLRisk"), "its RiskLognorm")
     return settings
 

@@ -54,7 +54,8 @@ def _of(result: ForecastResult) -> list[Statement]:
     name, units = definition.name, f" {definition.units}" if definition.units else ""
     found = rounded_range(result.sample, central, definition.central)
     if found is None:
-        return [Statement(name, "range", f"{name}: no accepted trial has a number")]
+        why = "too few effective trials for its central range" if result.sample.n else "no accepted trial has a number"
+        return [Statement(name, "range", f"{name}: {why}")]
     part = _part_text(result)
     told = [Statement(name, "range", f"{name}: {_range_text(found, units)}{part}")]
     above = result.statistics.probability_above

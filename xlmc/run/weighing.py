@@ -73,10 +73,11 @@ def chosen_way(model: Model, settings: Settings) -> str:
     """How a run uses evidence whose error is no limit: `rejection` or `weights`; empty where there is none.
 
     By itself it takes weights where the first trials say that rejection would keep fewer than a thousand in the whole
-    run, and that weights leave at least twice as many in effect. A run with a goal always rejects.
+    run, and that weights leave at least twice as many in effect. A run with a goal always rejects, and so does one with
+    scenarios, which are compared trial by trial.
 
     Raises:
-        SimulationError: weights were asked for in a run with a goal, or a way that there is not.
+        SimulationError: weights were asked for in such a run, or a way that there is not.
     """
     asked = settings.evidence or EVIDENCE_WAYS[0]
     if asked not in EVIDENCE_WAYS:
@@ -85,10 +86,11 @@ def chosen_way(model: Model, settings: Settings) -> str:
         )
     if not model.chances:
         return ""
-    goal = settings.stopping.goal is not None
+    goal = settings.stopping.goal is not None or settings.scenarios
     if asked == "weights" and goal:
-        message = "a run that goes on until a goal cannot weight its trials"
-        raise SimulationError(message, hint="Ask for a number of trials, or set Evidence to rejection")
+        what = "with scenarios" if settings.scenarios else "that goes on until a goal"
+        hint = "Ask for a number of trials without scenarios, or set Evidence to rejection"
+        raise SimulationError(f"a run {what} cannot weight its trials", hint=hint)
     if asked != "auto" or goal:
         return "rejection" if goal else asked
     found = evidence_trials(model, settings.seed, min(settings.trials, FIRST_TRIALS))

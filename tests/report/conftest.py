@@ -44,7 +44,9 @@ def filter_(name, address, **more):
 
 def simulate(cells, assumptions, forecasts, filters=(), correlations=(), *, trials=2000, seed=1):
     settings = Settings(trials=trials, seed=seed)
-    definitions = Definitions(tuple(assumptions), tuple(forecasts), tuple(filters), tuple(correlations), settings)
+    definitions = Definitions(
+        tuple(assumptions), tuple(forecasts), tuple(filters), tuple(correlations), settings=settings
+    )
     return Model(_workbook(cells), definitions, Path("book.xlsx")).simulate()
 
 

@@ -199,6 +199,15 @@ def _way(number: int) -> Equation:
 
 
 _RECORD = (
+    Equation(
+        "n_given",
+        "",
+        "Samples given before the last, without a gap",
+        "",
+        "COUNT(" + ",".join(f"v_{number}" for number in _SAMPLES) + ")",
+        "input",
+        number_format="0",
+    ),
     *(_true(number) for number in _SAMPLES),
     *(_way(number) for number in _SAMPLES),
 )
@@ -265,7 +274,7 @@ _CHECKS = checks_section(
     check(
         "check_samples",
         "The brake was first on at a sample that is given",
-        "AND(v_last>0,n_brake>=0,n_brake<=10,n_brake=INT(n_brake),ISNUMBER(v_on_[mph|kmh]),ISNUMBER(x_on))",
+        "AND(v_last>0,n_brake>=0,n_brake<=n_given,n_brake=INT(n_brake),ISNUMBER(v_on_[mph|kmh]),ISNUMBER(x_on))",
         "record",
         "FALSE: fill in the recorded speeds back to the sample at which the brake was first on.",
     ),
@@ -299,34 +308,20 @@ _CHECKS = checks_section(
     ),
 )
 
+
+def _record_of(newest: str, others: str) -> tuple[tuple[str, str], ...]:
+    """Points from the oldest sample given to the last one; samples that are blank repeat the oldest."""
+    values = ",".join((newest, *(f"{others}_{k}" for k in _SAMPLES)))
+    return tuple((f"-tau-MIN({k},n_given)*T_s", f"CHOOSE(MIN({k},n_given)+1,{values})") for k in reversed(range(11)))
+
+
 _DIAGRAM = Diagram(
     "Speed before the impact, base case",
     "Time before the impact, s",
     "Speed, [mph|km/h]",
     (
-        Curve(
-            "True",
-            Look.FIRST,
-            (
-                *(
-                    (f"IF(ISNUMBER(v_{k}),-tau-{k}*T_s,-tau)", f"IF(ISNUMBER(v_{k}),t_{k},t_0)")
-                    for k in reversed(_SAMPLES)
-                ),
-                ("-tau", "t_0"),
-                ("0", f"v_impact_s*{MPH}"),
-            ),
-        ),
-        Curve(
-            "Recorded",
-            Look.SECOND,
-            (
-                *(
-                    (f"IF(ISNUMBER(v_{k}),-tau-{k}*T_s,-tau)", f"IF(ISNUMBER(v_{k}),v_{k},v_last)")
-                    for k in reversed(_SAMPLES)
-                ),
-                ("-tau", "v_last"),
-            ),
-        ),
+        Curve("True", Look.FIRST, (*_record_of("t_0", "t"), ("0", f"v_impact_s*{MPH}"))),
+        Curve("Recorded", Look.SECOND, _record_of("v_last", "v")),
     ),
     remark="Drawn from the cells below.",
 )

@@ -377,8 +377,8 @@ _DIAGRAM = Diagram(
             Look.SECOND,
             tuple(_seen_at(f"{step}/12", "V_s", "t_response", "t_clear") for step in _STEPS),
         ),
-        Curve("Intruder at the point of impact", Look.LINE, (("t_intruder", "0"), ("t_intruder", "D_0"))),
-        Curve("Intruder has cleared", Look.LINE, (("t_clear", "0"), ("t_clear", "D_0"))),
+        Curve("Intruder at the point of impact", Look.FIRST_PATH, (("t_intruder", "0"), ("t_intruder", "D_0"))),
+        Curve("Intruder has cleared", Look.SECOND_PATH, (("t_clear", "0"), ("t_clear", "D_0"))),
     ),
     remark="Drawn from the cells below. A curve that reaches 0 after the intruder has cleared, or never, is no crash.",
 )
@@ -404,7 +404,7 @@ _GUIDE = (
         ),
     ),
     GuideSection(
-        "Same driver, or an ordinary driver: two questions",
+        "Two drivers, two questions",
         (
             "Same driver: would this crash have been avoided, had this driver been at the speed in question and "
             "responded as here? The response time that the crash implies is kept. This answers but for the speed.",

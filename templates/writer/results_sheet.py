@@ -98,7 +98,10 @@ def _draw_filters(
         write_formula(sheet, row, 1, reference(at[kept.symbol]), shown, values)
     last = top + 1 + len(template.filters)
     guard(sheet, (top + 2, 1, last, 1), "A formula", _POINTS)
-    rule = {"type": "formula", "criteria": _rejected(top + 3), "format": styles("wrong")}
+    criteria = _rejected(top + 3)
+    if one_forecast:
+        criteria = f'=AND($H{top + 3}="",{criteria[1:]})'
+    rule = {"type": "formula", "criteria": criteria, "format": styles("wrong")}
     sheet.conditional_format(top + 2, 1, last, 1, rule)
     return last + 1
 

@@ -126,7 +126,7 @@ def _assumptions() -> tuple[Input, ...]:
         {"Low": 0.04, "High": 0.24},
         number_format="0.00",
     )
-    return (*of_vehicles, restitution)
+    return (*of_vehicles, *(_station(j, i) for j in (1, 2) for i in _STATIONS), restitution)
 
 
 _PROFILES = (
@@ -135,21 +135,31 @@ _PROFILES = (
 )
 
 
+_READ = Both(0.5, 1.3)
+"""How far a depth may be misread, either way, at one station alone."""
+
+
+def _station(j: int, i: int) -> Input:
+    profile, what = _PROFILES[j - 1]
+    depth = Both(profile.imperial[i - 1], profile.si[i - 1])
+    return Input(
+        f"c_{j}_{i}",
+        f"C{j},{i}",
+        f"{vehicle(j)} crush at station {i}",
+        "[in|cm]",
+        depth,
+        f"Residual crush, stations evenly spaced over the width ({what}). The range: how far this reading alone is off",
+        {
+            "Low": Both(depth.imperial - _READ.imperial, round(depth.si - _READ.si, 6)),
+            "High": Both(depth.imperial + _READ.imperial, round(depth.si + _READ.si, 6)),
+        },
+        number_format="0.0",
+    )
+
+
 def _constants() -> tuple[Input, ...]:
     of_vehicles: list[Input] = []
-    for j, (profile, what) in enumerate(_PROFILES, 1):
-        of_vehicles += (
-            Input(
-                f"c_{j}_{i}",
-                f"C{j},{i}",
-                f"{vehicle(j)} crush at station {i}",
-                "[in|cm]",
-                Both(profile.imperial[i - 1], profile.si[i - 1]),
-                f"Residual crush, stations evenly spaced over the width ({what})",
-                number_format="0.0",
-            )
-            for i in _STATIONS
-        )
+    for j in (1, 2):
         of_vehicles += (
             Input(
                 f"[w|m]_test_{j}",
@@ -343,6 +353,17 @@ _ANSWERS = (
         Role.ANSWER,
         "0.00",
     ),
+    Equation(
+        "EBS{j}_[mph|kmh]",
+        "EBS{j}",
+        "{who} equivalent barrier speed",
+        "[mph|km/h]",
+        f"SQRT(2*E_{{j}}/m_{{j}})*{MPH}",
+        "E = m·EBS²/2",
+        "<The speed whose energy, in the vehicle's own mass, crushes it so. It is no delta-V.|>",
+        Role.ANSWER,
+        "0.00",
+    ),
     Equation("E_crush", "E", "Energy of the crush", "[ft·lb|J]", "E_sum", "above", "", Role.ANSWER, "#,##0"),
     Equation(
         "ratio",
@@ -438,7 +459,7 @@ _GUIDE = (
         "This workbook",
         (
             "A template. The numbers in it are an example: the front of one car into the side of another. Replace "
-            "every green cell, every crush station, every range, every source.",
+            "every green cell, every range, every source.",
         ),
     ),
     FIRST_STEPS,
@@ -492,6 +513,8 @@ TEMPLATE = Template(
         ForecastRow(f"{FIRST} delta-V", "dV1_[mph|kmh]", "[mph|km/h]"),
         ForecastRow(f"{SECOND} delta-V", "dV2_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("Closing speed along the force", "closing_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow(f"{FIRST} equivalent barrier speed", "EBS1_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow(f"{SECOND} equivalent barrier speed", "EBS2_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("Energy of the crush", "E_crush", "[ft·lb|J]"),
         ForecastRow("Force balance", "ratio", ""),
     ),

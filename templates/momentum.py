@@ -18,6 +18,7 @@ from templates.two_vehicles.options import (
     turn_inputs,
     turn_section,
 )
+from templates.two_vehicles.readings import readings
 from templates.two_vehicles.results import direction_forecasts, paper_forecasts, shared_road_note
 from templates.two_vehicles.scene import Scene, assumptions_of_momentum, constants_of_momentum
 from templates.units import MPH
@@ -135,6 +136,7 @@ def describe(scene: Scene) -> Template:
         correlation_note=shared_road_note(),
         guide=(scene.guide, FIRST_STEPS, NAMES, _WHEN, _TRUST, CAVEATS, _CORRECTIONS),
         diagram=_diagram(),
+        evidence=() if scene.paper_only else readings(yaw=False),
     )
 
 

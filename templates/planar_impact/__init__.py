@@ -10,6 +10,7 @@ from templates.planar_impact.evaluate import evaluate
 from templates.planar_impact.guide import guide
 from templates.two_vehicles.drawing import rest_points, vehicle_curves
 from templates.two_vehicles.options import drawing_inputs, duration_input, turn_filters, turn_inputs
+from templates.two_vehicles.readings import lever_inputs, readings, rotation_inputs
 from templates.two_vehicles.results import direction_forecasts, paper_forecasts, shared_road, shared_road_note
 from templates.two_vehicles.scene import (
     Scene,
@@ -36,8 +37,12 @@ def describe(scene: Scene) -> Template:
         needs="those of momentum; yaw inertias, impact centre, contact direction",
         assumptions=assumptions_of_planar_impact(scene),
         constants=(*yaw_rates(), *constants_of_momentum(inches=True)),
-        optional=(duration_input(), *(turn_inputs() if more else ()), *drawing_inputs()),
-        sections=model_sections() + answer_sections(turning=more),
+        optional=(
+            duration_input(),
+            *((*turn_inputs(), *lever_inputs(), *rotation_inputs()) if more else ()),
+            *drawing_inputs(),
+        ),
+        sections=model_sections() + answer_sections(more=more),
         forecasts=paper_forecasts() + (direction_forecasts(yaw=True) if more else ()),
         filters=_filters(scene) + (turn_filters() if more else ()),
         settings=(("Trials", 200_000), ("Seed", 999)),
@@ -45,6 +50,7 @@ def describe(scene: Scene) -> Template:
         correlation_note=shared_road_note() if more else shared_road(),
         guide=guide(scene.guide),
         diagram=_diagram(),
+        evidence=readings(yaw=True) if more else (),
     )
 
 

@@ -7,6 +7,7 @@ from templates.description import Equation, Section
 from templates.two_vehicles.answers import ANSWERS, FORCE, ROTATION
 from templates.two_vehicles.checks import ANGLES, BOUNDS, CLOSING, ENERGY, FORWARD, FRICTION
 from templates.two_vehicles.options import duration_section, turn_section
+from templates.two_vehicles.readings import recorder_section
 from templates.vehicles import for_both
 
 __all__ = ["answer_sections"]
@@ -33,13 +34,13 @@ _NORMAL = (
 )
 
 
-def answer_sections(*, turning: bool) -> tuple[Section, ...]:
+def answer_sections(*, more: bool) -> tuple[Section, ...]:
     """The answers, what else a report states, the optional rows, and the checks.
 
     Args:
-        turning: give the rows of a turning vehicle too.
+        more: give the rows of a turning vehicle, and those that readings are held against, too.
     """
-    optional = (duration_section(8), *((turn_section(9),) if turning else ()))
+    optional = (duration_section(8), *((turn_section(9), recorder_section(10)) if more else ()))
     return (
         Section("6  Answers (the forecasts)", for_both(ANSWERS)),
         Section("7  Direction of force, yaw, energy", for_both(FORCE + ROTATION + _NORMAL)),

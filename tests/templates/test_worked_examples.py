@@ -51,6 +51,13 @@ EXAMPLES = [
     # 5000 lb at 90 ft/s into an equal car that stands, plastic: 45 ft/s together. Either speed may be the known one.
     ("collinear", STANDING | {"V1_before": 90 * MPH}, {"V1_f": 45, "V2_f": 45, "dV_1": 45, "V1_mph": 61.3636}, 5e-5),
     ("collinear", STANDING | {"known": 2, "V2_after": 45 * MPH}, {"V1_i": 90, "dV_1": 45}, 1e-9),
+    # 5000 lb at 90 ft/s into an equal car, e = 0.5: 22.5 and 67.5 ft/s after; from those, the speeds before.
+    (
+        "collinear",
+        STANDING | {"known": 3, "e": 0.5, "V1_after": 22.5 * MPH, "V2_after": 67.5 * MPH},
+        {"V1_i": 90, "V2_i": 0, "V1_f": 22.5, "V2_f": 67.5, "dV_1": 67.5},
+        1e-9,
+    ),
     # 5000 lb at 20 against 2500 lb at 40, head-on, plastic: both stop.
     (
         "collinear",
@@ -62,6 +69,8 @@ EXAMPLES = [
     ("crush-energy", CRUSH, {"balance_2": 25.138}, 5e-4),
     ("crush-energy", CRUSH, {"E_1": 70_178, "E_2": 107_743}, 1.5),
     ("crush-energy", CRUSH, {"ratio": 1}, 1e-5),
+    # EBS of 3217.4 lb whose crush took 70,178 ft·lb.
+    ("crush-energy", CRUSH | {"w_1": 3217.4, "g": 32.174}, {"EBS1_mph": (2 * 70_178 / 100) ** 0.5 * MPH}, 1e-3),
     # Crush of 0 to 24 in: F from A to A + 24 B; E = L (F0² + F0 F1 + F1²)/(6 B).
     (
         "crush-energy",

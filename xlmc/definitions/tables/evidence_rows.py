@@ -23,6 +23,8 @@ from xlmc.workbook.workbook import Workbook
 
 __all__ = ["as_filter", "check_sizes", "read_evidence"]
 
+_MOST_NAMED: Final = 4
+"""Rows that one notice names."""
 _KNOWN: Final = ("Name", "Value", "Cell", "Reading", "Error", *SIZES.values(), "±", "Source", "Use")
 
 _TAKES: Final[Mapping[str, tuple[tuple[str, ...], ...]]] = {
@@ -78,8 +80,10 @@ def read_evidence(
             findings.problem(message, row.cell("Name"), "Give each its own name; state each fact once")
         found.append(each)
     for why, where in {each.unused: each.row for each in reversed(found) if not each.used}.items():
-        named = ", ".join(repr(each.name) for each in found if each.unused == why)
-        findings.notice(f"Evidence that is not used, because {why.replace('it has', 'there is')}: {named}", where)
+        names = [repr(each.name) for each in found if each.unused == why]
+        named = ", ".join(names[:_MOST_NAMED])
+        more = f" and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
+        findings.notice(f"Evidence that is not used, because {why.replace('it has', 'there is')}: {named}{more}", where)
     return tuple(found)
 
 

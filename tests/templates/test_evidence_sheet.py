@@ -1,0 +1,82 @@
+"""Sheet Evidence: rows that wait for a reading, and what one does."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import openpyxl
+import pytest
+from committed_books import BOOKS
+
+import xlmc
+
+HEADERS = "Name Cell Units Reading Error/Plus or minus/Std dev/Percent/Resolution/Use/Source"
+
+
+def with_readings(path, target, readings, inputs=()):
+    """A copy with readings, by the names of their rows, and other values of inputs, by symbol."""
+    book = openpyxl.load_workbook(path)
+    sheet = book["Evidence"]
+    rows = {sheet.cell(row, 1).value: row for row in range(6, sheet.max_row + 1)}
+    for name, cells in readings.items():
+        [row] = [row for label, row in rows.items() if label is not None and name in label]
+        for column, value in cells.items():
+            sheet.cell(row, column).value = value
+    for symbol, value in dict(inputs).items():
+        [(at, place)] = book.defined_names[symbol].destinations
+        book[at][place].value = value
+    book.save(target)
+    return xlmc.load(target)
+
+
+def test_rows_are_as_described_and_off(described, subtests):
+    found = [name for name in BOOKS if described[name].evidence]
+    assert len(found) == 16
+    for name in found:
+        with subtests.test(name):
+            book = openpyxl.load_workbook(BOOKS[name])
+            sheet, template = book["Evidence"], described[name]
+            header, *rows = sheet[sheet.tables["xlmc_evidence"].ref]
+            assert "/".join(cell.value for cell in header).replace("/", " ", 4) == HEADERS
+            for row, reading in zip(rows, template.evidence, strict=True):
+                [(at, place)] = book.defined_names[reading.symbol].destinations
+                assert row[1].value == f"={at}!{place.replace('$', '')}"
+                assert row[3].value == reading.reading
+                assert row[10].value
+            model = xlmc.load(BOOKS[name])
+            assert [each.used for each in model.definitions.evidence] == [False] * len(template.evidence)
+
+
+CASES = [
+    # Template, row, its cells (4 reading, 6 to 9 how far off), the forecast that moves, how
+    ("planar-impact", '" EDR delta-V, forward"', {4: -12}, "Vehicle 1 delta-V", lambda x: 0.9 * x.min() <= 12.31),
+    ("momentum", '" EDR delta-V, forward"', {4: -12}, "Vehicle 1 delta-V", lambda x: x.min() > 0),
+    ("airborne", "gouge", {4: -20, 6: 1}, "Direction of flight at landing", lambda x: np.abs(x + 20).max() <= 1),
+    ("edr-speed", "Skid marks", {4: 95, 6: 2}, "Vehicle way from brake on to the impact", lambda x: np.ptp(x) <= 4),
+    ("pedestrian", "Throw and marks", {4: 0, 7: 1}, "Vehicle impact speed, from the throw", lambda x: x.std() < 1.5),
+]
+
+
+@pytest.mark.parametrize(("template", "row", "cells", "forecast", "holds"), CASES)
+def test_a_reading_keeps_what_agrees_with_it(template, row, cells, forecast, holds, tmp_path):
+    name = row if not row.startswith('"') else f"=vehicle_1&{row}"
+    model = with_readings(BOOKS[template], tmp_path / "read.xlsx", {name: cells})
+    with_it, without = model.simulate(20_000), xlmc.load(BOOKS[template]).simulate(20_000)
+    assert 0 < with_it.accepted < without.accepted
+    assert holds(with_it[forecast].values)
+
+
+def test_a_recorder_away_from_the_cg_reads_the_turning_too(cells):
+    """The velocity of a point is that of the CG and the rate of turning times its lever arm."""
+    given = {"xs_1": 30, "ys_1": -24}
+    wanted = ["edr1_long", "edr1_left", "dV1_long", "dV1_left", "d_omega_1", "spin_1", "omega1_f", "m_1"]
+    found = {symbol: value.item() for symbol, value in cells("planar-impact", given, wanted).items()}
+    to_mph = 3600 / 5280
+    assert found["edr1_long"] == pytest.approx(found["dV1_long"] + found["d_omega_1"] * 24 / 12 * to_mph, rel=1e-12)
+    assert found["edr1_left"] == pytest.approx(found["dV1_left"] + found["d_omega_1"] * 30 / 12 * to_mph, rel=1e-12)
+    assert math.isnan(found["spin_1"])
+    turned = {"phi_1": -40, "mu_R_1": 0.35, "R_1": 11, "I_1": 4960, "g": 32.174}
+    spin = {symbol: value.item() for symbol, value in cells("planar-impact", turned, wanted).items()}
+    work = 0.35 * spin["m_1"] * 32.174 * 11 * math.radians(40)
+    assert spin["spin_1"] == pytest.approx(4960 * spin["omega1_f"] ** 2 / work, rel=1e-12)

@@ -1,4 +1,4 @@
-"""A vehicle skids over up to three surfaces: its speed at the beginning of the marks."""
+"""A vehicle skids over up to three surfaces, yaws, trips and rolls: its speed at the beginning, or at the end."""
 
 from __future__ import annotations
 
@@ -24,6 +24,20 @@ __all__ = ["TEMPLATE"]
 
 _SURFACES = (1, 2, 3)
 _FRICTION = "Example, dry asphalt: uniform .70 to .85, tails to .60 and .95 (SAE 2001-01-3347, Figure 4 and Table 1)"
+_LATER = (
+    ("yaw", "Yaw", 0.75, (0.60, 0.95), "Tyres that slide sideways: as for braking. Held at length 0 until used"),
+    ("trip", "Trip", 0.75, (0.60, 0.95), "Placeholder, not a published value. Held at length 0 until used"),
+    (
+        "roll",
+        "Roll",
+        0.50,
+        (0.38, 0.60),
+        "Dolly tests on soil: .52 and .53 over the whole roll (Rose, Rollover Accident Reconstruction); within one "
+        "roll from .6 to .2 (SAE 2009-01-0093). Held at length 0 until used",
+    ),
+)
+"""Phases after the skid: symbol, name, deceleration, its range, source."""
+_PHASES = (*map(str, _SURFACES), *(symbol for symbol, *_ in _LATER))
 _FURTHER = "Example, held: set Frozen to FALSE, and a length, where the skid goes on over another surface"
 
 
@@ -58,8 +72,36 @@ def _surface(number: int) -> tuple[Input, Input]:
     )
 
 
+def _later(symbol: str, name: str, base: float, ends: tuple[float, float], source: str) -> tuple[Input, Input]:
+    return (
+        Input(
+            f"f_{symbol}",
+            f"f{symbol}",
+            f"{name}: deceleration",
+            "g",
+            base,
+            source,
+            {"Low": ends[0], "High": ends[1]},
+            number_format="0.000",
+            frozen=True,
+        ),
+        Input(
+            f"d_{symbol}",
+            f"d{symbol}",
+            f"{name}: length",
+            "[ft|m]",
+            0,
+            "Held at 0. Enter the length surveyed, and set both Frozen to FALSE",
+            {"Low": 0, "High": Both(10, 3)},
+            number_format="0.0",
+            frozen=True,
+        ),
+    )
+
+
 _ASSUMPTIONS = (
     *(given for number in _SURFACES for given in _surface(number)),
+    *(given for phase in _LATER for given in _later(*phase)),
     Input(
         "v_end",
         "vend",
@@ -68,6 +110,17 @@ _ASSUMPTIONS = (
         0,
         "Example, held at 0: the vehicle slid to rest. Enter the impact speed where the skid ended in an impact",
         {"Low": 0, "High": Both(5, 8)},
+        number_format="0.0",
+        frozen=True,
+    ),
+    Input(
+        "v_begin",
+        "vbegin",
+        "Speed at the beginning of the skid (used where known = 2)",
+        "[mph|km/h]",
+        Both(55, 90),
+        "Example, held. Enter: event data recorder, video; set Frozen to FALSE",
+        {"Low": Both(53, 86), "High": Both(57, 94)},
         number_format="0.0",
         frozen=True,
     ),
@@ -85,6 +138,16 @@ _ASSUMPTIONS = (
 )
 
 _CONSTANTS = (
+    Input(
+        "known",
+        "",
+        "Known speed: 1 = at the end of the skid, 2 = at its beginning",
+        "",
+        1,
+        "1: how fast was it at the first mark? 2: how fast was it still at the end, where it struck something?",
+        number_format="0",
+        choices=(1, 2),
+    ),
     Input(
         "grade",
         "G",
@@ -107,6 +170,19 @@ _CONSTANTS = (
     *CONVERSIONS,
 )
 
+_OPTIONAL = (
+    Input(
+        "t_rise",
+        "trise",
+        "Air brakes: time until they are fully on",
+        "s",
+        None,
+        "Optional. 0.45 s fits 49 CFR 571.121 (2011): [60 mph in 250 ft, 20 mph in 32 ft|97 km/h in 76 m, 32 km/h in 10 m]. "
+        "With it, the length is counted from the application of the brakes",
+        number_format="0.00",
+    ),
+)
+
 
 def _steps() -> tuple[Equation, ...]:
     slope = Equation("theta", "θ", "Slope", "rad", "ATAN(grade/100)", "definition")
@@ -122,21 +198,70 @@ def _steps() -> tuple[Equation, ...]:
         )
         for i in _SURFACES
     )
-    end = Equation("v_end_s", "vend", "Speed at the end", "[ft|m]/s", f"v_end/({MPH})", "input")
+    later = (
+        Equation(
+            f"drag_{symbol}",
+            f"a{symbol}",
+            f"{name}: deceleration along the road",
+            "g",
+            f"f_{symbol}*COS(theta)+SIN(theta)",
+            "f·cos θ ± sin θ",
+        )
+        for symbol, name, *_ in _LATER
+    )
+    begin = Equation(
+        "v_begin_s", "vbegin", "Speed at the beginning, where known", "[ft|m]/s", f"v_begin/({MPH})", "input"
+    )
+    left = Equation(
+        "left_2",
+        "vbegin² − 2·W",
+        "Square of the speed left at the end, where the beginning is known",
+        "[ft|m]²/s²",
+        "IF(known=2,v_begin_s^2-2*work,0)",
+        "energy",
+        "Below 0 it would have stopped before the end.",
+        number_format="0.00",
+    )
+    end = Equation(
+        "v_end_s",
+        "vend",
+        "Speed at the end",
+        "[ft|m]/s",
+        f"IF(known=2,SQRT(MAX(left_2,0)),v_end/({MPH}))",
+        "input, or √(vbegin² − 2·W)",
+    )
     work = Equation(
         "work",
         "W",
         "Work of friction and slope, per unit mass",
         "[ft|m]²/s²",
-        f"g*({'+'.join(f'drag_{i}*d_{i}' for i in _SURFACES)})",
+        f"g*({'+'.join(f'drag_{i}*d_{i}' for i in _PHASES)})",
         "Σ g·a·d",
         number_format="0.00",
     )
-    speed = Equation("v_start", "v", "Speed at the beginning", "[ft|m]/s", "SQRT(2*work+v_end_s^2)", "√(2·W + vend²)")
-    return (slope, *drags, end, work, speed)
+    speed = Equation(
+        "v_start",
+        "v",
+        "Speed at the beginning",
+        "[ft|m]/s",
+        "IF(known=2,v_begin_s,SQRT(2*work+v_end_s^2))",
+        "√(2·W + vend²)",
+    )
+    return (slope, *drags, *later, work, begin, left, end, speed)
 
 
 _ANSWERS = (
+    Equation(
+        "vend_[mph|kmh]",
+        "vend",
+        "Speed at the end of the skid",
+        "[mph|km/h]",
+        f"v_end_s*{MPH}",
+        "conversion",
+        "The impact speed, where the skid ended in an impact.",
+        Role.ANSWER,
+        "0.00",
+    ),
     Equation(
         "v_[mph|kmh]",
         "v",
@@ -164,7 +289,7 @@ _ANSWERS = (
         "d",
         "Distance from perception to the end of the skid",
         "[ft|m]",
-        "d_reaction+d_1+d_2+d_3",
+        "d_reaction+d_skid",
         "definition",
         "",
         Role.ANSWER,
@@ -173,7 +298,15 @@ _ANSWERS = (
 )
 
 _TIMES = (
-    Equation("d_skid", "Σd", "Length of the whole skid", "[ft|m]", "d_1+d_2+d_3", "definition", number_format="0.0"),
+    Equation(
+        "d_skid",
+        "Σd",
+        "Length of the whole skid",
+        "[ft|m]",
+        "+".join(f"d_{i}" for i in _PHASES),
+        "definition",
+        number_format="0.0",
+    ),
     Equation(
         "drag_mean",
         "ā",
@@ -184,27 +317,48 @@ _TIMES = (
         number_format="0.000",
     ),
 )
+_AIR_BRAKES = (
+    Equation(
+        "way_air",
+        "Q",
+        "Stopping distance, with what the rise of the brakes hides",
+        "[ft|m]",
+        'IF(N(t_rise)>0,d_skid+drag_mean*g*t_rise^2/24,"–")',
+        "S + a·trise²/24",
+        number_format="0.00",
+    ),
+    Equation(
+        "v_air_[mph|kmh]",
+        "vair",
+        "Speed when the brakes were applied, stopped by air brakes",
+        "[mph|km/h]",
+        f'IF(N(t_rise)>0,2*way_air/(t_rise/2+SQRT(t_rise^2/4+2*way_air/(drag_mean*g)))*{MPH},"–")',
+        "S = V·trise/2 + V²/(2·a) − a·trise²/24",
+        "To rest; the brakes rise evenly until fully on. A dash until the time is entered on sheet Inputs.",
+        number_format="0.00",
+    ),
+)
 
 _CHECKS = checks_section(
-    4,
+    5,
     check(
         "check_slowing",
         "The vehicle slows on every surface",
-        "MIN(drag_1,drag_2,drag_3)>0",
+        "MIN(" + ",".join(f"drag_{i}" for i in _PHASES) + ")>0",
         "physics",
         "FALSE: the slope pulls more than friction holds. Look at the grade's sign and at the friction.",
     ),
     check(
         "check_lengths",
         "No length is negative, and one is not zero",
-        "AND(MIN(d_1,d_2,d_3)>=0,d_skid>0)",
+        "AND(MIN(" + ",".join(f"d_{i}" for i in _PHASES) + ")>=0,d_skid>0)",
         "geometry",
         "FALSE: a skid needs a length.",
     ),
     check(
         "check_friction",
         "Frictions are those of road tyres, up to 1.2",
-        "AND(MIN(f_1,f_2,f_3)>0,MAX(f_1,f_2,f_3)<=1.2,braking>0,braking<=1)",
+        "AND(MIN({0})>0,MAX({0})<=1.2,braking>0,braking<=1)".format(",".join(f"f_{i}" for i in _PHASES)),
         "published values",
         "FALSE: more than road tyres give; the published range ends at 0.95. A percentage entered as a number?",
     ),
@@ -222,12 +376,13 @@ _LEFT = tuple(f"{(8 - step) ** 2}/64" for step in range(9))
 """Of a surface, still to be slid; points closer together toward its end, where the speed changes fastest."""
 
 
-def _point(surface: int, left: str) -> tuple[str, str]:
+def _point(phase: str, left: str) -> tuple[str, str]:
     """Distance slid, and speed: v² is what remains to be taken away, counted back from the end."""
-    before = "+".join(f"d_{k}" for k in _SURFACES if k < surface) or "0"
-    after = "".join(f"+drag_{k}*d_{k}" for k in _SURFACES if k > surface)
-    work = f"{left}*drag_{surface}*d_{surface}{after}"
-    return f"{before}+(1-{left})*d_{surface}", f"SQRT(MAX(v_end_s^2+2*g*({work}),0))*{MPH}"
+    at = _PHASES.index(phase)
+    before = "+".join(f"d_{k}" for k in _PHASES[:at]) or "0"
+    after = "".join(f"+drag_{k}*d_{k}" for k in _PHASES[at + 1 :])
+    work = f"{left}*drag_{phase}*d_{phase}{after}"
+    return f"{before}+(1-{left})*d_{phase}", f"SQRT(MAX(v_end_s^2+2*g*({work}),0))*{MPH}"
 
 
 _DIAGRAM = Diagram(
@@ -235,10 +390,10 @@ _DIAGRAM = Diagram(
     "Distance from the beginning of the marks, [ft|m]",
     "Speed, [mph|km/h]",
     (
-        Curve("Speed", Look.FIRST, tuple(_point(i, left) for i in _SURFACES for left in _LEFT)),
-        Curve("End of a surface", Look.POINT, tuple(_point(i, "0") for i in _SURFACES)),
+        Curve("Speed", Look.FIRST, tuple(_point(phase, left) for phase in _PHASES for left in _LEFT)),
+        Curve("End of a phase", Look.POINT, tuple(_point(phase, "0") for phase in _PHASES)),
     ),
-    remark="Drawn from the cells below. v² falls in proportion to the distance on each surface.",
+    remark="Drawn from the cells below. v² falls in proportion to the distance in each phase.",
 )
 
 _GUIDE = (
@@ -255,6 +410,12 @@ _GUIDE = (
             "friction, to rest or to a known speed. It answers the speed at the first mark.",
             "Where the skid ended in an impact, take the speed at its end from an impact model, such as momentum, and "
             "enter it: speeds combine as √(v² + vend²), they do not add.",
+            "Where the speed at the first mark is known instead (an EDR, a video), set Known speed to 2: the answer is "
+            "then the speed at the end, such as the impact speed.",
+            "Phases after the skid: yaw (tyres slide sideways), trip, roll. Enter their lengths; each takes its own "
+            "deceleration. A motorcycle: braking as surface 1, sliding on its side as surface 2.",
+            "Air brakes need time to rise. With that time entered, sheet Model also gives the speed of a vehicle that "
+            "stopped in the whole length, counted from the application of the brakes, not from the first mark.",
             "Not for a rolling vehicle, for one that spins (use critical-speed-yaw where it left curved yaw marks), "
             "nor where only some wheels brake unless their share is entered.",
             "Next rungs: collinear, momentum and planar-impact take run-out to rest, computed as here, as the speed "
@@ -271,7 +432,16 @@ _GUIDE = (
             ("Travelled asphalt, above 30 mph", ".55 to .70"),
             ("Case study of SAE 2001-01-3347, dry asphalt", ".60 to .95"),
             ("Shape of the paper's Figure 4", "uniform .70 to .85, straight tails to the extremes of the literature"),
-            ("Motorcycle sliding on its side", ".45 to .58; with a fairing about .26"),
+            ("Motorcycle on its side, [25 mph|40 km/h] (Day and Smith, 1984)", ".45 to .58"),
+            ("Motorcycle on its side, fairing (Raftery, 1995)", ".26; without fairing .33"),
+            ("Riders braking in an emergency", "half used at most 56 % of the possible deceleration (Ecker, 2001)"),
+            ("Tyres locked, dry (TRL PPR496)", ".7 to .9"),
+            ("Rolling over, soil, whole roll (Rose)", ".52 and .53"),
+            (
+                "Heavy tractor, 49 CFR 571.121 (2011)",
+                "[from 60 mph: loaded 250 ft, light 235 ft; from 20 mph: 32 and 30 ft|from 97 km/h: loaded 76 m, light 72 m; "
+                "from 32 km/h: 9.8 and 9.1 m]",
+            ),
         ),
     ),
     CAVEATS,
@@ -279,25 +449,30 @@ _GUIDE = (
 
 TEMPLATE = Template(
     title="Speed from skid marks",
-    subtitle="Friction and slope over up to three surfaces: v = √(2 g Σ a d + vend²)",
+    subtitle="Friction and slope over surfaces and phases: v = √(2 g Σ a d + vend²)",
     rung=1,
     question="How fast was a skidding vehicle, and where was danger perceived?",
     needs="length and friction of each surface, grade",
     assumptions=_ASSUMPTIONS,
     constants=_CONSTANTS,
-    optional=(),
+    optional=_OPTIONAL,
     sections=(
         Section("1  Speed from the work of friction", _steps()),
         Section("2  Answers (the forecasts)", _ANSWERS),
         Section("3  The whole skid", _TIMES),
+        Section("4  Optional: air brakes", _AIR_BRAKES),
         _CHECKS,
     ),
     forecasts=(
         ForecastRow("Speed at the beginning of the skid", "v_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("Speed at the end of the skid", "vend_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("Distance while responding", "d_reaction", "[ft|m]"),
         ForecastRow("Distance from perception", "d_total", "[ft|m]"),
     ),
     filters=(
+        FilterRow(
+            "Reaches the end", "left_2", "Where the beginning is known: it did not stop before the end", at_least=0
+        ),
         FilterRow("Mean deceleration", "drag_mean", "The skid slowed the vehicle; it did not speed it up", above=0),
     ),
     settings=(("Trials", 200_000), ("Seed", 999)),

@@ -10,6 +10,7 @@ SAME_WAY = {"beta_1": 180, "beta_2": 180, "s_1": 9, "s_2": 36, "EES_1": 1, "EES_
 # Template, the check that must fail, the inputs that make it (the others as in the empty template).
 CASES = [
     ("skid", "check_slowing", {"grade": -10, "f_2": 0.05}),
+    ("skid", "check_slowing", {"grade": -60, "f_1": 1.1, "f_2": 1.1, "f_3": 1.1}),
     ("skid", "check_lengths", {"d_2": -5}),
     ("skid", "check_friction", {"f_1": 7.5}),
     ("skid", "check_friction", {"braking": 1.5}),

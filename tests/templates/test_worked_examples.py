@@ -34,6 +34,25 @@ EXAMPLES = [
     ("skid", SKID, {"v_mph": 47.366}, 5e-4),
     # Speeds combine as the root of the sum of their squares: 47.366 and 30.
     ("skid", SKID | {"v_end": 30}, {"v_mph": (47.366**2 + 30**2) ** 0.5}, 1e-3),
+    # And back: 100 ft at 0.75 g take 47.366 mph² from 60 mph².
+    ("skid", SKID | {"known": 2, "v_begin": 60}, {"vend_mph": (60**2 - 47.366**2) ** 0.5, "v_mph": 60}, 1e-3),
+    # Motorcycle on its side: 43.2 mph in 120 ft, 42.9 in 115 ft (.5199 and .5350 g); 45 mph at .52 g in 130.18 ft.
+    ("skid", SKID | {"f_1": 0.5199, "d_1": 120}, {"v_mph": 43.2}, 5e-3),
+    ("skid", SKID | {"f_1": 0.5350, "d_1": 115}, {"v_mph": 42.9}, 5e-3),
+    ("skid", SKID | {"f_1": 0.52, "d_1": 130.18}, {"v_mph": 45}, 5e-3),
+    # A phase is a surface of its own.
+    ("skid", SKID | {"d_1": 40, "f_roll": 0.5, "d_roll": 60}, {"v_mph": (2 * 32.174 * 60) ** 0.5 * MPH}, 1e-9),
+    # Air brakes, 0.45 s: 60 mph in 250 ft is 16.8098 ft/s², in 235 ft 17.9799; then 20 mph takes 32.05 and 30.38 ft.
+    *(
+        (
+            "skid",
+            SKID | {"t_rise": 0.45, "f_1": a / 32.174, "d_1": d},
+            {"v_air_mph": v},
+            2e-3,
+        )
+        for a, d, v in ((16.8098, 250, 60), (17.9799, 235, 60), (16.8098, 32.05, 20), (17.9799, 30.38, 20))
+    ),
+    ("skid", SKID | {"t_rise": 0.45, "f_1": 0.55, "d_1": 150}, {"v_air_mph": 47.0620}, 5e-5),
     # Two surfaces of half the length are one of the whole.
     ("skid", SKID | {"d_1": 60, "f_2": 0.75, "d_2": 40}, {"v_mph": 47.366}, 5e-4),
     # 10 % downhill: f cos θ − sin θ = (0.75 − 0.10)/√1.01.

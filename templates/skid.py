@@ -177,7 +177,8 @@ _OPTIONAL = (
         "Air brakes: time until they are fully on",
         "s",
         None,
-        "Optional. 0.45 s fits 49 CFR 571.121 (2011): [60 mph in 250 ft, 20 mph in 32 ft|97 km/h in 76 m, 32 km/h in 10 m]. "
+        "Optional. 0.45 s fits 49 CFR 571.121 (2011): "
+        "[60 mph in 250 ft, 20 mph in 32 ft|97 km/h in 76 m, 32 km/h in 10 m]. "
         "With it, the length is counted from the application of the brakes",
         number_format="0.00",
     ),
@@ -439,8 +440,8 @@ _GUIDE = (
             ("Rolling over, soil, whole roll (Rose)", ".52 and .53"),
             (
                 "Heavy tractor, 49 CFR 571.121 (2011)",
-                "[from 60 mph: loaded 250 ft, light 235 ft; from 20 mph: 32 and 30 ft|from 97 km/h: loaded 76 m, light 72 m; "
-                "from 32 km/h: 9.8 and 9.1 m]",
+                "[from 60 mph: loaded 250 ft, light 235 ft; from 20 mph: 32 and 30 ft|"
+                "from 97 km/h: loaded 76 m, light 72 m; from 32 km/h: 9.8 and 9.1 m]",
             ),
         ),
     ),

@@ -242,6 +242,7 @@ def test_a_draw_in_a_cell(tmp_path, subtests):
         ([Held(FRICTION, 0.7), Range(FRICTION, 0.6, 0.7)], f"{FRICTION!r} is frozen"),
         ([Band(FRICTION, 10, 10)], "a band from P10 to P10 holds nothing"),
         ([Typed(parse_address("Input!D28"), 1.0)], "the workbook has no sheet 'Input'"),
+        ([Typed(parse_address("'Results wanted'!B41"), 1.0)], "is a cell of the table xlmc_settings"),
         ([Limits(TANGENT, {"at_least": None, "at_most": None})], "has no limit, and its cell is"),
     ],
 )

@@ -177,6 +177,12 @@ def test_a_file_that_is_there_is_not_replaced(small):
     assert copy.read_bytes() == small.path.read_bytes()
 
 
+def test_a_scenario_asks_for_the_same_forecasts(case):
+    other_name = Scenario("x", (Typed(parse_address("'Results wanted'!A6"), "Other"),))
+    with pytest.raises(DefinitionError, match="In the scenario 'x': other forecasts would be asked for"):
+        case.scenario(other_name)
+
+
 def test_the_run_of_a_scenario_is_not_saved_as_a_run_of_the_file(small, tmp_path):
     run = small.scenario(rate(5.0)).simulate(200)
     with pytest.raises(SimulationError, match="no file holds the workbook of this run"):

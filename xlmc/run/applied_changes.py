@@ -20,6 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -39,6 +40,10 @@ from xlmc.workbook.lazy_sheets import with_values
 from xlmc.workbook.workbook import CellValue
 
 __all__ = ["applied", "changed_cells", "edits"]
+
+
+_OF_ALL: Final = ("xlmc_settings", "xlmc_scenarios", "xlmc_case")
+"""Tables that a scenario cannot change."""
 
 
 def applied(model: Model, changes: Iterable[Change]) -> Model:
@@ -125,7 +130,11 @@ def changed_cells(model: Model, definitions: Definitions) -> tuple[dict[Cell, Ce
 
 
 def _refuse_cell(model: Model, change: Typed) -> None:
-    """Refuse a cell of a sheet that is not there."""
+    """Refuse a cell of a sheet that is not there, and of the tables that say how all states are run."""
+    for table in model.workbook.tables:
+        if table.name.casefold().startswith(_OF_ALL) and change.cell in table.area:
+            message = f"{change.cell} is a cell of the table {table.name}, which holds for all scenarios alike"
+            raise DefinitionError(message, where=change.where, hint="change something else, or run the workbook twice")
     if change.cell.sheet not in model.workbook.sheets:
         message = f"the workbook has no sheet {change.cell.sheet!r}"
         raise DefinitionError(message, where=change.where, hint=did_you_mean(change.cell.sheet, model.workbook.sheets))

@@ -132,6 +132,8 @@ def with_base_parameters(workbook: Workbook, definitions: Definitions) -> Defini
         return definitions
     changed = {cell: _Own(resolver, definitions, assumption).found(graph) for cell, assumption in rows.items()}
     numbers = {cell: found for cell, found in changed.items() if found}
+    if not numbers:
+        return definitions
     notices = (_notice(rows[cell], found) for cell, found in numbers.items())
     changed_ones = tuple(_with_numbers(a, numbers.get(a.cell, {})) for a in assumptions)
     return replace(definitions, assumptions=changed_ones, notices=(*definitions.notices, *notices))

@@ -133,7 +133,11 @@ def model_of(model: Model, scenario: Scenario | str) -> Model:
     """
     scenario = scenario_named(model, scenario)
     try:
-        return applied(model, scenario.changes)
+        found = applied(model, scenario.changes)
+        if [each.name for each in found.forecasts] != [each.name for each in model.forecasts]:
+            hint = "a scenario asks for the same forecasts as the workbook: change something else"
+            raise DefinitionError("other forecasts would be asked for", hint=hint)
+        return found
     except XlmcError as error:
         message = f"In the scenario {scenario.name!r}: {error.message}"
         where = scenario.row if error.where is None else error.where

@@ -21,6 +21,7 @@ import click
 
 from xlmc.cli.check import check
 from xlmc.cli.compare import compare
+from xlmc.cli.convert import convert
 from xlmc.cli.fit import fit
 from xlmc.cli.methods import methods
 from xlmc.cli.mistakes import did_you_mean, mistake
@@ -100,6 +101,7 @@ def xlmc(context: click.Context, no_kept_code: bool) -> None:
 for _command in (
     new,
     check,
+    convert,
     fit,
     verify,
     simulate,

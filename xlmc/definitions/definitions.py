@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
-from xlmc.address import Area, Cell
+from xlmc.address import Area, Cell, InFormula
 from xlmc.definitions.evidence import Evidence
 from xlmc.definitions.scenarios import Scenario
 from xlmc.definitions.stopping import NO_GOAL, Stopping
@@ -87,6 +87,7 @@ class Assumption:
         notes: the table's other columns, echoed in the record.
         own_family: built for this row; None where `FAMILIES` has it, or where a cell of the data awaits calculation.
         data: what the distribution is built from; None for one that has parameters alone.
+        call: the call of a formula that a row of a table stands for; None elsewhere.
         checked: how it is drawn by the numbers that the row held as it was read, which are a distribution; None where
             one was not known then. A run checks all numbers that are not these, whoever gives them.
     """
@@ -105,6 +106,7 @@ class Assumption:
     notes: Mapping[str, str] = field(default_factory=dict)
     own_family: Family | None = None
     data: DataRange | None = None
+    call: InFormula | None = None
     checked: Draw | None = field(default=None, compare=False, repr=False)
 
     @property
@@ -249,7 +251,8 @@ class Definitions:
     a cell cannot be computed; `results` are the cells that show results of the run, and `unavailable` are those that
     should, or belong to a what-if table of the run, and cannot be computed, each with the reason. `evidence` are the
     rows of `xlmc_evidence`; those that are used are also among `filters`. `refused` says why forecasts that the
-    workbook asks for cannot be computed, and what else was lost, while the others can be run. `forecast_filters` are
+    workbook asks for cannot be computed, and what else was lost, while the others can be run; `left_out`
+    are these forecasts and what filters of theirs. `forecast_filters` are
     filters of some forecasts only, which are not among `filters`.
     """
 
@@ -269,3 +272,4 @@ class Definitions:
     refused: tuple[DefinitionError, ...] = ()
     forecast_filters: tuple[Filter, ...] = ()
     scenarios: tuple[Scenario, ...] = ()
+    left_out: tuple[Forecast | Filter, ...] = ()

@@ -10,7 +10,7 @@ from xlmc.address import Cell
 from xlmc.definitions.computed import Computed
 from xlmc.definitions.crystal_ball.dialogs import FromDialogs, read_dialogs
 from xlmc.definitions.crystal_ball.lost_data import remark_on_lost_data
-from xlmc.definitions.crystal_ball.refused import refusals
+from xlmc.definitions.crystal_ball.refused import refusals, refused_rows
 from xlmc.definitions.definitions import (
     Assumption,
     Correlation,
@@ -31,7 +31,7 @@ from xlmc.definitions.tables.forecasts import read_forecasts
 from xlmc.definitions.tables.identity import Claims
 from xlmc.definitions.tables.scenario_rows import read_scenarios
 from xlmc.definitions.tables.settings import read_settings
-from xlmc.definitions.tables.table_rows import DefinitionTable, definition_tables, holds_rows
+from xlmc.definitions.tables.table_rows import CONVERTED, DefinitionTable, definition_tables, holds_rows
 from xlmc.definitions.unavailable import (
     TABLE_REASON,
     TablesOfRun,
@@ -70,8 +70,14 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
     evidence = read_evidence(workbook, tables["xlmc_evidence"], computed, filters, findings)
     filters = *filters, *(as_filter(each) for each in evidence if each.used)
     checks = read_checks(workbook, tables["xlmc_checks"], computed, Claims("check"), findings)
-    dialogs = read_dialogs(workbook, computed, central, uncertain, answers, findings)
-    calls = read_in_cells(workbook, computed, settings.lognorm or "@RISK", uncertain, findings)
+    if tables[CONVERTED]:
+        refused_cells = refused_rows(workbook, tables[CONVERTED], uncertain.cells, findings)
+        dialogs = FromDialogs(rewritten={**refused_cells}, stored=True)
+    else:
+        dialogs = read_dialogs(workbook, computed, central, uncertain, answers, findings)
+    rows = _rows_for_calls(assumptions, findings)
+    calls = read_in_cells(workbook, computed, settings.lognorm or "@RISK", uncertain, findings, rows)
+    _refuse_lost_calls(assumptions, calls.taken, findings)
     if not dialogs.stored:
         remark_on_lost_data(workbook, bool(calls or any(tables.values())), findings)
     if not (dialogs or calls or any(tables.values())):
@@ -96,8 +102,9 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
     unavailable = {**calls.unavailable, **dict.fromkeys(faults_of(workbook, what_if.stale), TABLE_REASON)}
     remark_on_unavailable(calls.unavailable, findings)
     rewritten = {**dialogs.rewritten, **calls.rewritten, **faults_of(workbook, what_if.varying)}
+    asked = forecasts
     forecasts, refused = _without_refused(workbook, dialogs, rewritten, assumptions, forecasts, filters, own, findings)
-    own = _of_forecasts(own, forecasts)
+    own, left_out = _parted(own, asked, forecasts)
     if not (calls.assumptions or dialogs.assumptions):
         _refuse_no_assumption(workbook, calls, tables["xlmc_assumptions"], findings)
     if calls and not (forecasts or tables["xlmc_forecasts"] or refused):
@@ -120,8 +127,9 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
         checks=checks,
         evidence=evidence,
         refused=refused,
-        forecast_filters=tuple(each for each in own if each.only_for),
         scenarios=scenarios,
+        forecast_filters=own,
+        left_out=left_out,
     )
 
 
@@ -139,6 +147,26 @@ def _remark_on_calls(calls: InCells, settings: Settings, findings: Findings) -> 
             "those of the logarithm: for that, set Lognorm to XLRisk in the table xlmc_settings"
         )
         findings.notice(message, calls.lognorms[0])
+
+
+def _rows_for_calls(assumptions: Iterable[Assumption], findings: Findings) -> dict[Cell, Cell]:
+    """The calls that rows stand for, each with the cell that is drawn in its place."""
+    found: dict[Cell, Cell] = {}
+    for each in assumptions:
+        if each.call is None:
+            continue
+        if each.call in found:
+            message = f"two rows stand for the call {each.call}, this one and that of {found[each.call]}"
+            findings.problem(message, each.row, "Keep one of them")
+        found[each.call] = each.cell
+    return found
+
+
+def _refuse_lost_calls(assumptions: Iterable[Assumption], taken: Collection[Cell], findings: Findings) -> None:
+    for each in assumptions:
+        if each.call is not None and each.call not in taken:
+            message = f"the row {each.name!r} stands for the call {each.call}, and there is none"
+            findings.problem(message, each.row, "Correct Call in and Call, or clear both")
 
 
 def _take_pairs(taken: Sequence[Correlation], more: Iterable[Correlation], findings: Findings) -> Iterator[Correlation]:
@@ -173,10 +201,19 @@ def _by_reach(
     return tuple(everywhere), tuple(own)
 
 
-def _of_forecasts(own: Iterable[Filter], forecasts: Sequence[Forecast]) -> tuple[Filter, ...]:
-    """The filters of some forecasts only, of those that are left."""
-    left = {each.name for each in forecasts}
-    return tuple(replace(each, only_for=tuple(name for name in each.only_for if name in left)) for each in own)
+def _parted(
+    own: Iterable[Filter], every: Iterable[Forecast], left: Sequence[Forecast]
+) -> tuple[tuple[Filter, ...], tuple[Forecast | Filter, ...]]:
+    """The filters of some forecasts only, of those that can be run; the other forecasts, and filters of theirs."""
+    names = {each.name for each in left}
+    kept: list[Filter] = []
+    out: list[Forecast | Filter] = [each for each in every if each.name not in names]
+    for each in own:
+        for found, wanted in ((kept, True), (out, False)):
+            of = tuple(name for name in each.only_for if (name in names) == wanted)
+            if of:
+                found.append(replace(each, only_for=of))
+    return tuple(kept), tuple(out)
 
 
 def _without_refused(

@@ -44,7 +44,9 @@ _TYPES_OF_OUR_OWN = {
 }
 
 
-def inject(host: Mapping[str, bytes], sheets: Mapping[str, bytes], *, replace: bool = True) -> dict[str, bytes]:
+def inject(
+    host: Mapping[str, bytes], sheets: Mapping[str, bytes], *, replace: bool = True, marked: bool = True
+) -> dict[str, bytes]:
     """The parts of the user's workbook with result sheets behind its own.
 
     The same host and sheets always give the same parts, in the same order. Where the user has a sheet called
@@ -56,6 +58,7 @@ def inject(host: Mapping[str, bytes], sheets: Mapping[str, bytes], *, replace: b
             worksheets, its defined names belong to one each, and it has no dynamic array formulas and no pictures in
             cells.
         replace: take out the result sheets of earlier runs first.
+        marked: mark them as result sheets, which the next run takes out; else they are the user's own from now on.
 
     Raises:
         WorkbookError: the host is damaged, or of a kind that cannot be extended.
@@ -67,7 +70,7 @@ def inject(host: Mapping[str, bytes], sheets: Mapping[str, bytes], *, replace: b
     styles = _Styles.merged(user, built)
     carrier = _carrier(user, built, names, styles.numbers)
     rels, pointers = add_pointers(user.parts[user.role.rels], user.role.rels, _targets(user, carrier, styles))
-    added = [_new_sheet(*found, names, carrier.renames) for found in zip(built.sheets, pointers, strict=False)]
+    added = [_new_sheet(*found, names, carrier.renames, marked) for found in zip(built.sheets, pointers, strict=False)]
     carried = carrier.parts()
     changed = {
         CONTENT_TYPES: add_types(user.parts[CONTENT_TYPES], _types(carrier, carried, styles)),
@@ -143,9 +146,9 @@ def _targets(user: _User, carrier: Carrier, styles: _Styles) -> list[tuple[str, 
     return [*found, (_STYLES_POINTER, relative_target(workbook, styles.part))] if styles.new else found
 
 
-def _new_sheet(sheet: BuiltSheet, pointer: str, names: Mapping[str, str], renames: Renames) -> NewSheet:
+def _new_sheet(sheet: BuiltSheet, pointer: str, names: Mapping[str, str], renames: Renames, marked: bool) -> NewSheet:
     own = [dataclasses.replace(name, text=renames.formula(name.text)) for name in sheet.names]
-    return NewSheet(names[sheet.name], pointer, sheet.state, (*own, mark(names[sheet.name])))
+    return NewSheet(names[sheet.name], pointer, sheet.state, (*own, *([mark(names[sheet.name])] if marked else [])))
 
 
 def _types(carrier: Carrier, carried: Mapping[str, bytes], styles: _Styles) -> dict[str, str]:

@@ -375,8 +375,10 @@ class _Dialogs:
         if any({name_key(each.first), name_key(each.second)} == pair for each in self._found.correlations):
             message = f"Crystal Ball correlates {first!r} and {second!r} twice"
             raise DefinitionError(message, where=where, hint="Keep one of the two correlations")
-        if value != 0:
-            self._found.correlations.append(Correlation(first, second, value, where))
+        refers = any(reference.kind == OF_COEFFICIENTS for reference in stored.references)
+        held = where if refers and self._computed.by_formula(where) else value
+        if held != 0:
+            self._found.correlations.append(Correlation(first, second, held, where))
 
     def _end(self, sheet: str, end: tuple[str, str], known: Mapping[_Key, StoredAssumption]) -> _Key | None:
         """The assumption that is meant, if it was read; copies of a sheet have assumptions of the same GUIDs."""

@@ -5,16 +5,52 @@ A filter that needs one decides over all trials, so that then nothing can be run
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 from xlmc.address import Cell
+from xlmc.definitions.cell_references import cell_of_reference, formula_at
 from xlmc.definitions.definitions import Assumption, Filter, Forecast
+from xlmc.definitions.problems import Findings
+from xlmc.definitions.tables.fields import optional_text
+from xlmc.definitions.tables.table_rows import DefinitionTable, as_text, rows_of
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.formula import Graph, Resolver, build_graph, ir
 from xlmc.workbook.workbook import Workbook
 
-__all__ = ["Refusals", "refusals"]
+__all__ = ["REFUSED_CELL", "Refusals", "refusals", "refused_rows"]
+
+REFUSED_CELL: Final = "Refused cell"
+"""The column of the table `xlmc_converted` with the cells that could not be converted."""
+
+_WHY: Final = "Stands in"
+
+
+def refused_rows(
+    workbook: Workbook, tables: Sequence[DefinitionTable], drawn: Container[Cell], findings: Findings
+) -> dict[Cell, FormulaError]:
+    """The cells that a converted workbook still refuses, each with why.
+
+    Args:
+        workbook: that was converted.
+        tables: that the conversion wrote: its lists of what was found.
+        drawn: the cells of assumptions that tables define; a person has defined one that is among them.
+        findings: takes mistakes.
+    """
+    found: dict[Cell, FormulaError] = {}
+    for row in rows_of(workbook, tables, (), ("What", "Definition", "Stood in", "Was", _WHY, REFUSED_CELL), findings):
+        if not row.filled(REFUSED_CELL):
+            continue
+        where, content = row.cell(REFUSED_CELL), row.content(REFUSED_CELL)
+        with findings.recording():
+            text = as_text(content.value) if content.formula is None else formula_at(content.formula, where)
+            cell = cell_of_reference(workbook, text, where.sheet, where)
+            if cell not in drawn:
+                why = optional_text(row, _WHY) or "it could not be converted"
+                hint = "Define the cell in the table xlmc_assumptions; or delete the row, and it is a constant"
+                found[cell] = FormulaError(why, where=cell, hint=hint)
+    return found
 
 
 @dataclass(frozen=True, slots=True)

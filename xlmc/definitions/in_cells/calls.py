@@ -11,7 +11,7 @@ of rank correlations.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
@@ -58,6 +58,7 @@ class InCells:
         idle: property functions without an effect -> the first cell that has one.
         lognorms: the cells with `RiskLognorm`.
         simtables: the cells with `RiskSimtable` -> the values of each.
+        taken: the calls that rows of a table stand for.
     """
 
     assumptions: list[Assumption] = field(default_factory=list)
@@ -69,6 +70,7 @@ class InCells:
     idle: dict[str, Cell] = field(default_factory=dict)
     lognorms: list[Cell] = field(default_factory=list)
     simtables: dict[Cell, list[tuple[ir.Expression, ...]]] = field(default_factory=dict)
+    taken: set[Cell] = field(default_factory=set)
 
     def __bool__(self) -> bool:
         return bool(self.rewritten)
@@ -81,7 +83,14 @@ class InCells:
                 yield found
 
 
-def read_in_cells(workbook: Workbook, computed: Computed, lognorm: str, claims: Claims, findings: Findings) -> InCells:
+def read_in_cells(
+    workbook: Workbook,
+    computed: Computed,
+    lognorm: str,
+    claims: Claims,
+    findings: Findings,
+    rows: Mapping[Cell, Cell] | None = None,
+) -> InCells:
     """Every call in the formulas of a workbook.
 
     Args:
@@ -90,12 +99,13 @@ def read_in_cells(workbook: Workbook, computed: Computed, lognorm: str, claims: 
         lognorm: whose `RiskLognorm` is meant, `@RISK` or `XLRisk`.
         claims: takes the names of assumptions; those of the tables are taken.
         findings: takes remarks.
+        rows: the calls that rows of a table stand for, each with the cell that is drawn in its place.
     """
     found = InCells()
     resolver = Resolver(workbook, claims.cells)
     bases: dict[Cell, float | None] = {}
     for cell, formula in _suspects(workbook):
-        reading = CellReading(workbook, computed, lognorm, bases, cell)
+        reading = CellReading(workbook, computed, lognorm, bases, cell, rows or {})
         try:
             found.rewritten[cell] = reading.rewrite(resolver.formula(cell, formula))
             _take(reading, found, claims, findings)
@@ -114,6 +124,7 @@ def _take(reading: CellReading, found: InCells, claims: Claims, findings: Findin
     """Add what one cell says."""
     host = reading.host
     found.rewritten |= reading.trees
+    found.taken |= reading.taken
     for position in sorted(reading.draws):
         draw = reading.draws[position]
         assumption = replace(draw.assumption, name=_free_name(draw.assumption, claims, findings))

@@ -52,16 +52,23 @@ class CellReading:
         host: the cell.
         draws: by their position in the formula.
         trees: of the arguments that are expressions, by the cells that stand for them.
-        output, asked, idle, has_lognorm: see `in_cells.InCells`.
+        output, asked, idle, has_lognorm, taken: see `in_cells.InCells`.
         simtables: the values of each `RiskSimtable`.
         unavailable: why it cannot show the results that it should show; empty where it can, or should show none.
     """
 
     def __init__(
-        self, workbook: Workbook, computed: Computed, lognorm: str, bases: dict[Cell, float | None], host: Cell
+        self,
+        workbook: Workbook,
+        computed: Computed,
+        lognorm: str,
+        bases: dict[Cell, float | None],
+        host: Cell,
+        rows: Mapping[Cell, Cell],
     ) -> None:
         self._workbook, self._computed, self._lognorm, self._bases = workbook, computed, lognorm, bases
-        self.host = host
+        self.host, self._rows = host, rows
+        self.taken: set[Cell] = set()
         self.draws: dict[tuple[int, int], CellDraw] = {}
         self.trees: dict[Cell, ir.Expression] = {}
         self.output: Output | None = None
@@ -148,7 +155,6 @@ class CellReading:
         drawn = crystal_ball_draw(rewritten) or risk_draw(rewritten, self._lognorm)
         if drawn is None:
             raise unsupported(call.name)
-        self.has_lognorm = self.has_lognorm or drawn.function == "RiskLognorm"
         return drawn
 
     def _rewritten(self, trees: Iterable[ir.Expression]) -> tuple[ir.Expression, ...]:
@@ -257,6 +263,10 @@ class CellReading:
 
     def _drawn_at(self, plan: Assumption, drawn: Drawn, label: str, position: tuple[int, int]) -> Cell:
         site = InFormula.of(self.host, label)
+        if site in self._rows:
+            self.taken.add(site)
+            return self._rows[site]
+        self.has_lognorm = self.has_lognorm or drawn.function == "RiskLognorm"
         name = plan.name or str(site)
         partner = drawn.properties.partner
         asked = None if partner is None else partner.coefficient

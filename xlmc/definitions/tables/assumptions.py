@@ -6,12 +6,13 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from xlmc.address import Cell
+from xlmc.address import Cell, InFormula
+from xlmc.definitions.cell_references import cell_of_reference, formula_at
 from xlmc.definitions.computed import Computed
 from xlmc.definitions.definitions import CUTOFFS, Assumption, Parameter, name_key
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.data import OPTIONS, cached_data_family, given_data, refuse_options
-from xlmc.definitions.tables.fields import logical, number_in, optional_text, parameter, static_value
+from xlmc.definitions.tables.fields import logical, number_in, optional_text, parameter, required_text, static_value
 from xlmc.definitions.tables.identity import Claims, identify
 from xlmc.definitions.tables.table_rows import DefinitionTable, Row, is_blank, rows_of
 from xlmc.distributions import FAMILIES, Family, ParameterSpec, family_named
@@ -31,7 +32,7 @@ PARAMETERS = tuple(dict.fromkeys((*_OURS, "Data")))
 
 _LIMITS = frozenset({"low", "minimum", "min", "high", "maximum", "max"})
 
-_FIXED = ("Name", "Value", "Cell", "Distribution", *CUTOFFS.values(), "Units", "Source", "Frozen")
+_FIXED = ("Name", "Value", "Cell", "Distribution", *CUTOFFS.values(), "Units", "Source", "Frozen", "Call in", "Call")
 _KNOWN = (*_FIXED, *PARAMETERS, *OPTIONS)
 
 _HEADING = re.compile(r"p(\d{1,3}(?:\.\d+)?)")
@@ -69,6 +70,7 @@ def _assumption(
         DefinitionError: its numbers break a rule of its distribution.
     """
     before = len(findings.problems)
+    call = findings.attempt(_call, row)
     identity = identify(row, claims, findings)
     frozen = findings.attempt(logical, row, "Frozen") or False
     base = None if identity is None else findings.attempt(_base, row.workbook, computed, identity[1], frozen, findings)
@@ -102,8 +104,31 @@ def _assumption(
         notes=row.notes(known),
         own_family=None if family is FAMILIES[kind.name] else family,
         data=data,
+        call=call,
         checked=checked,
     )
+
+
+def _call(row: Row) -> InFormula | None:
+    """The call of a formula that the row stands for; None where it stands for none.
+
+    Raises:
+        DefinitionError: the row says the cell of the call or its number alone, or has no Value.
+    """
+    if not (row.filled("Call in") or row.filled("Call")):
+        return None
+    missing = next((heading for heading in ("Value", "Call in", "Call") if not row.has(heading)), None)
+    missing = missing or next((heading for heading in ("Call in", "Call") if not row.filled(heading)), None)
+    if missing is not None:
+        message = f"a row that stands for a call needs {missing}"
+        hint = "Fill in Call in with the call's cell, such as =Model!B7, and Call with its number in the formula"
+        raise DefinitionError(message, where=row.where, hint=hint)
+    where, content = row.cell("Call in"), row.content("Call in")
+    if content.formula is None:
+        message = "Call in holds no formula"
+        raise DefinitionError(message, where=where, hint="Write a formula that is one reference, such as =Model!B7")
+    cell = cell_of_reference(row.workbook, formula_at(content.formula, where), where.sheet, where)
+    return InFormula.of(cell, required_text(row, "Call"))
 
 
 def _family(row: Row) -> Family:

@@ -95,7 +95,7 @@ def _cell_of_row(row: Row, name: str, findings: Findings) -> Cell:
             hint = "Clear one of them: Value is itself the cell, Cell points to one elsewhere"
             raise DefinitionError("Both Value and Cell are filled in", where=where, hint=hint)
         cell = _cell_pointed_to(row, findings)
-    elif row.filled("Value"):
+    elif row.filled("Value") or row.filled("Call"):
         cell = row.cell("Value")
     else:
         cell = _cell_by_name(row, name)

@@ -15,6 +15,7 @@ from xlmc.workbook.workbook import CellContent, CellValue, Table, Workbook
 
 __all__ = [
     "CASE",
+    "CONVERTED",
     "KINDS",
     "DefinitionTable",
     "Row",
@@ -25,6 +26,10 @@ __all__ = [
     "rows_of",
 ]
 
+CONVERTED = "xlmc_converted"
+"""What the name of the table starts with that `xlmc convert` writes: a workbook that has it has its definitions in
+tables, also those of Crystal Ball's dialogs, where they could be converted."""
+
 KINDS = (
     "xlmc_assumptions",
     "xlmc_forecasts",
@@ -34,6 +39,7 @@ KINDS = (
     "xlmc_correlations",
     "xlmc_scenarios",
     "xlmc_settings",
+    CONVERTED,
 )
 """What the names of the tables start with; a copied sheet's `xlmc_assumptions3` counts too."""
 

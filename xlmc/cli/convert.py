@@ -1,0 +1,47 @@
+"""`xlmc convert`: a workbook of Crystal Ball, @RISK or XLRisk with its definitions as xlmc's tables."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from xlmc.cli.terminal import paragraph, say
+
+__all__ = ["convert"]
+
+
+@click.command()
+@click.argument("book", type=click.Path(readable=False, path_type=Path))
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(readable=False, path_type=Path),
+    help="The new workbook.  [default: BOOK-converted.xlsx]",
+)
+@click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")
+def convert(book: Path, output: Path | None, overwrite: bool) -> None:
+    """Write what the dialogs of Crystal Ball and calls in cells define in BOOK into tables on one sheet of a copy.
+
+    The copy gives the same accepted trials as BOOK, to the last bit.
+    """
+    from xlmc.cli.printing import notices, table
+    from xlmc.report.conversion.convert import convert as write
+    from xlmc.report.sheets.save import check_ending
+    from xlmc.run.loading import load
+
+    model = load(book)
+    path = output or model.path.with_name(f"{model.path.stem}-converted{model.path.suffix}")
+    check_ending(path, model.path)
+    found = write(model, path, overwrite=overwrite)
+    notices(model.notices)
+    counts: dict[str, int] = {}
+    for each in found.tables:
+        counts[each.kind] = counts.get(each.kind, 0) + len(each.rows)
+    table("Written into tables", ("Table", "Rows"), [(kind, str(rows)) for kind, rows in counts.items()], right=(1,))
+    if found.left:
+        rows = [(each.stood_in, each.name, each.why) for each in found.left]
+        table("Not converted, in red on the sheet", ("Cell", "Name", "Stands in"), rows)
+    say(
+        paragraph(f"{path} gives the same accepted trials as {book}. Look at its last sheet, and run xlmc check on it.")
+    )

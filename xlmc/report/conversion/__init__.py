@@ -1,0 +1,1 @@
+"""What Crystal Ball's dialogs and calls in cells define, as tables on a sheet of the workbook."""

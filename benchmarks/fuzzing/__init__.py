@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from importlib import import_module
 from typing import Final
 
-from fuzzing import formulas, runs, tables, zips
+from fuzzing import formulas, hidden_blocks, runs, tables, zips
 from fuzzing.inputs import Kind
 
 __all__ = ["BLOCK", "KINDS", "warm_up"]
@@ -21,6 +21,7 @@ KINDS: Final[Mapping[str, Kind]] = {
     "formulas": Kind(formulas.make, formulas.run),
     "tables": Kind(tables.make, tables.run),
     "runs": Kind(runs.make, runs.run),
+    "blocks": Kind(hidden_blocks.make, hidden_blocks.run),
 }
 BLOCK: Final = 128
 """Trials that xlmc evaluates at once here; 32,768 are slow where few are asked for."""

@@ -67,7 +67,7 @@ class ObjectNames:
         if name is None:
             raise UnreadableError(f"the defined name {key}, which says from which cell, is missing")
         text = name.text.strip().removeprefix("=")
-        if "#REF!" in text.upper():
+        if any(error in text.upper() for error in _NO_CELL):
             raise UnreadableError(f"the defined name {key} has lost its cell ({text})")
         try:
             tree = self._resolver.tree(parse(text), Cell(sheet, 1, 1))

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Final, TypeVar
 
-from xlmc.address import Cell, host_of
+from xlmc.address import Cell, InFormula, host_of
 from xlmc.errors import ErrorCode, FormulaError, Notice
 from xlmc.evaluation.engine import Target
 from xlmc.evaluation.graph import lambdas
@@ -179,9 +179,10 @@ class Lowering(ExpressionLowering):
         try:
             if cell in self.graph.faults:
                 raise self.graph.faults[cell]
-            if formula is None:
+            if formula is None and not isinstance(cell, InFormula):
                 return self._filled_cell(cell, tree)
-            node = self._lower_formula(tree, Scope(cell, formula.array is not None or formula.dynamic))
+            array = formula is not None and (formula.array is not None or formula.dynamic)
+            node = self._lower_formula(tree, Scope(cell, array))
             self._arrays[cell] = node
             node = self._show(self.first_cell(node))
             self._tell_unknown(cell, self.lookup_constant(node))

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import asyncio
 import os
 import signal
 import threading
-import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -32,6 +30,8 @@ _LAST_PORT = 65_535
 @click.option("--port", type=WholeNumber(1, _LAST_PORT), help="Port of the window.  [default: a free one]")
 def open_window(book: Path | None, no_browser: bool, port: int | None) -> None:
     """Open the live window on BOOK, or on the workbooks of FOLDER: move ranges, and watch the answer follow."""
+    import webbrowser
+
     from xlmc.live.server import LiveServer, bound_socket
 
     library = _library(book)
@@ -64,6 +64,7 @@ def _library(book: Path | None) -> Library:
 
 def _serve(server: LiveServer) -> None:
     """Until Ctrl-C, or until nobody looks any more."""
+    import asyncio
 
     def end(*_: object) -> None:
         server.end()

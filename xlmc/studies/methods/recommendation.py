@@ -57,7 +57,8 @@ def _paragraphs(study: Study) -> list[str]:
         ]
     found = choice(study)
     once = [(curve, shortfall(study, curve)) for curve in study.once if curve.answers]
-    said = [_accuracy_text(study), *_heavy_text(study), *_drawing_text(study, found), *_once_text(once)]
+    verdict, *others = _drawing_text(study, found)
+    said = [verdict, _accuracy_text(study), *_heavy_text(study), *others, *_once_text(once)]
     said += [_never_text(study, curve, each) for curve, each in found.needs.items() if each.reaches == "no"]
     said += [_unknown_text(curve, each) for curve, each in found.needs.items() if each.reaches == "unknown"]
     said += [_missed_text(study, curve, each) for curve, each in once if each.reaches == "no"]
@@ -88,8 +89,8 @@ def _heavy_text(study: Study) -> list[str]:
     """The statistics that no method can find."""
     return [
         f"The {' and '.join(map(statistic_words, lost))} of {name} {'do' if len(lost) > 1 else 'does'} not converge, "
-        "as far as these trials show, because its tail is too heavy: more trials help no method. What follows leaves "
-        "this out; report percentiles."
+        "as far as these trials show, because its tail is too heavy: more trials help no method. All else "
+        "leaves this out; report percentiles."
         for name, lost in study.reference.heavy.items()
         if name in study.varying
     ]

@@ -173,3 +173,20 @@ def test_what_cannot_be_typed(xlmc, book, tmp_path, monkeypatch, arguments, mess
     assert outcome.code == 2
     assert message in outcome.err.replace("\n", " ")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["book.xlsx"]
+
+
+def test_ctrl_c_while_scenarios_are_run_keeps_the_run(xlmc, book, tmp_path, monkeypatch):
+    from xlmc.studies import scenario_answers
+
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    xlmc("simulate", book, "-o", tmp_path / "plain.xlsx")
+    monkeypatch.setattr(scenario_answers, "_run", interrupted)
+    outcome = xlmc("simulate", book, "--scenarios", "--json", tmp_path / "r.json")
+    assert outcome.code == 130
+    assert "interrupted before all scenarios were run" in outcome.err.replace("\n", " ")
+    found = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))
+    assert "scenarios" not in found
+    sheets = openpyxl.load_workbook(tmp_path / "book-results.xlsx").sheetnames
+    assert sheets == openpyxl.load_workbook(tmp_path / "plain.xlsx").sheetnames

@@ -91,9 +91,9 @@ def simulate(
     """Run BOOK, print the summary, and write result sheets and charts into a copy of it."""
     from xlmc.api import load
     from xlmc.cli.printing import notices, warnings
-    from xlmc.cli.progress_bar import progress_bar, step_line
+    from xlmc.cli.progress_bar import progress_bar
     from xlmc.run.simulation import KEPT_INPUTS
-    from xlmc.studies.scenario_answers import models_of, scenario_answers
+    from xlmc.studies.scenario_answers import models_of
 
     if in_place and output is not None:
         raise click.UsageError("--in-place and --output cannot both be given.")
@@ -137,8 +137,7 @@ def simulate(
             progress=progress,
             tell=None if quiet else lambda sentence: say(sentence, err=True),
         )
-    with step_line(quiet) as told:
-        answers = scenario_answers(run, jobs=jobs, told=told)
+    run, answers = _with_scenarios(run, jobs, quiet)
     written, lines = outputs.write(run)  # before the answer is printed, so that no terminal can cost a run
     show_run(run)
     for line in lines:
@@ -150,10 +149,29 @@ def simulate(
         say(f"xlmc: interrupted after {run.trials:,} trials{kept}.", err=True)
     if not written:
         raise click.exceptions.Exit(NOT_WRITTEN)
-    if run.stopped.interrupted:
+    if run.stopped.interrupted or (scenarios and not answers):
         raise click.exceptions.Exit(INTERRUPTED)
     if run.warnings or of_scenarios:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
+
+
+def _with_scenarios(run: Simulation, jobs: int, quiet: bool) -> tuple[Simulation, Sequence[ScenarioAnswers]]:
+    """The answers of the scenarios; after Ctrl-C none, and the run as one that was made without them."""
+    from dataclasses import replace
+
+    from xlmc.cli.progress_bar import step_line
+    from xlmc.studies.scenario_answers import scenario_answers
+
+    try:
+        if run.stopped.interrupted and run.settings.scenarios:
+            raise KeyboardInterrupt
+        with step_line(quiet) as told:
+            return run, scenario_answers(run, jobs=jobs, told=told)
+    except KeyboardInterrupt:
+        say(
+            "xlmc: interrupted before all scenarios were run: the results are those of the workbook as it is.", err=True
+        )
+        return replace(run, settings=replace(run.settings, scenarios=False)), ()
 
 
 def _of_scenarios(answers: Sequence[ScenarioAnswers]) -> list[str]:

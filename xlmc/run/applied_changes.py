@@ -5,7 +5,7 @@ is, bit for bit, a run of the edited workbook. Neither file nor formula is read 
 others: parameters and cutoffs of drawn assumptions, and limits of filters. A change of ranges alone then takes half a
 millisecond, and compiled programs are used again. Another limit of a filter makes the program anew: 1 ms with `numpy`
 for some dozens of formulas, but half a second with `jit`, so move limits with `numpy`. What holds an assumption, or
-lets a held one be drawn, puts the cells in order again (10 ms); what is typed into other cells reads the definitions
+lets a held one be drawn, puts the cells in order again (15 ms); what is typed into other cells reads the definitions
 again, too (20 ms).
 
 For a picture that follows a hand: load the workbook once, keep the model, and for each move

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 from scipy.special import ndtr
 
+from xlmc.api import Model
+from xlmc.definitions.definitions import Filter
 from xlmc.run.agreement import Verdict, agreement
 
 CELLS = {"A1": 0.0, "B1": 0.0, "C1": "=A1*1", "D1": "=A1+B1", "E1": "=A1-B1", "F1": "=IF(A1>-9,B1*1,0)"}
@@ -146,6 +149,18 @@ def test_inputs_that_press_against_their_ends_are_named(judged, book):
     assert all(each.share > 0.99 for each in found.pressed)
     assert "the range, not the evidence, decides" in found.remarks[-1]
     assert not judged(EDR=("C1", 1, bell(0.5))).pressed
+
+
+def test_filters_of_some_forecasts_hold_for_what_evidence_moves(book):
+    model = book(CELLS, INPUTS, {"a": "C1", "sum": "D1"}, evidence={"EDR": {"cell": "D1", "reading": 0, **bell(9.0)}})
+    cell = model.forecasts[0].cell
+    own = Filter("positive", cell, cell, at_least=0.0, only_for=("a",))
+    definitions = replace(model.definitions, forecast_filters=(own,))
+    found = agreement(Model(model.workbook, definitions, model.path), SEED, TRIALS)
+    means = {each.forecast: each.mean for each in found.answers if each.used == "no evidence"}
+    assert close(means["a"], math.sqrt(2 / math.pi))  # of the half of N(0, 1) above 0
+    assert close(means["sum"], 0.0)
+    assert found.past == TRIALS
 
 
 def test_what_is_an_error_agrees_with_nothing(book):

@@ -19,11 +19,12 @@ from xlmc.definitions.definitions import name_key
 from xlmc.evaluation.engine import Target
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.run.draw_binding import parameter_target
+from xlmc.run.forecast_filters import FilteringProgram, conditions_of, filters_by_forecast
 from xlmc.run.needed import filter_condition
 
 if TYPE_CHECKING:
     from xlmc.definitions.evidence import Law
-    from xlmc.evaluation.engine import Column
+    from xlmc.evaluation.engine import Column, Program
     from xlmc.run.model import Model
 
 __all__ = ["MOST_TRIALS", "EvidenceTrials", "evidence_trials"]
@@ -85,10 +86,16 @@ def evidence_trials(model: Model, seed: int, trials: int) -> EvidenceTrials:
     least, most = min(trials, MOST_TRIALS), min(MORE * trials, MOST_TRIALS)
     items = [(each.cell, each.evidence.law) for each in model.filters if each.evidence is not None]
     plain = [Target(filter_condition(each), each.cell) for each in model.filters if each.evidence is None]
-    names = [each.name for each in model.forecasts[:_MOST_FORECASTS]]
+    shown = model.forecasts[:_MOST_FORECASTS]
+    names = [each.name for each in shown]
     wanted = [parameter_target(cell) for cell, _ in items]
-    wanted += [Target(each.cell, each.cell) for each in model.forecasts[:_MOST_FORECASTS]]
-    program = NumpyProgram.of(model.lowering, plain, wanted, model.fallible)
+    wanted += [Target(each.cell, each.cell) for each in shown]
+    program: Program = NumpyProgram.of(
+        model.lowering, plain, [*wanted, *conditions_of(model.forecast_filters)], model.fallible
+    )
+    if model.forecast_filters:
+        own = filters_by_forecast(shown, model.forecast_filters)
+        program = FilteringProgram(program, (*[()] * len(items), *own))
     block = min(_BLOCK, program.largest_block)
     sampler, evaluator = model.sampler(seed, block), program.evaluator(block)
     ends = _Ends(model)

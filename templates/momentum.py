@@ -21,6 +21,7 @@ from templates.two_vehicles.options import (
 from templates.two_vehicles.readings import readings
 from templates.two_vehicles.results import direction_forecasts, paper_forecasts, shared_road_note
 from templates.two_vehicles.scene import Scene, assumptions_of_momentum, constants_of_momentum
+from templates.two_vehicles.together import SWITCH, drawn_together, leave_together
 from templates.units import MPH
 from templates.vehicles import SECOND, for_both
 
@@ -118,6 +119,7 @@ _CENTRES = tuple(turned(("0", "0"), f"alpha_{j}", f"-0.5*length_{j}", "0") for j
 
 def describe(scene: Scene) -> Template:
     """The workbook of one scene."""
+    more = not scene.paper_only
     return Template(
         title=scene.title,
         subtitle=scene.subtitle,
@@ -126,17 +128,17 @@ def describe(scene: Scene) -> Template:
         question="How fast were two vehicles that met at an angle? Delta-V?",
         needs="weights, approach and departure angles, run-out, friction",
         assumptions=assumptions_of_momentum(scene),
-        constants=constants_of_momentum(),
+        constants=(*((SWITCH,) if more else ()), *constants_of_momentum()),
         optional=(duration_input(), *turn_inputs(), *drawing_inputs()),
-        sections=_sections(),
+        sections=leave_together(_sections()) if more else _sections(),
         forecasts=paper_forecasts() + direction_forecasts(yaw=False),
         filters=(*_filters(scene), *turn_filters()),
         settings=(("Trials", 200_000), ("Seed", 999)),
         correlations=(CorrelationRow("f_1", "f_2", 0),),
         correlation_note=shared_road_note(),
         guide=(scene.guide, FIRST_STEPS, NAMES, _WHEN, _TRUST, CAVEATS, _CORRECTIONS),
-        diagram=_diagram(),
-        evidence=() if scene.paper_only else readings(yaw=False),
+        diagram=drawn_together(_diagram()) if more else _diagram(),
+        evidence=readings(yaw=False) if more else (),
     )
 
 

@@ -28,6 +28,7 @@ from templates.two_vehicles.example_scene import MOMENTUM_EXAMPLE
 from templates.two_vehicles.options import drawing_inputs
 from templates.two_vehicles.results import direction_forecasts, paper_forecasts, shared_road_note
 from templates.two_vehicles.scene import assumptions_of_momentum, constants_of_momentum, yaw_rates
+from templates.two_vehicles.together import SWITCH, drawn_together, leave_together
 from templates.units import MPH
 from templates.vehicles import for_both, vehicle
 
@@ -134,6 +135,7 @@ _CONSTANTS = (
         )
         for j in (1, 2)
     ),
+    SWITCH,
     *yaw_rates(),
     *constants_of_momentum(),
 )
@@ -381,14 +383,18 @@ TEMPLATE = Template(
     assumptions=_ASSUMPTIONS,
     constants=_CONSTANTS,
     optional=drawing_inputs(),
-    sections=(
-        Section("1  Masses, run-out and rotation", for_both(MASSES + RUN_OUT + _ROTATIONS)),
-        Section("2  Closing speed, from energy", _ENERGY),
-        Section("3  Impact speeds, from momentum", _SPEEDS),
-        Section("4  Change in velocity", _CHANGES),
-        Section("5  Answers (the forecasts)", for_both(tuple(replace(each, reference="above") for each in ANSWERS))),
-        Section("6  Direction of force, energy", for_both(FORCE + _BALANCE)),
-        checks_section(7, *_CHECKS),
+    sections=leave_together(
+        (
+            Section("1  Masses, run-out and rotation", for_both(MASSES + RUN_OUT + _ROTATIONS)),
+            Section("2  Closing speed, from energy", _ENERGY),
+            Section("3  Impact speeds, from momentum", _SPEEDS),
+            Section("4  Change in velocity", _CHANGES),
+            Section(
+                "5  Answers (the forecasts)", for_both(tuple(replace(each, reference="above") for each in ANSWERS))
+            ),
+            Section("6  Direction of force, energy", for_both(FORCE + _BALANCE)),
+            checks_section(7, *_CHECKS),
+        )
     ),
     forecasts=(
         *paper_forecasts(),
@@ -441,17 +447,19 @@ TEMPLATE = Template(
         _WHEN,
         CAVEATS,
     ),
-    diagram=Diagram(
-        "Plan view of the base case",
-        "X, [ft|m]",
-        "Y, [ft|m]",
-        (
-            *vehicle_curves(_CENTRES),
-            rest_points(_CENTRES),
-            mark("Point of impact", ("0", "0")),
-        ),
-        plan=True,
-        remark="Drawn from the cells below. This model needs no contact point: the vehicles are drawn nose to nose.",
+    diagram=drawn_together(
+        Diagram(
+            "Plan view of the base case",
+            "X, [ft|m]",
+            "Y, [ft|m]",
+            (
+                *vehicle_curves(_CENTRES),
+                rest_points(_CENTRES),
+                mark("Point of impact", ("0", "0")),
+            ),
+            plan=True,
+            remark="Drawn from the cells below, the vehicles nose to nose: this model needs no contact point.",
+        )
     ),
     vehicles=_SCENE.vehicles,
 )

@@ -2,7 +2,17 @@
 
 from __future__ import annotations
 
-from templates import collinear, critical_speed_yaw, crush_energy, skid
+from templates import (
+    airborne,
+    collinear,
+    critical_speed_yaw,
+    crush_energy,
+    edr_speed,
+    momentum_energy,
+    skid,
+    time_distance,
+    video_speed,
+)
 from templates.description import GuideSection, Template
 from templates.editions import Edition, edition
 from templates.filled import filled
@@ -143,6 +153,111 @@ _CRUSH = filled(
     ),
 )
 
+_AMY = filled(
+    edition(airborne.TEMPLATE, Edition.IMPERIAL),
+    "The case of airborne Amy",
+    "Skid of 32.7 ft at 0.45, then 44.6 ft across and 8.3 ft down, level take-off",
+    {"d": 44.6, "h": 8.3, "theta": 0, "f": 0.45, "s": 32.7, "g": 32.2},
+    _GIVEN,
+    _about(
+        "Inputs of Design News, 19 August 2002, with its g of 32.2 ft/s²: 0.718 s in the air, 62.12 ft/s (42.35 mph) "
+        "at take-off, 69.33 ft/s (47.27 mph) before braking. A degree of slope at take-off moves the speed by 2 mph."
+    ),
+)
+
+_LEFT_TURN = filled(
+    edition(time_distance.TEMPLATE, Edition.IMPERIAL),
+    "A left turn from rest",
+    "40 mph at the impact after 60 ft of braking; would it have been avoided at 45 mph?",
+    {
+        "v_impact": 40,
+        "d_brake": 60,
+        "f": 0.7,
+        "d_intruder": 22,
+        "u": 0,
+        "a_intruder": 0.2,
+        "clearance": 12,
+        "t_fresh": 1.25,
+        "limit": 45,
+    },
+    _GIVEN,
+    _about(
+        "A worked example, checked by a program that steps through time in 10 µs: 53.45 mph before braking, a response "
+        "time of 1.739 s. At 45 mph the same driver would have arrived 0.259 s after the other had cleared, at 17.8 mph, "
+        "avoided. At 50 mph, 0.375 s too early, at 32.6 mph. At 40 mph it would have stopped."
+    ),
+)
+
+_RECORDED = filled(
+    edition(edr_speed.TEMPLATE, Edition.IMPERIAL),
+    "40 mph in the last sample, braking hard",
+    "13 % slip, 0.7 g, the impact 0.25 s after the last sample; delta-V 20 mph",
+    {
+        "q": 0,
+        "kappa": 0.13,
+        "f": 0.7,
+        "tau": 0.25,
+        "v_last": 40,
+        "dv_long": 20,
+        "w_own": 3500,
+        "w_other": 4000,
+        "e": 0.1,
+    },
+    _GIVEN,
+    _about(
+        "A worked example: 40 mph recorded is 45.98 mph true, and 42.14 mph at the impact. A delta-V of 20 mph of "
+        "3500 lb into 4000 lb, e = 0.1, along one line, is a closing speed of 34.09 mph."
+    ),
+)
+
+_TWO_FRAMES = filled(
+    edition(video_speed.TEMPLATE, Edition.IMPERIAL),
+    "10 ft in two frames",
+    "Ten frames a second (Lynch, forensicdjs.com): 50 ft/s",
+    {"d": 10, "n": 2, "rate": 10, "a": 0},
+    _GIVEN,
+    _about(
+        "10 ft in two frames at ten a second are 50 ft/s, 34.1 mph. What the example does not say: each crossing lies "
+        "anywhere within a frame, so that 95 % of such readings mean 24.6 to 55.7 mph. The red check says so."
+    ),
+)
+
+_NEARLY_HEAD_ON = filled(
+    edition(momentum_energy.TEMPLATE, Edition.SI),
+    "Nearly head-on",
+    "880 kg and 1600 kg, after the impact 35 and 51 km/h; EES 66 and 42 km/h",
+    {
+        "m_1": 880,
+        "alpha_1": 0,
+        "beta_1": -9,
+        "s_1": round((35 / _KMH_PER_M_S) ** 2 / (2 * 0.7 * 9.81), 9),
+        "f_1": 0.7,
+        "m_2": 1600,
+        "beta_2": 182,
+        "s_2": round((51 / _KMH_PER_M_S) ** 2 / (2 * 0.7 * 9.81), 9),
+        "f_2": 0.7,
+        "EES_1": 66,
+        "phi_1": 200,
+        "mu_1": 0.4,
+        "I_1": 998.348,
+        "R_1": 2.4,
+        "EES_2": 42,
+        "phi_2": 64,
+        "mu_2": 0.3,
+        "I_2": 2681.42,
+        "R_2": 2.795,
+        "g": 9.81,
+        "length_1": 3.725,
+        "length_2": 4.725,
+    },
+    _GIVEN,
+    _about(
+        "Inputs of Schreier and Nelson (SAE Transactions 96, 1987, page 152); the travel distances are those of the "
+        "speeds after the impact. A closing speed of 141.6 km/h, impact speeds of 70.68 and 70.99 km/h, and the second "
+        "vehicle from 183.87°. Momentum alone, with that angle known within 3°, leaves 95 % of −817 to +1036 km/h."
+    ),
+)
+
 PUBLISHED: dict[str, Template] = {
     "skid-100-ft": _SKID,
     "yaw-mark": _YAW,
@@ -151,5 +266,10 @@ PUBLISHED: dict[str, Template] = {
     "textbook-claim": _TEXTBOOK,
     "barrier-corner": _BARRIER,
     "crush-balance": _CRUSH,
+    "airborne-amy": _AMY,
+    "left-turn": _LEFT_TURN,
+    "edr-hard-braking": _RECORDED,
+    "video-two-frames": _TWO_FRAMES,
+    "nearly-head-on": _NEARLY_HEAD_ON,
 }
 """File name without its ending -> what the workbook says."""

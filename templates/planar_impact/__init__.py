@@ -18,6 +18,7 @@ from templates.two_vehicles.scene import (
     constants_of_momentum,
     yaw_rates,
 )
+from templates.two_vehicles.together import SWITCH, drawn_together, leave_together
 from templates.vehicles import SECOND
 
 __all__ = ["Scene", "describe", "evaluate"]
@@ -28,6 +29,7 @@ _CENTRES = (("a_1", "b_1"), ("a_2", "b_2"))
 def describe(scene: Scene) -> Template:
     """The workbook of one scene."""
     more = not scene.paper_only
+    sections = model_sections() + answer_sections(more=more)
     return Template(
         title=scene.title,
         subtitle=scene.subtitle,
@@ -36,20 +38,20 @@ def describe(scene: Scene) -> Template:
         question="The same, with yaw: which solutions does restitution allow?",
         needs="those of momentum; yaw inertias, impact centre, contact direction",
         assumptions=assumptions_of_planar_impact(scene),
-        constants=(*yaw_rates(), *constants_of_momentum(inches=True)),
+        constants=(*((SWITCH,) if more else ()), *yaw_rates(), *constants_of_momentum(inches=True)),
         optional=(
             duration_input(),
             *((*turn_inputs(), *lever_inputs(), *rotation_inputs()) if more else ()),
             *drawing_inputs(),
         ),
-        sections=model_sections() + answer_sections(more=more),
+        sections=leave_together(sections) if more else sections,
         forecasts=paper_forecasts() + (direction_forecasts(yaw=True) if more else ()),
         filters=_filters(scene) + (turn_filters() if more else ()),
         settings=(("Trials", 200_000), ("Seed", 999)),
         correlations=(CorrelationRow("f_1", "f_2", 0),) if more else (),
         correlation_note=shared_road_note() if more else shared_road(),
         guide=guide(scene.guide),
-        diagram=_diagram(),
+        diagram=drawn_together(_diagram()) if more else _diagram(),
         evidence=readings(yaw=True) if more else (),
     )
 

@@ -10,14 +10,19 @@ __all__ = ["BOOKS", "EXAMPLES", "ROOT", "TEMPLATES"]
 ROOT: Final = Path(__file__).resolve().parents[2]
 
 _EXAMPLES: Final = (
+    "airborne-amy",
     "barrier-corner",
     "collinear-equal-cars",
     "collinear-head-on",
     "crush-balance",
+    "edr-hard-braking",
     "intersection",
     "intersection-momentum",
+    "left-turn",
+    "nearly-head-on",
     "skid-100-ft",
     "textbook-claim",
+    "video-two-frames",
     "yaw-mark",
 )
 _TEMPLATES: Final = (

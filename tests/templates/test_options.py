@@ -45,6 +45,20 @@ def test_duration_gives_mean_acceleration_and_the_neglected_impulse(name, cells,
     assert found["share_tyres_1"].item() == pytest.approx(100 * 0.8 * 32.174 * 0.1 / found["dV_1"].item(), rel=1e-12)
 
 
+@pytest.mark.parametrize("name", [*TURNING, "momentum-energy"])
+def test_stuck_together_is_one_switch(name, cells):
+    """The same as typing the departure of vehicle 1 for vehicle 2, too, whatever the row of vehicle 2 says."""
+    wanted = ["V1_i", "V2_i", "dV_1", "E_lost"]
+    first = {"beta_1": 200, "s_1": 21, "f_1": 0.7}
+    other = {"beta_2": 170, "s_2": 60, "f_2": 0.9}
+    switched = cells(name, first | other | {"together": 1}, wanted)
+    typed = cells(name, first | {symbol[:-1] + "2": value for symbol, value in first.items()}, wanted)
+    left_alone = cells(name, first | other, wanted)
+    for symbol in wanted:
+        np.testing.assert_array_equal(switched[symbol], typed[symbol])
+        assert switched[symbol] != left_alone[symbol]
+
+
 @pytest.mark.parametrize("name", TURNING)
 def test_the_shared_road_is_ready_and_off(name, book_path):
     [row] = xlmc.load(book_path[name]).definitions.correlations

@@ -184,7 +184,7 @@ _LEFT_TURN = filled(
     _about(
         "A worked example, checked by a program that steps through time in 10 µs: 53.45 mph before braking, a response "
         "time of 1.739 s. At 45 mph the same driver would have arrived 0.259 s after the other had cleared: "
-        "avoided, as its 17.8 mph came too late. At 50 mph, 0.375 s too early, at 32.6 mph. At 40 mph it would have stopped."
+        "avoided. At 50 mph it would have come 0.375 s too early, at 32.6 mph. At 40 mph it would have stopped."
     ),
 )
 

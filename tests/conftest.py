@@ -7,6 +7,7 @@ cached for it.
 from __future__ import annotations
 
 from pathlib import Path
+from types import MappingProxyType
 
 import openpyxl
 import pytest
@@ -71,7 +72,7 @@ def _evidence(name, given):
     return Evidence(name, cell, cell, reading, error, {key: _parameter(value) for key, value in given.items()})
 
 
-def _definitions(workbook, assumptions, forecasts, filters, correlations, evidence):
+def _definitions(workbook, assumptions, forecasts, filters, correlations, evidence=MappingProxyType({})):
     places = {name: parse_address(address, "S") for name, address in forecasts.items()}
     items = tuple(_evidence(name, given) for name, given in evidence.items())
     return Definitions(

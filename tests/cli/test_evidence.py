@@ -112,6 +112,27 @@ def test_methods_that_draw_no_trials_say_that_they_cannot_use_a_normal_error(xlm
     assert "cannot use evidence with a normal or lognormal error: 'EDR'" in outcome.err
 
 
+def test_a_weighted_run_that_keeps_no_trial_is_told_and_written(xlmc, book, tmp_path):
+    path = book([*EDR[:2], 900, *EDR[3:]])
+    made = openpyxl.load_workbook(path)
+    settings = made.create_sheet("How")
+    for row in (["Setting", "Value"], ["Evidence", "weights"]):
+        settings.append(row)
+    settings.add_table(Table(displayName="xlmc_settings", ref="A1:B2"))
+    made.save(path)
+    written = [tmp_path / f"book{ending}" for ending in (".html", ".json", ".docx", ".xlmcrun", ".csv")]
+    asked = zip(("--html", "--json", "--docx", "--save-run", "--extract"), written, strict=True)
+    options = [each for pair in asked for each in pair]
+    outcome = xlmc("simulate", path, "-n", 2_000, *options)
+    assert outcome.code == 1
+    assert "no trial was accepted" in outcome.err
+    assert all(each.exists() for each in written)
+    jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(
+        json.loads(written[1].read_text(encoding="utf-8"))
+    )
+    assert "identical" in xlmc("replay", tmp_path / "book-results.xlsx").out
+
+
 def test_a_weighted_run_says_so_everywhere_and_leaves_out_what_cannot_weight(xlmc, book, tmp_path):
     path = book([*EDR[:2], 6.5, *EDR[3:]])
     page, found, rows = (tmp_path / f"book{ending}" for ending in (".html", ".json", ".csv"))

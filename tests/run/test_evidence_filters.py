@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from xlmc.errors import DefinitionError
+from xlmc.run.simulate import simulate
 
 X = {"cell": "A1", "distribution": "Normal", "mean": 0, "std_dev": 1}
 READING = {"cell": "B1", "reading": 1, "error": "normal", "std_dev": 0.5}
@@ -57,7 +58,9 @@ def test_evidence_moves_no_draw_and_every_engine_keeps_the_same_trials(book, nor
         assert list(one.inputs) == list(one.prior) == ["x", "c"]
         if method == "mc":
             assert all(np.array_equal(one.prior[name], plain.prior[name]) for name in plain.prior)
-            two = book(CELLS, OTHERS, FORECASTS, evidence=both).simulate(trials=5_000)
+            two = simulate(
+                book(CELLS, OTHERS, FORECASTS, evidence=both), trials=5_000
+            )  # which rejects, few as it keeps
             assert set(two.trial_index) < set(one.trial_index)  # the number that EDR draws is its own
             assert np.array_equal(one.trial_index, normal.simulate(trials=5_000, engine="jit").trial_index)
             assert np.array_equal(one.inputs["c"], normal.simulate(trials=5_000, engine="jit").inputs["c"])

@@ -128,6 +128,7 @@ def test_any_engine_and_any_number_of_processes_give_the_same_weights(model):
 def test_a_weighted_sample_is_as_even_as_its_effective_size():
     sample = Sample.of([1.0, 2.0, 3.0, 4.0], [1.0, 1.0, 1.0, 0.0])
     assert sample.even.tolist() == sample.quantile(np.array([1, 3, 5]) / 6).tolist()
+    assert Sample.of([1.0, 2.0], [0.0, 0.0]).even.size == 0
     assert Sample.of([3.0, 1.0]).even.tolist() == [1.0, 3.0]
     found = histogram(sample, 1.0, 3.0)
     assert found.counted == 3

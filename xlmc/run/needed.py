@@ -197,11 +197,8 @@ def filter_condition(filter_: Filter, *, certain: bool = False) -> ir.Expression
         certain: evidence whose error is no limit keeps every trial whose probability is above 0.
     """
     if filter_.evidence is not None and (bell := filter_.evidence.bell) is not None:
-        return kept_by_chance(
-            bell,
-            filter_.cell,
-            filter_.evidence.chance if filter_.evidence.by_chance and not certain else ir.Number(0.0),
-        )
+        by_chance = filter_.evidence.by_chance and not certain
+        return kept_by_chance(bell, filter_.cell, filter_.evidence.chance if by_chance else None)
     number = ir.Binary("+", filter_.cell, ir.Number(0.0))
     limits = filter_limits(filter_)
     if not limits:
@@ -210,16 +207,19 @@ def filter_condition(filter_: Filter, *, certain: bool = False) -> ir.Expression
     return parts[0] if len(parts) == 1 else ir.Call("AND", parts)
 
 
-def kept_by_chance(bell: Bell, cell: Cell, chance: ir.Expression) -> ir.Expression:
+def kept_by_chance(bell: Bell, cell: Cell, chance: Cell | None) -> ir.Expression:
     """Whether a trial is kept, with probability exp(-z²/2).
 
     Args:
         bell: the error of the reading.
         cell: the model's quantity.
-        chance: a uniform number; 0 keeps every trial that has a probability above 0.
+        chance: a uniform number; None to keep every trial whose probability is above 0.
     """
     exponent = ir.Binary("*", ir.Number(-0.5), bell.tree_of_square(cell))
-    kept: ir.Expression = ir.Binary("<=", chance, ir.Call("EXP", (exponent,)), all_bits=True)
+    probability = ir.Call("EXP", (exponent,))
+    kept: ir.Expression = ir.Binary(">", probability, ir.Number(0.0), all_bits=True)
+    if chance is not None:
+        kept = ir.Binary("<=", chance, probability, all_bits=True)
     if not bell.logarithmic:
         return kept
     positive = ir.Binary(">", ir.Binary("+", cell, ir.Number(0.0)), ir.Number(0.0), all_bits=True)

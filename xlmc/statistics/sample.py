@@ -75,7 +75,7 @@ class Sample:
     @cached_property
     def even(self) -> Floats:
         """The values; with weights, as many as carry as much, of equal weight: quantiles at even distances."""
-        if self.w is None:
+        if self.w is None or not self.n:
             return self.x
         count = max(1, round(self.effective))
         return self.quantile((np.arange(count) + 0.5) / count)

@@ -137,8 +137,7 @@ def test_by_mouse(chromium, running, case):
     high = float(knob.get_attribute("aria-valuenow"))
     assert high > 0.95
     assert accepted(case, Numbers(FRICTION, {"high": high})) in page.stand
-    assert page.run("return Live.fewest") >= 50_000
-    assert page.run("return Live.latencies.length") > 0
+    assert page.run("return Live.moves.size") == 0  # each move has an answer, or a newer one has
     said = page.all(".moved")[0].text
     assert said.startswith("Chevrolet delta-V: mean ")
     assert " → " in said

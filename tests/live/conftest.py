@@ -5,11 +5,34 @@ import threading
 import time
 
 import pytest
+from chromium_browser import Browser
 from live_window import Running
+from needed_programs import missing
 
 from xlmc.live.kept_scenarios import Keeper
 from xlmc.live.library import Library
 from xlmc.live.server import LiveServer, bound_socket
+
+
+@pytest.fixture(scope="session")
+def browser(tmp_path_factory):
+    """Gives a browser that answers."""
+    pytest.importorskip("selenium.webdriver")
+    if reason := missing("chromium", "chromedriver"):
+        pytest.skip(reason)
+    found = Browser(tmp_path_factory)
+    yield found
+    found.quit()
+
+
+@pytest.fixture
+def chromium(browser):
+    """A browser that answers, or a skipped test where there is none; what it complained of is an error."""
+    found = browser()
+    found.get("about:blank")
+    found.get_log("browser")
+    yield found
+    assert [entry["message"] for entry in found.get_log("browser")] == []
 
 
 @pytest.fixture

@@ -7,6 +7,7 @@ import os
 import time
 from collections.abc import Callable, Coroutine, Iterable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -92,7 +93,16 @@ class Desk:
 
     def start(self) -> None:
         """Begin to read, to compute and to watch; in a running event loop."""
-        self._tasks = [asyncio.create_task(self._work()), asyncio.create_task(self._watch())]
+        for about, what in (("work", self._work()), ("watching", self._watch())):
+            task = asyncio.create_task(what)
+            task.add_done_callback(partial(self._ended, about))
+            self._tasks.append(task)
+
+    def _ended(self, about: str, task: asyncio.Task[None]) -> None:
+        """Tell it where what should go on has ended by a fault."""
+        fault = None if task.cancelled() else task.exception()
+        if fault is not None:
+            self._say(about, f"xlmc has failed, and must be started again: {type(fault).__name__}: {fault}")
 
     async def close(self) -> None:
         """End all of it."""

@@ -148,7 +148,9 @@ def _texts(now: Estimate, before: Estimate | None) -> tuple[str, str, str]:
     if not math.isfinite(apart):
         return shown, _text(before), ""
     sign = "+" if apart > 0 else "−" if apart < 0 else ""
-    return shown, _text(before), sign + _text(Estimate(abs(apart), now.error)).partition(" ± ")[0]
+    decimals = len(shown.partition(" ")[0].partition(".")[2])
+    said = f"{abs(apart):.{decimals}f}" if now.error is None else _text(Estimate(abs(apart), now.error))
+    return shown, _text(before), sign + said.partition(" ± ")[0]
 
 
 def _text(estimate: Estimate) -> str:

@@ -503,7 +503,8 @@ class Session:
             self._problem = None
             over = self._trouble()
         self._done[job.stage] = job.version
-        self._seconds = outcome.seconds
+        if outcome.seconds is not None:  # other work on the machine only ever slows
+            self._seconds = min(outcome.seconds, 2.0 * (self._seconds or outcome.seconds))
         if outcome.model is not None:
             self._models[job.version] = outcome.model
             self._models = dict(sorted(self._models.items())[-_MODELS:])

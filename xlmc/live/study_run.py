@@ -56,16 +56,17 @@ class StudyRun:
         """Until it is done, or cancelled."""
         command = [sys.executable, "-m", "xlmc", self.what, *map(str, self._books), *STUDIES[self.what]]
         given = {**os.environ, "COLUMNS": _COLUMNS, "NO_COLOR": "1", "PYTHONIOENCODING": "utf-8", "TERM": "dumb"}
-        steps, of_command = _step_pipe()
-        loop = asyncio.get_running_loop()
+        steps = _Steps(self._step_told)
         try:
             self._process = await asyncio.create_subprocess_exec(
-                *command, stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.PIPE, stderr=of_command, env=given
+                *command,
+                stdin=asyncio.subprocess.DEVNULL,
+                stdout=asyncio.subprocess.PIPE,
+                stderr=steps.of_command,
+                env=given,
             )
         finally:
-            os.close(of_command)
-        noted: list[str] = []
-        loop.add_reader(steps, self._read_steps, steps, noted)
+            steps.begin()
         self._say("running", "")
         telling = asyncio.create_task(self._tick())
         try:
@@ -75,9 +76,8 @@ class StudyRun:
             raise
         finally:
             telling.cancel()
-            loop.remove_reader(steps)
-            os.close(steps)
-        said = out.decode("utf-8", "replace")[:_MOST] or "".join(noted)[-_MOST:]
+            steps.end()
+        said = out.decode("utf-8", "replace")[:_MOST] or steps.noted[-_MOST:]
         state = "cancelled" if self._cancelled else "done" if self._process.returncode in (0, 1) else "failed"
         self._say(state, "\n".join(map(printable, said.splitlines())))
 
@@ -103,17 +103,9 @@ class StudyRun:
             await asyncio.sleep(1.0)
             self._say("running", "")
 
-    def _read_steps(self, steps: int, noted: list[str]) -> None:
-        """Take what the command says of how far it is."""
-        try:
-            text = os.read(steps, 1 << 16).decode("utf-8", "replace")
-        except OSError:  # its other end was closed
-            asyncio.get_running_loop().remove_reader(steps)
-            return
-        noted.append(text)
-        found = _STEP.findall(text)
-        if found and found[-1].strip() != self._step:
-            self._step = found[-1].strip()
+    def _step_told(self, step: str) -> None:
+        if step != self._step:
+            self._step = step
             self._say("running", "")
 
     def _message(self, state: str, text: str) -> Message:
@@ -126,8 +118,39 @@ class StudyRun:
         self._tell(self.last)
 
 
-def _step_pipe() -> tuple[int, int]:
-    """Our end, and the command's standard error: a terminal where the system has such, so that it tells its steps."""
-    if hasattr(os, "openpty"):
-        return os.openpty()
-    return os.pipe()
+class _Steps:
+    """The command's standard error: a terminal, where the system has such, so that it tells what it is doing.
+
+    Args:
+        told: takes each step.
+    """
+
+    def __init__(self, told: Callable[[str], None]) -> None:
+        self._told, self.noted = told, ""
+        self._ours: int | None = None
+        self.of_command: int = asyncio.subprocess.STDOUT
+        if hasattr(os, "openpty"):
+            self._ours, self.of_command = os.openpty()
+
+    def begin(self) -> None:
+        """Listen; the command has its end now."""
+        if self._ours is not None:
+            os.close(self.of_command)
+            asyncio.get_running_loop().add_reader(self._ours, self._read)
+
+    def end(self) -> None:
+        """Listen no more."""
+        if self._ours is not None:
+            asyncio.get_running_loop().remove_reader(self._ours)
+            os.close(self._ours)
+
+    def _read(self) -> None:
+        assert self._ours is not None
+        try:
+            text = os.read(self._ours, 1 << 16).decode("utf-8", "replace")
+        except OSError:  # the command has closed its end
+            asyncio.get_running_loop().remove_reader(self._ours)
+            return
+        self.noted += text
+        for step in _STEP.findall(text):
+            self._told(step.strip())

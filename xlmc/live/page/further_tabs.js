@@ -10,7 +10,7 @@ class PairView {
     this.selects = [0, 1].map((i) => make("select", { "aria-label": i ? "upwards" : "to the right",
       on: { change: () => this.choose() } }));
     this.said = make("p", { class: "pair-said" });
-    this.chart = make("div", { class: "chart", role: "img" });
+    this.chart = make("div", { class: "chart", role: "img", "aria-label": "No trials yet" });
     this.overlay = make("div", { class: "overlay" });
     const save = make("button", { type: "button", class: "copy", text: "Save PNG", on: { click: () => savePng(this.chart) } });
     place.append(make("p", { class: "choices" }, make("label", {}, "To the right ", this.selects[0]),

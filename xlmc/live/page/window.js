@@ -1,10 +1,11 @@
 "use strict";
 // The window begins here: what the server says goes to the left and the right side.
 
+const LEAST_TRIALS = 50000;
+
 const Live = {
   moves: new Map(), // number of a change -> when its event happened
   latencies: [], // milliseconds from an event to the frame that shows its answer
-  fewest: Infinity, // trials of such an answer
 
   start() {
     const { key, page } = document.body.dataset;
@@ -109,12 +110,12 @@ const Live = {
       make("button", { type: "button", text: "Forget it", on: { click: answer(false) } }))] : []));
   },
 
-  /** From the event of a move to the frame in which its answer is drawn. */
+  /** From the event of a move to the frame in which its answer is drawn; a first short run of a slow workbook is none. */
   measure({ seq, trials }) {
+    if (trials < LEAST_TRIALS) return;
     const began = this.moves.get(seq);
     for (const each of this.moves.keys()) if (each <= seq) this.moves.delete(each);
     if (began === undefined) return;
-    this.fewest = Math.min(this.fewest, trials);
     requestAnimationFrame(() => this.latencies.push(performance.now() - began));
   },
 };

@@ -100,6 +100,8 @@ def _table(headers: Sequence[str], rows: Sequence[Sequence[Shown]]) -> Html:
 
 
 def _head(text: str, right: bool) -> Html:
+    if not text:
+        return element("td")
     return element("th", text, scope="col", class_="number" if right else None)
 
 

@@ -1,0 +1,318 @@
+"""The window in Chromium: every control is clicked, dragged, typed into and read, and by keys alone."""
+
+from __future__ import annotations
+
+import shutil
+import time
+from pathlib import Path
+
+import openpyxl
+import pytest
+from live_window import CASE, SIMPLE, edited
+
+import xlmc
+from xlmc.definitions.scenarios import Held, Limits, Numbers
+from xlmc.run.applied_changes import applied
+
+FRICTION = "Chevrolet post-impact deceleration"
+WIDTHS = ((1400, 1000), (1024, 800), (390, 844))
+LOOKED_AT = {
+    (1400, "charts"),
+    (1400, "matters"),
+    (1024, "pairs"),
+    (1024, "tables"),
+    (390, "scenarios"),
+    (390, "studies"),
+}
+"""By axe, which takes three seconds a look."""
+
+EVIL = "<img src=x onerror=window.stolen=1>"
+
+AXE = next(
+    (
+        path
+        for folder in (Path(__file__).resolve().parents[2] / ".venv" / "validator", Path("/usr/share/nodejs"))
+        if (path := folder / "node_modules" / "axe-core" / "axe.min.js").exists()
+    ),
+    None,
+)
+"""`npm install --prefix .venv/validator axe-core@4.10.2` brings it."""
+
+
+class Page:
+    """The window of a server in the browser."""
+
+    def __init__(self, browser, server):
+        self.browser, self.server = browser, server
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+        browser.get(server.server.link)
+        self.until("document.body?.dataset.stage === 'rest'")
+
+    def run(self, script, *given):
+        return self.browser.execute_script(script, *given)
+
+    def until(self, condition, *given, seconds=30.0):
+        end = time.monotonic() + seconds
+        while not self.run(f"return {condition}", *given):
+            assert time.monotonic() < end, condition
+            time.sleep(0.03)
+
+    def at_rest(self, do):
+        """Do something that changes the state, and wait for its answer."""
+        before = int(self.run("return document.body.dataset.version"))
+        do()
+        self.until(
+            f"Number(document.body.dataset.version) > {before} && document.body.dataset.stage === 'rest'"
+            " && Live.state.version === Number(document.body.dataset.version)"
+        )
+
+    def all(self, selector):
+        return self.browser.find_elements("css selector", selector)
+
+    def one(self, selector):
+        (found,) = self.all(selector)
+        return found
+
+    def card(self, name):
+        return next(each for each in self.all("article.card") if each.get_attribute("aria-label") == name)
+
+    def slider(self, label):
+        return next(each for each in self.all("[role=slider]") if each.get_attribute("aria-label") == label)
+
+    def button(self, text, within="body"):
+        return next(each for each in self.all(f"{within} button") if each.text == text)
+
+    def click(self, found):
+        self.run("arguments[0].scrollIntoView({block: 'center'})", found)
+        found.click()
+
+    def type(self, box, text):
+        control, delete, enter = "\ue009", "\ue017", "\ue007"
+        self.run("arguments[0].scrollIntoView({block: 'center'})", box)
+        box.send_keys(control, "a", control, delete, text, enter)
+
+    def box(self, card, label):
+        return next(
+            each.find_element("css selector", "input")
+            for each in card.find_elements("css selector", ".number-box")
+            if each.text.strip().startswith(label)
+        )
+
+    def tab(self, key):
+        self.run("arguments[0].scrollIntoView({block: 'center'})", self.one(f"#tab-{key}"))
+        self.one(f"#tab-{key}").click()
+
+    @property
+    def stand(self):
+        return self.one("#stand").text
+
+    @property
+    def changes(self):
+        return self.run("return Live.state.changes")
+
+
+@pytest.fixture
+def case(tmp_path):
+    return edited(CASE, tmp_path / "case.xlsx", {}, {"Trials": 40_000})
+
+
+def accepted(book, *changes):
+    """What the line at the top says of a run of the workbook with changes."""
+    run = applied(xlmc.load(book), changes).simulate()
+    return f"{run.trials:,} trials, {run.accepted:,} accepted"
+
+
+def test_by_mouse(chromium, running, case):
+    from selenium.webdriver import ActionChains
+
+    page = Page(chromium, running(book=case))
+    assert "token" not in chromium.current_url
+    assert chromium.get_cookies() == [] or all(each["httpOnly"] for each in chromium.get_cookies())
+    assert accepted(case) in page.stand
+
+    knob = page.slider(f"High of {FRICTION}")
+    page.run("arguments[0].scrollIntoView({block: 'center'})", knob)
+    drag = ActionChains(chromium, duration=30).click_and_hold(knob).move_by_offset(12, 0).move_by_offset(12, 2)
+    page.at_rest(lambda: drag.release().perform())
+    high = float(knob.get_attribute("aria-valuenow"))
+    assert high > 0.95
+    assert accepted(case, Numbers(FRICTION, {"high": high})) in page.stand
+    assert page.run("return Live.moves.size") == 0  # each move has an answer, or a newer one has
+    said = page.all(".moved")[0].text
+    assert said.startswith("Chevrolet delta-V: mean ")
+    assert " → " in said
+    assert "changed" in page.card(FRICTION).get_attribute("class")
+
+    page.at_rest(lambda: page.type(page.box(page.card(FRICTION), "High"), "0.9"))
+    assert page.changes == [f"{FRICTION}: High 0.95 → 0.9"]
+    switch = page.card("Nissan weight").find_element("css selector", "[role=switch]")
+    page.run("arguments[0].scrollIntoView({block: 'center'})", switch)
+    page.at_rest(switch.click)
+    page.at_rest(lambda: page.type(page.box(page.card("Nissan weight"), "at"), "3450"))
+    filters = page.card("Filter Restitution, tangential")
+    page.at_rest(lambda: page.type(page.box(filters, "At most"), "0.3"))
+    changes = (
+        Numbers(FRICTION, {"high": 0.9}),
+        Held("Nissan weight", 3450.0),
+        Limits("Restitution, tangential", {"at_most": 0.3}),
+    )
+    assert accepted(case, *changes) in page.stand
+    assert "rejects " in filters.text
+
+    page.type(page.all(".boxes .share")[0], "90")
+    assert abs(float(page.all(".certainty")[0].text.split()[0]) - 90.0) < 0.3
+    page.click(page.all(".views input[value=cumulative]")[0])
+    page.click(page.all(".line")[0])
+    page.all(".percentiles")[0].send_keys("5, 95\ue007")
+    page.click(page.all(".fit")[0])
+    page.until("document.querySelector('.fit').options.length > 2")
+
+    page.tab("matters")
+    page.until("document.querySelectorAll('#panel-matters svg').length > 2")
+    page.tab("pairs")
+    page.until("document.querySelector('.pair-said').textContent.includes('rank correlation')")
+    page.tab("tables")
+    page.until("document.querySelectorAll('#panel-tables table').length > 5")
+    page.tab("scenarios")
+    page.one("#scenario-name").send_keys("dry road\ue007")
+    page.until("Live.state.scenarios.length === 1")
+    page.button("Compare all in one table").click()
+    page.until("document.querySelectorAll('#panel-scenarios table').length > 2")
+    assert "dry road" in page.all("#panel-scenarios table")[0].text
+    page.at_rest(page.button("All as in the workbook").click)
+    assert accepted(case) in page.stand
+    shows = [each for each in page.all(".scenarios button") if each.text == "Show"]
+    page.at_rest(shows[1].click)
+    assert len(page.changes) == 4
+    chromium.refresh()
+    page.until("document.body?.dataset.stage === 'rest' && Live.state")
+    assert len(page.changes) == 4
+    assert accepted(case, *changes) in page.stand
+
+    page.tab("studies")
+    page.button("JSON").click()
+    page.until("document.querySelector('#troubles').textContent.includes('as it stands')")
+    page.at_rest(page.button("All as in the workbook").click)
+    page.button("JSON").click()
+    page.until("document.querySelector('#news').textContent.includes('case-results.json')")
+    assert case.with_name("case-results.json").exists()
+    page.button("Verify against Excel").click()
+    page.until(
+        "document.querySelector('#panel-studies [role=status]').textContent.startsWith('xlmc verify, ')", seconds=60
+    )
+    assert page.one("#panel-studies pre").text
+
+
+def test_by_keys_alone(chromium, running, tmp_path):
+    from selenium.webdriver.common.keys import Keys
+
+    page = Page(chromium, running(book=shutil.copy(SIMPLE, tmp_path / "case.xlsx")))
+
+    def press(*keys):
+        chromium.switch_to.active_element.send_keys(*keys)
+
+    def focus_on(fits, most=150):
+        for _ in range(most):
+            press(Keys.TAB)
+            if fits(chromium.switch_to.active_element):
+                return chromium.switch_to.active_element
+        raise AssertionError("it cannot be reached by Tab")
+
+    page.run("document.body.tabIndex = -1; document.body.focus()")
+    knob = focus_on(
+        lambda each: each.get_attribute("role") == "slider" and each.get_attribute("aria-disabled") == "false"
+    )
+    before = float(knob.get_attribute("aria-valuenow"))
+    page.at_rest(lambda: press(Keys.ARROW_RIGHT))
+    assert float(knob.get_attribute("aria-valuenow")) > before
+    assert len(page.changes) == 1
+    page.at_rest(lambda: press(Keys.ARROW_LEFT))
+    assert page.changes == []
+    focus_on(lambda each: each.tag_name == "input" and each.get_attribute("type") == "text" and each.is_enabled())
+    page.at_rest(lambda: press(Keys.ARROW_UP))
+    assert len(page.changes) == 1
+    switch = focus_on(lambda each: each.get_attribute("role") == "switch")
+    page.at_rest(lambda: press(Keys.SPACE))
+    assert switch.is_selected()
+    page.at_rest(lambda: press(Keys.SPACE))
+    focus_on(lambda each: each.get_attribute("role") == "tab")
+    press(Keys.ARROW_RIGHT)
+    assert page.one("#tab-matters").get_attribute("aria-selected") == "true"
+    for _ in range(3):
+        press(Keys.ARROW_RIGHT)
+    assert page.one("#panel-scenarios").is_displayed()
+    focus_on(lambda each: each.get_attribute("id") == "scenario-name")
+    press("by keys", Keys.ENTER)
+    page.until("Live.state.scenarios.length === 1")
+    page.tab("charts")
+    focus_on(lambda each: each.get_attribute("aria-label") == "Lower end of the range of Distance while responding")
+    article = next(each for each in page.all(".forecast") if each.text.startswith("Distance while responding"))
+    certainty = article.find_element("css selector", ".certainty")
+    low = float(certainty.get_attribute("data-low"))
+    press(Keys.ARROW_LEFT)
+    assert float(certainty.get_attribute("data-low")) < low
+
+
+def test_at_every_width_nothing_overflows_and_names_and_contrast_are_right(chromium, running, tmp_path):
+    page = Page(chromium, running(book=shutil.copy(SIMPLE, tmp_path / "case.xlsx")))
+    for width, height in WIDTHS:
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        chromium.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+        for tab in ("charts", "matters", "pairs", "tables", "scenarios", "studies"):
+            page.run("Live.right.choose(arguments[0])", tab)
+            if tab in ("matters", "tables"):
+                page.until(f"document.querySelectorAll('#panel-{tab} table').length")
+            assert page.run("return document.documentElement.scrollWidth <= innerWidth"), (width, tab)
+            unnamed = page.run(
+                "return [...document.querySelectorAll('button, input, select, [role=slider], [role=tab]')]"
+                ".filter((each) => each.checkVisibility() && !each.textContent.trim() && !each.ariaLabel"
+                " && !each.labels?.length).map((each) => each.outerHTML)"
+            )
+            assert unnamed == [], (width, tab)
+            if AXE is not None and (width, tab) in LOOKED_AT:
+                chromium.execute_cdp_cmd("Runtime.evaluate", {"expression": AXE.read_text(encoding="utf-8")})
+                found = chromium.execute_async_script(
+                    "axe.run(document).then(({violations}) => arguments[0](violations.map(({id, nodes}) => "
+                    "[id, nodes.map(({html}) => html.slice(0, 200))])))"
+                )
+                assert found == [], (width, tab)
+    chromium.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def test_names_of_a_hostile_workbook_are_text(chromium, running, tmp_path):
+    book = openpyxl.load_workbook(SIMPLE)
+    for sheet in book:
+        for table in sheet.tables.values():
+            if table.name in ("xlmc_assumptions", "xlmc_forecasts", "xlmc_filters"):
+                for row in list(sheet[table.ref])[1:]:
+                    row[0].value = f"{EVIL} {row[0].row}"
+    path = tmp_path / f"{EVIL.replace('/', '')}.xlsx"
+    book.save(path)
+    page = Page(chromium, running(book=path))
+    for tab in ("charts", "matters", "tables", "scenarios"):
+        page.run("Live.right.choose(arguments[0])", tab)
+        if tab in ("matters", "tables"):
+            page.until(f"document.querySelectorAll('#panel-{tab} table').length")
+    assert EVIL in page.one("#left").text
+    assert page.run("return window.stolen") is None
+    assert page.all("img") == []
+
+
+def test_the_start_page_opens_what_is_there_and_what_is_dropped(chromium, running, tmp_path):
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    shutil.copy(SIMPLE, folder / "mine.xlsx")
+    server = running(folder=folder)
+    chromium.get(server.server.link)
+    end = time.monotonic() + 20
+    while not (links := chromium.find_elements("css selector", "#books a")):
+        assert time.monotonic() < end
+    assert [each.text for each in links] == ["mine.xlsx"]
+    chromium.find_element("id", "file").send_keys(str(shutil.copy(SIMPLE, tmp_path / "other.xlsx")))
+    while "/book/" not in chromium.current_url:
+        assert time.monotonic() < end
+        time.sleep(0.05)
+    while not chromium.execute_script("return document.body?.dataset.stage === 'rest'"):
+        assert time.monotonic() < end
+        time.sleep(0.05)
+    assert chromium.find_element("id", "book").text == "other.xlsx"

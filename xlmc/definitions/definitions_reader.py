@@ -97,7 +97,7 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
     filters, own = _by_reach(filters, dialogs.filters, forecasts, findings)
     _remark_on_calls(calls, settings, findings)
     drawn = {each.cell for each in assumptions if not each.frozen}
-    what_if = tables_of_run(workbook, drawn, calls.results.keys() | calls.unavailable.keys(), calls.rewritten)
+    what_if = tables_of_run(workbook, drawn, calls.shown.keys() | calls.unavailable.keys(), calls.rewritten)
     remark_on_tables(workbook.data_tables, what_if, findings)
     unavailable = {**calls.unavailable, **dict.fromkeys(faults_of(workbook, what_if.stale), TABLE_REASON)}
     remark_on_unavailable(calls.unavailable, findings)
@@ -122,7 +122,7 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
         notices=tuple(findings.notices),
         problems=tuple(findings.problems),
         rewritten=rewritten,
-        results=tuple(calls.results),
+        results=calls.shown,
         unavailable=unavailable,
         checks=checks,
         evidence=evidence,

@@ -92,6 +92,7 @@ def read_in_cells(
     claims: Claims,
     findings: Findings,
     rows: Mapping[Cell, Cell] | None = None,
+    tabulated: int = 1,
 ) -> InCells:
     """Every call in the formulas of a workbook.
 
@@ -102,12 +103,13 @@ def read_in_cells(
         claims: takes the names of assumptions; those of the tables are taken.
         findings: takes remarks.
         rows: the calls that rows of a table stand for, each with the cell that is drawn in its place.
+        tabulated: which of its values every `RiskSimtable` gives, from 1.
     """
     found = InCells()
     resolver = Resolver(workbook, claims.cells)
     bases: dict[Cell, float | None] = {}
     for cell, formula in _suspects(workbook):
-        reading = CellReading(workbook, computed, lognorm, bases, cell, rows or {})
+        reading = CellReading(workbook, computed, lognorm, bases, cell, rows or {}, tabulated)
         try:
             found.rewritten[cell] = reading.rewrite(resolver.formula(cell, formula))
             _take(reading, found, claims, findings)

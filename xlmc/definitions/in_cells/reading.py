@@ -72,9 +72,10 @@ class CellReading:
         bases: dict[Cell, float | None],
         host: Cell,
         rows: Mapping[Cell, Cell],
+        tabulated: int = 1,
     ) -> None:
         self._workbook, self._computed, self._lognorm, self._bases = workbook, computed, lognorm, bases
-        self.host, self._rows = host, rows
+        self.host, self._rows, self._tabulated = host, rows, tabulated
         self.taken: set[Cell] = set()
         self.draws: dict[tuple[int, int], CellDraw] = {}
         self.trees: dict[Cell, ir.Expression] = {}
@@ -211,7 +212,7 @@ class CellReading:
     def _program_call(self, call: ir.Call) -> ir.Expression:
         """What stands instead of a call of Crystal Ball or @RISK."""
         if call.name in STAND_INS:
-            value, values = stand_in(call)
+            value, values = stand_in(call, self._tabulated)
             if values:
                 self.simtables.append(values)
             return substitute(value, self._replacement)

@@ -3,7 +3,7 @@
 | function | stands for |
 |---|---|
 | RiskMakeInput(formula) | the formula: what it draws is drawn as elsewhere |
-| RiskSimtable({values}) | the first of the values |
+| RiskSimtable({values}) | the first of the values; the others in scenarios of the run |
 
 Source: @RISK's manual, "Simulation Functions" and "Miscellaneous Functions".
 """
@@ -58,11 +58,15 @@ def unsupported(name: str) -> FormulaError:
     return FormulaError(f"the function {name} is not supported", hint=hint)
 
 
-def stand_in(call: ir.Call) -> tuple[ir.Expression, tuple[ir.Expression, ...]]:
+def stand_in(call: ir.Call, tabulated: int = 1) -> tuple[ir.Expression, tuple[ir.Expression, ...]]:
     """What a call of one of `STAND_INS` stands for, and the values of a `RiskSimtable`.
 
+    Args:
+        call: resolved.
+        tabulated: which of its values a `RiskSimtable` gives, from 1.
+
     Raises:
-        FormulaError: it has no argument, or more than it takes.
+        FormulaError: it has no argument, or more than it takes, or fewer values.
     """
     given = [argument for argument in call.arguments if not is_property(argument)]
     if len(given) != 1 or is_left_out(given[0]):
@@ -72,4 +76,7 @@ def stand_in(call: ir.Call) -> tuple[ir.Expression, tuple[ir.Expression, ...]]:
     if call.name != SIMTABLE:
         return given[0], ()
     values = tuple(elements(given[0]))
-    return values[0], values
+    if tabulated > len(values):
+        hint = "give every RiskSimtable as many values"
+        raise FormulaError(f"RiskSimtable has {len(values)} values, and value {tabulated} is asked for", hint=hint)
+    return values[tabulated - 1], values

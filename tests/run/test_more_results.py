@@ -64,6 +64,7 @@ OF_TRIALS = {
     "RiskPercentile(A3,0.5,RiskTruncateP(0.5,1))": lambda x, y: np.percentile(x[x >= np.median(x)], 50),
     "RiskTarget(A3,25,1,RiskTruncate(20,))": lambda x, y: np.mean(x[x >= 20] <= 25),
     "RiskMax(A3,,RiskTruncate(,30))": lambda x, y: x[x <= 30].max(),
+    "CB.GetForeDataFN(A3,3)": lambda x, y: x[2],
     "RiskMeanAbsDev(A3)": lambda x, y: np.abs(x - x.mean()).mean(),
     "RiskCorrel(A3,A5,1)": lambda x, y: np.corrcoef(x, y)[0, 1],
     'RiskCorrel("x","y",2)': lambda x, y: stats.spearmanr(x, y).statistic,

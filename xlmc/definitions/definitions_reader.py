@@ -22,7 +22,7 @@ from xlmc.definitions.definitions import (
 )
 from xlmc.definitions.in_cells.calls import InCells, in_cell_forecasts, read_in_cells
 from xlmc.definitions.in_cells.joined_draws import in_cell_copulas, in_cell_correlations
-from xlmc.definitions.in_cells.simtables import simtable_scenarios
+from xlmc.definitions.in_cells.stand_ins import simtable_scenarios
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.assumptions import read_assumptions
 from xlmc.definitions.tables.correlations import read_correlations

@@ -256,7 +256,9 @@ class CellReading:
     def _inner(self, tree: ir.Expression) -> Drawn | ir.Expression:
         """What an argument of `RiskCompound` draws; the argument itself, rewritten, where it is a value."""
         if isinstance(tree, ir.Call) and _is_draw_of_a_program(tree) and tree.name != COMPOUND:
-            return self._drawn(tree)
+            drawn = self._drawn(tree)
+            self.has_lognorm = self.has_lognorm or drawn.function == "RiskLognorm"
+            return drawn
         (rewritten,) = self._rewritten([tree])
         return rewritten
 

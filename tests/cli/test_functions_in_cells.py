@@ -60,9 +60,9 @@ def test_verify_says_what_cannot_be_compared(xlmc, risk_book):
 def test_a_result_that_cannot_be_computed_ends_with_exit_code_1(xlmc, risk_book):
     assert xlmc("simulate", risk_book, "-n", 500, "-o", "good.xlsx").code == 0
     book = load_workbook(risk_book)
-    book["S"]["A5"] = "=RiskCIMean(A2,0.95)"
+    book["S"]["A5"] = "=RiskCpk(A2,0.95)"
     book.save(risk_book)
     outcome = xlmc("simulate", risk_book, "-n", 500, "-o", "bad.xlsx")
     assert outcome.code == 1
-    assert "S!A5 (RiskCIMean is not computed by xlmc)" in " ".join((outcome.out + outcome.err).split())
+    assert "S!A5 (RiskCpk is not computed by xlmc)" in " ".join((outcome.out + outcome.err).split())
     assert load_workbook(risk_book.parent / "bad.xlsx", data_only=True)["S"]["A5"].value == "#N/A"

@@ -284,7 +284,7 @@ CELLS = {
     "A2": ("=A1*2+RiskOutput()", 10),
     "B1": ("=RiskMean(A2)", 0),
     "B2": ("=B1*2", 0),
-    "B3": ("=RiskCIMean(A2,0.9)", 77),
+    "B3": ("=RiskCpk(A2,0.9)", 77),
 }
 
 

@@ -245,22 +245,22 @@ def shown(run, path):
 MODEL = {"A1": ("=RiskNormal(5,1)", 5), "A2": ("=A1*2+RiskOutput()", 10)}
 
 NOT_COMPUTED = {
-    "_xll.RiskCIMean(A2,0.95,TRUE)": "RiskCIMean is not computed by xlmc",
-    "RiskCorrel(A1,A2,0)": "RiskCorrel is not computed by xlmc",
-    "RiskTheoMean(A1)": "RiskTheoMean is not computed by xlmc",
+    "_xll.RiskCpk(A2,0.95,TRUE)": "RiskCpk is not computed by xlmc",
+    "RiskPPMLower(A1)": "RiskPPMLower is not computed by xlmc",
+    "RiskTheoMode(A1)": "RiskTheoMode is not computed by xlmc",
     "RiskConvergenceLevel(A2)": "RiskConvergenceLevel is not computed by xlmc",
     "RiskSimulationInfo(1)": "RiskSimulationInfo is not computed by xlmc",
-    "[1]!CB.GetAssumPercentFN(A1,50)": "CB.GetAssumPercentFN is not computed by xlmc",
-    "CB.GetAssumFN(A1,1)": "CB.GetAssumFN is not computed by xlmc",
-    "CB.GetRunPrefsFN(1)": "CB.GetRunPrefsFN is not computed by xlmc",
-    "CB.IterationsFN()": "CB.IterationsFN is not computed by xlmc",
+    "[1]!CB.GetAssumStatFN(A1,50)": "CB.GetAssumStatFN is not computed by xlmc",
+    "CB.GetForeFN(A1,1)": "CB.GetForeFN is not computed by xlmc",
+    "CB.GetDecVarFN(1)": "CB.GetDecVarFN is not computed by xlmc",
+    "CB.CheckDataFN()": "CB.CheckDataFN is not computed by xlmc",
     "CB.NobodyKnowsFN(A2)": "the function CB.NOBODYKNOWSFN is not supported",
     "RiskNobodyKnows(A2)": "the function RISKNOBODYKNOWS is not supported",
-    "IFERROR(RiskCIMean(A2,0.95),1)": "RiskCIMean is not computed by xlmc",
-    "RiskMean(A2)+RiskCIMean(A2,0.95)": "RiskCIMean is not computed by xlmc",
+    "IFERROR(RiskCpk(A2,0.95),1)": "RiskCpk is not computed by xlmc",
+    "RiskMean(A2)+RiskCpk(A2,0.95)": "RiskCpk is not computed by xlmc",
     "RiskMean(A2)+RAND()": "the formula both draws and shows results of the run",
     "RiskMean(A2,2)": "RiskMean asks for another simulation than the first",
-    "RiskMean(A2,,RiskTruncate(1,2))": "RiskMean of a part of the values is not computed",
+    "RiskData(A2,1,RiskTruncate(1,2))": "RiskData of a part of the values is not computed",
     "CB.GetForeStatFN(A2,2,3)": "CB.GetForeStatFN has 1 arguments too many",
     "RiskMean(A1:A2)": "RiskMean must name the cell of an output first",
     "RiskPercentile(A2)": "RiskPercentile has 1 arguments",
@@ -302,7 +302,7 @@ DEPENDANTS = {
 }
 
 
-@pytest.mark.parametrize("function", ["RiskCIMean(A2,0.95)", "NoSuchFunction(RiskMean(A2))"])
+@pytest.mark.parametrize("function", ["RiskCpk(A2,0.95)", "NoSuchFunction(RiskMean(A2))"])
 @pytest.mark.parametrize("formula", DEPENDANTS.values(), ids=DEPENDANTS)
 def test_whatever_depends_on_such_a_cell_shows_not_available(tmp_path, formula, function):
     path = tmp_path / "book.xlsx"
@@ -375,7 +375,7 @@ def test_an_array_formula_that_cannot_be_computed(tmp_path):
         book.add_worksheet("Other")
         for address, (text, value) in MODEL.items():
             sheet.write_formula(address, text, None, value)
-        sheet.write_array_formula("B1:B2", "{=RiskCIMean(A2,0.95)*{1;2}}", None, STALE)
+        sheet.write_array_formula("B1:B2", "{=RiskCpk(A2,0.95)*{1;2}}", None, STALE)
         sheet.write_number("B2", STALE)
         sheet.write_formula("C1", "=B2", None, STALE)
         sheet.write_formula("D1", "=RiskMax(A2)", None, STALE)
@@ -397,15 +397,15 @@ def test_a_draw_that_xlmc_does_not_know_keeps_its_base_case(tmp_path):
 
 
 def test_the_fingerprint_of_the_original_stays(tmp_path):
-    run = run_of(tmp_path / "book.xlsx", {"B1": ("=RiskCIMean(A2,0.95)", STALE), "B2": ("=B1*2", STALE)})
+    run = run_of(tmp_path / "book.xlsx", {"B1": ("=RiskCpk(A2,0.95)", STALE), "B2": ("=B1*2", STALE)})
     run.save(tmp_path / "out.xlsx")
     hashes = [original_hash(read_parts((tmp_path / name).read_bytes())) for name in ("book.xlsx", "out.xlsx")]
     assert hashes[0] == hashes[1]
 
 
 def test_a_forecast_cannot_depend_on_such_a_cell(tmp_path):
-    cells = {"A3": ("=A1+B1+RiskOutput()", 1), "B1": ("=RiskCIMean(A2,0.95)", STALE)}
-    with pytest.raises(FormulaError, match="S!B1: RiskCIMean is not computed by xlmc"):
+    cells = {"A3": ("=A1+B1+RiskOutput()", 1), "B1": ("=RiskCpk(A2,0.95)", STALE)}
+    with pytest.raises(FormulaError, match="S!B1: RiskCpk is not computed by xlmc"):
         xlmc.load(build(tmp_path / "book.xlsx", {**MODEL, **cells}))
 
 
@@ -432,7 +432,7 @@ OF_THE_RUN = {
     "its input is an assumption": {"cells": {"A1": ("=RiskNormal(5,1)", 5)}, "header": ("=7", 7)},
     "its formula shows a result": {"source": "F1", "header": ("=RiskMean(A2)", 77)},
     "its formula depends on a result": {"source": "F1", "header": ("=B1", 77), "cells": {"B1": ("=RiskMean(A2)", 77)}},
-    "its formula cannot be computed": {"source": "F1", "header": ("=RiskCIMean(A2,0.9)", 77)},
+    "its formula cannot be computed": {"source": "F1", "header": ("=RiskCpk(A2,0.9)", 77)},
     "its formula looks for its cells, and there are results": {
         "source": "F1",
         "header": ('=INDIRECT("B1")', 10),

@@ -248,12 +248,12 @@ class Definitions:
 
     `problems` are the mistakes found, each with its cell; a run is refused while there are any. `rewritten` are the
     formulas in which calls stand for assumptions (`=10+RiskNormal(5,1)`), with assumptions instead of the calls, or why
-    a cell cannot be computed; `results` are the cells that show results of the run, and `unavailable` are those that
-    should, or belong to a what-if table of the run, and cannot be computed, each with the reason. `evidence` are the
-    rows of `xlmc_evidence`; those that are used are also among `filters`. `refused` says why forecasts that the
-    workbook asks for cannot be computed, and what else was lost, while the others can be run; `left_out`
-    are these forecasts and what filters of theirs. `forecast_filters` are
-    filters of some forecasts only, which are not among `filters`.
+    a cell cannot be computed; `results` are the cells that show results of the run, each with its formula. The cells
+    `unavailable` should, or belong to a what-if table of the run, and cannot be computed, each with the reason.
+    `evidence` are the rows of `xlmc_evidence`; those that are used are also among `filters`. `refused` says why
+    forecasts that the workbook asks for cannot be computed, and what else was lost, while the others can be run;
+    `left_out` are these forecasts and what filters of theirs. `forecast_filters` are filters of some forecasts only,
+    which are not among `filters`.
     """
 
     assumptions: tuple[Assumption, ...] = ()
@@ -265,7 +265,7 @@ class Definitions:
     notices: tuple[Notice, ...] = ()
     problems: tuple[DefinitionError, ...] = ()
     rewritten: Mapping[Cell, Expression | FormulaError] = field(default_factory=dict)
-    results: tuple[Cell, ...] = ()
+    results: Mapping[Cell, Expression] = field(default_factory=dict)
     unavailable: Mapping[Cell, str] = field(default_factory=dict)
     checks: tuple[Check, ...] = ()
     evidence: tuple[Evidence, ...] = ()

@@ -22,6 +22,7 @@ from xlmc.definitions.definitions import (
 )
 from xlmc.definitions.in_cells.calls import InCells, in_cell_forecasts, read_in_cells
 from xlmc.definitions.in_cells.joined_draws import in_cell_copulas, in_cell_correlations
+from xlmc.definitions.in_cells.stand_ins import simtable_scenarios
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.assumptions import read_assumptions
 from xlmc.definitions.tables.correlations import read_correlations
@@ -50,7 +51,7 @@ __all__ = ["read_definitions"]
 SAVE_AGAIN: Final = "Open the workbook in Excel with Crystal Ball, and save it again"
 
 
-def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definitions:
+def read_definitions(workbook: Workbook, engines: Collection[str], tabulated: int = 1) -> Definitions:
     """What the tables `xlmc_assumptions`, `xlmc_forecasts`, … of a workbook say, and calls such as `RiskNormal`.
 
     Nothing is raised for a mistake in them: all mistakes are in `problems`, each with its cell and what to do.
@@ -58,6 +59,7 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
     Args:
         workbook: that was read.
         engines: the names that its setting Engine may have.
+        tabulated: which of its values every `RiskSimtable` gives, from 1.
     """
     findings = Findings()
     tables = definition_tables(workbook, findings)
@@ -76,7 +78,7 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
     else:
         dialogs = read_dialogs(workbook, computed, central, uncertain, answers, findings)
     rows = _rows_for_calls(assumptions, findings)
-    calls = read_in_cells(workbook, computed, settings.lognorm or "@RISK", uncertain, findings, rows)
+    calls = read_in_cells(workbook, computed, settings.lognorm or "@RISK", uncertain, findings, rows, tabulated)
     _refuse_lost_calls(assumptions, calls.taken, findings)
     if not dialogs.stored:
         remark_on_lost_data(workbook, bool(calls or any(tables.values())), findings)
@@ -97,7 +99,7 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
     filters, own = _by_reach(filters, dialogs.filters, forecasts, findings)
     _remark_on_calls(calls, settings, findings)
     drawn = {each.cell for each in assumptions if not each.frozen}
-    what_if = tables_of_run(workbook, drawn, calls.results.keys() | calls.unavailable.keys(), calls.rewritten)
+    what_if = tables_of_run(workbook, drawn, calls.shown.keys() | calls.unavailable.keys(), calls.rewritten)
     remark_on_tables(workbook.data_tables, what_if, findings)
     unavailable = {**calls.unavailable, **dict.fromkeys(faults_of(workbook, what_if.stale), TABLE_REASON)}
     remark_on_unavailable(calls.unavailable, findings)
@@ -112,6 +114,7 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
     elif not (forecasts or refused):
         _refuse_none(workbook, "forecast", tables["xlmc_forecasts"], findings)
     scenarios = read_scenarios(workbook, tables, assumptions, (*filters, *own), findings)
+    scenarios = *scenarios, *simtable_scenarios(calls.simtables, findings)
     return Definitions(
         assumptions=assumptions,
         forecasts=forecasts,
@@ -122,7 +125,7 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
         notices=tuple(findings.notices),
         problems=tuple(findings.problems),
         rewritten=rewritten,
-        results=tuple(calls.results),
+        results=calls.shown,
         unavailable=unavailable,
         checks=checks,
         evidence=evidence,
@@ -136,11 +139,6 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
 def _remark_on_calls(calls: InCells, settings: Settings, findings: Findings) -> None:
     for name, cell in calls.idle.items():
         findings.notice(f"{name} has no effect: every draw has its own stream, by its name and the run's seed", cell)
-    for cell, tables in calls.simtables.items():
-        count = max(map(len, tables))
-        message = f"RiskSimtable has {count} values, and this run uses the first"
-        if count > 1:
-            findings.notice(message, cell)
     if calls.lognorms and not settings.lognorm:
         message = (
             "RiskLognorm is read as @RISK's: its numbers are the mean and standard deviation of the draw. XLRisk means "

@@ -82,12 +82,14 @@ def new_tables(workbook: Workbook, definitions: Definitions) -> list[NewTable]:
 
     drawn = [each for each in definitions.assumptions if isinstance(each.cell, InFormula) or is_new(each.row)]
     calls = [each for each in drawn if isinstance(each.cell, InFormula)]
+    joined = {name for copula in definitions.copulas for name in copula.names}  # no table says a copula
+    rows = [each for each in calls if each.name not in joined and _can_be_a_row(each)]
     written = _Written(workbook, definitions)
     filters = [each for each in _filters(definitions) if is_new(each.row)]
     answers = (*definitions.forecasts, *(each for each in definitions.left_out if isinstance(each, Forecast)))
     made = [
         NewTable("xlmc_assumptions", tuple(map(written.dialog, (each for each in drawn if each not in calls)))),
-        NewTable("xlmc_assumptions", tuple(map(written.call, filter(_can_be_a_row, calls)))),
+        NewTable("xlmc_assumptions", tuple(map(written.call, rows))),
         NewTable("xlmc_forecasts", tuple(map(written.forecast, (f for f in answers if is_new(f.row))))),
         NewTable("xlmc_filters", tuple(map(written.filter, filters))),
         NewTable("xlmc_correlations", tuple(map(written.correlation, _new_pairs(definitions, is_new)))),

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from xlmc.address import Cell
 from xlmc.workbook.workbook import CellValue
 
-__all__ = ["Band", "Change", "Drawn", "Held", "Limits", "Numbers", "Range", "Scenario", "Typed"]
+__all__ = ["Band", "Change", "Drawn", "Held", "Limits", "Numbers", "Range", "Scenario", "Tabulated", "Typed"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +87,20 @@ class Typed:
     named: str = ""
 
 
-Change = Held | Drawn | Range | Band | Numbers | Limits | Typed
+@dataclass(frozen=True, slots=True)
+class Tabulated:
+    """Every `RiskSimtable` gives another of its values: the first, the second, …
+
+    Attributes:
+        values: in words, such as `S!B2 20`.
+    """
+
+    number: int
+    values: str = ""
+    where: Cell | None = None
+
+
+Change = Held | Drawn | Range | Band | Numbers | Limits | Typed | Tabulated
 """One change. `where` is the cell that asks for it, for messages; None where a program does."""
 
 

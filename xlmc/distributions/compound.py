@@ -59,13 +59,14 @@ class Part:
         """Its parameters, with its name before theirs."""
         if self.family is None:
             return (self._spec("", self.name.capitalize()),)
-        found = [self._spec(spec.key, f"{self.name.capitalize()}: {spec.heading}") for spec in self.family.parameters]
+        named = f"{self.name.capitalize()} ({self.family.name})"
+        found = [self._spec(spec.key, f"{named}: {spec.heading}") for spec in self.family.parameters]
         for given, key, heading in (
             (self.lower, "lower cutoff", "lower cutoff"),
             (self.upper, "upper cutoff", "upper cutoff"),
             (self.shifted, "shift", "shift"),
         ):
-            found += [self._spec(key, f"{self.name.capitalize()}: {heading}")] * given
+            found += [self._spec(key, f"{named}: {heading}")] * given
         return tuple(found)
 
     def _spec(self, key: str, heading: str) -> ParameterSpec:

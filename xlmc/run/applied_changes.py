@@ -26,7 +26,7 @@ import numpy as np
 
 from xlmc.address import Cell
 from xlmc.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Parameter, name_key
-from xlmc.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Typed
+from xlmc.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Tabulated, Typed
 from xlmc.definitions.tables.changed_cells import cells_that_change
 from xlmc.definitions.tables.filters import LIMITS, contradiction
 from xlmc.distributions.spelling import did_you_mean
@@ -61,7 +61,7 @@ def applied(model: Model, changes: Iterable[Change]) -> Model:
     cells = changed_cells(before, definitions)[0]
     workbook = with_values(before.workbook, cells)
     if before.reads_elsewhere(cells):
-        again = build_model(workbook, model.path)
+        again = build_model(workbook, model.path, _tabulated(changes))
         definitions = _merged(again.definitions, before.definitions, definitions)
         before = again
     found = before.changed(workbook, definitions)
@@ -90,12 +90,19 @@ def _typed(changes: Iterable[Change]) -> dict[Cell, CellValue]:
 
 
 def _with_typed(model: Model, changes: Sequence[Change]) -> Model:
-    """The model with what is typed into cells, before any other change."""
+    """The model with what is typed into cells, or tabulated, before any other change."""
     for change in changes:
         if isinstance(change, Typed):
             _refuse_cell(model, change)
-    typed = _typed(changes)
-    return build_model(with_values(model.workbook, typed), model.path) if typed else model
+    typed, tabulated = _typed(changes), _tabulated(changes)
+    if not typed and tabulated == 1:
+        return model
+    return build_model(with_values(model.workbook, typed), model.path, tabulated)
+
+
+def _tabulated(changes: Iterable[Change]) -> int:
+    """Which of its values every `RiskSimtable` gives."""
+    return next((change.number for change in changes if isinstance(change, Tabulated)), 1)
 
 
 def _filters_of(model: Model) -> tuple[Filter, ...]:
@@ -154,7 +161,7 @@ def _changed(model: Model, changes: Iterable[Change]) -> Definitions:
                 raise DefinitionError(message, where=change.where or evidence.row, hint=hint)
             filters[key] = replace(filters[key], **change.values)  # type: ignore[arg-type]  # the keys are of limits
             _refuse_contradiction(filters[key], change)
-        elif not isinstance(change, Typed):
+        elif not isinstance(change, Typed | Tabulated):
             key = _known(change.assumption, assumptions, "assumption", change)
             assumptions[key] = _other(assumptions[key], change, model.lowering)
             last[key] = change

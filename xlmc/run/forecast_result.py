@@ -78,6 +78,24 @@ class ForecastResult:
             None if replicate is None else replicate[known],
         )
 
+    @property
+    def column(self) -> Floats:
+        """`(m,)` all accepted trials; NaN where it is no number."""
+        return self._column()
+
+    def between(self, low: float, high: float) -> ForecastResult:
+        """The part of the values from one number to another, both included."""
+
+        def part() -> Floats:
+            column = self._column()
+            return np.where((column >= low) & (column <= high), column, np.nan)
+
+        return ForecastResult(self.definition, part, Counter(), self._replicate)
+
+    def mean_interval(self, confidence: float) -> tuple[float, float] | None:
+        """Both ends of the interval that holds the mean with this probability; None where the trials are too few."""
+        return statistics.mean(self.sample, confidence=confidence).interval
+
     def __repr__(self) -> str:
         return f"<{self.definition.name}: {self.values.size} accepted trials>"
 

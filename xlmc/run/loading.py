@@ -45,8 +45,13 @@ def load(path: str | Path) -> Model:
         return build_model(read_workbook(path), Path(path))
 
 
-def build_model(workbook: Workbook, path: Path) -> Model:
+def build_model(workbook: Workbook, path: Path, tabulated: int = 1) -> Model:
     """The model of a workbook that was read.
+
+    Args:
+        workbook: that was read.
+        path: where it is.
+        tabulated: which of its values every `RiskSimtable` gives, from 1.
 
     Raises:
         DefinitionError: a definition is not what it must be; all faulty ones are listed.
@@ -54,7 +59,7 @@ def build_model(workbook: Workbook, path: Path) -> Model:
     """
     with paused_collection():
         workbook = calculate_labels(workbook)
-        definitions = read_definitions(workbook, ENGINES)
+        definitions = read_definitions(workbook, ENGINES, tabulated)
         if definitions.problems:
             raise _joined(definitions.problems)
         model = Model(workbook, definitions, path)

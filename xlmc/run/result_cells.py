@@ -13,10 +13,16 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.address import Cell
-from xlmc.definitions.definitions import name_key
+from xlmc.address import Cell, host_of
+from xlmc.definitions.definitions import Assumption, name_key
 from xlmc.definitions.in_cells.call_arguments import number_of
-from xlmc.definitions.in_cells.result_functions import CRYSTAL_BALL_STATISTICS, ResultCall, is_result, result_call
+from xlmc.definitions.in_cells.result_functions import (
+    CRYSTAL_BALL_STATISTICS,
+    Limits,
+    ResultCall,
+    is_result,
+    result_call,
+)
 from xlmc.definitions.unavailable import areas_text
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.graph.arrays import size_of
@@ -25,10 +31,12 @@ from xlmc.formula import Graph, Resolver, build_graph, ir
 from xlmc.formula.precedents import mentioned
 from xlmc.formula.substitute import substitute
 from xlmc.run.forecast_result import ForecastResult
+from xlmc.sampling.draws import Draw
+from xlmc.statistics import rank_correlation
 from xlmc.workbook.injection.formula_values import with_values
 from xlmc.workbook.workbook import CellValue, Workbook
 
-__all__ = ["ShownResults", "filled_sheets", "recalculated", "shown_results"]
+__all__ = ["RunFacts", "ShownResults", "filled_sheets", "recalculated", "shown_results"]
 
 _ANYWHERE: Final = re.compile(r"\b(?:OFFSET|INDIRECT|CELL)\s*\(", re.IGNORECASE)
 """Functions that look for their cells while they are computed."""
@@ -77,19 +85,41 @@ def filled_sheets(workbook: Workbook, shown: ShownResults) -> dict[str, bytes]:
     return {parts[name]: with_values(workbook.parts[parts[name]], parts[name], by_sheet[name]) for name in by_sheet}
 
 
+@dataclass(frozen=True, slots=True)
+class RunFacts:
+    """What of a run cells may ask for beside its forecasts.
+
+    Attributes:
+        trials: that were run.
+        most: that were asked for.
+        assumptions: of the workbook.
+        draws: name of an assumption -> how it is drawn, as far as it is.
+    """
+
+    trials: int
+    most: int
+    assumptions: Sequence[Assumption]
+    draws: Mapping[str, Draw]
+
+
 def shown_results(
-    workbook: Workbook, cells: Iterable[Cell], unavailable: Mapping[Cell, str], results: Iterable[ForecastResult]
+    workbook: Workbook,
+    formulas: Mapping[Cell, ir.Expression],
+    unavailable: Mapping[Cell, str],
+    results: Iterable[ForecastResult],
+    run: RunFacts,
 ) -> ShownResults:
     """The values of the cells that show results, and of those that depend on them.
 
     Args:
         workbook: of the run.
-        cells: that show results.
+        formulas: of the cells that show results.
         unavailable: those that should, and cannot -> why.
         results: of the forecasts.
+        run: whose results they are.
     """
-    answers = _Answers(workbook, tuple(results))
-    trees = {cell: answers.formula(cell) for cell in cells if cell not in unavailable}
+    answers = _Answers(workbook, tuple(results), run)
+    trees = {cell: answers.formula(tree) for cell, tree in formulas.items() if cell not in unavailable}
     return _Showing(workbook, trees, unavailable).found() if trees or unavailable else ShownResults()
 
 
@@ -261,30 +291,40 @@ def _faults(lowering: Lowering) -> dict[Cell, str]:
 class _Answers:
     """What the calls that ask for results get."""
 
-    def __init__(self, workbook: Workbook, results: Sequence[ForecastResult]) -> None:
-        self._workbook, self._results = workbook, results
+    def __init__(self, workbook: Workbook, results: Sequence[ForecastResult], run: RunFacts) -> None:
+        self._workbook, self._results, self._run = workbook, results, run
 
-    def formula(self, cell: Cell) -> ir.Expression:
-        """The formula of a cell with the results instead of the calls that ask for them."""
-        formula = self._workbook.content(cell).formula
-        assert formula is not None  # a call was found in it
+    def formula(self, tree: ir.Expression) -> ir.Expression:
+        """A formula with the results instead of the calls that ask for them."""
         return substitute(
-            Resolver(self._workbook).formula(cell, formula),
+            tree,
             lambda part: self._answer(result_call(part)) if isinstance(part, ir.Call) and is_result(part) else None,
         )
 
     def _answer(self, asked: ResultCall) -> ir.Expression:
-        """What a call shows: a number, or an error where there is none."""
-        result = self._result(asked.of)
-        if result is None or result.values.size == 0:
-            return ir.ErrorLiteral(ErrorCode.NA)
+        """What a call shows: a number or a text, or an error where there is none."""
         number = None
         if asked.number is not None:
-            number = number_of(asked.number, lambda cell: _saved_number(self._workbook, cell))
+            number = self._number(asked.number)
             if number is None:
                 return ir.ErrorLiteral(ErrorCode.VALUE)
-        value = _statistic(result, asked.what, number)
+        if asked.what in ("assumption", "percent of the assumption"):
+            return self._of_assumption(asked, number)
+        if asked.of is None:
+            if asked.what == "preference" and number != 1:
+                return ir.ErrorLiteral(ErrorCode.NA)
+            return ir.Number(float(self._run.trials if asked.what == "trials run" else self._run.most))
+        result = self._result(asked.of)
+        if result is not None and asked.limits is not None:
+            result = self._between(result, asked.limits)
+        other = None if asked.other is None else self._result(asked.other)
+        if result is None or result.values.size == 0 or (asked.other is not None and other is None):
+            return ir.ErrorLiteral(ErrorCode.NA)
+        value = _statistic(result, asked, number) if other is None else _correlation(result, other, number)
         return ir.ErrorLiteral(ErrorCode.NUM) if value is None or not np.isfinite(value) else ir.Number(value)
+
+    def _number(self, tree: ir.Expression) -> float | None:
+        return number_of(tree, lambda cell: _saved_number(self._workbook, cell))
 
     def _result(self, of: Cell | str) -> ForecastResult | None:
         for result in self._results:
@@ -293,9 +333,46 @@ class _Answers:
                 return result
         return None
 
+    def _between(self, result: ForecastResult, limits: Limits) -> ForecastResult | None:
+        """The part of the values that a call asks about; None where its limits are no numbers."""
+        ends = [None if end is None else self._number(end) for end in (limits.lower, limits.upper)]
+        if any(end is None for end, tree in zip(ends, (limits.lower, limits.upper), strict=True) if tree is not None):
+            return None
+        if limits.percents:
+            if not all(end is None or 0 <= end <= 1 for end in ends):
+                return None
+            ends = [None if end is None else result.percentile(100 * end).value for end in ends]
+        low, high = (given if given is not None else end for given, end in zip(ends, (-np.inf, np.inf), strict=True))
+        return result.between(low, high)
 
-def _statistic(result: ForecastResult, what: str, number: float | None) -> float | None:
+    def _of_assumption(self, asked: ResultCall, number: float | None) -> ir.Expression:
+        """A percentile of an assumption's distribution; its name (1), or its cutoffs (6 and 7)."""
+        found = [
+            a
+            for a in self._run.assumptions
+            if asked.of in (a.cell, host_of(a.cell))
+            or (isinstance(asked.of, str) and name_key(asked.of) == name_key(a.name))
+        ]
+        if len(found) != 1 or number is None:
+            return ir.ErrorLiteral(ErrorCode.NA)
+        (assumption,) = found
+        draw = self._run.draws.get(assumption.name) or assumption.checked
+        if asked.what == "assumption":
+            if number == 1:
+                return ir.Text(assumption.name)
+            cutoff = assumption.cutoffs.get({6: "lower_cutoff", 7: "upper_cutoff"}.get(int(number), ""))
+            return ir.Number(cutoff) if isinstance(cutoff, float) else ir.ErrorLiteral(ErrorCode.NA)
+        if draw is None or not draw.fixed or not 0 <= number <= 100:
+            return ir.ErrorLiteral(ErrorCode.NUM)
+        value = float(draw.percentiles(np.array([number / 100]), {})[0])
+        return ir.Number(value) if np.isfinite(value) else ir.ErrorLiteral(ErrorCode.NUM)
+
+
+def _statistic(result: ForecastResult, asked: ResultCall, number: float | None) -> float | None:
     """One number of a result; None where there is no such percentile, trial or statistic."""
+    what = asked.what
+    if what == "mean_absolute_deviation":
+        return float(np.mean(np.abs(result.values - result.values.mean())))
     if number is None:
         return _by_name(result, what)
     match what:
@@ -314,8 +391,23 @@ def _statistic(result: ForecastResult, what: str, number: float | None) -> float
         case "trial":
             held = number.is_integer() and 1 <= number <= result.values.size
             return float(result.values[int(number) - 1]) if held else None
+        case "confidence":
+            ends = result.mean_interval(number) if 0 < number < 1 else None
+            return None if ends is None else ends[asked.upper]
         case _:
             raise ValueError(what)
+
+
+def _correlation(first: ForecastResult, second: ForecastResult, kind: float | None) -> float | None:
+    """Pearson's (1) or Spearman's (2) of the trials in which both are numbers; None for any other kind."""
+    x, y = first.column, second.column
+    both = ~(np.isnan(x) | np.isnan(y))
+    if both.sum() < 2 or kind not in (1, 2):
+        return None
+    if kind == 2:
+        return rank_correlation(x[both], y[both]).value
+    with np.errstate(all="ignore"):
+        return float(np.corrcoef(x[both], y[both])[0, 1])
 
 
 def _by_name(result: ForecastResult, what: str) -> float:

@@ -21,7 +21,7 @@ from xlmc.run.cell_errors import Root, error_roots
 from xlmc.run.checking import CheckResult, check_results
 from xlmc.run.digit_watch import lost_digits
 from xlmc.run.forecast_result import ForecastResult, Replicates, tail_notices
-from xlmc.run.result_cells import ShownResults, shown_results
+from xlmc.run.result_cells import RunFacts, ShownResults, shown_results
 from xlmc.run.stopping import Stopped
 from xlmc.run.stopping.stopped import ALL_TRIALS
 from xlmc.run.weighing import Weighting, weighting_of
@@ -245,7 +245,8 @@ class Simulation:
     def shown_results(self) -> ShownResults:
         """What the workbook's own cells show of this run, `=RiskMean(B9)` and all that depends on it."""
         asked = self.model.definitions
-        return shown_results(self.model.workbook, asked.results, asked.unavailable, self.results.values())
+        run = RunFacts(self.trials, self.plan.trials, self.model.assumptions, self.model.draws)
+        return shown_results(self.model.workbook, asked.results, asked.unavailable, self.results.values(), run)
 
     @cached_property
     def error_roots(self) -> dict[Cell, Root]:

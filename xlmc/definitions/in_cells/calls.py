@@ -54,6 +54,7 @@ class InCells:
         rewritten: the formulas with assumptions instead of calls; or why a cell cannot be computed.
         draws: name of an assumption -> what its call says beside the distribution.
         results: the cells that show results -> what they ask for.
+        shown: the cells that show results, or numbers of distributions -> their formula, with the latter.
         unavailable: the cells that should show results and cannot -> why.
         idle: property functions without an effect -> the first cell that has one.
         lognorms: the cells with `RiskLognorm`.
@@ -66,6 +67,7 @@ class InCells:
     rewritten: dict[Cell, ir.Expression | FormulaError] = field(default_factory=dict)
     draws: dict[str, CellDraw] = field(default_factory=dict)
     results: dict[Cell, list[ResultCall]] = field(default_factory=dict)
+    shown: dict[Cell, ir.Expression] = field(default_factory=dict)
     unavailable: dict[Cell, str] = field(default_factory=dict)
     idle: dict[str, Cell] = field(default_factory=dict)
     lognorms: list[Cell] = field(default_factory=list)
@@ -90,6 +92,7 @@ def read_in_cells(
     claims: Claims,
     findings: Findings,
     rows: Mapping[Cell, Cell] | None = None,
+    tabulated: int = 1,
 ) -> InCells:
     """Every call in the formulas of a workbook.
 
@@ -100,12 +103,13 @@ def read_in_cells(
         claims: takes the names of assumptions; those of the tables are taken.
         findings: takes remarks.
         rows: the calls that rows of a table stand for, each with the cell that is drawn in its place.
+        tabulated: which of its values every `RiskSimtable` gives, from 1.
     """
     found = InCells()
     resolver = Resolver(workbook, claims.cells)
     bases: dict[Cell, float | None] = {}
     for cell, formula in _suspects(workbook):
-        reading = CellReading(workbook, computed, lognorm, bases, cell, rows or {})
+        reading = CellReading(workbook, computed, lognorm, bases, cell, rows or {}, tabulated)
         try:
             found.rewritten[cell] = reading.rewrite(resolver.formula(cell, formula))
             _take(reading, found, claims, findings)
@@ -117,6 +121,8 @@ def read_in_cells(
                 found.unavailable[cell] = reading.unavailable or refused.message
         if reading.asked:
             found.results[cell] = reading.asked
+        if reading.shown is not None and (reading.asked or not isinstance(found.rewritten[cell], FormulaError)):
+            found.shown[cell] = reading.shown
     return found
 
 
@@ -218,16 +224,17 @@ def in_cell_forecasts(
     shown = []
     for cell, asked in found.results.items():
         for each in asked:
-            if isinstance(each.of, str):
-                _remark_on_name(each.of, each.function, cell, claims, findings)
-            elif not computed.at_all(each.of):
-                message = f"{each.function} asks for results of {each.of}, which nothing computes: nothing is shown"
-                findings.notice(message, cell)
-            elif each.of not in claims.cells:
-                message = f"{each.of} is taken for a forecast, because {each.function} shows results of it"
-                findings.notice(message, cell)
-                name = _take_forecast(str(each.of), each.of, claims, findings)
-                shown.append(Forecast(name, each.of, cell, central=central))
+            for of in each.forecasts:
+                if isinstance(of, str):
+                    _remark_on_name(of, each.function, cell, claims, findings)
+                elif not computed.at_all(of):
+                    message = f"{each.function} asks for results of {of}, which nothing computes: nothing is shown"
+                    findings.notice(message, cell)
+                elif of not in claims.cells:
+                    message = f"{of} is taken for a forecast, because {each.function} shows results of it"
+                    findings.notice(message, cell)
+                    name = _take_forecast(str(of), of, claims, findings)
+                    shown.append(Forecast(name, of, cell, central=central))
     return [*outputs, *shown]
 
 

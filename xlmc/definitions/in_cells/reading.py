@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 from xlmc.address import Area, Cell, InFormula
 from xlmc.definitions.computed import Computed
-from xlmc.definitions.definitions import Assumption, DataRange, Parameter
+from xlmc.definitions.definitions import CUTOFFS, Assumption, DataRange, Parameter
 from xlmc.definitions.in_cells.call_arguments import difference, is_left_out, number_of, total
 from xlmc.definitions.in_cells.call_draws import Drawn, Properties, base_of, built_family, percentile_cutoffs
 from xlmc.definitions.in_cells.compound_calls import COMPOUND, compound_of
@@ -17,13 +19,17 @@ from xlmc.definitions.in_cells.result_functions import NOT_COMPUTED, ResultCall,
 from xlmc.definitions.in_cells.risk_functions import risk_draw
 from xlmc.definitions.in_cells.risk_properties import is_property, properties_of
 from xlmc.definitions.in_cells.stand_ins import STAND_INS, stand_in, unsupported
+from xlmc.definitions.in_cells.theory import THEORETICAL, Distribution, theoretical
 from xlmc.definitions.tables.fields import number_in, static_value
 from xlmc.definitions.tables.table_rows import as_text, is_blank
 from xlmc.distributions import FAMILIES
 from xlmc.errors import FormulaError
 from xlmc.formula import Resolver, formula_text, ir
 from xlmc.formula.substitute import is_bound, substitute
+from xlmc.sampling.draws import Draw
 from xlmc.workbook.workbook import Workbook
+
+_THEORY: Final = {name.upper(): name for name in THEORETICAL}
 
 __all__ = ["CellDraw", "CellReading", "Output"]
 
@@ -54,6 +60,7 @@ class CellReading:
         trees: of the arguments that are expressions, by the cells that stand for them.
         output, asked, idle, has_lognorm, taken: see `in_cells.InCells`.
         simtables: the values of each `RiskSimtable`.
+        shown: the formula of a cell that shows results, or numbers of distributions, with these; None for another.
         unavailable: why it cannot show the results that it should show; empty where it can, or should show none.
     """
 
@@ -65,19 +72,22 @@ class CellReading:
         bases: dict[Cell, float | None],
         host: Cell,
         rows: Mapping[Cell, Cell],
+        tabulated: int = 1,
     ) -> None:
         self._workbook, self._computed, self._lognorm, self._bases = workbook, computed, lognorm, bases
-        self.host, self._rows = host, rows
+        self.host, self._rows, self._tabulated = host, rows, tabulated
         self.taken: set[Cell] = set()
         self.draws: dict[tuple[int, int], CellDraw] = {}
         self.trees: dict[Cell, ir.Expression] = {}
         self.output: Output | None = None
         self.asked: list[ResultCall] = []
         self.unavailable = ""
+        self.shown: ir.Expression | None = None
         self.idle: tuple[str, ...] = ()
         self.has_lognorm = False
         self.simtables: list[tuple[ir.Expression, ...]] = []
         self._count = self._depth = 0
+        self._has_theory = False
 
     def rewrite(self, tree: ir.Expression) -> ir.Expression:
         """The formula with assumptions instead of calls.
@@ -85,8 +95,69 @@ class CellReading:
         Raises:
             FormulaError: a call is not supported or not what it must be, or shows results of the run.
         """
-        self._find_results(tree)
-        return substitute(tree, self._replacement)
+        known = substitute(tree, self._theory)
+        self.shown = None if _draws(known) else known
+        self._find_results(known)
+        if not self._has_theory:
+            self.shown = None
+        return substitute(known, self._replacement)
+
+    def _theory(self, part: ir.Expression) -> ir.Expression | None:
+        """The number that a function of a distribution itself is.
+
+        Raises:
+            FormulaError: its distribution is not known before the run.
+        """
+        if not isinstance(part, ir.Call) or part.name not in _THEORY:
+            return None
+        function, self._has_theory = _THEORY[part.name], True
+        try:
+            return ir.Number(self._theoretical(function, part.arguments))
+        except FormulaError as error:
+            self.unavailable = error.message
+            raise
+
+    def _theoretical(self, function: str, arguments: Sequence[ir.Expression]) -> float:
+        count = THEORETICAL[function][0]
+        if len(arguments) != count + 1:
+            takes = "a distribution, or its cell" + ", and a number" * count
+            raise FormulaError(f"{function} has {len(arguments)} arguments", hint=f"it takes {takes}")
+        number = number_of(arguments[1], self._saved_number) if count else 0.0
+        if number is None:
+            raise FormulaError(f"{function} needs a number", hint="write it, or name a cell that holds one")
+        return theoretical(function, self._distribution(function, arguments[0]), number)
+
+    def _distribution(self, function: str, tree: ir.Expression) -> Distribution:
+        """The distribution of the one draw that a call, or a cell's formula, holds."""
+        if isinstance(tree, Cell):
+            formula = self._workbook.content(tree).formula
+            tree = tree if formula is None else Resolver(self._workbook).formula(tree, formula)
+        calls = _drawing_calls(tree)
+        inner = [call for call in calls if call.name == COMPOUND for call in _drawing_calls_in(call.arguments)]
+        if len(calls) != 1 or any(_draws(each) for call in inner or calls for each in call.arguments):
+            hint = "name a cell that holds one call such as RiskNormal(5,1), whose parameters are fixed"
+            raise FormulaError(f"{function} needs one distribution whose numbers are known", hint=hint)
+        (call,) = calls
+        drawn = self._compound(call, 0) if call.name == COMPOUND else self._drawn(call)
+        family = built_family(drawn, self._data(drawn, 0) if drawn.data else None, self._constant)
+        numbers = {key: number_of(part, self._constant) for key, part in drawn.parameters.items()}
+        shift = 0.0 if drawn.properties.shift is None else number_of(drawn.properties.shift, self._constant)
+        limits = [None if each is None else self._number_of_cutoff(each) for each in self._cutoffs(drawn, 0)]
+        known = {key: number for key, number in numbers.items() if number is not None}
+        if len(known) < len(numbers) or shift is None:
+            hint = "type its parameters as numbers, or into cells as numbers"
+            raise FormulaError(f"{function} needs a distribution whose parameters are numbers", hint=hint)
+        draw = Draw.of(function, family, known | {k: v for k, v in zip(CUTOFFS, limits, strict=True) if v is not None})
+        if (fault := draw.fault()) is not None:
+            raise FormulaError(f"{function}: {fault.message}", hint=fault.hint)
+        return Distribution(draw.distribution, shift)
+
+    def _number_of_cutoff(self, cutoff: Parameter) -> float:
+        """A cutoff as a number; NaN, which is no distribution, where it is not known."""
+        if not isinstance(cutoff, Cell):
+            return cutoff
+        found = number_of(self.trees.get(cutoff, cutoff), self._constant)
+        return math.nan if found is None else found
 
     def _find_results(self, tree: ir.Expression) -> None:
         calls: list[ir.Call] = []
@@ -141,7 +212,7 @@ class CellReading:
     def _program_call(self, call: ir.Call) -> ir.Expression:
         """What stands instead of a call of Crystal Ball or @RISK."""
         if call.name in STAND_INS:
-            value, values = stand_in(call)
+            value, values = stand_in(call, self._tabulated)
             if values:
                 self.simtables.append(values)
             return substitute(value, self._replacement)
@@ -185,7 +256,9 @@ class CellReading:
     def _inner(self, tree: ir.Expression) -> Drawn | ir.Expression:
         """What an argument of `RiskCompound` draws; the argument itself, rewritten, where it is a value."""
         if isinstance(tree, ir.Call) and _is_draw_of_a_program(tree) and tree.name != COMPOUND:
-            return self._drawn(tree)
+            drawn = self._drawn(tree)
+            self.has_lognorm = self.has_lognorm or drawn.function == "RiskLognorm"
+            return drawn
         (rewritten,) = self._rewritten([tree])
         return rewritten
 
@@ -395,10 +468,29 @@ def _draws(tree: ir.Expression) -> bool:
     return bool(found)
 
 
+def _drawing_calls_in(trees: Iterable[ir.Expression]) -> list[ir.Call]:
+    return [call for tree in trees for call in _drawing_calls(tree)]
+
+
+def _drawing_calls(tree: ir.Expression) -> list[ir.Call]:
+    """The calls of Crystal Ball and @RISK that draw, the outermost ones."""
+    found: list[ir.Call] = []
+
+    def look(part: ir.Expression) -> ir.Expression | None:
+        if isinstance(part, ir.Call) and part.name not in STAND_INS and _is_draw_of_a_program(part):
+            if part.name != "RISKOUTPUT":
+                found.append(part)
+            return part
+        return None
+
+    substitute(tree, look)
+    return found
+
+
 def _is_draw_of_a_program(part: ir.Expression) -> bool:
     if not isinstance(part, ir.Call) or not part.name.startswith(("RISK", "CB.")):
         return False
-    return not (is_result(part) or is_property(part) or not_computed(part))
+    return not (is_result(part) or is_property(part) or not_computed(part) or part.name in _THEORY)
 
 
 def _refuse_calls_within(tree: ir.Lambda) -> None:

@@ -14,6 +14,7 @@ from xlmc.definitions.in_cells.call_arguments import is_left_out
 from xlmc.definitions.in_cells.crystal_ball_functions import CRYSTAL_BALL
 from xlmc.definitions.in_cells.risk_functions import RISK
 from xlmc.definitions.in_cells.risk_properties import is_property, is_property_name
+from xlmc.definitions.in_cells.theory import THEORETICAL
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
 
@@ -73,49 +74,28 @@ RESULTS: Final = {
     "RiskXtoPD": ("certainty from above", 2),
     "RiskXtoQ": ("certainty from above", 2),
     "RiskData": ("trial", 2),
+    "RiskMeanAbsDev": ("mean_absolute_deviation", 1),
+    "RiskCIMean": ("confidence", 2),
+    "RiskCorrel": ("correlation", 3),
+    "CB.GetAssumFN": ("assumption", 2),
+    "CB.GetAssumPercentFN": ("percent of the assumption", 2),
+    "CB.GetRunPrefsFN": ("preference", 1),
+    "CB.IterationsFN": ("trials run", 0),
 }
-"""Function -> what it shows, and how many arguments it has: the cell, and a number for some."""
+"""Function -> what it shows, and how many arguments it has: the cell, and a number for some.
 
-_THEORETICAL: Final = (
-    "CoeffOfVariation",
-    "Kurtosis",
-    "Max",
-    "Mean",
-    "MeanAbsDev",
-    "Min",
-    "Mode",
-    "Percentile",
-    "PercentileD",
-    "PtoX",
-    "PtoXD",
-    "QtoX",
-    "Range",
-    "SemiStdDev",
-    "SemiVariance",
-    "Skewness",
-    "StdDev",
-    "Target",
-    "TargetD",
-    "Variance",
-    "XtoP",
-    "XtoPD",
-    "XtoQ",
-    "XtoY",
-)
+`RiskCIMean` takes TRUE or FALSE, too: the lower end of the interval, or the upper one.
+"""
+
+_OF_NO_CELL: Final = ("CB.GetRunPrefsFN", "CB.IterationsFN")
 
 NOT_COMPUTED: Final = (
     "CB.CheckDataFN",
-    "CB.GetAssumFN",
-    "CB.GetAssumPercentFN",
     "CB.GetAssumStatFN",
     "CB.GetCorrelationFN",
     "CB.GetDecVarFN",
     "CB.GetForeFN",
-    "CB.GetRunPrefsFN",
-    "CB.IterationsFN",
-    "RiskCIMean",
     "RiskConvergenceLevel",
-    "RiskCorrel",
     "RiskCp",
     "RiskCpk",
     "RiskCpkLower",
@@ -126,7 +106,6 @@ NOT_COMPUTED: Final = (
     "RiskDPM",
     "RiskK",
     "RiskLowerXBound",
-    "RiskMeanAbsDev",
     "RiskPNC",
     "RiskPNCLower",
     "RiskPNCUpper",
@@ -145,7 +124,10 @@ NOT_COMPUTED: Final = (
     "RiskZLower",
     "RiskZMin",
     "RiskZUpper",
-    *(f"RiskTheo{what}" for what in _THEORETICAL),
+    "RiskTheoMode",
+    "RiskTheoSemiStdDev",
+    "RiskTheoSemiVariance",
+    "RiskTheoXtoY",
 )
 """Functions that show results, and that xlmc does not compute."""
 
@@ -157,17 +139,45 @@ _WRITTEN: Final = {name.upper(): name for name in (*NOT_COMPUTED, *RESULTS)}
 _DRAWS: Final = frozenset(
     ["RISKOUTPUT", *map(str.upper, (*RISK, *CRYSTAL_BALL)), *(f"RISK{name.upper()}" for name in _OTHER_DRAWS.split())]
 )
+_THEORY: Final = frozenset(map(str.upper, THEORETICAL))
 _CALLED: Final = re.compile(r"(?<![\w.])(?:_xl\w+\.)*(Risk\w+|CB\.\w+)\s*\(", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
+class Limits:
+    """The part of the values that a call asks about: from one number to another, or between two probabilities."""
+
+    lower: ir.Expression | None
+    upper: ir.Expression | None
+    percents: bool
+
+
+@dataclass(frozen=True, slots=True)
 class ResultCall:
-    """What a call shows: of which cell (or of which forecast, by name), what, and the number it takes, if any."""
+    """What a call shows.
+
+    Attributes:
+        of: of which cell, or of which forecast by name; None where it is about the run.
+        number: that it takes, if any.
+        other: the second cell of a correlation.
+        upper: it asks for the upper end of an interval.
+        limits: it is about a part of the values.
+    """
 
     function: str
-    of: Cell | str
+    of: Cell | str | None
     what: str
     number: ir.Expression | None
+    other: Cell | str | None = None
+    upper: bool = False
+    limits: Limits | None = None
+
+    @property
+    def forecasts(self) -> tuple[Cell | str, ...]:
+        """The cells, or names of forecasts, whose values it needs."""
+        if self.what in ("assumption", "percent of the assumption"):
+            return ()
+        return tuple(each for each in (self.of, self.other) if each is not None)
 
 
 def is_result(tree: ir.Expression) -> bool:
@@ -187,7 +197,7 @@ def not_computed(tree: ir.Expression) -> str | None:
 
 def _shows(name: str) -> bool:
     """Whether a function may show a result, by its name in capitals."""
-    if not name.startswith(("RISK", "CB.")) or name in _DRAWS or is_property_name(name):
+    if not name.startswith(("RISK", "CB.")) or name in _DRAWS or name in _THEORY or is_property_name(name):
         return False
     return not (name.startswith("RISKTS") or name.endswith(("ALT", "ALTD")))
 
@@ -201,31 +211,57 @@ def result_call(call: ir.Call) -> ResultCall:
     """What a call shows.
 
     Raises:
-        FormulaError: its arguments are not what they must be, or ask for another simulation than the first or for a
-            part of its values.
+        FormulaError: its arguments are not what they must be, or ask for another simulation than the first.
     """
     function, what, count = _BY_NAME[call.name]
-    if len(call.arguments) < count:
-        takes = "the cell of an output" if count == 1 else "the cell of an output, and a number"
-        raise FormulaError(f"{function} has {len(call.arguments)} arguments", hint=f"it takes {takes}")
-    _refuse_more(function, call.arguments[count:])
-    of = call.arguments[0]
-    if isinstance(of, Area) and of.rows == of.columns == 1:
-        of = Cell(of.sheet, of.top, of.left)
-    if not isinstance(of, Cell | ir.Text):
+    arguments = tuple(argument for argument in call.arguments if not is_property(argument))
+    limits = _limits(function, [argument for argument in call.arguments if is_property(argument)])
+    if len(arguments) < count:
+        raise FormulaError(f"{function} has {len(arguments)} arguments", hint=f"it takes {_TAKES[min(count, 3)]}")
+    more = arguments[count:]
+    upper = False
+    if function == "RiskCIMean" and more and isinstance(more[0], ir.Logical | ir.Missing):
+        upper, more = isinstance(more[0], ir.Logical) and not more[0].value, more[1:]
+    _refuse_more(function, more)
+    if function in _OF_NO_CELL:
+        return ResultCall(function, None, what, arguments[0] if count else None)
+    of = _cell_or_name(function, arguments[0])
+    other = _cell_or_name(function, arguments[1]) if function == "RiskCorrel" else None
+    if limits and (other is not None or what in ("trial", "confidence")):
+        hint = "leave RiskTruncate out"
+        raise FormulaError(f"{function} of a part of the values is not computed", hint=hint)
+    return ResultCall(function, of, what, arguments[count - 1] if count > 1 else None, other, upper, limits)
+
+
+_TAKES: Final = ("nothing", "the cell of an output", "the cell of an output, and a number", "two cells, and a number")
+
+
+def _cell_or_name(function: str, tree: ir.Expression) -> Cell | str:
+    if isinstance(tree, Area) and tree.rows == tree.columns == 1:
+        tree = Cell(tree.sheet, tree.top, tree.left)
+    if not isinstance(tree, Cell | ir.Text):
         raise FormulaError(f"{function} must name the cell of an output first", hint="such as RiskMean(B9)")
-    named = of.value if isinstance(of, ir.Text) else of
-    return ResultCall(function, named, what, call.arguments[1] if count == 2 else None)
+    return tree.value if isinstance(tree, ir.Text) else tree
+
+
+def _limits(function: str, given: list[ir.Expression]) -> Limits | None:
+    """The part of the values that `RiskTruncate` or `RiskTruncateP` leaves."""
+    if not given:
+        return None
+    call = given[0]
+    if len(given) > 1 or not isinstance(call, ir.Call) or call.name not in ("RISKTRUNCATE", "RISKTRUNCATEP"):
+        hint = "only RiskTruncate and RiskTruncateP say which part of the values a result is of"
+        raise FormulaError(f"{function} has a property that it cannot have", hint=hint)
+    ends = [None if is_left_out(end) else end for end in call.arguments[:2]]
+    lower, upper = (*ends, None, None)[:2]
+    return Limits(lower, upper, call.name == "RISKTRUNCATEP")
 
 
 def _refuse_more(function: str, more: tuple[ir.Expression, ...]) -> None:
-    """@RISK takes the number of a simulation, of which xlmc runs one, and properties that leave out values."""
+    """@RISK takes the number of a simulation, of which xlmc runs one."""
     for index, argument in enumerate(more):
-        if isinstance(argument, ir.Call) and is_property(argument):
-            hint = "leave it out: xlmc shows results of all accepted trials"
-            raise FormulaError(f"{function} of a part of the values is not computed", hint=hint)
         if index or function.startswith("CB."):
             raise FormulaError(f"{function} has {len(more) - index} arguments too many", hint="take them out")
         if not (is_left_out(argument) or argument == ir.Number(1.0)):
-            hint = "leave the number of the simulation out, or write 1: xlmc runs one simulation"
+            hint = "leave the number of the simulation out, or write 1; simulate --scenarios runs RiskSimtable's values"
             raise FormulaError(f"{function} asks for another simulation than the first", hint=hint)

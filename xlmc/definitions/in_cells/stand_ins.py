@@ -3,21 +3,25 @@
 | function | stands for |
 |---|---|
 | RiskMakeInput(formula) | the formula: what it draws is drawn as elsewhere |
-| RiskSimtable({values}) | the first of the values |
+| RiskSimtable({values}) | the first of the values; the others in scenarios of the run |
 
 Source: @RISK's manual, "Simulation Functions" and "Miscellaneous Functions".
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
+from xlmc.address import Cell
 from xlmc.definitions.in_cells.call_arguments import elements, is_left_out
 from xlmc.definitions.in_cells.risk_properties import is_property
+from xlmc.definitions.problems import Findings
+from xlmc.definitions.scenarios import Scenario, Tabulated
 from xlmc.errors import FormulaError
-from xlmc.formula import ir
+from xlmc.formula import formula_text, ir
 
-__all__ = ["REFUSED", "SIMTABLE", "STAND_INS", "stand_in", "unsupported"]
+__all__ = ["REFUSED", "SIMTABLE", "STAND_INS", "simtable_scenarios", "stand_in", "unsupported"]
 
 SIMTABLE: Final = "RISKSIMTABLE"
 STAND_INS: Final = frozenset((SIMTABLE, "RISKMAKEINPUT"))
@@ -58,11 +62,15 @@ def unsupported(name: str) -> FormulaError:
     return FormulaError(f"the function {name} is not supported", hint=hint)
 
 
-def stand_in(call: ir.Call) -> tuple[ir.Expression, tuple[ir.Expression, ...]]:
+def stand_in(call: ir.Call, tabulated: int = 1) -> tuple[ir.Expression, tuple[ir.Expression, ...]]:
     """What a call of one of `STAND_INS` stands for, and the values of a `RiskSimtable`.
 
+    Args:
+        call: resolved.
+        tabulated: which of its values a `RiskSimtable` gives, from 1.
+
     Raises:
-        FormulaError: it has no argument, or more than it takes.
+        FormulaError: it has no argument, or more than it takes, or fewer values.
     """
     given = [argument for argument in call.arguments if not is_property(argument)]
     if len(given) != 1 or is_left_out(given[0]):
@@ -72,4 +80,33 @@ def stand_in(call: ir.Call) -> tuple[ir.Expression, tuple[ir.Expression, ...]]:
     if call.name != SIMTABLE:
         return given[0], ()
     values = tuple(elements(given[0]))
-    return values[0], values
+    if tabulated > len(values):
+        hint = "give every RiskSimtable as many values"
+        raise FormulaError(f"RiskSimtable has {len(values)} values, and value {tabulated} is asked for", hint=hint)
+    return values[tabulated - 1], values
+
+
+def simtable_scenarios(
+    tables: Mapping[Cell, Sequence[Sequence[ir.Expression]]], findings: Findings
+) -> Iterator[Scenario]:
+    """The scenarios that `RiskSimtable` asks for: with its second value, with its third, … None where it has one.
+
+    Every `RiskSimtable` of the workbook gives its first value in the workbook itself, and its n-th in the scenario of
+    that number, over the same random numbers.
+
+    Args:
+        tables: the cells with `RiskSimtable` -> the values of each.
+        findings: takes the notice that a run uses the first.
+    """
+    most = max((len(values) for found in tables.values() for values in found), default=1)
+    if most == 1:
+        return
+    first = next(iter(tables))
+    message = f"RiskSimtable has {most} values, and a run uses the first; simulate --scenarios runs the others, too"
+    findings.notice(message, first)
+    for number in range(2, most + 1):
+        shown = "; ".join(
+            f"{cell} {', '.join(formula_text(values[number - 1]) for values in found if number <= len(values))}"
+            for cell, found in tables.items()
+        )
+        yield Scenario(f"simulation {number}", (Tabulated(number, shown, first),), row=first)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from xlmc.address import Cell
 from xlmc.definitions.definitions import Assumption, DataRange, Filter, Parameter
 from xlmc.definitions.evidence import ERRORS, SIZES, Evidence, Within
-from xlmc.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Scenario, Typed
+from xlmc.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Scenario, Tabulated, Typed
 from xlmc.definitions.tables.table_rows import as_text
 from xlmc.sampling.sampling_methods import GENERATOR, METHODS
 from xlmc.statistics import Estimate, proportion
@@ -155,6 +155,8 @@ def _change_text(change: Change) -> str:
                 f"{key.replace('_', ' ')} {_plain_number(value)}" for key, value in values.items() if value is not None
             )
             return f"{name} {' and '.join(words) or 'without ' + ', '.join(key.replace('_', ' ') for key in values)}"
+        case Tabulated(number, values):
+            return f"value {number} of RiskSimtable: {values}"
         case Typed(cell, value, _, named):
             return (
                 f"{named or cell} = {_plain_number(value) if isinstance(value, float) else as_text(value) or 'nothing'}"

@@ -17,6 +17,7 @@ from xlmc.errors import SimulationError
 from xlmc.studies.fitting.candidate import Candidate, Errors, Floats, Params, Unfit, refuse, standard_errors
 from xlmc.studies.fitting.closed_forms import CLOSED_FORMS
 from xlmc.studies.fitting.count_families import COUNTS
+from xlmc.studies.fitting.skewed_forms import SKEWED_FORMS
 from xlmc.studies.fitting.solved_forms import SOLVED_FORMS, TRIANGULAR
 
 __all__ = [
@@ -35,7 +36,7 @@ __all__ = [
 ]
 
 KINDS: Mapping[str, tuple[Candidate, ...]] = {
-    "continuous": (*CLOSED_FORMS, TRIANGULAR, *SOLVED_FORMS),
+    "continuous": (*CLOSED_FORMS, TRIANGULAR, *SOLVED_FORMS, *SKEWED_FORMS),
     "counts": COUNTS,
 }
 """What is fitted: densities and probabilities are not compared with each other."""

@@ -182,7 +182,14 @@ def main(arguments: list[str] | None = None) -> int:
         return 0
     before = recorded()
     bits = before["made on"] == features()
-    told = [f"{name}: {what}" for name in found for what in differences(before["books"][name], found[name], bits=bits)]
+    known = before["books"]
+    told = [
+        f"{name}: {what}"
+        for name in found
+        if name in known
+        for what in differences(known[name], found[name], bits=bits)
+    ]
+    told += [f"{name}: is not recorded yet" for name in found if name not in known]
     print("\n".join(told) if told else f"{len(found)} books give the same {'bits' if bits else 'numbers'} as recorded")
     return int(bool(told))
 

@@ -36,7 +36,7 @@ def greek(tmp_path_factory):
     for sheet in book:
         for row in sheet.iter_rows():
             for cell in row:
-                if cell.value == "Chevrolet delta-V":
+                if cell.value == 'vehicle_1&" delta-V"' or cell.value == '=vehicle_1&" delta-V"':
                     cell.value = "Chevrolet ΔV → 中"
     path = tmp_path_factory.mktemp("greek") / "case.xlsx"
     book.save(path)

@@ -99,9 +99,12 @@ def test_no_argument_at_all_is_answered_by_the_help(xlmc):
 COMMANDS = [
     "new",
     "check",
+    "convert",
     "fit",
     "verify",
     "simulate",
+    "scenario",
+    "open",
     "report",
     "replay",
     "compare",

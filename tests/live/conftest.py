@@ -6,7 +6,7 @@ import time
 
 import pytest
 from chromium_browser import Browser
-from live_window import Running
+from live_books import Running
 from needed_programs import missing
 
 from xlmc.live.kept_scenarios import Keeper

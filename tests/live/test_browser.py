@@ -8,7 +8,7 @@ from pathlib import Path
 
 import openpyxl
 import pytest
-from live_window import CASE, SIMPLE, edited
+from live_books import CASE, SIMPLE, edited
 
 import xlmc
 from xlmc.definitions.scenarios import Held, Limits, Numbers

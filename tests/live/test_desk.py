@@ -7,7 +7,7 @@ import shutil
 import time
 
 import pytest
-from live_window import SIMPLE, change, edited
+from live_books import SIMPLE, change, edited
 
 import xlmc
 

@@ -8,7 +8,7 @@ import time
 
 import pytest
 from committed_books import TEMPLATES
-from live_window import SIMPLE, change
+from live_books import SIMPLE, change
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from xlmc.errors import XlmcError
@@ -181,7 +181,7 @@ def test_a_folder_shows_its_workbooks_and_no_link_leads_out(running, tmp_path):
     shutil.copy(SIMPLE, folder / "a.xlsx")
     shutil.copy(SIMPLE, outside / "secret.xlsx")
     (folder / "~$a.xlsx").write_bytes(b"lock")
-    (folder / "b.txt").write_text("text")
+    (folder / "b.txt").write_text("text", encoding="utf-8")
     (folder / "link.xlsx").symlink_to(outside / "secret.xlsx")
     server = running(folder=folder)
     assert [each["name"] for each in server.library.books()] == ["a.xlsx"]
@@ -197,12 +197,12 @@ def test_a_folder_shows_its_workbooks_and_no_link_leads_out(running, tmp_path):
 def test_a_template_is_copied_and_never_over_a_file(tmp_path):
     sample = Sample("skid", "?", TEMPLATES["skid"])
     library = Library(Keeper(tmp_path / "state"), folder=tmp_path, samples=[sample])
-    (tmp_path / "skid.xlsx").write_text("mine")
+    (tmp_path / "skid.xlsx").write_text("mine", encoding="utf-8")
     (row,) = library.templates()
     path = library.path(library.copy_template(row["key"]))
     assert path.name == "skid-2.xlsx"
     assert path.read_bytes() == TEMPLATES["skid"].read_bytes()
-    assert (tmp_path / "skid.xlsx").read_text() == "mine"
+    assert (tmp_path / "skid.xlsx").read_text(encoding="utf-8") == "mine"
     with pytest.raises(XlmcError):
         library.copy_template("nothing")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from live_window import CASE, SIMPLE, change, edited, settle
+from live_books import CASE, SIMPLE, change, edited, settle
 
 from xlmc.errors import XlmcError
 from xlmc.live.adjustments import Adjustments

@@ -156,7 +156,7 @@ def test_a_book_with_mistakes_is_not_loaded(tmp_path, monkeypatch):
 
     problems = (DefinitionError("Low is blank", where="S!B2"), DefinitionError("Name is blank", where="S!A3"))
     monkeypatch.setattr(module, "read_workbook", lambda path: Workbook("b", {}))
-    monkeypatch.setattr(module, "read_definitions", lambda book, engines: Definitions(problems=problems))
+    monkeypatch.setattr(module, "read_definitions", lambda *_: Definitions(problems=problems))
     with pytest.raises(DefinitionError) as caught:
         load(tmp_path / "book.xlsx")
     assert str(caught.value) == "S!B2: Low is blank.\nS!A3: Name is blank."

@@ -112,6 +112,8 @@ def test_trials_behind_those_that_count_are_not_counted(book):
 def test_examples_and_templates_in_whole_blocks(path):
     """Some of their filters wait until they are needed: until then they are always true."""
     model = xlmc.load(path)
+    if model.forecast_filters:
+        pytest.skip("trials are discarded of one forecast alone: such a book has no whole blocks")
     assert list(map(bits, ran(model, True))) == list(map(bits, ran(model, False)))
 
 

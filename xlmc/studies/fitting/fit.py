@@ -151,8 +151,9 @@ def _estimates(kind: str, x: Floats) -> tuple[list[tuple[Candidate, Params, floa
     unfit: dict[str, str] = {}
     for candidate in KINDS[kind]:
         try:
-            params = candidate.estimate(x)
-            top = candidate.log_likelihood(x, params)
+            with np.errstate(all="ignore"):  # of values near the largest number: refused below
+                params = candidate.estimate(x)
+                top = candidate.log_likelihood(x, params)
             refuse(not np.isfinite(top), "its likelihood has no highest point")
             found.append((candidate, params, top))
         except Unfit as reason:

@@ -65,10 +65,12 @@ def fitted_curves(x: Floats, bins: Histogram) -> list[FittedCurve]:
     parts = 1 if whole else _PARTS
     at = np.interp(np.arange(parts * bins.edges.size + 1) / parts, np.arange(edges.size), edges)
     try:
-        found = fit(values, kind="counts" if whole and values[0] >= 0 else "continuous", errors=False)
+        with np.errstate(all="ignore"):  # over hundreds of orders of magnitude some families have no number to show
+            found = fit(values, kind="counts" if whole and values[0] >= 0 else "continuous", errors=False)
+            fits = [fitted for fitted in found.fits if np.isfinite(fitted.ks)][:_MOST]
+            return [_curve(fitted, at - 0.5 if whole else at, parts) for fitted in fits]
     except SimulationError:
         return []
-    return [_curve(fitted, at - 0.5 if whole else at, parts) for fitted in found.fits[:_MOST]]
 
 
 def _curve(fitted: Fitted, at: Floats, parts: int) -> FittedCurve:

@@ -43,6 +43,8 @@ KINDS: Mapping[str, tuple[Candidate, ...]] = {
 
 CRITERIA = ("aic", "bic", "ad", "ks")
 _LEAST = 2
+_LARGEST: Final = 1e100
+"""Beyond it, third powers of values overflow."""
 _NEAR, _IN_THE_RACE = 2.0, 10.0
 
 FEW, _ENOUGH = 15, 30
@@ -140,6 +142,8 @@ def _refuse_hopeless(x: Floats) -> None:
         raise SimulationError(f"there is {count} to fit", hint=hint)
     if not np.isfinite(x).all():
         raise SimulationError("a value is no finite number", hint="Correct it, or leave it out")
+    if max(-x[0], x[-1]) > _LARGEST:
+        raise SimulationError(f"a value is beyond {_LARGEST:g}: too large to fit", hint="Give them in a larger unit")
     if x[0] == x[-1]:
         hint = "Equal measurements say nothing of the spread: choose Low and High from what the measurement resolves"
         raise SimulationError(f"all {x.size} values are equal", hint=hint)
@@ -151,9 +155,8 @@ def _estimates(kind: str, x: Floats) -> tuple[list[tuple[Candidate, Params, floa
     unfit: dict[str, str] = {}
     for candidate in KINDS[kind]:
         try:
-            with np.errstate(all="ignore"):  # of values near the largest number: refused below
-                params = candidate.estimate(x)
-                top = candidate.log_likelihood(x, params)
+            params = candidate.estimate(x)
+            top = candidate.log_likelihood(x, params)
             refuse(not np.isfinite(top), "its likelihood has no highest point")
             found.append((candidate, params, top))
         except Unfit as reason:

@@ -105,7 +105,6 @@ def _fatigue_life(x: Floats) -> Params:
     from scipy.optimize import brentq
 
     refuse(not mean > harmonic * (1 + 1e-12), "all values are equal")
-    refuse(not np.isfinite(mean * mean), "its likelihood has no highest point")  # squares overflow
     scale = float(brentq(rising, harmonic, mean, xtol=1e-14 * mean, rtol=1e-14))
     return 0.0, scale, float(np.sqrt(mean / scale + scale / harmonic - 2))
 

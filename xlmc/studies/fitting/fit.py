@@ -43,7 +43,7 @@ KINDS: Mapping[str, tuple[Candidate, ...]] = {
 
 CRITERIA = ("aic", "bic", "ad", "ks")
 _LEAST = 2
-_LARGEST: Final = 1e100
+_LARGEST = 1e100
 """Beyond it, third powers of values overflow."""
 _NEAR, _IN_THE_RACE = 2.0, 10.0
 

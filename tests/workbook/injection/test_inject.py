@@ -34,7 +34,9 @@ def said(parts, name):
 
 
 def load(parts):
-    return openpyxl.load_workbook(io.BytesIO(package_bytes(parts)), keep_vba=True)
+    book = openpyxl.load_workbook(io.BytesIO(package_bytes(parts)), keep_vba=True)
+    book.vba_archive.close()  # left open, it would complain whenever it is found to be garbage
+    return book
 
 
 def test_of_the_users_parts_only_the_five_change(rich, once):

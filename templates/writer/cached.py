@@ -10,8 +10,8 @@ from pathlib import Path
 
 from xlmc.address import Cell
 from xlmc.errors import ErrorCode
-from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
-from xlmc.formula import Resolver, build_graph
+from xlmc.evaluation.graph.lower import Lowering, lower_cells
+from xlmc.formula import Resolver
 from xlmc.workbook.reader import read_workbook
 
 __all__ = ["Shown", "Values", "computed"]
@@ -34,12 +34,7 @@ def computed(path: Path) -> Values:
         for (row, column), content in sheet.cells.items()
         if content.formula is not None
     ]
-    resolver = Resolver(workbook)
-
-    def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
-        return Lowering(build_graph(resolver, cells, frozenset(), more=more), {}, {})
-
-    lowering = lower_until_complete(lower)
+    lowering = lower_cells(Resolver(workbook), cells, {}, {})
     return {(cell.sheet, cell.row - 1, cell.column - 1): _shown(lowering, cell) for cell in cells}
 
 

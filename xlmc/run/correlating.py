@@ -13,9 +13,8 @@ from xlmc.definitions.definitions import Copula, Correlation, Definitions, name_
 from xlmc.distributions.parameters import show
 from xlmc.distributions.whole_numbers import WholeNumbers
 from xlmc.errors import DefinitionError, Notice
-from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
-from xlmc.formula import Resolver, build_graph
-from xlmc.run.draw_binding import fold_cell
+from xlmc.evaluation.graph.lower import Lowering
+from xlmc.run.draw_binding import fold_cell, lower_fixed
 from xlmc.sampling.copula import GaussianCopula
 from xlmc.sampling.copulas import Clayton, Frank, Gumbel, Joining, Reflected, StudentTCopula
 from xlmc.sampling.draws import CorrelatedGroup, Draw
@@ -122,14 +121,7 @@ def with_correlation_numbers(workbook: Workbook, definitions: Definitions) -> De
     cells = [row.value for row in definitions.correlations if isinstance(row.value, Cell)]
     if not cells:
         return definitions
-    drawn = {a.cell: name_key(a.name) for a in definitions.assumptions if not a.frozen}
-    held = {a.cell: a.base for a in definitions.assumptions if a.frozen and a.base is not None}
-    resolver = Resolver(workbook, [a.cell for a in definitions.assumptions], rewritten=definitions.rewritten)
-
-    def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
-        return Lowering(build_graph(resolver, cells, frozenset(drawn), frozenset(held), more=more), drawn, held)
-
-    lowering = lower_until_complete(lower)
+    lowering = lower_fixed(workbook, definitions, cells)
     rows = (replace(row, value=_coefficient(row, lowering)) for row in definitions.correlations)
     return replace(definitions, correlations=tuple(rows))
 

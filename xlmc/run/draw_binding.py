@@ -6,7 +6,7 @@ that cell: a draw cannot have limits that move with itself. What a person means 
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence, Set
+from collections.abc import Collection, Hashable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,7 +19,7 @@ from xlmc.distributions import Family
 from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError, Notice
 from xlmc.evaluation.engine import Evaluator, Target
-from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
+from xlmc.evaluation.graph.lower import Lowering, lower_cells
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.formula import Graph, Resolver, build_graph, ir
 from xlmc.functions.values import ERROR, TEXT
@@ -77,6 +77,19 @@ def _varying_data(name: str, cell: Cell) -> DefinitionError:
         where=cell,
         hint="Draw from fixed data, and let the cell that uses the draw vary with the assumption",
     )
+
+
+def lower_fixed(workbook: Workbook, definitions: Definitions, cells: Collection[Cell]) -> Lowering:
+    """Cells of definitions that must hold numbers, lowered: `fold_cell` finds the number, or that it varies.
+
+    Raises:
+        FormulaError: one cannot be computed.
+    """
+    assumptions = definitions.assumptions
+    drawn = {a.cell: name_key(a.name) for a in assumptions if not a.frozen}
+    held = {a.cell: a.base for a in assumptions if a.frozen and a.base is not None}
+    resolver = Resolver(workbook, [a.cell for a in assumptions], rewritten=definitions.rewritten)
+    return lower_cells(resolver, cells, drawn, held)
 
 
 def fold_cell(cell: Cell, lowering: Lowering) -> Parameter:
@@ -174,12 +187,7 @@ class _Own:
         assumptions, own = self._definitions.assumptions, self._assumption.cell
         drawn = {a.cell: name_key(a.name) for a in assumptions if not a.frozen and a.cell != own}
         held = {a.cell: a.base for a in assumptions if a.cell not in drawn and a.base is not None}
-
-        def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
-            graph = build_graph(self._resolver, [cell], frozenset(drawn), frozenset(held), more=more)
-            return Lowering(graph, drawn, held)
-
-        return fold_cell(cell, lower_until_complete(lower))
+        return fold_cell(cell, lower_cells(self._resolver, [cell], drawn, held))
 
 
 def _with_numbers(assumption: Assumption, numbers: Mapping[str, float]) -> Assumption:

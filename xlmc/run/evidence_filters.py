@@ -7,17 +7,16 @@ is kept are then exact draws, of equal weight, from the inputs given the reading
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import replace
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import Assumption, Definitions, Filter, Parameter, name_key
+from xlmc.definitions.definitions import Assumption, Definitions, Filter, Parameter
 from xlmc.definitions.evidence import Evidence
 from xlmc.definitions.tables.evidence_rows import as_filter, check_sizes
 from xlmc.errors import DefinitionError
-from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
-from xlmc.formula import Resolver, build_graph
-from xlmc.run.draw_binding import fold_cell
+from xlmc.evaluation.graph.lower import Lowering
+from xlmc.run.draw_binding import fold_cell, lower_fixed
 from xlmc.workbook.workbook import Workbook
 
 __all__ = ["chances_of", "with_evidence_numbers"]
@@ -33,14 +32,7 @@ def with_evidence_numbers(workbook: Workbook, definitions: Definitions) -> Defin
     cells = [cell for each in definitions.filters if each.evidence for cell in each.evidence.cells]
     if not cells:
         return definitions
-    drawn = {a.cell: name_key(a.name) for a in definitions.assumptions if not a.frozen}
-    held = {a.cell: a.base for a in definitions.assumptions if a.frozen and a.base is not None}
-    resolver = Resolver(workbook, [a.cell for a in definitions.assumptions], rewritten=definitions.rewritten)
-
-    def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
-        return Lowering(build_graph(resolver, cells, frozenset(drawn), frozenset(held), more=more), drawn, held)
-
-    lowering = lower_until_complete(lower)
+    lowering = lower_fixed(workbook, definitions, cells)
     return replace(definitions, filters=tuple(_with_numbers(each, lowering) for each in definitions.filters))
 
 

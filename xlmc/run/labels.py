@@ -7,14 +7,14 @@ Excel fills it in when it opens the file; xlmc does here.
 from __future__ import annotations
 
 from collections import ChainMap
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 
 from xlmc.address import Cell
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
-from xlmc.formula import Resolver, build_graph
-from xlmc.workbook.workbook import CellContent, Sheet, Table, Workbook
+from xlmc.evaluation.graph.lower import Lowering, lower_cells
+from xlmc.formula import Resolver
+from xlmc.workbook.workbook import CellContent, Table, Workbook
 
 __all__ = ["calculate_labels", "calculated_texts", "is_uncalculated"]
 
@@ -29,11 +29,12 @@ def calculate_labels(workbook: Workbook) -> Workbook:
     missing = [cell for table in tables for cell in _body(table) if is_uncalculated(workbook.content(cell))]
     if not missing:
         return workbook
-    calculated: dict[str, Sheet] = {}
+    written: dict[str, dict[tuple[int, int], CellContent]] = {}
     for cell, text in calculated_texts(workbook, missing).items():
-        sheet = calculated.get(cell.sheet) or workbook.sheets[cell.sheet]
-        content = replace(sheet.cells[cell.row, cell.column], value=text)
-        calculated[cell.sheet] = replace(sheet, cells={**sheet.cells, (cell.row, cell.column): content})
+        place = cell.row, cell.column
+        written.setdefault(cell.sheet, {})[place] = replace(workbook.sheets[cell.sheet].cells[place], value=text)
+    sheets = ((name, workbook.sheets[name], cells) for name, cells in written.items())
+    calculated = {name: replace(sheet, cells={**sheet.cells, **cells}) for name, sheet, cells in sheets}
     # A ChainMap reads a sheet when it is looked up, and nobody writes to this one.
     return replace(workbook, sheets=ChainMap(calculated, workbook.sheets))  # type: ignore[arg-type]
 
@@ -41,7 +42,7 @@ def calculate_labels(workbook: Workbook) -> Workbook:
 def calculated_texts(workbook: Workbook, cells: Collection[Cell]) -> dict[Cell, str]:
     """What the formulas of cells give where that is a text; a cell that cannot be calculated is left out."""
     try:
-        lowering = _lowered(workbook, cells)
+        lowering = lower_cells(Resolver(workbook), [*cells], {}, {})
     except FormulaError:
         if len(cells) == 1:
             return {}
@@ -60,15 +61,6 @@ def _body(table: Table) -> Iterator[Cell]:
 def is_uncalculated(content: CellContent) -> bool:
     """Whether the cell has a formula of its own, and the file does not say what it gives."""
     return content.formula is not None and content.formula.array is None and content.value is None
-
-
-def _lowered(workbook: Workbook, cells: Collection[Cell]) -> Lowering:
-    resolver = Resolver(workbook)
-
-    def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
-        return Lowering(build_graph(resolver, [*cells], frozenset(), more=more), {}, {})
-
-    return lower_until_complete(lower)
 
 
 def _text(lowering: Lowering, cell: Cell) -> str | None:

@@ -128,11 +128,7 @@ def _lognorm(row: Row, _findings: Findings) -> str:
 
 
 def _evidence(row: Row, _findings: Findings) -> str:
-    typed = required_text(row, "Value")
-    if plain(typed) not in EVIDENCE_WAYS:
-        message = f"{typed!r} is no way to use evidence"
-        raise DefinitionError(message, where=row.cell("Value"), hint=f"Use {', '.join(EVIDENCE_WAYS)}")
-    return plain(typed)
+    return _way(row, "use evidence", EVIDENCE_WAYS)
 
 
 def _arithmetic(row: Row, _findings: Findings) -> None:
@@ -272,10 +268,15 @@ def _seconds(row: Row, _findings: Findings) -> float:
 
 
 def _rare(row: Row, _findings: Findings) -> str:
+    return _way(row, "look for rare trials", RARE)
+
+
+def _way(row: Row, purpose: str, ways: Collection[str]) -> str:
+    """The one of the ways that was typed, in any case."""
     typed = required_text(row, "Value")
-    if plain(typed) not in RARE:
-        message = f"{typed!r} is no way to look for rare trials"
-        raise DefinitionError(message, where=row.cell("Value"), hint=f"Use {', '.join(RARE)}")
+    if plain(typed) not in ways:
+        message = f"{typed!r} is no way to {purpose}"
+        raise DefinitionError(message, where=row.cell("Value"), hint=f"Use {', '.join(ways)}")
     return plain(typed)
 
 

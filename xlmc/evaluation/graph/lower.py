@@ -5,7 +5,7 @@ Where xlmc cannot compute a cell, and no assumption reaches it, the value that E
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import cached_property
 from typing import Final, TypeVar
 
@@ -21,7 +21,7 @@ from xlmc.evaluation.graph.fill_down import FillDownCache
 from xlmc.evaluation.graph.lowering import Scope
 from xlmc.evaluation.graph.nodes import Apply, Constant, Input
 from xlmc.evaluation.graph.running_totals import RunningTotals
-from xlmc.formula import Filled, Graph, Resolver, ir
+from xlmc.formula import Filled, Graph, Resolver, build_graph, ir
 from xlmc.formula.callables import gives_function
 from xlmc.functions import Function, Kind
 from xlmc.functions.facts import Facts
@@ -29,7 +29,7 @@ from xlmc.functions.logical import zero_if_blank
 from xlmc.functions.registry import Anything
 from xlmc.functions.values import Value, constant
 
-__all__ = ["Lowering", "lower_until_complete"]
+__all__ = ["Lowering", "lower_cells", "lower_until_complete"]
 
 L = TypeVar("L", bound="Lowering")
 
@@ -49,6 +49,27 @@ def lower_until_complete(lower: Callable[[Mapping[Cell, set[Cell]]], L]) -> L:
             return lowering
         for cell, needed in lowering.more.items():
             more.setdefault(cell, set()).update(needed)
+
+
+def lower_cells(
+    resolver: Resolver, cells: Collection[Cell], inputs: Mapping[Cell, str], held: Mapping[Cell, float]
+) -> Lowering:
+    """What some cells need, lowered.
+
+    Args:
+        resolver: of the workbook.
+        cells: that are wanted.
+        inputs: assumption cell -> name of its input.
+        held: cell -> the value of its own that it is held at.
+
+    Raises:
+        FormulaError: a needed cell cannot be computed.
+    """
+
+    def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
+        return Lowering(build_graph(resolver, cells, frozenset(inputs), frozenset(held), more=more), inputs, held)
+
+    return lower_until_complete(lower)
 
 
 class Lowering(ExpressionLowering):

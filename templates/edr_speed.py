@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from templates.braking import BRAKING_CHECK
 from templates.checks import check, checks_section
 from templates.description import (
     Curve,
@@ -18,7 +19,7 @@ from templates.description import (
     Template,
 )
 from templates.editions import Both
-from templates.guidance import CAVEATS, FIRST_STEPS, SIGNS
+from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
 from templates.units import CONVERSIONS, GRAVITY, MPH
 
 __all__ = ["TEMPLATE"]
@@ -285,13 +286,7 @@ _CHECKS = checks_section(
         "published values",
         "FALSE: more than half. A percentage entered as a number?",
     ),
-    check(
-        "check_friction",
-        "The deceleration is that of road tyres, up to 1.2",
-        "AND(f>0,f<=1.2)",
-        "published values",
-        "FALSE: more than road tyres hold. A percentage entered as a number?",
-    ),
+    BRAKING_CHECK,
     check(
         "check_time",
         "The impact lies at the last sample or after it",
@@ -327,10 +322,7 @@ _DIAGRAM = Diagram(
 )
 
 _GUIDE = (
-    GuideSection(
-        "This workbook",
-        ("A template. The numbers in it are an example: replace every green cell, every range, every source.",),
-    ),
+    EXAMPLE_NUMBERS,
     FIRST_STEPS,
     SIGNS,
     GuideSection(

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from templates.description import GuideSection
 
-__all__ = ["CAVEATS", "FIRST_STEPS", "NAMES", "RESTITUTION", "SIGNS"]
+__all__ = ["CAVEATS", "EXAMPLE_NUMBERS", "FIRST_STEPS", "NAMES", "RESTITUTION", "SIGNS"]
+
+EXAMPLE_NUMBERS = GuideSection(
+    "This workbook",
+    ("A template. The numbers in it are an example: replace every green cell, every range, every source.",),
+)
 
 FIRST_STEPS = GuideSection(
     "How to use this workbook",

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from templates.braking import BRAKING, BRAKING_CHECK, BRAKING_INPUT, RESPONSE_FILTER, STOPPING_SPEED, time_of_braking
 from templates.checks import check, checks_section
 from templates.description import (
     Curve,
     Diagram,
     Equation,
     EvidenceRow,
-    FilterRow,
     ForecastRow,
     GuideSection,
     Input,
@@ -18,22 +18,14 @@ from templates.description import (
     Template,
 )
 from templates.editions import Both
-from templates.guidance import CAVEATS, FIRST_STEPS, SIGNS
+from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
+from templates.thrown_body import EFFICIENCY_CHECK, THROWN
 from templates.units import CONVERSIONS, GRAVITY, MPH
 
 __all__ = ["TEMPLATE"]
 
 _ASSUMPTIONS = (
-    Input(
-        "f",
-        "f",
-        "«1» deceleration while braking",
-        "g",
-        0.70,
-        "Example. Enter: friction of this surface, less the grade where it runs downhill",
-        {"Low": 0.65, "High": 0.75},
-        number_format="0.000",
-    ),
+    BRAKING_INPUT,
     Input(
         "d_before",
         "db",
@@ -64,37 +56,7 @@ _ASSUMPTIONS = (
         {"Low": Both(50, 15.5), "High": Both(58, 17.5)},
         number_format="0.0",
     ),
-    Input(
-        "mu",
-        "μ",
-        "Friction of the body on the ground",
-        "",
-        0.66,
-        "Placeholder, not a published value. Enter: tests of clothed dummies on this surface, as wide as they scatter",
-        {"Low": 0.5, "Low likeliest": 0.6, "High likeliest": 0.7, "High": 0.8},
-        "Trapezoid",
-        "0.00",
-    ),
-    Input(
-        "angle",
-        "θ",
-        "Angle of projection above the ground",
-        "deg",
-        15,
-        "Example. Seldom known: 0 where the body was pushed forward; wide where it was lifted",
-        {"Low": 0, "High": 30},
-        number_format="0.0",
-    ),
-    Input(
-        "efficiency",
-        "η",
-        "Projection speed over that of «1»",
-        "",
-        0.9,
-        "Example. 1: the body reached the vehicle's speed. Less where it was lifted, or hit at the edge",
-        {"Low": 0.8, "High": 1},
-        number_format="0.00",
-    ),
+    *THROWN,
     Input(
         "walked",
         "dw",
@@ -142,7 +104,7 @@ _CONSTANTS = (
 )
 
 _SPEED = (
-    Equation("b", "b", "Deceleration while braking", "[ft|m]/s²", "f*g", "f·g"),
+    BRAKING,
     Equation(
         "v_marks",
         "vs",
@@ -174,15 +136,7 @@ _SPEED = (
 
 _TIME = (
     Equation("t_walk", "tw", "From becoming a hazard to the impact", "s", "walked/walking", "dw / u"),
-    Equation(
-        "t_brake",
-        "tb",
-        "Time of braking before the impact",
-        "s",
-        "2*d_before/(v_0+v_i)",
-        "distance / mean speed",
-        "Not (v0 − vi)/b, which loses digits for short marks.",
-    ),
+    time_of_braking("d_before"),
     Equation("t_response", "tr", "Response time that this crash implies", "s", "t_walk-t_brake", "tw − tb"),
     Equation(
         "D_0",
@@ -240,17 +194,7 @@ _ANSWERS = (
         Role.ANSWER,
         "0.00",
     ),
-    Equation(
-        "v_stop_[mph|kmh]",
-        "vstop",
-        "Highest speed from which the same driver still stops",
-        "[mph|km/h]",
-        f"2*D_0/(t_response+SQRT(t_response^2+2*D_0/b))*{MPH}",
-        "D0 = v·tr + v²/(2·b)",
-        "The root that does not subtract nearly equal numbers.",
-        Role.ANSWER,
-        "0.00",
-    ),
+    STOPPING_SPEED,
     Equation(
         "apart",
         "vt − vs",
@@ -273,13 +217,7 @@ _CHECKS = checks_section(
         "geometry",
         "FALSE: a length below 0, or none.",
     ),
-    check(
-        "check_friction",
-        "The deceleration is that of road tyres, up to 1.2",
-        "AND(f>0,f<=1.2)",
-        "published values",
-        "FALSE: more than road tyres hold. A percentage entered as a number?",
-    ),
+    BRAKING_CHECK,
     check(
         "check_body",
         "Friction of the body is up to 1.2",
@@ -294,13 +232,7 @@ _CHECKS = checks_section(
         "physics",
         "FALSE: steeper than twice the angle that throws farthest; a vehicle does not project so.",
     ),
-    check(
-        "check_efficiency",
-        "The body is not faster than the vehicle",
-        "AND(efficiency>0,efficiency<=1)",
-        "physics",
-        "FALSE: an inelastic body cannot leave faster than what pushes it.",
-    ),
+    EFFICIENCY_CHECK,
     check(
         "check_walking",
         "The walking speed is that of a person, up to [15 ft/s|5 m/s]",
@@ -339,10 +271,7 @@ _DIAGRAM = Diagram(
 )
 
 _GUIDE = (
-    GuideSection(
-        "This workbook",
-        ("A template. The numbers in it are an example: replace every green cell, every range, every source.",),
-    ),
+    EXAMPLE_NUMBERS,
     FIRST_STEPS,
     SIGNS,
     GuideSection(
@@ -397,15 +326,7 @@ TEMPLATE = Template(
         ForecastRow("Highest speed that still stops", "v_stop_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("Same driver at the limit: stops (1 = yes)", "stops", "", threshold=0.5),
     ),
-    filters=(
-        FilterRow(
-            "Response time",
-            "t_response",
-            "Nobody responds sooner; later would be another story",
-            at_least=0.5,
-            at_most=3,
-        ),
-    ),
+    filters=(RESPONSE_FILTER,),
     evidence=(
         EvidenceRow(
             "Throw and marks agree",

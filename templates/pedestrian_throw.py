@@ -17,7 +17,8 @@ from templates.description import (
     Template,
 )
 from templates.editions import Both
-from templates.guidance import CAVEATS, FIRST_STEPS, SIGNS
+from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
+from templates.thrown_body import EFFICIENCY_CHECK, THROWN
 from templates.units import CONVERSIONS, GRAVITY, MPH
 
 __all__ = ["TEMPLATE"]
@@ -33,37 +34,7 @@ _ASSUMPTIONS = (
         {"Low": Both(56, 17), "High": Both(64, 19)},
         number_format="0.0",
     ),
-    Input(
-        "mu",
-        "μ",
-        "Friction of the body on the ground",
-        "",
-        0.66,
-        "Placeholder, not a published value. Enter: tests of clothed dummies on this surface, as wide as they scatter",
-        {"Low": 0.5, "Low likeliest": 0.6, "High likeliest": 0.7, "High": 0.8},
-        "Trapezoid",
-        "0.00",
-    ),
-    Input(
-        "angle",
-        "θ",
-        "Angle of projection above the ground",
-        "deg",
-        15,
-        "Example. Seldom known: 0 where the body was pushed forward; wide where it was lifted",
-        {"Low": 0, "High": 30},
-        number_format="0.0",
-    ),
-    Input(
-        "efficiency",
-        "η",
-        "Projection speed over «1» speed",
-        "",
-        0.9,
-        "Example. 1: the body reached the vehicle's speed. Less where it was lifted, or hit at the edge",
-        {"Low": 0.8, "High": 1},
-        number_format="0.00",
-    ),
+    *THROWN,
 )
 
 _CONSTANTS = (GRAVITY, *CONVERSIONS)
@@ -172,13 +143,7 @@ _CHECKS = checks_section(
         "physics",
         "FALSE: outside 0 to 2 θbest the bounds do not hold; a vehicle does not project so steeply.",
     ),
-    check(
-        "check_efficiency",
-        "The body is not faster than the vehicle",
-        "AND(efficiency>0,efficiency<=1)",
-        "physics",
-        "FALSE: an inelastic body cannot leave faster than what pushes it.",
-    ),
+    EFFICIENCY_CHECK,
 )
 
 _SHARES = (*(f"{step**2}/64" for step in range(9)), "1.3", "1.6")
@@ -201,10 +166,7 @@ _DIAGRAM = Diagram(
 )
 
 _GUIDE = (
-    GuideSection(
-        "This workbook",
-        ("A template. The numbers in it are an example: replace every green cell, every range, every source.",),
-    ),
+    EXAMPLE_NUMBERS,
     FIRST_STEPS,
     SIGNS,
     GuideSection(

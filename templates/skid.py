@@ -17,7 +17,7 @@ from templates.description import (
     Template,
 )
 from templates.editions import Both
-from templates.guidance import CAVEATS, FIRST_STEPS, SIGNS
+from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
 from templates.units import CONVERSIONS, GRAVITY, MPH
 
 __all__ = ["TEMPLATE"]
@@ -398,10 +398,7 @@ _DIAGRAM = Diagram(
 )
 
 _GUIDE = (
-    GuideSection(
-        "This workbook",
-        ("A template. The numbers in it are an example: replace every green cell, every range, every source.",),
-    ),
+    EXAMPLE_NUMBERS,
     FIRST_STEPS,
     SIGNS,
     GuideSection(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from templates.braking import BRAKING, BRAKING_CHECK, BRAKING_INPUT, RESPONSE_FILTER, STOPPING_SPEED, time_of_braking
 from templates.checks import check, checks_section
 from templates.description import (
     Curve,
@@ -18,7 +19,7 @@ from templates.description import (
     Template,
 )
 from templates.editions import Both
-from templates.guidance import CAVEATS, FIRST_STEPS, SIGNS
+from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
 from templates.units import CONVERSIONS, GRAVITY, MPH
 
 __all__ = ["TEMPLATE"]
@@ -46,16 +47,7 @@ _ASSUMPTIONS = (
         {"Low": Both(57, 17), "High": Both(63, 19)},
         number_format="0.0",
     ),
-    Input(
-        "f",
-        "f",
-        "«1» deceleration while braking",
-        "g",
-        0.70,
-        "Example. Enter: friction of this surface, less the grade where it runs downhill",
-        {"Low": 0.65, "High": 0.75},
-        number_format="0.000",
-    ),
+    BRAKING_INPUT,
     Input(
         "d_intruder",
         "dI",
@@ -128,17 +120,9 @@ _CONSTANTS = (
 
 _AS_IT_WAS = (
     Equation("v_i", "vi", "Speed at the impact", "[ft|m]/s", f"v_impact/({MPH})", "input"),
-    Equation("b", "b", "Deceleration while braking", "[ft|m]/s²", "f*g", "f·g"),
+    BRAKING,
     Equation("v_0", "v0", "Speed before braking", "[ft|m]/s", "SQRT(v_i^2+2*b*d_brake)", "v0² = vi² + 2·b·db"),
-    Equation(
-        "t_brake",
-        "tb",
-        "Time of braking before the impact",
-        "s",
-        "2*d_brake/(v_0+v_i)",
-        "distance / mean speed",
-        "Not (v0 − vi)/b, which loses digits for short marks.",
-    ),
+    time_of_braking("d_brake"),
     Equation("u_s", "u", "Intruder's speed at the start", "[ft|m]/s", f"u/({MPH})", "input"),
     Equation(
         "t_intruder",
@@ -254,17 +238,7 @@ _ANSWERS = (
         Role.ANSWER,
         "0.00",
     ),
-    Equation(
-        "v_stop_[mph|kmh]",
-        "vstop",
-        "Highest speed from which the same driver still stops",
-        "[mph|km/h]",
-        f"2*D_0/(t_response+SQRT(t_response^2+2*D_0/b))*{MPH}",
-        "D0 = v·tr + v²/(2·b)",
-        "The root that does not subtract nearly equal numbers.",
-        Role.ANSWER,
-        "0.00",
-    ),
+    STOPPING_SPEED,
     Equation(
         "v_hit_[mph|kmh]",
         "vhit",
@@ -325,13 +299,7 @@ _CHECKS = checks_section(
         "physics",
         "FALSE: neither speed nor acceleration: it stands still.",
     ),
-    check(
-        "check_friction",
-        "The deceleration is that of road tyres, up to 1.2",
-        "AND(f>0,f<=1.2)",
-        "published values",
-        "FALSE: more than road tyres hold. A percentage entered as a number?",
-    ),
+    BRAKING_CHECK,
     check(
         "check_response",
         "The hazard began before the braking",
@@ -384,10 +352,7 @@ _DIAGRAM = Diagram(
 )
 
 _GUIDE = (
-    GuideSection(
-        "This workbook",
-        ("A template. The numbers in it are an example: replace every green cell, every range, every source.",),
-    ),
+    EXAMPLE_NUMBERS,
     FIRST_STEPS,
     SIGNS,
     GuideSection(
@@ -467,13 +432,7 @@ TEMPLATE = Template(
         ForecastRow("Ordinary driver: avoided (1 = yes)", "avoided_fresh", "", threshold=0.5),
     ),
     filters=(
-        FilterRow(
-            "Response time",
-            "t_response",
-            "Nobody responds sooner; later would be another story",
-            at_least=0.5,
-            at_most=3,
-        ),
+        RESPONSE_FILTER,
         FilterRow(
             "Not avoided",
             "avoided_same",

@@ -19,7 +19,8 @@ from templates.description import (
 )
 from templates.editions import Both
 from templates.guidance import CAVEATS, FIRST_STEPS, SIGNS
-from templates.units import CONVERSIONS, GRAVITY, MPH
+from templates.speed_answer import speed_answer
+from templates.units import CONVERSIONS, GRAVITY
 
 __all__ = ["TEMPLATE"]
 
@@ -115,38 +116,14 @@ _STEPS = (
 )
 
 _ANSWERS = (
-    Equation(
-        "v_[mph|kmh]",
-        "v",
-        "Speed at take-off",
-        "[mph|km/h]",
-        f"v*{MPH}",
-        "conversion",
-        "",
-        Role.ANSWER,
-        "0.00",
-    ),
-    Equation(
-        "v1_[mph|kmh]",
-        "v1",
-        "Speed before braking",
-        "[mph|km/h]",
-        f"v_1*{MPH}",
-        "conversion",
-        "",
-        Role.ANSWER,
-        "0.00",
-    ),
-    Equation(
-        "vmin_[mph|kmh]",
+    speed_answer("v", "v", "Speed at take-off", "v"),
+    speed_answer("v1", "v1", "Speed before braking", "v_1"),
+    speed_answer(
+        "vmin",
         "vmin",
         "Take-off speed, at least",
-        "[mph|km/h]",
-        f"v_min*{MPH}",
-        "conversion",
+        "v_min",
         "Whatever the slope: quote it where the slope is not known.",
-        Role.ANSWER,
-        "0.00",
     ),
     Equation(
         "landing_slope",

@@ -15,6 +15,7 @@ from templates.description import (
 )
 from templates.editions import Both
 from templates.guidance import CAVEATS, FIRST_STEPS, RESTITUTION
+from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY, MPH
 from templates.vehicles import vehicle
 
@@ -175,18 +176,12 @@ _SPEEDS = (
 )
 
 
-def _answer(symbol: str, notation: str, name: str, quantity: str) -> Equation:
-    return Equation(
-        f"{symbol}_[mph|kmh]", notation, name, _SPEED, f"{quantity}*{MPH}", "conversion", "", Role.ANSWER, "0.00"
-    )
-
-
 _ANSWERS = (
-    _answer("V1", "V1i", "«1» impact speed", "V1_i"),
-    _answer("dV1", "ΔV1", "«1» delta-V", "dV_1"),
-    _answer("dV2", "ΔV2", "«2» delta-V", "dV_2"),
-    _answer("V1f", "V1f", "«1» speed after", "V1_f"),
-    _answer("V2f", "V2f", "«2» speed after", "V2_f"),
+    speed_answer("V1", "V1i", "«1» impact speed", "V1_i"),
+    speed_answer("dV1", "ΔV1", "«1» delta-V", "dV_1"),
+    speed_answer("dV2", "ΔV2", "«2» delta-V", "dV_2"),
+    speed_answer("V1f", "V1f", "«1» speed after", "V1_f"),
+    speed_answer("V2f", "V2f", "«2» speed after", "V2_f"),
     Equation(
         "E_lost",
         "Elost",

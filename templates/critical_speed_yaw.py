@@ -18,7 +18,8 @@ from templates.description import (
 )
 from templates.editions import Both
 from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
-from templates.units import CONVERSIONS, GRAVITY, MPH
+from templates.speed_answer import speed_answer
+from templates.units import CONVERSIONS, GRAVITY
 
 __all__ = ["TEMPLATE"]
 
@@ -123,7 +124,7 @@ _STEPS = (
 )
 
 _ANSWERS = (
-    Equation("v_[mph|kmh]", "v", "Critical speed", "[mph|km/h]", f"v*{MPH}", "conversion", "", Role.ANSWER, "0.00"),
+    speed_answer("v", "v", "Critical speed", "v"),
     Equation("R_path", "R", "Radius of the path", "[ft|m]", "R_cg", "above", "", Role.ANSWER, "0.0"),
 )
 

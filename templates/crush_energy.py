@@ -19,6 +19,7 @@ from templates.description import (
 )
 from templates.editions import Both
 from templates.guidance import CAVEATS, FIRST_STEPS, RESTITUTION, SIGNS
+from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY, MPH
 from templates.vehicles import FIRST, SECOND, for_both, vehicle
 
@@ -331,28 +332,8 @@ _IMPACT = (
 )
 
 _ANSWERS = (
-    Equation(
-        "dV{j}_[mph|kmh]",
-        "ΔV{j}",
-        "{who} delta-V",
-        "[mph|km/h]",
-        f"dV_{{j}}*{MPH}",
-        "conversion",
-        "",
-        Role.ANSWER,
-        "0.00",
-    ),
-    Equation(
-        "closing_[mph|kmh]",
-        "Vc",
-        "Closing speed along the line of force",
-        "[mph|km/h]",
-        f"V_close*{MPH}",
-        "conversion",
-        "",
-        Role.ANSWER,
-        "0.00",
-    ),
+    speed_answer("dV{j}", "ΔV{j}", "{who} delta-V", "dV_{j}"),
+    speed_answer("closing", "Vc", "Closing speed along the line of force", "V_close"),
     Equation(
         "EBS{j}_[mph|kmh]",
         "EBS{j}",

@@ -20,6 +20,7 @@ from templates.description import (
 )
 from templates.editions import Both
 from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
+from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY, MPH
 
 __all__ = ["TEMPLATE"]
@@ -214,17 +215,7 @@ _RECORD = (
 )
 
 _ANSWERS = (
-    Equation(
-        "vi_[mph|kmh]",
-        "vi",
-        "Speed at the impact",
-        "[mph|km/h]",
-        f"v_impact_s*{MPH}",
-        "conversion",
-        "",
-        Role.ANSWER,
-        "0.00",
-    ),
+    speed_answer("vi", "vi", "Speed at the impact", "v_impact_s"),
     Equation(
         "v_on_[mph|kmh]",
         "von",

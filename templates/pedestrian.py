@@ -19,6 +19,7 @@ from templates.description import (
 )
 from templates.editions import Both
 from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
+from templates.speed_answer import speed_answer
 from templates.thrown_body import EFFICIENCY_CHECK, THROWN
 from templates.units import CONVERSIONS, GRAVITY, MPH
 
@@ -161,39 +162,9 @@ _TIME = (
 )
 
 _ANSWERS = (
-    Equation(
-        "vs_[mph|kmh]",
-        "vs",
-        "Impact speed, from the marks",
-        "[mph|km/h]",
-        f"v_marks*{MPH}",
-        "conversion",
-        "",
-        Role.ANSWER,
-        "0.00",
-    ),
-    Equation(
-        "vt_[mph|kmh]",
-        "vt",
-        "Impact speed, from the throw",
-        "[mph|km/h]",
-        f"v_thrown*{MPH}",
-        "conversion",
-        "",
-        Role.ANSWER,
-        "0.00",
-    ),
-    Equation(
-        "v0_[mph|kmh]",
-        "v0",
-        "Speed before braking",
-        "[mph|km/h]",
-        f"v_0*{MPH}",
-        "conversion",
-        "",
-        Role.ANSWER,
-        "0.00",
-    ),
+    speed_answer("vs", "vs", "Impact speed, from the marks", "v_marks"),
+    speed_answer("vt", "vt", "Impact speed, from the throw", "v_thrown"),
+    speed_answer("v0", "v0", "Speed before braking", "v_0"),
     STOPPING_SPEED,
     Equation(
         "apart",

@@ -18,6 +18,7 @@ from templates.description import (
 )
 from templates.editions import Both
 from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
+from templates.speed_answer import speed_answer
 from templates.thrown_body import EFFICIENCY_CHECK, THROWN
 from templates.units import CONVERSIONS, GRAVITY, MPH
 
@@ -80,39 +81,9 @@ _STEPS = (
 )
 
 _ANSWERS = (
-    Equation(
-        "vmin_[mph|kmh]",
-        "vmin",
-        "Projection speed, at least",
-        "[mph|km/h]",
-        f"v_least*{MPH}",
-        "conversion",
-        "",
-        Role.ANSWER,
-        "0.00",
-    ),
-    Equation(
-        "vmax_[mph|kmh]",
-        "vmax",
-        "Projection speed, at most",
-        "[mph|km/h]",
-        f"v_most*{MPH}",
-        "conversion",
-        "",
-        Role.ANSWER,
-        "0.00",
-    ),
-    Equation(
-        "v_[mph|kmh]",
-        "v",
-        "Projection speed at the angle given",
-        "[mph|km/h]",
-        f"v_throw*{MPH}",
-        "conversion",
-        "",
-        Role.ANSWER,
-        "0.00",
-    ),
+    speed_answer("vmin", "vmin", "Projection speed, at least", "v_least"),
+    speed_answer("vmax", "vmax", "Projection speed, at most", "v_most"),
+    speed_answer("v", "v", "Projection speed at the angle given", "v_throw"),
     Equation(
         "V_vehicle_[mph|kmh]",
         "V",

@@ -18,6 +18,7 @@ from templates.description import (
 )
 from templates.editions import Both
 from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
+from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY, MPH
 
 __all__ = ["TEMPLATE"]
@@ -252,16 +253,12 @@ def _steps() -> tuple[Equation, ...]:
 
 
 _ANSWERS = (
-    Equation(
-        "vend_[mph|kmh]",
+    speed_answer(
+        "vend",
         "vend",
         "Speed at the end of the skid",
-        "[mph|km/h]",
-        f"v_end_s*{MPH}",
-        "conversion",
+        "v_end_s",
         "The impact speed, where the skid ended in an impact.",
-        Role.ANSWER,
-        "0.00",
     ),
     Equation(
         "v_[mph|kmh]",

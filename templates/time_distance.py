@@ -20,6 +20,7 @@ from templates.description import (
 )
 from templates.editions import Both
 from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
+from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY, MPH
 
 __all__ = ["TEMPLATE"]
@@ -216,17 +217,7 @@ def _instead(driver: str, who: str, response: str) -> tuple[Equation, ...]:
 
 
 _ANSWERS = (
-    Equation(
-        "v0_[mph|kmh]",
-        "v0",
-        "Speed before braking",
-        "[mph|km/h]",
-        f"v_0*{MPH}",
-        "conversion",
-        "",
-        Role.ANSWER,
-        "0.00",
-    ),
+    speed_answer("v0", "v0", "Speed before braking", "v_0"),
     Equation(
         "over_[mph|kmh]",
         "v0 − V",
@@ -239,17 +230,7 @@ _ANSWERS = (
         "0.00",
     ),
     STOPPING_SPEED,
-    Equation(
-        "v_hit_[mph|kmh]",
-        "vhit",
-        "Same driver: speed at the point of impact",
-        "[mph|km/h]",
-        f"v_hit_same*{MPH}",
-        "conversion",
-        "",
-        Role.ANSWER,
-        "0.00",
-    ),
+    speed_answer("v_hit", "vhit", "Same driver: speed at the point of impact", "v_hit_same"),
     Equation(
         "margin",
         "ta − tc",

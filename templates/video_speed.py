@@ -13,12 +13,12 @@ from templates.description import (
     GuideSection,
     Input,
     Look,
-    Role,
     Section,
     Template,
 )
 from templates.editions import Both
 from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
+from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY, MPH
 
 __all__ = ["TEMPLATE"]
@@ -120,28 +120,8 @@ _STEPS = (
 )
 
 _ANSWERS = (
-    Equation(
-        "v_[mph|kmh]",
-        "v̄",
-        "Mean speed between the marks",
-        "[mph|km/h]",
-        f"v_mean*{MPH}",
-        "conversion",
-        "",
-        Role.ANSWER,
-        "0.00",
-    ),
-    Equation(
-        "vend_[mph|kmh]",
-        "ve",
-        "Speed at the last mark",
-        "[mph|km/h]",
-        f"v_end*{MPH}",
-        "conversion",
-        "",
-        Role.ANSWER,
-        "0.00",
-    ),
+    speed_answer("v", "v̄", "Mean speed between the marks", "v_mean"),
+    speed_answer("vend", "ve", "Speed at the last mark", "v_end"),
 )
 
 _CHECKS = checks_section(

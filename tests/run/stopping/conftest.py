@@ -1,12 +1,21 @@
-"""Blocks without a simulation."""
+"""Blocks without a simulation; Ctrl-C as a program that was started in the foreground takes it."""
 
 from __future__ import annotations
 
+import signal
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 import pytest
+
+
+@pytest.fixture(autouse=True)
+def usual_handler():
+    """A shell that starts the tests in the background lets them ignore Ctrl-C."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 @dataclass(frozen=True)

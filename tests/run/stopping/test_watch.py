@@ -169,13 +169,6 @@ def press():
     signal.raise_signal(signal.SIGINT)
 
 
-@pytest.fixture(autouse=True)
-def usual_handler():
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
-
-
 def test_the_first_is_noted_where_there_is_something_to_keep():
     with Interruption(wanted=True) as interruption:
         interruption.keeping = True

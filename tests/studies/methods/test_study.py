@@ -9,7 +9,7 @@ from xlmc.errors import SimulationError
 from xlmc.report.methods import methods_tables
 from xlmc.studies.methods import STATISTICS, recommendation, study
 from xlmc.studies.methods.converged_reference import reference_of
-from xlmc.studies.methods.curve import line, rms_of, rung_of
+from xlmc.studies.methods.curve import rms_of, rung_of, slope_of
 from xlmc.studies.methods.need import need, reach_of, shortfall
 from xlmc.studies.methods.optimised import in_step
 from xlmc.studies.methods.sampled import MONTE_CARLO
@@ -275,8 +275,9 @@ def test_the_interval_of_an_error_holds_it():
 
 
 def test_slopes():
-    assert line([1, 10, 100], [5, np.nan, 0.5])[0] == pytest.approx(-0.5)
-    assert np.isnan(line([4, 4], [1, 2])[0])
+    assert slope_of([1, 10, 100], [5, np.nan, 0.5]) == pytest.approx(-0.5)
+    assert np.isnan(slope_of([4, 4], [1, 2]))
+    assert np.isnan(slope_of([0.0030409, 0.003048, 0.003048], [0.0124, 0.0174, 0.0159])), "short runs all take as long"
 
 
 def test_searches_in_step_and_a_failure_among_them():

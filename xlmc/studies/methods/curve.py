@@ -17,13 +17,17 @@ from numpy.typing import ArrayLike
 from xlmc.studies.methods.answer import STATISTICS, Method, MethodResult
 from xlmc.studies.methods.converged_reference import Reference
 
-__all__ = ["NORMAL_95", "Curve", "Rms", "Rung", "in_order", "line", "rms_of", "rung_of"]
+__all__ = ["NORMAL_95", "Curve", "Rms", "Rung", "in_order", "rms_of", "rung_of", "slope_of"]
 
 NORMAL_95: Final = 1.959964
 """95 of 100 runs lie within so many root mean square errors."""
 
 _BEYOND_CHANCE: Final = 4.0
 """Standard errors from which on a mean error counts as more than chance: many numbers are looked at."""
+
+_APART: Final = 1.5
+"""The longest run of a line takes at least so many times what the shortest takes; of less, a slope is noise. Short runs
+all take the same time."""
 
 _SETTLED: Final = 20.0
 """Accepted trials of a run, about; of fewer, quantiles lie between the same few numbers however they are drawn."""
@@ -89,22 +93,21 @@ def rms_of(errors: ArrayLike, reference: float = 0.0) -> Rms:
     return Rms(value, value / float(np.sqrt(2.0 * (found.size - 1))), bias, spread, int(found.size))
 
 
-def line(x: Sequence[float], y: Sequence[float], weights: Sequence[float] | None = None) -> tuple[float, float]:
-    """Slope and height at 1 of the straight line through logarithms; NaN where fewer than two points make one.
+def slope_of(x: Sequence[float], y: Sequence[float], weights: Sequence[float] | None = None) -> float:
+    """Slope of the straight line through logarithms; NaN where the points do not lie apart (`_APART`).
 
-    >>> [round(each, 6) for each in line([1, 100], [3, 0.3])]
-    [-0.5, 3.0]
+    >>> round(slope_of([1, 100], [3, 0.3]), 6)
+    -0.5
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         across, up = np.log(np.asarray(x, np.float64)), np.log(np.asarray(y, np.float64))
     known = np.isfinite(across) & np.isfinite(up)
     weigh = np.ones(across.shape) if weights is None else np.asarray(weights, np.float64)
     across, up, weigh = across[known], up[known], weigh[known]
-    if across.size < 2 or np.ptp(across) < 1e-9:
-        return np.nan, np.nan
-    middle, height = np.average(across, weights=weigh), np.average(up, weights=weigh)
-    slope = float(np.sum(weigh * (across - middle) * (up - height)) / np.sum(weigh * (across - middle) ** 2))
-    return slope, float(np.exp(height - slope * middle))
+    if across.size < 2 or np.ptp(across) < np.log(_APART):
+        return np.nan
+    left, right = across - np.average(across, weights=weigh), up - np.average(up, weights=weigh)
+    return float(np.sum(weigh * left * right) / np.sum(weigh * left**2))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -177,7 +180,7 @@ class Curve:
         """Of the error in logarithms, against `seconds`, `evaluations` or `budget`; NaN where these hardly differ."""
         across = [float(getattr(rung, against)) for rung in self.settled]
         weights = [max(max(error.n for error in rung.errors.values()) - 1.0, 1.0) for rung in self.settled]
-        return line(across, [rung.shares[statistic] for rung in self.settled], weights)[0]
+        return slope_of(across, [rung.shares[statistic] for rung in self.settled], weights)
 
 
 def in_order(rungs: Sequence[Rung]) -> tuple[Rung, ...]:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.studies.methods.answer import STATISTICS
-from xlmc.studies.methods.curve import NORMAL_95, Curve, Rms, Rung, line
+from xlmc.studies.methods.curve import NORMAL_95, Curve, Rms, Rung, slope_of
 from xlmc.studies.methods.study import Study
 
 __all__ = ["Law", "law"]
@@ -140,7 +140,7 @@ def _fit_law(rungs: Sequence[Rung], kind: Kind, *, may_be_steeper: bool) -> Law:
 
 def _slope(budgets: Floats, values: Floats, weights: Floats) -> float:
     """−1/2, unless the line is steeper by more than chance. A value of n runs has the variance 1/(2(n − 1)) in logs."""
-    found = line(budgets.tolist(), values.tolist(), weights.tolist())[0]
+    found = slope_of(budgets.tolist(), values.tolist(), weights.tolist())
     if np.isnan(found):
         return _HALF
     across = np.log(budgets)

@@ -162,7 +162,7 @@ def _json(xlmc, book, tmp_path, *options):
     [
         (("nope",), "there is no scenario 'nope'"),
         (("held", "-o", "new.xlsx"), "needs a column Frozen for 'width'"),
-        (("narrow", "-o", "new.xlsm"), "and so must its copy"),
+        (("narrow", "-o", "new.xlsm"), "workbook must end in .xlsx"),
         (("narrow", "-o", "new.xlsx", "--in-place"), "cannot both be given"),
         (("--in-place",), "which scenario?"),
     ],

@@ -42,7 +42,7 @@ __all__ = ["main", "xlmc"]
 
 BAD_INPUT = 2
 
-_BOOKS: Final = (".xlsx", ".xlsm", ".xltx", ".xltm")
+_BOOKS: Final = (".xlsx", ".xlsm", ".xltx", ".xltm", ".xls")
 
 _ASKING_TO_END: Final = ("SIGTERM", "SIGHUP", "SIGBREAK")
 _STDERR: Final = 2

@@ -29,9 +29,10 @@ def convert(book: Path, output: Path | None, overwrite: bool) -> None:
     from xlmc.report.conversion.convert import convert as write
     from xlmc.report.sheets.save import check_ending
     from xlmc.run.loading import load
+    from xlmc.workbook.target import copy_ending
 
     model = load(book)
-    path = output or model.path.with_name(f"{model.path.stem}-converted{model.path.suffix}")
+    path = output or model.path.with_name(f"{model.path.stem}-converted{copy_ending(model.path)}")
     check_ending(path, model.path)
     found = write(model, path, overwrite=overwrite)
     notices(model.notices)

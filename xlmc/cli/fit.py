@@ -29,7 +29,7 @@ _BY = (
     "What ranks them: aic or bic, how probable the values are, less for every parameter; ad (Anderson-Darling) or ks"
     " (Kolmogorov-Smirnov), how far the distribution is from the values."
 )
-_BOOK_AND_RANGE = re.compile(r"(?P<book>.+\.(?:xlsx|xlsm|xltx|xltm))!(?P<range>.+)", re.IGNORECASE)
+_BOOK_AND_RANGE = re.compile(r"(?P<book>.+\.(?:xlsx|xlsm|xltx|xltm|xls))!(?P<range>.+)", re.IGNORECASE)
 
 
 @click.command()

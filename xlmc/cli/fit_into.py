@@ -44,10 +44,12 @@ def prepare(path: Path, name: str, fitted: Fitted, base: float, source: str) -> 
     """
     from xlmc.definitions.tables.new_row import row_edit
     from xlmc.workbook.reader import read_workbook
+    from xlmc.workbook.target import refuse_into_old_workbook
     from xlmc.workbook.writer import package_bytes, refuse_if_open
 
     refuse_if_open(path)
     workbook = read_workbook(path)
+    refuse_into_old_workbook(path)
     row = row_edit(workbook, name, fitted.name, _six_digits(fitted.parameters), float(f"{base:.6g}"), source)
     data = package_bytes(_parts(workbook, row))
     _refuse_new_problems(workbook, read_workbook(data, path.name))

@@ -353,4 +353,6 @@ class _Write(Protocol):
 
 def results_beside(source: Path, ending: str | None = None) -> Path:
     """Where the results of a workbook or a saved run go by default: `case.xlsx -> case-results.xlsx`."""
-    return source.with_name(f"{source.stem}-results{source.suffix if ending is None else ending}")
+    from xlmc.workbook.target import copy_ending
+
+    return source.with_name(f"{source.stem}-results{copy_ending(source) if ending is None else ending}")

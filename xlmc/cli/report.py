@@ -53,6 +53,7 @@ def report(
     from xlmc.api import open_run
     from xlmc.cli.printing import notices, warnings
     from xlmc.cli.simulate import show_run
+    from xlmc.workbook.target import copy_ending
 
     if run.suffix.casefold() in (".xlsx", ".xlsm"):
         if output or html or json_path or extract or not reports.paths:
@@ -67,7 +68,7 @@ def report(
         notices(found.model.notices)
     target = output
     if output is None and not (html or json_path or extract or reports.paths):
-        target = results_beside(run, found.model.path.suffix)
+        target = results_beside(run, copy_ending(found.model.path))
     name, named = found.model.workbook.name, output is not None
     asked = Outputs(run, name, target, None, html, json_path, extract, overwrite, named=named)
     outputs = asked._replace(reports=reports, wishes=wishes, beside=second).check(found.model.path)

@@ -15,7 +15,7 @@ from xlmc.report import save
 from xlmc.report.json_document import save_json
 from xlmc.report.page import save_page
 from xlmc.results.saved import keep
-from xlmc.workbook.target import free_target
+from xlmc.workbook.target import copy_ending, free_target
 
 if TYPE_CHECKING:
     from xlmc.run.simulation import Simulation
@@ -56,6 +56,6 @@ def save_result(run: Simulation, book: Path, what: str, changes: Sequence[str]) 
         hint = "type the changes into the workbook, or go back with “All as in the workbook”"
         raise SimulationError(message, hint=hint)
     kind = KINDS[what]
-    wanted = book.with_name(f"{book.stem}-results{kind.ending or book.suffix}")
+    wanted = book.with_name(f"{book.stem}-results{kind.ending or copy_ending(book)}")
     path, _ = free_target(wanted, run.model.workbook.name)
     return kind.write(run, path)

@@ -16,12 +16,13 @@ from typing import Final
 
 from xlmc.errors import WorkbookError, XlmcError
 from xlmc.live.kept_scenarios import Keeper
+from xlmc.workbook.package import is_old_workbook
 from xlmc.workbook.printable import printable
 from xlmc.workbook.writer import write_workbook
 
 __all__ = ["Library", "Sample"]
 
-_ENDINGS: Final = (".xlsx", ".xlsm")
+_ENDINGS: Final = (".xlsx", ".xlsm", ".xls")
 _MOST_LISTED: Final = 500
 _LONGEST: Final = 120
 
@@ -120,8 +121,8 @@ class Library:
             WorkbookError: it is no workbook, or cannot be written.
         """
         plain = re.sub(r"[^\w .()+-]", "_", name.replace("\\", "/").rpartition("/")[2]).strip(" .")[-_LONGEST:]
-        if not plain.casefold().endswith(_ENDINGS) or data[:2] != b"PK":
-            hint = "drop a workbook whose name ends in .xlsx or .xlsm"
+        if not plain.casefold().endswith(_ENDINGS) or not (data[:2] == b"PK" or is_old_workbook(data)):
+            hint = "drop a workbook whose name ends in .xlsx, .xlsm or .xls"
             raise WorkbookError("this is no Excel workbook", where=printable(plain) or None, hint=hint)
         folder = self.keeper.dropped / secrets.token_hex(8)
         target = folder / plain

@@ -27,8 +27,9 @@ from xlmc.workbook.inject import result_sheets
 from xlmc.workbook.injection.cell_edit import Content, with_calculation_on_load, with_contents
 from xlmc.workbook.injection.content_types import roles
 from xlmc.workbook.lazy_sheets import with_values
+from xlmc.workbook.package import is_old_workbook
 from xlmc.workbook.reader import read_workbook
-from xlmc.workbook.target import Target, is_same_file
+from xlmc.workbook.target import Target, copy_ending, is_same_file, refuse_into_old_workbook
 from xlmc.workbook.workbook import CellValue, Workbook
 from xlmc.workbook.writer import TakenError, package_bytes, refuse_if_open, write_workbook
 
@@ -91,7 +92,7 @@ def edited_workbook(model: Model, scenario: Scenario | str) -> EditedWorkbook:
     if left:
         part = roles(parts).workbook
         parts[part] = with_calculation_on_load(parts[part], part)
-    data = package_bytes(parts) if cells else book.data
+    data = package_bytes(parts) if cells or is_old_workbook(book.data) else book.data
     _refuse_difference(wanted, build_model(read_workbook(data, book.name), model.path), found)
     typed = {cell: (book.content(cell).value, value) for cell, value in sorted(cells.items())}
     results = bool(result_sheets(book.parts))
@@ -105,9 +106,10 @@ def write_edited(edited: EditedWorkbook, path: Path, *, overwrite: bool = False)
         TakenError: the file is there already, has changed since it was read, or a program has it open.
         WorkbookError: it cannot be written, or has another ending than the workbook.
     """
-    if path.suffix.casefold() != edited.path.suffix.casefold():
-        hint = f"Name it {path.with_suffix(edited.path.suffix).name!r}"
-        raise WorkbookError(f"the workbook ends in {edited.path.suffix}, and so must its copy", where=path, hint=hint)
+    ending = copy_ending(edited.path)
+    if path.suffix.casefold() != ending.casefold():
+        hint = f"Name it {path.with_suffix(ending).name!r}"
+        raise WorkbookError(f"a copy of a {edited.path.suffix} workbook must end in {ending}", where=path, hint=hint)
 
     def check() -> None:
         if not is_same_file(path, edited.path):
@@ -116,6 +118,7 @@ def write_edited(edited: EditedWorkbook, path: Path, *, overwrite: bool = False)
         if not overwrite:
             hint = "Name another file, or type the scenario into the workbook with --in-place"
             raise TakenError("this is the workbook itself", where=path, hint=hint)
+        refuse_into_old_workbook(path)
         refuse_if_open(path)
         if hashlib.sha256(path.read_bytes()).hexdigest() != edited.sha256:
             raise TakenError("the workbook has changed since it was read", where=path, hint="Try again")

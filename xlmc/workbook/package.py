@@ -27,6 +27,7 @@ __all__ = [
     "Limits",
     "Relationship",
     "hash_parts",
+    "is_old_workbook",
     "read_parts",
     "relationships",
     "rels_part",
@@ -73,6 +74,11 @@ class Relationship:
     def kind(self) -> str:
         """The last word of the type (`worksheet`, `table`): the same in transitional and strict files."""
         return self.type.rpartition("/")[2]
+
+
+def is_old_workbook(data: bytes) -> bool:
+    """Whether a file is an old Office file (`.xls`), and no encrypted new one."""
+    return data.startswith(_OLE) and _ENCRYPTED_STREAM not in data
 
 
 def read_parts(data: bytes, limits: Limits = LIMITS) -> dict[str, bytes]:
@@ -133,7 +139,7 @@ def hash_parts(parts: Mapping[str, bytes]) -> str:
 def _check_container(data: bytes) -> None:
     if data.startswith(_OLE) and _ENCRYPTED_STREAM in data:
         raise WorkbookError("the workbook is encrypted", hint="Remove its password in Excel (File > Info) and save it")
-    if data.startswith(_OLE):
+    if is_old_workbook(data):
         raise WorkbookError("the file is an old Excel workbook (.xls)", hint=SAVE_AS)
     if not data:
         raise WorkbookError("the file is empty", hint="Fetch or copy it again")

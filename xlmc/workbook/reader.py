@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 from xlmc.address import column_number
 from xlmc.errors import Notice, WorkbookError
 from xlmc.workbook.lazy_sheets import LazySheets, naming_file
-from xlmc.workbook.package import LIMITS, SMALLER, read_parts, relationships
+from xlmc.workbook.package import LIMITS, SMALLER, is_old_workbook, read_parts, relationships
 from xlmc.workbook.printable import label
 from xlmc.workbook.safe_xml import REPAIR, decode, is_true, tree, whole_number
 from xlmc.workbook.sheet import CellContext, convert
@@ -26,9 +26,10 @@ __all__ = ["Links", "linked_files", "read_workbook"]
 
 
 def read_workbook(source: str | Path | bytes, name: str | None = None) -> Workbook:
-    """Read an `.xlsx` or `.xlsm` file. Nothing in it is run, followed or changed.
+    """Read an `.xlsx` or `.xlsm` file; or an `.xls`, whose cells LibreOffice converts, where it is installed.
 
-    Sheets are parsed when first looked up, so a damaged sheet complains then.
+    Nothing in it is run, followed or changed. Sheets are parsed when first looked up, so a damaged sheet complains
+    then.
 
     Args:
         source: the file's path, or its bytes.
@@ -44,7 +45,7 @@ def read_workbook(source: str | Path | bytes, name: str | None = None) -> Workbo
 
 def _read(data: bytes, name: str, where: str) -> Workbook:
     with naming_file(where):
-        parts = read_parts(data)
+        parts, said = _parts(data)
         structure = read_structure(parts)
         sheets = LazySheets(where, parts, structure)
         tables = [table for sheet in structure.worksheets for table in tables_of(parts, sheet.part, sheet.name)]
@@ -57,11 +58,20 @@ def _read(data: bytes, name: str, where: str) -> Workbook:
             data_tables=tuple(sheets.data_tables()),
             date1904=structure.date1904,
             macintosh=b"Macintosh" in parts.get("docProps/app.xml", b""),
-            notices=tuple(_workbook_notices(parts, structure, name)),
+            notices=(*(Notice(message, name) for message in said), *_workbook_notices(parts, structure, name)),
             parts=parts,
             sha256=hashlib.sha256(data).hexdigest(),
             data=data,
         )
+
+
+def _parts(data: bytes) -> tuple[dict[str, bytes], list[str]]:
+    """The parts of the package, and what was done to have them, in words."""
+    if not is_old_workbook(data):
+        return read_parts(data), []
+    from xlmc.workbook.old_format.joined_package import parts_of_old_workbook  # few workbooks need it
+
+    return parts_of_old_workbook(data)
 
 
 def _file_bytes(path: Path) -> bytes:

@@ -9,11 +9,20 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from xlmc.errors import WorkbookError
+from xlmc.workbook.package import is_old_workbook
 from xlmc.workbook.printable import label
 from xlmc.workbook.seal import ENDINGS, read_seal
 from xlmc.workbook.writer import TakenError, check_folder, refuse_if_open
 
-__all__ = ["Target", "free_target", "is_same_file", "refuse_same_file", "same_name"]
+__all__ = [
+    "Target",
+    "copy_ending",
+    "free_target",
+    "is_same_file",
+    "refuse_into_old_workbook",
+    "refuse_same_file",
+    "same_name",
+]
 
 _SEALED = (".xlsx", ".xlsm", *ENDINGS)
 
@@ -92,6 +101,25 @@ def free_target(path: Path, book: str, *, after: Path | None = None) -> tuple[Pa
         else:
             return each, reason
     raise AssertionError("numbers do not end")
+
+
+def copy_ending(source: Path) -> str:
+    """The ending of what is written of a workbook: its own, and `.xlsx` of an `.xls`."""
+    return ".xlsx" if source.suffix.casefold() == ".xls" else source.suffix
+
+
+def refuse_into_old_workbook(path: Path) -> None:
+    """Refuse to write into an old workbook (`.xls`), whatever it is called: xlmc writes none.
+
+    Raises:
+        WorkbookError: it is one.
+    """
+    with path.open("rb") as file:
+        if is_old_workbook(file.read(8)):
+            hint = "Name another file, which ends in .xlsx; or save the workbook as .xlsx in Excel"
+            raise WorkbookError(
+                "this is an old Excel workbook (.xls), and xlmc does not write into it", where=path, hint=hint
+            )
 
 
 def refuse_same_file(outputs: Iterable[Path]) -> None:

@@ -14,7 +14,7 @@ from xlmc.run.model import paused_collection
 from xlmc.run.result_cells import filled_sheets
 from xlmc.workbook.inject import inject, result_sheets
 from xlmc.workbook.seal import sealed_parts
-from xlmc.workbook.target import Target, is_same_file
+from xlmc.workbook.target import Target, copy_ending, is_same_file, refuse_into_old_workbook
 from xlmc.workbook.writer import TakenError, package_bytes, refuse_if_open, write_workbook
 
 if TYPE_CHECKING:
@@ -79,9 +79,10 @@ def check_ending(path: Path, source: Path) -> None:
         hint = f"Rename it, such as {source.name.strip('.') + '.xlsx'!r}: Excel opens no result without an ending"
         raise WorkbookError("the name of the workbook has no ending", where=source, hint=hint)
     # Excel opens no file whose ending says that it has macros when it has none, or the other way round.
-    if path.suffix.casefold() != source.suffix.casefold():
-        hint = f"Name it {path.with_suffix(source.suffix).name!r}"
-        raise WorkbookError(f"results of a {source.suffix} workbook must end in {source.suffix}", where=path, hint=hint)
+    ending = copy_ending(source)
+    if path.suffix.casefold() != ending.casefold():
+        hint = f"Name it {path.with_suffix(ending).name!r}"
+        raise WorkbookError(f"results of a {source.suffix} workbook must end in {ending}", where=path, hint=hint)
 
 
 def _check(simulation: Simulation, path: Path, *, overwrite: bool) -> None:
@@ -92,6 +93,7 @@ def _check(simulation: Simulation, path: Path, *, overwrite: bool) -> None:
     if not overwrite:
         hint = "Name another file, or write the result sheets into it with --in-place (in Python: overwrite=True)"
         raise TakenError("this is the workbook itself", where=path, hint=hint)
+    refuse_into_old_workbook(path)
     refuse_if_open(path)
     if hashlib.sha256(path.read_bytes()).hexdigest() != simulation.model.workbook.sha256:
         hint = "Run again, or write to another file"

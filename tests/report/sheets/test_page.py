@@ -50,6 +50,12 @@ def test_numbers_keep_every_bit_and_show_what_the_format_says(written, number):
     assert (cell.value, cell.number_format) == (number, "0.00")
 
 
+@pytest.mark.parametrize("value", [True, False])
+def test_true_and_false_are_logical_values(written, value):
+    cell = written(lambda page: page.put(0, 0, Shown(value)))["A1"]
+    assert (cell.value, cell.data_type) == (value, "b")
+
+
 def test_an_empty_cell_has_its_look(written):
     cell = written(lambda page: page.put(0, 0, Shown(None, look="moved")))["A1"]
     assert cell.value is None

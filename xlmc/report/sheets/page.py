@@ -56,6 +56,8 @@ class Page:
             self.sheet.write_blank(row, column, None, style)
         elif isinstance(value, str):
             self.sheet.write_string(row, column, cut(value), style)
+        elif isinstance(value, bool):
+            self.sheet.write_boolean(row, column, value, style)
         elif math.isfinite(value):
             self.sheet.write_number(row, column, value, style)
         else:

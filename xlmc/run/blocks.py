@@ -171,7 +171,7 @@ class ModelRunner:
         start, trials = task.start, task.trials
         whole = None if self._run_whole is None else self._run_whole(start, trials, task.inputs, room)
         if whole is not None:
-            return _block_of(whole, task, self._sampler.draw(start) if task.prior else None)
+            return _block_of(whole, task, self._draw_all(whole, task) if task.prior else None)
         draws = self._sampler.draw(start)
         columns = self._evaluator.filters(draws, self._block)
         invalid = {name: np.isnan(draws[name]) for name in sorted(self._fallible)}
@@ -200,6 +200,12 @@ class ModelRunner:
             {name: values[:trials] for name, values in draws.items()} if task.prior else None,
             [_discards(column, m) for column in forecasts],
         )
+
+    def _draw_all(self, kept: KeptBlock, task: Task) -> Mapping[str, Floats]:
+        """The draws of all trials of a block: those that were kept, or drawn once more where some were not."""
+        if kept.draws and kept.accepted.size == task.trials:
+            return kept.draws
+        return self._sampler.draw(task.start)
 
     def _forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
         """The bodies of functions need not know what to make of no trials at all."""

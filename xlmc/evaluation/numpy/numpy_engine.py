@@ -138,7 +138,7 @@ class NumpyProgram:
         for node, buffer in () if all_survive and not self._late else self._gathers:
             frame.values[node] = _gather(frame, node, buffer, survivors)
         for node, name in self._late_inputs:
-            frame.values[node] = inputs[name][survivors]
+            frame.values[node] = inputs[name] if all_survive else inputs[name][survivors]
         for step in self._late:
             step(frame)
         return [_column(frame.values[node], survivors.size) for node in self._forecasts]
@@ -246,6 +246,10 @@ def _gather(frame: Frame, node: int, buffer: int | None, survivors: NDArray[np.i
         return found.take(survivors)
     if buffer is None:
         return found[survivors]
+    if survivors.size == found.size:
+        out = frame.buffers[buffer]
+        np.copyto(out, found)
+        return out
     return np.take(found, survivors, out=frame.buffers[buffer], mode="clip")
 
 

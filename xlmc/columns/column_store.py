@@ -266,6 +266,9 @@ WRITTEN: Final = 1 << 24
 _OF_A_COLUMN: Final = 1 << 18
 """The same of a column, where there are so many that each would be opened for little."""
 
+_RESERVED: Final = 1.5
+"""Memory reserved for columns that are to be written, as a multiple of what is gathered before that."""
+
 Array = NDArray[Any]
 
 
@@ -336,10 +339,12 @@ class ColumnStore:
         self._arrays[key] = array
 
     def _likely_room(self, key: Hashable) -> int:
-        """How many numbers a column will have, or have when all columns are written, if they grow together."""
-        expected = self._expected.get(key, 0)
-        most = self._most
-        return expected if self._together <= most else int(expected * most / self._together)
+        """How many numbers a column will have, or have when all columns are written, if they grow together.
+
+        These are written after the block that fills the memory, which may be large.
+        """
+        expected, reserved = self._expected.get(key, 0), _RESERVED * self._most
+        return expected if self._together <= reserved else int(expected * reserved / self._together)
 
     def _added(self, key: Hashable) -> Array:
         """The numbers of a column that are in memory, `(m,)`."""

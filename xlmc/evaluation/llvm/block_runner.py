@@ -209,7 +209,9 @@ class NativeBlockRunner:
             np.add(self._trials[:m], start, out=room.accepted[:m]),
             {name: room.draws[name][:m] for name in self._names} if inputs else {},
             [
-                np.full(m, float(each.value)) if isinstance(each, Literal) else room.forecasts[self._column[each]][:m]
+                np.broadcast_to(float(each.value), m)
+                if isinstance(each, Literal)
+                else room.forecasts[self._column[each]][:m]
                 for each in parts.forecasts
             ],
             together,

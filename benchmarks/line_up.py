@@ -53,6 +53,7 @@ def line_up(library: Path | None, engines: Sequence[str], home: Path = peers.HOM
     entries = [_xlmc(name) for name in engines]
     absent = []
     entries.append(_hand("hand/NumPy", "numpy", ("plain", "buffered")))
+    entries += _of_the_skid(engines)
     if importlib.util.find_spec("numba"):
         entries += [_hand("hand/numba", "numba", ("polynomial",)), _hand("hand/numba, libm", "numba", ("libm",))]
     else:
@@ -78,13 +79,29 @@ def _xlmc(engine: str) -> Entry:
     return Entry(f"xlmc/{engine}", "xlmc", "xlmc_engine", books=books, variants=dict.fromkeys(books, options))
 
 
+def _of_the_skid(engines: Sequence[str]) -> list[Entry]:
+    """Where nothing is rejected, it counts what is kept, and what the formulas say."""
+    kept = {"draws_kept": True}
+    plain = [{"language": "numpy", "chunk": chunk} for chunk in CHUNKS["numpy"]]
+    by_hand = {
+        "hand/NumPy, other formulas": [variant | {"kernel": "identity"} for variant in plain],
+        "hand/NumPy, draws kept": [variant | {"kernel": "formulas"} | kept for variant in plain],
+    }
+    entries = [Entry(name, "hand", "hand", books=(SKID,), variants={SKID: all_}) for name, all_ in by_hand.items()]
+    for engine in (engine for engine in engines if engine != "formulas"):
+        options = {SKID: [{"engine": engine} | kept]}
+        entries.append(Entry(f"xlmc/{engine}, draws kept", "xlmc", "xlmc_engine", books=(SKID,), variants=options))
+    return entries
+
+
 def _hand(name: str, language: str, kernels: Sequence[str], **more: str) -> Entry:
     """A hand-written contestant; `kernels` are those of the case study."""
     plain = [{"language": language, "chunk": chunk, **more} for chunk in CHUNKS[language]]
     case = [variant | {"kernel": kernel} for kernel in kernels for variant in plain]
     if kernels == ("libm",):  # the skid sheet has no sine to be different in
         return Entry(name, "hand", "hand", books=(CASE,), variants={CASE: case})
-    variants = {CASE: case, SKID: [variant | {"kernel": kernels[-1]} for variant in plain]}
+    of_skid = "formulas" if language == "numpy" else kernels[-1]
+    variants = {CASE: case, SKID: [variant | {"kernel": of_skid} for variant in plain]}
     if language in ("numpy", "c"):
         march = [variant | {"kernel": search} for search in SEARCHES for variant in plain]
         variants |= dict.fromkeys(MARCHES, march)

@@ -102,12 +102,13 @@ def _numpy(book: str, options: dict[str, Any]) -> Hand:
             "NumPy",
         )
     if book == "skid":
+        skid, draws_kept = options["kernel"], options.get("draws_kept", False)
         return Hand(
-            hand_written_skid.evaluate,
-            lambda trials, seed: hand_written_skid.simulate(trials, seed, chunk),
+            hand_written_skid.KERNELS[skid][0],
+            lambda trials, seed: hand_written_skid.simulate(trials, seed, chunk, skid, draws_kept).speeds,
             chunk,
             {},
-            "NumPy, buffers allocated once",
+            f"NumPy, {skid}",
         )
     kernel = options["kernel"]
     return Hand(

@@ -18,6 +18,7 @@ class Xlmc:
         from xlmc.run.simulate import BLOCK
 
         self.engine = task.options["engine"]
+        self._keeps = {"keep_inputs": None} if task.options.get("draws_kept") else {}
         self._model = xlmc.load(task.path)
         self._names = {(a.cell.sheet, a.cell.row, a.cell.column): a.name for a in self._model.assumptions}
         self._task = task
@@ -44,7 +45,7 @@ class Xlmc:
 
     def run(self, trials: int) -> object:
         """See `Contestant`."""
-        return self._model.simulate(trials, 1, engine=self.engine)
+        return self._model.simulate(trials, 1, engine=self.engine, **self._keeps)
 
     def sample(self, trials: int, seed: int) -> Any:
         """Forecasts of the accepted trials, one array (m,) a forecast."""

@@ -96,7 +96,7 @@ def test_skid_runs_agree(skid_in_c):
     """Means of independent draws differ by less than 5 standard errors; numba draws what NumPy draws."""
     trials = 200_001
     module = hand_written_skid
-    plain = module.simulate(trials, 2, 4_096)
+    plain = module.simulate(trials, 2, 4_096).speeds
     loop = hand_numba.simulate(hand_numba.skid_kernel(), 1, module.LOW, module.HIGH, trials, 2, 4_096)
     np.testing.assert_allclose(loop, plain, rtol=1e-13)
     other = skid_in_c.simulate(trials, 2, 4_096)

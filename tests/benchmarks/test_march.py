@@ -57,5 +57,14 @@ def test_the_skid_sheet_is_what_is_written_by_hand(tmp_path):
     inputs = low + (high - low) * np.random.default_rng(3).random((3, 500))
     columns = {name: column for (name, *_), column in zip(books.SKID, inputs, strict=True)}
     found = model.function(columns)["Speed, mph"]
-    np.testing.assert_allclose(found, hand_written_skid.evaluate(inputs.copy())[0], rtol=1e-13)
+    for evaluate, _ in hand_written_skid.KERNELS.values():
+        np.testing.assert_allclose(found, evaluate(inputs.copy())[0], rtol=1e-13)
     assert [a.parameters for a in model.assumptions] == [{"low": lo, "high": hi} for *_, lo, hi in books.SKID]
+
+
+def test_hand_written_runs_of_the_skid_keep_what_they_say():
+    for kernel, (evaluate, _) in hand_written_skid.KERNELS.items():
+        kept = hand_written_skid.simulate(5_000, 1, 2_048, kernel, keep_draws=True)
+        assert kept.index.tolist() == list(range(5_000))
+        np.testing.assert_array_equal(evaluate(kept.draws.copy()), kept.speeds)
+        assert hand_written_skid.simulate(5_000, 1, 2_048, kernel).draws is None

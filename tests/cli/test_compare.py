@@ -118,7 +118,7 @@ def test_pairs_that_are_none(xlmc, books, pair):
 def test_a_forecast_in_two_pairs(xlmc, books):
     outcome = xlmc("compare", *books, "--pair", "Speed=v", "--pair", "Speed=w")
     assert outcome.code == 2
-    assert "names a forecast that another pair names" in outcome.err
+    assert "has a name that another --pair has" in outcome.err
 
 
 def test_nothing_accepted_is_a_warning_and_exit_code_1(xlmc, books, tmp_path):
@@ -136,3 +136,38 @@ def test_the_case_study_on_two_rungs(xlmc):
     assert "is enough for Chevrolet delta-V to 1.5 mph, Nissan delta-V to 1.5 mph and Chevrolet impact speed" in text
     assert "because the filter 'Restitution, tangential' of intersection.xlsx moves it" in text
     assert "they give the same number: they differ only in which trials they accept" in text
+
+
+def test_two_models_of_one_answer(xlmc, tmp_path):
+    """Each draws what the other does not: which tells more; where they contradict each other, the exit code is 1."""
+    first, second = book(tmp_path / "first.xlsx", "=B2"), book(tmp_path / "second.xlsx", "=0.45+B3/10")
+    outcome = xlmc("compare", first, second, *QUICK)
+    assert outcome.code == 0
+    text = " ".join(outcome.out.split())
+    assert "Speed: second.xlsx tells more, with a standard deviation of 0.0289" in text
+    assert "The two answers agree." in text
+    apart = book(tmp_path / "apart.xlsx", "=2+B3/10")
+    outcome = xlmc("compare", first, apart, "--json", *QUICK)
+    assert outcome.code == 1
+    found = json.loads(outcome.out)
+    rivals = found["forecasts"][0]["two_models"]
+    assert rivals["tells_more"] == "apart.xlsx"
+    assert rivals["drawn_only_for"] == {"first.xlsx": ["a"], "apart.xlsx": ["b"]}
+    assert (rivals["agreement"], rivals["chance_of_such_a_difference"]) == ("contradict", 0.0)
+    assert "in all 20,000 trials that both accept they differ in one direction" in found["verdict"][0]
+
+
+def test_whether_a_book_needs_another(xlmc, tmp_path):
+    first, second = book(tmp_path / "first.xlsx", "=B2+B3"), book(tmp_path / "second.xlsx", "=B2/100", "")
+    outcome = xlmc("compare", first, second, "--feed", "a=Speed", "--tolerance", "0.1", *QUICK)
+    assert outcome.code == 0
+    text = " ".join(outcome.out.split())
+    assert "first.xlsx (first) and first.xlsx fed by second.xlsx (second)" in text
+    assert "first.xlsx without second.xlsx is not enough for Speed to 0.1 mph: " in text
+    assert "'a' is not the same: Uniform: Low 0, High 1 | from second.xlsx" in text
+    assert json.loads(xlmc("compare", first, second, "--feed", "a=Speed", "--json", *QUICK).out)["fed_by"] == (
+        "second.xlsx"
+    )
+    outcome = xlmc("compare", first, second, "--feed", "b", *QUICK)
+    assert outcome.code == 2
+    assert "--feed 'b' must be written 'assumption of the first=forecast of the second'" in outcome.err

@@ -79,3 +79,27 @@ def test_no_table_is_wider_than_80_columns_where_that_is_all_there_is(case_study
     headings = [line for line in lines if "Held or left out" in line]
     assert len(headings) == 4
     assert all("Moves by" in line and "Tolerances" in line for line in headings)
+
+
+def test_an_answer_that_needs_no_better_input(xlmc, case_study):
+    """Judged by one forecast; the yaw inertias may lie anywhere in their ranges, the departure angles may not."""
+    asked = "--forecast", "Chevrolet delta-V", "--tolerance", "0.4 mph", "--acceptance", "30", "-n", "30000"
+    outcome = xlmc("screen", case_study, *asked, "--ends")
+    assert outcome.code == 0
+    text = " ".join(outcome.out.split())
+    assert "Judged by Chevrolet delta-V only." in text
+    assert "Nissan delta-V" not in text
+    free = text.partition("Not needed wherever in their ranges they lie: ")[2].partition(". Held at either end")[0]
+    assert "Chevrolet yaw moment of inertia" in free
+    assert "departure angle" not in free
+    assert re.search(r"Chevrolet weight = 6666 +\d", outcome.out)  # 2.5 % of the way from 6661 to 6861
+    found = json.loads(xlmc("screen", case_study, *asked, "--ends", "--json").out)
+    assert {entry["name"] for entry in found["held_at_ends"] if entry["free"]} == set(free.split("; "))
+    assert found["forecasts_not_asked"] == ["Nissan delta-V", "Chevrolet impact speed", "Nissan impact speed"]
+    assert list(found["held_alone"][0]["forecasts"]) == ["Chevrolet delta-V"]
+
+
+def test_a_forecast_that_is_not_there(xlmc, case_study):
+    outcome = xlmc("screen", case_study, "--forecast", "Speed*")
+    assert outcome.code == 2
+    assert "no forecast has the name 'Speed*'" in outcome.err

@@ -276,3 +276,20 @@ def test_why_a_change_is_undecided(book):
     assert {undecided_text(cost, 2).partition(" (")[2] for cost in few if not cost.lost} == {
         "too few trials are accepted)"
     }
+
+
+def test_held_at_the_ends_of_a_range(weighted):
+    """b of weight 0.1 may be held at 0.5; at 0.025 and 0.975 it moves the mean by 0.0475, beyond a tolerance of 0.02.
+
+    c of weight 0.02 moves it by 0.0095.
+    """
+    found = screen(weighted({"a": 1.0, "b": 0.1, "c": 0.02}), "0.02", ends=True, **SIZE)
+    free = {each.name: each.free for each in found.ends}
+    assert free == {"b": False, "c": True}
+    (b,) = [each for each in found.ends if each.name == "b"]
+    for value, cost, sign in zip(b.values, b.costs, (-1, 1), strict=True):
+        share = (1 + sign) / 2 * 0.95 + 0.025
+        assert abs(value - share) < 4 * (share * (1 - share) / 20_000) ** 0.5
+        moved = cost.forecasts["y"].mean.difference
+        assert abs(moved.value - 0.1 * (value - 0.5)) < 4 * moved.error
+    assert screen(weighted({"a": 1.0, "b": 0.1}), **SIZE).ends is None

@@ -39,6 +39,12 @@ UNDECIDED = 1
     "  [default: a tenth of it or of the probability below, at least 0.1]",
 )
 @click.option("--pair", multiple=True, help="'A=B': forecast A of the first book is forecast B of the second.")
+@click.option(
+    "--feed",
+    multiple=True,
+    help="'A=B': ask whether FIRST needs SECOND, whose forecast B would give FIRST's assumption A; may be given several"
+    " times.",
+)
 @click.option("-n", "--trials", type=WholeNumber(1), help="Trials of each run.  [default: the books' larger number]")
 @click.option("--seed", type=WholeNumber(0), help="Seed of each run.  [default: the first book's]")
 @engine_option
@@ -53,6 +59,7 @@ def compare(
     tolerance: tuple[str, ...],
     chance: float | None,
     pair: tuple[str, ...],
+    feed: tuple[str, ...],
     trials: int | None,
     seed: int | None,
     engine: str | None,
@@ -82,7 +89,8 @@ def compare(
             *books,
             tolerance,
             chance=chance,
-            pairs=_pairs(pair),
+            pairs=_pairs(pair, "--pair", "name in the first=name in the second"),
+            feeds=_pairs(feed, "--feed", "assumption of the first=forecast of the second"),
             trials=trials,
             seed=seed,
             engine=engine,
@@ -101,23 +109,29 @@ def compare(
     runs = zip(book_names(found), (found.first, found.second), strict=True)
     doubts = [f"{name}: {warning}" for name, run in runs for warning in run.warnings]
     warnings(doubts)
-    if doubts or found.of(comparison.Verdict.UNDECIDED):
+    if doubts or found.of(comparison.Verdict.UNDECIDED) or any(_contradict(each) for each in found.rivals):
         raise click.exceptions.Exit(UNDECIDED)
 
 
-def _pairs(given: tuple[str, ...]) -> dict[str, str]:
+def _contradict(each: ForecastComparison) -> bool:
+    from xlmc.studies.comparison.rivalry import Agreement
+
+    return each.rivalry is not None and each.rivalry.agreement is Agreement.CONTRADICT
+
+
+def _pairs(given: tuple[str, ...], option: str, form: str) -> dict[str, str]:
     """Name in the first book -> name in the second.
 
     Raises:
-        UsageError: a pair is not written as one, or a forecast is in two.
+        UsageError: a pair is not written as one, or a name is in two.
     """
     found: dict[str, str] = {}
     for text in given:
         mine, equals, theirs = (part.strip() for part in text.partition("="))
         if not (mine and equals and theirs):
-            raise click.UsageError(f"--pair {text!r} must be written 'name in the first=name in the second'.")
+            raise click.UsageError(f"{option} {text!r} must be written '{form}'.")
         if mine in found or theirs in found.values():
-            raise click.UsageError(f"--pair {text!r} names a forecast that another pair names.")
+            raise click.UsageError(f"{option} {text!r} has a name that another {option} has.")
         found[mine] = theirs
     return found
 
@@ -188,6 +202,7 @@ def _as_json(found: Comparison) -> dict[str, object]:
     books, inputs = book_names(found), found.inputs
     return {
         "books": books,
+        "fed_by": None if found.source is None else found.source.model.path.name,
         "simpler": None if found.simpler is None else books[found.simpler],
         "trials": found.first.trials,
         "seed": found.first.settings.seed,
@@ -207,7 +222,7 @@ def _as_json(found: Comparison) -> dict[str, object]:
 
 
 def _entry(each: ForecastComparison, books: tuple[str, str]) -> dict[str, object]:
-    from xlmc.cli.study_output import difference_json, estimate_json
+    from xlmc.cli.study_output import difference_json, estimate_json, finite
 
     entry: dict[str, object] = {
         "name": each.first.name,
@@ -222,6 +237,17 @@ def _entry(each: ForecastComparison, books: tuple[str, str]) -> dict[str, object
         "same_in_every_trial_both_accept": each.same_in_every_trial,
         **difference_json(each.difference),
     }
+    if each.rivalry is not None:
+        rivals = each.rivalry
+        entry["two_models"] = {
+            "drawn_only_for": dict(zip(books, rivals.own, strict=True)),
+            "tells_more": None if rivals.sharper is None else books[rivals.sharper],
+            "standard_deviations": [estimate_json(e) for e in (rivals.deviation.first, rivals.deviation.second)],
+            "widths_of_central_range": [estimate_json(e) for e in (rivals.width.first, rivals.width.second)],
+            "chance_of_such_a_difference": finite(rivals.chance),
+            "trials_both_accept": rivals.both,
+            "agreement": rivals.agreement.value,
+        }
     if each.cause is not None:
         entry["cause"] = {
             "taken_out": [_step(step, books) for step in each.cause.steps],
@@ -231,4 +257,4 @@ def _entry(each: ForecastComparison, books: tuple[str, str]) -> dict[str, object
 
 
 def _step(step: Step, books: tuple[str, str]) -> dict[str, str]:
-    return {"kind": step.kind, "book": books[step.side], "name": step.name}
+    return {"kind": step.word, "book": books[step.side], "name": step.name}

@@ -15,7 +15,7 @@ from xlmc.cli.terminal import say, say_json
 
 if TYPE_CHECKING:
     from xlmc.report.study_report import Block, StudyReport, Table
-    from xlmc.studies.screening import Cost, Screening
+    from xlmc.studies.screening import AtEnds, Cost, Screening
 
 __all__ = ["screen"]
 
@@ -49,6 +49,16 @@ NOT_TO_BE_USED = 1
     help="Also say what holding all of these assumptions at once costs: names joined by commas, * for any letters;"
     " may be given several times.",
 )
+@click.option(
+    "--forecast",
+    multiple=True,
+    help="Judge by these forecasts only: names joined by commas, * for any letters; may be given several times.",
+)
+@click.option(
+    "--ends",
+    is_flag=True,
+    help="Also hold each assumption that may be held at the ends of its range: does it have to be known better?",
+)
 @click.option("-n", "--trials", type=WholeNumber(1), help="Trials of each run.  [default: the book's, else 200000]")
 @click.option("--seed", type=WholeNumber(0), help="Seed of each run.  [default: the book's, else 999]")
 @engine_option
@@ -62,6 +72,8 @@ def screen(
     chance: float | None,
     acceptance: float,
     freeze: tuple[str, ...],
+    forecast: tuple[str, ...],
+    ends: bool,
     trials: int | None,
     seed: int | None,
     engine: str | None,
@@ -93,6 +105,8 @@ def screen(
             chance=chance,
             acceptance_tolerance=acceptance / 100.0,
             sets=freeze,
+            judged_by=forecast,
+            ends=ends,
             trials=trials,
             seed=seed,
             engine=engine,
@@ -126,9 +140,12 @@ def _tables(found: Screening) -> Iterator[Block]:
     yield _table(title, found.single, ("Held", _names(found.single)), ("Expected", expected))
     if found.sets:
         yield _table("Held at once, as asked", found.sets, ("Held", _names(found.sets)))
+    if found.ends:
+        yield _at_ends(found.ends)
     if found.filters:
         held = " with the assumptions named above held" if found.joint else ""
-        yield _table(f"Each filter left out{held}", found.filters, ("Left out", _names(found.filters)))
+        what = "filter and item of evidence" if _has_evidence(found) else "filter"
+        yield _table(f"Each {what} left out{held}", found.filters, ("Left out", _names(found.filters)))
     for name in found.tolerances:
         yield _of_forecast(found, name)
 
@@ -148,6 +165,21 @@ def _table(title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]])
         for index, cost in enumerate(costs)
     )
     return Table(title, (*headings, "Verdict"), rows, tuple(range(1, len(headings))))
+
+
+def _at_ends(found: Sequence[AtEnds]) -> Table:
+    """What holding each assumption at an end of its range costs."""
+    pairs = [
+        (f"{each.name} = {value:.4g}", cost)
+        for each in found
+        for value, cost in zip(each.values, each.costs, strict=True)
+    ]
+    title = "Each of these held at an end of its range, its 2.5 % and 97.5 % points"
+    return _table(title, [cost for _, cost in pairs], ("Held", [name for name, _ in pairs]))
+
+
+def _has_evidence(found: Screening) -> bool:
+    return any(each.evidence is not None for each in found.run.model.filters)
 
 
 def _size(tolerances: float) -> str:
@@ -223,6 +255,10 @@ def _verdicts(found: Screening) -> Iterable[str]:
         yield "Every assumption is needed, as far as these trials tell."
     if found.only_alone:
         yield f"Within the tolerance alone, but not surely together with those: {'; '.join(found.only_alone)}."
+    if found.ends is not None:
+        yield _ends_text([each.name for each in found.ends if each.free])
+    if found.unasked:
+        yield f"Judged by {'; '.join(found.tolerances)} only."
     if found.idle:
         yield f"No forecast or filter needs {'; '.join(found.idle)}."
     if found.valueless:
@@ -234,12 +270,24 @@ def _verdicts(found: Screening) -> Iterable[str]:
         yield f"Not screened, because their cells are blank: {'; '.join(found.baseless)}."
     if found.reduced:
         yield (
-            f"Filters that then decide nothing here: {'; '.join(found.reduced.names)}. Without them no number moves by "
+            f"{'Filters and evidence' if _has_evidence(found) else 'Filters'} that then decide nothing here: "
+            f"{'; '.join(found.reduced.names)}. Without them no number moves by "
             f"more than {found.reduced.size:.2f} of its tolerance. A filter that rejects the impossible may stay."
         )
     if found.undecided:
         names = "; ".join(undecided_text(cost, found.run.trials) for cost in found.undecided)
         yield f"Undecided at {found.run.trials:,} trials, and therefore kept: {names}."
+
+
+def _ends_text(free: Sequence[str]) -> str:
+    if not free:
+        return "None of these may lie anywhere in its range: each decides, or is undecided, at one end at least."
+    plural = len(free) > 1
+    return (
+        f"Not needed wherever in {'their ranges they lie' if plural else 'its range it lies'}: {'; '.join(free)}. Held "
+        f"at either end, {'each alone, they move' if plural else 'it moves'} no number beyond its tolerance: no other "
+        "model, and no better measurement, has to give it."
+    )
 
 
 def _meaning(found: Screening) -> Iterable[str]:
@@ -274,10 +322,18 @@ def _as_json(found: Screening) -> dict[str, object]:
         "acceptance_tolerance": found.acceptance_tolerance,
         "not_needed_by_any_cell": found.idle,
         "without_base_value": found.baseless,
+        "forecasts_not_asked": found.unasked,
         "forecasts_without_numbers": found.valueless,
         "held_alone": [_entry(cost, found) for cost in found.single],
         "held_together": None if found.joint is None else _entry(found.joint, found),
         "held_as_asked": [_entry(cost, found) for cost in found.sets],
+        "held_at_ends": None
+        if found.ends is None
+        else [
+            {"name": each.name, "at": value, "free": each.free, **_entry(cost, found)}
+            for each in found.ends
+            for value, cost in zip(each.values, each.costs, strict=True)
+        ],
         "filters_left_out_alone": [_entry(cost, found) for cost in found.filters],
         "filters_left_out_together": None if found.reduced is None else _entry(found.reduced, found),
         "cells": {

@@ -9,6 +9,8 @@
    with all of them held; costs are not added up.
 4. **Filters**, in the same way, on top of it: left out one by one, then together. The cells that only they need are not
    needed any more.
+5. **At the ends**, if asked: each assumption that may be held at its base value is held at both ends of its range. If
+   no answer moves then, either, it need not be known better: no other model, and no measurement, has to give it.
 """
 
 from __future__ import annotations
@@ -43,13 +45,16 @@ from xlmc.studies.comparison.tolerances import (
 )
 from xlmc.studies.comparison.variations import with_changes, with_plain_sampling
 
-__all__ = ["ACCEPTANCE_TOLERANCE", "Cost", "Expected", "Screening", "screen"]
+__all__ = ["ACCEPTANCE_TOLERANCE", "ENDS", "AtEnds", "Cost", "Expected", "Screening", "screen"]
 
 ACCEPTANCE_TOLERANCE: Final = 0.1
 """Of the share of accepted trials: the change that counts as none."""
 
 SLICE: Final = 0.2
 """Of the prior, about the base value: wide enough to hold trials, narrow enough to stand for the value."""
+
+ENDS: Final = (0.025, 0.975)
+"""Percentiles of an assumption that stand for the ends of its range."""
 
 _FEWEST: Final = 2
 """Values of a forecast: a standard deviation takes so many."""
@@ -95,6 +100,25 @@ class Expected:
 
 
 @dataclass(frozen=True, slots=True)
+class AtEnds:
+    """An assumption held at either end of its range.
+
+    Attributes:
+        values: the ends, its percentiles `ENDS`.
+        costs: of holding it there.
+    """
+
+    name: str
+    values: tuple[float, float]
+    costs: tuple[Cost, Cost]
+
+    @property
+    def free(self) -> bool:
+        """Whether the answers stay within the tolerances at both ends."""
+        return all(cost.judgement.verdict is Verdict.WITHIN for cost in self.costs)
+
+
+@dataclass(frozen=True, slots=True)
 class Screening:
     """What a book could do without.
 
@@ -106,6 +130,7 @@ class Screening:
         idle: assumptions that no forecast or filter needs.
         baseless: assumptions without a base value, which cannot be held.
         valueless: forecasts that are a number in fewer than two accepted trials, which judge nothing.
+        unasked: forecasts that were not to judge.
         expected: the cheap ranking, the cheapest first.
         single: each assumption held alone, in that order.
         joint: those that may be held together, in one run; None where there are none.
@@ -117,6 +142,7 @@ class Screening:
         cells: how many formula cells the book as it is needs.
         varying: how many then vary.
         runs: how many were made.
+        ends: those of `single` that are within the tolerance, held at either end; None where that was not asked.
     """
 
     run: Simulation
@@ -126,6 +152,7 @@ class Screening:
     idle: tuple[str, ...]
     baseless: tuple[str, ...]
     valueless: tuple[str, ...]
+    unasked: tuple[str, ...]
     expected: tuple[Expected, ...]
     single: tuple[Cost, ...]
     joint: Cost | None
@@ -137,6 +164,7 @@ class Screening:
     cells: int
     varying: int
     runs: int
+    ends: tuple[AtEnds, ...] | None = None
 
     @property
     def only_alone(self) -> tuple[str, ...]:
@@ -159,6 +187,8 @@ def screen(
     chance: float | None = None,
     acceptance_tolerance: float = ACCEPTANCE_TOLERANCE,
     sets: Iterable[str] = (),
+    judged_by: Iterable[str] = (),
+    ends: bool = False,
     trials: int | None = None,
     seed: int | None = None,
     engine: str | None = None,
@@ -177,6 +207,8 @@ def screen(
             of it or of its complement, and a tenth of a point at least.
         acceptance_tolerance: the relative change of the share of accepted trials that counts as none.
         sets: names of assumptions to hold at once, joined by commas, `*` for any letters.
+        judged_by: names of the forecasts that count, in the same form; all where there are none.
+        ends: also hold each assumption that may be held at both ends of its range.
         trials: of every run; as in `Model.simulate`, like what follows.
         seed: of every run.
         engine: of every run.
@@ -191,14 +223,16 @@ def screen(
         message = f"the tolerance of the acceptance is {acceptance_tolerance:g}"
         raise SimulationError(message, hint="give a positive number, such as 0.1 for a tenth")
     stated = read_tolerances([tolerance] if isinstance(tolerance, str) else tolerance, model.forecasts)
-    wanted = [_names_of(pattern, model) for pattern in sets]
+    wanted = [_names_of(pattern, [a.name for a in model.live], "assumption that is drawn") for pattern in sets]
+    asked = [name for text in judged_by for name in _names_of(text, [f.name for f in model.forecasts], "forecast")]
     tell = told or (lambda _: None)
     tell("the book as it is")
     run = simulate(with_plain_sampling(model), trials=trials, seed=seed, engine=engine, jobs=jobs)
     if run.accepted < 2:
         message = f"{run.accepted} of {run.trials:,} trials were accepted, too few to compare anything with"
         raise SimulationError(message, hint="run more trials, or see whether the filters contradict the assumptions")
-    return _Screen(run, stated, chance_of(chance), acceptance_tolerance, engine, jobs, tell).screening(wanted)
+    screened = _Screen(run, stated, chance_of(chance), acceptance_tolerance, engine, jobs, tell, asked)
+    return screened.screening(wanted, ends=ends)
 
 
 class _Screen:
@@ -213,19 +247,22 @@ class _Screen:
         engine: str | None,
         jobs: int,
         tell: Told,
+        asked: Sequence[str],
     ) -> None:
         self._run, self._chance, self._acceptance_tolerance = run, chance, acceptance_tolerance
         self._engine, self._jobs, self._tell = engine, jobs, tell
         self._accepted = {f.name: Accepted.of(run.trial_index, run.forecasts[f.name]) for f in run.model.forecasts}
-        self._judged = [f for f in run.model.forecasts if self._accepted[f.name].m >= _FEWEST]
-        self._valueless = tuple(f.name for f in run.model.forecasts if f not in self._judged)
+        wanted = [f for f in run.model.forecasts if not asked or f.name in asked]
+        self._unasked = tuple(f.name for f in run.model.forecasts if f not in wanted)
+        self._judged = [f for f in wanted if self._accepted[f.name].m >= _FEWEST]
+        self._valueless = tuple(f.name for f in wanted if f not in self._judged)
         if not self._judged:
             message = "no forecast is a number in two accepted trials or more"
             raise SimulationError(message, hint="xlmc simulate tells in which cells the trials are lost to errors")
         self._tolerances = {f.name: stated.of(f, _deviation(self._accepted[f.name])) for f in self._judged}
         self._runs = 1
 
-    def screening(self, sets: Sequence[tuple[str, ...]]) -> Screening:
+    def screening(self, sets: Sequence[tuple[str, ...]], *, ends: bool) -> Screening:
         model = self._run.model
         held = [a for a in model.live if a.base is not None]
         expected = sorted((Expected(a.name, self._expect_cost(a)) for a in held), key=lambda each: each.size)
@@ -238,6 +275,8 @@ class _Screen:
 
         filters = tuple(left_out([f.name]) for f in model.filters)
         reduced = self._together(filters, left_out)
+        alone = [cost.names[0] for cost in single if cost.judgement.verdict is Verdict.WITHIN]
+        at_ends = tuple(self._at_ends(name) for name in alone) if ends else None
         without = [*map(name_key, reduced.names if reduced else ())]
         before = model.needed.graph
         after = with_changes(model, frozen=[*map(name_key, frozen)], without=without).needed.graph
@@ -248,6 +287,7 @@ class _Screen:
             acceptance_tolerance=self._acceptance_tolerance,
             idle=tuple(a.name for a in model.needed.idle),
             valueless=self._valueless,
+            unasked=self._unasked,
             baseless=tuple(a.name for a in model.live if a.base is None),
             expected=tuple(expected),
             single=single,
@@ -260,16 +300,33 @@ class _Screen:
             cells=len(before.formulas),
             varying=sum(cell in after.varying for cell in after.formulas),
             runs=self._runs,
+            ends=at_ends,
         )
+
+    def _at_ends(self, name: str) -> AtEnds:
+        low, high = (float(end) for end in np.quantile(self._run.prior[name], ENDS))
+        costs = tuple(
+            self._cost([name], [name], (), f"{name} held at {value:.4g}", {name_key(name): value})
+            for value in (low, high)
+        )
+        return AtEnds(name, (low, high), (costs[0], costs[1]))
 
     def _hold(self, names: Sequence[str]) -> Cost:
         return self._cost(names, names, (), f"{_names_text(names)} held")
 
-    def _cost(self, names: Sequence[str], frozen: Sequence[str], without: Sequence[str], purpose: str) -> Cost:
+    def _cost(
+        self,
+        names: Sequence[str],
+        frozen: Sequence[str],
+        without: Sequence[str],
+        purpose: str,
+        held_at: Mapping[str, float] | None = None,
+    ) -> Cost:
         """Run the book with a change, over the same trials."""
         self._tell(purpose)
         self._runs += 1
-        model = with_changes(self._run.model, frozen=[*map(name_key, frozen)], without=[*map(name_key, without)])
+        keys = [*map(name_key, frozen)]
+        model = with_changes(self._run.model, frozen=keys, without=[*map(name_key, without)], held_at=held_at)
         settings = self._run.settings
         run = simulate(
             model, trials=settings.trials, seed=settings.seed, engine=self._engine, jobs=self._jobs, keep_inputs=0
@@ -364,17 +421,17 @@ def _names_text(names: Sequence[str]) -> str:
     return names[0] if len(names) == 1 else f"{len(names)} at once"
 
 
-def _names_of(text: str, model: Model) -> tuple[str, ...]:
-    """The live assumptions that a list of patterns names.
+def _names_of(text: str, known: Sequence[str], kind: str) -> tuple[str, ...]:
+    """Those of the known names that a list of patterns fits.
 
     Raises:
         SimulationError: a pattern fits none.
     """
     found: dict[str, None] = {}
     for pattern in text.split(","):
-        fitting = [a.name for a in model.live if fnmatchcase(name_key(a.name), name_key(pattern))]
+        fitting = [name for name in known if fnmatchcase(name_key(name), name_key(pattern))]
         if not fitting:
-            hint = f"there are {', '.join(repr(a.name) for a in model.live)}"
-            raise SimulationError(f"no assumption that is drawn has the name {pattern.strip()!r}", hint=hint)
+            hint = f"there are {', '.join(map(repr, known))}"
+            raise SimulationError(f"no {kind} has the name {pattern.strip()!r}", hint=hint)
         found |= dict.fromkeys(fitting)
     return tuple(found)

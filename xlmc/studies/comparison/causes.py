@@ -135,11 +135,18 @@ class Step:
         kind: `filter`, `assumption` or `distribution`.
         side: 0 for the first book, 1 for the second.
         name: as that book spells it.
+        of_evidence: the filter is an item of evidence.
     """
 
     kind: str
     side: int
     name: str
+    of_evidence: bool = False
+
+    @property
+    def word(self) -> str:
+        """What to call it."""
+        return "evidence" if self.of_evidence else self.kind
 
 
 def steps_between(inputs: Inputs, first: Simulation, second: Simulation) -> tuple[Step, ...]:
@@ -147,7 +154,8 @@ def steps_between(inputs: Inputs, first: Simulation, second: Simulation) -> tupl
     found = []
     for side, run in enumerate((first, second)):
         rejected = {f.name: int(n) for f, n in zip(run.model.filters, run.tally.rejected, strict=True)}
-        found += [Step("filter", side, name) for name in inputs.filters[side] if rejected[name]]
+        items = {f.name for f in run.model.filters if f.evidence is not None}
+        found += [Step("filter", side, name, name in items) for name in inputs.filters[side] if rejected[name]]
         base = {a.name: a.base for a in run.model.assumptions}
         found += [Step("assumption", side, name) for name in inputs.drawn[side] if base[name] is not None]
     mine, theirs = (_by_key(run.model) for run in (first, second))

@@ -1,4 +1,8 @@
-"""Two books of one scene over the same trials: whether the simpler one is enough, and if not, why."""
+"""Two books of one scene over the same trials: whether the simpler one is enough, and if not, why.
+
+Where each answers from inputs that the other has not, neither is simpler: see `rivalry`. A book may also be compared
+with itself, as it is and with an assumption drawn from what another book answers: see `feeding`.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +19,9 @@ from xlmc.run.simulation import Simulation
 from xlmc.statistics import Estimate
 from xlmc.studies.comparison.causes import Inputs, Step, Variations, cause_of, inputs_of, steps_between
 from xlmc.studies.comparison.differences import Acceptance, Difference, acceptance, difference
+from xlmc.studies.comparison.feeding import fed_model
 from xlmc.studies.comparison.paired_statistics import Accepted
+from xlmc.studies.comparison.rivalry import Rivalry, rivalry
 from xlmc.studies.comparison.tolerances import (
     Judgement,
     Tolerances,
@@ -55,6 +61,7 @@ class ForecastComparison:
         tolerance: in that unit; `stated` where it was asked for, else a tenth of the standard deviation.
         limits: number -> its tolerance; that of P(> threshold) is a share.
         cause: where the difference is beyond the tolerance.
+        rivalry: where each book answers from inputs that the other has not; None where one of them has all.
     """
 
     first: Forecast
@@ -66,6 +73,12 @@ class ForecastComparison:
     difference: Difference
     judgement: Judgement
     cause: Cause | None
+    rivalry: Rivalry | None = None
+
+    @property
+    def apart(self) -> bool:
+        """Whether the books are two models of this answer, and their answers are not the same within the tolerance."""
+        return self.rivalry is not None and self.judgement.verdict is not Verdict.WITHIN
 
     @property
     def same_in_every_trial(self) -> bool:
@@ -87,6 +100,7 @@ class Comparison:
         forecasts: the pairs.
         unpaired: for either book, the forecasts without a counterpart.
         runs: how many were made.
+        source: the run of the book whose answers feed the second, which is the first with other draws; None elsewhere.
     """
 
     first: Simulation
@@ -97,10 +111,16 @@ class Comparison:
     forecasts: tuple[ForecastComparison, ...]
     unpaired: tuple[tuple[str, ...], tuple[str, ...]]
     runs: int
+    source: Simulation | None = None
 
     def of(self, verdict: Verdict) -> tuple[ForecastComparison, ...]:
-        """The forecasts of which this is the verdict."""
-        return tuple(each for each in self.forecasts if each.judgement.verdict is verdict)
+        """The forecasts of which this is the verdict, but for those of which the books are rival models."""
+        return tuple(each for each in self.forecasts if each.judgement.verdict is verdict and not each.apart)
+
+    @property
+    def rivals(self) -> tuple[ForecastComparison, ...]:
+        """The forecasts of which the books are two models that do not give the same answer within the tolerance."""
+        return tuple(each for each in self.forecasts if each.apart)
 
     @property
     def trials_needed(self) -> int | None:
@@ -115,6 +135,7 @@ def compare(
     tolerance: Iterable[str] | str = (),
     *,
     pairs: Mapping[str, str] | None = None,
+    feeds: Mapping[str, str] | None = None,
     trials: int | None = None,
     seed: int | None = None,
     engine: str | None = None,
@@ -134,6 +155,8 @@ def compare(
         tolerance: `0.5`, `0.5 mph`, `10 %` (of the forecast's SD in the first book), `Name=0.5 mph`; a tenth of the SD
             where none is stated. It holds for mean, SD and both ends of the central range.
         pairs: further pairs, name in the first -> name in the second.
+        feeds: asks instead whether the first book needs the second: assumption of the first -> forecast of the second.
+            The first book is compared with itself, these assumptions drawn from what the second book answers.
         trials: of each run; by default the larger of the books' own settings.
         seed: of each run; by default the first book's.
         engine: as in `Model.simulate`.
@@ -149,9 +172,6 @@ def compare(
             range.
     """
     first, second = with_plain_sampling(first), with_plain_sampling(second)
-    matched = _match_forecasts(first, second, pairs or {})
-    factors = [_factor(*pair) for pair in matched]
-    stated = read_tolerances([tolerance] if isinstance(tolerance, str) else tolerance, [mine for mine, _ in matched])
     trials = trials or max(model.definitions.settings.trials for model in (first, second))
     seed = first.definitions.settings.seed if seed is None else seed
     made = 0
@@ -163,9 +183,18 @@ def compare(
             told(purpose)
         return simulate(model, trials=trials, seed=seed, engine=engine, jobs=jobs, keep_inputs=keep_inputs)
 
+    source = None
+    if feeds:
+        if pairs:
+            raise SimulationError("a book that feeds another is not paired with it", hint="leave the pairs out")
+        source = run(second, second.path.name)
+        second = fed_model(first, source, feeds)
+    matched = _match_forecasts(first, second, pairs or {})
+    factors = [_factor(*pair) for pair in matched]
+    stated = read_tolerances([tolerance] if isinstance(tolerance, str) else tolerance, [mine for mine, _ in matched])
     books = run(first, first.path.name), run(second, second.path.name)
     inputs = inputs_of(*books)
-    search = _Search(books, inputs, Variations(*books, run), chance_of(chance), causes)
+    search = _Search(books, inputs, Variations(*books, run), chance_of(chance), causes and source is None)
     forecasts = tuple(
         search.compare_pair(mine, theirs, factor, stated)
         for (mine, theirs), factor in zip(matched, factors, strict=True)
@@ -173,12 +202,13 @@ def compare(
     return Comparison(
         first=books[0],
         second=books[1],
-        simpler=_simpler(first, second),
+        simpler=_simpler(first, second) if source is None else 0,
         acceptance=acceptance(*books),
         inputs=inputs,
         forecasts=forecasts,
         unpaired=_unpaired_forecasts(first, second, matched),
         runs=made,
+        source=source,
     )
 
 
@@ -203,10 +233,15 @@ class _Search:
         found = self._difference((), mine, theirs, factor)
         limits = found.tolerances(tolerance, self._chance)
         judgement = judge({name: (change.difference, limits[name]) for name, change in found.changes})
-        cause = None
-        if judgement.verdict is Verdict.BEYOND and self._causes:
+        rivals, cause = self._rivalry(mine, theirs, factor), None
+        if judgement.verdict is Verdict.BEYOND and self._causes and rivals is None:
             cause = self._cause(mine, theirs, factor, limits)
-        return ForecastComparison(mine, theirs, factor, tolerance, was_stated, limits, found, judgement, cause)
+        return ForecastComparison(mine, theirs, factor, tolerance, was_stated, limits, found, judgement, cause, rivals)
+
+    def _rivalry(self, mine: Forecast, theirs: Forecast, factor: float) -> Rivalry | None:
+        first, second = self._books
+        answers = _accepted_trials(first, mine, 1.0), _accepted_trials(second, theirs, factor)
+        return rivalry(self._books, (mine, theirs), answers)
 
     def _difference(self, steps: Iterable[Step], mine: Forecast, theirs: Forecast, factor: float) -> Difference:
         first, second = self._variations.pair(steps)

@@ -25,6 +25,7 @@ __all__ = [
     "Statistic",
     "mean_of",
     "quantile_of",
+    "range_of",
     "share_above",
     "standard_deviation_of",
 ]
@@ -124,6 +125,17 @@ def quantile_of(run: Accepted, p: float) -> Statistic:
     share = float(below.mean())
     step = found.error / (run.m * share * (1.0 - share)) ** 0.5
     return Statistic(found, Influence((share - below) * step, step))
+
+
+def range_of(run: Accepted, share: float) -> Statistic:
+    """The width of the central range that holds a share of the trials: its ends pull in opposite directions."""
+    low, high = (quantile_of(run, (1.0 + side * share) / 2.0) for side in (-1.0, 1.0))
+    width = high.estimate.value - low.estimate.value
+    if low.influence is None or high.influence is None:
+        return Statistic(Estimate(width, n=run.m), None)
+    pulls = high.influence.pulls - low.influence.pulls
+    found = with_error(width, float(np.sum(pulls * pulls)) ** 0.5, run.m - 1.0, 0.95, run.m)
+    return Statistic(found, Influence(pulls, max(low.influence.spacing, high.influence.spacing)))
 
 
 class Pair:

@@ -23,6 +23,7 @@ def with_changes(
     frozen: Collection[str] = (),
     without: Collection[str] = (),
     drawn_as: Mapping[str, Assumption] | None = None,
+    held_at: Mapping[str, float] | None = None,
 ) -> Model:
     """A model with changed definitions.
 
@@ -31,13 +32,14 @@ def with_changes(
         frozen: keys (`name_key`) of the assumptions to hold at their base values.
         without: keys of the filters to leave out.
         drawn_as: key of an assumption -> the one whose distribution it takes.
+        held_at: key of an assumption to hold -> the value to hold it at, instead of its base value.
 
     Raises:
         SimulationError: an assumption to hold has no base value.
     """
     definitions = replace(
         model.definitions,
-        assumptions=tuple(_assumption(a, frozen, drawn_as or {}) for a in model.assumptions),
+        assumptions=tuple(_assumption(a, frozen, drawn_as or {}, held_at or {}) for a in model.assumptions),
         filters=tuple(f for f in model.filters if name_key(f.name) not in without),
     )
     return Model(model.workbook, definitions, model.path)
@@ -56,8 +58,15 @@ def with_plain_sampling(model: Model) -> Model:
     return Model(model.workbook, definitions, model.path)
 
 
-def _assumption(assumption: Assumption, frozen: Collection[str], drawn_as: Mapping[str, Assumption]) -> Assumption:
+def _assumption(
+    assumption: Assumption,
+    frozen: Collection[str],
+    drawn_as: Mapping[str, Assumption],
+    held_at: Mapping[str, float],
+) -> Assumption:
     key = name_key(assumption.name)
+    if key in held_at:
+        return replace(assumption, frozen=True, base=held_at[key])
     if key in frozen:
         if assumption.base is None:
             message = f"the assumption {assumption.name!r} has no base value to be held at"

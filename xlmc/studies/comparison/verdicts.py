@@ -10,6 +10,8 @@ import numpy as np
 
 from xlmc.statistics import Estimate, format_estimate
 from xlmc.studies.comparison.comparison import Cause, Comparison, ForecastComparison
+from xlmc.studies.comparison.differences import Change
+from xlmc.studies.comparison.rivalry import Agreement, Rivalry
 from xlmc.studies.comparison.tolerances import Judgement, Verdict
 from xlmc.studies.screening import Cost
 
@@ -27,12 +29,15 @@ def verdict_text(comparison: Comparison) -> list[str]:
     books = book_names(comparison)
     return [
         *_enough(comparison, books),
+        *_rivals(comparison.rivals, books),
         *(_too_little(comparison, each, books) for each in comparison.of(Verdict.BEYOND)),
         *_undecided_text(comparison),
     ]
 
 
 def _subject(comparison: Comparison, books: tuple[str, str]) -> str:
+    if comparison.source is not None:
+        return f"{books[0]} without {comparison.source.model.path.name}"
     return "" if comparison.simpler is None else f"The simpler model, {books[comparison.simpler]},"
 
 
@@ -55,12 +60,78 @@ def _too_little(comparison: Comparison, each: ForecastComparison, books: tuple[s
     return f"{verdict} {_name(each)} to {_tolerance(each)}: {number}{because}.{ending}"
 
 
+def _rivals(each: Sequence[ForecastComparison], books: tuple[str, str]) -> Iterator[str]:
+    """Two models of one scene: which tells more, in one sentence for all answers, and one for each."""
+    found = [(one, one.rivalry) for one in each if one.rivalry is not None]
+    if len(found) > 1:
+        yield _rivals_summary([rivals for _, rivals in found], books)
+    yield from (_rival(one, rivals, books) for one, rivals in found)
+
+
+def _rivals_summary(found: Sequence[Rivalry], books: tuple[str, str]) -> str:
+    counts = {side: sum(rivals.sharper == side for rivals in found) for side in (0, 1)}
+    more = [f"{books[side]} tells more of {count}" for side, count in counts.items() if count]
+    worst = max((rivals.agreement for rivals in found), key=list(Agreement).index)
+    tells = _join_names(more) if more else "neither tells more of any, as far as these trials say"
+    return f"Each book computes {len(found)} answers from inputs that the other has not: {tells}; {_ALL_AGREE[worst]}."
+
+
+_ALL_AGREE = {
+    Agreement.AGREE: "all agree",
+    Agreement.TOO_FEW: "of some, too few trials say whether they agree",
+    Agreement.STRAINED: "some are strained",
+    Agreement.CONTRADICT: "some contradict each other",
+}
+
+
+def _rival(each: ForecastComparison, found: Rivalry, books: tuple[str, str]) -> str:
+    """Which of two models tells more of an answer, and whether they agree."""
+    deviations, widths = (_spreads(spread, each.first.units) for spread in (found.deviation, found.width))
+    share = f"{100 * each.difference.share:.3g} % range"
+    if found.sharper is not None:
+        mine, theirs = found.sharper, 1 - found.sharper
+        name, sizes = (share, widths) if found.by_range else ("standard deviation", deviations)
+        tells = f"{books[mine]} tells more, with a {name} of {sizes[mine]} against {sizes[theirs]} of {books[theirs]}"
+    elif found.contrary:
+        tells = (
+            f"neither tells more: standard deviations of {_join_names(deviations)}, but {share}s of "
+            f"{_join_names(widths)}; look at the percentiles"
+        )
+    else:
+        tells = f"neither tells more, as far as these trials say: standard deviations of {_join_names(deviations)}"
+    return f"{_name(each)}: {tells}. {_AGREE[found.agreement].format(chance=_chance_text(found))}"
+
+
+def _spreads(spread: Change, units: str) -> list[str]:
+    return [f"{format_estimate(e.value, e.error)} {units}".rstrip() for e in (spread.first, spread.second)]
+
+
+_AGREE = {
+    Agreement.AGREE: "The two answers agree.",
+    Agreement.STRAINED: "The two answers are strained: {chance}.",
+    Agreement.CONTRADICT: "The two answers contradict each other: {chance}. A range, or a model, is wrong.",
+    Agreement.TOO_FEW: "Too few trials are accepted by both to say whether the answers agree.",
+}
+
+
+def _chance_text(found: Rivalry) -> str:
+    if not found.chance:
+        return f"in all {found.both:,} trials that both accept they differ in one direction"
+    return f"a difference as far from 0 as theirs, or farther, has a chance of {100 * found.chance:.2g} %"
+
+
 _WHY = {
     "filter": ("the filter {names} of {book} moves it", "the filters {names} of {book} move it"),
+    "evidence": ("the evidence {names} of {book} moves it", "the evidence {names} of {book} moves it"),
     "assumption": ("only {book} draws {names}", "only {book} draws {names}"),
     "distribution": ("{names} is drawn differently", "{names} are drawn differently"),
 }
-_WITHOUT = {"filter": "without {it}", "assumption": "with {it} held at the base value", "distribution": "drawn alike"}
+_WITHOUT = {
+    "filter": "without {it}",
+    "evidence": "without {it}",
+    "assumption": "with {it} held at the base value",
+    "distribution": "drawn alike",
+}
 
 
 def _because(cause: Cause, each: ForecastComparison, books: tuple[str, str]) -> str:
@@ -73,7 +144,7 @@ def _because(cause: Cause, each: ForecastComparison, books: tuple[str, str]) -> 
     reasons, remedies = [], []
     for kind, why in _WHY.items():
         for side in (0, 1):
-            names = [repr(s.name) for s in cause.steps if s.kind == kind and s.side == side]
+            names = [repr(s.name) for s in cause.steps if s.word == kind and s.side == side]
             if names:
                 reasons.append(why[len(names) > 1].format(names=_join_names(names), book=books[side]))
                 remedy = _WITHOUT[kind].format(it="it" if len(names) == 1 else "them")

@@ -17,6 +17,7 @@ from xlmc.sampling.draws import Draw
 
 __all__ = [
     "CUTOFFS",
+    "DIALOG",
     "EVIDENCE_WAYS",
     "Assumption",
     "Check",
@@ -37,6 +38,9 @@ Parameter = float | Cell
 
 EVIDENCE_WAYS: Final = ("auto", "rejection", "weights")
 """How a run uses evidence whose error is no limit; `auto` decides by the run's first trials."""
+
+DIALOG: Final = "Crystal Ball"
+"""The source, and the note, of what a dialog of Crystal Ball defines."""
 
 CUTOFFS: Final = {"lower_cutoff": "Lower cutoff", "upper_cutoff": "Upper cutoff"}
 """Key of a cutoff -> its heading."""

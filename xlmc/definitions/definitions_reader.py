@@ -10,6 +10,7 @@ from xlmc.address import Cell
 from xlmc.definitions.computed import Computed
 from xlmc.definitions.crystal_ball.dialogs import FromDialogs, read_dialogs
 from xlmc.definitions.crystal_ball.lost_data import remark_on_lost_data
+from xlmc.definitions.crystal_ball.precision_control import with_precision
 from xlmc.definitions.crystal_ball.refused import refusals, refused_rows
 from xlmc.definitions.definitions import (
     Assumption,
@@ -64,7 +65,7 @@ def read_definitions(workbook: Workbook, engines: Collection[str], tabulated: in
     findings = Findings()
     tables = definition_tables(workbook, findings)
     uncertain, answers, tests = Claims("assumption"), Claims("forecast"), Claims("filter")
-    settings, central = read_settings(workbook, tables["xlmc_settings"], engines, findings)
+    settings, central, said = read_settings(workbook, tables["xlmc_settings"], engines, findings)
     computed = Computed(workbook, drawn=uncertain.cells)
     assumptions = read_assumptions(workbook, tables["xlmc_assumptions"], computed, uncertain, findings)
     forecasts = read_forecasts(workbook, tables["xlmc_forecasts"], computed, central, answers, findings)
@@ -107,6 +108,7 @@ def read_definitions(workbook: Workbook, engines: Collection[str], tabulated: in
     asked = forecasts
     forecasts, refused = _without_refused(workbook, dialogs, rewritten, assumptions, forecasts, filters, own, findings)
     own, left_out = _parted(own, asked, forecasts)
+    settings = with_precision(settings, said, dialogs.precisions, forecasts, findings)
     if not (calls.assumptions or dialogs.assumptions):
         _refuse_no_assumption(workbook, calls, tables["xlmc_assumptions"], findings)
     if calls and not (forecasts or tables["xlmc_forecasts"] or refused):

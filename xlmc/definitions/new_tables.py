@@ -10,7 +10,17 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from xlmc.address import Area, Cell, InFormula
-from xlmc.definitions.definitions import CUTOFFS, Assumption, Correlation, Definitions, Filter, Forecast, Parameter
+from xlmc.definitions.definitions import (
+    CUTOFFS,
+    DIALOG,
+    Assumption,
+    Correlation,
+    Definitions,
+    Filter,
+    Forecast,
+    Parameter,
+)
+from xlmc.definitions.stopping import Precision
 from xlmc.distributions import FAMILIES
 from xlmc.distributions.by_percentiles import ByPercentiles
 from xlmc.errors import FormulaError
@@ -93,8 +103,28 @@ def new_tables(workbook: Workbook, definitions: Definitions) -> list[NewTable]:
         NewTable("xlmc_forecasts", tuple(map(written.forecast, (f for f in answers if is_new(f.row))))),
         NewTable("xlmc_filters", tuple(map(written.filter, filters))),
         NewTable("xlmc_correlations", tuple(map(written.correlation, _new_pairs(definitions, is_new)))),
+        NewTable("xlmc_settings", tuple(_settings(workbook, definitions))),
     ]
     return [NewTable(each.kind, each.rows, tuple(_headings(each.rows))) for each in made if each.rows]
+
+
+def _settings(workbook: Workbook, definitions: Definitions) -> Iterator[NewRow]:
+    """What a run of dialogs takes that no workbook of Crystal Ball holds, and the precision that dialogs ask for."""
+    drawn = any(each.source == DIALOG for each in definitions.assumptions)
+    if not drawn or any(table.name.casefold().startswith("xlmc_settings") for table in workbook.tables):
+        return
+    settings = definitions.settings
+    goal = settings.stopping.goal
+    rows: dict[str, Entry] = {} if isinstance(goal, Precision) else {"Trials": float(settings.trials)}
+    rows |= {"Seed": float(settings.seed), "Sampling": settings.sampling}
+    own = tuple(rows)
+    if isinstance(goal, Precision):
+        width = {"Precision %": 100.0 * goal.tolerance} if goal.relative else {"Precision": goal.tolerance}
+        rows |= {**width, "Precision of": ", ".join(goal.numbers), "Confidence %": 100.0 * goal.confidence}
+        rows |= {"Look at": "; ".join(settings.stopping.forecasts)} if settings.stopping.forecasts else {}
+    for name, value in rows.items():
+        was = "xlmc's own: a run preference, which the workbook does not hold" if name in own else "precision control"
+        yield NewRow({"Setting": name, "Value": value}, "setting", name, "", was)
 
 
 def _new_pairs(definitions: Definitions, is_new: Callable[[Cell], bool]) -> Iterator[Correlation]:
@@ -128,12 +158,14 @@ def _headings(rows: Iterable[NewRow]) -> dict[str, None]:
     found: dict[str, None] = {}
     for row in rows:
         found |= dict.fromkeys(heading for heading, entry in row.cells.items() if entry != "" or heading == "Value")
+    if "Setting" in found:
+        return found
     between = [each for each in found if each not in (*_FIRST, *_LAST)]
     return dict.fromkeys(each for each in (*_FIRST, *between, *_LAST) if each in found)
 
 
 _FIRST = ("Name", "Value", "Cell", "Call in", "Call", "Distribution")
-_LAST = (*CUTOFFS.values(), "Units", "Threshold", "Frozen", "Source", "Only for", "Because", "Crystal Ball")
+_LAST = (*CUTOFFS.values(), "Units", "Threshold", "Frozen", "Source", "Only for", "Because", DIALOG)
 
 
 class _Written:
@@ -225,7 +257,7 @@ class _Written:
 
 
 def _was(notes: Mapping[str, str]) -> str:
-    return notes.get("Crystal Ball") or notes.get("Call") or ""
+    return notes.get(DIALOG) or notes.get("Call") or ""
 
 
 def _label(site: InFormula) -> str:

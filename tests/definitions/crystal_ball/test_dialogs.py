@@ -6,10 +6,13 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import openpyxl
 import pytest
 from crystal_ball_book import Asked, Decided, Drawn, Tied, object_guid, read_parts, save, write_parts
+from openpyxl.worksheet.table import Table
 
 from xlmc.api import load
+from xlmc.definitions.definitions import Settings
 from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.evaluation.engines import ENGINES
 from xlmc.results.saved import keep, open_run
@@ -248,3 +251,51 @@ def test_a_filter_of_one_forecast_is_saved_and_repeated(tmp_path):
 
 def total_of(skid, offset):
     return 2 * skid - offset + 30
+
+
+def precision(**members):
+    return {"fPrecisionPrefs": {"fUsePrecision": True, **members}}
+
+
+SHARE = {"fAbsolute": False, "fRelative": True, "fRelativePct": 0.01}
+OTHER = Asked(S, "$B$6", "Other")
+NONE = (None, False, None, ())
+PRECISIONS = {
+    "absolute": ([precision()], None, (0.05, False, ("mean",), ("Total",)), "mean to within 0.05 of 'Total'"),
+    "relative, of several numbers": (
+        [precision(**SHARE, fUseStdDev=True, fUsePercentile=True)],
+        None,
+        (0.01, True, ("mean", "sd", "p95"), ("Total",)),
+        "mean and sd and p95 to within 1 %",
+    ),
+    "of all forecasts": ([precision(**SHARE), precision(**SHARE)], None, (0.01, True, ("mean",), ()), "goes on until"),
+    "of two kinds": ([precision(**SHARE), precision()], None, NONE, "the forecasts ask for several"),
+    "both widths": ([precision(fRelative=True)], None, NONE, "neither of an absolute and a relative width, or both"),
+    "no number": ([precision(fUseMean=False)], None, NONE, "no number was named"),
+    "no width": ([precision(fAbsoluteUnits=0.0)], None, NONE, "is no precision"),
+    "beside settings": ([precision()], "Seed", NONE, "xlmc_settings says how to run"),
+}
+
+
+@pytest.mark.parametrize(("prefs", "setting", "goal", "said"), PRECISIONS.values(), ids=PRECISIONS)
+def test_precision_control_is_the_goal_of_a_run(tmp_path, prefs, setting, goal, said):
+    path = tmp_path / "book.xlsx"
+    asked = [replace(each, prefs=own) for each, own in zip((TOTAL, OTHER), [*prefs, {}], strict=False)]
+    save(path, CELLS, [[SKID, *asked]])
+    if setting:
+        book = openpyxl.load_workbook(path, keep_vba=True)  # keeps the drawings
+        book[S]["F1"], book[S]["G1"], book[S]["F2"], book[S]["G2"] = "Setting", "Value", setting, 7
+        book[S].add_table(Table(displayName="xlmc_settings", ref="F1:G2"))
+        book.save(path)
+        book.vba_archive.close()
+    found = read_definitions(read_workbook(path), ENGINES)
+    ends = found.settings.stopping
+    width, relative, numbers, forecasts = goal
+    if width is None:
+        assert found.settings == replace(Settings(), seed=found.settings.seed)
+    else:
+        assert (ends.goal.tolerance, ends.goal.relative, ends.goal.numbers) == (width, relative, numbers)
+        assert ends.forecasts == forecasts
+    (notice,) = [each.message for each in found.notices if "precision control" in each.message]
+    assert said in notice
+    assert ("not yet met" in notice) == (width is not None)

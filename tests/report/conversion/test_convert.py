@@ -185,6 +185,19 @@ def test_dialogs_become_rows_and_what_cannot_be_read_is_still_refused(tmp_path):
     assert "Sheet1!B4" in red
 
 
+def test_settings_are_written_with_the_precision_that_dialogs_ask_for(tmp_path):
+    path = tmp_path / "book.xlsx"
+    for asked, trials in (
+        ({}, 200_000),
+        ({"fUsePrecision": True, "fAbsoluteUnits": 0.3, "fUsePercentile": True}, None),
+    ):
+        total = Asked(S, "$B$5", "Total", prefs={"fPrecisionPrefs": asked})
+        save(path, CELLS, [[SKID, OFFSET, total, Asked(S, "$B$7", "Other")]])
+        new = load(converts(path)).definitions.settings
+        assert new == load(path).definitions.settings
+        assert (new.trials == trials) == (new.stopping.goal is None)
+
+
 def test_a_row_that_a_person_deletes_no_longer_draws(tmp_path):
     """What stands in a table counts, not what Crystal Ball's block still says."""
     path = tmp_path / "book.xlsx"

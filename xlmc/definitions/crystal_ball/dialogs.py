@@ -23,6 +23,7 @@ from xlmc.definitions.crystal_ball.stored_objects import (
     OF_PARAMETERS,
     CellReference,
     ForecastFilter,
+    Precision,
     Stored,
     StoredAssumption,
     StoredCorrelation,
@@ -30,7 +31,15 @@ from xlmc.definitions.crystal_ball.stored_objects import (
     StoredForecast,
     StoredOther,
 )
-from xlmc.definitions.definitions import Assumption, Correlation, Filter, Forecast, Parameter, name_key
+from xlmc.definitions.definitions import (
+    DIALOG,
+    Assumption,
+    Correlation,
+    Filter,
+    Forecast,
+    Parameter,
+    name_key,
+)
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.fields import number_in, static_value
 from xlmc.definitions.tables.identity import Claims
@@ -44,7 +53,7 @@ from xlmc.workbook.workbook import Workbook
 
 __all__ = ["FromDialogs", "read_dialogs"]
 
-_UNPROVEN: Final = "this was not yet met in a genuine file: compare once in Crystal Ball"
+UNPROVEN: Final = "this was not yet met in a genuine file: compare once in Crystal Ball"
 _CURE: Final = "Define the cell in the table xlmc_assumptions, or look it up in Crystal Ball"
 _NORMAL: Final = {2: "mean", 3: "std_dev"}
 """Codes of the parameters of a Normal that may come from cells; those of other families are unknown."""
@@ -60,6 +69,7 @@ class FromDialogs:
     Attributes:
         assumptions, forecasts: by sheet, row and column.
         rewritten: cells of their own for parameters that are formulas, and cells that cannot be read, each with why.
+        precisions: what is asked of the precision of forecasts, by name.
         damages: blocks and objects that cannot be read, in words.
         stored: whether the workbook holds blocks of Crystal Ball at all.
     """
@@ -69,6 +79,7 @@ class FromDialogs:
     filters: list[Filter] = field(default_factory=list)
     correlations: list[Correlation] = field(default_factory=list)
     rewritten: dict[Cell, ir.Expression | FormulaError] = field(default_factory=dict)
+    precisions: dict[str, Precision] = field(default_factory=dict)
     damages: list[str] = field(default_factory=list)
     stored: bool = False
 
@@ -181,7 +192,7 @@ class _Dialogs:
             self._findings.problem(f"Crystal Ball has two assumptions on {cell}, one of them {name!r}", other, hint)
             return
         if not read.met:
-            self._findings.notice(f"the distribution of {name!r} is {stored.text}; {_UNPROVEN}", cell)
+            self._findings.notice(f"the distribution of {name!r} is {stored.text}; {UNPROVEN}", cell)
         self._uncertain.take_cell(cell, cell)
         name = _free_name(name, cell, self._uncertain, self._findings)
         self._drawn[sheet, stored.guid] = name
@@ -196,8 +207,8 @@ class _Dialogs:
                 base=base,
                 lower_cutoff=given.get("lower_cutoff"),
                 upper_cutoff=given.get("upper_cutoff"),
-                source="Crystal Ball",
-                notes={"Crystal Ball": stored.text},
+                source=DIALOG,
+                notes={DIALOG: stored.text},
                 checked=checked,
             )
         )
@@ -302,8 +313,10 @@ class _Dialogs:
         threshold = self._threshold(stored.certainty, name, cell)
         if stored.filter is not None:
             self._filter(stored.filter, name, cell)
+        if stored.precision is not None:
+            self._found.precisions[name] = stored.precision
         self._found.forecasts.append(
-            Forecast(name, cell, cell, stored.units, self._central, threshold, {"Crystal Ball": "a forecast"})
+            Forecast(name, cell, cell, stored.units, self._central, threshold, {DIALOG: "a forecast"})
         )
 
     def _filter(self, stored: ForecastFilter, name: str, cell: Cell) -> None:
@@ -313,10 +326,10 @@ class _Dialogs:
             self._findings.notice(f"Crystal Ball's filter of {name!r} is on, and discards nothing", cell)
             return
         if stored.inside:
-            message = f"Crystal Ball's filter of {name!r} discards values inside its limits; {_UNPROVEN}"
+            message = f"Crystal Ball's filter of {name!r} discards values inside its limits; {UNPROVEN}"
             self._findings.notice(message, cell)
         if stored.everywhere:
-            message = f"Crystal Ball's filter of {name!r} discards the trial for all forecasts; {_UNPROVEN}"
+            message = f"Crystal Ball's filter of {name!r} discards the trial for all forecasts; {UNPROVEN}"
             self._findings.notice(message, cell)
         self._found.filters.append(
             replace(
@@ -455,8 +468,8 @@ class _Dialogs:
 
 _RUN_PREFERENCES: Final = (
     "Crystal Ball keeps no run preferences in a workbook: trials, seed and sampling method are those of the command, "
-    "of the table xlmc_settings, or xlmc's own (200,000 trials, seed 999, mc). Crystal Ball's habit is --sampling "
-    "lhs500, with the seed of its run preferences"
+    "of the table xlmc_settings, or xlmc's own (200,000 trials or until a precision is reached, seed 999, mc). Crystal "
+    "Ball's habit is --sampling lhs500, with the seed of its run preferences"
 )
 _WORDS: Final = {StoredAssumption: "assumption", StoredForecast: "forecast", StoredDecision: "decision variable"}
 _PLAIN: Final = ("SheetPreferences",)

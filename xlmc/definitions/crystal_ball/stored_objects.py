@@ -95,11 +95,16 @@ class ForecastFilter:
 
 @dataclass(frozen=True, slots=True)
 class Precision:
-    """How well numbers of a forecast must be known: `numbers` as xlmc calls them, `tolerance` a share if `relative`."""
+    """How well numbers of a forecast must be known.
+
+    Attributes:
+        numbers: as xlmc calls them.
+        absolute, relative: the widths that are asked for, in units and as a share; None for one that is not.
+    """
 
     numbers: tuple[str, ...]
-    tolerance: float
-    relative: bool
+    absolute: float | None
+    relative: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,8 +224,9 @@ def _precision(thing: Thing) -> Precision | None:
     asked = [name for name, member in (("mean", "fUseMean"), ("sd", "fUseStdDev")) if _flag(thing, member)]
     if _flag(thing, "fUsePercentile"):
         asked.append(f"p{100 * _number(thing, 'fUsePercentileValue'):.12g}")
-    relative = _flag(thing, "fRelative")
-    return Precision(tuple(asked), _number(thing, "fRelativePct" if relative else "fAbsoluteUnits"), relative)
+    absolute = _number(thing, "fAbsoluteUnits") if _flag(thing, "fAbsolute") else None
+    relative = _number(thing, "fRelativePct") if _flag(thing, "fRelative") else None
+    return Precision(tuple(asked), absolute, relative)
 
 
 def _correlation(thing: Thing) -> StoredCorrelation:

@@ -46,8 +46,10 @@ class _Setting(NamedTuple):
 
 def read_settings(
     workbook: Workbook, tables: list[DefinitionTable], engines: Collection[str], findings: Findings
-) -> tuple[Settings, float]:
-    """The settings, and the share of the central range for forecasts that give none; mistakes leave the default.
+) -> tuple[Settings, float, frozenset[str]]:
+    """The settings; the share of the central range for forecasts that give none; and what is set, by plain names.
+
+    Mistakes leave the default.
 
     Args:
         workbook: that holds them.
@@ -62,6 +64,7 @@ def read_settings(
     values: dict[str, Any] = {}
     for row in rows_of(workbook, tables[:1], _KNOWN, _KNOWN, findings):
         findings.attempt(_take, row, values, settings, findings)
+    said = frozenset(values)
     central = values.pop("range%", None)
     ends = _read_stopping(tables, values, findings)
     if ends.has_goal:
@@ -69,6 +72,7 @@ def read_settings(
     return (
         Settings(**{key: value for key, value in values.items() if value is not None}, stopping=ends),
         _DEFAULT_CENTRAL if central is None else central,
+        said,
     )
 
 

@@ -194,6 +194,7 @@ def test_settings_are_written_with_the_precision_that_dialogs_ask_for(tmp_path):
         total = Asked(S, "$B$5", "Total", prefs={"fPrecisionPrefs": asked})
         save(path, CELLS, [[SKID, OFFSET, total, Asked(S, "$B$7", "Other")]])
         new = load(converts(path)).definitions.settings
+        (tmp_path / "new.xlsx").unlink()
         assert new == load(path).definitions.settings
         assert (new.trials == trials) == (new.stopping.goal is None)
 

@@ -134,7 +134,7 @@ def interrupted(book, options):
         try:
             told = [process.stderr.readline() for _ in range(3)]
             os.killpg(process.pid, signal.SIGINT)
-            out, err = process.communicate(timeout=60)
+            out, err = process.communicate(timeout=300)
         finally:
             process.kill()
     assert told == ["block\n"] * 3

@@ -40,20 +40,21 @@ def running(tmp_path):
     """`running(book=…)`, `running(folder=…)`: a server that listens."""
     started = []
 
-    def run(idle=600.0, **given):
+    def run(clock=time.monotonic, idle=600.0, **given):
         library = Library(Keeper(tmp_path / "state"), **given)
-        server = LiveServer(bound_socket(0), library, idle=idle)
+        server = LiveServer(bound_socket(0), library, idle=idle, clock=clock)
         thread = threading.Thread(target=lambda: asyncio.run(server.serve()))
         thread.start()
         started.append((server, thread))
         found = Running(server, library)
-        end = time.monotonic() + 20
-        while not server._server.started and time.monotonic() < end:
+        end = time.monotonic() + 120
+        while not server._server.started:
+            assert time.monotonic() < end
             time.sleep(0.01)
         return found
 
     yield run
     for server, thread in started:
         server.end()
-        thread.join(20)
+        thread.join(120)
         assert not thread.is_alive()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import shutil
-import time
 
 import pytest
 from live_books import SIMPLE, change, edited
@@ -36,14 +35,11 @@ def test_a_workbook_that_is_saved_is_run_again_and_what_changed_is_said(running,
         before = window.next("rest")
         value = number["value"] * 1.05
         other = edited(book, tmp_path / "other.xlsx", {(name, number["heading"]): value})
-        began = time.monotonic()
         saved_as_excel_does(other, book)
         news = window.next("news")
         after = window.next("rest")
-        took = time.monotonic() - began
         assert f"{name}: {number['heading']}" in news["text"]
         assert after["sentences"] != before["sentences"]
-        assert took < 5  # 1 s on a machine that does nothing else; the benchmark measures it
 
 
 def test_a_half_written_or_faulty_workbook_leaves_the_last_good_answer(running, book, tmp_path):

@@ -51,7 +51,9 @@ class Browser:
         for argument in (*_CHROMIUM, f"--user-data-dir={self._profiles.mktemp('profile')}"):
             options.add_argument(argument)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-        return webdriver.Chrome(options=options, service=webdriver.ChromeService(shutil.which("chromedriver")))
+        found = webdriver.Chrome(options=options, service=webdriver.ChromeService(shutil.which("chromedriver")))
+        found.set_script_timeout(120)
+        return found
 
     def quit(self):
         """End the browser and its driver, whatever is left of them."""

@@ -65,7 +65,7 @@ class Running:
 
     def ask(self, path, method="GET", body=None, host=None, **headers):
         """Status, headers and body of an answer."""
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=20)
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=120)
         try:
             connection.putrequest(method, path, skip_host=True)
             for name, value in {"Host": host or self.host, **headers}.items():
@@ -109,7 +109,7 @@ class Spoken:
     def heard_last(self, kind):
         return next(each for each in reversed(self.heard) if each["kind"] == kind)
 
-    def next(self, kind, fits=lambda message: True, seconds=20.0):
+    def next(self, kind, fits=lambda message: True, seconds=120.0):
         end = time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0:
             message = json.loads(self.socket.recv(timeout=left))

@@ -6,6 +6,7 @@ import asyncio
 import json
 import socket
 import time
+from collections.abc import Callable
 from html import escape
 from importlib.resources import files
 from pathlib import Path
@@ -101,14 +102,22 @@ class LiveServer:
         sock: to listen on.
         library: which workbooks may be opened.
         idle: seconds after the last window was closed, and after the start, until it ends.
+        clock: gives these seconds.
     """
 
-    def __init__(self, sock: socket.socket, library: Library, *, idle: float = IDLE_SECONDS) -> None:
-        self._socket, self._library, self._idle = sock, library, idle
+    def __init__(
+        self,
+        sock: socket.socket,
+        library: Library,
+        *,
+        idle: float = IDLE_SECONDS,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._socket, self._library, self._idle, self._clock = sock, library, idle, clock
         self.port: int = sock.getsockname()[1]
         self.guard = Guard(self.port)
         self._desks: dict[str, Desk] = {}
-        self._last_seen = time.monotonic()
+        self._last_seen = clock()
         routes = [
             Route("/", self._start_page),
             Route("/book/{key}", self._book_page),
@@ -154,8 +163,8 @@ class LiveServer:
         while True:
             await asyncio.sleep(min(1.0, self._idle / 4))
             if any(desk.windows for desk in self._desks.values()):
-                self._last_seen = time.monotonic()
-            elif time.monotonic() - self._last_seen > self._idle:
+                self._last_seen = self._clock()
+            elif self._clock() - self._last_seen > self._idle:
                 self.end()
 
     # Pages
@@ -275,7 +284,7 @@ class LiveServer:
 
     async def _speak(self, socket: WebSocket, desk: Desk) -> None:
         window = desk.join()
-        self._last_seen = time.monotonic()
+        self._last_seen = self._clock()
 
         async def send() -> None:
             while True:
@@ -287,7 +296,7 @@ class LiveServer:
                 desk.hear(window, read_message(await _heard(socket)))
         finally:
             desk.leave(window)
-            self._last_seen = time.monotonic()
+            self._last_seen = self._clock()
             sending.cancel()
             await asyncio.gather(sending, return_exceptions=True)
 

@@ -303,7 +303,8 @@ def test_nothing_is_asked_of_a_network_and_nothing_could_be(chromium, run, tmp_p
         const script = document.createElement("script");
         script.textContent = "window.stolen = 1";
         document.body.append(script);
-        setTimeout(() => done([refused.sort(), window.stolen ?? null]), 300);
+        const look = () => refused.length < 3 ? setTimeout(look, 20) : done([refused.sort(), window.stolen ?? null]);
+        look();
         """
     )
     assert refused == [["connect-src", "img-src", "script-src-elem"], None]
@@ -430,11 +431,12 @@ def test_every_chart_is_saved_as_a_picture_with_its_own_styles(shown, run):
     assert len(buttons) == len(charts) > 3
     for button in buttons:
         browser.execute_script("arguments[0].click()", button)
-    count = "return saved.length"
-    for _ in range(100):
-        if browser.execute_script(count) == len(charts):
-            break
-    names = browser.execute_script("return saved.map(([name]) => name)")
+    names = browser.execute_async_script(
+        "const [wanted, done] = arguments;"
+        "const look = () => saved.length < wanted ? setTimeout(look, 20) : done(saved.map(([name]) => name));"
+        "look()",
+        len(charts),
+    )
     assert {"area-Variance-explained.svg", "area-chart.png"} <= set(names)
     drawn = dict(browser.execute_script("return saved"))["area-Variance-explained.svg"]
     blobs = "return Copies.standalone(document.querySelector('svg.drawn')).text()"
@@ -477,7 +479,9 @@ def test_pictures_are_copied_and_tables_saved(shown, run, make):
         "const buttons = [...document.querySelectorAll('#second button')];"
         "buttons.filter((each) => each.textContent === 'Save table').forEach((each) => each.click())"
     )
-    [(name, text), *_] = browser.execute_async_script("setTimeout(() => arguments[0](saved), 200)")
+    [(name, text), *_] = browser.execute_async_script(
+        "const look = () => saved.length ? arguments[0](saved) : setTimeout(look, 20); look()"
+    )
     assert name == "Beside-a-second-run.csv"
     lines = [line.split(",") for line in text.splitlines()]
     assert lines[0][-3:] == ["First", "Second", "Difference"]
@@ -536,8 +540,10 @@ def test_a_narrow_screen_needs_no_scrolling_aside(shown, run):
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
     try:
         chart = Chart(browser)
-        fits = "return new Promise((done) => setTimeout(() => done(document.documentElement.scrollWidth), 200))"
-        assert browser.execute_script(fits) <= 360
+        browser.execute_async_script(
+            "const look = () => document.documentElement.scrollWidth > 360 ? setTimeout(look, 20) : arguments[0]();"
+            "setTimeout(look, 200)"
+        )
         chart.drag("low", 20)
         check(chart, run["area"].values)
     finally:

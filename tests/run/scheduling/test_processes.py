@@ -5,7 +5,6 @@ import pickle
 import signal
 import subprocess
 import sys
-import time
 
 import pytest
 
@@ -128,12 +127,30 @@ def test_one_that_died_while_it_waited_is_not(model, children):
 def test_nobody_waits_for_ever(model, monkeypatch, children):
     monkeypatch.setattr(processes, "_PATIENCE", 0.01)
     rested(model)
-    assert children[-1].wait(timeout=30) is not None
+    assert children[-1].wait(timeout=120) is not None
+
+
+class HandTimer:
+    """A timer that is over when the test says so."""
+
+    def __init__(self, seconds, do, given):
+        self.do, self.given, self.waits = do, given, False
+
+    def start(self):
+        self.waits = True
+
+    def cancel(self):
+        self.waits = False
+
+    def end(self):
+        if self.waits:
+            self.do(*self.given)
 
 
 def test_one_that_is_not_needed_is_ended_though_others_are(model, monkeypatch, children):
     """A run with many processes is over; those that follow, every few moments, need one of them."""
-    monkeypatch.setattr(processes, "_PATIENCE", 1.0)
+    timers = []
+    monkeypatch.setattr(processes, "Timer", lambda *given: timers.append(HandTimer(*given)) or timers[-1])
     started = idle_pool.take(2)
     answers = Answers()
     for one in started:
@@ -142,10 +159,11 @@ def test_one_that_is_not_needed_is_ended_though_others_are(model, monkeypatch, c
         one, answer = answers.get()
         one.answered(answer)
     idle_pool.give_back(started)
-    deadline = time.monotonic() + 30
-    while children[0].poll() is None and time.monotonic() < deadline:
+    after_the_first = len(timers)
+    for _ in range(3):
         idle_pool.give_back(idle_pool.take(1))
-        time.sleep(0.1)
+    for timer in timers[:after_the_first]:
+        timer.end()
     assert [one.poll() is None for one in children] == [False, True]
 
 
@@ -158,7 +176,7 @@ def test_one_that_dies_as_its_run_begins_is_told(model, children):
     again.begin(b"", answers)
     assert again is one
     with pytest.raises(SimulationError, match="ended before its time"):
-        again.answered(answers.get(timeout=30)[1])
+        again.answered(answers.get(timeout=120)[1])
     again.end()
 
 
@@ -219,6 +237,6 @@ def test_a_program_that_is_killed_leaves_no_process(case_study):
     """Its processes hold the pipe of its errors, which is at its end when all are gone."""
     where = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     command = [sys.executable, "-c", KILLED, case_study]
-    found = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False, env=where, timeout=30)
+    found = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False, env=where, timeout=120)
     assert found.returncode == -signal.SIGKILL
     assert found.stderr == ""

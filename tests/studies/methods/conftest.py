@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -19,6 +20,21 @@ def case_study():
 def small(case_study):
     """Few and short runs of everything."""
     return study(case_study, reference_trials=1 << 19, trials=1 << 13, replicates=2, seed=5)
+
+
+SECONDS = {"mc": 5e-7, "lhs": 6e-7, "sobol": 7e-7, "grid": 2e-6, "surrogate": 2e-6, "mc/jit": 1e-7, "mc/formulas": 4e-3}
+"""Of a trial, by method, about as on a machine that does nothing else."""
+
+
+@pytest.fixture(scope="session")
+def timed(small):
+    """The same with times that do not depend on the machine: what to choose follows from them."""
+
+    def clocked(curve):
+        each = SECONDS[curve.method.key]
+        return replace(curve, rungs=tuple(replace(rung, seconds=each * rung.budget) for rung in curve.rungs))
+
+    return replace(small, curves=tuple(map(clocked, small.curves)), engines=tuple(map(clocked, small.engines)))
 
 
 @pytest.fixture

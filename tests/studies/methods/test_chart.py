@@ -20,8 +20,8 @@ from xlmc.workbook.writer import package_bytes
 
 
 @pytest.fixture(scope="module")
-def picture(small):
-    return picture_of(small, "seconds")
+def picture(timed):
+    return picture_of(timed, "seconds")
 
 
 def test_no_line_runs_backwards(picture):
@@ -40,9 +40,9 @@ def test_every_error_has_a_bar_that_holds_it(picture):
             assert line.once or point.low < point.high
 
 
-def test_the_words_alone_answer(picture, small):
+def test_the_words_alone_answer(picture, timed):
     """Which is cheapest at 1 %, at 0.1 %, and which never gets there."""
-    found = choice(small)
+    found = choice(timed)
     assert [mark.y for mark in picture.marks] == [1.0, pytest.approx(0.1)]
     asked, finer = (" ".join(mark.words) for mark in picture.marks)
     assert asked.startswith("1 %, as asked for; cheapest: ")
@@ -55,8 +55,8 @@ def test_the_words_alone_answer(picture, small):
     assert picture.absent[0].startswith("Monte Carlo, engine formulas is not drawn: 1 % in ")
 
 
-def test_an_accuracy_in_units_is_drawn_as_a_multiple_of_it(small):
-    picture = picture_of(replace(small, accuracy=("0.2", 0.2, False)), "evaluations")
+def test_an_accuracy_in_units_is_drawn_as_a_multiple_of_it(timed):
+    picture = picture_of(replace(timed, accuracy=("0.2", 0.2, False)), "evaluations")
     assert picture.upwards == "error of the worst number, over the 0.2 asked for"
     assert picture.across == "evaluations of the workbook in a run"
     assert picture.marks[0].words[0] == "0.2, as asked for; cheapest:"
@@ -67,8 +67,8 @@ def test_lines_are_told_apart_without_colour():
     assert len({(style.marker, style.dashes) for style in STYLES.values()}) == len(STYLES) - 1  # formulas is not drawn
 
 
-def test_the_figure_has_one_panel_that_answers_and_five_small_ones(small):
-    figure = draw(small)
+def test_the_figure_has_one_panel_that_answers_and_five_small_ones(timed):
+    figure = draw(timed)
     main, *others = figure.axes
     assert [axis.get_title(loc="left") for axis in others] == [
         "Mean", "SD", "Lower end", "Upper end", "Accepted share, % of it",
@@ -79,11 +79,11 @@ def test_the_figure_has_one_panel_that_answers_and_five_small_ones(small):
     assert "slope −1" in written
     above = " ".join(figure.subfigs[0].get_suptitle().split())
     assert all(said in above for said in HOW_TO_READ)
-    assert not draw(small, words=False).subfigs[0].get_suptitle()
+    assert not draw(timed, words=False).subfigs[0].get_suptitle()
 
 
-def test_the_workbook_has_the_same_chart(small, picture):
-    with ZipFile(io.BytesIO(package_bytes(book(small)))) as package:
+def test_the_workbook_has_the_same_chart(timed, picture):
+    with ZipFile(io.BytesIO(package_bytes(book(timed)))) as package:
         charts = [package.read(name).decode() for name in sorted(package.namelist()) if name.startswith("xl/charts/ch")]
     assert len(charts) == 6
     assert not any("<c:legend>" in chart for chart in charts)

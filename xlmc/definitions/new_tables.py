@@ -21,6 +21,7 @@ from xlmc.definitions.definitions import (
     Parameter,
 )
 from xlmc.definitions.stopping import Precision
+from xlmc.definitions.tables.settings import LEAST_PERCENT
 from xlmc.distributions import FAMILIES
 from xlmc.distributions.by_percentiles import ByPercentiles
 from xlmc.errors import FormulaError
@@ -114,17 +115,27 @@ def _settings(workbook: Workbook, definitions: Definitions) -> Iterator[NewRow]:
     if not drawn or any(table.name.casefold().startswith("xlmc_settings") for table in workbook.tables):
         return
     settings = definitions.settings
-    goal = settings.stopping.goal
-    rows: dict[str, Entry] = {} if isinstance(goal, Precision) else {"Trials": float(settings.trials)}
+    names, goal = settings.stopping.forecasts, settings.stopping.goal
+    rows: dict[str, Entry] = {} if goal is not None else {"Trials": float(settings.trials)}
     rows |= {"Seed": float(settings.seed), "Sampling": settings.sampling}
     own = tuple(rows)
-    if isinstance(goal, Precision):
-        width = {"Precision %": 100.0 * goal.tolerance} if goal.relative else {"Precision": goal.tolerance}
+    if isinstance(goal, Precision) and _can_be_rows(goal, names):
+        width = {"Precision %": _percent(goal)} if goal.relative else {"Precision": goal.tolerance}
         rows |= {**width, "Precision of": ", ".join(goal.numbers), "Confidence %": 100.0 * goal.confidence}
-        rows |= {"Look at": "; ".join(settings.stopping.forecasts)} if settings.stopping.forecasts else {}
+        rows |= {"Look at": "; ".join(names)} if names else {}
     for name, value in rows.items():
-        was = "xlmc's own: a run preference, which the workbook does not hold" if name in own else "precision control"
+        was = "xlmc's own; Crystal Ball's is not in the workbook" if name in own else "precision control"
         yield NewRow({"Setting": name, "Value": value}, "setting", name, "", was)
+
+
+def _can_be_rows(goal: Precision, names: Iterable[str]) -> bool:
+    """Whether rows of settings can say it: a share is not so small that it looks like a mistake; `;` parts names."""
+    return not (goal.relative and _percent(goal) < LEAST_PERCENT) and not any(";" in name for name in names)
+
+
+def _percent(goal: Precision) -> float:
+    """Its share in percent, as people write it."""
+    return float(f"{100.0 * goal.tolerance:.12g}")
 
 
 def _new_pairs(definitions: Definitions, is_new: Callable[[Cell], bool]) -> Iterator[Correlation]:

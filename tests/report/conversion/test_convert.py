@@ -199,6 +199,13 @@ def test_settings_are_written_with_the_precision_that_dialogs_ask_for(tmp_path):
         assert (new.trials == trials) == (new.stopping.goal is None)
 
 
+def test_a_precision_that_no_row_can_say_is_red(tmp_path):
+    path = tmp_path / "book.xlsx"
+    tiny = {"fUsePrecision": True, "fAbsolute": False, "fRelative": True, "fRelativePct": 0.0005}
+    save(path, CELLS, [[SKID, OFFSET, Asked(S, "$B$5", "Total", prefs={"fPrecisionPrefs": tiny})]])
+    converts(path, left=[""])
+
+
 def test_a_row_that_a_person_deletes_no_longer_draws(tmp_path):
     """What stands in a table counts, not what Crystal Ball's block still says."""
     path = tmp_path / "book.xlsx"

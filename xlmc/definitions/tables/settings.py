@@ -18,7 +18,7 @@ from xlmc.errors import DefinitionError, SimulationError
 from xlmc.sampling.sampling_methods import METHODS
 from xlmc.workbook.workbook import Workbook
 
-__all__ = ["read_settings"]
+__all__ = ["LEAST_PERCENT", "read_settings"]
 
 _DEFAULT_CENTRAL = 0.51
 """The share of the central range where neither the forecast nor the settings give one: the paper's 51 %."""
@@ -31,7 +31,8 @@ _Reader = Callable[[Row, Findings], Any]
 
 T = TypeVar("T")
 
-_LEAST_PERCENT = 0.1
+LEAST_PERCENT = 0.1
+"""Of a precision: what is below is a number in a cell of percent format, most likely."""
 
 _OTHERS = {"Precision %": "precision", "Rare": "rare", "Look at": "forecasts", "Time limit": "time_limit"}
 """Setting -> what `stopping` calls it, of those that are no option of a goal."""
@@ -248,8 +249,8 @@ def _precision(row: Row, _findings: Findings) -> float:
 def _percent(row: Row, findings: Findings) -> str:
     """A cell in percent format holds 0.01 for 1 %: what could be meant so is refused or told."""
     value, where = _number_of(row, "Precision %"), row.cell("Value")
-    if value < _LEAST_PERCENT:
-        message = f"Precision % must be {_LEAST_PERCENT} or more, not {show(value)}"
+    if value < LEAST_PERCENT:
+        message = f"Precision % must be {LEAST_PERCENT} or more, not {show(value)}"
         raise DefinitionError(message, where=where, hint="Type 1 for 1 %, in a cell without percent format")
     if value < 1:
         findings.notice(f"Precision % {show(value)} is read as {show(value)} %", where)

@@ -101,6 +101,9 @@ def _left(workbook: Workbook, definitions: Definitions, tables: tuple[NewTable, 
         if isinstance(why, FormulaError) and not isinstance(cell, InFormula) and cell not in definitions.results:
             constant = workbook.content(cell).formula is None
             yield Left("cell", "", str(cell), "", why.message, cell if constant else None)
+    settings = [row.name for table in tables if table.kind == "xlmc_settings" for row in table.rows]
+    if settings and definitions.settings.stopping.has_goal and "Precision of" not in settings:
+        yield Left("setting", "Precision", "", "precision control", "nothing: no row can say it; --precision can")
     for refused in definitions.refused:
         yield Left("refused", "", str(refused.where or ""), "", refused.message)
 

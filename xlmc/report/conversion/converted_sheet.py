@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
@@ -22,13 +23,16 @@ __all__ = ["SHEET", "Left", "built_sheet"]
 
 SHEET: Final = "xlmc"
 
-_TOP: Final = 4
+_TOP: Final = 5
 """The row of the first table's headings, counted from 0."""
 
 _GAP: Final = 3
 """Rows from the end of a table to the headings of the next: one for its title, and room to add a row."""
 
-_WIDTHS: Final = (30, 24, 24, 24, 34, 16, 14, 14, 14, 14, 14, 14)
+_LINE: Final = 15
+"""Points: the height of a line."""
+
+_WIDTHS: Final = (30, 24, 24, 24, 34, 16, *([14] * 14))
 
 _INTRODUCTION: Final = (
     "What Crystal Ball's dialogs and functions in cells define, as xlmc's tables. The other sheets are as they were.",
@@ -80,9 +84,12 @@ class _Sheet:
             "title": book.add_format({"bold": True, "font_size": 14, "font_color": "#1F3044"}),
             "heading": book.add_format({"bold": True, "font_color": "#1F3044"}),
             "header": book.add_format({"bold": True, "bg_color": "#1F3044", "font_color": "#FFFFFF"}),
-            "text": book.add_format({"valign": "top"}),
-            "drawn": book.add_format({"bg_color": "#DDEEDD", "align": "right"}),
-            "red": book.add_format({"font_color": "#C00000", "bold": True}),
+            "text": book.add_format({"valign": "top", "align": "left"}),
+            "wrapped": book.add_format({"valign": "top", "align": "left", "text_wrap": True}),
+            "drawn": book.add_format({"bg_color": "#DDEEDD", "valign": "top", "align": "left"}),
+            "red": book.add_format(
+                {"font_color": "#C00000", "bold": True, "valign": "top", "align": "left", "text_wrap": True}
+            ),
             "grey": book.add_format({"font_color": "#52606D"}),
         }
         self._calls: dict[Cell, str] = {}
@@ -98,6 +105,8 @@ class _Sheet:
         for column, width in enumerate(_WIDTHS):
             self._sheet.set_column(column, column, width)
         self._sheet.hide_gridlines(2)
+        self._sheet.set_landscape()
+        self._sheet.fit_to_pages(1, 0)
         self._sheet.write_string(0, 0, "Definitions for xlmc", self._styles["title"])
         for row, text in enumerate(_INTRODUCTION, 1):
             self._sheet.write_string(row, 0, text, self._styles["grey"])
@@ -155,9 +164,13 @@ class _Sheet:
     def _list(self, rows: Sequence[Left | tuple[str, str, str, str, str]], top: int) -> None:
         self._sheet.write_string(top - 1, 0, _TITLES[CONVERTED], self._styles["heading"])
         for number, row in enumerate(rows, top + 1):
-            style = self._styles["red" if isinstance(row, Left) else "text"]
-            for column, text in enumerate(row[:5]):
-                self._sheet.write_string(number, column, str(text), style)
+            style = self._styles["red" if isinstance(row, Left) else "wrapped"]
+            texts = [str(text) for text in row[:5]]
+            lines = max(len(wrap(text, width - 2)) for text, width in zip(texts, _WIDTHS, strict=False))
+            if lines > 1:
+                self._sheet.set_row(number, _LINE * lines)
+            for column, text in enumerate(texts):
+                self._sheet.write_string(number, column, text, style)
             if isinstance(row, Left) and row.refused is not None:
                 self._sheet.write_formula(number, 5, f"={row.refused}", style, "")
         self._add_table(CONVERTED, top, max(len(rows), 1), _LISTED)

@@ -43,7 +43,7 @@ def book(tmp_path):
 
 
 def words(path):
-    sheet = openpyxl.load_workbook(path)["Evidence"]
+    sheet = openpyxl.load_workbook(path)["Evidence results"]
     return " ".join(str(cell.value) for row in sheet for cell in row if cell.value is not None)
 
 
@@ -101,7 +101,7 @@ def test_evidence_that_contradicts_stands_first_and_is_no_success(xlmc, book, tm
 def test_a_book_whose_evidence_is_off_has_no_sheet_of_it_and_check_lists_its_rows(xlmc, book, tmp_path):
     path = book(OFF)
     assert xlmc("simulate", path, "-n", 2_000).code == 0
-    assert "Evidence" not in openpyxl.load_workbook(tmp_path / "book-results.xlsx").sheetnames
+    assert "Evidence results" not in openpyxl.load_workbook(tmp_path / "book-results.xlsx").sheetnames
     assert "not used: Use is off" in " ".join(xlmc("check", path).out.split())
     assert "reads 2, normal (Std dev 0.5)" in " ".join(xlmc("check", book(EDR)).out.split())
 

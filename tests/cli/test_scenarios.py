@@ -75,6 +75,15 @@ def test_from_the_workbook_to_all_outputs(xlmc, book, tmp_path):
     page = (tmp_path / "p.html").read_text(encoding="utf-8")
     assert '<section id="scenarios">' in page
     assert "width from 1.5 to 2" in page
+    docx = pytest.importorskip("docx")
+    report = ("--docx", tmp_path / "r.docx", "--sections", "scenarios", "--forecasts", "area")
+    assert xlmc("report", tmp_path / "r.xlmcrun", *report).code == plain.code
+    word = docx.Document(str(tmp_path / "r.docx"))
+    changed, answers = ([[cell.text for cell in row.cells] for row in table.rows[1:]] for table in word.tables)
+    assert [row[0] for row in changed] == [row[0] for row in answers] == names
+    told = outcome.out.replace(" ", "").replace("\n", "")
+    assert all("".join(row).replace(" ", "") in told for row in (*changed, *answers))
+    assert any(each.text.startswith("Differences are those to the workbook as it is") for each in word.paragraphs)
 
     for kept in ("book-results.xlsx", "r.xlmcrun"):
         assert xlmc("replay", tmp_path / kept).code == 0

@@ -10,10 +10,11 @@ from xlmc.report.summary import (
     estimate_text,
     percent,
     range_heading,
+    share_text,
     summarise,
     summary_text,
 )
-from xlmc.statistics import Estimate, format_estimate
+from xlmc.statistics import Estimate, format_estimate, proportion
 
 
 def test_rows_are_the_simulations_own_numbers(run):
@@ -73,6 +74,20 @@ def test_different_ranges_are_told_apart(make):
 )
 def test_shares_in_percent(share, text):
     assert percent(share) == text
+
+
+@pytest.mark.parametrize(
+    ("found", "text"),
+    [
+        (proportion(0, 5), "0 %, at most 46 %"),
+        (proportion(5, 5), "100 %, at least 54 %"),
+        (proportion(0, 30_000), "0 %, at most 0.013 %"),
+        (proportion(1, 4), "25 ± 22 %"),
+        (Estimate(0.0), ""),
+    ],
+)
+def test_a_share_of_none_or_all_trials_says_how_far_off_it_may_be(found, text):
+    assert share_text(found) == text
 
 
 def test_no_number_is_no_text():

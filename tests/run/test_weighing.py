@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from xlmc.errors import SimulationError
+from xlmc.report.filter_effect import filter_effect_of
 from xlmc.report.histogram import figures_of, histogram
 from xlmc.results.statements import certainties, statements
 from xlmc.run.simulate import simulate
@@ -54,6 +55,17 @@ def test_weights_give_the_known_posterior_and_effective_sample_size(model):
         np.average(figure.bins.edges + figure.bins.width / 2, weights=figure.bins.inside + figure.bins.outside)
     )
     assert middle == pytest.approx(0.8, abs=0.01)
+
+
+def test_trials_with_hardly_any_weight_are_counted_wherever_trials_are(book):
+    """exp(-z²/2) of z = (A1 - 3)/0.2 is far below any weight that a sample keeps in most trials."""
+    evidence = {"EDR": {"cell": "B1", "reading": 3.0, "error": "normal", "std_dev": 0.2}}
+    weighed = book({**CELLS, "D1": "=7+0*A1"}, X, {"y": "B1", "still": "D1"}, evidence=evidence)
+    run = simulate(weighed, trials=20_000, evidence="weights")
+    assert run["y"].sample.n < 19_000
+    assert {result.statistics.trials for result in run.results.values()} == {20_000}
+    assert [each.text for each in statements(run) if each.forecast == "still"] == ["still: 7 in all 20,000 trials"]
+    assert filter_effect_of(run, "x").accepted.trials == 20_000
 
 
 def test_filters_and_limits_still_reject_and_a_lognormal_error_weights_too(book):

@@ -122,7 +122,7 @@ def test_the_command_writes_its_sheets_and_says_that_they_are_few(folder, n):
     assert done.exit_code == (1 if n == 0 else 0), done.output
     assert "Traceback" not in done.output
     assert f"Accepted {n} of 2,000 trials" in done.output
-    told = "no trial was accepted" if n == 0 else "only 1 trial was" if n == 1 else f"only {n} trials were accepted"
+    told = "no trial was accepted" if n == 0 else "Only 1 trial was" if n == 1 else f"Only {n} trials were accepted"
     assert told in " ".join(done.output.split())
     book = openpyxl.load_workbook(target)
     assert {"Results", "Statistics", "Assumptions", "Trials", "Record"} <= set(book.sheetnames)
@@ -133,5 +133,5 @@ def test_the_command_writes_its_sheets_and_says_that_they_are_few(folder, n):
 def test_the_notice_ends_where_there_are_enough(book):
     given = {"u": {"cell": "A1", "low": 0.0, "high": 1.0}}
     model = book({"A1": 0.5, "B1": "=A1"}, given, {"x": "B1"})
-    assert "only 99 trials were accepted" in str(model.simulate(99).notices_of_run[0])
+    assert "Only 99 trials were accepted" in str(model.simulate(99).notices_of_run[0])
     assert model.simulate(100).notices_of_run == ()

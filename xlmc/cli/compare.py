@@ -106,9 +106,9 @@ def compare(
         show([report.below, *report.blocks])
         for path in written:
             say(f"Written: {path}")
-    runs = zip(book_names(found), (found.first, found.second), strict=True)
+    runs = list(zip(book_names(found), (found.first, found.second), strict=True))
     doubts = [f"{name}: {warning}" for name, run in runs for warning in run.warnings]
-    warnings(doubts)
+    warnings(doubts, [f"{name}: {warning}" for name, run in runs for warning in run.refused])
     if doubts or found.of(comparison.Verdict.UNDECIDED) or any(_contradict(each) for each in found.rivals):
         raise click.exceptions.Exit(UNDECIDED)
 

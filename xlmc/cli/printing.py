@@ -6,7 +6,7 @@ In a table words wrap, numbers are never cut, and what is too wide becomes a lis
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Final
@@ -47,10 +47,12 @@ def notices(found: Sequence[Notice]) -> None:
         say(f"note: {notice}", err=True)
 
 
-def warnings(found: Sequence[str]) -> None:
-    """Print why an answer must not be used, to stderr."""
+def warnings(found: Sequence[str], missing: Collection[str] = ()) -> None:
+    """Print why an answer must not be used, to stderr; of those that are `missing`, that others do not need them."""
     for warning in found:
-        say(f"warning: {warning}; the answer must not be used as it stands.", err=True)
+        meaning = "this answer is missing, and the others do not need it"
+        said = meaning if warning in missing else "the answer must not be used as it stands"
+        say(f"warning: {warning}; {said}.", err=True)
 
 
 def _one_line(cell: str) -> str:

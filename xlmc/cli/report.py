@@ -77,7 +77,7 @@ def report(
     show_run(found)
     for line in lines:
         say(line)
-    warnings(found.warnings)
+    warnings(found.warnings, found.refused)
     if not written:
         raise click.exceptions.Exit(NOT_WRITTEN)
     if found.warnings:

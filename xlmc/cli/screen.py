@@ -121,7 +121,7 @@ def screen(
         show([f"{report.below.partition(':')[0]}: what it could do without", *report.blocks])
         for path in written:
             say(f"Written: {path}")
-    warnings(found.run.warnings)
+    warnings(found.run.warnings, found.run.refused)
     if found.run.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
 

@@ -25,7 +25,7 @@ NOT_TO_BE_USED = 1
 INTERRUPTED = 130
 
 _MOST_MOVED = 4
-"""Forecasts of which the terminal shows what evidence moves; the sheet Evidence shows all."""
+"""Forecasts of which the terminal shows what evidence moves; the sheet Evidence results shows all."""
 
 
 @click.command()
@@ -143,7 +143,7 @@ def simulate(
     for line in lines:
         say(line)
     of_scenarios = _of_scenarios(answers)
-    warnings([*run.warnings, *of_scenarios])
+    warnings([*run.warnings, *of_scenarios], run.refused)
     if run.stopped.interrupted:
         kept = "; what was accepted of them was written" if written else ""
         say(f"xlmc: interrupted after {run.trials:,} trials{kept}.", err=True)
@@ -195,7 +195,6 @@ def show_run(run: Simulation) -> None:
     """Print the paper's table, the acceptance and what each filter rejected."""
     from xlmc.cli.check import check_table, show_first
     from xlmc.cli.printing import table
-    from xlmc.cli.scenario_tables import show_scenarios
     from xlmc.report.summary import ERROR_SENTENCE, summarise, summary_text
     from xlmc.results.record.in_words import sampling_sentence
     from xlmc.run.stopping.stopped import ALL_TRIALS
@@ -214,7 +213,7 @@ def show_run(run: Simulation) -> None:
         table(of, ("Filter", "Only for", "Keeps", "Discarded", "Share"), _discards(run), right=(3, 4))
     _show_evidence(run)
     check_table(run)
-    show_scenarios(run)
+    _show_scenarios(run)
     say(paragraph(ERROR_SENTENCE))
     for notice in run.notices_of_run:
         say(paragraph(f"{notice}."))
@@ -236,20 +235,38 @@ def _show_evidence(run: Simulation) -> None:
     table("What each item of evidence moves", heads, move_rows(found, names), right=range(1, len(heads)))
 
 
-def _acceptance_sentence(run: Simulation) -> str:
-    from xlmc.results.record.errors_met import rest_sentences
-    from xlmc.statistics import format_estimate
+def _show_scenarios(run: Simulation) -> None:
+    """Print what each scenario changes and accepts, then a table for each forecast; nothing where they were not run."""
+    from xlmc.cli.printing import table
+    from xlmc.report.scenario_tables import SCENARIO_HEADS, answer_heads, answer_rows, scenario_rows
+    from xlmc.report.sheets.scenarios_sheet import scenario_sentences
+    from xlmc.studies.scenario_answers import scenario_answers
 
-    share = run.acceptance
+    found = scenario_answers(run)
+    if not found:
+        return
+    table("Scenarios", SCENARIO_HEADS, scenario_rows(found), right=(1, 2, 3))
+    for index, each in enumerate(found[0].forecasts):
+        units = f", {each.forecast.units}" if each.forecast.units else ""
+        heads = answer_heads(each)
+        table(f"{each.forecast.name}{units}", heads, answer_rows(found, index), right=range(1, len(heads)))
+    say(paragraph(" ".join(scenario_sentences(found))) + "\n")
+
+
+def _acceptance_sentence(run: Simulation) -> str:
+    from xlmc.report.summary import share_text
+    from xlmc.results.record.errors_met import rest_sentences
+
     if run.rare is not None:
         from xlmc.run.rare.account import probability_text
 
         return f"{run.accepted:,} accepted trials; a trial is accepted with probability {probability_text(run.rare)}"
-    percent = format_estimate(100 * share.value, 100 * (share.error or 0))
     if any(errors.total() for errors in run.faults.values()) or run.model.forecast_filters:
-        kept = [f"the filters kept {run.accepted:,}, {percent} %"] if run.accepted < run.trials else []
+        kept = [f"the filters kept {run.accepted:,}, {share_text(run.acceptance)}"] if run.accepted < run.trials else []
         return "; ".join((*rest_sentences(run), *kept))
-    return f"Accepted {run.accepted:,} of {run.trials:,} trials, {percent} %"
+    if not run.model.filters and run.accepted == run.trials:
+        return f"The workbook has no filters: all {run.trials:,} trials are accepted"
+    return f"Accepted {run.accepted:,} of {run.trials:,} trials, {share_text(run.acceptance)}"
 
 
 def _discards(run: Simulation) -> list[tuple[str, ...]]:

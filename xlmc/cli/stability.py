@@ -63,7 +63,7 @@ def stability(
         _show(found, all_cells)
         for path in written:
             say(f"Written: {path}")
-    warnings(found.run.warnings)
+    warnings(found.run.warnings, found.run.refused)
     if found.wrong or found.run.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
 

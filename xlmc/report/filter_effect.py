@@ -114,9 +114,10 @@ def marginal(
     """The marginal of `(n,)` draws; NaN, a trial whose parameters were no distribution, is left out."""
     ids = None if replicate is None else replicate[~np.isnan(draws)]
     w = None if weights is None else weights[~np.isnan(draws)]
-    sample = statistics.Sample.of(numbers(draws), w, ids)
+    values = numbers(draws)
+    sample = statistics.Sample.of(values, w, ids)
     return Marginal(
-        trials=sample.n,
+        trials=int(values.size),
         mean=statistics.mean(sample),
         standard_deviation=statistics.standard_deviation(sample),
         percentiles=statistics.percentiles(sample, PERCENTS),

@@ -12,6 +12,7 @@ import numpy as np
 from xlmc.definitions.definitions import name_key
 from xlmc.evaluation.engine import UNDECIDED_RESULT
 from xlmc.results.record.in_words import discards_of, limits_text
+from xlmc.results.statements import reach_text
 from xlmc.run.rare.account import probability_text
 from xlmc.statistics import Estimate, format_estimate
 
@@ -140,7 +141,14 @@ def estimate_text(estimate: Estimate) -> str:
 
 
 def share_text(estimate: Estimate) -> str:
-    """A share in percent, `1.771 ± 0.029 %`; empty where there is no number."""
+    """A share in percent, `1.771 ± 0.029 %`; empty where there is no number.
+
+    Of none of the trials it is `0 %, at most 0.013 %`, of all of them `100 %, at least 99.987 %`: an error that is the
+    same on both sides would not say how far off these are.
+    """
+    reach = reach_text(estimate) if estimate.value in (0.0, 1.0) else ""
+    if reach:
+        return f"{100.0 * estimate.value:g} %, {reach}"
     if math.isnan(estimate.value) or estimate.error is None:
         return ""
     return f"{format_estimate(100.0 * estimate.value, 100.0 * estimate.error)} %"
@@ -214,9 +222,9 @@ def question(simulation: Simulation) -> Iterator[Said]:
         yield Said(f"{simulation.accepted:,} of them ({share_text(simulation.acceptance)}) pass all limits, and each ")
         yield Said("counts with the chance that the evidence would keep it. The evidence ")
     elif simulation.rare is None:
-        yield Said(
-            f"{simulation.accepted:,} of them ({share_text(simulation.acceptance)}) agree with the evidence, which "
-        )
+        agree = "agrees" if simulation.accepted == 1 else "agree"
+        share = share_text(simulation.acceptance)
+        yield Said(f"{simulation.accepted:,} of them ({share}) {agree} with the evidence, which ")
     else:
         yield Said(f"{simulation.accepted:,} that agree with the evidence were kept; one as they come agrees with ")
         yield Said(f"probability {probability_text(simulation.rare)}. The evidence ")

@@ -106,7 +106,8 @@ class CheckResult:
     @property
     def looked_at(self) -> str:
         """`the first 65,536 accepted trials`; without `the first` where they are all."""
-        return f"{'the first ' if self.trials < self.accepted else ''}{self.trials:,} accepted trials"
+        trials = "1 accepted trial" if self.trials == 1 else f"{self.trials:,} accepted trials"
+        return f"{'the first ' if self.trials < self.accepted else ''}{trials}"
 
     @property
     def share(self) -> Estimate:

@@ -101,7 +101,7 @@ class ForecastResult:
 
     @cached_property
     def statistics(self) -> Description:
-        """Every statistic at once."""
+        """Every statistic at once; trials with hardly any weight, which a sample leaves out, are counted, too."""
         d = self.definition
         found = statistics.describe(self.sample, central=d.central, threshold=d.threshold)
         if self.sample.w is None:
@@ -110,6 +110,7 @@ class ForecastResult:
         tail = (1.0 - d.central) / 2.0
         return replace(
             found,
+            trials=int(self.values.size),
             median=self._where_told(found.median, 0.5),
             percentiles={key: self._where_told(each, key / 100.0) for key, each in found.percentiles.items()},
             central=(self._where_told(low, tail), self._where_told(high, tail)),

@@ -215,7 +215,7 @@ class Simulation:
         if not self.plan.replicates and 0 < effective < FEW:
             few = f"only {_trials(self.accepted)} accepted" if self.weighting is None else ""
             few = few or f"the accepted trials carry as much as {effective} of equal weight"
-            found.append(Notice(f"{few}. {_OF_FEW}"))
+            found.append(Notice(f"{few[0].upper()}{few[1:]}. {_OF_FEW}"))
         samples = {name: result.sample for name, result in self.results.items()}
         found += [Notice(f"{each[0].upper()}{each[1:]}") for each in self.agreement.remarks] if self.agreement else []
         return (*found, *tail_notices(samples, METHODS[self.plan.method].name))
@@ -237,9 +237,13 @@ class Simulation:
         if self.agreement is not None and self.agreement.conflicts:
             failing.append(self.agreement.sentence)
         rare = () if self.rare is None else self.rare.warnings
-        missing = self.shown_results.warning
-        refused = [str(each).rstrip(".") for each in self.model.definitions.refused]
-        return [*refused, *failing, *found, *self._sparse(), *self._lost_digits, *rare, *([missing] if missing else [])]
+        missing = [self.shown_results.warning] if self.shown_results.warning else []
+        return [*self.refused, *failing, *found, *self._sparse(), *self._lost_digits, *rare, *missing]
+
+    @property
+    def refused(self) -> list[str]:
+        """Those of the warnings that concern a forecast without an answer alone: the answers of others may be used."""
+        return [str(each).rstrip(".") for each in self.model.definitions.refused]
 
     @cached_property
     def shown_results(self) -> ShownResults:

@@ -16,7 +16,7 @@ import xlmc
 from xlmc.columns import column_store, on_disk
 from xlmc.report.sheets.book import SHEETS
 
-OF_SOME = ("Evidence", "Scenarios")  # which these books do not have
+OF_SOME = ("Evidence results", "Scenarios")  # which these books do not have
 NAMES = [sheet.name for sheet in SHEETS if sheet.name not in OF_SOME]
 RUNS = ["run", "none_accepted", "one_accepted"]
 

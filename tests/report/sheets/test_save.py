@@ -55,7 +55,7 @@ def rows(path, sheet):
 def test_results_stand_behind_the_users_sheets(case, book, tmp_path):
     before = book.read_bytes()
     path = save(case, tmp_path / "out.xlsx", command="xlmc simulate scene.xlsx")
-    wanted = [sheet.name for sheet in SHEETS if sheet.name not in ("Evidence", "Scenarios")]
+    wanted = [sheet.name for sheet in SHEETS if sheet.name not in ("Evidence results", "Scenarios")]
     assert sheets(path) == [*sheets(book), *wanted]
     assert book.read_bytes() == before
 

@@ -66,6 +66,8 @@ def test_without_units_numbers_or_variation():
     assert sentences([], threshold=1.0) == ["speed: no accepted trial has a number"]
     assert sentences([math.nan, math.nan]) == ["speed: no accepted trial has a number"]
     assert sentences([2.0] * 40, units="mph") == ["speed: 2 mph in all 40 trials"]
+    assert sentences([2.0], units="mph") == ["speed: 2 mph in the only trial"]
+    assert sentences([0.0] * 900 + [1.0] * 100) == ["speed: more probable than not (90.0 % ± 0.9 %) equal to 0"]
     (text,) = sentences([1.0] * 20 + [2.0] * 20)
     assert re.fullmatch(r"speed: all 40 trials; at least [\d.]+ % with 95 % confidence, between 1 and 2", text)
 

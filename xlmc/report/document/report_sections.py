@@ -16,7 +16,9 @@ from xlmc.report.evidence_tables import ITEM_HEADS, MOVES_MEANING, item_rows, mo
 from xlmc.report.evidence_tables import MEANING as MEANING_OF_EVIDENCE
 from xlmc.report.filter_effect import filter_effect_of, shapes_of
 from xlmc.report.histogram import figures_of
+from xlmc.report.scenario_tables import SCENARIO_HEADS, answer_heads, answer_rows, scenario_rows
 from xlmc.report.sheets.results_sheet import base_sentences, opening_sentences, range_sentences
+from xlmc.report.sheets.scenarios_sheet import scenario_sentences, scenario_warnings
 from xlmc.report.summary import (
     ERROR_SENTENCE,
     SummaryRow,
@@ -41,6 +43,7 @@ from xlmc.results.statements import MEANING, statements
 from xlmc.run.checking import checks_sentence
 from xlmc.run.stopping.stopped import ALL_TRIALS
 from xlmc.statistics import proportion
+from xlmc.studies.scenario_answers import scenario_answers
 from xlmc.studies.sensitivity import sensitivities
 from xlmc.studies.sensitivity.measures import noise
 
@@ -118,7 +121,7 @@ def _answers(material: Material, rows: Sequence[SummaryRow]) -> Table:
     mixed = len({row.share for row in rows}) > 1
     heads = ["Forecast", "Units", "Mean", "Standard deviation", f"{range_heading(rows)} from", "to", "Base case"]
     heads += ["Range holds"] * mixed + ["Threshold", "Above threshold"] * thresholds
-    widths = [2.4, 0.9, 1.6, 1.6, 1.6, 1.6, 1.1, *[1.0] * mixed, *[1.0, 1.5] * thresholds]
+    widths = [2.4, 0.9, 1.6, 1.6, 1.6, 1.6, 1.1, *[1.0] * mixed, *[1.3, 1.5] * thresholds]
     lines = []
     for row in rows:
         line = [row.name, row.units, *map(estimate_text, (row.mean, row.standard_deviation, row.low, row.high))]
@@ -248,6 +251,27 @@ def _evidence(material: Material) -> Iterator[Block]:
     yield Paragraph(MOVES_MEANING, "small")
     lines = [(each.name, evidence_text(each), each.source or _NONE) for each in material.simulation.model.evidence]
     yield material.table("The readings and their sources.", ("Evidence", "Reading", "Source"), lines, (2, 3, 4))
+
+
+def _scenarios(material: Material) -> Iterator[Block]:
+    found = scenario_answers(material.simulation)
+    if not found:
+        return
+    for warning in scenario_warnings(found):
+        yield Paragraph(warning, "warning")
+    yield Paragraph("The workbook was run again with other contents in some of its cells. “As it is” is this report.")
+    rows = scenario_rows(found)
+    caption = "What each scenario changes, and how many trials are accepted."
+    yield material.table(caption, SCENARIO_HEADS, rows, (1.7, 1, 1.6, 1.5, 3.6), (1, 2, 3))
+    for index, each in enumerate(found[0].forecasts):
+        if each.forecast.name not in material.forecasts:
+            continue
+        heads = answer_heads(each)
+        units = f", {each.forecast.units}" if each.forecast.units else ""
+        widths = (1.8, *[1.4] * (len(heads) - 1))
+        caption = f"{each.forecast.name}{units}: the workbook as it is, and the scenarios."
+        yield material.table(caption, heads, answer_rows(found, index), widths, range(1, len(heads)))
+    yield Paragraph(" ".join(scenario_sentences(found)), "small")
 
 
 def _assumptions(material: Material) -> Iterator[Block]:
@@ -414,6 +438,7 @@ SECTIONS: Final[dict[str, tuple[str, Callable[[Material], Iterator[Block]]]]] = 
     "forecasts": ("The forecasts", _forecasts),
     "filters": ("Filters: what a possible crash must meet", _filters),
     "evidence": ("Evidence, and whether it agrees", _evidence),
+    "scenarios": ("Scenarios: the answers if something is changed", _scenarios),
     "assumptions": ("Assumptions", _assumptions),
     "sensitivity": ("What the answers depend on", _sensitivity),
     "checks": ("Physics checks", _checks),

@@ -24,7 +24,7 @@ _FILTER_STARTS = (0, 1, 3, 5)
 
 _DISCARD_HEADERS = ("Filter", "Only for", "Cell", "Must be", "Discarded", "Share", "±", "Because")
 
-_DISCARD_STARTS = (0, 1, 2, 3, 5, 6, 7, 8)
+_DISCARD_STARTS = (0, 1, 4, 5, 7, 8, 9, 10)
 
 _CHECK_HEADERS = ("Check", "Cell", "Base case", "Trials failing", "Share", "±", "Because")
 

@@ -148,7 +148,7 @@ def _record(page: Page, run: Writing) -> None:
 SHEETS: Final[tuple[ResultSheet, ...]] = (
     ResultSheet("Results", lambda page, run: results_sheet.write_results(page, run.simulation), results_sheet.WIDTHS),
     ResultSheet(
-        "Evidence",
+        "Evidence results",
         lambda page, run: evidence_sheet.write_evidence(page, run.simulation),
         evidence_sheet.WIDTHS,
         wanted=lambda run: run.simulation.agreement is not None,

@@ -1,4 +1,4 @@
-"""The sheet Evidence: what was read, whether it agrees with the model and with itself, and what each item moves."""
+"""The sheet Evidence results: what was read, whether it agrees with model and itself, and what each item moves."""
 
 from __future__ import annotations
 

@@ -50,8 +50,10 @@ def write_results(page: Page, simulation: Simulation) -> None:
 def opening_sentences(simulation: Simulation) -> list[str]:
     """What stands before the answers: why not to use them, checks that fail first; then the trials lost to errors."""
     ended = simulation.stopped
+    missing = simulation.refused
     return [
-        *(f"Do not use these results as they stand: {warning}" for warning in simulation.warnings),
+        *(f"An answer is missing: {warning}. The answers of other forecasts do not need it." for warning in missing),
+        *(f"Do not use these results as they stand: {each}" for each in simulation.warnings if each not in missing),
         *lost_sentences(simulation),
         *([f"Fewer trials than were asked for: {ended.sentence}"] if ended.interrupted else []),
     ]

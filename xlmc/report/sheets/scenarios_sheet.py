@@ -9,6 +9,7 @@ from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import BLANK, Shown
 from xlmc.report.summary import percent
 from xlmc.results.record.in_words import changes_text
+from xlmc.run.simulation import FEW
 from xlmc.statistics import Estimate
 from xlmc.studies.scenario_answers import ForecastAnswer, ScenarioAnswers, scenario_answers
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from xlmc.report.sheets.page import Page
     from xlmc.run.simulation import Simulation
 
-__all__ = ["POINTS", "WIDTHS", "scenario_sentences", "write_scenario_tables", "write_scenarios"]
+__all__ = ["POINTS", "WIDTHS", "scenario_sentences", "scenario_warnings", "write_scenario_tables", "write_scenarios"]
 
 WIDTHS = (30, *[11] * 16)
 
@@ -39,9 +40,8 @@ def write_scenarios(page: Page, simulation: Simulation) -> None:
 
 def write_scenario_tables(page: Page, found: Sequence[ScenarioAnswers]) -> None:
     """Write what each scenario changes and how much is accepted; then its answers, a table a forecast."""
-    for each in found[1:]:
-        for warning in each.warnings:
-            page.wide(f"Do not use the answers of {each.name!r} as they stand: {warning}", "warning", _LAST)
+    for warning in scenario_warnings(found):
+        page.wide(warning, "warning", _LAST)
     page.heading("What is changed, and how many trials are accepted")
     heads = ("Scenario", "Accepted", "Share", "±", POINTS, "±", "What is changed")
     starts = range(_CHANGES + 1)
@@ -58,8 +58,17 @@ def write_scenario_tables(page: Page, found: Sequence[ScenarioAnswers]) -> None:
         page.wide(sentence, "remark", _LAST)
 
 
+def scenario_warnings(found: Sequence[ScenarioAnswers]) -> list[str]:
+    """Why answers of scenarios must not be used."""
+    names = ((each.name, warning) for each in found[1:] for warning in each.warnings)
+    return [f"Do not use the answers of {name!r} as they stand: {warning}" for name, warning in names]
+
+
 def scenario_sentences(found: Sequence[ScenarioAnswers]) -> Iterator[str]:
     """What the differences are, and what their errors."""
+    few = [f"{each.name!r} ({each.run.accepted:,})" for each in found if 0 < each.run.accepted < FEW]
+    if few:
+        yield f"Few trials were accepted: {', '.join(few)}. Errors of means and differences can be too small there."
     yield "Differences are those to the workbook as it is: a positive one means that the scenario gives more."
     if all(each.paired for each in found):
         yield (

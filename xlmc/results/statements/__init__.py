@@ -5,7 +5,7 @@
 
 from xlmc.results.statements.pairs import PAIRS, Pair, pairs_of
 from xlmc.results.statements.sentences import MEANING, Certainty, Statement, certainties, statements
-from xlmc.results.statements.significant_digits import RoundedRange, percent_text, rounded_range
+from xlmc.results.statements.significant_digits import RoundedRange, percent_text, reach_text, rounded_range
 
 __all__ = [
     "MEANING",
@@ -17,6 +17,7 @@ __all__ = [
     "certainties",
     "pairs_of",
     "percent_text",
+    "reach_text",
     "rounded_range",
     "statements",
 ]

@@ -57,7 +57,7 @@ def _of(result: ForecastResult) -> list[Statement]:
         why = "too few effective trials for its central range" if result.sample.n else "no accepted trial has a number"
         return [Statement(name, "range", f"{name}: {why}")]
     part = _part_text(result)
-    told = [Statement(name, "range", f"{name}: {_range_text(found, units)}{part}")]
+    told = [Statement(name, "range", f"{name}: {_range_text(found, units, result.statistics.trials)}{part}")]
     above = result.statistics.probability_above
     if definition.threshold is not None and above is not None:
         joined = ":" if above.value in (0.0, 1.0) else " ="
@@ -76,12 +76,14 @@ def _part_text(result: ForecastResult) -> str:
     return f"; counted in the {numbers:,} of {numbers + others:,} accepted trials in which it is a number"
 
 
-def _range_text(found: RoundedRange, units: str) -> str:
+def _range_text(found: RoundedRange, units: str, trials: int) -> str:
     """`more probable than not (52.1 % ± 0.8 %) between 22.0 and 24.2 mph`, where that is so."""
     share, between = found.share, f"between {found.low_text} and {found.high_text}{units}"
-    if found.low == found.high and share.value == 1.0:
-        return f"{found.low_text}{units} in all {share.n:,} trials"
-    if share.value == 1.0:
+    if found.low == found.high:
+        if share.value == 1.0:
+            return f"{found.low_text}{units} in {f'all {trials:,} trials' if trials > 1 else 'the only trial'}"
+        between = f"equal to {found.low_text}{units}"
+    elif share.value == 1.0:
         return f"{percent_text(share)}, {between}"
     lowest = share.value if share.interval is None else share.interval[0]
     if lowest > _EVEN:

@@ -12,7 +12,7 @@ from xlmc.statistics import Estimate, probability_between
 if TYPE_CHECKING:
     from xlmc.statistics import Sample
 
-__all__ = ["RoundedRange", "percent_text", "rounded_range", "rounded_value"]
+__all__ = ["RoundedRange", "percent_text", "reach_text", "rounded_range", "rounded_value"]
 
 _DIGITS = 6
 """Significant digits of a number without an error."""
@@ -95,14 +95,25 @@ def percent_text(share: Estimate) -> str:
 
 def _bound(share: Estimate) -> str:
     trials = f"0 of {share.n:,} trials" if share.value == 0.0 else f"all {share.n:,} trials"
+    reach = reach_text(share)
+    return f"{trials}; {reach} with 95 % confidence" if reach else trials
+
+
+def reach_text(share: Estimate) -> str:
+    """How far a share of none or all of the trials may be from 0 or 1; empty where that is not known.
+
+    >>> from xlmc.statistics import proportion
+    >>> reach_text(proportion(0, 5)), reach_text(proportion(5, 5))
+    ('at most 46 %', 'at least 54 %')
+    """
     if share.interval is None:
-        return trials
+        return ""
     low, high = share.interval
     reach = Decimal(repr(100.0 * (high if share.value == 0.0 else 1.0 - low)))
+    if not reach:
+        return ""
     reach = reach.quantize(Decimal(1).scaleb(reach.adjusted() - 1), ROUND_CEILING)
-    if share.value == 0.0:
-        return f"{trials}; at most {reach:f} % with 95 % confidence"
-    return f"{trials}; at least {100 - reach:f} % with 95 % confidence"
+    return f"at most {reach:f} %" if share.value == 0.0 else f"at least {100 - reach:f} %"
 
 
 def _common_decimals(*ends: Estimate) -> int | None:

@@ -1,0 +1,64 @@
+"""The answers of scenarios in tables of text: for the terminal and the document to hand over."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+from xlmc.report.sheets.scenarios_sheet import POINTS
+from xlmc.report.summary import estimate_text, percent, share_text
+from xlmc.results.record.in_words import changes_text
+from xlmc.statistics import format_estimate
+
+if TYPE_CHECKING:
+    from xlmc.statistics import Estimate
+    from xlmc.studies.scenario_answers import ForecastAnswer, ScenarioAnswers
+
+__all__ = ["SCENARIO_HEADS", "answer_heads", "answer_rows", "scenario_rows"]
+
+SCENARIO_HEADS: Final = ("Scenario", "Accepted", "Share", POINTS, "What is changed")
+
+
+def scenario_rows(found: Sequence[ScenarioAnswers]) -> list[tuple[str, ...]]:
+    """A row for the workbook itself and for each scenario, under `SCENARIO_HEADS`."""
+    return [
+        (
+            each.name,
+            f"{each.run.accepted:,}",
+            share_text(each.acceptance),
+            _change(each.acceptance_difference, share=True),
+            "" if each.scenario is None else changes_text(each.scenario),
+        )
+        for each in found
+    ]
+
+
+def answer_heads(answer: ForecastAnswer) -> list[str]:
+    """The headings of a forecast's table."""
+    share = percent(answer.forecast.central)
+    names = ["Mean", f"{share} range from", "to"]
+    found = ["Scenario", *(heading for name in names for heading in (name, "Difference"))]
+    return found if answer.above is None else [*found, f"Above {answer.forecast.threshold:g}", POINTS]
+
+
+def answer_rows(found: Sequence[ScenarioAnswers], index: int) -> list[tuple[str, ...]]:
+    """A row for the workbook itself and for each scenario, of the forecast at `index`, under its `answer_heads`."""
+    return [(each.name, *_cells(each.forecasts[index])) for each in found]
+
+
+def _cells(answer: ForecastAnswer) -> list[str]:
+    found = []
+    for key, value in (("mean", answer.mean), ("low", answer.low), ("high", answer.high)):
+        found += [estimate_text(value), _change(answer.differences.get(key))]
+    if answer.above is not None:
+        found += [share_text(answer.above), _change(answer.differences.get("above"), share=True)]
+    return found
+
+
+def _change(found: Estimate | None, *, share: bool = False) -> str:
+    """`+0.59 ± 0.03`, of shares in percentage points; empty for the workbook itself."""
+    if found is None:
+        return ""
+    scale = 100.0 if share else 1.0
+    text = format_estimate(scale * found.value, None if found.error is None else scale * found.error)
+    return f"+{text}" if found.value > 0 else text

@@ -61,7 +61,7 @@ def test_only_certainty_has_formulas_and_every_number_is_finite(request, opened,
     for sheet in book:
         for row in sheet.iter_rows():
             for cell in row:
-                assert cell.data_type in ("s", "n") or (cell.data_type == "f" and sheet.title == "Certainty")
+                assert cell.data_type in ("s", "n", "b") or (cell.data_type == "f" and sheet.title == "Certainty")
                 if cell.data_type == "n" and cell.value is not None:
                     assert math.isfinite(cell.value)
 

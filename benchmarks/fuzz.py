@@ -1,6 +1,6 @@
 """Hostile input for xlmc: broken workbooks, spliced formulas, odd tables, edited runs.
 
-`python benchmarks/fuzz.py --minutes 10` gives each of five kinds of input its share of ten minutes and prints what
+`python benchmarks/fuzz.py --minutes 10` gives each of six kinds of input its share of ten minutes and prints what
 was found; `--kind formulas --seed 7 --only 1234` repeats one input, and shows it. Every input is a function of kind,
 seed and number. Each runs in a child process that may take 30 s of processor time and 1 GB.
 """

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from importlib import import_module
 from typing import Final
 
-from fuzzing import formulas, hidden_blocks, runs, tables, zips
+from fuzzing import formulas, hidden_blocks, old_books, runs, tables, zips
 from fuzzing.inputs import Kind
 
 __all__ = ["BLOCK", "KINDS", "warm_up"]
@@ -22,6 +22,7 @@ KINDS: Final[Mapping[str, Kind]] = {
     "tables": Kind(tables.make, tables.run),
     "runs": Kind(runs.make, runs.run),
     "blocks": Kind(hidden_blocks.make, hidden_blocks.run),
+    "old": Kind(old_books.make, old_books.run),
 }
 BLOCK: Final = 128
 """Trials that xlmc evaluates at once here; 32,768 are slow where few are asked for."""
@@ -30,6 +31,7 @@ _WANTED: Final = (
     "formulas",
     "formulas.functions.stat",
     "llvmlite.binding",
+    "olefile",
     "openpyxl",
     "scipy.linalg",
     "scipy.optimize",
@@ -41,6 +43,7 @@ _WANTED: Final = (
     "xlmc.report.page",
     "xlmc.replay",
     "xlmc.studies.verify",
+    "xlmc.workbook.old_format.joined_package",
     "xlsxwriter",
 )
 

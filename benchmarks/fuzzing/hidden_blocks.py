@@ -25,7 +25,7 @@ from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.evaluation.engines import ENGINES
 from xlmc.workbook.reader import read_workbook
 
-__all__ = ["make", "run"]
+__all__ = ["BLOCK_CHANGES", "book_parts", "make", "refuse_silence", "run"]
 
 _SHEET, _OTHER = "Model data", "Other's"
 _STEPS: Final = {"summary": 0.2, "verify": 0.05, "check": 0.1, "simulate": 0.01}
@@ -35,7 +35,7 @@ _NAME: Final = re.compile(rb'(<definedName name="CB[^>]*>)([^<]*)')
 
 
 @cache
-def _parts() -> tuple[tuple[str, bytes], ...]:
+def book_parts() -> tuple[tuple[str, bytes], ...]:
     """A book with everything that a block may hold."""
     mass = Drawn(_SHEET, "$B$2", "Mass", "Normal", {"Mean": 100.0, "StdDev": 15.0}, {"LoCut": 60.0})
     speed = Drawn(
@@ -68,7 +68,7 @@ def _parts() -> tuple[tuple[str, bytes], ...]:
 
 def make(rng: random.Random) -> Input:
     """The book with one block, or the names that lead to the cells, changed in one to three ways."""
-    parts = dict(_parts())
+    parts = dict(book_parts())
     said = []
     for _ in range(rng.choice([1, 1, 1, 2, 3])):
         if rng.random() < 0.85:
@@ -89,12 +89,23 @@ def run(given: Input, folder: Path) -> Reached:
         XlmcError: as xlmc does.
         Disagreement: a cell that was drawn is a constant now, though its name still leads to it.
     """
+    if "a name" not in given.said:
+        refuse_silence(given)
+    return zips.run(given, folder)
+
+
+def refuse_silence(given: Input) -> None:
+    """See that no cell that was drawn is a constant now, without a word.
+
+    Raises:
+        XlmcError: as xlmc does.
+        Disagreement: one is.
+    """
     definitions = read_definitions(read_workbook(given.data, given.name), ENGINES)
-    if not definitions.problems and "a name" not in given.said:
+    if not definitions.problems:
         known = {str(each.cell) for each in definitions.assumptions} | {str(cell) for cell in definitions.rewritten}
         if silent := set(_CELLS) - known:
             raise Disagreement(f"drawn before, and a constant now: {', '.join(sorted(silent))}")
-    return zips.run(given, folder)
 
 
 def _change_block(rng: random.Random, parts: dict[str, bytes]) -> str:
@@ -103,7 +114,7 @@ def _change_block(rng: random.Random, parts: dict[str, bytes]) -> str:
     found = list(_TEXT.finditer(parts[name]))
     match = max(found, key=lambda each: len(each[2])) if rng.random() < 0.7 else rng.choice(found)
     text = match[2].decode()
-    told, change = rng.choice(_CHANGES)
+    told, change = rng.choice(BLOCK_CHANGES)
     try:
         new = change(rng, text)
     except (ValueError, zlib.error, IndexError):
@@ -185,7 +196,7 @@ def _character(rng: random.Random, text: str) -> str:
     return text[:at] + rng.choice(["0", "㜸", "&#65;", "\u3067", "é", ""]) + text[at + 1 :]
 
 
-_CHANGES: Final[tuple[tuple[str, Callable[[random.Random, str], str]], ...]] = (
+BLOCK_CHANGES: Final[tuple[tuple[str, Callable[[random.Random, str], str]], ...]] = (
     ("bits of the objects", _in_stream(_flipped)),
     ("bits of the objects", _in_stream(_flipped)),
     ("a number of the objects", _in_stream(_number)),

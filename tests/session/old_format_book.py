@@ -100,6 +100,12 @@ def with_shapes(data, shapes, **more):
     return compound(streams)
 
 
+def stream_of(data):
+    """The workbook's stream of a file."""
+    with olefile.OleFileIO(io.BytesIO(data)) as file:
+        return file.openstream("Workbook").read()
+
+
 def with_drawings(stream, drawings):
     """The workbook's stream with these records at the ends of sheets, whose places are put right."""
     pieces, depth, at, moved, listed = [], 0, 0, {}, []

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 from xlmc.address import column_number
 from xlmc.errors import Notice, WorkbookError
 from xlmc.workbook.lazy_sheets import LazySheets, naming_file
+from xlmc.workbook.old_format.mark import old_workbook_notices
 from xlmc.workbook.package import LIMITS, SMALLER, is_old_workbook, read_parts, relationships
 from xlmc.workbook.printable import label
 from xlmc.workbook.safe_xml import REPAIR, decode, is_true, tree, whole_number
@@ -45,7 +46,7 @@ def read_workbook(source: str | Path | bytes, name: str | None = None) -> Workbo
 
 def _read(data: bytes, name: str, where: str) -> Workbook:
     with naming_file(where):
-        parts, said = _parts(data)
+        parts = _parts(data)
         structure = read_structure(parts)
         sheets = LazySheets(where, parts, structure)
         tables = [table for sheet in structure.worksheets for table in tables_of(parts, sheet.part, sheet.name)]
@@ -58,17 +59,16 @@ def _read(data: bytes, name: str, where: str) -> Workbook:
             data_tables=tuple(sheets.data_tables()),
             date1904=structure.date1904,
             macintosh=b"Macintosh" in parts.get("docProps/app.xml", b""),
-            notices=(*(Notice(message, name) for message in said), *_workbook_notices(parts, structure, name)),
+            notices=tuple(_workbook_notices(parts, structure, name)),
             parts=parts,
             sha256=hashlib.sha256(data).hexdigest(),
             data=data,
         )
 
 
-def _parts(data: bytes) -> tuple[dict[str, bytes], list[str]]:
-    """The parts of the package, and what was done to have them, in words."""
+def _parts(data: bytes) -> dict[str, bytes]:
     if not is_old_workbook(data):
-        return read_parts(data), []
+        return read_parts(data)
     from xlmc.workbook.old_format.joined_package import parts_of_old_workbook  # few workbooks need it
 
     return parts_of_old_workbook(data)
@@ -108,6 +108,7 @@ def _workbook_notices(parts: Mapping[str, bytes], structure: Structure, name: st
     """Notices on the workbook called `name` as a whole."""
     for stray in structure.strays:
         yield Notice(stray.message, name)
+    yield from (Notice(message, name) for message in old_workbook_notices(parts))
     for message in (*_on_calculation(structure.calculation), *_on_links(parts, structure), *_on_signature(parts)):
         yield Notice(message, name)
 

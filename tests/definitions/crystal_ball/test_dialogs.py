@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import openpyxl
 import pytest
-from crystal_ball_book import Asked, Decided, Drawn, Tied, object_guid, read_parts, save, write_parts
+from crystal_ball_book import Asked, Decided, Drawn, Tied, block, object_guid, read_parts, save, write_parts
 from openpyxl.worksheet.table import Table
 
 from xlmc.api import load
@@ -147,9 +147,21 @@ def test_a_cell_whose_object_is_missing_is_no_constant(read, tmp_path):
     blocks = [[SKID, TOTAL, Asked(S, "$D$1", "Skid alone")], [OFFSET]]
     found = read(cells=cells, blocks=blocks, spoil=lambda shape, text: text[:-9] if shape.endswith("_2") else text)
     assert [f.name for f in found.forecasts] == ["Skid alone"]
-    damage, total = found.refused
+    damage, missing, total = found.refused
     assert "the block CB_Block_7.0.0.0:2 of the sheet 'Sheet1' is damaged" in damage.message
+    assert "something of Sheet1!B3:" in missing.message
     assert "'Total' needs Sheet1!B3" in total.message
+
+
+def test_a_forecast_or_a_correlation_that_is_missing_is_told(read):
+    """Its block is gone, and with it a filter that would have rejected trials."""
+    keep = {"fFilterPrefs": {"fUseFilter": True, "fFilterMin": 90.0, "fFilterAllOnDiscard": True}}
+    gone = [Asked(S, "$B$6", "Other", prefs=keep), Tied(S, "$D$1", SKID, OFFSET, 0.6)]
+    cells, blocks = {S: {**CELLS[S], "D1": 0.6}}, [[SKID, OFFSET, TOTAL], gone]
+    found = read(cells=cells, blocks=blocks, spoil=lambda shape, text: block([]) if shape.endswith("_2") else text)
+    (missing,) = found.refused
+    assert "something of Sheet1!B6, Sheet1!D1:" in missing.message
+    assert [f.name for f in found.forecasts] == ["Total"]
 
 
 def test_one_cell_has_one_assumption(read):

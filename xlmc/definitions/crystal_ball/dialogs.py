@@ -443,13 +443,19 @@ class _Dialogs:
         self._found.rewritten[cell] = FormulaError(message, where=cell, hint=_CURE)
 
     def _refuse_missing(self, stored: list[tuple[str, Stored]]) -> None:
-        """Refuse the constants that a name marks as an object's and whose object is not there."""
+        """Tell of cells that a name marks as an object's and whose object is not there; a constant is refused, too."""
         known = {(sheet, each.guid) for sheet, each in stored if not isinstance(each, StoredOther)}
+        missing: list[str] = []
         for sheet, guid, cell in self._names.objects():
             content = self._workbook.content(cell)
-            known_here = (sheet, guid) in known or cell in self._uncertain.cells
-            if not known_here and content.formula is None and cell not in self._found.rewritten:
+            if (sheet, guid) in known or cell in self._uncertain.cells or cell in self._answers.cells:
+                continue
+            missing.append(str(cell))
+            if content.formula is None and cell not in self._found.rewritten:
                 self._refuse(cell, "Crystal Ball kept something of this cell, and it is missing or damaged")
+        if missing:
+            what = "assumptions, forecasts with their filters, or correlations, and they are missing or damaged"
+            self._found.damages.append(f"Crystal Ball kept something of {', '.join(dict.fromkeys(missing))}: {what}")
 
     def _remark_on_decisions(self, stored: list[tuple[str, Stored]]) -> None:
         found = self._placed(stored, StoredDecision)

@@ -13,12 +13,13 @@ from html import escape
 from typing import Final, TypeGuard
 
 from xlmc.address import Cell
-from xlmc.errors import WorkbookError
+from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.workbook.injection.content_types import CONTENT_TYPES, add_types
 from xlmc.workbook.injection.formula_values import with_values
 from xlmc.workbook.injection.splice import OFFICE_RELATIONSHIPS, SplicedXml, render
 from xlmc.workbook.lazy_sheets import LazySheets
 from xlmc.workbook.old_format.libreoffice import converted_to_xlsx
+from xlmc.workbook.old_format.mark import with_mark
 from xlmc.workbook.old_format.old_stream import IN_CRYSTAL_BALL, OldSheet, Position, read_old_workbook
 from xlmc.workbook.old_format.shape_texts import ShapeText
 from xlmc.workbook.package import read_parts, relationships, rels_part
@@ -41,7 +42,6 @@ _RELATIONS: Final = b'<Relationships xmlns="http://schemas.openxmlformats.org/pa
 _RELATION: Final = "xlmcLegacyDrawing"
 _NOT_IN_NAMES: Final = re.compile(r"[^\w.]|_(?=x[0-9A-Fa-f]{4}_)")
 _NO_XML: Final = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-_VERSION: Final = re.compile(rb"<Application>(LibreOffice/[\d.]+)")
 
 _SPACES: Final = (
     'xmlns:v="urn:schemas-microsoft-com:vml" xmlns:o="urn:schemas-microsoft-com:office:office" '
@@ -53,8 +53,8 @@ _PICTURE: Final = (
 )
 
 
-def parts_of_old_workbook(data: bytes) -> tuple[dict[str, bytes], list[str]]:
-    """The parts of the workbook, and what a person should know of them, in words.
+def parts_of_old_workbook(data: bytes) -> dict[str, bytes]:
+    """The parts of the workbook, with a mark from which a reader says what they come from: see `mark`.
 
     Args:
         data: the file.
@@ -76,12 +76,7 @@ def parts_of_old_workbook(data: bytes) -> tuple[dict[str, bytes], list[str]]:
             parts[entry.part] = with_values(parts[entry.part], entry.part, exact)
         if sheet.texts:
             _put_texts(parts, entry, sheet.texts, number)
-    by = _VERSION.search(parts.get("docProps/app.xml", b""))
-    named = by[1].decode().replace("/", " ") if by else "LibreOffice"
-    said = [f"this is an old Excel workbook (.xls): {named} has converted its cells, and results go into an .xlsx"]
-    if old.macros:
-        said.append("the macros of the .xls are not in what xlmc writes")
-    return parts, said
+    return with_mark(parts, old.macros)
 
 
 def _exact(sheet: OldSheet, cells: Mapping[Position, CellContent]) -> dict[Position, float]:
@@ -93,10 +88,15 @@ def _exact(sheet: OldSheet, cells: Mapping[Position, CellContent]) -> dict[Posit
     found: dict[Position, float] = {}
     for position, number in sheet.numbers.items():
         content = cells.get(position)
-        value = None if content is None or content.formula is not None else content.value
-        if not _is_number(value) or not math.isclose(value, number, rel_tol=_CLOSE, abs_tol=0.0):
+        value = None if content is None else content.value
+        if (
+            content is None
+            or content.formula is not None
+            or not _is_number(value)
+            or not math.isclose(value, number, rel_tol=_CLOSE, abs_tol=0.0)
+        ):
             where = Cell(sheet.name, *position)
-            raise _refusal(f"LibreOffice has converted the number {number!r} to {value!r}", where)
+            raise _refusal(f"LibreOffice has made {_words(content)} of the number {number!r}", where)
         if value != number:
             found[position] = number
     for position, number in sheet.results.items():
@@ -106,6 +106,16 @@ def _exact(sheet: OldSheet, cells: Mapping[Position, CellContent]) -> dict[Posit
         if content.value != number and math.isfinite(number):
             found[position] = number
     return found
+
+
+def _words(content: CellContent | None) -> str:
+    if content is None or (content.formula is None and content.value is None):
+        return "a blank cell"
+    if content.formula is not None:
+        return "a formula"
+    if isinstance(content.value, ErrorCode):
+        return content.value.text
+    return f"the {'number' if _is_number(content.value) else 'text'} {content.value!r}"
 
 
 def _is_number(value: CellValue) -> TypeGuard[float]:

@@ -146,6 +146,7 @@ class EvidenceRow:
         error: the kind of error, such as Normal.
         off_by: column of the table -> how far the reading may be off.
         use: whether trials are kept by it.
+        named: defined name of the cell of the reading, where a formula reads it; else empty.
     """
 
     name: str
@@ -155,6 +156,7 @@ class EvidenceRow:
     off_by: Mapping[str, Number]
     source: str
     use: bool = True
+    named: str = ""
 
 
 @dataclass(frozen=True, slots=True)

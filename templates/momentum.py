@@ -18,7 +18,7 @@ from templates.two_vehicles.options import (
     turn_inputs,
     turn_section,
 )
-from templates.two_vehicles.readings import readings
+from templates.two_vehicles.readings import direction_section, readings
 from templates.two_vehicles.results import direction_forecasts, paper_forecasts, shared_road_note
 from templates.two_vehicles.scene import Scene, assumptions_of_momentum, constants_of_momentum
 from templates.two_vehicles.together import SWITCH, drawn_together, leave_together
@@ -97,7 +97,9 @@ _TRUST = GuideSection(
     (
         "Without restitution to judge the trials, ranges are wider than those of planar-impact for the same scene.",
         "PDOF is collected counter-clockwise from the front, −180 to 180, so that a blow from ahead does not jump "
-        "between 0 and 360; for a blow from behind read its percentiles with care. Sheet Model gives it clockwise too.",
+        "between 0 and 360. Sheet Model gives it clockwise too.",
+        "A blow from behind jumps between 180 and −180: enter its direction from the damage on sheet Evidence, with "
+        "Use FALSE if it is not to be evidence. PDOF is then counted to within 180° of that.",
         "The speeds are correlated with the delta-Vs: do not combine the ends of separate ranges freely.",
     ),
 )
@@ -130,8 +132,8 @@ def describe(scene: Scene) -> Template:
         assumptions=assumptions_of_momentum(scene),
         constants=(*((SWITCH,) if more else ()), *constants_of_momentum()),
         optional=(duration_input(), *turn_inputs(), *drawing_inputs()),
-        sections=leave_together(_sections()) if more else _sections(),
-        forecasts=paper_forecasts() + direction_forecasts(yaw=False),
+        sections=leave_together(_sections(more=True)) if more else _sections(more=False),
+        forecasts=paper_forecasts() + direction_forecasts(yaw=False, near=more),
         filters=(*_filters(scene), *turn_filters()),
         settings=(("Trials", 200_000), ("Seed", 999)),
         correlations=(CorrelationRow("f_1", "f_2", 0),),
@@ -142,7 +144,7 @@ def describe(scene: Scene) -> Template:
     )
 
 
-def _sections() -> tuple[Section, ...]:
+def _sections(*, more: bool) -> tuple[Section, ...]:
     patterns = {
         "1  Masses and run-out speeds": MASSES + RUN_OUT,
         "2  Impact speeds, by conservation of momentum": IMPACT_SPEEDS,
@@ -154,7 +156,8 @@ def _sections() -> tuple[Section, ...]:
         *(Section(title, for_both(rows)) for title, rows in patterns.items()),
         duration_section(6),
         turn_section(7),
-        checks_section(8, ENERGY, _CLOSING, ANGLES, FORWARD, FRICTION),
+        *((direction_section(8),) if more else ()),
+        checks_section(9 if more else 8, ENERGY, _CLOSING, ANGLES, FORWARD, FRICTION),
     )
 
 

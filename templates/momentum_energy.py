@@ -26,6 +26,7 @@ from templates.two_vehicles.drawing import rest_points, vehicle_curves
 from templates.two_vehicles.equations import MASSES, RUN_OUT
 from templates.two_vehicles.example_scene import MOMENTUM_EXAMPLE
 from templates.two_vehicles.options import drawing_inputs
+from templates.two_vehicles.readings import direction_reading, direction_section
 from templates.two_vehicles.results import direction_forecasts, paper_forecasts, shared_road_note
 from templates.two_vehicles.scene import assumptions_of_momentum, constants_of_momentum, yaw_rates
 from templates.two_vehicles.together import SWITCH, drawn_together, leave_together
@@ -135,6 +136,15 @@ _CONSTANTS = (
         )
         for j in (1, 2)
     ),
+    Input(
+        "lane_2",
+        "",
+        f"{vehicle(2)} direction of its lane, roughly",
+        "deg",
+        184,
+        "Only says how its approach angle, an answer, is counted: within 180° of this",
+        number_format="0",
+    ),
     SWITCH,
     *yaw_rates(),
     *constants_of_momentum(),
@@ -178,8 +188,9 @@ _ENERGY = (
         "|V1f − V2f|²",
         "Square of the speed at which they part",
         "[ft|m]²/s²",
-        "V1_f^2+V2_f^2-2*V1_f*V2_f*COS(RADIANS(beta_1-beta_2))",
+        "(V1_f-V2_f)^2+4*V1_f*V2_f*SIN(RADIANS(beta_1-beta_2)/2)^2",
         "law of cosines",
+        "Not V1f² + V2f² − 2·V1f·V2f·cos(β1 − β2), which loses digits where both leave alike.",
     ),
     Equation(
         "V_close",
@@ -244,13 +255,22 @@ _SPEEDS = (
     Equation("V2_across", "V2⊥", "«2» impact velocity, across it, to the left", "[ft|m]/s", "p_across/m_2", "momentum"),
     Equation("V2_i", "V2i", "«2» impact speed", "[ft|m]/s", "SQRT(V2_along^2+V2_across^2)", "momentum"),
     Equation(
+        "aside_2",
+        "α2 − α1",
+        "«2» approach angle, from that of «1»",
+        "deg",
+        "DEGREES(ATAN2(V2_along,V2_across))",
+        "momentum",
+        number_format="0.00",
+    ),
+    Equation(
         "alpha_2",
         "α2",
         "«2» approach angle",
         "deg",
-        "MOD(alpha_1+DEGREES(ATAN2(V2_along,V2_across)),360)",
+        "alpha_1+aside_2-360*ROUND((alpha_1+aside_2-lane_2)/360,0)",
         "momentum",
-        "An answer, not an input: compare it with the lane.",
+        "An answer, not an input: compare it with the lane. Counted to within 180° of that: 359° and 1° are near.",
         number_format="0.00",
     ),
 )
@@ -294,6 +314,16 @@ _CHANGES = (
     Equation("dV2_y", "ΔV2y", "«2» change in velocity, Y", "[ft|m]/s", "-dV1_y*m_1/m_2", "the opposite impulse"),
 )
 
+_FORCE = (
+    replace(
+        FORCE[0],
+        name="Closing speed",
+        formula=f"V_close*{MPH}",
+        reference="from energy, above",
+    ),
+    *FORCE[1:],
+)
+
 _BALANCE = (
     Equation(
         "E_before",
@@ -313,7 +343,17 @@ _BALANCE = (
         "definition",
         number_format="#,##0",
     ),
-    Equation("E_lost", "Elost", "Energy lost", "[ft·lb|J]", "E_before-E_after", "definition", number_format="#,##0"),
+    Equation(
+        "E_lost",
+        "Elost",
+        "Energy lost",
+        "[ft·lb|J]",
+        "E_crush",
+        "balance",
+        "The closing speed was found from it. Ei − Ef is the same, but loses digits where little is lost; a check "
+        "compares them.",
+        number_format="#,##0",
+    ),
 )
 
 _CHECKS = (
@@ -327,7 +367,7 @@ _CHECKS = (
     check(
         "check_balance",
         "Energy lost is the energy that crush took",
-        "ABS(E_lost-E_crush)<=0.000000001*E_before",
+        "ABS(E_before-E_after-E_crush)<=0.000000001*E_before",
         "energy",
         "FALSE: a formula was typed over, or the check above fails.",
     ),
@@ -367,6 +407,8 @@ _WHEN = GuideSection(
         "their standard deviations; the smaller one answers.",
         "Where both approach angles are known, the scene is overdetermined: enter the second as evidence, and the "
         "trials that agree with both remain.",
+        "A blow from behind: PDOF jumps between 180 and −180. Enter its direction on sheet Evidence, with Use FALSE if "
+        "it is not to be evidence; PDOF is then counted to within 180° of that.",
         "Crush energy has a scatter of its own; ranges of EES must hold it. Use each fact once: a crush profile used "
         "here may not come back as a filter.",
     ),
@@ -392,14 +434,15 @@ TEMPLATE = Template(
             Section(
                 "5  Answers (the forecasts)", for_both(tuple(replace(each, reference="above") for each in ANSWERS))
             ),
-            Section("6  Direction of force, energy", for_both(FORCE + _BALANCE)),
-            checks_section(7, *_CHECKS),
+            Section("6  Direction of force, energy", for_both(_FORCE + _BALANCE)),
+            direction_section(7),
+            checks_section(8, *_CHECKS),
         )
     ),
     forecasts=(
         *paper_forecasts(),
         ForecastRow(f"{vehicle(2)} approach angle", "alpha_2", "deg"),
-        *direction_forecasts(yaw=False),
+        *direction_forecasts(yaw=False, near=True),
     ),
     filters=(
         FilterRow("Closing momentum", "reach", "The closing speed can carry the momentum across", at_least=0),
@@ -412,7 +455,7 @@ TEMPLATE = Template(
             None,
             "Uniform",
             {},
-            "Enter the direction of approach, 0 to 360, and how far a vehicle may turn within its lane",
+            "Enter the direction of approach, counted as the lane on sheet Inputs, and how far it may turn within it",
         ),
         EvidenceRow(
             "«1» delta-V in its EDR, along",
@@ -422,6 +465,7 @@ TEMPLATE = Template(
             {"Percent": 10, "Resolution": Both(0.62, 1)},
             "49 CFR 563.8: within 10 %, in steps of 1 km/h. Slowed: negative",
         ),
+        *(direction_reading(j) for j in (1, 2)),
         EvidenceRow(
             "Speed of «1» from an EDR or a video",
             "V1_[mph|kmh]",

@@ -45,7 +45,7 @@ def describe(scene: Scene) -> Template:
             *drawing_inputs(),
         ),
         sections=leave_together(sections) if more else sections,
-        forecasts=paper_forecasts() + (direction_forecasts(yaw=True) if more else ()),
+        forecasts=paper_forecasts() + (direction_forecasts(yaw=True, near=True) if more else ()),
         filters=_filters(scene) + (turn_filters() if more else ()),
         settings=(("Trials", 200_000), ("Seed", 999)),
         correlations=(CorrelationRow("f_1", "f_2", 0),) if more else (),

@@ -7,10 +7,24 @@ from templates.editions import Both
 from templates.units import MPH
 from templates.vehicles import for_both, vehicle
 
-__all__ = ["lever_inputs", "readings", "recorder_section", "rotation_inputs"]
+__all__ = ["direction_reading", "direction_section", "lever_inputs", "readings", "recorder_section", "rotation_inputs"]
 
 _RECORDER = {"Percent": 10, "Resolution": Both(0.31, 0.5)}
 _RULE = "49 CFR 563.8: within 10 %, in steps of 1 km/h"
+
+_NEAR_READING = (
+    Equation(
+        "PDOF_near_{j}",
+        "PDOF{j} near",
+        "{who} PDOF, counted to within 180° of its reading",
+        "deg",
+        "IF(ISNUMBER(PDOF_reading_{j}),PDOF_{j}-360*ROUND((PDOF_{j}-PDOF_reading_{j})/360,0),PDOF_{j})",
+        "convention",
+        "<For a blow from behind: 179° and −179° are 2° apart. The reading of sheet Evidence says how to count, also "
+        "where its Use is FALSE.|>",
+        number_format="0.0",
+    ),
+)
 
 _AT_THE_SENSOR = (
     Equation(
@@ -91,7 +105,27 @@ def rotation_inputs() -> tuple[Input, ...]:
 def recorder_section(number: int) -> Section:
     """What recorders and rest headings are compared with, where yaw is known."""
     return Section(
-        f"{number}  Optional: what a recorder and the rest headings are held against", for_both(_AT_THE_SENSOR)
+        f"{number}  Optional: what recorders, rest headings and damage are held against",
+        for_both(_AT_THE_SENSOR + _NEAR_READING),
+    )
+
+
+def direction_section(number: int) -> Section:
+    """What a direction of force is compared with, where yaw is not known."""
+    return Section(f"{number}  Optional: what the direction of force is held against", for_both(_NEAR_READING))
+
+
+def direction_reading(j: int) -> EvidenceRow:
+    """The direction of force of one vehicle, from its damage."""
+    return EvidenceRow(
+        f"{vehicle(j)} direction of force",
+        f"PDOF_near_{j}",
+        None,
+        "Normal",
+        {"Std dev": 12.6},
+        "From the damage, counter-clockwise from the front; a clock direction h is −30·h. Investigators against EDRs: "
+        "SD 12.6° (Traffic Injury Prevention)",
+        named=f"PDOF_reading_{j}",
     )
 
 
@@ -120,15 +154,7 @@ def readings(*, yaw: bool) -> tuple[EvidenceRow, ...]:
                 {},
                 "Enter the mean and the standard deviation of edr-speed or video-speed",
             ),
-            EvidenceRow(
-                f"{who} direction of force",
-                f"PDOF_{j}",
-                None,
-                "Normal",
-                {"Std dev": 12.6},
-                "From the damage, counter-clockwise from the front, within 150 either way. Investigators against EDRs: "
-                "SD 12.6° (Traffic Injury Prevention)",
-            ),
+            direction_reading(j),
         ]
         if yaw:
             rows += [

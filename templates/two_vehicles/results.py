@@ -18,10 +18,16 @@ def paper_forecasts() -> tuple[ForecastRow, ...]:
     )
 
 
-def direction_forecasts(*, yaw: bool) -> tuple[ForecastRow, ...]:
-    """Beyond the paper's four: direction of force, closing speed, energy lost, and the change in yaw rate."""
+def direction_forecasts(*, yaw: bool, near: bool) -> tuple[ForecastRow, ...]:
+    """Beyond the paper's four: direction of force, closing speed, energy lost, and the change in yaw rate.
+
+    Args:
+        yaw: the model has yaw rates.
+        near: it has rows for the direction of force as a reading.
+    """
+    pdof = "PDOF_near" if near else "PDOF"
     rows = [
-        *(ForecastRow(f"{vehicle(j)} PDOF, counter-clockwise", f"PDOF_{j}", "deg") for j in (1, 2)),
+        *(ForecastRow(f"{vehicle(j)} PDOF, counter-clockwise", f"{pdof}_{j}", "deg") for j in (1, 2)),
         ForecastRow("Closing speed", "closing_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("Energy lost", "E_lost", "[ft·lb|J]"),
     ]

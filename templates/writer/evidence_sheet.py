@@ -16,7 +16,7 @@ from templates.writer.page import (
     write_formula,
     write_label,
 )
-from templates.writer.places import HEADER_ROW, Place, reference
+from templates.writer.places import HEADER_ROW, VALUE_COLUMN, Place, reference
 from templates.writer.styles import Styles
 
 __all__ = ["draw_evidence"]
@@ -54,7 +54,7 @@ def draw_evidence(sheet: Worksheet, styles: Styles, template: Template, at: dict
 def _draw_reading(sheet: Worksheet, styles: Styles, reading: EvidenceRow, unit: str, row: int) -> None:
     sheet.write_string(row, 2, unit, styles("centred"))
     numbers = (reading.reading, *(reading.off_by.get(header) for header in _OFF_BY))
-    for column, value in zip((3, 5, 6, 7, 8), numbers, strict=True):
+    for column, value in zip((VALUE_COLUMN, 5, 6, 7, 8), numbers, strict=True):
         if value is None:
             sheet.write_blank(row, column, None, styles("number"))
         else:

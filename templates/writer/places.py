@@ -18,7 +18,7 @@ _GAP = 4
 
 
 def places(template: Template) -> dict[str, Place]:
-    """Symbol -> place of every input and equation."""
+    """Symbol -> place of every input and equation, and of the readings that formulas read."""
     found: dict[str, Place] = {}
     row = HEADER_ROW + 1
     for group in (template.assumptions, template.constants, template.optional):
@@ -32,6 +32,9 @@ def places(template: Template) -> dict[str, Place]:
             row += 1
             found[equation.symbol] = "Model", row
         row += 1
+    for row, reading in enumerate(template.evidence, HEADER_ROW + 1):
+        if reading.named:
+            found[reading.named] = "Evidence", row
     return found
 
 

@@ -107,7 +107,8 @@ def test_every_quantity_is_a_named_cell(name, book_path, described):
     template = described[name]
     symbols = {quantity.symbol for quantity in (*template.inputs, *template.equations)}
     names = [name_cell(j) for j, _ in enumerate(template.vehicles, 1)]
-    assert set(book.defined_names) == symbols | {*names}
+    readings = {row.named for row in template.evidence if row.named}
+    assert set(book.defined_names) == symbols | readings | {*names}
     for name, called in zip(names, template.vehicles, strict=True):
         [(sheet, place)] = book.defined_names[name].destinations
         assert book[sheet][place].value == called

@@ -80,3 +80,31 @@ def test_a_recorder_away_from_the_cg_reads_the_turning_too(cells):
     spin = {symbol: value.item() for symbol, value in cells("planar-impact", turned, wanted).items()}
     work = 0.35 * spin["m_1"] * 32.174 * 11 * math.radians(40)
     assert spin["spin_1"] == pytest.approx(4960 * spin["omega1_f"] ** 2 / work, rel=1e-12)
+
+
+REAR = {"alpha_1": (89, 91), "alpha_2": (77, 79), "beta_1": (89, 91), "beta_2": (73, 74.2), "s_1": (58, 59)}
+REAR |= {"s_2": (77, 79), "f_1": (0.69, 0.71), "f_2": (0.69, 0.71), "w_1": (2990, 3010), "w_2": (2990, 3010)}
+"""Both northward: the second, faster, runs into the first from behind."""
+
+
+def test_a_blow_from_behind_is_compared_as_an_angle(tmp_path):
+    book = openpyxl.load_workbook(BOOKS["momentum"])
+    sheet = book["Inputs"]
+    for row in range(6, 16):
+        for column, value in zip((7, 8), REAR[sheet.cell(row, 3).value], strict=True):
+            sheet.cell(row, column).value = value
+    book.save(tmp_path / "rear.xlsx")
+    row, pdof = '=vehicle_1&" direction of force"', "Vehicle 1 PDOF, counter-clockwise"
+    apart = xlmc.load(tmp_path / "rear.xlsx").simulate(20_000)[pdof].values
+    assert np.mean(apart > 170) > 0.3
+    assert np.mean(apart < -170) > 0.3
+    kept = set()
+    for reading in (179, -181, 539):
+        model = with_readings(tmp_path / "rear.xlsx", tmp_path / "read.xlsx", {row: {4: reading}})
+        run = model.simulate(20_000)
+        kept.add(run.accepted)
+        assert abs(run[pdof].values - reading).max() < 15
+    assert len(kept) == 1
+    assert min(kept) > 0.95 * 20_000  # within some 4° of 179, σ 12.6: exp(-z²/2) > .95
+    unused = with_readings(tmp_path / "rear.xlsx", tmp_path / "read.xlsx", {row: {4: 180, 10: False}}).simulate(20_000)
+    np.testing.assert_allclose(unused[pdof].values, apart % 360, atol=1e-9)

@@ -48,7 +48,7 @@ def test_duration_gives_mean_acceleration_and_the_neglected_impulse(name, cells,
 @pytest.mark.parametrize("name", [*TURNING, "momentum-energy"])
 def test_stuck_together_is_one_switch(name, cells):
     """The same as typing the departure of vehicle 1 for vehicle 2, too, whatever the row of vehicle 2 says."""
-    wanted = ["V1_i", "V2_i", "dV_1", "E_lost"]
+    wanted = ["V1_i", "V2_i", "dV_1", "E_after"]
     first = {"beta_1": 200, "s_1": 21, "f_1": 0.7}
     other = {"beta_2": 170, "s_2": 60, "f_2": 0.9}
     switched = cells(name, first | other | {"together": 1}, wanted)

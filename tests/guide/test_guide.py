@@ -172,8 +172,8 @@ def test_a_wrong_angle_turns_checks_false(variant, calculated):
     assert right["Inputs", "A3"] == "All physics checks hold at the base case"
     assert "physics check fails" in wrong["Inputs", "A3"]
     failing = {cell for (sheet, cell), value in wrong.items() if sheet == "Model" and value is False}
-    checks = {f"D{row}": check for row, check in enumerate(CHECKS, 99)}
-    assert [checks[cell] for cell in sorted(failing)] == ["angles", "forward", "restitution", "all"]
+    checks = {f"D{row}": check for row, check in enumerate(CHECKS, 101)}
+    assert [checks[cell] for cell in sorted(failing, key=lambda cell: int(cell[1:]))] == ["angles", "forward", "restitution", "all"]
     assert all(right["Model", cell] is True for cell in checks)
 
 

@@ -173,7 +173,8 @@ def test_a_wrong_angle_turns_checks_false(variant, calculated):
     assert "physics check fails" in wrong["Inputs", "A3"]
     failing = {cell for (sheet, cell), value in wrong.items() if sheet == "Model" and value is False}
     checks = {f"D{row}": check for row, check in enumerate(CHECKS, 101)}
-    assert [checks[cell] for cell in sorted(failing, key=lambda cell: int(cell[1:]))] == ["angles", "forward", "restitution", "all"]
+    in_order = sorted(failing, key=lambda cell: int(cell[1:]))
+    assert [checks[cell] for cell in in_order] == ["angles", "forward", "restitution", "all"]
     assert all(right["Model", cell] is True for cell in checks)
 
 

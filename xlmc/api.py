@@ -211,6 +211,7 @@ class Model(model.Model):
         time_limit: str | float | None = None,
         engine: str | None = None,
         sampling: str | None = None,
+        evidence: str | None = None,
         scenarios: bool = False,
         jobs: int = 1,
         scheduler: str | None = None,
@@ -242,6 +243,8 @@ class Model(model.Model):
             sampling: `mc`, Monte Carlo; `lhs`, Latin hypercube; `lhs500`, the same in blocks of 500; or `sobol`,
                 scrambled Sobol. All but the first run whole replicates (independent parts of the run), and so
                 sometimes a few more trials.
+            evidence: how evidence with a normal or lognormal error is used: `rejection`, `weights`, or `auto`, which
+                decides by the run's first trials.
             scenarios: run the scenarios of the table `xlmc_scenarios`, too, when `scenarios` of the run is asked for,
                 or the first of its files is written.
             jobs: threads or processes.
@@ -289,7 +292,7 @@ class Model(model.Model):
             keep_interrupted=keep_interrupted,
             progress=progress,
             tell=tell,
-            evidence=None,
+            evidence=evidence,
         )
         return Simulation.of(run)
 

@@ -162,3 +162,19 @@ def test_a_weighted_run_says_so_everywhere_and_leaves_out_what_cannot_weight(xlm
     assert mean == pytest.approx(data["forecasts"][0]["statistics"]["mean"]["value"])
     for repeated in (tmp_path / "book-results.xlsx", kept):
         assert "identical" in xlmc("replay", repeated).out
+
+
+def test_the_way_evidence_is_used_is_an_option(xlmc, book, tmp_path):
+    """Before the book's setting, which is none here; a run that was asked for weights says so and repeats."""
+    path, found = book(EDR), tmp_path / "book.json"
+    accepted = {}
+    for way in ("rejection", "weights", "auto"):
+        outcome = xlmc("simulate", path, "-n", 20_000, "--evidence", way, "--json", found, "--overwrite")
+        assert outcome.code == 0, outcome.err
+        data = json.loads(found.read_text(encoding="utf-8"))
+        accepted[way] = data["accepted"] if "accepted" in data else data["record"]["counts"]["accepted"]
+        assert (data["weights"] is not None) == (way == "weights")
+        assert xlmc("replay", tmp_path / "book-results.xlsx").code == 0
+    assert accepted["weights"] == 20_000 > accepted["rejection"] == accepted["auto"]
+    refused = xlmc("simulate", path, "--evidence", "both")
+    assert (refused.code, "'both' is none of auto, rejection, weights" in refused.err) == (2, True)

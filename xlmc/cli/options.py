@@ -9,9 +9,18 @@ import click
 
 from xlmc.definitions.stopping import GOALS, RARE, Option
 from xlmc.evaluation.engines import ENGINES
+from xlmc.definitions.definitions import EVIDENCE_WAYS
 from xlmc.sampling.sampling_methods import METHODS
 
-__all__ = ["OneOf", "WholeNumber", "engine_option", "jobs_option", "sampling_option", "stopping_options"]
+__all__ = [
+    "OneOf",
+    "WholeNumber",
+    "engine_option",
+    "evidence_option",
+    "jobs_option",
+    "sampling_option",
+    "stopping_options",
+]
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -81,6 +90,13 @@ jobs_option = click.option(
 
 sampling_option = click.option(
     "--sampling", type=OneOf(*METHODS), help=f"{_SAMPLINGS}.  [default: the book's, else mc]"
+)
+
+evidence_option = click.option(
+    "--evidence",
+    type=OneOf(*EVIDENCE_WAYS),
+    help="How evidence with a normal or lognormal error is used: rejection: it rejects trials; weights: it weights"
+    " them; auto: the run's first trials decide.  [default: the book's, else auto]",
 )
 
 engine_option = click.option("--engine", type=OneOf(*ENGINES), help=f"{_ENGINES}.  [default: the book's, else numpy]")

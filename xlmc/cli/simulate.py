@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from xlmc.cli.options import WholeNumber, engine_option, jobs_option, sampling_option, stopping_options
+from xlmc.cli.options import (
+    WholeNumber,
+    engine_option,
+    evidence_option,
+    jobs_option,
+    sampling_option,
+    stopping_options,
+)
 from xlmc.cli.output_options import NOT_WRITTEN, Outputs, Reports, Wishes, output_options, results_beside
 from xlmc.cli.terminal import paragraph, say
 
@@ -39,6 +46,7 @@ _MOST_MOVED = 4
 )
 @engine_option
 @sampling_option
+@evidence_option
 @jobs_option
 @click.option(
     "--scheduler",
@@ -72,6 +80,7 @@ def simulate(
     seed: int | None,
     engine: str | None,
     sampling: str | None,
+    evidence: str | None,
     jobs: int,
     scheduler: str | None,
     workers: int | None,
@@ -128,6 +137,7 @@ def simulate(
             **length,
             engine=engine,
             sampling=sampling,
+            evidence=evidence,
             scenarios=scenarios,
             jobs=jobs,
             scheduler=scheduler,

@@ -7,9 +7,9 @@ from typing import Any, TypeVar
 
 import click
 
+from xlmc.definitions.definitions import EVIDENCE_WAYS
 from xlmc.definitions.stopping import GOALS, RARE, Option
 from xlmc.evaluation.engines import ENGINES
-from xlmc.definitions.definitions import EVIDENCE_WAYS
 from xlmc.sampling.sampling_methods import METHODS
 
 __all__ = [

@@ -2,7 +2,9 @@
 
     python benchmarks/live_window.py [BOOK] [MOVES]
 
-A handle is dragged by events of the browser's own; all visible charts are drawn anew from at least 50,000 trials. Then
+A handle is dragged by events of the browser's own; all visible charts are drawn anew from at least 50,000 trials (of a
+large book from fewer, first). Beside the time stands the processor time of the server for a move, from Linux's /proc,
+which other programs on the machine do not add to. Then
 the workbook is saved by a rename, as Excel does it, and what is measured is how long the page takes to show its answer.
 Selenium, Chromium and its driver are needed.
 """
@@ -57,7 +59,7 @@ def main() -> None:
             browser = _browser(folder)
             try:
                 browser.get(link[0])
-                _measure(browser, book, moves)
+                _measure(browser, book, moves, server.pid)
             finally:
                 browser.quit()
                 server.terminate()
@@ -71,7 +73,7 @@ def _browser(folder: str) -> webdriver.Chrome:
     return webdriver.Chrome(options=options, service=webdriver.ChromeService(shutil.which("chromedriver")))
 
 
-def _measure(browser: webdriver.Chrome, book: Path, moves: int) -> None:
+def _measure(browser: webdriver.Chrome, book: Path, moves: int, server: int) -> None:
     _until(browser, "document.body?.dataset.stage === 'rest'", 60.0)
     time.sleep(1.0)
     knob = browser.find_elements(By.CSS_SELECTOR, ".card .knob.upper")[5]
@@ -80,22 +82,42 @@ def _measure(browser: webdriver.Chrome, book: Path, moves: int) -> None:
     x, y = place["x"] + 20 - browser.execute_script("return scrollX"), place["y"] + 8
     y = browser.execute_script("return arguments[0].getBoundingClientRect().top", knob) + 8
     _mouse(browser, "mousePressed", x, y)
+    began = _processor_seconds(server)
     for move in range(moves):
         # To and fro over a third of the axis, a pixel or two at a time.
         away = abs((2 * move) % 120 - 60) - 30
-        before = browser.execute_script("return Live.latencies.length")
+        before = browser.execute_script("return Live.latencies.length + Live.firsts.length")
         _mouse(browser, "mouseMoved", x + away, y)
-        _until(browser, f"Live.latencies.length > {before} || Live.moves.size === 0", LONGEST)
-    found = browser.execute_script("return Live.latencies")
+        answered = f"Live.latencies.length + Live.firsts.length > {before}"
+        _until(browser, f"{answered} || Live.moves.size === 0", LONGEST)
+    spent = _processor_seconds(server) - began
+    found, firsts = browser.execute_script("return [Live.latencies, Live.firsts]")
     charts = browser.execute_script("return Live.right.seen.size")
     _mouse(browser, "mouseReleased", x, y)
-    ordered = sorted(found)
-    print(f"{book.stem}: {len(found)} moves, {charts} charts in sight, 50,000 trials or more each")
-    print(f"median {statistics.median(found):.0f} ms, 95th percentile {ordered[int(0.95 * len(ordered))]:.0f} ms")
+    print(f"{book.stem}: {moves} moves, {charts} charts in sight")
+    _say("from 50,000 trials or more", found)
+    _say("from fewer, first", firsts)
+    print(f"processor time of the server: {1e3 * spent / moves:.0f} ms a move")
     time.sleep(1.0)
     seconds = [_saved(browser, book) for _ in range(5)]
     print(f"saved by a rename: new answer after {statistics.median(seconds):.2f} s, {max(seconds):.2f} s at most, of 5")
     print(f"load of the machine: {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors")
+
+
+def _say(what: str, milliseconds: list[float]) -> None:
+    if milliseconds:
+        last = sorted(milliseconds)[int(0.95 * len(milliseconds))]
+        middle = statistics.median(milliseconds)
+        print(f"{what}: {len(milliseconds)} answers, median {middle:.0f} ms, 95th percentile {last:.0f} ms")
+
+
+def _processor_seconds(process: int) -> float:
+    """What a process has taken so far, its threads together; NaN where there is no /proc."""
+    path = Path(f"/proc/{process}/stat")
+    if not path.exists():
+        return float("nan")
+    ticks = path.read_text().rpartition(")")[2].split()[11:13]
+    return sum(map(int, ticks)) / os.sysconf("SC_CLK_TCK")
 
 
 def _saved(browser: webdriver.Chrome, book: Path) -> float:

@@ -232,7 +232,7 @@ def test_all_scenarios_are_compared_in_one_table(case):
     assert part["tab"] == "scenarios"
     assert "dry &lt;b&gt;road" in part["html"]
     assert "as it is" in part["html"]
-    expected = simulate(session._models[session.version])
+    expected = simulate(session._models.at_rest(session.adjustments))
     assert f"{expected.accepted:,}" in part["html"]
 
 

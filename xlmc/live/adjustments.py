@@ -13,15 +13,12 @@ from typing import Any, Final
 from xlmc.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Parameter
 from xlmc.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Scenario
 from xlmc.results.record.in_words import number_text
-from xlmc.run.applied_changes import applied
-from xlmc.run.model import Model
 
 __all__ = [
     "BAND",
     "LIMITS",
     "Adjustments",
     "Amount",
-    "adjusted",
     "adjusted_definitions",
     "adjustments_of",
     "assumption_numbers",
@@ -75,6 +72,28 @@ class Adjustments:
             own = own_values(definitions, of, name)
             if key in own and own[key] != value:
                 found = found.having(of, name, key, value)
+        return found
+
+    def held(self, definitions: Definitions) -> Adjustments:
+        """The part of it that says what is held, and where; nothing that has no effect."""
+        found = Adjustments()
+        for assumption in definitions.assumptions:
+            given = self.assumptions.get(assumption.name, {})
+            frozen = given.get("frozen", assumption.frozen)
+            if frozen != assumption.frozen:
+                found = found.having("assumption", assumption.name, "frozen", frozen)
+            if frozen and "base" in given:
+                found = found.having("assumption", assumption.name, "base", given["base"])
+        return found
+
+    def numbers(self, definitions: Definitions) -> Adjustments:
+        """The other part: numbers of what is drawn, and limits."""
+        found = Adjustments(filters=self.filters)
+        for assumption in definitions.assumptions:
+            given = self.assumptions.get(assumption.name, {})
+            if not given.get("frozen", assumption.frozen):
+                own = {key: value for key, value in given.items() if key not in ("frozen", "base")}
+                found = found._with("assumption", assumption.name, own)
         return found
 
     def as_json(self) -> dict[str, Any]:
@@ -132,16 +151,6 @@ def own_values(definitions: Definitions, of: str, name: str) -> dict[str, Parame
         return {}
     numbers = {key: value for key, (_, value) in assumption_numbers(assumption).items()}
     return {**numbers, **BAND, "base": assumption.base, "frozen": assumption.frozen}
-
-
-def adjusted(model: Model, adjustments: Adjustments) -> Model:
-    """The model of the workbook with these values instead of its own; from one thread at a time.
-
-    Raises:
-        DefinitionError: they are no distribution, or a frozen assumption has no value to be held at.
-        FormulaError: a cell cannot be computed then.
-    """
-    return applied(model, changes_of(model.definitions, adjustments)) if adjustments else model
 
 
 def changes_of(definitions: Definitions, adjustments: Adjustments) -> list[Change]:

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from xlmc.run.model import Model
     from xlmc.run.simulation import Simulation
 
-__all__ = ["frame_of", "matters_html", "pair_of", "rest_of", "scenarios_html", "tables_html"]
+__all__ = ["bases_of", "frame_of", "matters_html", "pair_of", "rest_of", "scenarios_html", "tables_html"]
 
 _VALUES_MOVING: Final = 400
 _VALUES_AT_REST: Final = 4_000
@@ -60,8 +60,18 @@ _POINTS: Final = 2_000
 """Accepted trials that a scatter shows."""
 
 
+Bases = Mapping[str, float | None]
+"""Forecast -> its base case; None where that is no number."""
+
+
 def frame_of(
-    simulation: Simulation, behind: Simulation | None, names: Collection[str], *, moving: bool, fits: bool
+    simulation: Simulation,
+    behind: Simulation | None,
+    names: Collection[str],
+    base: Bases | None,
+    *,
+    moving: bool,
+    fits: bool,
 ) -> Message:
     """The charts of some forecasts.
 
@@ -69,14 +79,14 @@ def frame_of(
         simulation: the run.
         behind: the run of the state that is drawn behind it; None where there is none.
         names: of the forecasts.
+        base: of each forecast; None where there is no base case.
         moving: while a handle moves: fewer values to count from.
         fits: with fitted distributions, which take their time.
     """
     most = _VALUES_MOVING if moving else _VALUES_AT_REST
     charts: dict[str, Any] = dict.fromkeys(name for name in names if name in simulation.results)
-    base = base_case(simulation)
     for name in charts:
-        figure = _figure(simulation.results[name], None if base is None else base.forecasts[name])
+        figure = _figure(simulation.results[name], None if base is None else base[name])
         if figure is not None:
             payload = forecast_payload(simulation, figure, most, fits=fits)
             charts[name] = payload | _beside(figure, simulation.results[name], behind)
@@ -86,6 +96,12 @@ def frame_of(
         "share": share_text(simulation.acceptance),
         "forecasts": charts,
     }
+
+
+def bases_of(simulation: Simulation) -> Bases | None:
+    """The base case of a run."""
+    found = base_case(simulation)
+    return None if found is None else found.forecasts
 
 
 def _figure(result: ForecastResult, base: float | None) -> Figure | None:

@@ -17,20 +17,20 @@ from typing import TYPE_CHECKING, Final, Literal
 from xlmc.errors import XlmcError
 from xlmc.live.adjustments import (
     Adjustments,
-    adjusted,
     adjustments_of,
     in_words,
     own_values,
     scenario_of,
     usual_variants,
 )
-from xlmc.live.frames import frame_of, matters_html, pair_of, rest_of, scenarios_html, tables_html
+from xlmc.live.frames import bases_of, frame_of, matters_html, pair_of, rest_of, scenarios_html, tables_html
+from xlmc.live.moving_models import MANY_FORMULAS, KnownModels
 from xlmc.live.protocol import Message, Said
 from xlmc.live.window_book import assumption_rows, filter_rows, forecast_rows, shapes_of
 from xlmc.report.page.element import element, join
 from xlmc.report.page.payload import CONFIDENCE
 from xlmc.results.record.in_words import changes_text
-from xlmc.run.simulate import simulate
+from xlmc.run.simulate import BLOCK, simulate
 from xlmc.statistics.estimate import t_quantile
 
 if TYPE_CHECKING:
@@ -49,10 +49,14 @@ _QUICK_TRIALS, _FEWEST_TRIALS = 2_000, 200
 _SLOW: Final = 0.2
 """Seconds that a run of `MOVING_TRIALS` may take; one that takes longer has a shorter one before it."""
 
-_MANY_CELLS: Final = 5_000
-"""Formulas that are needed; with more, the first run of all is a short one."""
+_QUICK: Final = 0.03
+"""Seconds that a short run may take."""
 
-_MODELS: Final = 4
+_PIECE: Final = 0.4
+"""Seconds after which a longer run looks whether something newer is wanted."""
+
+_SMALLEST_PIECE: Final = 4_096
+"""Of trials: with fewer, what does not depend on their number would take most of the time."""
 
 Sight = tuple[int, tuple[str, ...], bool, int]
 """Version, forecasts, whether with fits, and what is behind."""
@@ -120,7 +124,6 @@ class Outcome:
     """
 
     messages: tuple[Message, ...] = ()
-    model: Model | None = None
     simulation: Simulation | None = None
     seconds: float | None = None
     problem: str | None = None
@@ -173,10 +176,10 @@ class Session:
         self._held = False
         self._seq = 0
         self._done: dict[str, object] = {}
-        self._models: dict[int, Model] = {0: model}
+        self._models = KnownModels(model, MOVING_TRIALS)
         self._problem: str | None = None
         self._last: dict[str, Message] = {}
-        self._seconds: float | None = None
+        self._seconds: dict[bool, float] = {}
         self._stopped_at = -1
         self._ended = False
         self._compare = 0
@@ -321,7 +324,7 @@ class Session:
         self.own = model
         self.adjustments = self.adjustments.only(model.definitions)
         self.version += 1
-        self._models = {} if self.adjustments else {self.version: model}
+        self._models, self._seconds = KnownModels(model, MOVING_TRIALS), {}
         self._problem, self._done = None, {}
         self.behind_is = "the workbook before it was saved"
         text = f"{model.workbook.name} was saved: {'; '.join(news) or 'nothing that a run depends on changed'}"
@@ -390,15 +393,21 @@ class Session:
     @property
     def _is_slow(self) -> bool:
         """Whether a run of `MOVING_TRIALS` takes long; before the first run, whether it looks so."""
-        if self._seconds is None:
-            return len(self.own.needed.graph.formulas) > _MANY_CELLS
-        return self._seconds * MOVING_TRIALS > _SLOW
+        if False not in self._seconds:
+            return len(self.own.needed.graph.formulas) > MANY_FORMULAS
+        return self._seconds[False] * MOVING_TRIALS > _SLOW
+
+    def _trials_in(self, seconds: float, *, resting: bool) -> int:
+        """How many trials take so long, a power of two; of a run at rest, or of one that moves."""
+        known = self._seconds.get(resting, self._seconds.get(False))
+        return _QUICK_TRIALS if not known else 1 << max(_FEWEST_TRIALS, int(seconds / known)).bit_length() - 1
 
     def _runner(self, stage: Stage) -> Callable[..., Outcome]:
-        version, adjustments, own, view = self.version, self.adjustments, self.own, self.view
-        model, behind, seq = self._models.get(version), self._compared, self._seq
-        slow = self._is_slow and stage == "moving"  # one that is not ends sooner than the next move comes
-        quick = _QUICK_TRIALS if not self._seconds else max(_FEWEST_TRIALS, int(_SLOW / 2 / self._seconds))
+        version, adjustments, models, view = self.version, self.adjustments, self._models, self.view
+        behind, seq = self._compared, self._seq
+        resting, slow = stage == "rest", self._is_slow
+        trials = self._trials_in(_QUICK, resting=False) if stage == "quick" else MOVING_TRIALS
+        piece = max(_SMALLEST_PIECE, self._trials_in(_PIECE, resting=resting)) if slow else MOVING_TRIALS
 
         def run(wanted: Callable[[], bool], tell: Callable[[float], None], clock: Callable[[], float]) -> Outcome:
             def watch(progress: Progress) -> None:
@@ -407,28 +416,36 @@ class Session:
                 tell(progress.share)
 
             try:
-                known = adjusted(own, adjustments) if model is None else model
-                begun = clock()
-                if stage == "rest":
-                    found = simulate(known, progress=watch)
+                if resting:
+                    model = models.at_rest(adjustments)
+                    begun = clock()
+                    found = simulate(model, progress=watch, pieces=piece if slow else BLOCK)
+                    base = bases_of(found)
                 else:
-                    trials = MOVING_TRIALS if stage == "moving" else quick
+                    moving = models.moving(adjustments)
+                    model, base = moving.model, moving.base
+                    runner = moving.runner(-(-trials // -(-trials // min(piece, moving.kept.largest_block))))
+                    begun = clock()
+                    watched = slow and stage == "moving"  # one that is quick ends sooner than the next move comes
                     found = simulate(
-                        known, trials=trials, sampling="mc", engine="numpy", progress=watch if slow else None
+                        model,
+                        trials=trials,
+                        sampling="mc",
+                        engine=moving.kept.engine,
+                        own_runner=runner,
+                        progress=watch if watched else None,
                     )
                 seconds = (clock() - begun) / max(found.evaluated, 1)
-                resting = stage == "rest"
-                frame = frame_of(found, behind, view.forecasts, moving=not resting, fits=resting and view.fits)
+                frame = frame_of(found, behind, view.forecasts, base, moving=not resting, fits=resting and view.fits)
                 messages = [_frame("rest" if resting else "moving", version, seq, frame)]
                 messages += [_pairs(found, version, tab) for tab in view.tabs if tab.key == "pairs" and not resting]
-                messages[0]["shapes"] = shapes_of(known, list(adjustments.assumptions))
+                messages[0]["shapes"] = shapes_of(model, list(adjustments.assumptions))
                 if resting:
                     messages.append({"kind": "rest", "version": version, **rest_of(found)})
             except XlmcError as error:
                 return Outcome(problem=str(error))
-            return Outcome(
-                tuple(messages), known, found, seconds, done=(version, view.forecasts, view.fits, id(behind))
-            )
+            done = (version, view.forecasts, view.fits, id(behind))
+            return Outcome(tuple(messages), found, seconds, done=done)
 
         return run
 
@@ -437,7 +454,7 @@ class Session:
         behind, seq, names = self._compared, self._seq, self.view.forecasts
 
         def run(*_: object) -> Outcome:
-            frame = frame_of(simulation, behind, names, moving=False, fits=sight[2])
+            frame = frame_of(simulation, behind, names, bases_of(simulation), moving=False, fits=sight[2])
             return Outcome((_frame("rest", sight[0], seq, frame),), done=sight)
 
         return run
@@ -503,11 +520,10 @@ class Session:
             self._problem = None
             over = self._trouble()
         self._done[job.stage] = job.version
-        if outcome.seconds is not None:  # other work on the machine only ever slows
-            self._seconds = min(outcome.seconds, 2.0 * (self._seconds or outcome.seconds))
-        if outcome.model is not None:
-            self._models[job.version] = outcome.model
-            self._models = dict(sorted(self._models.items())[-_MODELS:])
+        if outcome.seconds is not None and (job.stage != "quick" or not self._seconds):
+            resting = job.stage == "rest"
+            before = self._seconds.get(resting, outcome.seconds)
+            self._seconds[resting] = min(outcome.seconds, 2.0 * before)  # other work on the machine only ever slows
         found = list(outcome.messages)
         if job.stage == "rest" and job.version == self.version:
             self.rest, self._done["shown"] = outcome.simulation, outcome.done

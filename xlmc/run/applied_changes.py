@@ -3,15 +3,17 @@
 `applied(model, changes)` gives the model that the workbook would have with other numbers in its cells, and a run of it
 is, bit for bit, a run of the edited workbook. Neither file nor formula is read again where only numbers of tables are
 others: parameters and cutoffs of drawn assumptions, and limits of filters. A change of ranges alone then takes half a
-millisecond, and compiled programs are used again. Another limit of a filter makes the program anew: 1 ms with `numpy`
-for some dozens of formulas, but half a second with `jit`, so move limits with `numpy`. What holds an assumption, or
-lets a held one be drawn, puts the cells in order again (15 ms); what is typed into other cells reads the definitions
-again, too (20 ms).
+millisecond, and compiled programs are used again. Another limit of a filter makes the program anew, with the same
+native code: 1 ms with `numpy` for some dozens of formulas, 15 ms with `jit`. What holds an assumption, or lets a held
+one be drawn, puts the cells in order again (15 ms); what is typed into other cells reads the definitions again, too
+(20 ms).
 
 For a picture that follows a hand: load the workbook once, keep the model, and for each move
 
     moved = applied(model, [Range("Friction", 0.6, 0.8)])     # always of the model that was loaded, from one thread
     run = simulate(moved, trials=50_000, engine="jit")
+
+or, to move limits as fast as ranges, and to draw nothing twice, keep a `KeptRunner` (`kept_runner.py`), too.
 
 Draws are keyed by the seed and an assumption's name, so those of assumptions that are not changed stay what they were.
 """

@@ -27,7 +27,7 @@ from xlmc.evaluation.engine import (
     Room,
     RunsWholeBlocks,
 )
-from xlmc.sampling.draws import Sampler
+from xlmc.sampling.draws import Linear
 
 __all__ = ["Block", "FilterTally", "ModelRunner", "Portable", "Runner", "Task", "fault_text"]
 
@@ -134,19 +134,31 @@ class Portable(Protocol):
         """It, made or made again."""
 
 
+class Drawing(Protocol):
+    """What draws the trials of blocks: a `Sampler`, or what takes its place."""
+
+    @property
+    def linear(self) -> Linear | None:
+        """See `Sampler`."""
+
+    def draw(self, start: int) -> dict[str, Floats]:
+        """See `Sampler`."""
+
+
 class ModelRunner:
     """Runs blocks, one after another, in one thread. It can be pickled where the engine's evaluators can.
 
     Args:
+        block: trials that it evaluates at once.
         forecasts: how many the evaluator gives.
         fallible: the assumptions whose draws may be errors.
     """
 
     def __init__(
-        self, sampler: Sampler, evaluator: Evaluator, block: int, forecasts: int, fallible: frozenset[str]
+        self, sampler: Drawing, evaluator: Evaluator, block: int, forecasts: int, fallible: frozenset[str]
     ) -> None:
         self._made_of = sampler, evaluator, block, forecasts, fallible
-        self._sampler, self._evaluator, self._block = sampler, evaluator, block
+        self._sampler, self._evaluator, self.block = sampler, evaluator, block
         self._width, self._fallible = forecasts, fallible
         self._run_whole: BlockRunner | None = None
         if isinstance(evaluator, RunsWholeBlocks) and not fallible:
@@ -173,10 +185,10 @@ class ModelRunner:
         if whole is not None:
             return _block_of(whole, task, self._draw_all(whole, task) if task.prior else None)
         draws = self._sampler.draw(start)
-        columns = self._evaluator.filters(draws, self._block)
+        columns = self._evaluator.filters(draws, self.block)
         invalid = {name: np.isnan(draws[name]) for name in sorted(self._fallible)}
         fails, undecided = [_fails(column) for column in columns], _undecided(columns, trials)
-        kept = ~_any([*fails, *invalid.values()], self._block)
+        kept = ~_any([*fails, *invalid.values()], self.block)
         tally = _tally(columns, [rejected[:trials] for rejected in fails], undecided)
         survivors = np.flatnonzero(kept)
         forecasts = self._forecasts(survivors)

@@ -21,7 +21,7 @@ from xlmc.run.needed import filter_condition
 if TYPE_CHECKING:
     from xlmc.functions.values import Codes
 
-__all__ = ["FilteringProgram", "conditions_of", "discards_by_name", "filters_by_forecast"]
+__all__ = ["FilteringEvaluator", "FilteringProgram", "conditions_of", "discards_by_name", "filters_by_forecast"]
 
 Floats = NDArray[np.float64]
 
@@ -55,11 +55,18 @@ class FilteringProgram:
 
     def evaluator(self, block: int) -> Evaluator:
         """See `Program`."""
-        return _FilteringEvaluator(self._program.evaluator(block), self._own)
+        return FilteringEvaluator(self._program.evaluator(block), self._own)
 
 
 @dataclass(frozen=True, slots=True)
-class _FilteringEvaluator:
+class FilteringEvaluator:
+    """The evaluator of such a program.
+
+    Attributes:
+        evaluator: of its program.
+        own: the indices of each forecast's conditions.
+    """
+
     evaluator: Evaluator
     own: tuple[tuple[int, ...], ...]
 

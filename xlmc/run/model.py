@@ -35,7 +35,7 @@ from xlmc.run.correlating import (
 )
 from xlmc.run.draw_binding import draw_of, dynamic_parameters, with_base_parameters
 from xlmc.run.evidence_filters import chances_of, with_evidence_numbers
-from xlmc.run.forecast_filters import FilteringProgram, conditions_of, filters_by_forecast
+from xlmc.run.forecast_filters import FilteringEvaluator, FilteringProgram, conditions_of, filters_by_forecast
 from xlmc.run.needed import (
     Needed,
     definitions_of_checks,
@@ -113,12 +113,20 @@ class _Compiled:
 
 
 def _hull(first: Mapping[str, Bounds], second: Mapping[str, Bounds]) -> dict[str, Bounds]:
-    """The ends that hold the draws of two models; none where one of them has none."""
-    return {
-        key: (min(low, second[key][0]), max(high, second[key][1]))
-        for key, (low, high) in first.items()
-        if key in second
-    }
+    """The ends that hold the draws of two models, and more where a range was moved; none where one of them has none."""
+    return {key: _wider(ends, second[key]) for key, ends in first.items() if key in second}
+
+
+def _wider(first: Bounds, second: Bounds) -> Bounds:
+    """Bounds that hold both; those of a range that was moved twice as wide, as it will be moved again.
+
+    They stay on their side of 0, which roots and divisors depend on.
+    """
+    low, high = min(first[0], second[0]), max(first[1], second[1])
+    if (low, high) == first:
+        return first
+    lowest, highest = low - (high - low), high + (high - low)
+    return max(lowest, 0.0) if low >= 0.0 else lowest, min(highest, 0.0) if high <= 0.0 else highest
 
 
 def _asks_for_the_same(old: Definitions, new: Definitions, live: Collection[str]) -> bool:
@@ -379,7 +387,7 @@ class Model:
         row, known = ENGINES[engine], self._programs.get(engine)
         if known is None or (row.bounded and not known.holds_for(self._ends)):
             ends = self._ends if known is None else _hull(known.ends, self._ends)
-            parts = self.lowering, self.filter_targets, self._answer_targets, self.fallible
+            parts = self.lowering, self.filter_targets, self.answer_targets, self.fallible
             more = {"bounds": NodeBounds(self.lowering.dag, ends)} if row.bounded else {}
             with paused_collection():
                 known = self._programs[engine] = _Compiled(self._filtering(row.load()(*parts, **more)), ends)
@@ -435,13 +443,19 @@ class Model:
 
     def program_of(self, filters: Sequence[Target]) -> Program:
         """Other targets instead of the filters, and the forecasts, compiled for the engine `numpy`."""
-        return self._filtering(NumpyProgram.of(self.lowering, filters, self._answer_targets, self.fallible))
+        return self._filtering(NumpyProgram.of(self.lowering, filters, self.answer_targets, self.fallible))
 
     def _filtering(self, program: Program) -> Program:
         """The program that discards trials of forecasts with filters of their own, where there are any."""
         if not self.forecast_filters:
             return program
         return FilteringProgram(program, filters_by_forecast(self.forecasts, self.forecast_filters))
+
+    def filtered(self, evaluator: Evaluator) -> Evaluator:
+        """An evaluator of the targets of answers that discards trials of forecasts with filters of their own."""
+        if not self.forecast_filters:
+            return evaluator
+        return FilteringEvaluator(evaluator, filters_by_forecast(self.forecasts, self.forecast_filters))
 
     def check_program(self) -> Program:
         """The cells of the checks as filters, a function of the live assumptions; others stand at their base values."""
@@ -465,13 +479,13 @@ class Model:
         return [Target(forecast.cell, forecast.cell) for forecast in self.forecasts]
 
     @property
-    def _answer_targets(self) -> list[Target]:
+    def answer_targets(self) -> list[Target]:
         """The forecasts, and what their own filters ask."""
         return [*self._forecast_targets, *conditions_of(self.forecast_filters)]
 
     def _check_targets(self) -> None:
         """Lower every target once, so that a fault is reported when the workbook is loaded."""
-        for target in (*self.filter_targets, *self._answer_targets):
+        for target in (*self.filter_targets, *self.answer_targets):
             self.lowering.target(target)
 
 

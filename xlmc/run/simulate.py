@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Generator, Hashable, Iterator
 from contextlib import closing
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
@@ -73,10 +73,14 @@ def simulate(
     progress: OnProgress | None = None,
     tell: Callable[[str], None] | None = None,
     evidence: str | None = "rejection",
+    own_runner: ModelRunner | None = None,
+    pieces: int = BLOCK,
 ) -> Simulation:
     """Run a model; see `Model.simulate`.
 
-    With `evidence`, one of `EVIDENCE_WAYS`, the workbook is not asked how evidence is used; None asks it.
+    With `evidence`, one of `EVIDENCE_WAYS`, the workbook is not asked how evidence is used; None asks it. A runner that
+    is given, of this model, seed and sampling method, runs the blocks. A run of a given number of trials is computed in
+    pieces of at most `pieces` trials, a power of two, for who wants `progress` more often: its numbers are the same.
     """
     settings = _settings(model, trials, seed, engine, sampling, stopping)
     settings = replace(settings, scenarios=scenarios)
@@ -84,7 +88,7 @@ def simulate(
     settings = replace(settings, evidence=chosen_way(model, settings))
     if settings.evidence == "weights":
         model, keep_inputs = weighing(model), None  # weights are computed from the draws
-    program = model.program(settings.engine)
+    program = model.program(settings.engine) if own_runner is None else None
     plan = plan_sampling(model, settings)
     rule, looks = chosen_rule(settings.stopping, model.forecasts), rare_switch(model, settings)
     watch = Watch(rule, plan.trials, settings.stopping.seconds, time.monotonic)
@@ -94,16 +98,26 @@ def simulate(
         raise SimulationError(
             f"the draws of {keep_inputs} trials were asked for", hint="give 0 or more, or None for all"
         )
-    block = min(BLOCK, program.largest_block)
+    largest = program.largest_block if program is not None else own_runner.block  # type: ignore[union-attr]  # it is one
+    block = min(BLOCK, largest)
+    piece = block if settings.stopping.asked else min(block, pieces)
     most_inputs = plan.trials if keep_inputs is None else keep_inputs
     if model.checks:
         most_inputs = max(most_inputs, LEAST_CHECKED)
-    gathered = _Gathered(model, block, most_inputs, plan.trials)
+    gathered = _Gathered(model, block, piece, most_inputs, plan.trials)
 
     def runner() -> ModelRunner:
-        return model_runner(model, program, settings.engine, settings.seed, block, plan)
+        if program is None:
+            assert own_runner is not None
+            return own_runner
+        return model_runner(model, program, settings.engine, settings.seed, piece, plan)
 
-    needed = disk_needed(model, settings.stopping, plan.trials, block, most_inputs, runner)
+    def blocks_of(tasks: Iterator[Task]) -> Generator[Block, None, None]:
+        if program is not None:
+            return pool.blocks(model, program, settings, plan, piece, tasks, gathered.room)
+        return (runner().borrow(task, gathered.room) for task in tasks)
+
+    needed = disk_needed(model, settings.stopping, plan.trials, piece, most_inputs, runner)
     if needed is not None:
         needed.check()
         if tell is not None:
@@ -112,10 +126,10 @@ def simulate(
     def task(start: int, trials: int) -> Task:
         return Task(start, trials, start < PRIOR_TRIALS, gathered.wants_inputs)
 
-    tasks = (task(start, min(block, plan.trials - start)) for start in range(0, plan.trials, block))
+    tasks = (task(start, min(piece, plan.trials - start)) for start in range(0, plan.trials, piece))
     stopped: Stopped | None = None
     with Interruption(wanted=keep_interrupted and may_end_early(settings.sampling)) as interruption:
-        with closing(pool.blocks(model, program, settings, plan, block, tasks, gathered.room)) as blocks:
+        with closing(blocks_of(tasks)) as blocks:
             while stopped is None and not looks.should_search(gathered.trials, gathered.accepted):
                 finished = next(blocks)
                 counting = finished.trials if looks.certain else watch.counting(finished)
@@ -177,7 +191,7 @@ def _with_search(plain: Simulation, found: Search, most_inputs: int) -> Simulati
 
     assert found.account is not None
     model, block = plain.model, plain.model.program("numpy").largest_block
-    gathered = _Gathered(model, block, most_inputs, len(found.uniforms))
+    gathered = _Gathered(model, block, block, most_inputs, len(found.uniforms))
     for each in accepted_blocks(model, found.uniforms, block, lambda: gathered.wants_inputs):
         gathered.add(each)
     drawn = gathered.simulation(plain.settings, plain.plan, plain.stopped)
@@ -222,8 +236,8 @@ def _settings(
 class _Gathered:
     """The blocks so far: the counts of all trials, and the columns of the accepted ones."""
 
-    def __init__(self, model: Model, block: int, keep_inputs: int, trials: int) -> None:
-        self._model, self._block, self._keep_inputs = model, block, keep_inputs
+    def __init__(self, model: Model, block: int, piece: int, keep_inputs: int, trials: int) -> None:
+        self._model, self._block, self._piece, self._keep_inputs = model, block, piece, keep_inputs
         real, whole = np.dtype(np.float64), np.dtype(np.int64)
         drawn = [*model.live, *model.chances]
         self._inputs = {a.name: ("input", key) for a, key in zip(drawn, model.drawn_keys, strict=True)}
@@ -231,7 +245,7 @@ class _Gathered:
         self._forecasts = {f.name: ("forecast", number) for number, f in enumerate(model.forecasts)}
         columns = (*self._inputs.values(), *self._prior.values(), *self._forecasts.values())
         expected: dict[Hashable, int] = {("trial", 0): trials, **dict.fromkeys(self._forecasts.values(), trials)}
-        expected |= dict.fromkeys(self._inputs.values(), min(keep_inputs + block, trials))
+        expected |= dict.fromkeys(self._inputs.values(), min(keep_inputs + piece, trials))
         expected |= dict.fromkeys(self._prior.values(), min(PRIOR_TRIALS, trials))
         self._keeper = ColumnStore({("trial", 0): whole, **dict.fromkeys(columns, real)}, expected)
         self._tally = FilterTally.empty(len(model.filters))
@@ -272,9 +286,9 @@ class _Gathered:
         """The memory that the next block's columns go to."""
         room, inputs = self._keeper.room, self._inputs.values() if self.wants_inputs else ()
         return Room(
-            room(("trial", 0), self._block),
-            {key: room((kind, key), self._block) for kind, key in inputs},
-            [room(key, self._block) for key in self._forecasts.values()],
+            room(("trial", 0), self._piece),
+            {key: room((kind, key), self._piece) for kind, key in inputs},
+            [room(key, self._piece) for key in self._forecasts.values()],
         )
 
     @property

@@ -26,6 +26,7 @@ from xlmc.evaluation.llvm.memory import Memory, assign_slots
 from xlmc.evaluation.llvm.shapes import Shape, cut, shape_of
 from xlmc.functions import Kind
 from xlmc.functions.denormals import tiny_to_zero
+from xlmc.functions.operators import ALL_BITS
 from xlmc.functions.values import Floats, Value
 
 __all__ = ["Loop", "Phase", "Trials"]
@@ -34,7 +35,9 @@ _LONGEST: Final = 250
 """The most nodes of one loop; the time to compile grows faster than the loop."""
 
 _FEWEST: Final = 4
-"""Stages of which some may be of one shape; the constants of fewer are part of the code."""
+"""Stages of which some may be of one shape; the constants of fewer are part of the code, but for limits of filters."""
+
+_LIMITS: Final = tuple(ALL_BITS[relation] for relation in (">=", "<=", ">", "<"))
 
 
 class Trials:
@@ -202,7 +205,11 @@ class Phase:
     def _make_loops(self, plans: Sequence[_Plan]) -> Iterator[Loop]:
         if len(plans) < _FEWEST:
             for plan in plans:
-                yield Loop(self._compile(plan, {}), plan.loads, plan.stores, np.empty(0))
+                shape = plan.shape(self._dag)
+                limits = [slot for slot in shape.slots if self._is_limit(slot[0])]
+                numbers = np.array([shape.numbers[shape.slots[slot]] for slot in limits])
+                places = {slot: at for at, slot in enumerate(limits)}
+                yield Loop(self._compile(plan, places), plan.loads, plan.stores, numbers)
             return
         shapes = [plan.shape(self._dag) for plan in plans]
         uses = Counter(shape.key for shape in shapes)
@@ -212,6 +219,11 @@ class Phase:
             if shape.key not in compiled:
                 compiled[shape.key] = self._compile(plan, shape.slots, once=repeats and uses[shape.key] == 1)
             yield Loop(compiled[shape.key], plan.loads, plan.stores, np.array(shape.numbers))
+
+    def _is_limit(self, node_id: int) -> bool:
+        """Whether a node compares with a limit of a filter: one that is moved must not make other code."""
+        node = self._dag.nodes[node_id]
+        return isinstance(node, Apply) and node.function in _LIMITS
 
     def _compile(self, plan: _Plan, numbers: Mapping[tuple[int, int], int], once: bool = False) -> NativeLoop:
         """The code of a loop; the code of one that runs once beside many alike is soon made, and a little slower."""

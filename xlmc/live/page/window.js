@@ -6,6 +6,7 @@ const LEAST_TRIALS = 50000;
 const Live = {
   moves: new Map(), // number of a change -> when its event happened
   latencies: [], // milliseconds from an event to the frame that shows its answer
+  firsts: [], // likewise, of answers from fewer trials
 
   start() {
     const { key, page } = document.body.dataset;
@@ -110,13 +111,13 @@ const Live = {
       make("button", { type: "button", text: "Forget it", on: { click: answer(false) } }))] : []));
   },
 
-  /** From the event of a move to the frame in which its answer is drawn; a first short run of a slow workbook is none. */
+  /** From the event of a move to the frame in which its answer is drawn; first short runs of a slow workbook apart. */
   measure({ seq, trials }) {
-    if (trials < LEAST_TRIALS) return;
     const began = this.moves.get(seq);
-    for (const each of this.moves.keys()) if (each <= seq) this.moves.delete(each);
+    const short = trials < LEAST_TRIALS;
+    if (!short) for (const each of this.moves.keys()) if (each <= seq) this.moves.delete(each);
     if (began === undefined) return;
-    requestAnimationFrame(() => this.latencies.push(performance.now() - began));
+    requestAnimationFrame(() => (short ? this.firsts : this.latencies).push(performance.now() - began));
   },
 };
 

@@ -1,4 +1,4 @@
-"""States that move, and what is kept between them; at rest stands what the edited workbook gives, whatever came before."""
+"""States that move, and what is kept between them; at rest stands what the edited workbook gives."""
 
 from __future__ import annotations
 

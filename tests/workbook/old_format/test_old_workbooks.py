@@ -206,3 +206,11 @@ def test_a_workbook_of_crystal_ball_gives_the_draws_of_its_xlsx(tmp_path):
     refused = CliRunner().invoke(command, ["simulate", str(old), "--in-place", "-n", "500"])
     assert "must end in .xlsx" in str(refused.exception)
     assert old.read_bytes() == before
+
+
+def test_how_excel_calculates_is_told(monkeypatch):
+    monkeypatch.setattr(joined_package, "converted_to_xlsx", lambda _: converted({}))
+    data = plain_book({"S": record(0x0D, b"\0\0")}, before=record(0x0E, b"\0\0"))
+    notices = [each.message for each in read_workbook(data, "case.xls").notices]
+    assert any("precision as displayed" in each for each in notices)
+    assert any("calculation is set to manual" in each for each in notices)

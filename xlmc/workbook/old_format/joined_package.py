@@ -76,7 +76,27 @@ def parts_of_old_workbook(data: bytes) -> dict[str, bytes]:
             parts[entry.part] = with_values(parts[entry.part], entry.part, exact)
         if sheet.texts:
             _put_texts(parts, entry, sheet.texts, number)
+    settings = {"fullPrecision": "0"} if old.as_displayed else {}
+    settings |= {"calcMode": "manual"} if old.manual else {}
+    parts[structure.part] = _with_calculation(parts[structure.part], structure.part, settings)
     return with_mark(parts, old.macros)
+
+
+def _with_calculation(xml: bytes, part: str, settings: Mapping[str, str]) -> bytes:
+    """The workbook's part with these settings of Excel's calculation, of which LibreOffice drops some.
+
+    Raises:
+        WorkbookError: it has no place for them.
+    """
+    if not settings:
+        return xml
+    document = SplicedXml(xml, part)
+    element = document.root.find("calcPr")
+    if element is None:
+        raise _refusal("LibreOffice has lost how the workbook is calculated")
+    for name, value in settings.items():
+        document.set(element, name, value)
+    return document.result()
 
 
 def _exact(sheet: OldSheet, cells: Mapping[Position, CellContent]) -> dict[Position, float]:

@@ -28,7 +28,7 @@ IN_CRYSTAL_BALL: Final = (
 
 _MACROS: Final = "_VBA_PROJECT_CUR"
 
-_FORMULA, _END, _FILE_PASSWORD, _CONTINUE, _OBJECT = 0x06, 0x0A, 0x2F, 0x3C, 0x5D
+_FORMULA, _END, _CALCULATION, _PRECISION, _FILE_PASSWORD, _CONTINUE, _OBJECT = 0x06, 0x0A, 0x0D, 0x0E, 0x2F, 0x3C, 0x5D
 _SHEET, _MANY_SHORT, _DRAWING, _TEXT_OBJECT = 0x85, 0xBD, 0xEC, 0x1B6
 _NUMBER, _ARRAY, _DATA_TABLE, _SHORT, _BEGIN = 0x203, 0x221, 0x236, 0x27E, 0x809
 """Records, by their type."""
@@ -66,10 +66,19 @@ class OldSheet:
 
 @dataclass(frozen=True, slots=True)
 class OldBook:
-    """The worksheets in tab order, and whether there are macros."""
+    """What is read of a workbook.
+
+    Attributes:
+        sheets: the worksheets in tab order.
+        macros: whether there are any.
+        as_displayed: Excel calculates with the digits that are shown.
+        manual: Excel calculates when it is asked to.
+    """
 
     sheets: tuple[OldSheet, ...]
     macros: bool
+    as_displayed: bool
+    manual: bool
 
 
 def read_old_workbook(data: bytes) -> OldBook:
@@ -80,7 +89,8 @@ def read_old_workbook(data: bytes) -> OldBook:
     """
     try:
         stream, macros = _stream(data)
-        return OldBook(tuple(_Reading(stream).sheets()), macros)
+        reading = _Reading(stream)
+        return OldBook(tuple(reading.sheets()), macros, reading.as_displayed, reading.manual)
     except (struct.error, IndexError, UnicodeDecodeError) as error:
         raise _damaged(str(error) or "it ends too early") from error
 
@@ -109,6 +119,7 @@ class _Reading:
 
     def __init__(self, stream: bytes) -> None:
         self._stream = stream
+        self.as_displayed = self.manual = False
         self._starts: dict[int, OldSheet | None] = {}
         self._sheet: OldSheet | None = None
         self._drawing = bytearray()
@@ -169,6 +180,10 @@ class _Reading:
     def _take(self, kind: int, data: bytes) -> None:
         if kind == _SHEET:
             self._list_sheet(data)
+        elif kind == _PRECISION:
+            self.as_displayed = data[0] == 0
+        elif kind == _CALCULATION:
+            self.manual = data[0] == 0
         elif self._sheet is not None:
             if kind == _CONTINUE:
                 self._go_on(data)

@@ -70,13 +70,15 @@ def parameter(row: Row, heading: str) -> Parameter | None:
     """The number in the cell, or the cell itself where it holds a formula; None where it is blank.
 
     Raises:
-        DefinitionError: the cell holds text, a logical or an error, typed in or as Excel cached it.
+        DefinitionError: the cell holds text, a logical or an error, typed in or as Excel cached it. A formula that
+            was #NAME? is no such error.
     """
     content = row.content(heading)
     if is_blank(content):
         return None
-    if content.formula is not None and content.value is None:
-        return row.cell(heading)  # never calculated yet: each run calculates it
+    if content.formula is not None and content.value in (None, ErrorCode.NAME):
+        # Never calculated yet, or by a program that does not know a function of @RISK: each run calculates it.
+        return row.cell(heading)
     value = number_in(row.heading(heading), content, row.cell(heading))
     return value if content.formula is None else row.cell(heading)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import struct
 import subprocess
 
@@ -171,6 +172,27 @@ def test_without_libreoffice_one_message_says_what_to_do(tmp_path, monkeypatch):
     assert "LibreOffice is not installed" in message
     assert "Install LibreOffice" in message
     assert "load Crystal Ball first" in message
+
+
+NO_HELP = {
+    "it fails": ("echo one >&2; echo 'cannot be loaded' >&2; exit 1", 600, "could not convert", "(cannot be loaded)"),
+    "it says nothing": ("exit 0", 600, "could not convert the old Excel workbook (.xls). Open it", ""),
+    "it hangs": ("sleep 600 & wait", 0.2, "has not converted", ""),
+}  # fmt: skip
+
+
+@pytest.mark.skipif(os.name != "posix", reason="a script stands for LibreOffice")
+@pytest.mark.parametrize(("script", "seconds", "said", "more"), NO_HELP.values(), ids=NO_HELP)
+def test_a_libreoffice_that_does_not_help_is_told(script, seconds, said, more, tmp_path, monkeypatch):
+    program = tmp_path / "soffice"
+    program.write_text(f"#!/bin/sh\n{script}\n")
+    program.chmod(0o755)
+    monkeypatch.setattr(libreoffice, "_program", lambda: str(program))
+    monkeypatch.setattr(libreoffice, "_SECONDS", seconds)
+    with pytest.raises(WorkbookError) as told:
+        read_workbook(plain_book({"S": b""}), "case.xls")
+    assert said in str(told.value)
+    assert more in str(told.value)
 
 
 @pytest.mark.skipif(bool(missing("soffice")), reason=missing("soffice"))

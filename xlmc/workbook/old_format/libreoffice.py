@@ -53,18 +53,21 @@ def converted_to_xlsx(data: bytes) -> bytes:
             "is not installed"
         )
         raise WorkbookError(message, hint=f"Install LibreOffice (libreoffice.org). Or: {IN_CRYSTAL_BALL}")
-    with TemporaryDirectory(prefix="xlmc-", ignore_cleanup_errors=True) as folder:
-        old, new = Path(folder, "book.xls"), Path(folder, "book.xlsx")
-        old.write_bytes(data)
-        settings = Path(folder, "profile", "user", "registrymodifications.xcu")
-        settings.parent.mkdir(parents=True)
-        settings.write_text(_PROFILE, encoding="utf-8")
-        said = _run(program, folder, old)
-        try:
-            return new.read_bytes()
-        except FileNotFoundError:
-            message = f"LibreOffice could not convert the old Excel workbook (.xls){f' ({said})' if said else ''}"
-            raise WorkbookError(message, hint=IN_CRYSTAL_BALL) from None
+    try:
+        with TemporaryDirectory(prefix="xlmc-", ignore_cleanup_errors=True) as folder:
+            old, new = Path(folder, "book.xls"), Path(folder, "book.xlsx")
+            old.write_bytes(data)
+            settings = Path(folder, "profile", "user", "registrymodifications.xcu")
+            settings.parent.mkdir(parents=True)
+            settings.write_text(_PROFILE, encoding="utf-8")
+            said = _run(program, folder, old)
+            if new.is_file():
+                return new.read_bytes()
+    except OSError as error:
+        message = f"the old Excel workbook (.xls) cannot be converted by LibreOffice: {error.strerror or error}"
+        raise WorkbookError(message, hint="Make room on the disk that temporary files go to, and try again") from error
+    message = f"LibreOffice could not convert the old Excel workbook (.xls){f' ({said})' if said else ''}"
+    raise WorkbookError(message, hint=IN_CRYSTAL_BALL)
 
 
 def _program() -> str | None:
@@ -99,16 +102,17 @@ def _run(program: str, folder: str, old: Path) -> str:
         message = f"LibreOffice has not converted the old Excel workbook (.xls) in {_SECONDS // 60} minutes"
         raise WorkbookError(message, hint=IN_CRYSTAL_BALL) from None
     finally:
-        _end(process)
+        if process.returncode is None:
+            _end(process)
     lines = said.decode("utf-8", "replace").split("\n")
     return next((line.strip() for line in reversed(lines) if line.strip()), "")
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
-    """End what still runs of it."""
+    """End it, and what it has started."""
     with suppress(OSError):
         if os.name == "posix":
             os.killpg(process.pid, signal.SIGKILL)
         else:
             process.kill()
-    process.wait()
+    process.communicate()  # reads what is left, and closes the pipe

@@ -139,8 +139,9 @@ def _refuse_lacking(scenario: Scenario, lacking: Mapping[str, list[str]], model:
         rows: tuple[Assumption | Filter, ...] = (*model.assumptions, *model.filters, *model.forecast_filters)
         where = next(each.row for each in rows if each.name == name)
         if NO_TABLE in headings:
-            message = f"The scenario {scenario.name!r} changes {name!r}, which stands in a formula and not in a table"
-            raise DefinitionError(message, where=where, hint="Change the formula in Excel")
+            message = f"The scenario {scenario.name!r} changes {name!r}, which stands in no table"
+            hint = "Change its formula or its dialog in Excel, or let xlmc convert write tables first"
+            raise DefinitionError(message, where=where, hint=hint)
         message = f"The scenario {scenario.name!r} needs a column {headings[0]} for {name!r}, and the table has none"
         hint = f"Type {headings[0]} into the cell behind its last heading: Excel makes a column of it"
         raise DefinitionError(message, where=where, hint=hint)

@@ -146,7 +146,10 @@ def naming_file(file: str) -> Iterator[None]:
 
 
 def with_values(workbook: Workbook, values: Mapping[Cell, CellValue]) -> Workbook:
-    """The workbook with these values typed into its cells. No file holds it: it has no parts and no fingerprint."""
+    """The workbook with these values typed into its cells. No file holds it: it has no parts and no fingerprint.
+
+    Its `origin` are the parts of the file, in whose drawings Crystal Ball hides definitions.
+    """
     typed: dict[str, dict[tuple[int, int], CellContent]] = {}
     for cell, value in values.items():
         typed.setdefault(cell.sheet, {})[cell[1:]] = CellContent(value)
@@ -154,4 +157,4 @@ def with_values(workbook: Workbook, values: Mapping[Cell, CellValue]) -> Workboo
     changed = {name: replace(sheets[name], cells={**sheets[name].cells, **cells}) for name, cells in typed.items()}
     # A ChainMap reads a sheet when it is looked up, and nobody writes to this one.
     more = sheets.with_sheets(changed) if isinstance(sheets, LazySheets) else ChainMap(changed, sheets)  # type: ignore[arg-type]
-    return replace(workbook, sheets=more, parts={}, sha256="", data=b"")
+    return replace(workbook, sheets=more, parts={}, origin=workbook.parts or workbook.origin, sha256="", data=b"")

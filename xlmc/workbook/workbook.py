@@ -149,6 +149,7 @@ class Workbook:
         links: to other workbooks, as formulas write them (`[1]`), with the values that Excel stored.
         macintosh: last saved by Excel for the Macintosh, whose CHAR and CODE use its own character set.
         parts: every part of the zip package in its order, name -> bytes, as in the file.
+        origin: the parts of the file that it was read from, where values have been typed since and it has no `parts`.
         sha256: of the file.
         data: the file itself, byte for byte; empty where there is none.
     """
@@ -163,6 +164,7 @@ class Workbook:
     macintosh: bool = False
     notices: tuple[Notice, ...] = ()
     parts: Mapping[str, bytes] = field(default_factory=dict, repr=False)
+    origin: Mapping[str, bytes] = field(default_factory=dict, repr=False)
     sha256: str = ""
     data: bytes = field(default=b"", repr=False)
 

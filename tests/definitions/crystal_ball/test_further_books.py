@@ -7,6 +7,7 @@ import re
 import pytest
 from crystal_ball_book import Asked, Drawn, Tied, add_shapes, block, guid, object_guid, read_parts, save, write_parts
 
+from xlmc.address import Cell
 from xlmc.api import load
 from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.evaluation.engines import ENGINES
@@ -237,3 +238,19 @@ def test_what_was_lost_or_is_too_old_is_said_with_the_cure(tmp_path):
     (older,) = read_definitions(read_workbook(path), ENGINES).problems
     assert "Crystal Ball 2000 or older" in older.message
     assert "Crystal Ball 7 or later" in older.hint
+
+
+def test_what_a_scenario_types_into_cells_leaves_the_dialogs_as_they_are(tmp_path):
+    from xlmc.definitions.scenarios import Typed
+    from xlmc.run.applied_changes import applied
+    from xlmc.run.simulate import simulate
+
+    path, edited = tmp_path / "book.xlsx", tmp_path / "edited.xlsx"
+    wide = by_reference(3, "$D$1")
+    save(path, {S: CELLS | {"D1": 15}}, [[wide, B, F]])
+    save(edited, {S: CELLS | {"D1": 30}}, [[wide, B, F]])
+    model = load(path)
+    typed = Typed(Cell(S, 1, 4), 30)
+    for found in (applied(model, [typed]), applied(applied(model, [Typed(Cell(S, 1, 4), 7)]), [typed])):
+        run, known, before = (simulate(each, trials=500)["Force"] for each in (found, load(edited), model))
+        assert run.values.tolist() == known.values.tolist() != before.values.tolist()

@@ -57,9 +57,10 @@ class Blocks:
 def read_blocks(workbook: Workbook) -> Blocks:
     """Every block of a workbook, sheet by sheet."""
     blocks = Blocks()
-    if not any(b"CB_" in content or b"\0" in content[:4] for name, content in workbook.parts.items() if _is_vml(name)):
+    parts = workbook.parts or workbook.origin
+    if not any(b"CB_" in content or b"\0" in content[:4] for name, content in parts.items() if _is_vml(name)):
         return blocks
-    for script in hidden_scripts(workbook.parts, read_structure(workbook.parts)):
+    for script in hidden_scripts(parts, read_structure(parts)):
         if isinstance(script, DamagedDrawing):
             blocks.damages.append(Damage(script.sheet, "in its drawing", script.reason))
         elif script.shape.startswith("CB_Block"):

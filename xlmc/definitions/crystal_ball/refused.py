@@ -90,6 +90,7 @@ def refusals(
         for each in forecasts
     }
     kept = {each.name: tuple(_cells(each)) for each in filters}
+    kinds = {each.name: "filter" if each.evidence is None else "evidence" for each in filters}
     targets = [cell for cells in (*asked.values(), *kept.values(), *parameters.values()) for cell in cells]
     resolver = Resolver(workbook, parameters, strict=False, rewritten=rewritten)
     held = frozenset(a.cell for a in assumptions if a.frozen)
@@ -106,7 +107,7 @@ def refusals(
 
     return Refusals(
         {name: error for name, cells in asked.items() if (error := fault("forecast", name, cells))},
-        {name: error for name, cells in kept.items() if (error := fault("filter", name, cells))},
+        {name: error for name, cells in kept.items() if (error := fault(kinds[name], name, cells))},
         tuple(cell for cell in refused if cell not in reached),
     )
 

@@ -133,7 +133,7 @@ def test_what_cannot_be_computed_is_left_to_excel(small):
     [
         ((Held("a", 1.5),), DefinitionError, "needs a column Frozen for 'a', and the table has none"),
         ((Range("b", 0.5, 2.0),), WorkbookError, "Sheet!C3: the cell holds a formula, which would be lost"),
-        ((Range("u", 0.5, None),), DefinitionError, "changes 'u', which stands in a formula and not in a table"),
+        ((Range("u", 0.5, None),), DefinitionError, "changes 'u', which stands in no table"),
         ((Typed(parse_address("Sheet!E9"), 1.0),), WorkbookError, "Sheet!E9: the cell holds a formula"),
         ((Range("a", 2.0, 1.0),), DefinitionError, "Low (2) is above High (1)"),
     ],

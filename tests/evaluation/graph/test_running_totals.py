@@ -286,3 +286,57 @@ def test_programs_with_running_totals_can_be_sent_to_another_process(run):
     again = pickle.loads(pickle.dumps(program)).evaluator(1)
     again.filters({"A1": np.array([1.7e307])}, 1)
     assert [column.codes.tolist() for column in again.forecasts(np.arange(1))] == [[6], [6]]
+
+
+SETS = ["SUMPRODUCT({b},{w})", "SUMPRODUCT({b},{b},{c})", "SUMPRODUCT({c})", "AVERAGE({b})", "AVERAGE({b},{c})"]
+SETS += [
+    "COUNT({b})",
+    "COUNT({b},{c})",
+    "IF(A1>0.8,COUNT({b}),AVERAGE({c}))",
+    "SUMPRODUCT(({b}>1)*{c})",
+    "SUMPRODUCT({b},{{1;2;3;4;5}})",
+    "IF(A1>0.8,AVERAGE({c}),SUMPRODUCT({b},{c}))",
+]
+
+
+def sets(formula, rows=9):
+    """A formula of five numbers each, filled down."""
+    cells = {f"B{r}": f"=A$1*{r}/7" for r in range(1, rows + 5)} | {
+        f"C{r}": f"=2/(A$1*{r})" for r in range(1, rows + 5)
+    }
+    cells |= {f"W{r}": r / 3 for r in range(1, 6)}
+    filled = {
+        f"D{r}": "=" + formula.format(b=f"B{r}:B{r + 4}", c=f"C{r}:C{r + 4}", w="W$1:W$5") for r in range(1, rows)
+    }
+    return cells | filled, [*filled]
+
+
+@pytest.mark.parametrize("formula", SETS)
+def test_sums_of_products_means_and_counts_of_numbers_are_computed_number_by_number(run, lower, formula):
+    """`run` sees that the bits are those of the careful path."""
+    cells, wanted = sets(formula)
+    assert not run(cells, {"A1": [0.7, 1.1, 2.0]}, wanted).careful
+    run(cells, {"A1": [0.7, 0.0, 2.0]}, wanted)
+    dag = lower(cells, ["A1"], wanted)[0].dag
+    nodes = [at for at, node in enumerate(dag.nodes) if getattr(node, "function", None) and node.function.name in NAMES]
+    assert {*nodes} <= {*dag.folded}
+    assert len(nodes) >= len(wanted)
+
+
+NAMES = ("SUMPRODUCT", "AVERAGE", "COUNT")
+
+
+def test_of_sums_of_products_the_first_range_has_the_first_error(run):
+    cells = {"B1": "=A1", "B2": "=1/(A1-1)", "C1": "=LN(A1-2)", "C2": "=A1+1", "D1": "=SUMPRODUCT(B1:B2,C1:C2)"}
+    assert run(cells, {"A1": [3.0, 2.0, 1.0]}, ["D1"]).forecasts == [[2.0, "#NUM!", "#DIV/0!"]]
+
+
+@pytest.mark.parametrize("b1", ["x", True, "=A1&1", "=A1>1", '=IF(A1>1,1,"")'])
+def test_what_is_no_number_is_left_to_the_careful_path(run, b1):
+    cells = {"B1": b1, "B2": "=A1", "C1": "=A1", "C2": "=A1*3"}
+    cells |= {"D1": "=SUMPRODUCT(B1:B2,C1:C2)", "D2": "=AVERAGE(B1:B2)"}
+    cells |= {"D3": "=COUNT(B1:B2)"}
+    products, mean, count = run(cells, {"A1": [3.0, 2.0]}, ["D1", "D2", "D3"]).forecasts
+    assert count == ([2.0, 2.0] if b1 == '=IF(A1>1,1,"")' else [1.0, 1.0])
+    assert products == ([30.0, 14.0] if b1 == '=IF(A1>1,1,"")' else [27.0, 12.0])
+    assert mean == ([2.0, 1.5] if b1 == '=IF(A1>1,1,"")' else [3.0, 2.0])

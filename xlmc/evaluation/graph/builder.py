@@ -13,7 +13,7 @@ from xlmc.evaluation.graph.arrays import cell_by_cell, either, element, share_ou
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, Select
 from xlmc.evaluation.graph.number_lookups import NumberLookups
-from xlmc.evaluation.graph.running_totals import RunningTotals
+from xlmc.evaluation.graph.running_totals import PAIRED_OR_COUNTED, RunningTotals
 from xlmc.functions import Function, Kind
 from xlmc.functions.families import REGISTRY
 from xlmc.functions.values import BLANK, Value, constant
@@ -90,7 +90,7 @@ class NodeBuilder:
         chosen = self._share_out(function, arguments)
         if chosen is not None:
             return chosen
-        if function.takes_sets:
+        if function.takes_sets or function.name in PAIRED_OR_COUNTED:
             return self._totals.apply(function, arguments)
         found = self._lookups.apply(function, arguments)
         if found is not None:

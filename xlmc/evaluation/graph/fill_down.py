@@ -27,11 +27,16 @@ _Marks = tuple[object, ...]
 
 @dataclass(frozen=True, slots=True)
 class _Pattern:
-    """The nodes to make; their slots count the nodes that the cell reads, then `constants`, then earlier steps."""
+    """The nodes to make; their slots count the nodes that the cell reads, then `constants`, then earlier steps.
+
+    Attributes:
+        folds: of nodes, those that stand for them on the fast path; see `Dag.folded`.
+    """
 
     constants: tuple[int, ...]
     steps: tuple[Repeat, ...]
     result: int
+    folds: tuple[tuple[int, int], ...]
 
 
 class FillDownCache:
@@ -70,6 +75,9 @@ class FillDownCache:
     def _follow(self, pattern: _Pattern, leaves: Sequence[int]) -> int:
         local = [*leaves, *pattern.constants]
         self._dag.replay(pattern.steps, local)
+        for node, fold in pattern.folds:
+            if local[fold] < local[node]:  # else the node was there before
+                self._dag.folded.setdefault(local[node], local[fold])
         return local[pattern.result]
 
     def _record(self, leaves: Sequence[int], lower: Callable[[], int]) -> tuple[int, _Pattern | None]:
@@ -86,14 +94,17 @@ class FillDownCache:
         if len(set(varying)) < len(varying) or not set(varying).isdisjoint(steps):
             return node_id, None  # two things that are one here need not be one elsewhere
         own = {*leaves, *steps}
-        read = dict.fromkeys(used for step in steps for used in uses(dag.nodes[step]) if used not in own)
+        folds = [(step, dag.folded[step]) for step in steps if step in dag.folded]
+        used_by_steps = [used for step in steps for used in uses(dag.nodes[step])]
+        read = dict.fromkeys(used for used in (*used_by_steps, *(fold for _, fold in folds)) if used not in own)
         known = {node: slot for slot, node in enumerate((*leaves, *read, *steps))}
         if isinstance(dag.nodes[node_id], Constant) or node_id not in known:
             return node_id, None  # folded, or Excel's own value stands in
         if not all(isinstance(dag.nodes[node], Constant) for node in read):
             return node_id, None
         repeats = tuple(self._repeat(step, known) for step in steps)
-        return node_id, _Pattern(tuple(read), repeats, known[node_id])
+        slots = tuple((known[step], known[fold]) for step, fold in folds)
+        return node_id, _Pattern(tuple(read), repeats, known[node_id], slots)
 
     def _repeat(self, node_id: int, known: dict[int, int]) -> Repeat:
         node, kind, size = self._dag.nodes[node_id], self._dag.types[node_id], self._dag.sizes[node_id]

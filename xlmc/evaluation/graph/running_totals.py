@@ -28,7 +28,10 @@ from xlmc.functions.families import REGISTRY
 from xlmc.functions.math.aggregate import RUNNING, SO_FAR
 from xlmc.functions.values import ERROR, NUMBER, constant
 
-__all__ = ["FOLDS", "RunningTotals"]
+__all__ = ["FOLDS", "PAIRED_OR_COUNTED", "RunningTotals"]
+
+PAIRED_OR_COUNTED: Final = frozenset({"SUMPRODUCT", "COUNT"})
+"""Functions of ranges that are no fold of one set, for which other nodes may stand."""
 
 FOLDS: Final = frozenset({"SUM", "COUNT", "COUNTA", "AVERAGE", *SO_FAR})
 """Functions of which the result for a longer range follows from that for a shorter one."""
@@ -41,6 +44,9 @@ _LONG: Final = 64
 
 _MOST_FOLDS: Final = 4
 """Ranges, of one function, that a cell is folded in one by one."""
+
+_SHORT: Final = 32
+"""Products of numbers in two or more ranges that are added up one by one."""
 
 _NUMBERS: Final = "how many are numbers where none is an error"
 
@@ -151,20 +157,72 @@ class RunningTotals:
         return isinstance(node, Constant) and NUMBER < int(node.value.kinds.flat[0]) < ERROR
 
     def apply(self, function: Function, arguments: tuple[int, ...]) -> int:
-        """The node of a function whose arguments are one set."""
+        """The node of a function whose arguments are one set, or of one of `PAIRED_OR_COUNTED`."""
         node = Apply(function, arguments)
         cells = self._column(function, arguments)
         before = None if cells is None else self._known.get(cells[:-1])
         if cells is not None:
             last = arguments if before is None else (before, self._row(cells[-1:]))
             node = Apply(RUNNING[function.name], last)
-        folded = self._fold(function, arguments) if before is None else None
+        folded = self._stand_in(function, arguments) if before is None else None
         node_id = self._dag.add(node)
         if cells is not None:
             self._known[cells] = node_id
-        if folded is not None and folded < node_id:  # else the node was there before
-            self._dag.folded[node_id] = folded
+        if folded is not None and folded < node_id and type(self._dag.nodes[node_id]) is not Constant:
+            self._dag.folded[node_id] = folded  # a node that was there before keeps its own
         return node_id
+
+    def _stand_in(self, function: Function, arguments: Sequence[int]) -> int | None:
+        """The node that stands for the function on the fast path; None where there is none."""
+        match function.name:
+            case "SUMPRODUCT":
+                return self._fold_products(arguments)
+            case "AVERAGE" | "COUNT":
+                count = self._count(arguments)
+                if count is None or function.name == "COUNT":
+                    return count
+                total = self.apply(REGISTRY["SUM"], tuple(arguments))
+                return self._dag.add(Apply(REGISTRY["/"], (total, count)))
+            case _:
+                return self._fold(function, arguments)
+
+    def _count(self, arguments: Sequence[int]) -> int | None:
+        """How many cells of ranges are numbers where none is an error; None where they are none, or it may vary."""
+        parts = [self._dag.nodes[argument] for argument in arguments]
+        if not all(isinstance(part, Range) for part in parts):
+            return None
+        cells = [cell for part in parts if isinstance(part, Range) for row in part.rows for cell in row]
+        numbers = [cell for cell in cells if not self._never_counts(cell)]
+        if not numbers or not all(self._dag.types[cell] is Kind.NUMBER for cell in numbers):
+            return None
+        return self._dag.constant(constant(float(len(numbers))))
+
+    def _fold_products(self, arguments: Sequence[int]) -> int | None:
+        """The sum of products of short ranges of numbers, product by product; None of other arguments.
+
+        The careful path does not take it: an error in a later cell of the first range counts before one in the second.
+        """
+        sizes = {self._dag.sizes[argument] for argument in arguments}
+        ranges = [self._numbers_of(argument) for argument in arguments]
+        if len(sizes) > 1 or not all(0 < len(cells) <= _SHORT for cells in ranges):
+            return None
+        total = None
+        for factors in zip(*ranges, strict=True):
+            product = factors[0]
+            for factor in factors[1:]:
+                product = self._dag.add(Apply(REGISTRY["*"], (product, factor)))
+            total = self._add_to(total, product)
+        return total
+
+    def _numbers_of(self, argument: int) -> list[int]:
+        """The cells of a range, each of which is a number unless it is an error; none where another may be there."""
+        node = self._dag.nodes[argument]
+        if isinstance(node, Range):
+            cells = [cell for row in node.rows for cell in row]
+            return cells if all(self._dag.types[cell] is Kind.NUMBER for cell in cells) else []
+        if not isinstance(node, Constant) or not (node.value.kinds == NUMBER).all():
+            return []
+        return [self._dag.constant(constant(number)) for number in node.value.numbers.ravel().tolist()]
 
     def _column(self, function: Function, arguments: tuple[int, ...]) -> tuple[int, ...] | None:
         """The cells of the only argument where it is one long column."""

@@ -112,6 +112,8 @@ class Body:
                     fallible = fallible or self._source(part)[1].fallible
             number = self._numbers.get((node, position))
             values.append(self._value(part) if number is None else number)
+        for part in rule.beside:
+            self._check(part)
         value = self.flush(rule.emit(self, values))
         own = Operand(node, self._dag.types[node])
         self._known[own] = Loaded(value, fallible and own.kind is Kind.NUMBER)

@@ -75,14 +75,14 @@ class LoopRule:
     Attributes:
         absorbs: the operands of which an infinity or NaN may leave no trace in the result.
         makes: whether finite operands may give an infinity or NaN.
-        beside: nodes whose errors are the node's too, although their values do not matter.
+        beside: what makes the node an error where it is one, although its value does not matter.
     """
 
     operands: tuple[Operand | Literal, ...]
     emit: Emit
     absorbs: Container[int] = ()
     makes: bool = True
-    beside: tuple[int, ...] = ()
+    beside: tuple[Operand, ...] = ()
 
 
 def literal(dag: Dag, operand: Operand) -> Literal | None:
@@ -102,4 +102,4 @@ def reads(dag: Dag, node: int, rule: LoopRule | None) -> tuple[int, ...]:
     """The nodes that a node's computation needs: by its rule, or all that it uses where it has no rule."""
     if rule is None:
         return uses(dag.nodes[node])
-    return (*(part.node for part in rule.operands if isinstance(part, Operand)), *rule.beside)
+    return tuple([part.node for part in (*rule.operands, *rule.beside) if isinstance(part, Operand)])

@@ -35,6 +35,9 @@ _EXPONENT: Final = 0x7FF << 52
 
 _ALL: Final = range(255)
 
+_FEW: Final = 63
+"""Cells that the loop reads at once, though there are nodes that take them one by one."""
+
 _LARGEST_ANGLE: Final = 2.0**27
 """Excel refuses the sine of a larger angle: the trial is computed again."""
 
@@ -44,13 +47,13 @@ def loop_rule_of(dag: Dag, node: int) -> LoopRule | None:
     kind = dag.types[node]
     if dag.sizes[node] is not None or kind not in PLAIN:
         return None
-    folded = dag.folded.get(node)
-    if folded is not None:
+    rule, folded = _rule(dag, dag.nodes[node], kind), dag.folded.get(node)
+    readable = rule is not None and all(_readable(dag, part) for part in rule.operands if isinstance(part, Operand))
+    if readable and rule is not None and (folded is None or len(rule.operands) <= _FEW):
+        return rule
+    if folded is not None and not isinstance(dag.nodes[folded], Constant):  # a count is one only if no cell is an error
         return LoopRule((Operand(folded, Kind.NUMBER),), _same, makes=False)
-    rule = _rule(dag, dag.nodes[node], kind)
-    if rule is None or not all(_readable(dag, part) for part in rule.operands if isinstance(part, Operand)):
-        return None
-    return rule
+    return None
 
 
 def _rule(dag: Dag, node: Node, kind: Kind) -> LoopRule | None:

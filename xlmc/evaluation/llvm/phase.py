@@ -195,7 +195,7 @@ class Phase:
         rules = {node: self._rules[node] for node in stage.nodes}
         loads: dict[Operand, Load] = {}
         for rule in rules.values():
-            for part in rule.operands:
+            for part in (*rule.operands, *rule.beside):
                 if isinstance(part, Operand) and part.node in read:
                     load = self._load(part)
                     if load is not None:

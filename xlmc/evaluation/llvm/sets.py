@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import reduce
+from functools import cache, reduce
 from typing import Any, Final
 
 import numpy as np
@@ -32,10 +32,10 @@ class _NotForTheLoopError(Exception):
 
 @dataclass(slots=True)
 class _Members:
-    """The cells of the arguments that count, and the nodes that do not count but may be errors."""
+    """The cells of the arguments that count, and those that do not count but may be errors."""
 
     counting: list[Part]
-    beside: list[int]
+    beside: list[Operand]
 
 
 def over_cells(dag: Dag, node: Apply) -> LoopRule | None:
@@ -43,6 +43,8 @@ def over_cells(dag: Dag, node: Apply) -> LoopRule | None:
     try:
         if node.function.name == "SUMPRODUCT":
             return _sum_of_products(dag, node)
+        if node.function.name == "COUNT":
+            return _count(dag, node)
         if node.function.name not in _ROWS:
             return None
         row = _ROWS[node.function.name]
@@ -67,7 +69,7 @@ def _members(dag: Dag, node: Apply) -> _Members:
             if found is not None:
                 members.counting.append(found)
             elif isinstance(cell, int):
-                members.beside.append(cell)
+                members.beside.append(Operand(cell, dag.types[cell]))
     return members
 
 
@@ -116,9 +118,27 @@ def _counted_constant(cell: Value, kind: Kind) -> Literal | None:
     return Literal(number if kind is Kind.NUMBER else number != 0)
 
 
+def _count(dag: Dag, node: Apply) -> LoopRule | None:
+    """The rule of `COUNT`, for ranges: a number, unless a cell is an error."""
+    columns = [_cells(dag, node_id) for node_id in node.arguments]
+    cells = [cell for column in columns for cell in column or ()]
+    if None in columns:
+        return None
+    numbers = sum(_counted(dag, cell, Kind.NUMBER) is not None for cell in cells)
+    varying = tuple([Operand(cell, dag.types[cell]) for cell in cells if isinstance(cell, int)])
+    if len(varying) > _MOST:
+        return None
+    return LoopRule((Literal(float(numbers)),), _first_part, makes=False, beside=varying)
+
+
+def _first_part(_: Emitter, parts: Parts) -> Any:
+    return parts[0]
+
+
 def _sum_of_products(dag: Dag, node: Apply) -> LoopRule | None:
     """The rule of `SUMPRODUCT`, for ranges of one size: a cell that is no number is 0."""
-    columns, beside, shapes = [], [], set()
+    columns, shapes = [], set()
+    beside: list[Operand] = []
     for node_id in node.arguments:
         cells = _cells(dag, node_id)
         shapes.add(dag.sizes[node_id])
@@ -131,17 +151,24 @@ def _sum_of_products(dag: Dag, node: Apply) -> LoopRule | None:
             found = _counted(dag, cell, Kind.NUMBER)
             parts.append(Literal(0.0) if found is None else found)
             if found is None and isinstance(cell, int):
-                beside.append(cell)
+                beside.append(Operand(cell, dag.types[cell]))
         columns.append(parts)
     height = len(columns[0])
     if height * len(columns) > _MOST:
         return None
+    operands = tuple(part for column in columns for part in column)
+    return LoopRule(operands, _products_added_up(height), beside=tuple(beside))
+
+
+@cache
+def _products_added_up(height: int) -> Emit:
+    """How the loop adds up products of columns of so many cells: one for all, so that loops are alike."""
 
     def emit(body: Emitter, parts: Parts) -> Any:
-        products = [reduce(body.builder.fmul, parts[cell::height]) for cell in range(height)]
+        products = [_product(body, parts[cell::height]) for cell in range(height)]
         return reduce(body.builder.fadd, products)
 
-    return LoopRule(tuple(part for column in columns for part in column), emit, beside=tuple(beside))
+    return emit
 
 
 def _fold(instruction: str) -> Emit:

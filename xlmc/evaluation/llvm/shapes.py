@@ -74,7 +74,7 @@ def shape_of(
         (
             *(rule.emit, rule.makes, rule.absorbs, isinstance(dag.nodes[node], Select), dag.types[node]),
             tuple(part_of(node, position, part) for position, part in enumerate(rule.operands)),
-            tuple(own[used] for used in rule.beside if used in own),
+            tuple(part_of(node, -1, part) for part in rule.beside),
         )
         for node, rule in rules.items()
     ]

@@ -203,6 +203,9 @@ class Steps:
             if plain:
                 self._lines.append((None, node_id, node.yes, node.no, buffer, node.condition))
             return plain
+        if node_id in self._dag.folded:
+            self._lines.append((np.positive, node_id, read[0], -1, buffer, None))
+            return True
         if type(node) is not Apply or not node.function.takes_sets or len(read) < 2:
             return False
         ufunc = node.function.ufunc

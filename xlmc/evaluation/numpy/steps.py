@@ -78,14 +78,17 @@ def plain_constant(value: Value) -> Any:
 def reads(dag: Dag, node_id: int) -> tuple[int, ...]:
     """The nodes whose values the step of a node needs.
 
-    For a range that is folded these are its cells. For an IFERROR it is the value alone: where that turns out to be an
-    error, the block leaves the fast path, so that the other value is never needed here.
+    For a range that is folded these are its cells, or the node that stands for it. For an IFERROR it is the value
+    alone: where that turns out to be an error, the block leaves the fast path, so that the other value is never needed
+    here.
     """
     node = dag.nodes[node_id]
+    if node_id in dag.folded:
+        folded = dag.folded[node_id]
+        beside = _cells_of(dag, node) if isinstance(node, Apply) and isinstance(dag.nodes[folded], Constant) else ()
+        return (folded, *(cell for cell, _ in beside))  # a count, whose cells may turn out errors
     if isinstance(node, Apply) and not node.function.takes_sets:
         return node.arguments
-    if node_id in dag.folded:
-        return (dag.folded[node_id],)
     if isinstance(node, IfErrorNode) and dag.sizes[node.instead] is None:
         return (node.value,)
     if isinstance(node, Apply) and _find_folded(dag, node) is not None:
@@ -120,7 +123,7 @@ def is_elementwise_ufunc(dag: Dag, node_id: int) -> bool:
 
 def _apply(dag: Dag, node_id: int, function: Function, arguments: tuple[int, ...], buffer: int | None) -> Step:
     if node_id in dag.folded:
-        return _ufunc(np.positive, None, node_id, _readers(dag, reads(dag, node_id), Kind.NUMBER), buffer)
+        return _ufunc(np.positive, None, node_id, _readers(dag, (dag.folded[node_id],), Kind.NUMBER), buffer)
     node = Apply(function, arguments)
     if function.takes_sets:
         folded = _find_folded(dag, node)

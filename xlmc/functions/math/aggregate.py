@@ -15,7 +15,7 @@ import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import errors_unless_range, first_error, first_error_in_row, with_errors
-from xlmc.functions.denormals import TINIEST
+from xlmc.functions.denormals import TINIEST, tiny_to_zero
 from xlmc.functions.facts import EmptyCells, Facts, Repeats
 from xlmc.functions.lookup.picked_cells import Indices, flatten_cells
 from xlmc.functions.registry import REGISTRY, Arrays, Cells, Function, Kind, Number, Numbers, excel, side_by_side
@@ -216,7 +216,7 @@ def sum_product(*values: Value) -> Value:
     products = np.ones(1)
     errors = []
     for cells in ranges:
-        products = products * np.where(cells.kinds == NUMBER, cells.numbers, 0.0)
+        products = tiny_to_zero(products * np.where(cells.kinds == NUMBER, cells.numbers, 0.0))
         refused = (cells.kinds == TEXT) & (shapes == {(1, 1)})
         errors.append(
             first_error_in_row(flatten_cells(np.where(refused, np.uint8(ErrorCode.VALUE), cells.errors), cells))

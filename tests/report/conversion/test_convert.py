@@ -258,3 +258,67 @@ def test_the_command_says_what_it_wrote(tmp_path):
     assert read_parts(path) == before
     assert (tmp_path / "book-converted.xlsx").exists()
     assert CliRunner().invoke(command, ["convert", str(path)]).exit_code != 0
+
+
+OPEN, STRICT = "http://schemas.openxmlformats.org", "http://purl.oclc.org/ooxml"
+
+
+def with_macros(parts):
+    """The workbook with a project of macros, which nobody reads."""
+    kind = b"application/vnd.openxmlformats-officedocument.spreadsheetml.sheet.main+xml"
+    types = parts["[Content_Types].xml"].replace(kind, b"application/vnd.ms-excel.sheet.macroEnabled.main+xml")
+    project = b'<Override PartName="/xl/vbaProject.bin" ContentType="application/vnd.ms-office.vbaProject"/></Types>'
+    of = b'<Relationship Id="rV" Type="http://schemas.microsoft.com/office/2006/relationships/vbaProject" Target="'
+    rels = parts["xl/_rels/workbook.xml.rels"]
+    return {
+        **parts,
+        "[Content_Types].xml": types.replace(b"</Types>", project),
+        "xl/_rels/workbook.xml.rels": rels.replace(b"</Relationships>", of + b'vbaProject.bin"/></Relationships>'),
+        "xl/vbaProject.bin": bytes(range(256)) * 9,
+    }
+
+
+def protected(parts):
+    """The workbook with a password on its structure and on its sheet."""
+    book = parts["xl/workbook.xml"]
+    sheet = parts["xl/worksheets/sheet2.xml"]
+    lock = b'<workbookProtection workbookPassword="CC1A" lockStructure="1"/><bookViews>'
+    return {
+        **parts,
+        "xl/workbook.xml": book.replace(b"<bookViews>", lock),
+        "xl/worksheets/sheet2.xml": sheet.replace(
+            b"</sheetData>", b'</sheetData><sheetProtection password="CC1A" sheet="1"/>'
+        ),
+    }
+
+
+def renamed(parts):
+    """The workbook as Excel leaves it when a person renames the sheet."""
+    book = parts["xl/workbook.xml"].replace(b'name="Sheet1"', b'name="New name"')
+    return {**parts, "xl/workbook.xml": book.replace(b">Sheet1!", b">'New name'!")}
+
+
+@pytest.mark.parametrize("change", [with_macros, protected, renamed])
+def test_what_excel_adds_to_a_workbook_of_dialogs_stays(tmp_path, change):
+    path = tmp_path / "book.xlsx"
+    save(path, CELLS, [[SKID, OFFSET, Asked(S, "$B$5", "Total")]])
+    write_parts(path, change(read_parts(path)))
+    new = read_parts(converts(path))  # compares all parts
+    assert ("xl/vbaProject.bin" in new) == (change is with_macros)
+
+
+def test_a_strict_workbook_runs_and_says_why_it_cannot_be_converted(tmp_path):
+    path = tmp_path / "book.xlsx"
+    save(path, CELLS, [[SKID, OFFSET, Asked(S, "$B$5", "Total")]])
+    expected = load(path).simulate(100).forecasts["Total"]
+    pairs = [(f"{OPEN}/spreadsheetml/2006/main", f"{STRICT}/spreadsheetml/main")]
+    pairs += [(f"{OPEN}/officeDocument/2006/relationships", f"{STRICT}/officeDocument/relationships")]
+    parts = read_parts(path)
+    for name in [name for name in parts if name.endswith((".xml", ".rels"))]:
+        for old, new in pairs:
+            parts[name] = parts[name].replace(old.encode(), new.encode())
+    write_parts(path, parts)
+    model = load(path)
+    np.testing.assert_array_equal(model.simulate(100).forecasts["Total"], expected)
+    with pytest.raises(WorkbookError, match="Strict Open XML"):
+        convert(model, tmp_path / "new.xlsx")

@@ -38,7 +38,7 @@ def runs(run, none_accepted, one_accepted, make, small_book):
     correlated = make.simulate(
         {"A1": 0.5, "A2": 0.5, "B1": "=A1+A2"},
         [make.uniform("a", "A1", 0.0, 1.0), make.uniform("b", "A2", 0.0, 1.0, base=0.5)],
-        [make.forecast("x", "B1")],
+        [make.forecast("x", "B1", asked=(0.5, math.inf))],
     )
     model = xlmc.load(small_book)
     return {

@@ -137,7 +137,13 @@ class Assumption:
 
 @dataclass(frozen=True, slots=True)
 class Forecast:
-    """An answer: its cell, the share of its central range, and the threshold to report P(> threshold) for."""
+    """An answer.
+
+    Attributes:
+        central: the share of its central range.
+        threshold: to report P(> threshold) for.
+        asked: both ends of a range, which belong to it, to report its certainty for; infinite where it has none.
+    """
 
     name: str
     cell: Cell
@@ -146,6 +152,7 @@ class Forecast:
     central: float = 0.51
     threshold: float | None = None
     notes: Mapping[str, str] = field(default_factory=dict)
+    asked: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ Definitions that stand in tables already stay where they are. A row that stands 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
@@ -176,7 +177,8 @@ def _headings(rows: Iterable[NewRow]) -> dict[str, None]:
 
 
 _FIRST = ("Name", "Value", "Cell", "Call in", "Call", "Distribution")
-_LAST = (*CUTOFFS.values(), "Units", "Threshold", "Frozen", "Source", "Only for", "Because", DIALOG)
+_ANSWER = ("Units", "Threshold", "Certainty from", "Certainty to")
+_LAST = (*CUTOFFS.values(), *_ANSWER, "Frozen", "Source", "Only for", "Because", DIALOG)
 
 
 class _Written:
@@ -202,6 +204,8 @@ class _Written:
         """A forecast."""
         cells: dict[str, Entry] = {"Name": each.name, "Cell": self._reference(each.cell), "Units": each.units}
         cells |= {} if each.threshold is None else {"Threshold": each.threshold}
+        ends = zip(("Certainty from", "Certainty to"), each.asked or (), strict=False)
+        cells |= {heading: end for heading, end in ends if math.isfinite(end)}
         return NewRow(cells, "forecast", each.name, each.cell, _was(each.notes) or "an answer of the formula")
 
     def filter(self, each: Filter) -> NewRow:

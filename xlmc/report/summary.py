@@ -55,6 +55,7 @@ class SummaryRow:
         share: of the trials, held by the central range from `low` to `high`.
         base: at the assumptions' base values; None where that is no number.
         threshold, above: the probability above the threshold, where one was asked for.
+        asked, certainty: the probability of a range, where one was asked for; its ends, infinite where it has none.
     """
 
     name: str
@@ -68,6 +69,8 @@ class SummaryRow:
     base: float | None
     threshold: float | None
     above: Estimate | None
+    asked: tuple[float, float] | None = None
+    certainty: Estimate | None = None
 
 
 def summarise(simulation: Simulation, names: Collection[str] | None = None) -> list[SummaryRow]:
@@ -91,6 +94,8 @@ def summarise(simulation: Simulation, names: Collection[str] | None = None) -> l
             base=None if base is None else base.forecasts[name],
             threshold=result.definition.threshold,
             above=result.statistics.probability_above,
+            asked=result.definition.asked,
+            certainty=result.certainty,
         )
         for name, result in simulation.results.items()
         if names is None or name in names
@@ -121,7 +126,15 @@ def _line(row: SummaryRow, heading: str) -> dict[str, str]:
         "Base case": "" if row.base is None else f"{row.base:.6g}",
         "Threshold": threshold,
         "Above threshold": "" if row.above is None else share_text(row.above),
+        "Certainty of": "" if row.asked is None else _ends_text(*row.asked),
+        "Certainty": "" if row.certainty is None else share_text(row.certainty),
     }
+
+
+def _ends_text(low: float, high: float) -> str:
+    if low == -math.inf:
+        return f"≤ {high:g}"
+    return f"≥ {low:g}" if high == math.inf else f"{low:g} to {high:g}"
 
 
 def range_heading(rows: Sequence[SummaryRow]) -> str:

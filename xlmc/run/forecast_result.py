@@ -143,6 +143,12 @@ class ForecastResult:
         low, high = statistics.central_interval(self.sample, share)
         return self._where_told(low, (1.0 - share) / 2.0), self._where_told(high, (1.0 - share) / 2.0)
 
+    @cached_property
+    def certainty(self) -> Estimate | None:
+        """The share of the trials in the range that was asked for; None where none was, or no trial has a number."""
+        asked = self.definition.asked
+        return None if asked is None or not self.sample.n else statistics.probability_between(self.sample, *asked)
+
     def probability_above(self, threshold: float) -> Estimate:
         """P(forecast > threshold)."""
         return statistics.probability_above(self.sample, threshold)

@@ -181,8 +181,8 @@ def test_the_range_of_a_certainty_is_a_threshold(read):
     both = {"fCertaintyChartPrefs": {"fCertaintyRangeMin": 120.0, "fCertaintyRangeMax": 150.0}}
     assert read(SKID, replace(TOTAL, prefs=low)).forecasts[0].threshold == 120.0
     found = read(SKID, replace(TOTAL, prefs=both))
-    assert found.forecasts[0].threshold == 120.0
-    assert any("150 is left out" in notice.message for notice in found.notices)
+    assert (found.forecasts[0].threshold, found.forecasts[0].asked) == (None, (120.0, 150.0))
+    assert any("the certainty of this range is reported" in notice.message for notice in found.notices)
 
 
 def test_decision_variables_keep_their_values_and_are_named_once(read):

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from xlmc.address import Area, Cell
@@ -68,6 +70,23 @@ def test_threshold_and_notes(read):
     assert found.forecasts[0].threshold == 35
     assert found.forecasts[0].notes == {"Asked by": "the court"}
     assert found.forecasts[0].units == ""
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "asked"),
+    [(35, 40.5, (35, 40.5)), (35, None, (35, math.inf)), (None, 35, (-math.inf, 35)), (None, None, None)],
+)
+def test_the_range_of_a_certainty(read, blocks, low, high, asked):
+    columns = blocks("Answers!F1", [["Certainty from", "Certainty to"], [low, high]])
+    found = read(columns, tables={"xlmc_forecasts": "Answers!A1:G2"})
+    assert not found.problems
+    assert found.forecasts[0].asked == asked
+
+
+def test_a_certainty_of_no_range(only_problem, blocks):
+    columns = blocks("Answers!F1", [["Certainty from", "Certainty to"], [2, 1]])
+    message = "The range of the certainty begins at 2 and ends at 1"
+    only_problem("Answers!F2", message, "Exchange", columns, tables={"xlmc_forecasts": "Answers!A1:G2"})
 
 
 @pytest.mark.parametrize("value", [41.5, True])

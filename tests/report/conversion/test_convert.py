@@ -168,13 +168,19 @@ def test_dialogs_become_rows_and_what_cannot_be_read_is_still_refused(tmp_path):
         Asked(S, "$B$5", "Total", "ft", prefs=FILTER),
         Asked(S, "$B$6", "With odd", prefs=FILTER),
         Asked(S, "$B$7", "Other", prefs=INSIDE),
-        Asked(S, "$B$8", "Same", prefs=ALL),
+        Asked(
+            S,
+            "$B$8",
+            "Same",
+            prefs=ALL | {"fCertaintyChartPrefs": {"fCertaintyRangeMin": 5.0, "fCertaintyRangeMax": 9.0}},
+        ),
     ]
     path = tmp_path / "book.xlsx"
     save(path, CELLS, [[SKID, OFFSET, ODD, Tied(S, "", SKID, OFFSET, 0.5)], answers], comments=[(S, "A1", "hello")])
     new = converts(path, left=["Sheet1!B4", ""])
     model = load(new)
     assert [each.name for each in model.forecasts] == ["Total", "Other", "Same"]
+    assert [each.asked for each in model.forecasts] == [None, None, (5.0, 9.0)]
     assert ["With odd" in str(each) and "Sheet1!B4" in str(each) for each in model.definitions.refused] == [True]
     assert {each.name for each in model.definitions.left_out} == {"With odd", "Filter of With odd"}
     assert not any("Crystal Ball keeps no run preferences" in str(notice) for notice in model.notices)

@@ -53,6 +53,22 @@ def test_the_threshold_has_a_sentence_of_its_own(threshold, text):
     assert sentences(GRID, units="mph", threshold=threshold)[1] == text
 
 
+@pytest.mark.parametrize(
+    ("asked", "text", "words"),
+    [
+        ((20.0, 80.5), "P(20 ≤ speed ≤ 80.5 mph) = 60.5 % ± 0.2 %", "from 20 to 80.5 mph"),
+        ((85.8, math.inf), "P(speed ≥ 85.8 mph) = 14.20 % ± 0.11 %", "at least 85.8 mph"),
+        ((-math.inf, 10.0), "P(speed ≤ 10 mph) = 10.00 % ± 0.09 %", "at most 10 mph"),
+    ],
+)
+def test_the_range_that_was_asked_for_has_a_sentence_and_a_certainty(asked, text, words):
+    assert sentences(GRID, units="mph", asked=asked)[1] == text
+    found = certainties(Run(GRID, units="mph", asked=asked).results["speed"])[-1]
+    assert (found.kind, found.low, found.high, found.words) == ("asked", *asked, words)
+    assert round(found.share.value * 100_000) == np.count_nonzero((asked[0] <= GRID) & (asked[1] >= GRID))
+    assert sentences([], asked=asked) == ["speed: no accepted trial has a number"]
+
+
 def test_trials_without_a_number_are_told_of():
     run = Run([*GRID, math.nan], ["#NUM!"], units="mph", central=0.6, threshold=85.8)
     among = "; counted in the 100,000 of 100,001 accepted trials in which it is a number"

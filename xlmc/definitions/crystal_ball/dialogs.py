@@ -310,13 +310,13 @@ class _Dialogs:
             return
         self._answers.take_cell(cell, cell)
         name = _free_name(name, cell, self._answers, self._findings)
-        threshold = self._threshold(stored.certainty, name, cell)
+        threshold, asked = self._limits(stored.certainty, name, cell)
         if stored.filter is not None:
             self._filter(stored.filter, name, cell)
         if stored.precision is not None:
             self._found.precisions[name] = stored.precision
         self._found.forecasts.append(
-            Forecast(name, cell, cell, stored.units, self._central, threshold, {DIALOG: "a forecast"})
+            Forecast(name, cell, cell, stored.units, self._central, threshold, {DIALOG: "a forecast"}, asked)
         )
 
     def _filter(self, stored: ForecastFilter, name: str, cell: Cell) -> None:
@@ -348,18 +348,23 @@ class _Dialogs:
         self._found.rewritten[site] = ir.Call("OR", tuple(parts)) if parts else ir.Logical(value=False)
         return Filter("", site, cell)
 
-    def _threshold(self, certainty: tuple[float, float], name: str, cell: Cell) -> float | None:
+    def _limits(
+        self, certainty: tuple[float, float], name: str, cell: Cell
+    ) -> tuple[float | None, tuple[float, float] | None]:
+        """The threshold, or the range that is asked for, from the range that the certainty was last shown for."""
         low, high = certainty
         ends = [end for end in certainty if math.isfinite(end) and abs(end) < _BEYOND]
         if not ends:
-            return None
+            return None, None
         said = f"the certainty of {name!r} was last shown for {_range(low, high)}"
         if len(ends) == 1:
             self._findings.notice(f"{said}: its end is taken as the threshold", cell)
-        else:
-            message = f"{said}: {show(low)} is taken as the threshold, and {show(high)} is left out"
-            self._findings.notice(message, cell)
-        return ends[0]
+            return ends[0], None
+        if low > high:
+            self._findings.notice(f"{said}, which is no range: it is left out", cell)
+            return None, None
+        self._findings.notice(f"{said}: the certainty of this range is reported", cell)
+        return None, certainty
 
     # correlations
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 from xlmc.address import Cell
@@ -11,12 +12,13 @@ from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.fields import central_share, number, number_in, optional_text
 from xlmc.definitions.tables.identity import Claims, identify
 from xlmc.definitions.tables.table_rows import DefinitionTable, Row, is_blank, rows_of
+from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError
 from xlmc.workbook.workbook import Workbook
 
 __all__ = ["read_forecasts"]
 
-_KNOWN = ("Name", "Value", "Cell", "Units", "Range %", "Threshold")
+_KNOWN = ("Name", "Value", "Cell", "Units", "Range %", "Threshold", "Certainty from", "Certainty to")
 
 
 def read_forecasts(
@@ -49,6 +51,7 @@ def _forecast(row: Row, computed: Computed, central: float, claims: Claims, find
         findings.attempt(_remark_on_constant, row.workbook, identity[1], findings)
     share = findings.attempt(_central, row, findings)
     threshold = findings.attempt(number, row, "Threshold")
+    asked = findings.attempt(_asked, row)
     units = findings.attempt(optional_text, row, "Units") or ""
     if len(findings.problems) > before or not identity:
         return None
@@ -61,7 +64,24 @@ def _forecast(row: Row, computed: Computed, central: float, claims: Claims, find
         central=central if share is None else share,
         threshold=threshold,
         notes=row.notes(_KNOWN),
+        asked=asked,
     )
+
+
+def _asked(row: Row) -> tuple[float, float] | None:
+    """The range whose certainty is to be reported; a blank end is no limit, and two are no range.
+
+    Raises:
+        DefinitionError: an end is no number, or the range ends below its beginning.
+    """
+    low, high = number(row, "Certainty from"), number(row, "Certainty to")
+    if low is None and high is None:
+        return None
+    ends = -math.inf if low is None else low, math.inf if high is None else high
+    if ends[0] > ends[1]:
+        message = f"The range of the certainty begins at {show(ends[0])} and ends at {show(ends[1])}"
+        raise DefinitionError(message, where=row.cell("Certainty from"), hint="Exchange the two numbers")
+    return ends
 
 
 def _central(row: Row, findings: Findings) -> float | None:

@@ -55,6 +55,9 @@ _FORECAST = (
     ("high", "to"),
     ("notes", "Notes"),
 )
+_CERTAINTY = (("certainty_from", "Certainty from"), ("certainty_to", "to"), ("certainty", "Certainty"))
+"""Columns of forecasts where a range was asked for."""
+
 _FILTER = (
     ("name", "Filter"),
     ("cell", "Cell"),
@@ -123,8 +126,18 @@ def plain(value: float | None) -> float | None:
 
 def forecast_section(simulation: Simulation) -> Section:
     """Every forecast with its main results at full precision, for a repeat to be compared with."""
-    rows = tuple(_forecast_row(result) for result in simulation.results.values())
-    return Section("forecasts", "Forecasts", table=RecordTable(_FORECAST, rows))
+    results = simulation.results.values()
+    rows = tuple(_forecast_row(result) for result in results)
+    if not any(result.definition.asked for result in results):
+        return Section("forecasts", "Forecasts", table=RecordTable(_FORECAST, rows))
+    more = tuple(_certainty_cells(result) for result in results)
+    rows = tuple(row + cells for row, cells in zip(rows, more, strict=True))
+    return Section("forecasts", "Forecasts", table=RecordTable((*_FORECAST, *_CERTAINTY), rows))
+
+
+def _certainty_cells(result: ForecastResult) -> tuple[Value, ...]:
+    low, high = result.definition.asked or (None, None)
+    return plain(low), plain(high), None if result.certainty is None else plain(result.certainty.value)
 
 
 def _forecast_row(result: ForecastResult) -> tuple[Value, ...]:

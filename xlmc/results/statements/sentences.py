@@ -35,7 +35,7 @@ class Statement:
 
     Attributes:
         forecast: its name.
-        kind: `range` or `threshold`.
+        kind: `range`, `threshold` or `certainty`.
         text: the sentence, without a full stop.
     """
 
@@ -45,7 +45,9 @@ class Statement:
 
 
 def statements(simulation: Simulation) -> list[Statement]:
-    """For every forecast: where its central range lies, and how probable values above its threshold are."""
+    """For every forecast: where its central range lies, and how probable are values above its threshold and in the
+    range that was asked for.
+    """
     return [each for result in simulation.results.values() for each in _of(result)]
 
 
@@ -63,7 +65,19 @@ def _of(result: ForecastResult) -> list[Statement]:
         joined = ":" if above.value in (0.0, 1.0) else " ="
         text = f"P({name} > {definition.threshold:g}{units}){joined} {percent_text(above)}{part}"
         told.append(Statement(name, "threshold", text))
+    if definition.asked is not None and result.certainty is not None:
+        share = result.certainty
+        joined = ":" if share.value in (0.0, 1.0) else " ="
+        text = f"P({_asked_text(name, *definition.asked, units)}){joined} {percent_text(share)}{part}"
+        told.append(Statement(name, "certainty", text))
     return told
+
+
+def _asked_text(name: str, low: float, high: float, units: str) -> str:
+    """`120 ≤ Speed ≤ 150 mph`."""
+    below = "" if low == -math.inf else f"{low:g} ≤ "
+    above = "" if high == math.inf else f" ≤ {high:g}"
+    return f"{below}{name}{above}{units}" if above else f"{name} ≥ {low:g}{units}"
 
 
 def _part_text(result: ForecastResult) -> str:
@@ -98,7 +112,8 @@ class Certainty:
     """The share of a forecast's accepted trials in a range.
 
     Attributes:
-        kind: `below`, `between` or `above` for the central range; `at most` or `over` for the threshold.
+        kind: `below`, `between` or `above` for the central range; `at most` or `over` for the threshold; `asked` for
+            the range that was asked for.
         low, high: the ends of the range, infinite where it has none. The ends of `below`, `above` and `over` do not
             belong to the range.
         words: the range in words, with units.
@@ -113,7 +128,9 @@ class Certainty:
 
 
 def certainties(result: ForecastResult) -> list[Certainty]:
-    """The certainties below, in and above the central range as it is printed, and those of the threshold, if any."""
+    """The certainties below, in and above the central range as it is printed; those of the threshold, if any, and of
+    the range that was asked for, if any.
+    """
     definition, sample = result.definition, result.sample
     units = f" {definition.units}" if definition.units else ""
     found = []
@@ -133,4 +150,12 @@ def certainties(result: ForecastResult) -> list[Certainty]:
         at_most = probability_between(sample, -math.inf, threshold)
         found.append(Certainty("at most", -math.inf, threshold, f"at most {threshold:g}{units}", at_most))
         found.append(Certainty("over", threshold, math.inf, f"above {threshold:g}{units}", above))
+    if definition.asked is not None and result.certainty is not None:
+        found.append(Certainty("asked", *definition.asked, _asked_words(*definition.asked, units), result.certainty))
     return found
+
+
+def _asked_words(low: float, high: float, units: str) -> str:
+    if low == -math.inf:
+        return f"at most {high:g}{units}"
+    return f"at least {low:g}{units}" if high == math.inf else f"from {low:g} to {high:g}{units}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import time
 from pathlib import Path
+from xml.etree import ElementTree
 
 import openpyxl
 import pytest
@@ -122,6 +123,14 @@ def accepted(book, *changes):
     return f"{run.trials:,} trials, {run.accepted:,} accepted"
 
 
+def saved_svg(page, button):
+    """What a button saves."""
+    page.run("Copies.save = (blob) => blob.text().then((text) => { window.saved = text; })")
+    page.click(button)
+    page.until("window.saved")
+    return page.run("const { saved } = window; delete window.saved; return saved")
+
+
 def test_by_mouse(chromium, running, case):
     from selenium.webdriver import ActionChains
 
@@ -166,6 +175,14 @@ def test_by_mouse(chromium, running, case):
     page.click(page.all(".fit")[0])
     page.until("document.querySelector('.fit').options.length > 2")
 
+    drawing = ElementTree.fromstring(saved_svg(page, page.all(".pictures button")[1]))
+    parts = [each.tag.rpartition("}")[2] for each in drawing.iter()]
+    assert "image" not in parts
+    assert parts.count("path") > 8
+    texts = [each.text for each in drawing.iter() if each.tag.endswith("text")]
+    assert {"mph", "0", "Accepted trials, %"} & set(texts)
+    assert drawing.find("{http://www.w3.org/2000/svg}title").text.startswith("Chart of Chevrolet delta-V")
+
     page.tab("matters")
     page.until("document.querySelectorAll('#panel-matters svg').length > 2")
     page.tab("pairs")
@@ -189,9 +206,24 @@ def test_by_mouse(chromium, running, case):
     assert accepted(case, *changes) in page.stand
 
     page.tab("studies")
+    before = case.read_bytes()
+    news = "document.querySelector('#news').textContent.includes('{}')"
     page.button("JSON").click()
-    page.until("document.querySelector('#troubles').textContent.includes('as it stands')")
-    page.at_rest(page.button("All as in the workbook").click)
+    page.until(news.format("case-dry road-results.json"))
+    page.button("A copy of the workbook").click()
+    page.until(news.format("case-dry road.xlsx"))
+    page.button("The workbook itself …").click()
+    assert chromium.switch_to.active_element.text == "Type them in"
+    page.button("Leave it").click()
+    assert chromium.switch_to.active_element.text == "The workbook itself …"
+    assert case.read_bytes() == before
+    page.button("The workbook itself …").click()
+    page.at_rest(page.button("Type them in").click)
+    assert page.changes == []
+    assert case.with_name("case-before.xlsx").read_bytes() == before != case.read_bytes()
+    assert accepted(case) in page.stand
+    assert accepted(case.with_name("case-before.xlsx"), *changes) in page.stand
+    assert not page.button("A copy of the workbook").is_enabled()
     page.button("JSON").click()
     page.until("document.querySelector('#news').textContent.includes('case-results.json')")
     assert case.with_name("case-results.json").exists()

@@ -93,7 +93,7 @@ def test_what_is_changed_outlives_the_window(running, book):
         assert window.heard_last("state")["changes"] == state["offered"]
 
 
-def test_results_are_written_beside_the_workbook_and_only_of_its_own_state(running, book):
+def test_results_are_written_beside_the_workbook_and_changes_into_it(running, book):
     server = running(book=book)
     with server.window(server.library.only) as window:
         name, number = first_number(window.next("state"))
@@ -109,5 +109,25 @@ def test_results_are_written_beside_the_workbook_and_only_of_its_own_state(runni
             assert kept.forecasts[forecast].tobytes() == values.tobytes()
         window.say("set", **change(name, number["key"], number["value"] * 1.01).fields)
         window.next("rest", lambda message: message["version"] == 1)
-        window.say("save", what="book")
-        assert name in window.next("trouble", lambda message: message["about"] == "save")["text"]
+        window.say("save", what="run")
+        assert window.next("news")["text"] == f"Written: {book.with_name('case-changed-results.xlmcrun')}"
+        window.say("save", what="into")
+        assert window.next("news")["text"].endswith("The workbook as it was: case-before.xlsx")
+        assert window.next("news", lambda message: "was saved" in message["text"])
+        assert window.heard_last("state")["changes"] == []
+
+
+def test_studies_are_asked_of_the_state_that_is_shown(running, book):
+    server = running(book=book)
+    with server.window(server.library.only) as window:
+        name, number = first_number(window.next("state"))
+        window.next("rest")
+        window.say("set", **change(name, number["key"], number["value"] * 1.5).fields)
+        window.next("rest", lambda message: message["version"] == 1)
+        window.say("study", what="screen", other="")
+        told = window.next("study", lambda message: message["state"] != "running", seconds=120.0)
+        assert told["of"].startswith(f"{name}: ")
+        assert told["state"] == "done"
+        window.say("study", what="verify", other="")
+        assert window.next("study", lambda message: message["state"] != "running", seconds=120.0)["of"] == ""
+    assert [each.name for each in book.parent.glob("*.xlsx")] == ["case.xlsx"]

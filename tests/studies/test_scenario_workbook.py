@@ -189,3 +189,11 @@ def test_the_run_of_a_scenario_is_not_saved_as_a_run_of_the_file(small, tmp_path
         run.save(tmp_path / "r.xlsx")
     with pytest.raises(SimulationError):
         run.keep(tmp_path / "r.xlmcrun")
+
+
+def test_a_correlated_assumption_is_held():
+    """Its correlation, which then has no effect, is no longer read from the file."""
+    model = load("examples/intersection-momentum.xlsx")
+    correlation = model.definitions.correlations[0]
+    edited = edited_workbook(model, Scenario("held", (Held(correlation.first),)))
+    assert len(edited.cells) == 1

@@ -47,11 +47,15 @@ def replay(recorded: Path, jobs: int, as_json: bool, quiet: bool) -> None:
 
 
 def _lines(found: Replayed, path: Path) -> Iterator[str]:
+    from xlmc.results.record import changed_from_of
+
     record = found.record
     yield (
         f"{path.name} records a run of {record['file.name']}: {record['counts.trials']:,.0f} trials, "
         f"seed {record['settings.seed']}."
     )
+    if (changed := changed_from_of(record)) is not None:
+        yield changed.sentence
     if found.repeated is not None:
         yield from failing_lines(found.repeated)
     yield f"{_verdict(found)}."

@@ -5,21 +5,21 @@ from __future__ import annotations
 import asyncio
 import os
 import time
-from collections.abc import Callable, Coroutine, Iterable
+from collections.abc import Callable, Coroutine, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TypeVar
 
 from watchfiles import awatch
 
 from xlmc.errors import WorkbookError, XlmcError
-from xlmc.live.adjustments import Adjustments
-from xlmc.live.hand_over import save_result
+from xlmc.live.adjustments import Adjustments, in_words
+from xlmc.live.hand_over import KINDS, edited_state, save_result, write_changes
 from xlmc.live.library import Library
 from xlmc.live.protocol import Message, Said, written
 from xlmc.live.session import Job, Outcome, Session, SupersededError, View
-from xlmc.live.study_run import StudyRun
+from xlmc.live.study_run import OF_THE_FILE, StudyRun
 from xlmc.live.what_changed import what_changed
 from xlmc.run.loading import load
 
@@ -42,6 +42,9 @@ _CHANGING: Final = frozenset({"set", "reset", "keep", "show", "drop", "restore",
 
 _NEWEST: Final = frozenset({"frame", "running", "state", "study"})
 """Kinds of which a window that lags behind needs the newest alone."""
+
+
+T = TypeVar("T")
 
 
 class Window:
@@ -181,6 +184,9 @@ class Desk:
             for window in self._windows:
                 window.put(message["kind"], text)
 
+    def _tell_study(self, message: Message) -> None:
+        self._tell([message])
+
     def _say(self, about: str, text: str) -> None:
         """Tell of a trouble, or, with an empty text, that it is over."""
         if text:
@@ -199,7 +205,7 @@ class Desk:
         else:
             self._say("keeping", "")
 
-    async def _in_thread(self, what: Callable[[], object]) -> object:
+    async def _in_thread(self, what: Callable[[], T]) -> T:
         return await asyncio.get_running_loop().run_in_executor(self._pool, what)
 
     async def _read(self) -> Model | None:
@@ -216,7 +222,7 @@ class Desk:
                     break  # it was read, and is not what it must be
             else:
                 self._say("book", "")
-                return model  # type: ignore[return-value]  # of `load`
+                return model
         self._say("book", trouble)
         return None
 
@@ -264,36 +270,57 @@ class Desk:
             return
         except Exception as error:  # a fault of xlmc's own must not end the window
             outcome = Outcome(problem=f"xlmc has failed: {type(error).__name__}: {error}")
-        self._tell(session.finish(job, outcome))  # type: ignore[arg-type]  # of `run`
+        self._tell(session.finish(job, outcome))
 
     async def _save(self, what: str) -> None:
-        session = self.session
-        if session is None or session.rest is None:
-            self._say("save", "There is no finished run to save yet.")
+        """Write what is shown; say where, or why not."""
+        if self.session is None:
             return
-        run, changes = session.rest, session.changes_at_rest
         try:
-            path = await self._in_thread(lambda: save_result(run, self.path, what, changes))
+            state = self.session.at_rest()
+            if what in KINDS:
+                text = f"Written: {await self._in_thread(lambda: save_result(state, self.path, what))}"
+            else:
+                text = await self._in_thread(lambda: write_changes(state, self.path, into=what == "into"))
         except (XlmcError, OSError) as error:
             self._say("save", str(error))
         else:
             self._say("save", "")
-            self._tell([{"kind": "news", "text": f"Written: {path}", "link": ""}])
+            self._tell([{"kind": "news", "text": text, "link": ""}])
 
     def _ask(self, window: Window, what: str, other: str) -> None:
         """Start a study, unless one is going on."""
         trouble = "A study is going on: cancel it, or wait." if self._study and self._study.is_running else ""
-        books = [self.path]
+        others: list[Path] = []
         if what == "compare":
             second = self._library.path(other)
-            books += [] if second is None else [second]
+            others += [] if second is None else [second]
             trouble = trouble or ("" if second else "Choose the workbook to compare this one with.")
         if trouble:
             window.put("trouble", written({"kind": "trouble", "about": "study", "text": trouble}))
             return
         self._say("study", "")
-        self._study = StudyRun(what, books, lambda message: self._tell([message]))
-        self._later(self._study.run())
+        session = self.session
+        if what in OF_THE_FILE or session is None or not session.adjustments:
+            self._begin(StudyRun(what, [self.path, *others], self._tell_study))
+        else:
+            self._later(self._ask_of_state(session, what, others))
+
+    def _begin(self, study: StudyRun) -> None:
+        self._study = study
+        self._later(study.run())
+
+    async def _ask_of_state(self, session: Session, what: str, others: Sequence[Path]) -> None:
+        """Start a study of the state that is shown, which is typed into a copy of the workbook for it."""
+        own, adjustments, name = session.own, session.adjustments, session.shown
+        try:
+            edited = await self._in_thread(lambda: edited_state(own, adjustments, name))
+        except (XlmcError, OSError) as error:
+            self._say("study", str(error))
+            return
+        of = in_words(own.definitions, adjustments)
+        if self._study is None or not self._study.is_running:
+            self._begin(StudyRun(what, [self.path, *others], self._tell_study, of, edited.data))
 
     # The file
 

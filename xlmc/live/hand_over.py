@@ -1,26 +1,41 @@
-"""Writes what the window shows beside its workbook: result workbook, page, JSON, saved run.
+"""Writes what the window shows: result workbook, page, JSON, saved run; a copy with the changes; the workbook itself.
 
-Every result holds a record of how it can be repeated, from its workbook. So only the workbook's own state is written:
-what was changed in the window stands in no workbook, and a record could not name it.
+Every result holds a record of how it can be repeated, from its workbook. A state that was changed in the window stands
+in no workbook; so it is typed into a copy first, the copy is run, and the results are the copy's, with a record that
+says what differs from the workbook, and how. They are written only where the numbers are those of the window.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from xlmc.errors import SimulationError
+from xlmc.live.adjustments import Adjustments, in_words, scenario_of
 from xlmc.report import save
 from xlmc.report.json_document import save_json
 from xlmc.report.page import save_page
 from xlmc.results.saved import keep
-from xlmc.workbook.target import copy_ending, free_target
+from xlmc.run.loading import build_model
+from xlmc.run.simulate import simulate
+from xlmc.run.simulation import ChangedFrom
+from xlmc.studies.scenario_workbook import EditedWorkbook, edited_workbook, write_edited
+from xlmc.workbook.reader import read_workbook
+from xlmc.workbook.target import free_target
+from xlmc.workbook.writer import TakenError, refuse_if_open, write_workbook
 
 if TYPE_CHECKING:
+    from xlmc.run.model import Model
     from xlmc.run.simulation import Simulation
 
-__all__ = ["KINDS", "save_result"]
+__all__ = ["KINDS", "AtRest", "edited_state", "save_result", "write_changes"]
+
+_NO_NAME: Final = re.compile(r"[^\w .,+()-]+")
+_LONGEST: Final = 60
+"""Characters of a scenario's name in the name of a file."""
 
 
 class _Kind(NamedTuple):
@@ -38,24 +53,130 @@ KINDS: Final[Mapping[str, _Kind]] = {
 }
 
 
-def save_result(run: Simulation, book: Path, what: str, changes: Sequence[str]) -> Path:
+@dataclass(frozen=True, slots=True)
+class AtRest:
+    """A state whose run is done.
+
+    Attributes:
+        own: the workbook's model.
+        adjustments: what differs from it.
+        name: of the scenario that it is; empty for none.
+        run: its run.
+    """
+
+    own: Model
+    adjustments: Adjustments
+    name: str
+    run: Simulation
+
+    @property
+    def changes(self) -> tuple[str, ...]:
+        """What differs from the workbook, in words."""
+        return tuple(in_words(self.own.definitions, self.adjustments))
+
+
+def save_result(state: AtRest, book: Path, what: str) -> Path:
     """Write one kind of result beside the workbook, under a name that is free or whose file is ours to replace.
 
     Args:
-        run: the finished one.
+        state: the finished one.
         book: the workbook.
         what: a key of `KINDS`.
-        changes: in words, what of the run is other than in the workbook.
 
     Raises:
-        WorkbookError: it cannot be written.
-        SimulationError: the run is not one of the workbook's own state.
+        WorkbookError: it cannot be written, or a change would have to replace a formula.
+        DefinitionError: the workbook's tables have no column for a change.
+        SimulationError: the changed copy gives other numbers than the window shows.
     """
-    if changes:
-        message = f"results are written of the workbook as it stands, and here is changed: {'; '.join(changes)}"
-        hint = "type the changes into the workbook, or go back with “All as in the workbook”"
-        raise SimulationError(message, hint=hint)
-    kind = KINDS[what]
-    wanted = book.with_name(f"{book.stem}-results{kind.ending or copy_ending(book)}")
+    kind, run = KINDS[what], state.run if not state.adjustments else _run_of_copy(state)
+    wanted = book.with_name(f"{book.stem}{_label(state)}-results{kind.ending or book.suffix}")
     path, _ = free_target(wanted, run.model.workbook.name)
     return kind.write(run, path)
+
+
+def _label(state: AtRest) -> str:
+    """What tells files of a changed state from those of the workbook: `-dry road`, `-changed`."""
+    if not state.adjustments:
+        return ""
+    return f"-{_NO_NAME.sub('_', state.name).strip(' .')[:_LONGEST].strip(' .') or 'changed'}"
+
+
+def edited_state(own: Model, adjustments: Adjustments, name: str) -> EditedWorkbook:
+    """A copy of the workbook with a state typed into it, not written yet.
+
+    Raises:
+        WorkbookError, DefinitionError: as for `save_result`.
+    """
+    return edited_workbook(own, scenario_of(own.definitions, name or "shown in the window", adjustments))
+
+
+def _run_of_copy(state: AtRest) -> Simulation:
+    """The run of a copy of the workbook with the state typed into it."""
+    edited, book = edited_state(state.own, state.adjustments, state.name), state.own.workbook
+    run = simulate(build_model(read_workbook(edited.data, book.name), state.own.path))
+    if not _is_same(run, state.run):
+        message = "a copy of the workbook with these changes gives other numbers than the window shows"
+        raise SimulationError(message, hint="Nothing was written; please report this")
+    return replace(run, changed_from=ChangedFrom(book.name, book.sha256, state.changes))
+
+
+def _is_same(first: Simulation, second: Simulation) -> bool:
+    """Whether two runs have the same accepted trials, to the last bit."""
+    columns = [(run.trial_index, *run.inputs.values(), *run.forecasts.values()) for run in (first, second)]
+    return len(columns[0]) == len(columns[1]) and all(
+        mine.tobytes() == theirs.tobytes() for mine, theirs in zip(*columns, strict=True)
+    )
+
+
+def write_changes(state: AtRest, book: Path, *, into: bool) -> str:
+    """Type the state into a copy of the workbook, or into the workbook itself, of which a copy is kept then.
+
+    Args:
+        state: the finished one.
+        book: the workbook.
+        into: into the workbook itself.
+
+    Returns:
+        What was done, in words.
+
+    Raises:
+        TakenError: a program has the workbook open, or it has changed since it was read.
+        WorkbookError, DefinitionError: as for `save_result`.
+    """
+    edited = edited_state(state.own, state.adjustments, state.name)
+    if not edited.cells:
+        raise SimulationError("nothing is changed", hint="move something first")
+    if not into:
+        path = write_edited(edited, _free(book, _label(state)))
+        return f"Written: {path}. {_told(edited)}"
+    refuse_if_open(book)
+    if read_workbook(book).sha256 != edited.sha256:
+        raise TakenError("the workbook has changed since it was read", where=book, hint="wait until it was read again")
+    kept = _free(book, "-before")
+    write_workbook(kept, state.own.workbook.data, lambda: _refuse_taken(kept))
+    write_edited(edited, book, overwrite=True)
+    return f"Typed into {book.name}. {_told(edited)} The workbook as it was: {kept.name}"
+
+
+def _free(book: Path, label: str) -> Path:
+    """The first name that no file has: `case-before.xlsx`, `case-before-2.xlsx`."""
+    number, path = 1, book.with_name(f"{book.stem}{label}{book.suffix}")
+    while path.exists():
+        number += 1
+        path = book.with_name(f"{book.stem}{label}-{number}{book.suffix}")
+    return path
+
+
+def _refuse_taken(path: Path) -> None:
+    if path.exists():
+        raise TakenError("the file exists already", where=path, hint="try again")
+
+
+def _told(edited: EditedWorkbook) -> str:
+    """How many cells were typed into, and what Excel must still do."""
+    count = len(edited.cells)
+    cells = f"{count} cells were typed into" if count > 1 else "1 cell was typed into"
+    formulas = f", {edited.computed:,} formulas have new values" if edited.computed else ""
+    excel = "; Excel calculates the rest when it opens the file" if edited.calculates else ""
+    sheets = "; its result sheets are those of the run before" if edited.has_results else ""
+    return f"{cells}{formulas}{excel}{sheets}."

@@ -17,10 +17,11 @@ shows, whether fitted distributions are wanted |
 | `show` | `name` | bring a kept scenario back; with an empty name the book's own state |
 | `drop` | `name` | forget a kept scenario |
 | `compare` | | run every kept scenario, and put them into one table |
-| `save` | `what` | write `book`, `page`, `json` or `run` beside the workbook |
+| `save` | `what` | write the result `book`, `page`, `json` or `run` beside the workbook; `copy`: a copy of the \
+workbook with the changes; `into`: the changes into the workbook itself |
 | `variants` | | keep the usual variants of the workbook as scenarios |
-| `study` | `what`, `other` | start `verify`, `stability`, `screen`, `methods` or `compare` on the workbook's file; \
-`other`: the key of the workbook to compare it with |
+| `study` | `what`, `other` | start `verify` on the workbook's file, or `stability`, `screen`, `methods` or `compare` \
+on the state that is shown; `other`: the key of the workbook to compare it with |
 | `cancel` | | end the study that is going on |
 
 **The server says**
@@ -37,7 +38,8 @@ shows, whether fitted distributions are wanted |
 | `rest` | `version`, `sentences`, `warnings`, `checks`, `filters`, `sampling` | what is said of a run at rest |
 | `part` | `tab`, `version`, `html` or `pairs` | the contents of the open tab |
 | `running` | `version`, `stage`, `share` | how far a run is; `share` 1: done |
-| `study` | `what`, `state`, `step`, `seconds`, `text` | how far a study is; `state`: `running`, `done`, `cancelled`, \
+| `study` | `what`, `of`, `state`, `step`, `seconds`, `text` | how far a study is; `of`: the changes that it is asked \
+with; `state`: `running`, `done`, `cancelled`, \
 `failed`; `text`: its answer |
 | `trouble` | `about`, `text` | why something could not be done; an empty text: the trouble is over |
 | `news` | `text`, `link` | what was done, such as a file that was written |
@@ -135,7 +137,7 @@ _FIELDS: Final[Mapping[str, Mapping[str, Callable[[object], bool]]]] = {
     "show": {"name": _is_text},
     "drop": {"name": _is_text},
     "compare": {},
-    "save": {"what": _one_of("book", "page", "json", "run")},
+    "save": {"what": _one_of("book", "page", "json", "run", "copy", "into")},
     "variants": {},
     "study": {"what": _one_of("verify", "stability", "screen", "methods", "compare"), "other": _is_text},
     "cancel": {},

@@ -67,6 +67,7 @@ SCRIPTS: Final = {
     "making.js": (_LIVE, "making.js"),
     "wire.js": (_LIVE, "wire.js"),
     "handles.js": (_LIVE, "handles.js"),
+    "vectors.js": (_LIVE, "vectors.js"),
     "live_chart.js": (_LIVE, "live_chart.js"),
     "left_side.js": (_LIVE, "left_side.js"),
     "right_side.js": (_LIVE, "right_side.js"),

@@ -24,6 +24,7 @@ from xlmc.live.adjustments import (
     usual_variants,
 )
 from xlmc.live.frames import bases_of, frame_of, matters_html, pair_of, rest_of, scenarios_html, tables_html
+from xlmc.live.hand_over import AtRest
 from xlmc.live.moving_models import MANY_FORMULAS, KnownModels
 from xlmc.live.protocol import Message, Said
 from xlmc.live.window_book import assumption_rows, filter_rows, forecast_rows, shapes_of
@@ -167,7 +168,6 @@ class Session:
         self.shown = ""
         self.version = 0
         self.rest: Simulation | None = None
-        self.changes_at_rest: list[str] = []
         self.behind: Simulation | None = None
         self.behind_is = "the workbook as it was opened"
         self._behind_of: tuple[int, Adjustments] | None = None
@@ -254,9 +254,7 @@ class Session:
             case "view":
                 self.look(View.of([said], [each.name for each in self.own.forecasts]))
             case "pin":
-                if self.rest is None or self._done.get("rest") != self.version:
-                    raise XlmcError("the run of this state is not done yet", hint="wait until it is")
-                self.behind, self._behind_of = self.rest, self._now
+                self.behind, self._behind_of = self.at_rest().run, self._now
                 self.behind_is = "; ".join(in_words(self.own.definitions, self.adjustments)) or "the workbook"
                 return Replies(all=[self._state()])
             case "stop":
@@ -329,6 +327,16 @@ class Session:
         self.behind_is = "the workbook before it was saved"
         text = f"{model.workbook.name} was saved: {'; '.join(news) or 'nothing that a run depends on changed'}"
         return [self._book(), self._state(), {"kind": "news", "text": text, "link": ""}, *self._trouble()]
+
+    def at_rest(self) -> AtRest:
+        """The state that is shown, with its run.
+
+        Raises:
+            XlmcError: the run is not done yet.
+        """
+        if self.rest is None or self._done.get("rest") != self.version:
+            raise XlmcError("the run of this state is not done yet", hint="wait until it is")
+        return AtRest(self.own, self.adjustments, self.shown, self.rest)
 
     # What is to be done
 
@@ -527,7 +535,6 @@ class Session:
         found = list(outcome.messages)
         if job.stage == "rest" and job.version == self.version:
             self.rest, self._done["shown"] = outcome.simulation, outcome.done
-            self.changes_at_rest = in_words(self.own.definitions, self.adjustments)
             if self._pin_next and not self.adjustments and outcome.simulation is not None:
                 self.behind, self._behind_of, self._pin_next = outcome.simulation, self._now, False
         self._remember(found)

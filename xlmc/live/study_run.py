@@ -8,6 +8,7 @@ import os
 import re
 import signal
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -16,7 +17,7 @@ from typing import Final
 from xlmc.live.protocol import Message
 from xlmc.workbook.printable import printable
 
-__all__ = ["STUDIES", "StudyRun"]
+__all__ = ["OF_THE_FILE", "STUDIES", "StudyRun"]
 
 STUDIES: Final = {
     "verify": (),
@@ -26,6 +27,9 @@ STUDIES: Final = {
     "compare": (),
 }
 """Command -> what it is given beside the workbook."""
+
+OF_THE_FILE: Final = frozenset({"verify"})
+"""Those that ask what stands in the file, and not what would be if something were other."""
 
 _COLUMNS: Final = "108"
 _STEP: Final = re.compile(r"running: ([^\x1b\r\n]+)")
@@ -43,18 +47,36 @@ class StudyRun:
         what: a key of `STUDIES`.
         books: the workbook, and another to compare it with.
         tell: takes a message whenever there is something new.
+        of: the changes that it is asked with, in words.
+        data: the file of the workbook with these changes; None to take the workbook's own.
     """
 
-    def __init__(self, what: str, books: Sequence[Path], tell: Callable[[Message], None]) -> None:
+    def __init__(
+        self,
+        what: str,
+        books: Sequence[Path],
+        tell: Callable[[Message], None],
+        of: Sequence[str] = (),
+        data: bytes | None = None,
+    ) -> None:
         self.what = what
-        self._books, self._tell = books, tell
+        self._books, self._tell, self._of, self._data = books, tell, of, data
         self._step, self._begun, self._cancelled = "", time.monotonic(), False
         self._process: asyncio.subprocess.Process | None = None
         self.last: Message = self._message("running", "")
 
     async def run(self) -> None:
         """Until it is done, or cancelled."""
-        command = [sys.executable, "-m", "xlmc", self.what, *map(str, self._books), *STUDIES[self.what]]
+        if self._data is None:
+            await self._run(self._books)
+            return
+        with tempfile.TemporaryDirectory(prefix="xlmc-window-") as folder:
+            copy = Path(folder) / self._books[0].name
+            copy.write_bytes(self._data)
+            await self._run([copy, *self._books[1:]])
+
+    async def _run(self, books: Sequence[Path]) -> None:
+        command = [sys.executable, "-m", "xlmc", self.what, *map(str, books), *STUDIES[self.what]]
         given = {**os.environ, "COLUMNS": _COLUMNS, "NO_COLOR": "1", "PYTHONIOENCODING": "utf-8", "TERM": "dumb"}
         steps = _Steps(self._step_told)
         try:
@@ -110,7 +132,13 @@ class StudyRun:
 
     def _message(self, state: str, text: str) -> Message:
         seconds = time.monotonic() - self._begun
-        known = {"what": self.what, "state": state, "step": printable(self._step), "text": text}
+        known = {
+            "what": self.what,
+            "of": "; ".join(self._of),
+            "state": state,
+            "step": printable(self._step),
+            "text": text,
+        }
         return {"kind": "study", **known, "seconds": round(seconds, 1)}
 
     def _say(self, state: str, text: str) -> None:

@@ -11,6 +11,7 @@ from xlmc.errors import ErrorCode
 from xlmc.replay.changes import Closeness, is_number
 from xlmc.replay.sheets import CellDifference, SheetComparison, compare_sheets
 from xlmc.replay.versions import recorded_version
+from xlmc.results.record import changed_from_of
 from xlmc.run.stopping.stopped import Stopped
 from xlmc.run.version import __version__
 from xlmc.workbook.workbook import CellContent
@@ -119,6 +120,7 @@ def as_recorded(run: Simulation, record: Record, settings: Settings) -> Simulati
         model=_rename(run.model, str(record["file.name"])),
         settings=settings,
         stopped=_recorded_end(record),
+        changed_from=changed_from_of(record),
     )
 
 

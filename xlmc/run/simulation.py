@@ -41,6 +41,7 @@ __all__ = [
     "ERROR_SHARE",
     "KEPT_INPUTS",
     "TRIAL",
+    "ChangedFrom",
     "Origin",
     "Simulation",
     "assumption_heading",
@@ -84,6 +85,27 @@ class Origin:
     processor: Mapping[str, str]
 
 
+@dataclass(frozen=True, slots=True)
+class ChangedFrom:
+    """The workbook that the run's own was made of, by typing a changed state into a copy of it.
+
+    Attributes:
+        name: of the workbook.
+        sha256: of its file.
+        changes: what differs from it, in words, one a phrase.
+    """
+
+    name: str
+    sha256: str
+    changes: tuple[str, ...]
+
+    @property
+    def sentence(self) -> str:
+        """What must be said before the answers."""
+        changed = "; ".join(self.changes)
+        return f"These are not results of {self.name} as it stands, but of a copy in which was changed: {changed}."
+
+
 def _trials(count: int) -> str:
     return "1 trial was" if count == 1 else f"{count:,} trials were"
 
@@ -110,6 +132,7 @@ class Simulation:
         discards: forecast with filters of its own -> filter -> accepted trials that it discards for it alone; a trial
             that several discard counts for the first.
         rare: where the accepted trials come from, where that is a learned proposal; None with plain trials.
+        changed_from: where its workbook is a changed copy of another one that a person knows; None elsewhere.
     """
 
     model: Model
@@ -129,6 +152,7 @@ class Simulation:
     origin: Origin | None = None
     rare: RareAccount | None = None
     discards: Mapping[str, Counter[str]] = field(default_factory=dict)
+    changed_from: ChangedFrom | None = None
 
     def __getitem__(self, name: str) -> ForecastResult:
         """The result of a forecast, by name whatever its case.

@@ -12,7 +12,9 @@ class PairView {
     this.said = make("p", { class: "pair-said" });
     this.chart = make("div", { class: "chart", role: "img", "aria-label": "No trials yet" });
     this.overlay = make("div", { class: "overlay" });
-    const save = make("button", { type: "button", class: "copy", text: "Save PNG", on: { click: () => savePng(this.chart) } });
+    const picture = (text, act) => make("button", { type: "button", class: "copy", text, on: { click: act } });
+    const save = make("p", { class: "pictures" }, picture("Save PNG", () => savePng(this.chart)),
+      picture("Save SVG", () => this.scatter && saveSvg(this.scatter, this.chart)));
     place.append(make("p", { class: "choices" }, make("label", {}, "To the right ", this.selects[0]),
       make("label", {}, "Upwards ", this.selects[1])), this.said, this.chart, save, this.overlay);
   }
@@ -143,16 +145,43 @@ class HandView {
     this.cancel = make("button", { type: "button", text: "Cancel", hidden: true, on: { click: () => wire.say({ kind: "cancel" }) } });
     this.answer = make("pre", { tabindex: "0", hidden: true, "aria-label": "Answer of the study" });
     this.comparing = make("span", { hidden: true }, ask("Compare with", "compare"), " ", this.other);
+    this.changes = make("p", { class: "remark" });
+    this.copy = save("A copy of the workbook", "copy");
+    this.into = make("button", { type: "button", text: "The workbook itself …", on: { click: () => this.confirm(true) } });
+    this.sure = make("p", { class: "notice", hidden: true, role: "group", "aria-label": "Type the changes into the workbook" },
+      "This types the changes into the workbook's own cells. The workbook as it was is kept beside it. ",
+      make("button", { type: "button", text: "Type them in", on: { click: () => {
+        this.confirm(false);
+        wire.say({ kind: "save", what: "into" });
+      } } }), " ", make("button", { type: "button", text: "Leave it", on: { click: () => this.confirm(false) } }));
     place.append(
-      make("h2", { text: "Files" }),
-      make("p", { class: "remark", text: "Written beside the workbook, of the workbook as it stands." }),
+      make("h2", { text: "Files" }), this.changes,
       make("p", { class: "actions-left" }, save("Result workbook", "book"), save("Page", "page"), save("JSON", "json"),
         save("Saved run", "run"), make("button", { type: "button", text: "Print", on: { click: () => print() } })),
+      make("h2", { text: "Type the changes into" }),
+      make("p", { class: "actions-left" }, this.copy, this.into), this.sure,
       make("h2", { text: "Further questions" }),
-      make("p", { class: "remark", text: "Asked of the workbook's file, not of what was moved here. They run beside the window." }),
+      make("p", { class: "remark", text: "Asked of the state that is shown, in a copy; Verify asks the workbook's own file. "
+        + "They run beside the window." }),
       make("p", { class: "actions-left" }, ask("Verify against Excel", "verify"), ask("Stability", "stability"),
         ask("Screen", "screen"), ask("Methods", "methods"), this.comparing),
       make("p", { class: "actions-left" }, this.stand, this.cancel), this.answer);
+  }
+
+  /** What the files will be of. */
+  state({ changes, shown }) {
+    const of = changes.length ? [shown ? `of ${shown}: ` : "with these changes: ", named(changes.join("; ")),
+      ". The results say so first, and their record says what differs."] : ["of the workbook as it stands."];
+    this.changes.replaceChildren("Written beside the workbook, ", ...of);
+    for (const button of [this.copy, this.into]) button.disabled = !changes.length;
+    if (!changes.length) this.sure.hidden = true;
+  }
+
+  /** Ask once more before a file of the user's own is written to. */
+  confirm(asked) {
+    this.sure.hidden = !asked;
+    if (asked) this.sure.querySelector("button").focus();
+    else this.into.focus();
   }
 
   ask(what) {
@@ -164,10 +193,11 @@ class HandView {
     this.comparing.hidden = !books.length;
   }
 
-  study({ what, state, step, seconds, text }) {
+  study({ what, of, state, step, seconds, text }) {
     const how = { running: `xlmc ${what} is running, ${Math.round(seconds)} s`, done: `xlmc ${what}, ${seconds} s`,
       cancelled: `xlmc ${what} was cancelled`, failed: `xlmc ${what} has failed` }[state];
-    this.stand.textContent = step && state === "running" ? `${how}: ${step}` : how;
+    const said = step && state === "running" ? `${how}: ${step}` : how;
+    this.stand.replaceChildren(said, ...(of ? [" (", named(of), ")"] : []));
     this.cancel.hidden = state !== "running";
     this.answer.hidden = !text;
     this.answer.textContent = text;

@@ -39,7 +39,7 @@ function forecastElement({ name, units, marks }, number) {
       make("div", { class: "beside-chart" }, make("table", { class: "beside" },
         make("caption", { text: "Accepted trials" }), make("thead"), make("tbody")),
         make("p", { class: "pictures" }, picture("Save PNG", () => savePng(chart)),
-          picture("Save SVG", () => saveSvg(chart))))),
+          picture("Save SVG", () => chart.dispatchEvent(new Event("svg")))))),
   );
 }
 
@@ -49,6 +49,7 @@ class LivePanel extends Panel {
   constructor(element, forecast, z) {
     super(element, forecast, z);
     this.article = element;
+    this.find(".chart").addEventListener("svg", () => saveSvg(this.chart, this.find(".chart")));
     this.tell();
   }
 
@@ -194,15 +195,4 @@ class LivePanel extends Panel {
 
 function savePng(chart) {
   Copies.onWhite(chart.querySelector("canvas")).toBlob((picture) => Copies.save(picture, Copies.name(chart, "png")));
-}
-
-/** The chart as it stands, as an SVG that holds it as one sharp picture. */
-function saveSvg(chart) {
-  const canvas = Copies.onWhite(chart.querySelector("canvas"));
-  const [width, height] = [canvas.width / devicePixelRatio, canvas.height / devicePixelRatio];
-  const picture = makeSvg("image", { href: canvas.toDataURL("image/png"), width, height });
-  const made = makeSvg("svg", { xmlns: "http://www.w3.org/2000/svg", viewBox: `0 0 ${width} ${height}`, width, height },
-    picture);
-  const text = new XMLSerializer().serializeToString(made);
-  Copies.save(new Blob([text], { type: "image/svg+xml" }), Copies.name(chart, "svg"));
 }

@@ -148,6 +148,7 @@ class RightSide {
   state(message) {
     LivePanel.behind = message.behind;
     this.scenarios.state(message);
+    this.hand.state(message);
     const drawn = message.assumptions.filter(({ status }) => status === "drawn").map(({ name }) => name);
     const names = [...this.forecasts.map(({ name }) => name), ...drawn];
     if (names.join("\n") === this.offered) return;

@@ -48,10 +48,13 @@ def write_results(page: Page, simulation: Simulation) -> None:
 
 
 def opening_sentences(simulation: Simulation) -> list[str]:
-    """What stands before the answers: why not to use them, checks that fail first; then the trials lost to errors."""
+    """What stands before the answers: of what they are, where that is no workbook that a person knows; why not to use
+    them, checks that fail first; then the trials lost to errors.
+    """
     ended = simulation.stopped
     missing = simulation.refused
     return [
+        *([] if simulation.changed_from is None else [simulation.changed_from.sentence]),
         *(f"An answer is missing: {warning}. The answers of other forecasts do not need it." for warning in missing),
         *(f"Do not use these results as they stand: {each}" for each in simulation.warnings if each not in missing),
         *lost_sentences(simulation),

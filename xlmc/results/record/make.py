@@ -7,6 +7,7 @@ import re
 import shlex
 from collections.abc import Mapping, Sequence
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -29,7 +30,7 @@ from xlmc.results.record.in_words import errors_text, generator_text, method_tex
 from xlmc.results.record.needed_cells import cell_section, needed_contents, structure_section
 from xlmc.results.record.record_parts import Entry, Record, RecordTable, Section
 from xlmc.results.record.settings_table import settings_section
-from xlmc.run.simulation import KEPT_INPUTS
+from xlmc.run.simulation import KEPT_INPUTS, ChangedFrom
 from xlmc.workbook.inject import original_hash
 
 if TYPE_CHECKING:
@@ -71,6 +72,9 @@ def processor() -> dict[str, str]:
         "vector_instructions": " ".join(features) or "none",
     }
 
+
+CHANGED_FROM: Final = "changed"
+"""Key of the section on the workbook that the run's own was made of."""
 
 _FORMAT: Final = 2
 """Of the record: from 2 on it holds the settings and the cells that a run can be repeated and checked by."""
@@ -117,6 +121,7 @@ def make_record(simulation: Simulation, command: str | None = None) -> Record:
         (
             _run(simulation, command),
             _file(simulation),
+            *([] if simulation.changed_from is None else [_changed_from(simulation.changed_from)]),
             _counts(simulation),
             _end(simulation),
             _sampling(simulation),
@@ -173,6 +178,24 @@ def _file(simulation: Simulation) -> Section:
         ),
     )
     return Section("file", "Workbook", entries)
+
+
+def _changed_from(found: ChangedFrom) -> Section:
+    """What the workbook of the run differs in from the one that it was made of."""
+    entries = (
+        Entry("name", "Workbook that was changed", found.name),
+        Entry("sha256", "SHA-256 of its file", found.sha256),
+    )
+    rows = tuple((change,) for change in found.changes)
+    return Section(CHANGED_FROM, "Changed from that workbook", entries, RecordTable((("change", "Change"),), rows))
+
+
+def changed_from_of(record: Record) -> ChangedFrom | None:
+    """What the run of a record says of the workbook that its own was made of; None where it says nothing."""
+    if CHANGED_FROM not in record:
+        return None
+    changes = tuple(str(row["change"]) for row in record.rows(CHANGED_FROM))
+    return ChangedFrom(str(record["changed.name"]), str(record["changed.sha256"]), changes)
 
 
 def _counts(simulation: Simulation) -> Section:
@@ -331,10 +354,15 @@ def repeat_command(simulation: Simulation) -> str:
     """What to type, in the workbook's folder, to get the same numbers: `xlmc simulate book.xlsx --trials … --seed …`.
 
     A run that ended with an accepted trial it waited for is repeated as that, any other by its number of trials. Other
-    settings are named where they differ from the workbook's own, which the repeat reads again.
+    settings are named where they differ from the workbook's own, which the repeat reads again. Of a changed copy, which
+    may stand in no file, it is said how to make one.
     """
     settings, own = simulation.settings, simulation.model.definitions.settings
-    book = simulation.model.workbook.name
+    book, changed = simulation.model.workbook.name, simulation.changed_from
+    first = ""
+    if changed is not None:
+        book = f"COPY{Path(book).suffix}"
+        first = f"type the changes that this record lists into a copy of {changed.name}, and then: "
     options = [*_length(simulation), f"--seed {settings.seed}"]
     if settings.sampling != own.sampling:
         options.append(f"--sampling {settings.sampling}")
@@ -344,7 +372,7 @@ def repeat_command(simulation: Simulation) -> str:
         options.append(f"--engine {settings.engine}")
     if settings.scenarios:
         options.append("--scenarios")
-    return " ".join(["xlmc simulate", quoted_argument(f"./{book}" if book.startswith("-") else book), *options])
+    return " ".join([f"{first}xlmc simulate", quoted_argument(f"./{book}" if book.startswith("-") else book), *options])
 
 
 def _length(simulation: Simulation) -> list[str]:

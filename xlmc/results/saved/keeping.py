@@ -105,7 +105,7 @@ def _columns(simulation: Simulation) -> Iterator[_Column]:
 
 
 def _document(simulation: Simulation, columns: list[dict[str, Any]]) -> dict[str, Any]:
-    model, origin = simulation.model, _origin(simulation)
+    model, origin, changed = simulation.model, _origin(simulation), simulation.changed_from
     return {
         "format": FORMAT,
         "version": VERSION,
@@ -122,6 +122,7 @@ def _document(simulation: Simulation, columns: list[dict[str, Any]]) -> dict[str
         "stopped": asdict(simulation.stopped),
         "rare": None if simulation.rare is None else asdict(simulation.rare),
         "origin": {"software": dict(origin.software), "processor": dict(origin.processor)},
+        **({} if changed is None else {"changed_from": asdict(changed)}),
         "columns": columns,
     }
 

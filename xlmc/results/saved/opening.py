@@ -23,6 +23,7 @@ from xlmc.results.saved.run_json import (
     FORMAT,
     VERSION,
     build,
+    changed_from_of,
     counts,
     mapping,
     origin_of,
@@ -235,6 +236,7 @@ def _simulation(found: Document, model: Model, columns: _Columns) -> Simulation:
         stopped=stopped_of(found["stopped"]),
         rare=rare,
         origin=origin_of(found["origin"]),
+        changed_from=changed_from_of(found.get("changed_from")),
         discards=_discards(found.get("discards", {}), model),
     )
 

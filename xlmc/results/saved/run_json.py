@@ -16,7 +16,7 @@ from xlmc.definitions.stopping import GOALS, MOST_TRIALS, RARE, Goal, Stopping, 
 from xlmc.evaluation.engines import ENGINES
 from xlmc.run.blocks import FilterTally
 from xlmc.run.rare.account import RareAccount
-from xlmc.run.simulation import Origin
+from xlmc.run.simulation import ChangedFrom, Origin
 from xlmc.run.stopping.stopped import WITHOUT_GOAL, Stopped
 from xlmc.sampling.sampling_methods import METHODS
 from xlmc.sampling.sampling_plan import SamplingPlan
@@ -182,6 +182,15 @@ def origin_of(found: object) -> Origin:
         ValueError: it is something else.
     """
     return build(Origin, found, "its origin")
+
+
+def changed_from_of(found: object) -> ChangedFrom | None:
+    """The workbook that the run's own was made of, if it is such a run.
+
+    Raises:
+        ValueError: it is something else.
+    """
+    return None if found is None else build(ChangedFrom, found, "its account of what was changed")
 
 
 def require(kept: bool, what: str) -> None:

@@ -160,9 +160,9 @@ _CHECKS = checks_section(
     check(
         "check_friction",
         "The deceleration before the edge is that of tyres, up to 1.2",
-        "AND(f>0,f<=1.2)",
+        "AND(f>=0,f<=1.2,OR(f>0,s=0))",
         "published values",
-        "FALSE: more than tyres hold. A percentage entered as a number?",
+        "FALSE: none, or more than tyres hold. A percentage entered as a number?",
     ),
     check(
         "check_least",

@@ -260,7 +260,7 @@ _CHECKS = checks_section(
         "Restitution lies between 0 and 1",
         "AND(e>=0,e<1)",
         "physics",
-        "FALSE: 1 or more adds energy; below 0 one vehicle passes through the other.",
+        "FALSE: 1 loses no energy, more adds some; below 0 one vehicle passes through the other.",
     ),
     check(
         "check_order",

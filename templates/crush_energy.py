@@ -403,7 +403,7 @@ _CHECKS = checks_section(
         "Restitution lies between 0 and 1",
         "AND(e>=0,e<1)",
         "physics",
-        "FALSE: 1 or more adds energy; below 0 a common velocity was never reached, and crush tells less.",
+        "FALSE: 1 loses no energy, more adds some; below 0 a common velocity was never reached, and crush tells less.",
     ),
     check(
         "check_balance",

@@ -225,6 +225,7 @@ class Template:
         assumptions, constants: uncertain inputs; inputs held fixed.
         optional: inputs that may stay blank, or that only the drawing uses.
         vehicles: what the vehicles are called, where labels name them (see `vehicles.py`).
+        named: what these names are of: `vehicle`, or `phase`.
     """
 
     title: str
@@ -244,6 +245,7 @@ class Template:
     guide: tuple[GuideSection, ...]
     diagram: Diagram | None = None
     vehicles: tuple[str, ...] = ()
+    named: str = "vehicle"
     evidence: tuple[EvidenceRow, ...] = ()
 
     @property

@@ -255,7 +255,7 @@ _DELTA_V = (
         "Vc",
         "Closing speed from the recorded delta-V, along one line",
         "[mph|km/h]",
-        'IF(AND(ISNUMBER(dv_long),w_own>0,w_other>0,ISNUMBER(e)),ABS(dv_long)*(1+w_own/w_other)/(1+e),"–")',
+        'IF(AND(ISNUMBER(dv_long),w_own>0,w_other>0,ISNUMBER(e),N(e)>-1),ABS(dv_long)*(1+w_own/w_other)/(1+e),"–")',
         "ΔV1·(1 + m1/m2)/(1 + e)",
         number_format="0.00",
     ),
@@ -266,9 +266,16 @@ _CHECKS = checks_section(
     check(
         "check_samples",
         "The brake was first on at a sample that is given",
-        "AND(v_last>0,n_brake>=0,n_brake<=n_given,n_brake=INT(n_brake),ISNUMBER(v_on_[mph|kmh]),ISNUMBER(x_on))",
+        "AND(n_brake>=0,n_brake<=n_given,n_brake=INT(n_brake),ISNUMBER(v_on_[mph|kmh]),ISNUMBER(x_on))",
         "record",
         "FALSE: fill in the recorded speeds back to the sample at which the brake was first on.",
+    ),
+    check(
+        "check_last",
+        "The vehicle moved at the last sample",
+        "v_last>0",
+        "record",
+        "FALSE: it stood, and there is no speed at the impact to be found; or it stopped before the impact.",
     ),
     check(
         "check_share",
@@ -283,7 +290,7 @@ _CHECKS = checks_section(
         "The impact lies at the last sample or after it",
         "AND(tau>=0,T_s>0)",
         "record",
-        "FALSE: a time below 0.",
+        "FALSE: a time below 0, or no interval between samples.",
     ),
     check(
         "check_forward",

@@ -188,6 +188,13 @@ _CHECKS = checks_section(
         "geometry",
         "FALSE: a length below 0, or none.",
     ),
+    check(
+        "check_known",
+        "What the impact speed is taken from was measured",
+        "IF(known=2,s>0,d_after>0)",
+        "input",
+        "FALSE: no braking after the impact. Choose the throw (2), or enter the length.",
+    ),
     BRAKING_CHECK,
     check(
         "check_body",
@@ -254,6 +261,8 @@ _GUIDE = (
             "their difference must be 0, within an error that you decide on before you look.",
             "Not for a body carried on the vehicle, thrown over the roof, or struck by its corner; not where the "
             "vehicle did not brake to rest (then choose the throw, 2).",
+            "Where the vehicle was no faster than the speed in question, the answer is that it would not have stopped: "
+            "the limit then changes nothing. Compare its speed before braking.",
             "Next: time-distance, which asks whether the pedestrian would have cleared, and what an ordinary driver "
             "would have done.",
         ),

@@ -20,6 +20,7 @@ from templates.editions import Both
 from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
 from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY, MPH
+from templates.vehicles import phase
 
 __all__ = ["TEMPLATE"]
 
@@ -37,7 +38,7 @@ _LATER = (
         "roll from .6 to .2 (SAE 2009-01-0093). Held at length 0 until used",
     ),
 )
-"""Phases after the skid: symbol, name, deceleration, its range, source."""
+"""Phases after the skid: symbol, name until another is typed, deceleration, its range, source."""
 _PHASES = (*map(str, _SURFACES), *(symbol for symbol, *_ in _LATER))
 _FURTHER = "Example, held: set Frozen to FALSE, and a length, where the skid goes on over another surface"
 
@@ -48,7 +49,7 @@ def _surface(number: int) -> tuple[Input, Input]:
         Input(
             f"f_{number}",
             f"f{number}",
-            f"Surface {number} friction",
+            f"{phase(number)} friction",
             "g",
             0.75,
             _FRICTION if first else _FURTHER,
@@ -62,7 +63,7 @@ def _surface(number: int) -> tuple[Input, Input]:
         Input(
             f"d_{number}",
             f"d{number}",
-            f"Surface {number} length of skid",
+            f"{phase(number)} length of skid",
             "[ft|m]",
             Both(100, 30) if first else 0,
             "Example. Enter: the length surveyed, as wide as its ends are uncertain" if first else _FURTHER,
@@ -73,12 +74,17 @@ def _surface(number: int) -> tuple[Input, Input]:
     )
 
 
-def _later(symbol: str, name: str, base: float, ends: tuple[float, float], source: str) -> tuple[Input, Input]:
+def _named(symbol: str) -> str:
+    """What stands in labels for the name of a phase."""
+    return phase(1 + _PHASES.index(symbol))
+
+
+def _later(symbol: str, base: float, ends: tuple[float, float], source: str) -> tuple[Input, Input]:
     return (
         Input(
             f"f_{symbol}",
             f"f{symbol}",
-            f"{name}: deceleration",
+            f"{_named(symbol)}: deceleration",
             "g",
             base,
             source,
@@ -89,7 +95,7 @@ def _later(symbol: str, name: str, base: float, ends: tuple[float, float], sourc
         Input(
             f"d_{symbol}",
             f"d{symbol}",
-            f"{name}: length",
+            f"{_named(symbol)}: length",
             "[ft|m]",
             0,
             "Held at 0. Enter the length surveyed, and set both Frozen to FALSE",
@@ -102,7 +108,7 @@ def _later(symbol: str, name: str, base: float, ends: tuple[float, float], sourc
 
 _ASSUMPTIONS = (
     *(given for number in _SURFACES for given in _surface(number)),
-    *(given for phase in _LATER for given in _later(*phase)),
+    *(given for symbol, _, *rest in _LATER for given in _later(symbol, *rest)),
     Input(
         "v_end",
         "vend",
@@ -192,7 +198,7 @@ def _steps() -> tuple[Equation, ...]:
         Equation(
             f"drag_{i}",
             f"a{i}",
-            f"Surface {i} deceleration along the road",
+            f"{phase(i)} deceleration along the road",
             "g",
             f"braking*f_{i}*COS(theta)+SIN(theta)",
             "f·cos θ ± sin θ",
@@ -204,12 +210,12 @@ def _steps() -> tuple[Equation, ...]:
         Equation(
             f"drag_{symbol}",
             f"a{symbol}",
-            f"{name}: deceleration along the road",
+            f"{_named(symbol)}: deceleration along the road",
             "g",
             f"f_{symbol}*COS(theta)+SIN(theta)",
             "f·cos θ ± sin θ",
         )
-        for symbol, name, *_ in _LATER
+        for symbol, *_ in _LATER
     )
     begin = Equation(
         "v_begin_s", "vbegin", "Speed at the beginning, where known", "[ft|m]/s", f"v_begin/({MPH})", "input"
@@ -408,7 +414,9 @@ _GUIDE = (
             "Where the speed at the first mark is known instead (an EDR, a video), set Known speed to 2: the answer is "
             "then the speed at the end, such as the impact speed.",
             "Phases after the skid: yaw (tyres slide sideways), trip, roll. Enter their lengths; each takes its own "
-            "deceleration. A motorcycle: braking as surface 1, sliding on its side as surface 2.",
+            "deceleration. Type over the yellow names above the table of Inputs to call surfaces and phases as you "
+            "like, in the order in which they followed each other. A motorcycle: Braking as the first, Sliding on its "
+            "side as the second.",
             "Air brakes need time to rise. With that time entered, sheet Model also gives the speed of a vehicle that "
             "stopped in the whole length, counted from the application of the brakes, not from the first mark.",
             "Not for a rolling vehicle, for one that spins (use critical-speed-yaw where it left curved yaw marks), "
@@ -472,7 +480,9 @@ TEMPLATE = Template(
     ),
     settings=(("Trials", 200_000), ("Seed", 999)),
     correlations=(),
-    correlation_note="Several surfaces alike? First = Surface 1 friction, Second = Surface 2 friction, 0.8, say.",
+    correlation_note=f"Several surfaces alike? First = {phase(1)} friction, Second = {phase(2)} friction, 0.8, say.",
     guide=_GUIDE,
     diagram=_DIAGRAM,
+    vehicles=(*(f"Surface {number}" for number in _SURFACES), *(name for _, name, *_ in _LATER)),
+    named="phase",
 )

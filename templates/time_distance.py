@@ -359,6 +359,8 @@ _GUIDE = (
             "The implied response time is evidence: below 0.5 s nobody responds, and a filter rejects it. The row on "
             "sheet Results wanted weighs it by the published distribution of response times, if you set Use to TRUE; "
             "do so only if nothing else in the workbook already uses that distribution for this driver.",
+            "Where the vehicle was no faster than the speed in question, that speed would not have helped: the same "
+            "driver has then not avoided it. See how often it was above the limit.",
             "Yes and no (1 and 0): the mean is the probability. So is Above threshold, with its interval.",
         ),
     ),

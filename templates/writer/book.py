@@ -71,4 +71,5 @@ def _write(template: Template, path: Path, values: Values) -> None:
         for symbol, place in at.items():
             workbook.define_name(symbol, f"={reference(place, absolute=True)}")
         for j, (row, column) in enumerate(name_cells(template), 1):
-            workbook.define_name(name_cell(j), f"=Inputs!{xl_rowcol_to_cell(row, column, row_abs=True, col_abs=True)}")
+            cell = xl_rowcol_to_cell(row, column, row_abs=True, col_abs=True)
+            workbook.define_name(name_cell(j, template.named), f"=Inputs!{cell}")

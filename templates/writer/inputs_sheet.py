@@ -8,7 +8,7 @@ from templates.description import ALL_CHECKS, PARAMETER_COLUMNS, Input, Template
 from templates.vehicles import name_cell
 from templates.writer.cached import Values
 from templates.writer.page import add_table, begin_sheet, fit_row, guard, repeat_header, write_formula, write_label
-from templates.writer.places import HEADER_ROW, VALUE_COLUMN, Place, name_cells
+from templates.writer.places import HEADER_ROW, MOST_CAPTIONS, VALUE_COLUMN, Place, name_cells
 from templates.writer.styles import Styles
 
 __all__ = ["draw_inputs"]
@@ -55,22 +55,24 @@ def _draw_status(sheet: Worksheet, styles: Styles, values: Values) -> None:
 
 
 def _draw_vehicles(sheet: Worksheet, styles: Styles, template: Template) -> None:
-    """The name of each vehicle, from which all labels take it."""
+    """The name of each vehicle, or phase, from which all labels take it."""
     cells = name_cells(template)
     if not cells:
         return
     sheet.set_row(cells[0][0], 20)
-    sheet.write_string(cells[0][0], 0, "Vehicles, as every label calls them", styles("heading"))
+    of = template.named
+    sheet.write_string(cells[0][0], 0, f"{of.capitalize()}s, as every label calls them", styles("heading"))
     for j, (name, (row, column)) in enumerate(zip(template.vehicles, cells, strict=True), 1):
-        sheet.write_string(row, column - 1, name_cell(j), styles("centred"))
+        if len(cells) <= MOST_CAPTIONS:
+            sheet.write_string(row, column - 1, name_cell(j, of), styles("centred"))
         sheet.write_string(row, column, name, styles("name"))
-        others = "".join(f",{name_cell(k)}<>{name_cell(j)}" for k, _ in enumerate(cells, 1) if k != j)
+        others = "".join(f",{name_cell(k, of)}<>{name_cell(j, of)}" for k, _ in enumerate(cells, 1) if k != j)
         rule = {
             "validate": "custom",
-            "value": f'=AND(TRIM({name_cell(j)})<>""{others})',
+            "value": f'=AND(TRIM({name_cell(j, of)})<>""{others})',
             "ignore_blank": False,
-            "error_title": "Name of a vehicle",
-            "error_message": "Each vehicle needs a name of its own: assumptions and forecasts are told apart by it.",
+            "error_title": f"Name of a {of}",
+            "error_message": f"Each {of} needs a name of its own: assumptions and forecasts are told apart by it.",
         }
         sheet.data_validation(row, column, row, column, rule)
 

@@ -29,9 +29,7 @@ _LETTERS = 1.12
 """Letters of running text in one unit of column width, which is the width of a digit."""
 _ROOMY = ("Twelve chars",) * 9
 """Names of vehicles for which a row has room."""
-_FOLLOWS = (
-    "This label follows the name of the vehicle at the top of sheet Inputs. Type over it only to change this one."
-)
+_FOLLOWS = "This label follows the name of the {of} at the top of sheet Inputs. Type over it only to change this one."
 
 
 def begin_sheet(sheet: Worksheet, styles: Styles, title: str, subtitle: str, widths: Sequence[float]) -> None:
@@ -99,7 +97,8 @@ def write_label(
         return
     write_formula(sheet, row, column, label_formula(text), style, values)
     if asks:
-        guard(sheet, (row, column, row, column), "A formula", _FOLLOWS)
+        of = "phase" if "«phase" in text else "vehicle"
+        guard(sheet, (row, column, row, column), "A formula", _FOLLOWS.format(of=of))
 
 
 def protect(sheet: Worksheet) -> None:

@@ -6,13 +6,15 @@ from xlsxwriter.utility import xl_rowcol_to_cell
 
 from templates.description import Template
 
-__all__ = ["HEADER_ROW", "VALUE_COLUMN", "Place", "name_cells", "places", "reference"]
+__all__ = ["HEADER_ROW", "MOST_CAPTIONS", "VALUE_COLUMN", "Place", "name_cells", "places", "reference"]
 
 Place = tuple[str, int]
 """Sheet and row, the row counted from 0."""
 
 HEADER_ROW = 4
 VALUE_COLUMN = 3
+MOST_CAPTIONS = 3
+"""Names that have the defined name of their cell beside them, within the columns that are not folded away."""
 _GAP = 4
 """Rows between the last assumption and the first fixed input: room for new rows, a heading, a header row."""
 
@@ -39,8 +41,9 @@ def places(template: Template) -> dict[str, Place]:
 
 
 def name_cells(template: Template) -> list[tuple[int, int]]:
-    """Row and column, on sheet Inputs, of the cell with the name of each vehicle."""
-    return [(HEADER_ROW - 1, VALUE_COLUMN + 2 * index) for index, _ in enumerate(template.vehicles)]
+    """Row and column, on sheet Inputs, of the cell with the name of each vehicle; many names stand close together."""
+    first, step = (VALUE_COLUMN, 2) if len(template.vehicles) <= MOST_CAPTIONS else (VALUE_COLUMN - 1, 1)
+    return [(HEADER_ROW - 1, first + step * index) for index, _ in enumerate(template.vehicles)]
 
 
 def reference(place: Place, *, absolute: bool = False) -> str:

@@ -106,7 +106,7 @@ def test_every_quantity_is_a_named_cell(name, book_path, described):
     book = opened(book_path[name])
     template = described[name]
     symbols = {quantity.symbol for quantity in (*template.inputs, *template.equations)}
-    names = [name_cell(j) for j, _ in enumerate(template.vehicles, 1)]
+    names = [name_cell(j, template.named) for j, _ in enumerate(template.vehicles, 1)]
     readings = {row.named for row in template.evidence if row.named}
     assert set(book.defined_names) == symbols | readings | {*names}
     for name, called in zip(names, template.vehicles, strict=True):

@@ -33,6 +33,8 @@ def test_a_label_is_a_formula_of_the_names():
     assert label_formula("«1»") == "vehicle_1"
     assert label_formula("«2» delta-V") == 'vehicle_2&" delta-V"'
     assert label_formula('From «1» to «2»: "late"') == '"From "&vehicle_1&" to "&vehicle_2&": ""late"""'
+    assert label_formula("«phase 2» length") == 'phase_2&" length"'
+    assert shown_label("«phase 2» length", ("Braking", "Sliding")) == "Sliding length"
     long = label_formula("«1»" + "x" * 600)
     assert [len(text) for text in re.findall('"(x+)"', long)] == [255, 255, 90]
 
@@ -65,3 +67,20 @@ def renamed(label, names):
     for old, new in names.items():
         label = label.replace(old, new)
     return label
+
+
+def test_phases_of_a_skid_are_called_as_one_likes(book_path, described, tmp_path):
+    book = openpyxl.load_workbook(book_path["skid"])
+    cells = book["Inputs"][4][2:8]
+    assert (
+        [cell.value for cell in cells]
+        == [*described["skid"].vehicles]
+        == [*("Surface 1", "Surface 2", "Surface 3", "Yaw", "Trip", "Roll")]
+    )
+    cells[0].value, cells[3].value = "Braking", "On its side"
+    book.save(tmp_path / "named.xlsx")
+    model = xlmc.load(tmp_path / "named.xlsx")
+    assert [a.name for a in model.assumptions][:8:2] == [
+        *("Braking friction", "Surface 2 friction", "Surface 3 friction", "On its side: deceleration")
+    ]
+    assert "On its side: deceleration along the road" in computed(tmp_path / "named.xlsx").values()

@@ -18,7 +18,7 @@ from templates.description import (
     Template,
 )
 from templates.editions import Both
-from templates.guidance import CAVEATS, FIRST_STEPS, SIGNS
+from templates.guidance import CAVEATS, FIRST_STEPS, READINGS, SIGNS
 from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY
 
@@ -214,6 +214,7 @@ _GUIDE = (
         ),
     ),
     FIRST_STEPS,
+    READINGS,
     SIGNS,
     GuideSection(
         "When to use this model",

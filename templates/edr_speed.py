@@ -19,7 +19,7 @@ from templates.description import (
     Template,
 )
 from templates.editions import Both
-from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
+from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, READINGS, SIGNS
 from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY, MPH
 
@@ -108,12 +108,12 @@ _CONSTANTS = (
         number_format="0",
     ),
     Input(
-        "n_brake",
-        "nb",
-        "Samples before the last at which the brake first shows on",
+        "n_on",
+        "non",
+        "Samples that show the brake on, up to and with the last one",
         "",
-        2,
-        "Example. 0: the brake was off in every sample",
+        3,
+        "Example. Enter: the report of the recorder. 0: off in all; 1: on in the last one only",
         number_format="0",
     ),
     Input(
@@ -150,7 +150,7 @@ _SPEEDS = (
         "",
         "The brake was on at the last sample (1 = yes)",
         "",
-        "IF(n_brake>0,1,0)",
+        "IF(n_on>0,1,0)",
         "input",
         number_format="0",
     ),
@@ -159,9 +159,10 @@ _SPEEDS = (
         "v0,true",
         "True speed at the last sample",
         "[mph|km/h]",
-        "IF(braked=1,(v_last+q)/(1-kappa),v_last+q+bias)",
+        "IF(n_on>1,(v_last+q)/(1-kappa),v_last+q+bias)",
         "(v + q)/(1 − κ)",
-        "Recorded is (1 − κ) of the true speed while wheels slip; otherwise the difference of coasting tests holds.",
+        "Recorded is (1 − κ) of the true speed while wheels slip; otherwise, and at the sample at which the brake "
+        "first shows on, the difference of coasting tests holds.",
     ),
     Equation(
         "v_impact_s",
@@ -181,7 +182,7 @@ def _true(number: int) -> Equation:
         f"v{number},true",
         f"True speed, {number} before the last sample",
         "[mph|km/h]",
-        f'IF(ISNUMBER(v_{number}),IF({number}<n_brake,(v_{number}+q)/(1-kappa),v_{number}+q+bias),"–")',
+        f'IF(ISNUMBER(v_{number}),IF({number}<n_on-1,(v_{number}+q)/(1-kappa),v_{number}+q+bias),"–")',
         "as above",
         "One sensor: the same q, κ and b in all samples." if number == 1 else "",
     )
@@ -193,7 +194,7 @@ def _way(number: int) -> Equation:
         f"x{number}",
         f"Way between samples {number} and {number - 1} before the last, brake on",
         "[ft|m]",
-        f"IF({number}<=n_brake,(t_{number}+t_{number - 1})/2*T_s/({MPH}),0)",
+        f"IF({number}<n_on,(t_{number}+t_{number - 1})/2*T_s/({MPH}),0)",
         "mean speed · Ts",
         "Off by at most a·Ts²/8 in an interval." if number == 1 else "",
         number_format="0.00",
@@ -221,9 +222,9 @@ _ANSWERS = (
         "von",
         "Speed at the sample at which the brake was first on",
         "[mph|km/h]",
-        "IF(n_brake>0,CHOOSE(n_brake," + ",".join(f"t_{number}" for number in _SAMPLES) + "),t_0)",
+        "CHOOSE(MAX(n_on,1),t_0," + ",".join(f"t_{number}" for number in _SAMPLES) + ")",
         "record",
-        "",
+        "The last sample, where the brake was off in all.",
         Role.ANSWER,
         "0.00",
     ),
@@ -266,7 +267,7 @@ _CHECKS = checks_section(
     check(
         "check_samples",
         "The brake was first on at a sample that is given",
-        "AND(n_brake>=0,n_brake<=n_given,n_brake=INT(n_brake),ISNUMBER(v_on_[mph|kmh]),ISNUMBER(x_on))",
+        "AND(n_on>=0,n_on<=n_given+1,n_on=INT(n_on),ISNUMBER(v_on_[mph|kmh]),ISNUMBER(x_on))",
         "record",
         "FALSE: fill in the recorded speeds back to the sample at which the brake was first on.",
     ),
@@ -322,12 +323,15 @@ _DIAGRAM = Diagram(
 _GUIDE = (
     EXAMPLE_NUMBERS,
     FIRST_STEPS,
+    READINGS,
     SIGNS,
     GuideSection(
         "When to use this model",
         (
             "The recorder of a vehicle kept its speed for some seconds before the event. It answers the speed at the "
             "impact, which lies after the last sample, and the way since the brake went on, for time-distance.",
+            "Count the samples that show the brake on, from the last one back: with the brake on in the last three, "
+            "enter 3, and the recorded speeds of at least two before the last.",
             "Recorded speed is that of wheels. Braking wheels slip, and the recorded speed is low; in a yaw with "
             "steering only it was 2 to 7 % low, with braking too 3 to 18 % (Reust and Morgan, 2007): choose the range "
             "by what the brake and stability flags say.",

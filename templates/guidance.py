@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from templates.description import GuideSection
 
-__all__ = ["CAVEATS", "EXAMPLE_NUMBERS", "FIRST_STEPS", "NAMES", "RESTITUTION", "SIGNS"]
+__all__ = ["CAVEATS", "EXAMPLE_NUMBERS", "FIRST_STEPS", "NAMES", "READINGS", "RESTITUTION", "SIGNS"]
 
 EXAMPLE_NUMBERS = GuideSection(
     "This workbook",
@@ -30,6 +30,18 @@ FIRST_STEPS = GuideSection(
     ),
 )
 
+READINGS = GuideSection(
+    "Sheet Evidence",
+    (
+        "What was measured of the crash itself beside the inputs: by a recorder, in a video, from a gouge. A row does "
+        "nothing until it has a Reading; then trials are kept by how well the quantity under Cell agrees with it.",
+        "Error says how far a reading may be off. Uniform takes Plus or minus; Normal takes Std dev; Lognormal takes "
+        "the Std dev of the natural logarithm (0.2 is some 20 %); Instrument takes Percent and Resolution; At least and "
+        "At most take the reading as a limit.",
+        "Use = FALSE leaves a row out. What is an input may not come back as a reading: use each fact once.",
+    ),
+)
+
 SIGNS = GuideSection(
     "Names",
     ("Every quantity is a named cell, so that formulas read like the printed equation beside them.",),
@@ -38,7 +50,8 @@ SIGNS = GuideSection(
 NAMES = GuideSection(
     "Signs, units, names",
     (
-        "Angles are in degrees, counter-clockwise from +X. The direction of X is yours to choose, one for all angles.",
+        "Angles are in degrees, counter-clockwise from +X, and say where a vehicle moves to. The direction of X is "
+        "yours to choose, one for all angles.",
         "Every quantity is a named cell, so that formulas read like the paper: alpha is α, beta β, gamma_t γ, omega "
         "ω; _1 and _2 are the vehicles, _i before and _f after the impact, _n normal and _t tangential to the contact.",
     ),
@@ -76,7 +89,7 @@ CAVEATS = GuideSection(
     (
         "Monte Carlo does not validate the model. It shows what the ranges imply if the model fits the crash.",
         "Ranges chosen too narrow make the answer look better than it is: each must hold every possible value.",
-        "The filters must not be too tight either: limits on restitution should admit its real scatter.",
+        "The filters must not be too tight either: limits, as those on restitution, should admit the real scatter.",
         "The 51 % range is the central range that is more probable than not. If a result straddles a speed limit, "
         "enter the limit as Threshold and report the probability of exceeding it.",
         "Monte Carlo error shrinks with more trials; reconstruction error does not.",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from templates.checks import check, checks_section
 from templates.description import CorrelationRow, Diagram, Equation, FilterRow, GuideSection, Section, Template
-from templates.guidance import CAVEATS, FIRST_STEPS, NAMES
+from templates.guidance import CAVEATS, FIRST_STEPS, NAMES, READINGS
 from templates.plan_view import mark, turned
 from templates.two_vehicles.answers import ANSWERS, FORCE
 from templates.two_vehicles.checks import ANGLES, ENERGY, FORWARD, FRICTION
@@ -86,7 +86,7 @@ _WHEN = GuideSection(
         "with which impossible combinations can be rejected: often most of them. Use it once inertia, impact centre "
         "and contact direction can be given.",
         "Not for near-parallel approaches (|sin δ| small): an uncertainty σ of an angle, in radians, becomes one of "
-        "about σ/|sin δ| of a speed. Where that is more than you can accept, use crush-energy.",
+        "about σ/|sin δ| of a speed. Where that is more than you can accept, use crush-energy or momentum-energy.",
         "Not where tyre or other outside forces matter during the impact: at f = 0.8 they take about 1.8 mph "
         "(2.8 km/h) for each 0.1 s of contact. Enter a duration on sheet Inputs to see how much.",
     ),
@@ -138,7 +138,16 @@ def describe(scene: Scene) -> Template:
         settings=(("Trials", 200_000), ("Seed", 999)),
         correlations=(CorrelationRow("f_1", "f_2", 0),),
         correlation_note=shared_road_note(),
-        guide=(scene.guide, FIRST_STEPS, NAMES, _WHEN, _TRUST, CAVEATS, _CORRECTIONS),
+        guide=(
+            scene.guide,
+            FIRST_STEPS,
+            *((READINGS,) if more else ()),
+            NAMES,
+            _WHEN,
+            _TRUST,
+            CAVEATS,
+            _CORRECTIONS,
+        ),
         diagram=drawn_together(_diagram()) if more else _diagram(),
         evidence=readings(yaw=False) if more else (),
     )

@@ -18,7 +18,7 @@ from templates.description import (
     Template,
 )
 from templates.editions import Both
-from templates.guidance import CAVEATS, FIRST_STEPS, NAMES
+from templates.guidance import CAVEATS, FIRST_STEPS, NAMES, READINGS
 from templates.plan_view import mark, turned
 from templates.two_vehicles.answers import ANSWERS, FORCE
 from templates.two_vehicles.checks import FRICTION
@@ -401,6 +401,8 @@ _WHEN = GuideSection(
         "Two vehicles whose approaches are near-parallel, head-on or from behind, where momentum alone is blind: there "
         "an angle uncertain by 3° can make a speed uncertain by hundreds of [mph|km/h]. The energy that crush took "
         "gives the closing speed at any angle; momentum gives only its direction.",
+        "Where a speed after the impact is known rather than the travel to rest, enter the travel V²/(2·g·f) that goes "
+        "with it.",
         "The approach angle of the other vehicle is an answer. Compare it with its lane: sheet Evidence has a row.",
         "The reverse: where the closing momentum m2·c is hardly more than the momentum across (the quantity m2·c − "
         "|p⊥| on sheet Model, near 0), energy says little, and momentum is better. Run both templates and compare "
@@ -487,6 +489,7 @@ TEMPLATE = Template(
             ),
         ),
         FIRST_STEPS,
+        READINGS,
         NAMES,
         _WHEN,
         CAVEATS,

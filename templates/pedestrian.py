@@ -18,7 +18,7 @@ from templates.description import (
     Template,
 )
 from templates.editions import Both
-from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
+from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, READINGS, SIGNS
 from templates.speed_answer import speed_answer
 from templates.thrown_body import EFFICIENCY_CHECK, THROWN
 from templates.units import CONVERSIONS, GRAVITY, MPH
@@ -251,6 +251,7 @@ _DIAGRAM = Diagram(
 _GUIDE = (
     EXAMPLE_NUMBERS,
     FIRST_STEPS,
+    READINGS,
     SIGNS,
     GuideSection(
         "When to use this model",

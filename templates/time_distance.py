@@ -19,7 +19,7 @@ from templates.description import (
     Template,
 )
 from templates.editions import Both
-from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
+from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, READINGS, SIGNS
 from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY, MPH
 
@@ -335,6 +335,7 @@ _DIAGRAM = Diagram(
 _GUIDE = (
     EXAMPLE_NUMBERS,
     FIRST_STEPS,
+    READINGS,
     SIGNS,
     GuideSection(
         "When to use this model",
@@ -357,7 +358,7 @@ _GUIDE = (
             "Ordinary driver: would a driver drawn from the published distribution have avoided it from there? Another "
             "question, with another answer, often a very different one. Say which one you answer.",
             "The implied response time is evidence: below 0.5 s nobody responds, and a filter rejects it. The row on "
-            "sheet Results wanted weighs it by the published distribution of response times, if you set Use to TRUE; "
+            "sheet Evidence weighs it by the published distribution of response times, if you set Use to TRUE; "
             "do so only if nothing else in the workbook already uses that distribution for this driver.",
             "Where the vehicle was no faster than the speed in question, that speed would not have helped: the same "
             "driver has then not avoided it. See how often it was above the limit.",

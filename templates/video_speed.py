@@ -17,7 +17,7 @@ from templates.description import (
     Template,
 )
 from templates.editions import Both
-from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
+from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, READINGS, SIGNS
 from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY, MPH
 
@@ -184,12 +184,14 @@ _DIAGRAM = Diagram(
 _GUIDE = (
     EXAMPLE_NUMBERS,
     FIRST_STEPS,
+    READINGS,
     SIGNS,
     GuideSection(
         "When to use this model",
         (
             "A camera that stands still saw a vehicle pass two places whose distance is known. Count the frames from "
             "the first frame after the vehicle passed the first place to the first frame after it passed the last.",
+            "One place does as well where both axles pass it: the distance is then the wheelbase.",
             "Read crossings, not positions, where you can: of a crossing one knows the two frames it lies between. "
             "Take the longest stretch that the video shows: the error of a frame shrinks with the frames counted.",
             "Where the vehicle brakes, the mean speed is not the speed at the last mark. Enter the deceleration, as "

@@ -50,7 +50,7 @@ def describe(scene: Scene) -> Template:
         settings=(("Trials", 200_000), ("Seed", 999)),
         correlations=(CorrelationRow("f_1", "f_2", 0),) if more else (),
         correlation_note=shared_road_note() if more else shared_road(),
-        guide=guide(scene.guide),
+        guide=guide(scene.guide, more=more),
         diagram=drawn_together(_diagram()) if more else _diagram(),
         evidence=readings(yaw=True) if more else (),
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from templates.description import GuideSection
-from templates.guidance import CAVEATS, FIRST_STEPS, NAMES, RESTITUTION
+from templates.guidance import CAVEATS, FIRST_STEPS, NAMES, READINGS, RESTITUTION
 
 __all__ = ["guide"]
 
@@ -13,7 +13,8 @@ _WHEN = GuideSection(
         "Two vehicles whose approach and departure directions and run-out can be estimated, and whose approaches "
         "differ by more than about 10°. It gives impact speeds, delta-V, change in yaw rate, direction of force, "
         "restitution.",
-        "Not for near-parallel approaches (|sin δ| small): momentum leaves the speeds undetermined. Use crush energy.",
+        "Not for near-parallel approaches (|sin δ| small): momentum leaves the speeds undetermined. Use crush-energy "
+        "or momentum-energy.",
         "Not where tyre or other outside forces matter during the impact: at f = 0.8 they take about 1.8 mph (2.8 "
         "km/h) for each 0.1 s of contact. Enter a duration on sheet Inputs to see how much.",
         "Both vehicles are rigid and move in the plane; the impulse acts at one point, at one instant, at full crush.",
@@ -33,6 +34,8 @@ _TRUST = GuideSection(
         "A limit on e_t can decide the speed of the slower vehicle. State how the answers move when it moves.",
         "e_t has no finite standard deviation, because its closing speed crosses zero: quote its percentiles.",
         "The speeds are correlated with the delta-Vs: do not combine the ends of separate ranges freely.",
+        "A blow from behind: PDOF jumps between 180 and −180. Where the workbook has a sheet Evidence, enter its "
+        "direction there, with Use FALSE if it is not to be evidence; PDOF is then counted to within 180° of that.",
         "Both decelerations may share one road surface. Then correlate them (sheet Results wanted).",
         "The filters use e_n and e_t as ratios, so that their limits stand in one place, the table. Should a closing "
         "speed be exactly zero, the ratio is #DIV/0! and the trial is rejected and counted.",
@@ -56,6 +59,12 @@ _CORRECTIONS = GuideSection(
 )
 
 
-def guide(scene: GuideSection) -> tuple[GuideSection, ...]:
-    """The guide, beginning with what there is to say of the scene itself."""
-    return (scene, FIRST_STEPS, NAMES, _WHEN, RESTITUTION, _TRUST, CAVEATS, _CORRECTIONS)
+def guide(scene: GuideSection, *, more: bool) -> tuple[GuideSection, ...]:
+    """The guide, beginning with what there is to say of the scene itself.
+
+    Args:
+        scene: that.
+        more: the workbook has a sheet Evidence.
+    """
+    readings = (READINGS,) if more else ()
+    return (scene, FIRST_STEPS, *readings, NAMES, _WHEN, RESTITUTION, _TRUST, CAVEATS, _CORRECTIONS)

@@ -57,7 +57,7 @@ CASES = [
     ("airborne", "check_friction", {"f": 0}),
     ("airborne", "check_time", {"h": 200}),
     ("airborne", "check_steepness", {"h": 2}),
-    ("edr-speed", "check_samples", {"n_brake": 6}),
+    ("edr-speed", "check_samples", {"n_on": 7}),
     ("edr-speed", "check_last check_forward", {"v_last": 0}),
     ("edr-speed", "check_share", {"kappa": 0.6}),
     ("edr-speed", "check_friction", {"f": 1.3}),

@@ -112,7 +112,7 @@ def test_a_recorded_speed_under_hard_braking(cells):
         "f": draws.uniform(0.65, 0.75),
         "tau": draws.uniform(0, 0.5),
         "v_last": 40,
-        "n_brake": 2,
+        "n_on": 3,
         "g": 32.174,
     }
     found = cells("edr-speed", inputs, ["t_0", "vi_mph"])

@@ -199,7 +199,7 @@ EXAMPLES = [
     # The last sample under hard braking.
     (
         "edr-speed",
-        {"v_last": 40, "q": 0, "kappa": 0.13, "f": 0.7, "tau": 0.25, "g": 32.174, "n_brake": 2},
+        {"v_last": 40, "q": 0, "kappa": 0.13, "f": 0.7, "tau": 0.25, "g": 32.174, "n_on": 3},
         {"t_0": 45.9770, "vi_mph": 42.1381},
         5e-5,
     ),

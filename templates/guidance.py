@@ -36,8 +36,8 @@ READINGS = GuideSection(
         "What was measured of the crash itself beside the inputs: by a recorder, in a video, from a gouge. A row does "
         "nothing until it has a Reading; then trials are kept by how well the quantity under Cell agrees with it.",
         "Error says how far a reading may be off. Uniform takes Plus or minus; Normal takes Std dev; Lognormal takes "
-        "the Std dev of the natural logarithm (0.2 is some 20 %); Instrument takes Percent and Resolution; At least and "
-        "At most take the reading as a limit.",
+        "the Std dev of the natural logarithm (0.2 is some 20 %); Instrument takes Percent and Resolution; At least "
+        "and At most take the reading as a limit.",
         "Use = FALSE leaves a row out. What is an input may not come back as a reading: use each fact once.",
     ),
 )

@@ -88,6 +88,14 @@ def test_where_a_reading_lies_decides(judged, cell, reading, error, verdict):
     assert judged(item=(cell, reading, error)).verdict is verdict
 
 
+def test_a_chance_that_no_trial_shows_is_told_as_a_bound(judged):
+    """Of 800 trials, none lies near 5.5: below Wilson's upper end on both sides, 2 × 1.96²/(800 + 1.96²)."""
+    found = judged(trials=100, item=("C1", 5.5, bell(0.1)))
+    assert (found.trials, found.verdict) == (800, Verdict.STRAINED)
+    assert found.items[0].chance < 1e-30
+    assert found.sentence == "'item' is strained: given the model, a reading so far out has a chance below 0.96 %"
+
+
 def test_items_about_one_quantity_corroborate_and_others_are_independent(judged):
     found = judged(EDR=("C1", 0.5, bell(0.5)), video=("C1", 0.4, within(0.5)))
     assert {each.verdict for each in found.items} == {found.verdict} == {Verdict.CORROBORATES}

@@ -428,10 +428,12 @@ def _sentence(found: Agreement) -> str:
             return _conflict(found, by[Verdict.INCONSISTENT])
         case Verdict.STRAINED:
             others = "the model and the other evidence" if len(found.items) > 1 else "the model"
-            chance = min(each.chance for each in found.items if each.verdict is Verdict.STRAINED)
+            least = min(
+                (each for each in found.items if each.verdict is Verdict.STRAINED), key=lambda each: each.chance
+            )
             return (
                 f"{list_of(by[Verdict.STRAINED])} {_are(by[Verdict.STRAINED])} strained: given {others}, a reading so "
-                f"far out has a chance of {chance * 100.0:.2g} %"
+                f"far out has a chance {_chance_words(least)}"
             )
         case Verdict.TOO_FEW:
             return (
@@ -445,6 +447,13 @@ def _sentence(found: Agreement) -> str:
     if len(found.items) == 1:
         return f"{found.items[0].name!r} agrees with the model; there is no other item to compare it with"
     return "the items agree with the model and neither corroborate nor contradict each other"
+
+
+def _chance_words(item: ItemAgreement) -> str:
+    """`of 0.7 %`; `below 0.22 %` where hardly a trial lies so far out: how much smaller it is, trials cannot tell."""
+    if item.chance * item.effective / 2.0 >= 1.0:
+        return f"of {item.chance * 100.0:.2g} %"
+    return f"below {200.0 * _interval(item.chance / 2.0, item.effective)[1]:.2g} %"
 
 
 def _together(found: Agreement) -> str:

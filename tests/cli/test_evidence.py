@@ -90,7 +90,7 @@ def test_evidence_that_contradicts_stands_first_and_is_no_success(xlmc, book, tm
     assert outcome.code == 1
     first = " ".join(outcome.out.partition("accepted trials")[0].split())
     assert first.startswith(
-        "book.xlsx: evidence that contradicts The evidence is inconsistent: 'video' is out of reach"
+        "book.xlsx: evidence that contradicts The evidence is inconsistent: 'EDR' and 'video' are out of reach"
     )
     assert "warning: the evidence is inconsistent" in outcome.err
     assert "Do not use these results as they stand: the evidence is inconsistent" in " ".join(

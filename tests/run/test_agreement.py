@@ -111,6 +111,15 @@ def test_items_about_one_quantity_corroborate_and_others_are_independent(judged)
     assert pulls.verdict is Verdict.PULLS_APART
 
 
+def test_readings_far_from_all_trials_that_agree_best_are_inconsistent_however_few_each_leaves(judged):
+    """Two readings of one quantity, 30 standard deviations apart; either leaves some 900 trials of 20,000."""
+    found = judged(trials=20_000, one=("C1", 1.5, bell(0.1)), two=("C1", -1.5, bell(0.1)))
+    assert all(100 < each.effective < 2_000 for each in found.items)
+    assert found.effective > 100
+    assert {each.verdict for each in found.items} == {Verdict.INCONSISTENT}
+    assert found.conflicts
+
+
 def test_two_sound_items_may_be_inconsistent_with_each_other(judged):
     found = judged(EDR=("C1", 1.5, within(0.2)), video=("C1", -1.5, within(0.2)))
     assert found.verdict is Verdict.INCONSISTENT

@@ -46,6 +46,9 @@ _TELLING: Final = 10.0
 _BEYOND: Final = 2_000.0
 """Effective trials from which on a reading beyond all of them contradicts them."""
 
+_HARDLY: Final = 1e-9
+"""A trial with less than this share of the largest weight is not among those that the evidence keeps."""
+
 _FAR: Final = 3.0
 """Standard deviations from the nearest trial beyond which a reading with a normal error lies beyond all of them."""
 
@@ -267,7 +270,8 @@ def _judge(index: int, item: Evidence, found: EvidenceTrials, best: int | None, 
     ratio = _ratio(kept, others)
     effective = _effective(others)
     tail = _tail(law, m, others, given)
-    verdict = _verdict(law, m[others > 0.0], tail, effective)
+    settled = _effective(every) >= _FEWEST and _beyond_all(law, m[every > _HARDLY])
+    verdict = _verdict(law, m[others > 0.0], tail, effective, settled=settled)
     if verdict is Verdict.INDEPENDENT and len(logs) > 1:
         verdict = _by_ratio(ratio)
     z = law.z(m) if isinstance(law, Bell) else None
@@ -357,15 +361,23 @@ def _tail(law: Law, m: Floats, others: Floats, given: Estimate) -> float:
     return min(below, above)
 
 
-def _verdict(law: Law, m: Floats, tail: float, effective: float) -> Verdict:
-    """By the chance of such a reading; `INDEPENDENT` where it is no surprise."""
+def _verdict(law: Law, m: Floats, tail: float, effective: float, *, settled: bool) -> Verdict:
+    """By the chance of such a reading; `INDEPENDENT` where it is no surprise.
+
+    Args:
+        law: of the reading's error.
+        m: the quantity in the trials that the other items keep.
+        tail: as `_tail` gives it.
+        effective: how many trials these are, in effect.
+        settled: whether the reading lies beyond all trials that all items keep, although these are many in effect.
+    """
     if math.isnan(tail) or effective < _FEWEST:
         return Verdict.TOO_FEW
     low, high = (min(1.0, 2.0 * end) for end in _interval(tail, effective))
     p = min(1.0, 2.0 * tail)
     if effective >= _BEYOND and _beyond_all(law, m):
         return Verdict.INCONSISTENT
-    if p < INCONSISTENT and (high < INCONSISTENT or effective * INCONSISTENT / 2.0 >= _TELLING):
+    if p < INCONSISTENT and (settled or high < INCONSISTENT or effective * INCONSISTENT / 2.0 >= _TELLING):
         return Verdict.INCONSISTENT
     telling = effective * STRAINED / 2.0 >= _TELLING
     if p < STRAINED:
@@ -428,9 +440,8 @@ def _sentence(found: Agreement) -> str:
             return _conflict(found, by[Verdict.INCONSISTENT])
         case Verdict.STRAINED:
             others = "the model and the other evidence" if len(found.items) > 1 else "the model"
-            least = min(
-                (each for each in found.items if each.verdict is Verdict.STRAINED), key=lambda each: each.chance
-            )
+            strained = [each for each in found.items if each.verdict is Verdict.STRAINED]
+            least = min(strained, key=lambda each: each.chance)
             return (
                 f"{list_of(by[Verdict.STRAINED])} {_are(by[Verdict.STRAINED])} strained: given {others}, a reading so "
                 f"far out has a chance {_chance_words(least)}"

@@ -30,6 +30,7 @@ __all__ = ["BLOCK_CHANGES", "book_parts", "make", "refuse_silence", "run"]
 _SHEET, _OTHER = "Model data", "Other's"
 _STEPS: Final = {"summary": 0.2, "verify": 0.05, "check": 0.1, "simulate": 0.01}
 _CELLS: Final = (*(f"'{_SHEET}'!B{row}" for row in (2, 3, 4)), "'Other''s'!A1", "'Other''s'!A2")
+_ANSWERS: Final = (f"'{_SHEET}'!B6", f"'{_SHEET}'!B7", "'Other''s'!A3")
 _TEXT: Final = re.compile(rb"(<x:ScriptText>)(.*?)(?=</x:ScriptText>)", re.DOTALL)
 _NAME: Final = re.compile(rb'(<definedName name="CB[^>]*>)([^<]*)')
 
@@ -95,7 +96,7 @@ def run(given: Input, folder: Path) -> Reached:
 
 
 def refuse_silence(given: Input) -> None:
-    """See that no cell that was drawn is a constant now, without a word.
+    """See that no cell that was drawn is a constant now, and no forecast gone, without a word.
 
     Raises:
         XlmcError: as xlmc does.
@@ -106,6 +107,9 @@ def refuse_silence(given: Input) -> None:
         known = {str(each.cell) for each in definitions.assumptions} | {str(cell) for cell in definitions.rewritten}
         if silent := set(_CELLS) - known:
             raise Disagreement(f"drawn before, and a constant now: {', '.join(sorted(silent))}")
+        answers = {str(each.cell) for each in definitions.forecasts}
+        if not definitions.refused and (gone := set(_ANSWERS) - answers):
+            raise Disagreement(f"a forecast before, and none now: {', '.join(sorted(gone))}")
 
 
 def _change_block(rng: random.Random, parts: dict[str, bytes]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 import struct
 import subprocess
 
@@ -11,7 +12,7 @@ import numpy as np
 import openpyxl
 import pytest
 from click.testing import CliRunner
-from crystal_ball_book import Asked, Drawn, read_parts, save
+from crystal_ball_book import Asked, Drawn, read_parts, save, write_parts
 from needed_programs import missing
 from old_format_book import art, drawing, number, plain_book, record, shape, shapes_of, with_shapes
 
@@ -136,6 +137,24 @@ def test_digits_and_texts_come_back(monkeypatch):
     assert ["converted from an old" in n.message or "macros" in n.message for n in book.notices] == [True, True]
 
 
+def test_the_results_of_formulas_are_those_that_excel_saved(monkeypatch, tmp_path):
+    """LibreOffice does not know the functions of @RISK; an error's code is a whole number, 5 that of #NAME?."""
+    path = tmp_path / "converted.xlsx"
+    path.write_bytes(converted({"A1": "=RiskNormal(5,1)", "A2": "=2*3"}))
+    parts = read_parts(path)
+    (sheet,) = (name for name in parts if name.startswith("xl/worksheets/sheet"))
+    old = re.compile(rb'<c r="A1"[^>]*><f>RiskNormal\(5,1\)</f>(<v ?/>|<v></v>)</c>')
+    parts[sheet] = old.sub(b'<c r="A1" t="e"><f>RiskNormal(5,1)</f><v>#NAME?</v></c>', parts[sheet])
+    assert b"#NAME?" in parts[sheet]
+    write_parts(path, parts)
+    monkeypatch.setattr(joined_package, "converted_to_xlsx", lambda _: path.read_bytes())
+    results = (struct.pack("<HHHdHIH", row, 0, 0, value, 0, 0, 0) for row, value in enumerate((5.0, 6.0)))
+    data = plain_book({"S": b"".join(record(0x06, each) for each in results)})
+    cells = read_workbook(data, "case.xls").sheets["S"].cells
+    assert [cells[row, 1].value for row in (1, 2)] == [5.0, 6.0]
+    assert type(cells[1, 1].value) is float
+
+
 DIFFERENT = {
     "another number": (
         number(1, 1, 0.3),
@@ -143,6 +162,7 @@ DIFFERENT = {
         ("S",),
         "S!A1: LibreOffice has made the number 0.4 of the number 0.3",
     ),
+    "an error": (number(1, 1, 5.0), {"A1": "#NAME?"}, ("S",), "LibreOffice has made #NAME? of the number 5.0"),
     "no number": (number(1, 1, 0.3), {}, ("S",), "S!A1: LibreOffice has made a blank cell of the number 0.3"),
     "no formula": (
         record(0x06, struct.pack("<HHHdHIH", 0, 0, 0, 2.0, 0, 0, 0)),

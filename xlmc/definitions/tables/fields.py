@@ -76,7 +76,7 @@ def parameter(row: Row, heading: str) -> Parameter | None:
     content = row.content(heading)
     if is_blank(content):
         return None
-    if content.formula is not None and content.value in (None, ErrorCode.NAME):
+    if content.formula is not None and (content.value is None or content.value is ErrorCode.NAME):
         # Never calculated yet, or by a program that does not know a function of @RISK: each run calculates it.
         return row.cell(heading)
     value = number_in(row.heading(heading), content, row.cell(heading))

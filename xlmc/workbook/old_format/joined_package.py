@@ -123,7 +123,7 @@ def _exact(sheet: OldSheet, cells: Mapping[Position, CellContent]) -> dict[Posit
         content = cells.get(position)
         if content is None or (content.formula is None and not _inside(position, sheet.areas)):
             raise _refusal("LibreOffice has lost the formula of the cell", Cell(sheet.name, *position))
-        if content.value != number and math.isfinite(number):
+        if not (_is_number(content.value) and content.value == number) and math.isfinite(number):
             found[position] = number
     return found
 
@@ -139,7 +139,7 @@ def _words(content: CellContent | None) -> str:
 
 
 def _is_number(value: CellValue) -> TypeGuard[float]:
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
+    return isinstance(value, int | float) and not isinstance(value, bool | ErrorCode)  # an ErrorCode is a whole number
 
 
 def _inside(position: Position, areas: Iterable[tuple[int, int, int, int]]) -> bool:

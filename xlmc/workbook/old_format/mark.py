@@ -33,6 +33,7 @@ def old_workbook_notices(parts: Mapping[str, bytes]) -> Iterator[str]:
     found = _MARK.search(parts.get(_PROPERTIES, b""))
     if found is not None:
         by = found["by"].decode().replace("/", " ")
-        yield f"the cells were converted from an old Excel workbook (.xls) by {by}"
+        what = f"the cells were converted from an old Excel workbook (.xls) by {by}"
+        yield f"{what}; xlmc verify compares the formulas with what Excel saved"
         if found["macros"]:
             yield "the macros of the old Excel workbook (.xls) are left out of what xlmc writes"

@@ -194,7 +194,9 @@ def _scenario(each: ScenarioAnswers) -> Json:
 
 def _scenario_forecast(found: ForecastAnswer) -> Json:
     answers = {"mean": found.mean, "low": found.low, "high": found.high, "above": found.above}
-    return {"name": found.forecast.name, "units": found.forecast.units} | {
+    asked = found.forecast
+    told = {"name": asked.name, "units": asked.units, "share": asked.central, "threshold": asked.threshold}
+    return told | {
         key: {
             "estimate": _estimate_or_none(value),
             "difference": _estimate_or_none(found.differences.get(key)),

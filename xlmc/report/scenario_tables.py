@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
-from xlmc.report.sheets.scenarios_sheet import POINTS
-from xlmc.report.summary import estimate_text, percent, share_text
+from xlmc.report.sheets.scenarios_sheet import POINTS, above_head, range_heads
+from xlmc.report.summary import estimate_text, share_text
 from xlmc.results.record.in_words import changes_text
 from xlmc.statistics import format_estimate
 
@@ -33,25 +33,27 @@ def scenario_rows(found: Sequence[ScenarioAnswers]) -> list[tuple[str, ...]]:
     ]
 
 
-def answer_heads(answer: ForecastAnswer) -> list[str]:
-    """The headings of a forecast's table."""
-    share = percent(answer.forecast.central)
-    names = ["Mean", f"{share} range from", "to"]
-    found = ["Scenario", *(heading for name in names for heading in (name, "Difference"))]
-    return found if answer.above is None else [*found, f"Above {answer.forecast.threshold:g}", POINTS]
+def answer_heads(found: Sequence[ScenarioAnswers], index: int) -> list[str]:
+    """The headings of the table of the forecast at `index`."""
+    states = [each.forecasts[index] for each in found]
+    above = above_head(states)
+    heads = ["Scenario", *(heading for name in range_heads(states) for heading in (name, "Difference"))]
+    return [*heads, above, POINTS] if above else heads
 
 
 def answer_rows(found: Sequence[ScenarioAnswers], index: int) -> list[tuple[str, ...]]:
     """A row for the workbook itself and for each scenario, of the forecast at `index`, under its `answer_heads`."""
-    return [(each.name, *_cells(each.forecasts[index])) for each in found]
+    above = bool(above_head([each.forecasts[index] for each in found]))
+    return [(each.name, *_cells(each.forecasts[index], above)) for each in found]
 
 
-def _cells(answer: ForecastAnswer) -> list[str]:
+def _cells(answer: ForecastAnswer, above: bool) -> list[str]:
     found = []
     for key, value in (("mean", answer.mean), ("low", answer.low), ("high", answer.high)):
         found += [estimate_text(value), _change(answer.differences.get(key))]
-    if answer.above is not None:
-        found += [share_text(answer.above), _change(answer.differences.get("above"), share=True)]
+    if above:
+        share = "" if answer.above is None else share_text(answer.above)
+        found += [share, _change(answer.differences.get("above"), share=True)]
     return found
 
 

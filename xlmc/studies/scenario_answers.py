@@ -41,7 +41,8 @@ class ForecastAnswer:
     Attributes:
         low, high: the ends of its central range.
         above: P(> threshold); None where it has no threshold.
-        differences: `mean`, `low`, `high`, `above` -> this less the workbook's own; empty for the workbook itself.
+        differences: `mean`, `low`, `high`, `above` -> this less the workbook's own; empty for the workbook itself. A
+            scenario may have another threshold or central range: the numbers that stand there are compared.
     """
 
     forecast: Forecast
@@ -220,14 +221,15 @@ def _differences(
     own = base.results[forecast.name]
     low, high = own.central()
     theirs = {"mean": own.mean, "low": low, "high": high}
-    if forecast.threshold is not None:
-        theirs["above"] = own.probability_above(forecast.threshold)
+    if own.definition.threshold is not None:
+        theirs["above"] = own.probability_above(own.definition.threshold)
+    both = [key for key in found if key in theirs]
     if not paired:
-        return {key: _independent(theirs[key], each) for key, each in found.items()}
+        return {key: _independent(theirs[key], found[key]) for key in both}
     first, second = (Accepted.of(each.trial_index, each.forecasts[forecast.name]) for each in (base, run))
     pair = Pair(first, second, run.plan.size, max(base.plan.replicates, run.plan.replicates))
-    of = _statistics(forecast)
-    return {key: pair.difference(of[key](first), of[key](second)) for key in found}
+    before, after = _statistics(own.definition), _statistics(forecast)
+    return {key: pair.difference(before[key](first), after[key](second)) for key in both}
 
 
 def _statistics(forecast: Forecast) -> dict[str, Callable[[Accepted], Statistic]]:

@@ -266,7 +266,7 @@ def _scenarios(material: Material) -> Iterator[Block]:
     for index, each in enumerate(found[0].forecasts):
         if each.forecast.name not in material.forecasts:
             continue
-        heads = answer_heads(each)
+        heads = answer_heads(found, index)
         units = f", {each.forecast.units}" if each.forecast.units else ""
         widths = (1.8, *[1.4] * (len(heads) - 1))
         caption = f"{each.forecast.name}{units}: the workbook as it is, and the scenarios."

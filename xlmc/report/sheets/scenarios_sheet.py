@@ -17,7 +17,16 @@ if TYPE_CHECKING:
     from xlmc.report.sheets.page import Page
     from xlmc.run.simulation import Simulation
 
-__all__ = ["POINTS", "WIDTHS", "scenario_sentences", "scenario_warnings", "write_scenario_tables", "write_scenarios"]
+__all__ = [
+    "POINTS",
+    "WIDTHS",
+    "above_head",
+    "range_heads",
+    "scenario_sentences",
+    "scenario_warnings",
+    "write_scenario_tables",
+    "write_scenarios",
+]
 
 WIDTHS = (30, *[11] * 16)
 
@@ -52,7 +61,13 @@ def write_scenario_tables(page: Page, found: Sequence[ScenarioAnswers]) -> None:
         definition = forecast.forecast
         units = f", {definition.units}" if definition.units else ""
         page.heading(f"{definition.name}{units}")
-        page.table(_heads(forecast), [_answers(each.name, each.forecasts[index]) for each in found])
+        states = [each.forecasts[index] for each in found]
+        above = above_head(states)
+        answers = [head for name in range_heads(states) for head in (name, "±", "Difference", "±")]
+        shares = [above, "±", POINTS, "±"] if above else []
+        page.table(
+            ["Scenario", *answers, *shares], [_answers(each.name, each.forecasts[index], bool(above)) for each in found]
+        )
     page.row += 1
     for sentence in scenario_sentences(found):
         page.wide(sentence, "remark", _LAST)
@@ -69,6 +84,7 @@ def scenario_sentences(found: Sequence[ScenarioAnswers]) -> Iterator[str]:
     few = [f"{each.name!r} ({each.run.accepted:,})" for each in found if 0 < each.run.accepted < FEW]
     if few:
         yield f"Few trials were accepted: {', '.join(few)}. Errors of means and differences can be too small there."
+    yield from _different_wishes(found)
     yield "Differences are those to the workbook as it is: a positive one means that the scenario gives more."
     if all(each.paired for each in found):
         yield (
@@ -94,20 +110,38 @@ def _accepted(each: ScenarioAnswers) -> list[Shown]:
     return [Shown(each.name, look="name"), cells.count(each.run.accepted), *cells.share(each.acceptance), *change]
 
 
-def _heads(answer: ForecastAnswer) -> list[str]:
-    share = percent(answer.forecast.central)
-    names = ["Mean", f"{share} range from", "to"]
-    found = ["Scenario", *(head for name in names for head in (name, "±", "Difference", "±"))]
-    return found if answer.above is None else [*found, f"Above {answer.forecast.threshold:g}", "±", POINTS, "±"]
+def range_heads(states: Sequence[ForecastAnswer]) -> list[str]:
+    """The headings of mean and central range of a forecast in all states, which may ask for different ranges."""
+    shares = {percent(each.forecast.central) for each in states}
+    return ["Mean", f"{shares.pop()} range from" if len(shares) == 1 else "Central range from", "to"]
 
 
-def _answers(name: str, answer: ForecastAnswer) -> list[Shown]:
+def above_head(states: Sequence[ForecastAnswer]) -> str:
+    """The heading of its probability above a threshold; empty where no state has one."""
+    thresholds = {each.forecast.threshold for each in states} - {None}
+    return "" if not thresholds else f"Above {thresholds.pop():g}" if len(thresholds) == 1 else "Above threshold"
+
+
+def _different_wishes(found: Sequence[ScenarioAnswers]) -> Iterator[str]:
+    """Which thresholds and central ranges scenarios change."""
+    for index, own in enumerate(found[0].forecasts):
+        name, states = own.forecast.name, [(each.name, each.forecasts[index].forecast) for each in found]
+        if len({each.threshold for _, each in states}) > 1:
+            said = [
+                f"{state!r} {'none' if each.threshold is None else f'{each.threshold:g}'}" for state, each in states
+            ]
+            yield f"Thresholds of {name!r}: {', '.join(said)}."
+        if len({each.central for _, each in states}) > 1:
+            said = [f"{state!r} {percent(each.central)}" for state, each in states]
+            yield f"Central ranges of {name!r}: {', '.join(said)}."
+
+
+def _answers(name: str, answer: ForecastAnswer, above: bool) -> list[Shown]:
     found = [Shown(name, look="name")]
     for key, value in (("mean", answer.mean), ("low", answer.low), ("high", answer.high)):
         found += [*cells.estimate(value, "answer"), *_difference(answer.differences.get(key))]
-    if answer.above is not None:
-        change = answer.differences.get("above")
-        found += [*cells.share(answer.above), *([BLANK, BLANK] if change is None else cells.share(change))]
+    for share in (answer.above, answer.differences.get("above")) if above else ():
+        found += [BLANK, BLANK] if share is None else cells.share(share)
     return found
 
 

@@ -239,6 +239,35 @@ def test_products_too_small_for_excel_add_nothing(differences, engine):
     agree(differences(engine, cells, {"A1": [1.0, 2.0, 0.01]}, ["D1", "D2"], []), relative=0)
 
 
+OUTSIDE_LOOPS = ["INT(A1*3)", "QUOTIENT(A1,A2)", "QUOTIENT(A1>1,A2-1.5)", "SINH(A1)", "ASINH(INT(A1))", "LOG(A1,3)"]
+OUTSIDE_LOOPS += ["ROUND(A1,2)+ROUND(A2,1)", "QUOTIENT(SINH(A1),INT(A2*4)-5)", "IF(A1>1,SINH(A1)*2,LOG(-A1,A2))"]
+OUTSIDE_LOOPS += ["SINH(TRUE)+SINH(A1>1)", "CEILING(A1,0.1)", "COSH(A1)^2-SINH(A1)^2", "COUNTIF(A1:A2,A1>1)+1"]
+OUTSIDE_LOOPS += [
+    "SINH(B2)",
+    "SINH(C9)+A1",
+    "FACT(INT(A1))",
+    "IF(INT(A2*4)>6,1/INT(A1),2)",
+    "NOT(INT(A1))",
+    "SINH(A1*1E-320)",
+]
+OUTSIDE_LOOPS += ["SUM(SINH(A1),INT(A2))", "IF(SINH(A1),1,2)", "AND(SINH(A1),TRUE)+2", "SINH(LN(A1))", "SINH(1/(A1-1))"]
+
+
+@OURS
+@pytest.mark.parametrize("draws", ["sound", "odd", "one", "errors"])
+def test_functions_outside_of_loops_give_the_bits_of_the_careful_path(differences, engine, draws):
+    """In a filter, on its survivors, and where draws are errors; they feed loops, and each other."""
+    given = {"sound": np.linspace(1.01, 2.9, 33), "odd": ODD_DRAWS, "one": [1.5], "errors": [1.5, np.nan, 2.5, 0.3]}[
+        draws
+    ]
+    fallible = ["A1"] if draws == "errors" else []
+    inputs = {"A1": given, "A2": np.linspace(1, 2, len(given))}
+    for formula in OUTSIDE_LOOPS:
+        for above in ("=C1>1.2", "=Z9<1E300"):
+            columns = differences(engine, a_book(formula, above), inputs, ["Z9", "Z8", "A1"], ["D1"], fallible)
+            agree(columns, relative=1e-15 if "LN" in formula else 0)
+
+
 @OURS
 def test_draws_that_are_errors(differences, engine):
     cells = {"C1": "=A1+1", "C2": "=IFERROR(A1,7)", "C3": "=IF(A2>1,A1,A2)", "C4": "=A1>0", "D1": "=A2<3"}

@@ -112,6 +112,19 @@ def test_only_trials_in_which_something_may_be_an_error_are_computed_again(progr
     assert sum(seen) == again
 
 
+def test_a_function_outside_of_loops_is_right_after_many_blocks_with_errors(program):
+    """After some the evaluator no longer tries plain numbers."""
+    evaluator, good = program("SINH(1/A1)*2").evaluator(4), np.array([1.0, 2.0, 4.0, 8.0])
+    for block in range(20):
+        a1 = good * (np.arange(4) != block % 5)  # every fifth block has no error
+        evaluator.filters({"A1": a1, "A2": a1}, 4)
+        (column,) = evaluator.forecasts(np.arange(4))
+        wrong = a1 == 0
+        assert (column.codes is None) == (not wrong.any())
+        assert column.values[~wrong].tolist() == (np.sinh(1 / good[~wrong]) * 2).tolist()
+        assert column.codes is None or column.codes.tolist() == [2 * int(each) for each in wrong]
+
+
 def test_an_evaluator_takes_blocks_of_any_size_up_to_its_own(program):
     evaluator = program("IF(A1>0,1/A1,-1)+SQRT(A1)").evaluator(10)
     for values in ([1.0, 4.0], [0.0], [4.0] * 10, [-1.0, 16.0, 0.25]):

@@ -1,8 +1,8 @@
-"""The arrays that loops write to: as many as hold values that are still to be read."""
+"""The arrays that loops and steps write to: as many as hold values that are still to be read."""
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -64,6 +64,7 @@ class Memory:
 
     Attributes:
         addresses: of the arrays that loops read and write.
+        failures: node -> blocks in which it could not be computed with plain numbers.
     """
 
     def __init__(self, slots: Mapping[int, Slot], block: int) -> None:
@@ -72,6 +73,7 @@ class Memory:
         }
         self._arrays = {node: arrays[slot] for node, slot in slots.items()}
         self.addresses = _Addresses()
+        self.failures: Counter[int] = Counter()
 
     def of(self, node: int, n: int) -> NDArray[Any]:
         """The first `n` elements of a node's array."""

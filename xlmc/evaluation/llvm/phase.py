@@ -20,12 +20,13 @@ from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select, evaluate_node, in_own_memory
 from xlmc.evaluation.graph.readiness import order_by_need
 from xlmc.evaluation.llvm.loop import SIDE_BY_SIDE, Load, compile_loop
-from xlmc.evaluation.llvm.loop_rules import LoopRule, Operand
+from xlmc.evaluation.llvm.loop_rules import PLAIN, LoopRule, Operand
 from xlmc.evaluation.llvm.machine import Machine, NativeLoop
-from xlmc.evaluation.llvm.memory import Memory, assign_slots
+from xlmc.evaluation.llvm.memory import Memory, Slot, assign_slots
 from xlmc.evaluation.llvm.shapes import Shape, cut, shape_of
+from xlmc.evaluation.numpy.steps import Frame, LeaveFastPath, make_step, plain_constant
 from xlmc.functions import Kind
-from xlmc.functions.denormals import tiny_to_zero
+from xlmc.functions.denormals import Underflow
 from xlmc.functions.operators import ALL_BITS
 from xlmc.functions.values import Floats, Value
 
@@ -33,6 +34,9 @@ __all__ = ["Loop", "Phase", "Trials"]
 
 _LONGEST: Final = 250
 """The most nodes of one loop; the time to compile grows faster than the loop."""
+
+_MOST_FAILURES: Final = 8
+"""Blocks in which a node outside of loops could not be computed with plain numbers; then that is not tried any more."""
 
 _FEWEST: Final = 4
 """Stages of which some may be of one shape; the constants of fewer are part of the code, but for limits of filters."""
@@ -92,13 +96,12 @@ class Trials:
         assert self.wider is not None
         return self.wider.value(node).take(self.survivors)
 
-    def numbers(self, node_id: int) -> Floats | float | None:
-        """A node's plain numbers, `(n,)`, or the number that it always is; None where a `Value` must be asked."""
+    def plain(self, node_id: int) -> NDArray[Any] | float | bool | None:
+        """A node's numbers or truth values, `(n,)`, or the one that it always is; None where only a `Value` tells."""
         node = self._dag.nodes[node_id]
-        if self._dag.types[node_id] is not Kind.NUMBER or self._dag.sizes[node_id] is not None:
-            return None
         if isinstance(node, Constant):
-            return float(node.value.numbers[0])
+            known = plain_constant(node.value)
+            return known if isinstance(known, float | bool) else None
         if node_id not in self.arrays and self.wider is not None and node_id in self.wider.arrays:
             self.arrays[node_id] = self.wider.arrays[node_id][self.survivors]
         return self.arrays.get(node_id)
@@ -115,6 +118,9 @@ class Trials:
         """A node as a result: numbers alone for draws without errors, or from a loop, whose errors `wrong` marks."""
         if not fallible and node in self.arrays:
             return Column(self.arrays[node])
+        known = self._dag.nodes[node]
+        if isinstance(known, Constant) and self._dag.types[node] in PLAIN and self._dag.sizes[node] is None:
+            return Column(np.broadcast_to(known.value.numbers, (self.n,)))
         if not fallible and self.wider is not None and node in self.wider.arrays:
             return Column(self.wider.arrays[node][self.survivors])
         return column_of(self.value(node), self.n)
@@ -154,7 +160,7 @@ class Phase:
 
     Attributes:
         slots: the memory of each node that a loop leaves behind.
-        outside: how many values that are computed outside of loops wait at a time.
+        waiting: how many arrays and values wait at a time, of loops and of what is computed outside of them.
     """
 
     def __init__(
@@ -182,11 +188,26 @@ class Phase:
             stage.nodes if plan is None else next(made) for stage, plan in zip(parts, plans, strict=True)
         ]
         kept, late = frozenset(keep), early is not None
-        written = [step.stores if isinstance(step, Loop) else () for step in self._steps]
-        self.slots = assign_slots(dag, list(zip(read, written, strict=True)), kept, late=late)
         self._last_read = _last_reads(parts, read, kept)
         outside = [() if isinstance(step, Loop) else step for step in self._steps]
-        self.outside = len(set(assign_slots(dag, list(zip(read, outside, strict=True)), kept, late=late).values()))
+        self._plain = {node: make_step(dag, node, 0) for nodes in outside for node in nodes if self._is_plain(node)}
+
+        def assigned(written: Sequence[Sequence[int]]) -> dict[int, Slot]:
+            return assign_slots(dag, list(zip(read, written, strict=True)), kept, late=late)
+
+        by_loops = [step.stores if isinstance(step, Loop) else () for step in self._steps]
+        plain = [tuple(node for node in nodes if node in self._plain) for nodes in outside]
+        self.slots = assigned([first or second for first, second in zip(by_loops, plain, strict=True)])
+        self.waiting = sum(len(set(assigned(written).values())) for written in (by_loops, outside))
+
+    def _is_plain(self, node_id: int) -> bool:
+        """Whether a node outside of loops is a number made of numbers and truth values, none of them a fallible draw."""
+        dag, node = self._dag, self._dag.nodes[node_id]
+        if not isinstance(node, Apply) or dag.types[node_id] is not Kind.NUMBER or dag.sizes[node_id] is not None:
+            return False
+        given = [dag.nodes[argument] for argument in node.arguments]
+        fallible = any(isinstance(each, Input) and each.name in self._may_err for each in given)
+        return not fallible and all(dag.types[a] in PLAIN and dag.sizes[a] is None for a in node.arguments)
 
     def _read_from_outside(self, stage: _LoopStage) -> set[int]:
         return set(chain.from_iterable(map(self._needed, stage.nodes))).difference(stage.nodes)
@@ -257,7 +278,7 @@ class Phase:
             if isinstance(step, Loop):
                 wrong += self._run_loop(step, trials, memory)
             else:
-                self._run_outside(step, trials)
+                self._run_outside(step, trials, memory)
             trials.forget(self._last_read.get(at, ()))
         return wrong > 0
 
@@ -274,36 +295,40 @@ class Phase:
         trials.arrays.update(zip(step.stores, written, strict=True))
         return wrong
 
-    def _run_outside(self, nodes: Sequence[int], trials: Trials) -> None:
+    def _run_outside(self, nodes: Sequence[int], trials: Trials, memory: Memory) -> None:
         for node_id in nodes:
+            if node_id in self._plain and self._run_plain(node_id, trials, memory):
+                continue
             node = self._dag.nodes[node_id]
             assert isinstance(node, Apply | Select | IfErrorNode | Range)
             with np.errstate(all="ignore"):
-                numbers = _apply_ufunc(node, trials) if isinstance(node, Apply) else None
-                if numbers is not None:
-                    trials.arrays[node_id] = numbers
-                    continue
                 known = {used: trials.value(used) for used in self._needed(node_id)}
                 trials.values[node_id] = in_own_memory(evaluate_node(node, known), known.values())
 
+    def _run_plain(self, node_id: int, trials: Trials, memory: Memory) -> bool:
+        """Compute a node as the engine `numpy` does; whether that could be done, and none of its numbers is an error.
 
-def _apply_ufunc(node: Apply, trials: Trials) -> Floats | None:
-    """What the ufunc of a function of numbers gives, `(n,)`.
-
-    None of a function that has none, where an argument is no plain number, where the guard does not hold, and where a
-    result is an error.
-    """
-    function = node.function
-    if not function.on_numbers or function.returns is not Kind.NUMBER or function.ufunc is None:
-        return None
-    given = [trials.numbers(argument) for argument in node.arguments]
-    arguments = [each for each in given if each is not None]
-    if len(arguments) < len(given) or len(arguments) != function.ufunc.nin:
-        return None
-    if function.guard is not None and not function.guard(*arguments):
-        return None
-    found: Floats = function.ufunc(*arguments)
-    return tiny_to_zero(found) if np.isfinite(found).all() else None
+        Where it often cannot, it is not tried any more: that costs time, and changes no number.
+        """
+        if memory.failures[node_id] > _MOST_FAILURES:
+            return False
+        known: dict[int, Any] = {}
+        for used in self._needed(node_id):
+            found = trials.plain(used)
+            if found is None:
+                return False
+            known[used] = found
+        underflow = Underflow()
+        frame = Frame(known, [memory.of(node_id, trials.n)], trials.n, underflow)
+        try:
+            with np.errstate(divide="raise", over="raise", invalid="raise", under="call", call=underflow):
+                self._plain[node_id](frame)
+        except (FloatingPointError, LeaveFastPath):
+            memory.failures[node_id] += 1
+            return False
+        # Loops read doubles there, one a trial.
+        trials.arrays[node_id] = np.ascontiguousarray(np.broadcast_to(known[node_id], (trials.n,)), np.float64)
+        return True
 
 
 @dataclass(frozen=True, slots=True)

@@ -83,7 +83,7 @@ class JitProgram:
         self.late = Phase(self.dag, machine(), rules, needed, _in_order(late, needed, wanted), wanted, early, may_err)
         self.inputs = _inputs(self.dag, [*first, *late])
         self.slots = self.first.slots | self.late.slots
-        arrays = len(set(self.slots.values())) + self.first.outside + self.late.outside
+        arrays = self.first.waiting + self.late.waiting
         self.largest_block = _LARGEST_BLOCK
         memory = _MOST_MEMORY if self.first.loops is not None and self.late.loops is not None else _MOST_IN_CACHES
         while self.largest_block > _SMALLEST_BLOCK and self.largest_block * 8 * arrays > memory:

@@ -49,7 +49,7 @@ class Frame:
         live: the bytes of `Value`s.
     """
 
-    values: list[Any]
+    values: Any  # by node: a list, or a mapping of those that one step reads and writes
     buffers: Sequence[NDArray[Any]]
     n: int
     underflow: Underflow

@@ -307,8 +307,9 @@ def _discards(column: Column, trials: int) -> Counter[int]:
 def _codes(column: Column, trials: int) -> Iterator[tuple[int, int]]:
     """The codes of a column's first trials, and in how many each stands."""
     if column.codes is not None:
-        codes, counts = np.unique(column.codes[:trials], return_counts=True)
-        yield from zip(codes.tolist(), counts.tolist(), strict=True)
+        counts = np.bincount(column.codes[:trials])
+        codes = np.flatnonzero(counts)
+        yield from zip(codes.tolist(), counts[codes].tolist(), strict=True)
 
 
 def fault_text(code: int) -> str:

@@ -37,6 +37,11 @@ __all__ = ["BlockParts", "NativeBlockRunner", "block_parts"]
 _CHUNK: Final = 2048
 """Trials at a time: few enough for the second-level cache, enough that the calls of the loops cost nothing."""
 
+_FEWEST_IN_CHUNK: Final = 256
+_MOST_BYTES: Final = 1 << 23
+"""The bytes of a chunk's arrays, draws among them, above which a chunk has fewer trials. Measured on books of 12 to
+1,000 assumptions: below it the number of trials hardly matters."""
+
 _MOST_FILTERS: Final = 16
 """The most filters: every pair of them is counted."""
 
@@ -94,6 +99,14 @@ def block_parts(
     return BlockParts(dag, early_loops, late_loops, first.slots | late.slots, tuple(asked), tuple(given))
 
 
+def _trials_in_chunk(arrays: int) -> int:
+    """A power of two."""
+    trials = _CHUNK
+    while trials > _FEWEST_IN_CHUNK and 8 * trials * arrays > _MOST_BYTES:
+        trials //= 2
+    return trials
+
+
 def _find_literal(dag: Dag, node: int, kind: Kind) -> Literal | None:
     """The constant that a node is, if it is one of that kind."""
     return literal(dag, Operand(node, kind)) if dag.types[node] is kind else None
@@ -111,11 +124,10 @@ class NativeBlockRunner:
         self, parts: BlockParts, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None, block: int
     ) -> None:
         self._parts, self._draw = parts, draw
-        self._chunk = gcd(_CHUNK, block)
-        self._chunks = block // self._chunk
         self._runs = self._careful = 0
         drawn = {} if linear is not None else draw(0)
         self._names = tuple(drawn) if linear is None else linear.names
+        self._chunk = gcd(_trials_in_chunk(len(self._names) + len(set(parts.slots.values()))), block)
         rows = np.empty((len(self._names), self._chunk + 8))[:, : self._chunk]  # apart, for the cache's sake
         self._fill = None if linear is None else filler(linear.streams, linear.maps, rows)
         self._rows = dict(zip(self._names, rows, strict=True))

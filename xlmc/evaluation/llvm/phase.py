@@ -201,7 +201,7 @@ class Phase:
         self.waiting = sum(len(set(assigned(written).values())) for written in (by_loops, outside))
 
     def _is_plain(self, node_id: int) -> bool:
-        """Whether a node outside of loops is a number made of numbers and truth values, none of them a fallible draw."""
+        """Whether a node outside of loops is a number made of numbers and truth values, but of no fallible draw."""
         dag, node = self._dag, self._dag.nodes[node_id]
         if not isinstance(node, Apply) or dag.types[node_id] is not Kind.NUMBER or dag.sizes[node_id] is not None:
             return False

@@ -1,4 +1,4 @@
-"""The case in docs/evidence.md can be followed: its table, typed into the book, gives the numbers that it quotes."""
+"""The guide's second case can be followed: what it types into the camera's book and into its own gives its numbers."""
 
 from __future__ import annotations
 
@@ -7,63 +7,85 @@ from pathlib import Path
 
 import openpyxl
 import pytest
-from openpyxl.worksheet.table import Table
 
 import xlmc
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGE = (ROOT / "docs" / "evidence.md").read_text(encoding="utf-8")
-CASE = PAGE[PAGE.index("## A case: an EDR and a camera") : PAGE.index("## Off and on")]
+PAGE = (ROOT / "docs" / "guide.md").read_text(encoding="utf-8")
+CASE = PAGE[PAGE.index("## 12. A second case") : PAGE.index("## 13. Pitfalls")]
 PROSE = " ".join(CASE.split())
-
-
-def rows_of(first):
-    """The table whose first heading this is."""
-    found = re.search(rf"^\| {re.escape(first)} \|.*\n\|[-|]+\n((?:\|.*\n)+)", CASE, re.MULTILINE)
-    head = CASE[found.start() : found.end()].splitlines()[0]
-    return [[cell.strip() for cell in line.strip("|").split("|")] for line in (head, *found[1].splitlines())]
-
-
-def number(text):
-    try:
-        return float(text)
-    except ValueError:
-        return text or None
+READINGS = re.findall(r"^\| (Chevrolet [^|]+) \| ([-\d.]+) \| ([\d.]*) ?\|$", CASE, re.MULTILINE)
+MOVES = re.findall(r"^\| ([a-zE][^|]+) \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|$", CASE, re.MULTILINE)
+FORECASTS = ("Chevrolet delta-V", "Chevrolet impact speed", "Nissan impact speed")
 
 
 @pytest.fixture(scope="module")
-def book(tmp_path_factory):
-    def make(speed=34.1):
-        made = openpyxl.load_workbook(ROOT / "examples" / "intersection.xlsx")
-        sheet = made.create_sheet("Facts")
-        rows = [[number(cell) for cell in row] for row in rows_of("Name")]
-        rows[2][2] = speed
-        for row in rows:
-            sheet.append(row)
-        sheet.add_table(Table(displayName="xlmc_evidence", ref=f"A1:H{len(rows)}"))
+def camera(tmp_path_factory):
+    """The run of the book with what the page says of the video."""
+    made = openpyxl.load_workbook(ROOT / "templates" / "video-speed.xlsx")
+    sheet = made["Inputs"]
+    rows = {sheet.cell(row, 3).value: row for row in range(1, sheet.max_row + 1)}
+    ends = {
+        "d": re.search(r"gives ([\d.]+) to ([\d.]+) ft between them", PROSE).groups(),
+        "rate": re.search(r"say ([\d.]+) to ([\d.]+) frames a second", PROSE).groups(),
+    }
+    for symbol, given in ends.items():
+        low, high = map(float, given)
+        for column, value in zip((4, 7, 8), ((low + high) / 2, low, high), strict=True):
+            sheet.cell(rows[symbol], column).value = value
+    sheet.cell(rows["n"], 4).value = int(re.search(r"is (\d+) frames after", PROSE)[1])
+    made.save(path := tmp_path_factory.mktemp("case") / "camera.xlsx")
+    return xlmc.load(path).simulate()
+
+
+@pytest.fixture(scope="module")
+def book(case, tmp_path_factory):
+    """`book(speed)`: the guide's case with the readings, the video's speed another one if given."""
+
+    def make(speed=None):
+        made = openpyxl.load_workbook(case)
+        sheet = made["Evidence"]
+        rows = {str(sheet.cell(row, 1).value): row for row in range(6, sheet.max_row + 1)}
+        for name, reading, deviation in READINGS:
+            row = rows[f'=vehicle_1&"{name.removeprefix("Chevrolet")}"']
+            sheet.cell(row, 4).value = speed if speed and deviation else float(reading)
+            if deviation:
+                sheet.cell(row, 7).value = float(deviation)
         made.save(path := tmp_path_factory.mktemp("case") / "my-case.xlsx")
         return xlmc.load(path)
 
     return make
 
 
+def test_the_video_gives_the_speed_that_is_then_a_reading(camera):
+    speed = camera["Vehicle speed at the last mark"]
+    assert f"a mean of {speed.mean.value:.3f} mph" in PROSE
+    assert f"a standard deviation of {speed.standard_deviation.value:.3f} mph" in PROSE
+    (_, edr, none), (_, reading, deviation) = READINGS
+    assert (edr, none) == ("-12.4", "")
+    assert (reading, deviation) == (f"{speed.mean.value:.2f}", f"{speed.standard_deviation.value:.2f}")
+    assert camera.warnings == []
+
+
 def test_the_case_gives_what_the_page_says(book):
     model = book()
-    assert all(f"{end:.6g}" in PROSE for end in (model.filters[3].at_least, model.filters[3].at_most))
+    (edr,) = [each for each in model.filters if "EDR delta-V" in each.name]
+    assert f"a delta-V from {edr.at_least:.6g} to {edr.at_most:.6g} mph" in PROSE
     run = model.simulate()
     found = run.agreement
+    assert f"accepts fewer trials, {run.accepted}, and" in PROSE
     assert f"together they keep {found.ratio.value:.3g} times" in PROSE
     assert found.sentence.partition(":")[0] in PROSE
     first, second = (round(100 * each.chance) for each in found.items)
     assert f"has a chance of {first} %, one as the camera's {second} %" in PROSE
-    heads, *lines = rows_of("means, mph, with")
-    means = {(each.used, each.forecast): each for each in found.answers}
-    for used, *shown in lines:
-        assert shown == [f"{means[used, name].mean.value:.3f}" for name in heads[1:]]
-    before, after = (means[used, "Chevrolet impact speed"] for used in ("no evidence", "all evidence"))
+    means = {(each.used.partition(" alone")[0], each.forecast): each for each in found.answers}
+    used = ["no evidence", "all evidence", *(name for name, *_ in READINGS)]
+    shown = [[f"{means[way, name].mean.value:.3f}" for name in FORECASTS] for way in used]
+    assert [list(line[1:]) for line in MOVES] == shown
+    before, after = (means[way, FORECASTS[1]] for way in ("no evidence", "all evidence"))
     spreads = f"from {before.standard_deviation.value:.2f} to {after.standard_deviation.value:.2f} mph"
     assert spreads in PROSE
-    assert f"{after.mean.value:.2f} mph, with a standard deviation of {after.standard_deviation.value:.2f} mph" in PROSE
+    assert f"{after.mean.value:.1f} mph, with a standard deviation of {after.standard_deviation.value:.1f} mph" in PROSE
     assert run.warnings == []
 
 
@@ -71,5 +93,6 @@ def test_the_contradicting_video_is_out_of_reach(book):
     run = book(39.5).simulate()
     assert run.settings.evidence == "weights"
     assert "the evidence is inconsistent" in run.warnings[0]
+    assert "is out of reach of the model given the other evidence" in run.warnings[0]
     assert f"the effective sample size, {run.weighting.effective:.0f}, says" in PROSE
-    assert 1.5 < run.weighting.mean * run.accepted < 2.5
+    assert 0.5 < run.weighting.mean * run.accepted < 1.5

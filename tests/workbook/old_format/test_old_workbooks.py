@@ -170,6 +170,12 @@ DIFFERENT = {
         ("S",),
         "S!A1: LibreOffice has lost the formula",
     ),
+    "areas without end": (
+        record(0x221, struct.pack("<HHBBHI", 0, 0xFFFF, 0, 0xFF, 0, 0)),
+        {},
+        ("S",),
+        "the array formulas of the sheet 'S' fill too many cells",
+    ),
     "no sheet": (b"", {}, ("T",), "lost the sheet 'S'"),
 }
 

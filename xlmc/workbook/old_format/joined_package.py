@@ -31,6 +31,9 @@ __all__ = ["parts_of_old_workbook"]
 _CLOSE: Final = 1e-13
 """Relative difference of numbers that are the same to 15 digits."""
 
+_MOST_FILLED: Final = 1_000_000
+"""Cells that the array formulas and what-if tables of a sheet may fill."""
+
 _BEHIND_DRAWING: Final = (
     *("legacyDrawingHF", "drawingHF", "picture", "oleObjects", "controls", "AlternateContent", "webPublishItems"),
     *("tableParts", "extLst"),
@@ -119,9 +122,10 @@ def _exact(sheet: OldSheet, cells: Mapping[Position, CellContent]) -> dict[Posit
             raise _refusal(f"LibreOffice has made {_words(content)} of the number {number!r}", where)
         if value != number:
             found[position] = number
+    filled = _positions(sheet)
     for position, number in sheet.results.items():
         content = cells.get(position)
-        if content is None or (content.formula is None and not _inside(position, sheet.areas)):
+        if content is None or (content.formula is None and position not in filled):
             raise _refusal("LibreOffice has lost the formula of the cell", Cell(sheet.name, *position))
         if not (_is_number(content.value) and content.value == number) and math.isfinite(number):
             found[position] = number
@@ -142,9 +146,22 @@ def _is_number(value: CellValue) -> TypeGuard[float]:
     return isinstance(value, int | float) and not isinstance(value, bool | ErrorCode)  # an ErrorCode is a whole number
 
 
-def _inside(position: Position, areas: Iterable[tuple[int, int, int, int]]) -> bool:
-    row, column = position
-    return any(top <= row <= bottom and left <= column <= right for top, left, bottom, right in areas)
+def _positions(sheet: OldSheet) -> set[Position]:
+    """The cells that array formulas and what-if tables fill.
+
+    Raises:
+        WorkbookError: they are more than there could be.
+    """
+    areas = [area for area in sheet.areas if area[:2] != area[2:]]  # a cell alone keeps its formula
+    sizes = (max(bottom - top + 1, 0) * max(right - left + 1, 0) for top, left, bottom, right in areas)
+    if sum(sizes) > _MOST_FILLED:
+        raise _refusal(f"the array formulas of the sheet {sheet.name!r} fill too many cells")
+    return {
+        (row, column)
+        for top, left, bottom, right in areas
+        for row in range(top, bottom + 1)
+        for column in range(left, right + 1)
+    }
 
 
 def _refusal(message: str, where: object = None) -> WorkbookError:

@@ -9,21 +9,21 @@ from xml.etree import ElementTree
 
 import openpyxl
 import pytest
-from live_books import CASE, SIMPLE, edited
+from live_books import CASE, SIMPLE, edited, wide_book
 
 import xlmc
 from xlmc.definitions.scenarios import Held, Limits, Numbers
 from xlmc.run.applied_changes import applied
 
 FRICTION = "Chevrolet post-impact deceleration"
-WIDTHS = ((1400, 1000), (1024, 800), (390, 844))
+WIDTHS = ((1400, 1000), (1280, 900), (1024, 800), (768, 1024), (390, 844), (375, 812))
 LOOKED_AT = {
     (1400, "charts"),
-    (1400, "matters"),
+    (1280, "matters"),
     (1024, "pairs"),
-    (1024, "tables"),
+    (768, "tables"),
     (390, "scenarios"),
-    (390, "studies"),
+    (375, "studies"),
 }
 """By axe, which takes three seconds a look."""
 
@@ -175,7 +175,7 @@ def test_by_mouse(chromium, running, case):
     page.click(page.all(".fit")[0])
     page.until("document.querySelector('.fit').options.length > 2")
 
-    drawing = ElementTree.fromstring(saved_svg(page, page.all(".pictures button")[1]))
+    drawing = ElementTree.fromstring(saved_svg(page, page.button("Save SVG", ".forecast")))
     parts = [each.tag.rpartition("}")[2] for each in drawing.iter()]
     assert "image" not in parts
     assert parts.count("path") > 8
@@ -292,6 +292,7 @@ def test_at_every_width_nothing_overflows_and_names_and_contrast_are_right(chrom
             if tab in ("matters", "tables"):
                 page.until(f"document.querySelectorAll('#panel-{tab} table').length")
             assert page.run("return document.documentElement.scrollWidth <= innerWidth"), (width, tab)
+            assert page.run("return document.getAnimations().length") == 0  # whoever wants less motion has it
             unnamed = page.run(
                 "return [...document.querySelectorAll('button, input, select, [role=slider], [role=tab]')]"
                 ".filter((each) => each.checkVisibility() && !each.textContent.trim() && !each.ariaLabel"
@@ -306,6 +307,43 @@ def test_at_every_width_nothing_overflows_and_names_and_contrast_are_right(chrom
                 )
                 assert found == [], (width, tab)
     chromium.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def test_a_workbook_with_sixty_assumptions_and_twelve_answers_stays_usable(chromium, running, tmp_path):
+    page = Page(chromium, running(book=wide_book(tmp_path / "wide.xlsx")))
+    for width, height in ((1400, 1000), (768, 1024), (375, 812)):
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        chromium.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+        assert page.run("return document.documentElement.scrollWidth <= innerWidth"), width
+        top = page.run("scrollTo(0, 0); return document.querySelector('canvas').getBoundingClientRect().top")
+        assert top < height * 0.9, width  # a chart is in sight, so that its handle is not moved blindly
+    chromium.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+    shown = "[...document.querySelectorAll('#assumptions .card')].filter((each) => each.checkVisibility()).length"
+    words, changed = page.all("#find input")
+    assert page.run(f"return {shown}") == 60
+    words.send_keys("vehicle 7 ")
+    assert page.run(f"return {shown}") == 3
+    assert page.one("#find [role=status]").text == "3 of 60"
+    name = "Vehicle 7 friction on wet asphalt"
+    page.at_rest(lambda: page.type(page.box(page.card(name), "High"), "0.9"))
+    words.clear()
+    page.run("arguments[0].value = ''; arguments[0].dispatchEvent(new Event('input'))", words)
+    page.click(changed)
+    assert page.run(f"return {shown}") == 1
+    page.click(changed)
+
+    assert page.one("#answer").text.startswith("Answer 1: speed at the beginning: ")
+    summary = page.one(".choosing summary")
+    assert summary.text == "Charts of 3 of 12 answers"
+    page.click(summary)
+    page.click(page.all(".which input")[11])
+    assert summary.text == "Charts of 4 of 12 answers"
+    page.until("document.querySelectorAll('.place').length === 4")
+    aside = page.one(".further summary")
+    assert aside.text == "16 sentences on answers without a chart"
+    page.click(aside)
+    assert "Answer 7: speed at the beginning" in page.one(".further").text
 
 
 def test_names_of_a_hostile_workbook_are_text(chromium, running, tmp_path):

@@ -205,14 +205,32 @@ def test_all_tabs_are_made_of_the_run_at_rest(case):
     names = [each.name for each in case[1].forecasts]
     for tab, first, second in (("matters", "", ""), ("tables", "", ""), ("pairs", FRICTION, names[1])):
         session.receive(Said("view", {"forecasts": names, "tab": tab, "first": first, "second": second, "fits": True}))
-        (part,) = [each for each in settle(session) if each["kind"] == "part"]
-        assert part["tab"] == tab
+        *sketched, part = [each for each in settle(session) if each["kind"] == "part"]
+        assert {each["tab"] for each in (*sketched, part)} == {tab}
         if tab == "pairs":
             run = session.rest
             assert part["pair"]["x"][:5] == run.inputs[FRICTION][:5].tolist()
             assert part["pair"]["y"][:5] == run.forecasts[names[1]][:5].tolist()
         else:
             assert names[0] in part["html"]
+
+
+def test_what_matters_follows_while_a_handle_moves_unless_it_takes_long(case):
+    session = Session(case[1])
+    names = [each.name for each in case[1].forecasts]
+    session.receive(Said("view", {"forecasts": names, "tab": "matters", "first": "", "second": "", "fits": False}))
+    settle(session)
+    expected = ([0.01, ["moving", "sketch"]], [9.0, ["moving", "sketch"]], [9.0, ["moving"]])
+    for number, (seconds, stages) in enumerate(expected):
+        session.receive(change(FRICTION, "high", 0.9 + number / 100, held=True))
+        told = []
+        for stage in stages:
+            job = session.job()
+            assert job.stage == stage
+            clock = iter([0.0, seconds if stage == "sketch" else 0.0]).__next__
+            told += session.finish(job, job.run(lambda: True, lambda share: None, clock))
+        assert [each["tab"] for each in told if each["kind"] == "part"] == ["matters"] * stages.count("sketch")
+    assert session.job().stage == "rest"
 
 
 def test_all_that_is_told_is_json_without_numbers_that_are_none():

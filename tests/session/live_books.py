@@ -10,6 +10,7 @@ from contextlib import contextmanager
 import openpyxl
 from committed_books import EXAMPLES
 from openpyxl.utils import range_boundaries
+from openpyxl.worksheet.table import Table
 from websockets.sync.client import connect
 
 from xlmc.live.protocol import Said
@@ -33,6 +34,41 @@ def edited(source, target, changes, settings=None):
                     sheet.cell(cell.row, cell.column + 1).value = settings[cell.value]
     book.save(target)
     return target
+
+
+def wide_book(path, assumptions=60, forecasts=12):
+    """A workbook with many assumptions of three kinds, many answers, and filters."""
+    book = openpyxl.Workbook()
+    inputs, wanted = book.active, book.create_sheet("Wanted")
+    inputs.title = "Inputs"
+    inputs.append(["Name", "Value", "Distribution", "Low", "High", "Likeliest", "Mean", "Std dev", "Units", "Source"])
+    kinds = (
+        ("friction on wet asphalt", 0.7, "Uniform", 0.6, 0.8, None, None, None, "g", "Measured; report, page 12"),
+        ("approach speed", 30.0, "Normal", None, None, None, 30.0, 2.0, "mph", "A witness"),
+        ("post-impact travel distance to rest", 50.0, "Triangular", 40.0, 60.0, 50.0, None, None, "ft", ""),
+    )
+    for number in range(assumptions):
+        what, *rest = kinds[number % 3]
+        inputs.append([f"Vehicle {number // 3 + 1} {what}", *rest])
+    wanted.append(["Name", "Value", "Units", "Threshold"])
+    for number in range(forecasts):
+        first = 2 + 5 * number
+        terms = "+".join(f"Inputs!B{first + part}*{part + 1}" for part in range(5))
+        wanted.append([f"Answer {number + 1}: speed at the beginning", f"=SQRT({terms})", "mph", 15.0])
+    below = forecasts + 3
+    for column, heading in enumerate(("Name", "Value", "At least", "At most", "Because"), start=1):
+        wanted.cell(below, column, heading)
+        for row in (1, 2):
+            filter_ = (f"Plausible {row}", f"=B{row + 1}", 5.0, 60.0, "Seen")
+            wanted.cell(below + row, column, filter_[column - 1])
+    for sheet, name, area in (
+        (inputs, "xlmc_assumptions", f"A1:J{assumptions + 1}"),
+        (wanted, "xlmc_forecasts", f"A1:D{forecasts + 1}"),
+        (wanted, "xlmc_filters", f"A{below}:E{below + 2}"),
+    ):
+        sheet.add_table(Table(displayName=name, ref=area))
+    book.save(path)
+    return path
 
 
 def _headings_above(sheet, row):

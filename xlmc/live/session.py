@@ -62,7 +62,10 @@ _SMALLEST_PIECE: Final = 4_096
 Sight = tuple[int, tuple[str, ...], bool, int]
 """Version, forecasts, whether with fits, and what is behind."""
 
-Stage = Literal["quick", "moving", "rest", "shown", "part", "compare"]
+_SKETCH: Final = 0.15
+"""Seconds that what a tab shows may take while states move; what takes longer waits until they are at rest."""
+
+Stage = Literal["quick", "moving", "sketch", "rest", "shown", "part", "compare"]
 
 OPENS_WITH: Final = 3
 """Forecasts whose charts are open at first."""
@@ -74,6 +77,9 @@ _PARTS: Final[Mapping[str, Callable[[Simulation, Tab], Message]]] = {
     "pairs": lambda run, tab: {"pair": pair_of(run, tab.first, tab.second)},
 }
 """Tab whose contents are made of a run at rest -> what makes them."""
+
+_SKETCHED: Final = "matters"
+"""The tab that is brought up to date while a state moves, too."""
 
 
 class SupersededError(Exception):
@@ -180,6 +186,8 @@ class Session:
         self._problem: str | None = None
         self._last: dict[str, Message] = {}
         self._seconds: dict[bool, float] = {}
+        self._moving: Simulation | None = None
+        self._sketch_seconds = 0.0
         self._stopped_at = -1
         self._ended = False
         self._compare = 0
@@ -323,6 +331,7 @@ class Session:
         self.adjustments = self.adjustments.only(model.definitions)
         self.version += 1
         self._models, self._seconds = KnownModels(model, MOVING_TRIALS), {}
+        self._moving, self._sketch_seconds = None, 0.0
         self._problem, self._done = None, {}
         self.behind_is = "the workbook before it was saved"
         text = f"{model.workbook.name} was saved: {'; '.join(news) or 'nothing that a run depends on changed'}"
@@ -334,7 +343,7 @@ class Session:
         Raises:
             XlmcError: the run is not done yet.
         """
-        if self.rest is None or self._done.get("rest") != self.version:
+        if self.rest is None or not self._is_at_rest:
             raise XlmcError("the run of this state is not done yet", hint="wait until it is")
         return AtRest(self.own, self.adjustments, self.shown, self.rest)
 
@@ -348,9 +357,10 @@ class Session:
         if self._problem is not None and self._done.get("tried") == version:
             return None
         if not stopped:
-            for stage in ("quick", "moving", "rest"):
+            for stage in ("quick", "moving", "sketch", "rest"):
                 if self._wants(stage):
-                    return Job(stage, version, self._held, self._runner(stage))
+                    run = self._sketch() if stage == "sketch" else self._runner(stage)
+                    return Job(stage, version, self._held, run)
         if self.rest is not None and self._done.get("rest") == version:
             if self._done.get("shown") != self._sight:
                 return Job("shown", version, self._held, self._shown(self.rest, self._sight))
@@ -387,9 +397,16 @@ class Session:
     def _wants(self, stage: str) -> bool:
         if self._done.get(stage) == self.version:
             return False
+        if stage == "sketch":
+            shown = any(tab.key == _SKETCHED for tab in self.view.tabs)
+            return shown and self._moving is not None and self._sketch_seconds < _SKETCH and not self._is_at_rest
         if stage == "quick":
             return self._is_slow and self.version not in (self._done.get("moving"), self._done.get("rest"))
         return stage == "rest" or self._done.get("rest") != self.version
+
+    @property
+    def _is_at_rest(self) -> bool:
+        return self.rest is not None and self._done.get("rest") == self.version
 
     @property
     def unkept(self) -> Adjustments:
@@ -467,6 +484,19 @@ class Session:
 
         return run
 
+    def _sketch(self) -> Callable[..., Outcome]:
+        """What matters, of the run of a state that moves."""
+        simulation, version = self._moving, self.version
+        assert simulation is not None
+
+        def run(_wanted: object, _tell: object, clock: Callable[[], float]) -> Outcome:
+            begun = clock()
+            found = _PARTS[_SKETCHED](simulation, Tab(_SKETCHED))
+            message = {"kind": "part", "tab": _SKETCHED, "version": version, **found}
+            return Outcome((message,), seconds=clock() - begun)
+
+        return run
+
     def _part(self, simulation: Simulation, tab: Tab) -> Callable[..., Outcome]:
         """The contents of an open tab."""
         version = self.version
@@ -509,6 +539,10 @@ class Session:
             self._done["compare"] = self._compare if outcome.done is None else outcome.done
             self._remember(outcome.messages)
             return list(outcome.messages)
+        if job.stage == "sketch":
+            self._done["sketch"], self._sketch_seconds = job.version, outcome.seconds or 0.0
+            self._remember(outcome.messages)
+            return list(outcome.messages)
         if job.stage in ("shown", "part"):
             if isinstance(outcome.done, tuple) and isinstance(outcome.done[0], Tab):
                 tab, version = outcome.done
@@ -533,6 +567,7 @@ class Session:
             before = self._seconds.get(resting, outcome.seconds)
             self._seconds[resting] = min(outcome.seconds, 2.0 * before)  # other work on the machine only ever slows
         found = list(outcome.messages)
+        self._moving = outcome.simulation if job.stage == "moving" and job.version == self.version else None
         if job.stage == "rest" and job.version == self.version:
             self.rest, self._done["shown"] = outcome.simulation, outcome.done
             if self._pin_next and not self.adjustments and outcome.simulation is not None:

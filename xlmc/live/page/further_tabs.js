@@ -13,7 +13,8 @@ class PairView {
     this.chart = make("div", { class: "chart", role: "img", "aria-label": "No trials yet" });
     this.overlay = make("div", { class: "overlay" });
     const picture = (text, act) => make("button", { type: "button", class: "copy", text, on: { click: act } });
-    const save = make("p", { class: "pictures" }, picture("Save PNG", () => savePng(this.chart)),
+    const save = make("p", { class: "pictures" }, picture("Copy picture", ({ target }) => copyPng(this.chart, target)),
+      picture("Save PNG", () => savePng(this.chart)),
       picture("Save SVG", () => this.scatter && saveSvg(this.scatter, this.chart)));
     place.append(make("p", { class: "choices" }, make("label", {}, "To the right ", this.selects[0]),
       make("label", {}, "Upwards ", this.selects[1])), this.said, this.chart, save, this.overlay);

@@ -142,9 +142,28 @@ class FilterCard {
   }
 }
 
+const MANY_CARDS = 8; // with more assumptions they can be looked for
+
 class LeftSide {
   constructor(wire, sent) {
     Object.assign(this, { wire, sent, assumptions: new Map(), filters: new Map(), own: {}, shapes: {} });
+    this.find = document.getElementById("find");
+    for (const control of this.find.querySelectorAll("input")) control.addEventListener("input", () => this.sift());
+  }
+
+  /** Show the assumptions that are looked for: by a part of the name or the source, or those that were changed. */
+  sift() {
+    this.find.hidden = this.assumptions.size <= MANY_CARDS;
+    const [words, changed] = this.find.querySelectorAll("input");
+    const wanted = this.find.hidden ? "" : words.value.trim().toLocaleLowerCase();
+    let shown = 0;
+    for (const { root, row } of this.assumptions.values()) {
+      const said = `${row.name} ${row.source} ${row.cell}`.toLocaleLowerCase();
+      root.hidden = !said.includes(wanted) || (!this.find.hidden && changed.checked && !row.changed);
+      shown += root.hidden ? 0 : 1;
+    }
+    const all = this.assumptions.size;
+    this.find.lastElementChild.textContent = shown < all ? `${shown} of ${all}` : "";
   }
 
   /** A workbook that was read, again perhaps. */
@@ -158,6 +177,7 @@ class LeftSide {
       if (!row.changed) this.shapes[row.name] = this.own[row.name];
       card.update(row, this.shapes[row.name] ?? null, this.own[row.name] ?? null);
     });
+    this.sift();
     this.rows("filters", FilterCard, filters, (card, row) => card.update(row));
     document.getElementById("filters-head").hidden = !filters.length;
   }

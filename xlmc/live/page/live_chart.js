@@ -38,7 +38,8 @@ function forecastElement({ name, units, marks }, number) {
         make("p", { class: "fitted" }), ends),
       make("div", { class: "beside-chart" }, make("table", { class: "beside" },
         make("caption", { text: "Accepted trials" }), make("thead"), make("tbody")),
-        make("p", { class: "pictures" }, picture("Save PNG", () => savePng(chart)),
+        make("p", { class: "pictures" }, picture("Copy picture", ({ target }) => copyPng(chart, target)),
+          picture("Save PNG", () => savePng(chart)),
           picture("Save SVG", () => chart.dispatchEvent(new Event("svg")))))),
   );
 }
@@ -191,6 +192,10 @@ class LivePanel extends Panel {
   legend() {
     return `${super.legend()}${this.forecast.behind ? "    violet line: the state behind" : ""}`;
   }
+}
+
+function copyPng(chart, button) {
+  Copies.say(button, Copies.copyPicture(async () => Copies.onWhite(chart.querySelector("canvas"))));
 }
 
 function savePng(chart) {

@@ -4,6 +4,8 @@
 const TABS = { charts: "Answers", matters: "What matters", pairs: "Pairs", tables: "Tables", scenarios: "Scenarios",
   studies: "Hand over" };
 
+const MANY = 6; // answers and sentences; more of them would leave no room for the charts
+
 class RightSide {
   constructor(wire) {
     Object.assign(this, { wire, tab: "charts", panels: new Map(), seen: new Set(), open: null, forecasts: [] });
@@ -21,11 +23,13 @@ class RightSide {
     this.sentences = make("ul", { class: "statements" });
     this.meaning = make("p", { class: "remark" });
     this.choice = make("fieldset", { class: "which" }, make("legend", { text: "Charts of" }));
+    this.choosing = make("summary");
+    this.choices = make("details", { class: "choosing", open: true }, this.choosing, this.choice);
     this.charts = make("div", { class: "live-charts" });
     const split = make("input", { type: "checkbox", checked: true, on: { change: ({ target }) => {
       this.charts.classList.toggle("alone", !target.checked);
     } } });
-    this.places.charts.append(this.sentences, this.choice,
+    this.places.charts.append(this.sentences, this.choices,
       make("p", { class: "choices" }, make("label", {}, split, "Numbers beside the charts")), this.charts, this.meaning);
     this.pairs = new PairView(this.places.pairs, (pair) => {
       this.pair = pair;
@@ -86,7 +90,9 @@ class RightSide {
         else this.open.delete(name);
         this.arrange();
       } } }), named(name))));
-    this.choice.hidden = forecasts.length < 2;
+    this.choices.hidden = forecasts.length < 2;
+    this.choices.open = forecasts.length <= MANY;
+    this.choosing.hidden = forecasts.length <= MANY;
     this.arrange();
   }
 
@@ -108,6 +114,8 @@ class RightSide {
       }
       this.charts.append(this.panels.get(forecast.name).place);
     }
+    this.choosing.textContent = `Charts of ${wanted.length} of ${this.forecasts.length} answers`;
+    this.tell();
     this.look();
   }
 
@@ -134,9 +142,29 @@ class RightSide {
   }
 
   rest({ sentences, meaning, sampling, warnings, notices }) {
-    this.sentences.replaceChildren(...warnings.map((text) => make("li", { class: "warning", text })),
-      ...sentences.map((text) => sentence(text, this.forecasts)));
+    this.said = { sentences, warnings };
+    this.tell();
     this.meaning.replaceChildren(meaning, make("br"), sampling, ...notices.flatMap((text) => [make("br"), text]));
+  }
+
+  /** The answers in sentences; where there are many, those without a chart stand behind their number. */
+  tell() {
+    if (!this.said) return;
+    const { sentences, warnings } = this.said;
+    const first = sentences.find((text) => this.forecasts.some(({ name }) => this.open.has(name) && text.startsWith(`${name}: `)));
+    document.getElementById("answer").replaceChildren(named(warnings.length ? warnings[0] : first ?? sentences[0] ?? ""));
+    const many = sentences.length > MANY;
+    const without = this.forecasts.filter(({ name }) => !this.open.has(name)).map(({ name }) => name);
+    const isAside = (text) => many && without.some((name) => text.startsWith(`${name}: `) || text.startsWith(`P(${name} `));
+    const line = (text) => sentence(text, this.forecasts);
+    const aside = sentences.filter(isAside);
+    const wasOpen = this.sentences.querySelector("details")?.open ?? false;
+    this.sentences.replaceChildren(...warnings.map((text) => make("li", { class: "warning", text })),
+      ...sentences.filter((text) => !isAside(text)).map(line));
+    if (!aside.length) return;
+    const count = aside.length === 1 ? "One sentence" : `${aside.length} sentences`;
+    this.sentences.append(make("li", { class: "further" }, make("details", { open: wasOpen },
+      make("summary", { text: `${count} on answers without a chart` }), make("ul", {}, ...aside.map(line)))));
   }
 
   part({ tab, html, pair }) {
@@ -170,9 +198,12 @@ function showTables(place, html) {
   place.innerHTML = html;
   place.querySelectorAll("details").forEach((each, i) => { if (i in open) each.open = open[i]; });
   for (const table of place.querySelectorAll("table")) {
-    table.before(Copies.button("Copy table", (button) => Copies.copy(table, button)));
+    table.before(Copies.row(Copies.button("Copy table", (button) => Copies.say(button, Copies.copy(table))),
+      Copies.button("Save table", () => Copies.saveTable(table))));
   }
   for (const drawn of place.querySelectorAll("svg.drawn")) {
-    drawn.after(Copies.button("Save SVG", () => Copies.save(Copies.standalone(drawn), Copies.name(drawn, "svg"))));
+    drawn.after(Copies.row(
+      Copies.button("Copy picture", (button) => Copies.say(button, Copies.copyPicture(() => Copies.painted(drawn)))),
+      Copies.button("Save SVG", () => Copies.save(Copies.standalone(drawn), Copies.name(drawn, "svg")))));
   }
 }

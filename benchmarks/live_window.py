@@ -74,7 +74,7 @@ def _browser(folder: str) -> webdriver.Chrome:
 
 
 def _measure(browser: webdriver.Chrome, book: Path, moves: int, server: int) -> None:
-    _until(browser, "document.body?.dataset.stage === 'rest'", 60.0)
+    _until(browser, "document.body?.dataset.stage === 'rest'", 600.0)
     time.sleep(1.0)
     knob = browser.find_elements(By.CSS_SELECTOR, ".card .knob.upper")[5]
     browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", knob)
@@ -127,7 +127,7 @@ def _saved(browser: webdriver.Chrome, book: Path) -> float:
     before = browser.execute_script("return Number(document.body.dataset.version)")
     began = time.perf_counter()
     os.replace(waiting, book)
-    _until(browser, f"Number(document.body.dataset.version) > {before} && document.body.dataset.stage === 'rest'", 20.0)
+    _until(browser, f"Number(document.body.dataset.version) > {before} && document.body.dataset.stage === 'rest'", 600.0)
     return time.perf_counter() - began
 
 

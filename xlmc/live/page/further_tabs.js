@@ -16,6 +16,9 @@ class PairView {
     const save = make("p", { class: "pictures" }, picture("Copy picture", ({ target }) => copyPng(this.chart, target)),
       picture("Save PNG", () => savePng(this.chart)),
       picture("Save SVG", () => this.scatter && saveSvg(this.scatter, this.chart)));
+    new ResizeObserver(() => {
+      if (this.pair && this.scatter && this.chart.clientWidth && this.scatter.width !== widthOf(this.chart)) this.draw(this.pair);
+    }).observe(this.chart);
     place.append(make("p", { class: "choices" }, make("label", {}, "To the right ", this.selects[0]),
       make("label", {}, "Upwards ", this.selects[1])), this.said, this.chart, save, this.overlay);
   }
@@ -44,6 +47,7 @@ class PairView {
     const related = pair.correlation === null ? "" : `; rank correlation ${pair.correlation.toFixed(2)}`;
     this.said.textContent = `${countText(shown)} of ${countText(pair.trials)} accepted trials${related}`;
     this.chart.setAttribute("aria-label", `${pair.second} against ${pair.first}: ${this.said.textContent}`);
+    this.pair = pair;
     this.draw(pair);
     this.layOver(pair.together);
   }

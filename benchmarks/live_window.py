@@ -127,7 +127,9 @@ def _saved(browser: webdriver.Chrome, book: Path) -> float:
     before = browser.execute_script("return Number(document.body.dataset.version)")
     began = time.perf_counter()
     os.replace(waiting, book)
-    _until(browser, f"Number(document.body.dataset.version) > {before} && document.body.dataset.stage === 'rest'", 600.0)
+    _until(
+        browser, f"Number(document.body.dataset.version) > {before} && document.body.dataset.stage === 'rest'", 600.0
+    )
     return time.perf_counter() - began
 
 

@@ -14,7 +14,7 @@ import xlmc
 from xlmc.errors import SimulationError, WorkbookError
 from xlmc.report.document import SECTIONS, Wanted
 from xlmc.report.document.build import build
-from xlmc.report.document.glossary import GLOSSARY
+from xlmc.report.document.glossary import GLOSSARY, WORDS_OF_EVIDENCE, WORDS_OF_SCENARIOS
 from xlmc.report.document.parts import Bullets, Figure, Heading, Paragraph, Table
 from xlmc.report.json_document import document as results
 
@@ -322,7 +322,7 @@ def test_a_missing_library_is_named_with_what_to_install(case_study, tmp_path, m
 def test_words_are_those_of_the_glossary():
     text = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")
     plain = squeezed(re.sub(r"[*`]", "", text))
-    for word, meaning in GLOSSARY:
+    for word, meaning in (*GLOSSARY, *WORDS_OF_EVIDENCE, *WORDS_OF_SCENARIOS):
         rest = re.sub(r"^(or quantile|SD|written ±): ", "", meaning)
         assert squeezed(rest) in plain, word
         assert squeezed(word) in plain

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-__all__ = ["GLOSSARY"]
+__all__ = ["GLOSSARY", "WORDS_OF_EVIDENCE", "WORDS_OF_SCENARIOS"]
 
 GLOSSARY: Final = (
     (
@@ -62,3 +62,24 @@ GLOSSARY: Final = (
     ("SHA-256", "a fingerprint of a file or of some of its parts. If one byte changes, so does the fingerprint."),
 )
 """Word -> what it means."""
+
+WORDS_OF_EVIDENCE: Final = (
+    (
+        "Evidence",
+        "a measured number and its error, about a quantity that the model computes. Trials that agree with it are "
+        "kept, or each trial counts with the chance that it agrees (weights).",
+    ),
+    (
+        "Effective trials",
+        "how many trials of equal weight would carry as much as the weighted ones. Errors and intervals follow from "
+        "it.",
+    ),
+)
+WORDS_OF_SCENARIOS: Final = (
+    (
+        "Scenario",
+        "the workbook with other contents in some of its cells, run with the same random numbers as the workbook as "
+        "it is.",
+    ),
+)
+"""Words of reports that have these sections."""

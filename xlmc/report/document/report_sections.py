@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.report.document.drawings import before_and_after, forecast_drawing, influence_drawing
 from xlmc.report.document.equations import equations_of
-from xlmc.report.document.glossary import GLOSSARY
+from xlmc.report.document.glossary import GLOSSARY, WORDS_OF_EVIDENCE, WORDS_OF_SCENARIOS
 from xlmc.report.document.parts import Block, Bullets, Code, Content, Drawing, Figure, Paragraph, Table
 from xlmc.report.document.scene_drawing import scene_drawing
 from xlmc.report.evidence_tables import ITEM_HEADS, MOVES_MEANING, item_rows, move_rows, trials_sentence
@@ -429,7 +429,13 @@ def _repeat(material: Material) -> Iterator[Block]:
 
 
 def _glossary(material: Material) -> Iterator[Block]:
-    yield Bullets(tuple(f"{word}: {meaning}" for word, meaning in GLOSSARY), "small")
+    simulation = material.simulation
+    words = [
+        *GLOSSARY,
+        *(WORDS_OF_EVIDENCE if simulation.agreement is not None else ()),
+        *(WORDS_OF_SCENARIOS if simulation.settings.scenarios else ()),
+    ]
+    yield Bullets(tuple(f"{word}: {meaning}" for word, meaning in words), "small")
 
 
 SECTIONS: Final[dict[str, tuple[str, Callable[[Material], Iterator[Block]]]]] = {

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
+import openpyxl
 import pytest
 from live_books import CASE, SIMPLE, change, edited, settle
+from openpyxl.worksheet.table import Table
 
 from xlmc.errors import XlmcError
 from xlmc.live.adjustments import Adjustments
 from xlmc.live.protocol import Said, written
 from xlmc.live.session import MOVING_TRIALS, Session, SupersededError
+from xlmc.live.window_book import filter_rows
 from xlmc.run.loading import load
 from xlmc.run.simulate import simulate
 
@@ -275,3 +278,22 @@ def test_a_band_of_a_distribution_is_a_range_of_its_percentiles(case):
     assert session.rest.inputs[FRICTION].max() < 0.775
     drawn, expected = session.rest.inputs[FRICTION], other.rest.inputs[FRICTION]
     assert np.allclose(drawn, expected, rtol=1e-12)
+
+
+def test_evidence_has_no_limit_to_be_moved(tmp_path):
+    """A uniform error keeps what lies between two numbers, but these come from the reading."""
+    book = openpyxl.load_workbook(CASE)
+    sheet = book.create_sheet("Readings")
+    for row in (["Name", "Cell", "Reading", "Error", "Plus or minus"], ["EDR", "=Model!D54", 12, "Uniform", 1]):
+        sheet.append(row)
+    sheet.add_table(Table(displayName="xlmc_evidence", ref="A1:E2"))
+    book.save(tmp_path / "evidence.xlsx")
+    model = load(tmp_path / "evidence.xlsx")
+    session = Session(model)
+    (row,) = (each for each in filter_rows(model, session.adjustments) if each["name"] == "EDR")
+    assert (row["limits"], row["keeps"]) == ([], "reads 12, uniform (Plus or minus 1): from 11 to 13")
+    with pytest.raises(XlmcError, match="no filter 'EDR' with 'at_most' to be set"):
+        session.receive(change("EDR", "at_most", 14.0, of="filter"))
+    session.receive(Said("variants", {}))
+    assert any("Restitution" in name for name in session.kept)
+    assert not any("EDR" in name for name in session.kept)

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
+from xlmc.address import Cell
 from xlmc.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Parameter
 from xlmc.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Scenario
 from xlmc.results.record.in_words import number_text
@@ -24,6 +25,7 @@ __all__ = [
     "assumption_numbers",
     "changes_of",
     "in_words",
+    "movable_limits",
     "own_values",
     "scenario_of",
     "usual_variants",
@@ -144,13 +146,18 @@ def own_values(definitions: Definitions, of: str, name: str) -> dict[str, Parame
     """What can be set of an assumption or a filter, as the workbook has it; of a name that it has not, nothing."""
     if of == "filter":
         filter_ = next((each for each in definitions.filters if each.name == name), None)
-        limits = {} if filter_ is None else {key: getattr(filter_, key) for key in LIMITS}
-        return {key: value for key, value in limits.items() if value is not None}
+        return {} if filter_ is None else {**movable_limits(filter_)}
     assumption = next((each for each in definitions.assumptions if each.name == name), None)
     if assumption is None:
         return {}
     numbers = {key: value for key, (_, value) in assumption_numbers(assumption).items()}
     return {**numbers, **BAND, "base": assumption.base, "frozen": assumption.frozen}
+
+
+def movable_limits(filter_: Filter) -> dict[str, Parameter]:
+    """The limits of a filter; none of evidence, whose reading and error say what it keeps."""
+    limits = {} if filter_.evidence is not None else {key: getattr(filter_, key) for key in LIMITS}
+    return {key: value for key, value in limits.items() if value is not None}
 
 
 def changes_of(definitions: Definitions, adjustments: Adjustments) -> list[Change]:
@@ -286,10 +293,11 @@ def usual_variants(definitions: Definitions) -> dict[str, Adjustments]:
         if made:
             found[f"every range {said}"] = made
     for filter_ in definitions.filters:
-        for key, heading in LIMITS.items():
-            limit = getattr(filter_, key)
-            for said, factor in (("half", 0.5), ("twice", 2.0)) if isinstance(limit, float) and limit else ():
-                name = f"{filter_.name} {heading} {number_text(limit * factor)} ({said})"
+        for key, limit in movable_limits(filter_).items():
+            if isinstance(limit, Cell) or not limit:
+                continue
+            for said, factor in (("half", 0.5), ("twice", 2.0)):
+                name = f"{filter_.name} {LIMITS[key]} {number_text(limit * factor)} ({said})"
                 found[name] = Adjustments().having("filter", filter_.name, key, limit * factor)
     return found
 

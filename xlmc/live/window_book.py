@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from xlmc.address import Cell
 from xlmc.definitions.definitions import CUTOFFS, Assumption, Filter, Parameter
 from xlmc.distributions.whole_numbers import WholeNumbers
-from xlmc.live.adjustments import BAND, LIMITS, Adjustments, adjusted_definitions, assumption_numbers
+from xlmc.live.adjustments import BAND, LIMITS, Adjustments, adjusted_definitions, assumption_numbers, movable_limits
 from xlmc.live.protocol import plain
 from xlmc.results.record.in_words import distribution_text, limits_text, status
 from xlmc.run.model import Model
@@ -127,8 +127,7 @@ def filter_rows(own: Model, adjustments: Adjustments) -> list[dict[str, Any]]:
 
 
 def _filter(filter_: Filter, own: Filter) -> dict[str, Any]:
-    limits = [(key, getattr(filter_, key), getattr(own, key)) for key in LIMITS]
-    given = [(key, now, before) for key, now, before in limits if before is not None]
+    given = [(key, getattr(filter_, key), before) for key, before in movable_limits(own).items()]
     typed = [now for _, now, _ in given if not isinstance(now, Cell)]
     step = _step(max(typed) - min(typed) if len(typed) > 1 else 0.0, max(map(abs, typed), default=1.0) or 1.0)
     return {

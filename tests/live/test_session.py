@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import openpyxl
 import pytest
@@ -61,6 +63,41 @@ def test_at_rest_the_numbers_are_those_of_simulate_with_the_same_numbers_in_the_
         for forecast, values in expected.forecasts.items():
             assert session.rest.forecasts[forecast].tobytes() == values.tobytes(), (name, forecast)
         assert session.rest.tally.rejected.tolist() == expected.tally.rejected.tolist(), name
+
+
+@pytest.mark.parametrize("way", ["", "rejection", "weights"])
+def test_evidence_is_used_as_simulate_uses_it(book, way):
+    """Weights, asked for or chosen by the rule on the first trials: at rest and while a handle moves."""
+    evidence = {"edr": {"cell": "B1", "reading": 1.1, "error": "normal", "std_dev": 0.05}}
+    inputs = {"u": {"cell": "A1", "low": 0.0, "high": 1.0}, "v": {"cell": "A2", "low": 0.0, "high": 1.0}}
+    model = book({"A1": 0.5, "A2": 0.5, "B1": "=A1*A2"}, inputs, {"x": "B1", "y": "A1"}, {}, evidence=evidence)
+    settings = replace(model.definitions.settings, trials=60_000, evidence=way)
+    model = model.changed(model.workbook, replace(model.definitions, settings=settings))
+    session = Session(model)
+    for value in (1.0, 0.99):
+        session.receive(change("u", "high", value))
+        settle(session)
+        expected = simulate(session._models.at_rest(session.adjustments), evidence=None)
+        assert session.rest.settings == expected.settings
+        assert (expected.weighting is None) == (way == "rejection")
+        for name, values in expected.forecasts.items():
+            assert session.rest.forecasts[name].tobytes() == values.tobytes()
+            assert session.rest[name].mean == expected[name].mean
+    session.receive(change("u", "high", 0.98, held=True))
+    job = session.job()
+    outcome = job.run(lambda: True, lambda share: None, lambda: 0.0)
+    used = outcome.simulation.settings.evidence
+    assert used == expected.settings.evidence
+    state = session._models.at_rest(session.adjustments)
+    expected = simulate(state, trials=MOVING_TRIALS, sampling="mc", evidence=used)
+    for name, values in expected.forecasts.items():
+        assert outcome.simulation.forecasts[name].tobytes() == values.tobytes()
+    session.finish(job, outcome)
+    for tab in ("matters", "pairs", "tables"):
+        view = {"forecasts": ["x"], "tab": tab, "first": "x", "second": "v", "fits": True}
+        session.receive(Said("view", view))
+        for message in settle(session):
+            written(message)
 
 
 def test_while_a_handle_moves_a_run_of_fifty_thousand_trials_comes_first(case):

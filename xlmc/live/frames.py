@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any, Final
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from numpy.typing import NDArray
 
 from xlmc.live.protocol import Message, plain
 from xlmc.report.histogram import Figure, figures_of, histogram, multiples
-from xlmc.report.page.element import join
+from xlmc.report.page.element import element, join
 from xlmc.report.page.payload import forecast_payload
 from xlmc.report.page.sensitivity_sections import dependence, limits
 from xlmc.report.page.sheet_sections import (
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
     from xlmc.run.forecast_result import ForecastResult
     from xlmc.run.model import Model
     from xlmc.run.simulation import Simulation
+    from xlmc.run.weighing import Weighting
 
 __all__ = ["bases_of", "frame_of", "matters_html", "pair_of", "rest_of", "scenarios_html", "tables_html"]
 
@@ -105,10 +107,13 @@ def bases_of(simulation: Simulation) -> Bases | None:
 
 
 def _figure(result: ForecastResult, base: float | None) -> Figure | None:
-    """A forecast to draw, with no other statistics than the window shows; None where it has no number."""
+    """A forecast to draw, with no other statistics than the window shows.
+
+    None where it has no number, or where its weighted trials carry too little for a range.
+    """
     definition, (low, high) = result.definition, result.central()
     bins = histogram(result.sample, low.value, high.value) if result.sample.n else None
-    if bins is None:
+    if bins is None or math.isnan(low.value) or math.isnan(high.value):
         return None
     threshold = definition.threshold
     row = SummaryRow(
@@ -182,8 +187,8 @@ def _moved(figure: Figure, now: ForecastResult, before: ForecastResult) -> str:
 
 def _bars_behind(figure: Figure, sample: Sample) -> dict[str, Any]:
     """The bars of the state behind, as wide as those before it, so that the two compare."""
-    x, width = sample.x, figure.bins.width
-    first, last = x[round(0.001 * (sample.n - 1))], x[round(0.999 * (sample.n - 1))]
+    x, width = sample.even, figure.bins.width
+    first, last = x[round(0.001 * (x.size - 1))], x[round(0.999 * (x.size - 1))]
     start, stop = math.floor(first / width), math.floor(last / width) + 1
     while stop - start > 400:  # it is much wider than the one before it
         width, start, stop = 2.0 * width, start // 2, stop // 2 + 1
@@ -192,9 +197,9 @@ def _bars_behind(figure: Figure, sample: Sample) -> dict[str, Any]:
     return {
         "edges": edges.tolist(),
         "counts": counts.tolist(),
-        "trials": sample.n,
+        "trials": int(x.size),
         "parts": figure.bins.width / width,
-        "curve": [[float(x[round(share * (sample.n - 1))]), 100.0 * share] for share in np.linspace(0.0, 1.0, 101)],
+        "curve": [[float(x[round(share * (x.size - 1))]), 100.0 * share] for share in np.linspace(0.0, 1.0, 101)],
         "mean": plain(float(np.mean(x))),
     }
 
@@ -219,6 +224,9 @@ def rest_of(simulation: Simulation) -> Message:
 
 def matters_html(simulation: Simulation) -> str:
     """Which assumptions the answer depends on, and what another limit of a filter would change."""
+    if simulation.weighting is not None:
+        said = "Each trial has a weight of its own, by the evidence; what matters is not known of such trials."
+        return join([element("p", said, class_="remark")]).source
     found = sensitivities(simulation)
     return join([dependence(found), limits(found)]).source
 
@@ -258,6 +266,9 @@ def pair_of(simulation: Simulation, first: str, second: str) -> dict[str, Any] |
         return None
     n = min(columns[first].size, columns[second].size, 50 * _POINTS)
     x, y = np.asarray(columns[first][:n]), np.asarray(columns[second][:n])
+    if simulation.weighting is not None:
+        chosen = _evenly(simulation.weighting, n)
+        x, y = x[chosen], y[chosen]
     both = np.isfinite(x) & np.isfinite(y)
     x, y = x[both], y[both]
     return {
@@ -270,6 +281,13 @@ def pair_of(simulation: Simulation, first: str, second: str) -> dict[str, Any] |
         "units": [_units(simulation, first), _units(simulation, second)],
         "together": _together(simulation, (first, second)),
     }
+
+
+def _evenly(weighting: Weighting, n: int) -> NDArray[np.intp]:
+    """Of the first `n` weighted trials as many as carry as much, drawn in proportion to their weights, in order."""
+    reached = np.cumsum(weighting.weights[:n])
+    count = max(1, int(reached[-1] ** 2 / np.sum(weighting.weights[:n] ** 2)))
+    return np.searchsorted(reached, (np.arange(count) + 0.5) / count * reached[-1])
 
 
 def _together(simulation: Simulation, names: tuple[str, str]) -> list[dict[str, Any]]:

@@ -113,7 +113,7 @@ def edited_state(own: Model, adjustments: Adjustments, name: str) -> EditedWorkb
 def _run_of_copy(state: AtRest) -> Simulation:
     """The run of a copy of the workbook with the state typed into it."""
     edited, book = edited_state(state.own, state.adjustments, state.name), state.own.workbook
-    run = simulate(build_model(read_workbook(edited.data, book.name), state.own.path))
+    run = simulate(build_model(read_workbook(edited.data, book.name), state.own.path), evidence=None)
     if not _is_same(run, state.run):
         message = "a copy of the workbook with these changes gives other numbers than the window shows"
         raise SimulationError(message, hint="Nothing was written; please report this")

@@ -430,6 +430,7 @@ class Session:
     def _runner(self, stage: Stage) -> Callable[..., Outcome]:
         version, adjustments, models, view = self.version, self.adjustments, self._models, self.view
         behind, seq = self._compared, self._seq
+        way = "rejection" if self.rest is None else self.rest.settings.evidence
         resting, slow = stage == "rest", self._is_slow
         trials = self._trials_in(_QUICK, resting=False) if stage == "quick" else MOVING_TRIALS
         piece = max(_SMALLEST_PIECE, self._trials_in(_PIECE, resting=resting)) if slow else MOVING_TRIALS
@@ -444,7 +445,7 @@ class Session:
                 if resting:
                     model = models.at_rest(adjustments)
                     begun = clock()
-                    found = simulate(model, progress=watch, pieces=piece if slow else BLOCK)
+                    found = simulate(model, progress=watch, pieces=piece if slow else BLOCK, evidence=None)
                     base = bases_of(found)
                 else:
                     moving = models.moving(adjustments)
@@ -457,7 +458,8 @@ class Session:
                         trials=trials,
                         sampling="mc",
                         engine=moving.kept.engine,
-                        own_runner=runner,
+                        evidence=way or "rejection",
+                        own_runner=None if way == "weights" else runner,  # it computes other filters
                         progress=watch if watched else None,
                     )
                 seconds = (clock() - begun) / max(found.evaluated, 1)
@@ -525,7 +527,7 @@ class Session:
                 tell(len(begun) / (len(all_of_them) + 1))
 
             try:
-                html = scenarios_html(model, lambda model: simulate(model, scenarios=True), told)
+                html = scenarios_html(model, lambda model: simulate(model, scenarios=True, evidence=None), told)
             except XlmcError as error:
                 html = join([element("p", str(error), class_="warning")]).source
             message = {"kind": "part", "tab": "scenarios", "version": asked, "html": html}

@@ -125,7 +125,7 @@ class RightSide {
       if (!entry) continue;
       if (forecast === null) {
         entry.panel = null;
-        entry.place.replaceChildren(make("h3", {}, named(name)), make("p", { class: "alarm", text: "no accepted trial has a number" }));
+        entry.place.replaceChildren(make("h3", {}, named(name)), make("p", { class: "alarm", text: "Too few accepted trials have a number to draw a chart." }));
       } else if (entry.panel) {
         entry.panel.update(forecast, stage === "moving");
       } else {

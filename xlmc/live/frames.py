@@ -287,7 +287,7 @@ def _evenly(weighting: Weighting, n: int) -> NDArray[np.intp]:
     """Of the first `n` weighted trials as many as carry as much, drawn in proportion to their weights, in order."""
     reached = np.cumsum(weighting.weights[:n])
     count = max(1, int(reached[-1] ** 2 / np.sum(weighting.weights[:n] ** 2)))
-    return np.searchsorted(reached, (np.arange(count) + 0.5) / count * reached[-1])
+    return np.asarray(np.searchsorted(reached, (np.arange(count) + 0.5) / count * reached[-1]))
 
 
 def _together(simulation: Simulation, names: tuple[str, str]) -> list[dict[str, Any]]:

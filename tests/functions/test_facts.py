@@ -59,6 +59,10 @@ LISTS = {
     ("evaluation/graph/computed_references.py", "REFERENCES"): "any other function gives values, not references",
     ("evaluation/graph/number_lookups.py", "_FORMS"): "any other function is computed on values of any kind",
     ("evaluation/graph/running_totals.py", "FOLDS"): "any other function is computed of each range by itself",
+    (
+        "evaluation/graph/running_totals.py",
+        "PAIRED_OR_COUNTED",
+    ): "any other function of whole ranges is computed of each by itself",
     ("evaluation/graph/running_totals.py", "RunningTotals"): "what FOLDS has",
     ("evaluation/graph/whole_columns.py", "_look_up"): "any other lookup searches as MATCH does, or is refused",
     ("evaluation/graph/whole_columns.py", "_reach"): "any other lookup searches in both directions alike",

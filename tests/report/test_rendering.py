@@ -8,6 +8,7 @@ import sys
 from dataclasses import dataclass
 from html import unescape
 from pathlib import Path
+from zipfile import ZipFile
 
 import numpy as np
 import openpyxl
@@ -35,6 +36,14 @@ DPI, POINTS = 60, 72
 CHART = (230.0, 150.0)
 """A chart's width and height on paper, in points, at the scale of 60 %: what is looked at lies within it."""
 
+LARGEST = sorted(
+    {
+        max(DESCRIBED, key=lambda name, asked=asked: len(getattr(DESCRIBED[name], asked)))
+        for asked in ("forecasts", "assumptions")
+    }
+)
+"""The templates that ask for most."""
+
 MISSING = missing("soffice", "pdftotext", "pdftoppm")
 
 pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
@@ -42,22 +51,23 @@ pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
 
 @dataclass(frozen=True)
 class Printed:
-    """A page: the sheet it shows, its words as (text, left, top) in points, and `(rows, columns, 3)` pixels."""
+    """A page: the sheet it shows, its words as (text, left, top) in points, and `(rows, columns, 3)` pixels or None."""
 
     sheet: str
     words: list[tuple[str, float, float]]
-    pixels: np.ndarray
+    pixels: np.ndarray | None
 
     @property
     def text(self):
         return " ".join(word for word, _, _ in self.words)
 
 
-def converted(book, to, folder):
+def converted(to, folder, *books):
+    """Several in one call: LibreOffice takes longer to start than for a small book."""
     profile = f"-env:UserInstallation={(folder / 'profile').as_uri()}"
     command = ["soffice", profile, "--headless", "--convert-to", to, "--outdir", str(folder / "out")]
-    subprocess.run([*command, str(book)], check=True, capture_output=True, timeout=300)
-    return folder / "out" / f"{book.stem}.{to}"
+    subprocess.run([*command, *map(str, books)], check=True, capture_output=True, timeout=600)
+    return [folder / "out" / f"{book.stem}.{to}" for book in books]
 
 
 @pytest.fixture(scope="module")
@@ -66,16 +76,36 @@ def case():
 
 
 @pytest.fixture(scope="module")
-def book(case, tmp_path_factory):
-    return save(case, tmp_path_factory.mktemp("rendering") / "results.xlsx", rows=60)
+def printed(case, tmp_path_factory):
+    """Name -> PDF: `case` as it prints, `unprinted`, and the largest templates."""
+    folder = tmp_path_factory.mktemp("rendering")
+    largest = {name: xlmc.load(TEMPLATES[name]).simulate(trials=2_000) for name in LARGEST}
+    books = [
+        _without_charts(save(run, folder / f"{name}.xlsx", rows=60)) for name, run in {"case": case, **largest}.items()
+    ]
+    files = converted("pdf", folder, *books, _unprinted(case, folder / "unprinted.xlsx"))
+    return {file.stem: file for file in files}
 
 
-def _pages(book):
-    pdf = converted(book, "pdf", book.parent)
-    subprocess.run(["pdftoppm", "-r", str(DPI), str(pdf), str(book.parent / "page")], check=True)
-    pictures = sorted(book.parent.glob("page-*.ppm"))
-    pieces = _pieces(pdf)
-    return [_printed(piece, _pixels(picture)) for piece, picture in zip(pieces, pictures, strict=True)]
+def _without_charts(book):
+    """The workbook without its charts, on which no page depends, and which take most of the time to print."""
+    bare = book.with_suffix(".part")
+    with ZipFile(book) as whole, ZipFile(bare, "w") as package:
+        for name in whole.namelist():
+            part = whole.read(name)
+            if name.startswith("xl/worksheets/sheet"):
+                part = re.sub(rb"<drawing r:id=[^>]*/>", b"", part)
+            package.writestr(name, part)
+    return bare.replace(book)
+
+
+def _unprinted(case, path):
+    """The case with all that its sheets of charts leave out of print, and without the sheets of the person."""
+    print_area, data = ExactSheet.print_area, ("Trials", "Bins", "Curves")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ExactSheet, "print_area", lambda sheet, *area: sheet.name in data and print_area(sheet, *area))
+        leave_out(patch, *OWN - {"Charts", "Pairs", "Sensitivity", "Filter limits", *data})
+        return save(case, path, rows=60)
 
 
 def _pieces(pdf):
@@ -85,23 +115,21 @@ def _pieces(pdf):
 
 
 @pytest.fixture(scope="module")
-def pages(book):
-    """Of the workbook as it prints."""
-    return _pages(book)
+def pages(printed):
+    """Of the case as it prints."""
+    return [_printed(piece) for piece in _pieces(printed["case"])]
 
 
 @pytest.fixture(scope="module")
-def all_pages(case, tmp_path_factory):
-    """Of the workbook with all that its sheets of charts leave out of print, and without the sheets of the person."""
-    print_area, data = ExactSheet.print_area, ("Trials", "Bins", "Curves")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ExactSheet, "print_area", lambda sheet, *area: sheet.name in data and print_area(sheet, *area))
-        leave_out(patch, *OWN - {"Charts", "Pairs", "Sensitivity", "Filter limits", "Trials", "Bins", "Curves"})
-        path = save(case, tmp_path_factory.mktemp("unprinted") / "results.xlsx", rows=60)
-    return _pages(path)
+def all_pages(printed):
+    """Of the case with all charts and what is left out of print, and their pixels."""
+    pdf = printed["unprinted"]
+    subprocess.run(["pdftoppm", "-r", str(DPI), str(pdf), str(pdf.with_name("page"))], check=True)
+    pictures = sorted(pdf.parent.glob("page-*.ppm"))
+    return [_printed(piece, _pixels(picture)) for piece, picture in zip(_pieces(pdf), pictures, strict=True)]
 
 
-def _printed(piece, pixels):
+def _printed(piece, pixels=None):
     found = re.findall(r'<word xMin="([\d.]+)" yMin="([\d.]+)"[^>]*>([^<]*)<', piece)
     words = [(unescape(text), float(left), float(top)) for left, top, text in found]
     foot = max((top for _, _, top in words), default=0.0)
@@ -184,13 +212,11 @@ def test_the_case_prints_on_15_pages(pages):
     assert sum(page.sheet in OWN for page in pages) <= 15
 
 
-def test_the_largest_books_print_on_25_pages(tmp_path):
-    """The templates that ask for most: the pages grow with the forecasts and assumptions."""
-    asked = {name: (len(each.forecasts), len(each.assumptions)) for name, each in DESCRIBED.items()}
-    for largest in {max(asked, key=lambda name, part=part: asked[name][part]) for part in (0, 1)}:
-        book = save(xlmc.load(TEMPLATES[largest]).simulate(trials=2_000), tmp_path / f"{largest}.xlsx", rows=60)
-        printed = [_printed(piece, None).sheet for piece in _pieces(converted(book, "pdf", tmp_path))]
-        assert 15 < sum(sheet in OWN for sheet in printed) <= 25, largest
+def test_the_largest_books_print_on_25_pages(printed):
+    """The pages grow with the forecasts and assumptions."""
+    for name in LARGEST:
+        sheets = [_printed(piece).sheet for piece in _pieces(printed[name])]
+        assert 15 < sum(sheet in OWN for sheet in sheets) <= 25, name
 
 
 def test_no_cell_is_too_narrow_for_its_number(pages):
@@ -208,7 +234,7 @@ def test_ranges_that_a_person_types_are_counted_anew(case, tmp_path):
     for row, (low, high) in zip(rows, ends, strict=True):
         sheet.cell(row, 3).value, sheet.cell(row, 4).value = low, high
     typed.save(tmp_path / "typed.xlsx")
-    path = converted(tmp_path / "typed.xlsx", "xlsx", tmp_path)
+    (path,) = converted("xlsx", tmp_path, tmp_path / "typed.xlsx")
     counted = openpyxl.load_workbook(path, data_only=True)["Certainty"]
     for row, (low, high), result in zip(rows, ends, case.results.values(), strict=True):
         values = result.values[:60]

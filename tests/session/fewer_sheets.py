@@ -1,13 +1,14 @@
-"""Result workbooks without the sheets and trials that take longest, for tests that do not look at them."""
+"""Results without the sheets, trials and fits that take longest, for tests that do not look at them."""
 
 from __future__ import annotations
 
 import pytest
 
 from xlmc.replay import sheets as repeated_sheets
+from xlmc.report.page import payload
 from xlmc.report.sheets import book, save
 
-__all__ = ["CHARTS", "FEW", "SENSITIVITY", "keep_few_trials", "leave_out"]
+__all__ = ["CHARTS", "FEW", "SENSITIVITY", "keep_few_trials", "leave_out", "leave_out_fits"]
 
 CHARTS = ("Charts", "Pairs")
 FEW = 40
@@ -18,6 +19,11 @@ SENSITIVITY = ("Sensitivity", "Filter limits")
 def leave_out(patch: pytest.MonkeyPatch, *names: str) -> None:
     """Have result workbooks written without the sheets of these names, as long as the patch lasts."""
     patch.setattr(book, "SHEETS", tuple(sheet for sheet in book.SHEETS if sheet.name not in names))
+
+
+def leave_out_fits(patch: pytest.MonkeyPatch) -> None:
+    """Have pages without fitted distributions, as long as the patch lasts."""
+    patch.setattr(payload, "fitted_curves", lambda x, bins: [])
 
 
 def keep_few_trials(patch: pytest.MonkeyPatch, rows: int = FEW) -> None:

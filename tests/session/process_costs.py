@@ -5,9 +5,11 @@ from __future__ import annotations
 import gc
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
+from pathlib import Path
 
 import pytest
+from _pytest.doctest import DoctestModule
 from openpyxl.worksheet.merge import MergedCellRange
 
 _NOT_KEPT = "PYTHONDONTWRITEBYTECODE"
@@ -51,3 +53,12 @@ def pytest_sessionstart() -> None:
     """
     MergedCellRange.format = lambda self: None
     os.fsync = lambda descriptor: None
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collect_file(file_path: Path) -> Generator[None, list[pytest.Collector], list[pytest.Collector]]:
+    """Look for examples in docstrings where there are any: to look into every module takes seconds."""
+    found = yield
+    if any(isinstance(each, DoctestModule) for each in found) and b">>>" not in file_path.read_bytes():
+        return [each for each in found if not isinstance(each, DoctestModule)]
+    return found

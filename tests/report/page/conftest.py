@@ -73,9 +73,23 @@ def read(text):
 
 
 @pytest.fixture(scope="session")
-def page_of():
+def text_of():
+    """The page of a run, which is made once."""
+    made = {}
+
+    def text(simulation, **options):
+        key = id(simulation), *((name, id(each)) for name, each in options.items())
+        if key not in made:
+            made[key] = page_text(simulation, **options), simulation, options  # which keep their ids as long
+        return made[key][0]
+
+    return text
+
+
+@pytest.fixture(scope="session")
+def page_of(text_of):
     """A run's page as elements."""
-    return lambda simulation, **options: read(page_text(simulation, **options))
+    return lambda simulation, **options: read(text_of(simulation, **options))
 
 
 @pytest.fixture(scope="session")
@@ -102,12 +116,12 @@ def chromium(browser):
 
 
 @pytest.fixture
-def shown(chromium, tmp_path):
+def shown(chromium, text_of, tmp_path):
     """Opens a run's page in the browser; whatever it complained of by the end of the test is an error."""
 
     def show(simulation, **options):
         path = tmp_path / "page.html"
-        simulation.save_page(path, **options)
+        path.write_text(text_of(simulation, **options), encoding="utf-8")
         chromium.get("about:blank")
         for log in ("browser", "performance"):
             chromium.get_log(log)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import shutil
+import signal
 
 __all__ = ["Browser"]
 
@@ -51,7 +53,8 @@ class Browser:
         for argument in (*_CHROMIUM, f"--user-data-dir={self._profiles.mktemp('profile')}"):
             options.add_argument(argument)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-        found = webdriver.Chrome(options=options, service=webdriver.ChromeService(shutil.which("chromedriver")))
+        service = webdriver.ChromeService(shutil.which("chromedriver"), popen_kw={"start_new_session": True})
+        found = webdriver.Chrome(options=options, service=service)
         found.set_script_timeout(120)
         return found
 
@@ -63,3 +66,6 @@ class Browser:
         with contextlib.suppress(Exception):  # there may be nobody left to ask
             running.quit()
         running.service.stop()
+        if hasattr(os, "killpg"):
+            with contextlib.suppress(ProcessLookupError):  # a driver that was killed leaves its browser behind
+                os.killpg(running.service.process.pid, signal.SIGKILL)

@@ -50,6 +50,10 @@ BLOCK: Final = 32_768
 """Trials evaluated at once, where the engine does not want fewer: enough that the calls cost little beside the
 arithmetic, few enough for the cache."""
 
+_TOGETHER: Final = 64
+"""Trials are computed in multiples of so many: more than any processor takes in one instruction, so that the last bit
+of a trial does not depend on how many follow it."""
+
 PRIOR_TRIALS: Final = 65_536
 """Trials whose draws are all kept, accepted or not, to show the prior."""
 
@@ -101,6 +105,7 @@ def simulate(
     largest = program.largest_block if program is not None else own_runner.block  # type: ignore[union-attr]  # it is one
     block = min(BLOCK, largest)
     piece = block if settings.stopping.asked else min(block, pieces)
+    computed = min(piece, -(-plan.trials // _TOGETHER) * _TOGETHER)  # a short run computes no whole block
     most_inputs = plan.trials if keep_inputs is None else keep_inputs
     if model.checks:
         most_inputs = max(most_inputs, LEAST_CHECKED)
@@ -110,11 +115,11 @@ def simulate(
         if program is None:
             assert own_runner is not None
             return own_runner
-        return model_runner(model, program, settings.engine, settings.seed, piece, plan)
+        return model_runner(model, program, settings.engine, settings.seed, computed, plan)
 
     def blocks_of(tasks: Iterator[Task]) -> Generator[Block, None, None]:
         if program is not None:
-            return pool.blocks(model, program, settings, plan, piece, tasks, gathered.room)
+            return pool.blocks(model, program, settings, plan, computed, tasks, gathered.room)
         return (runner().borrow(task, gathered.room) for task in tasks)
 
     needed = disk_needed(model, settings.stopping, plan.trials, piece, most_inputs, runner)

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 import click
 
-from xlmc.definitions.definitions import EVIDENCE_WAYS
+from xlmc.definitions.evidence_ways import EVIDENCE_WAYS
 from xlmc.definitions.stopping import GOALS, RARE, Option
 from xlmc.evaluation.engines import ENGINES
 from xlmc.sampling.sampling_methods import METHODS

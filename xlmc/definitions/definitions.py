@@ -18,7 +18,6 @@ from xlmc.sampling.draws import Draw
 __all__ = [
     "CUTOFFS",
     "DIALOG",
-    "EVIDENCE_WAYS",
     "Assumption",
     "Check",
     "Copula",
@@ -35,9 +34,6 @@ __all__ = [
 Parameter = float | Cell
 """A number, or the cell that holds it because that cell holds a formula (it may then vary with other assumptions)."""
 
-
-EVIDENCE_WAYS: Final = ("auto", "rejection", "weights")
-"""How a run uses evidence whose error is no limit; `auto` decides by the run's first trials."""
 
 DIALOG: Final = "Crystal Ball"
 """The source, and the note, of what a dialog of Crystal Ball defines."""

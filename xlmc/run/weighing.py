@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.definitions import EVIDENCE_WAYS, Filter, name_key
+from xlmc.definitions.definitions import Filter, name_key
+from xlmc.definitions.evidence_ways import EVIDENCE_WAYS
 from xlmc.errors import SimulationError
 from xlmc.run.draw_binding import parameter_target
 from xlmc.run.evidence_trials import evidence_trials

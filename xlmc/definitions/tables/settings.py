@@ -7,7 +7,8 @@ from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
 from xlmc.definitions.amounts import as_seconds, typed_whole_number
-from xlmc.definitions.definitions import EVIDENCE_WAYS, Settings
+from xlmc.definitions.definitions import Settings
+from xlmc.definitions.evidence_ways import EVIDENCE_WAYS
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.stopping import GOALS, LIMIT, MOST_TRIALS, NO_GOAL, RARE, Option, Stopping, stopping
 from xlmc.definitions.tables.fields import central_share, number_in, required_text

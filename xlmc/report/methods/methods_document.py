@@ -7,7 +7,6 @@ from typing import Final
 
 from xlmc.report.document import parts
 from xlmc.report.methods import methods_tables
-from xlmc.report.methods.matplotlib_figure import draw
 from xlmc.report.methods.methods_page import ENDS, svg
 from xlmc.report.methods.speed_chart import HOW_TO_READ, Work
 from xlmc.report.study_report import column_widths
@@ -29,7 +28,7 @@ def document(study: Study) -> parts.Document:
     blocks.append(parts.Heading("Speed against accuracy"))
     blocks += [parts.Paragraph(each, "small") for each in (HOW_TO_READ if study.varying else ())]
     for work, what in _FIGURES:
-        drawn = parts.Drawing(svg(draw(study, work, words=False)), f"Error of each method against {what}", _WIDTH)
+        drawn = parts.Drawing(svg(study, work), f"Error of each method against {what}", _WIDTH)
         blocks.append(parts.Figure(drawn, f"Speed against accuracy: {what}."))
     blocks += _table(methods_tables.error_table(study))
     blocks += _lines("What each method says of itself, and cannot do", methods_tables.cannot_lines(study))

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
+from functools import lru_cache
 from html import escape
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from xlmc.report.methods import methods_tables
 from xlmc.report.methods.matplotlib_figure import draw
 from xlmc.report.methods.speed_chart import HOW_TO_READ, Work
 from xlmc.studies.methods import Study, recommendation
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 __all__ = ["ENDS", "page", "svg"]
 
@@ -58,7 +56,7 @@ def page(study: Study) -> str:
     how = "".join(f'<p class="said">{escape(each)}</p>\n' for each in HOW_TO_READ) if study.varying else ""
     figures = "".join(
         f"<h2>Speed against accuracy: {what}</h2>\n{how if against == 'seconds' else ''}"
-        f"<figure>{svg(draw(study, against, words=False))}</figure>\n"
+        f"<figure>{svg(study, against)}</figure>\n"
         for against, what in _WORKS
     )
     ends = methods_tables.ends_lines(study)
@@ -105,12 +103,13 @@ def _row(row: tuple[str, ...], right: int) -> str:
     )
 
 
-def svg(figure: Figure) -> str:
-    """A figure as SVG, its letters as shapes; the same figure gives the same bytes."""
+@lru_cache(maxsize=len(_WORKS))  # drawing takes a second, and page and document show the same
+def svg(study: Study, against: Work) -> str:
+    """The figure of a study as SVG, its letters as shapes; the same study gives the same bytes."""
     import matplotlib as mpl
 
     drawn = io.StringIO()
     with mpl.rc_context({"svg.fonttype": "path", "svg.hashsalt": "xlmc"}):
-        figure.savefig(drawn, format="svg", metadata={"Date": None})
+        draw(study, against, words=False).savefig(drawn, format="svg", metadata={"Date": None})
     text = drawn.getvalue()
     return text[text.index("<svg") :]

@@ -405,8 +405,8 @@ _WHEN = GuideSection(
         "with it.",
         "The approach angle of the other vehicle is an answer. Compare it with its lane: sheet Evidence has a row.",
         "The reverse: where the closing momentum m2·c is hardly more than the momentum across (the quantity m2·c − "
-        "|p⊥| on sheet Model, near 0), energy says little, and momentum is better. Run both templates and compare "
-        "their standard deviations; the smaller one answers.",
+        "|p⊥| on sheet Model, near 0), energy says little, and momentum is better. Fill in both templates: "
+        "xlmc compare runs them and says which tells more, by their standard deviations, and whether they agree.",
         "Where both approach angles are known, the scene is overdetermined: enter the second as evidence, and the "
         "trials that agree with both remain.",
         "A blow from behind: PDOF jumps between 180 and −180. Enter its direction on sheet Evidence, with Use FALSE if "

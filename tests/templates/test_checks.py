@@ -51,6 +51,7 @@ CASES = [
     ("time-distance", "check_friction", {"f": 70}),
     ("time-distance", "check_response", {"d_intruder": 1.5, "a_intruder": 0.3, "d_brake": 60}),
     ("airborne", "check_fall", {"theta": -20}),
+    ("airborne", "check_fall", {"h": -25}),  # a landing that is lower, entered as higher
     ("airborne", "check_distance", {"s": -1}),
     ("airborne", "check_angle", {"theta": 50}),
     ("airborne", "check_friction", {"f": 45}),

@@ -63,6 +63,15 @@ EXAMPLES = [
         {"d_reaction": 86.8377, "d_total": 186.8377},
         5e-5,
     ),
+    # Way while responding: 65 mph, 1 to 1.5 s (prtassoc.com); 45 mph, 0.67 and 2.5 s (770goodlaw.com).
+    *(
+        ("skid", SKID | {"known": 2, "v_begin": speed, "t_reaction": time}, {"d_reaction": way}, 0.5)
+        for speed, time, way in ((65, 1, 95), (65, 1.25, 119), (65, 1.5, 143), (45, 0.67, 44), (45, 2.5, 165))
+    ),
+    # Braking from 45 mph at 11.2 and 14.8 ft/s²: 194.5 and 147.2 ft.
+    *(("skid", SKID | {"f_1": a / 32.174, "d_1": d}, {"v_mph": 45}, 1e-2) for a, d in ((11.2, 194.47), (14.8, 147.17))),
+    # 60 mph, 1 s, 15 ft/s²: 346.13 ft. A page prints 302.28 ft, from which it would have been at 55.5 mph.
+    ("skid", SKID | {"f_1": 15 / 32.174, "d_1": 258.1333, "t_reaction": 1}, {"v_mph": 60, "d_total": 346.13}, 5e-3),
     ("critical-speed-yaw", YAW, {"R_mark": 59.33, "v_mph": 13.32}, 5e-3),
     # The mark of the outer front tyre, 2.5 ft outside the path; 5 % of bank.
     ("critical-speed-yaw", YAW | {"offset": 2.5}, {"v_mph": (0.2 * 32.174 * (59.3333 - 2.5)) ** 0.5 * MPH}, 1e-4),

@@ -56,6 +56,20 @@ def test_two_answers_contradict_where_0_is_far_out_among_their_differences(answe
     assert "neither tells more, as far as these trials say" in verdict_text(found)[0]
 
 
+def test_one_book_may_answer_twice(filled_in):
+    """Marks and throw of one pedestrian: the two are told apart by the forecasts' names."""
+    book, mine, theirs = (
+        filled_in("pedestrian", {}),
+        *(f"Vehicle impact speed, from the {what}" for what in ("marks", "throw")),
+    )
+    found = compare(book, book, pairs={mine: theirs}, **SIZE)
+    (each,) = found.rivals
+    assert (each.rivalry.sharper, each.rivalry.agreement) == (0, Agreement.AGREE)
+    (text,) = [line for line in verdict_text(found) if "tells more" in line]
+    assert text.startswith(f"{mine} ({theirs}): '{mine}' tells more, with a standard deviation of ")
+    assert f" mph of '{theirs}'. The two answers agree." in text
+
+
 def test_few_trials_contradict_nothing(answering):
     found = compare(answering("a", 0, 1), answering("b", 2, 3), trials=500, seed=1)
     assert found.rivals[0].rivalry.agreement is Agreement.TOO_FEW

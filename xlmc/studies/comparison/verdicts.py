@@ -86,6 +86,8 @@ _ALL_AGREE = {
 
 def _rival(each: ForecastComparison, found: Rivalry, books: tuple[str, str]) -> str:
     """Which of two models tells more of an answer, and whether they agree."""
+    if books[0] == books[1]:  # one book that answers twice
+        books = (repr(each.first.name), repr(each.second.name))
     deviations, widths = (_spreads(spread, each.first.units) for spread in (found.deviation, found.width))
     share = f"{100 * each.difference.share:.3g} % range"
     if found.sharper is not None:

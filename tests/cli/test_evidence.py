@@ -178,3 +178,17 @@ def test_the_way_evidence_is_used_is_an_option(xlmc, book, tmp_path):
     assert accepted["weights"] == 20_000 > accepted["rejection"] == accepted["auto"]
     refused = xlmc("simulate", path, "--evidence", "both")
     assert (refused.code, "'both' is none of auto, rejection, weights" in refused.err) == (2, True)
+
+
+def test_the_weights_of_trials_have_a_heading_of_their_own(xlmc, book, tmp_path):
+    """An assumption may be called Weight, as vehicles have one."""
+    path = book([*EDR[:2], 6.5, *EDR[3:]])
+    made = openpyxl.load_workbook(path)
+    made["Inputs"]["A2"] = "Weight"
+    made.save(path)
+    xlmc("simulate", path, "-n", 5_000, "--extract", tmp_path / "book.csv")
+    heads = ["Trial", "Weight", "b", "Weight of the trial", "Speed"]
+    assert (tmp_path / "book.csv").read_text(encoding="utf-8").splitlines()[0].split(",") == heads
+    shown = openpyxl.load_workbook(tmp_path / "book-results.xlsx")["Trials"]
+    row = next(row for row in shown.iter_rows(values_only=True) if row[0] == "Trial")
+    assert [each for each in row if each] == ["Trial", "Weight", "b", "Speed (mph)", "Weight of the trial"]

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from xlmc.columns import PART, release
 from xlmc.errors import SimulationError, WorkbookError
 from xlmc.results.record import make_record
-from xlmc.run.simulation import TRIAL, assumption_heading, forecast_heading
+from xlmc.run.simulation import TRIAL, assumption_heading, forecast_heading, weight_heading
 from xlmc.workbook.target import Target
 from xlmc.workbook.writer import whole_file
 
@@ -120,8 +120,7 @@ def _columns(simulation: Simulation) -> list[Column]:
         for values in [simulation.inputs[a.name]]
     ]
     if simulation.weighting is not None:
-        taken = {*forecasts, *(each.name for each in found)}
-        name = "Weight" if "Weight" not in taken else "Weight of the trial"
+        name = weight_heading({*forecasts, *(each.name for each in found)})
         found.append(Column(name, "weight", "", "", simulation.weighting.weights))
     return found + [
         Column(forecast_heading(f.name), "forecast", f.units, str(f.cell), simulation.forecasts[f.name])

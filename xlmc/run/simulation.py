@@ -46,6 +46,7 @@ __all__ = [
     "Simulation",
     "assumption_heading",
     "forecast_heading",
+    "weight_heading",
 ]
 
 ERROR_SHARE: Final = 0.001
@@ -351,3 +352,8 @@ def assumption_heading(name: str, forecasts: Collection[str]) -> str:
         forecasts: the names of all forecasts.
     """
     return f"{name} (assumption)" if name == TRIAL or name in forecasts else name
+
+
+def weight_heading(others: Collection[str]) -> str:
+    """What the weights of trials are called there, beside columns with these names."""
+    return "Weight" if "Weight" not in others else "Weight of the trial"

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.styles import Reference
+from xlmc.run.simulation import weight_heading
 
 if TYPE_CHECKING:
     from xlmc.report.sheets.page import Page
@@ -98,7 +99,9 @@ def _columns(simulation: Simulation, shown: int) -> list[tuple[Shown, NDArray[np
     inputs = [column(_heading(a.name, a.units, "header assumption"), simulation.inputs[a.name]) for a in live]
     outputs = [column(_heading(f.name, f.units, "header forecast"), simulation.forecasts[f.name]) for f in forecasts]
     weighting = simulation.weighting
-    weights = [] if weighting is None else [column(Shown("Weight", look="header"), weighting.weights)]
+    names = [*(each.name for each in live), *(each.name for each in forecasts)]
+    heading = Shown(weight_heading(names), look="header")
+    weights = [] if weighting is None else [column(heading, weighting.weights)]
     return inputs + outputs + weights
 
 

@@ -195,6 +195,8 @@ def test_by_mouse(chromium, running, case):
     page.button("Compare all in one table").click()
     page.until("document.querySelectorAll('#panel-scenarios table').length > 2")
     assert "dry road" in page.all("#panel-scenarios table")[0].text
+    assert page.stand.startswith("Done: ")
+    assert not page.one("#stop").is_displayed()
     page.at_rest(page.button("All as in the workbook").click)
     assert accepted(case) in page.stand
     shows = [each for each in page.all(".scenarios button") if each.text == "Show"]

@@ -121,9 +121,9 @@ def test_a_kept_runner_does_not_hold_for_other_nodes_or_other_kinds_of_limits(bo
 
 def test_a_run_in_pieces_gives_what_a_run_gives(book):
     model = load(CASE)
-    for sampling in ("mc", "lhs", "sobol"):
-        whole = simulate(model, trials=40_000, sampling=sampling)
-        pieces = simulate(model, trials=40_000, sampling=sampling, pieces=2_048)
+    for sampling, engine in (("mc", "numpy"), ("lhs", "numpy"), ("sobol", "numpy"), ("mc", "jit")):
+        whole = simulate(model, trials=40_000, sampling=sampling, engine=engine)
+        pieces = simulate(model, trials=40_000, sampling=sampling, engine=engine, pieces=2_048)
         assert pieces.block == whole.block
         assert_same(pieces, whole)
         assert {name: values.tobytes() for name, values in pieces.prior.items()} == {

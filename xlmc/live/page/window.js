@@ -57,11 +57,17 @@ const Live = {
     this.right.frame(message);
     this.left.reshape(message.shapes);
     const run = `${countText(message.trials)} trials, ${countText(message.accepted)} accepted (${message.share})`;
-    this.stand(message.stage === "rest" ? `Done: ${run}` : `Refining: ${run} so far`);
-    document.getElementById("stop").hidden = true;
+    this.standing = message.stage === "rest" ? `Done: ${run}` : `Refining: ${run} so far`;
+    this.ended();
     document.body.dataset.stage = message.stage;
     document.body.dataset.version = String(message.version);
     this.measure(message);
+  },
+
+  /** What was running is over: say again what the charts are of. */
+  ended() {
+    this.stand(this.standing ?? "");
+    document.getElementById("stop").hidden = true;
   },
 
   on_rest(message) {
@@ -71,6 +77,7 @@ const Live = {
 
   on_part(message) {
     this.right.part(message);
+    if (message.tab === "scenarios") this.ended();
   },
 
   on_others(message) {
@@ -83,7 +90,8 @@ const Live = {
 
   on_running({ stage, share }) {
     document.getElementById("stop").hidden = stage === "stopped" || share >= 1;
-    this.stand(stage === "stopped" ? "Stopped" : `Running: ${Math.round(100 * share)} % of the trials`);
+    const of = stage === "compare" ? "scenarios" : "trials";
+    this.stand(stage === "stopped" ? "Stopped" : `Running: ${Math.round(100 * share)} % of the ${of}`);
   },
 
   on_trouble({ about, text }) {

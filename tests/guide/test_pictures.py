@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 GUIDE = (ROOT / "docs" / "guide.md").read_text(encoding="utf-8")
 FOLDER = ROOT / "docs" / "pictures"
 SHOWN = re.findall(r"!\[([^\]]+)\]\(pictures/(\S+)\.png\)", GUIDE)
-OF_THE_GUIDE = [path for path in FOLDER.glob("*.png") if path.stem != "live-window"]
+OF_THE_GUIDE = [path for path in FOLDER.glob("*.png") if not path.stem.startswith("live-")]
 MOST_BYTES = 150_000
 
 

@@ -21,7 +21,7 @@ from typing import Any
 
 __all__ = [
     *("BOOKS", "CASE_STUDY", "CELLS_A_STEP", "POWERS", "make_books", "march_cells", "road", "term_rows", "wide_inputs"),
-    *("write_march", "write_powers", "write_skid", "write_wide"),
+    *("write_kind", "write_march", "write_powers", "write_skid", "write_wide"),
 ]
 
 CASE_STUDY = Path(__file__).resolve().parents[1] / "examples" / "intersection.xlsx"
@@ -141,6 +141,8 @@ POWER_FORECASTS = (4, 7, 15, 21, 34, 40, 49, 50)
 
 WIDE_ASSUMPTIONS, WIDE_FORECASTS = 1_000, 200
 WIDE_LOW, WIDE_HIGH = 0.5, 1.5
+KIND: tuple[Row, ...] = (("First", "first", 1.0, 0.5, 1.5), ("Second", "second", 1.0, 0.5, 1.5))
+"""The assumptions of a book of cells of one kind."""
 
 
 def write_skid(path: Path) -> None:
@@ -173,6 +175,22 @@ def write_powers(path: Path) -> None:
             model.write_string(row, 0, label)
             model.write_formula(row, 1, formula)
         _forecasts(book, [(POWER_CELLS[row - 1][0], f"=Model!B{row}") for row in POWER_FORECASTS])
+
+
+def write_kind(path: Path, formula: str, cells: int) -> None:
+    """So many cells of one formula, each over a number of its own in column A; the forecast is their sum.
+
+    `{r}` in the formula is the row of a cell; `first` and `second` are the assumptions.
+    """
+    from xlsxwriter import Workbook
+
+    with Workbook(path) as book:
+        _inputs(book, KIND)
+        model = book.add_worksheet("Model")
+        for row in range(1, cells + 1):
+            model.write_formula(row - 1, 0, f"=first*second+{row}/7")
+            model.write_formula(row - 1, 2, "=" + formula.format(r=row))
+        _forecasts(book, [("Sum", f"=SUM(Model!C1:C{cells})")])
 
 
 def write_wide(path: Path, assumptions: int = WIDE_ASSUMPTIONS, forecasts: int = WIDE_FORECASTS) -> None:

@@ -112,11 +112,25 @@ def _plain(item):
     return item.text if isinstance(item, ErrorCode) else item
 
 
+@pytest.fixture(scope="session")
+def load_program():
+    """`load_program(engine)`: what makes its program; of `jit` the loops, also where they do not pay."""
+
+    def load(engine):
+        if engine != "jit":
+            return ENGINES[engine].load()
+        from xlmc.evaluation.llvm.program import JitProgram
+
+        return JitProgram
+
+    return load
+
+
 WAYS = ["constants", "numpy", *(["jit"] if importlib.util.find_spec("llvmlite") else [])]
 
 
 @pytest.fixture(scope="session")
-def ways(lower):
+def ways(lower, load_program):
     """`ways(cells, formulas)`: what each formula gives from constants, and from assumptions of zero width in engines.
 
     Every number among the cells is such an assumption, but for those in `held`. A formula is a text, which lies in
@@ -134,7 +148,7 @@ def ways(lower):
         draws = {address: np.full(3, float(value)) for address, value in drawn.items()}
         for way in WAYS[1:]:
             lowering, found = lower(book, draws, targets, **of_workbook)
-            program = ENGINES[way].load()(lowering, [], found, frozenset(draws))
+            program = load_program(way)(lowering, [], found, frozenset(draws))
             evaluator = program.evaluator(3)
             list(evaluator.filters(draws, 3))
             columns = [_objects(column) for column in evaluator.forecasts(np.arange(3))]

@@ -10,7 +10,6 @@ import pytest
 from hypothesis import given, note, settings
 from hypothesis import strategies as st
 
-from xlmc.evaluation.engines import ENGINES
 from xlmc.evaluation.tracking import TrackingEvaluator
 
 RELATIVE = 1e-12
@@ -164,7 +163,7 @@ def _columns(evaluator, draws, n):
 
 
 @pytest.fixture(scope="module")
-def differences(lower):
+def differences(lower, load_program):
     """The columns of an engine beside those of the careful path."""
 
     def run(engine, cells, draws, forecasts, filters, may_err=()):
@@ -174,7 +173,7 @@ def differences(lower):
         split = targets[: len(filters)], targets[len(filters) :]
         nodes = [[lowering.target(target) for target in part] for part in split]
         expected = _columns(TrackingEvaluator(lowering.dag, *nodes), draws, n)
-        program = ENGINES[engine].load()(lowering, *split, frozenset(may_err))
+        program = load_program(engine)(lowering, *split, frozenset(may_err))
         return list(zip(_columns(program.evaluator(n), draws, n), expected, strict=True))
 
     return run

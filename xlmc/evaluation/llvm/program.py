@@ -16,18 +16,21 @@ from xlmc.evaluation.graph.lower import Lowering
 from xlmc.evaluation.graph.nodes import Input
 from xlmc.evaluation.graph.readiness import order_by_need
 from xlmc.evaluation.llvm.block_runner import NativeBlockRunner, block_parts
+from xlmc.evaluation.llvm.costs import loops_pay
 from xlmc.evaluation.llvm.loop_rules import LoopRule, reads
 from xlmc.evaluation.llvm.machine import machine
 from xlmc.evaluation.llvm.memory import Memory
 from xlmc.evaluation.llvm.operations import loop_rule_of
 from xlmc.evaluation.llvm.phase import Phase, Trials
+from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.evaluation.tracking import TrackingEvaluator, array_bytes, fitting_block
 from xlmc.functions.values import Floats
 
 if TYPE_CHECKING:
+    from xlmc.evaluation.engine import Program
     from xlmc.sampling.draws import Linear
 
-__all__ = ["JitProgram"]
+__all__ = ["JitProgram", "fastest_program"]
 
 _MOST_MEMORY: Final = 2**28
 _MOST_IN_CACHES: Final = 2**25
@@ -41,11 +44,24 @@ _MOST_IN_COLUMNS: Final = 1 << 26
 """The most bytes of a block's draws and forecasts."""
 
 
+def fastest_program(
+    lowering: Lowering, filters: Sequence[Target], forecasts: Sequence[Target], may_err: frozenset[str]
+) -> Program:
+    """The program of loops, or that of the engine `numpy` where loops do not pay."""
+    targets = [lowering.target(target) for target in (*filters, *forecasts)]
+    rules, dag = _rules(lowering.dag), lowering.dag
+    nodes = dag.upstream(targets, lambda node: reads(dag, node, rules.get(node)))
+    if loops_pay(dag, nodes, rules):
+        return JitProgram(lowering, filters, forecasts, may_err, rules)
+    return NumpyProgram.of(lowering, filters, forecasts, may_err)
+
+
 class JitProgram:
     """The graph of nodes, compiled for this machine.
 
     Args:
         may_err: the inputs whose draws may be errors (NaNs).
+        rules: what loops can compute; found where it is not given.
 
     Attributes:
         largest_block: the largest block, a power of two, whose arrays take no more than 256 MB; 32 MB where functions
@@ -58,12 +74,12 @@ class JitProgram:
         filters: Sequence[Target],
         forecasts: Sequence[Target],
         may_err: frozenset[str],
+        rules: Mapping[int, LoopRule] | None = None,
     ) -> None:
         self.dag, self.may_err = lowering.dag, may_err
         self.filter_nodes = [lowering.target(target) for target in filters]
         self.forecast_nodes = [lowering.target(target) for target in forecasts]
-        rules = _rules(self.dag)
-
+        rules = _rules(self.dag) if rules is None else rules
         needs: dict[int, tuple[int, ...]] = {}
 
         def needed(node: int) -> tuple[int, ...]:

@@ -1,0 +1,15 @@
+from __future__ import annotations
+
+import node_costs
+import pytest
+
+from xlmc.evaluation.llvm import program
+
+
+def test_costs_are_told_by_kind(capsys):
+    pytest.importorskip("llvmlite")
+    chosen = program.loops_pay
+    node_costs.main(["--quick"])
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split(" | ")[0] for line in lines[2:]] == ["| a number", "| sum"]
+    assert program.loops_pay is chosen

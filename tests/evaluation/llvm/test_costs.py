@@ -1,0 +1,50 @@
+"""Loops are chosen by a table, never by a clock."""
+
+from __future__ import annotations
+
+import pytest
+from committed_books import BOOKS
+
+pytest.importorskip("llvmlite")
+
+import xlmc
+from xlmc.evaluation.engines import ENGINES
+from xlmc.evaluation.llvm.program import JitProgram
+from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
+from xlmc.run.forecast_filters import FilteringProgram
+
+PLAIN = [f"A1*A2+SQRT(A1+{k})" for k in range(1, 21)]
+CHOSEN = [
+    (PLAIN, JitProgram),
+    (["SINH(A1)"], NumpyProgram),
+    (["SINH(A1)", *PLAIN], JitProgram),
+    (["MEDIAN(A1:A2,3)", "LARGE(A1:A2,1)"], NumpyProgram),
+    (["A1"], JitProgram),
+    (["2"], JitProgram),
+    (["A1^A2"], JitProgram),  # nothing stands between loops
+    (["A1^A2", "ROUND(A1,1)", "A1+A2"], NumpyProgram),
+    ([f"ROUND(A1,{k})" for k in range(20)] + PLAIN, NumpyProgram),
+]
+
+
+@pytest.mark.parametrize(("formulas", "expected"), CHOSEN)
+def test_a_book_has_the_program_that_the_table_says(lower, formulas, expected):
+    cells = {f"C{row}": f"={formula}" for row, formula in enumerate(formulas, 1)}
+    lowering, targets = lower(cells, ["A1", "A2"], [*cells])
+    assert type(ENGINES["jit"].load()(lowering, targets[:1], targets[1:], frozenset())) is expected
+
+
+@pytest.mark.parametrize("path", BOOKS.values(), ids=BOOKS)
+def test_examples_and_templates_are_computed_in_loops(path):
+    program = xlmc.load(path).program("jit")
+    assert isinstance(program._program if isinstance(program, FilteringProgram) else program, JitProgram)
+
+
+def test_a_run_that_loops_would_slow_down_has_the_bits_of_numpy(book):
+    given = {name: {"cell": name, "low": 1, "high": 2} for name in ("A1", "A2")}
+    model = book({"A1": 1.0, "A2": 1.0, "B1": "=SINH(A1)+SIN(A2)"}, given, {"x": "B1"})
+    by_numpy, by_jit = (model.simulate(3_000, 2, engine=engine) for engine in ("numpy", "jit"))
+    assert by_jit.settings.engine == "jit"
+    assert by_jit.forecasts["x"].tobytes() == by_numpy.forecasts["x"].tobytes()
+    again = model.simulate(3_000, 2, engine="jit", jobs=2)
+    assert again.forecasts["x"].tobytes() == by_numpy.forecasts["x"].tobytes()

@@ -127,7 +127,7 @@ MUTANTS = {
     "a filter that is an error": Mutant(
         "return fails if column.codes is None else fails | (column.codes > 0)", "return fails", ("run",)
     ),
-    "looks of a rule": Mutant("math.ceil(self._blocks * _GROWTH)", "self._blocks + 1", ("run", "../xlmc/run")),
+    "looks of a rule": Mutant("math.ceil(self._blocks * _GROWTH)", "self._blocks + 1", ("run",)),
     # results
     "missing numbers in the fingerprint": Mutant("np.where(np.isnan(part), np.nan, part)", "part", ("results",)),
     # studies

@@ -220,7 +220,7 @@ def test_other_settings_are_said_where_the_workbook_does_not_say_them():
     own = Settings(trials=10, seed=1, sampling="mc", engine="numpy")
     model = SimpleNamespace(definitions=SimpleNamespace(settings=own), workbook=SimpleNamespace(name="-b.xlsx"))
     used = replace(own, sampling="lhs", engine="jit")
-    simulation = SimpleNamespace(settings=used, model=model, trials=20, stopped=ALL_TRIALS)
+    simulation = SimpleNamespace(settings=used, model=model, trials=20, stopped=ALL_TRIALS, changed_from=None)
     command = "xlmc simulate ./-b.xlsx --trials 20 --seed 1 --sampling lhs --engine jit"
     assert repeat_command(simulation) == command
 

@@ -50,6 +50,12 @@ def test_it_ends_at_the_first_checkpoint_at_which_the_interval_is_narrow_enough(
     assert all(width > 1.0 for width in widths[:-1])
 
 
+def test_checkpoints_lie_a_quarter_apart():
+    """So that many looks do not find by chance what is not so."""
+    checkpoints = Checkpoints()
+    assert [block for block in range(1, 31) if checkpoints.due()] == [4, 5, 7, 9, 12, 15, 19, 24, 30]
+
+
 def test_as_many_trials_as_the_normal_distribution_asks_for(block, run_rule):
     """(1.96/0.02)² = 9604 numbers, found at the first checkpoint after them, or the one before or after it."""
     found, _ = run_rule(rule(0.02), stream(block, "standard_normal", 8))

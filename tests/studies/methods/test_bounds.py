@@ -18,7 +18,7 @@ DOMAIN = {
     "Chevrolet impact speed": ((27.15, 41.42), (27.66, 40.41)),
     "Nissan impact speed": ((-3.24, 24.88), (0.0, 15.49)),
 }
-"""Forecast -> corners, and optimised with the filters: mph, computed independently of this project (DOMAIN.md §2)."""
+"""Forecast -> corners, and optimised with the filters: mph, computed independently of this project."""
 
 
 def ends(result, name):

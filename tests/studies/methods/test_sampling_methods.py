@@ -12,7 +12,7 @@ from xlmc.studies.methods.surrogate import fit_quadratic
 REFERENCE = {"Chevrolet delta-V": (11.80333, 0.73709), "Nissan delta-V": (23.06344, 1.41424)}
 REFERENCE |= {"Chevrolet impact speed": (33.16317, 1.76307), "Nissan impact speed": (4.74205, 2.00052)}
 ACCEPTANCE = 0.01756579
-"""Mean and SD, mph: 2·10⁹ trials made independently of this project (DOMAIN.md §2)."""
+"""Mean and SD, mph: 2·10⁹ trials made independently of this project."""
 
 
 @pytest.mark.parametrize("method", [MONTE_CARLO, ImportanceGrid(), Surrogate()], ids=lambda method: method.key)

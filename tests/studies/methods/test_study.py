@@ -45,7 +45,7 @@ def test_sampling_errors_are_what_theory_says(case_study):
 
 
 def test_theory_is_that_of_the_independent_reference(case_study):
-    """DOMAIN.md §2: theory of 131,072 trials for the filtered means, mph; SDs of a million trials are known to 1 %."""
+    """Theory of 131,072 trials for the filtered means, mph; SDs of a million trials are known to 1 %."""
     reference = reference_of(case_study, 1 << 20, "mc", "numpy", 3)
     for name, error in zip(reference.answers, (0.0154, 0.0295, 0.0367, 0.0417), strict=True):
         assert reference.theory(name, "mean", 131_072) == pytest.approx(error, rel=0.03)

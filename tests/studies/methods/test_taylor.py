@@ -10,7 +10,7 @@ FIRST = {"Chevrolet delta-V": (12.042, 1.105), "Nissan delta-V": (23.531, 2.143)
 FIRST |= {"Chevrolet impact speed": (33.763, 1.764), "Nissan impact speed": (8.865, 4.165)}
 SECOND = {"Chevrolet delta-V": 12.166, "Nissan delta-V": 23.771, "Chevrolet impact speed": 33.692}
 SECOND |= {"Nissan impact speed": 8.897}
-"""mph, computed independently of this project (DOMAIN.md §2)."""
+"""mph, computed independently of this project."""
 
 
 def test_first_order_on_the_case_study(case_study):

@@ -40,7 +40,7 @@ def test_the_rest_are_notes(found):
 
 
 def test_with_the_forms_proposed_nothing_is_the_matter_and_the_speeds_are_the_same(found, as_printed):
-    """The direction is the true one then: struck on the left, 86.8° by `DOMAIN.md`, not -93.2°."""
+    """The direction is the true one then: struck on the left, 86.8° by an independent computation, not -93.2°."""
     better = as_printed(formulas={one.name.replace("Nissan PDOF", "PDOF_2"): one.instead for one in found.findings[:2]})
     again = stability(better, trials=TRIALS, seed=999)
     assert {one.level for one in again.findings} <= {Level.NOTE}

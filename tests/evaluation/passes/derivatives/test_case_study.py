@@ -100,7 +100,7 @@ def test_gradient_and_hessian_of_the_case_study(model, seed):
 
 
 def test_second_order_taylor_of_the_case_study(model):
-    """The means and standard deviations of `DOMAIN.md`, §2: uniform assumptions, variance width² / 12."""
+    """The means and standard deviations were computed independently: uniform assumptions, variance width² / 12."""
     found = derivatives(model, {a.name: a.base for a in model.live}, order=2)
     ranges = np.array([(float(a.parameters["low"]), float(a.parameters["high"])) for a in model.live])
     variance = (ranges[:, 1] - ranges[:, 0]) ** 2 / 12

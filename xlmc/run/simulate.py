@@ -50,9 +50,9 @@ BLOCK: Final = 32_768
 """Trials evaluated at once, where the engine does not want fewer: enough that the calls cost little beside the
 arithmetic, few enough for the cache."""
 
-_TOGETHER: Final = 64
-"""Trials are computed in multiples of so many: more than any processor takes in one instruction, so that the last bit
-of a trial does not depend on how many follow it."""
+_TOGETHER: Final = 2_048
+"""Short runs are computed in multiples of so many trials: a chunk of native code, and many more than a processor takes
+in one instruction, so that the last bit of a trial does not depend on how many follow it."""
 
 PRIOR_TRIALS: Final = 65_536
 """Trials whose draws are all kept, accepted or not, to show the prior."""

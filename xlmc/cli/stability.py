@@ -84,7 +84,11 @@ def _count(findings: Sequence[Finding]) -> str:
     levels = [finding.level.name for finding in findings]
     counts = {word.lower(): levels.count(level) for level, word in _LEVELS.items() if level in levels}
     parts = [f"{count} {word}{'s' * (word == 'note' and count > 1)}" for word, count in counts.items()]
-    return f"{len(levels)} finding{'s' * (len(levels) != 1)}: {', '.join(parts)}" if parts else "nothing found"
+    return (
+        f"{len(levels)} finding{'s' * (len(levels) != 1)}: {', '.join(parts)}"
+        if parts
+        else "no finding: no cell loses digits or misleads"
+    )
 
 
 def _show_finding(number: int, finding: Finding) -> None:

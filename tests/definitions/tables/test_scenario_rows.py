@@ -43,6 +43,7 @@ GRAMMAR = [
     ("Friction", "P0 to p10", Band("Friction", 0.0, 10.0), "Friction from P0 to P10"),
     ("grip", "P2.5 to P97.5", Band("Friction", 2.5, 97.5), "Friction from P2.5 to P97.5"),
     ("Inputs!B5", 0.7, Held("Friction", 0.7), "Friction = 0.7"),
+    ("Friction", "0.72", Held("Friction", 0.72), "Friction = 0.72"),
     ("Friction low", 0.5, Typed("Inputs!D5", 0.5), "Friction low = 0.5"),
     ("Friction Distribution", "Uniform", Typed("Inputs!C5", "Uniform"), "Friction Distribution = Uniform"),
     ("Reaction lower_cutoff", "none", Typed("Inputs!I4", None), "Reaction lower_cutoff = nothing"),

@@ -234,6 +234,8 @@ def _of_assumption(heading: str, assumption: Assumption) -> _Column:
         text = as_text(value)
         if text.casefold() in ("frozen", "drawn"):
             return Held(name, None, where) if text.casefold() == "frozen" else Drawn(name, where)
+        if re.fullmatch(_NUMBER, text):  # typed into a cell that was made a text, as ranges are
+            return Held(name, _number(text), where)
         if found := _BAND.fullmatch(text):
             return Band(name, float(found[1]), float(found[2]), where)
         if found := _RANGE.fullmatch(text):

@@ -9,6 +9,7 @@ import openpyxl
 import pytest
 from fewer_sheets import CHARTS, SENSITIVITY, keep_few_trials, leave_out
 from live_books import SIMPLE, change, settle
+from old_format_book import plain_book
 
 from xlmc.errors import DefinitionError, WorkbookError, XlmcError
 from xlmc.live import hand_over
@@ -19,6 +20,8 @@ from xlmc.replay import recorded_run, replay
 from xlmc.results.record import make_record
 from xlmc.results.saved import open_run
 from xlmc.run.loading import load
+from xlmc.workbook.old_format import joined_package
+from xlmc.workbook.package import read_parts
 
 
 @pytest.fixture
@@ -162,3 +165,25 @@ def test_a_change_that_no_table_has_room_for_is_told_with_the_column(book):
     settle(session)
     with pytest.raises(DefinitionError, match="needs a column Frozen"):
         save_result(session.at_rest(), book, "json")
+
+
+def test_of_an_old_workbook_results_and_copies_are_new_ones_and_nothing_is_typed_into_it(tmp_path, monkeypatch):
+    leave_out(monkeypatch, *CHARTS, *SENSITIVITY)
+    keep_few_trials(monkeypatch)
+    monkeypatch.setattr(joined_package, "parts_of_old_workbook", lambda _: read_parts(SIMPLE.read_bytes()))
+    book = tmp_path / "case.xls"
+    book.write_bytes(plain_book({"S": b""}))
+    before, session = book.read_bytes(), Session(load(book))
+    settle(session)
+    assert save_result(session.at_rest(), book, "book").name == "case-results.xlsx"
+    name, mean = first(session.own)
+    session.receive(change(name, "mean", mean * 0.98))
+    settle(session)
+    state = session.at_rest()
+    assert save_result(state, book, "book").name == "case-changed-results.xlsx"
+    assert "case-changed.xlsx." in write_changes(state, book, into=False)
+    assert load(tmp_path / "case-changed.xlsx").live[0].parameters["mean"] == mean * 0.98
+    with pytest.raises(WorkbookError, match="does not write into it"):
+        write_changes(state, book, into=True)
+    assert book.read_bytes() == before
+    assert not list(tmp_path.glob("*-before*"))

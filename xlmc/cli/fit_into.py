@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -63,14 +62,10 @@ def write(edited: Edited) -> None:
         TakenError: it has changed since it was read, or a program has it open.
         WorkbookError: it cannot be written.
     """
-    from xlmc.workbook.writer import TakenError, refuse_if_open, write_workbook
+    from xlmc.workbook.target import refuse_into_source
+    from xlmc.workbook.writer import write_workbook
 
-    def check() -> None:
-        refuse_if_open(edited.path)
-        if hashlib.sha256(edited.path.read_bytes()).hexdigest() != edited.sha256:
-            raise TakenError("the workbook has changed since it was read", where=edited.path, hint="Fit again")
-
-    write_workbook(edited.path, edited.data, check)
+    write_workbook(edited.path, edited.data, lambda: refuse_into_source(edited.path, edited.sha256, "Fit again"))
 
 
 def _six_digits(parameters: Mapping[str, float]) -> dict[str, float]:

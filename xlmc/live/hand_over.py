@@ -24,8 +24,8 @@ from xlmc.run.simulate import simulate
 from xlmc.run.simulation import ChangedFrom
 from xlmc.studies.scenario_workbook import EditedWorkbook, edited_workbook, write_edited
 from xlmc.workbook.reader import read_workbook
-from xlmc.workbook.target import free_target
-from xlmc.workbook.writer import TakenError, refuse_if_open, write_workbook
+from xlmc.workbook.target import copy_ending, free_target, refuse_into_source, unused_path
+from xlmc.workbook.writer import TakenError, write_workbook
 
 if TYPE_CHECKING:
     from xlmc.run.model import Model
@@ -89,7 +89,7 @@ def save_result(state: AtRest, book: Path, what: str) -> Path:
         SimulationError: the changed copy gives other numbers than the window shows.
     """
     kind, run = KINDS[what], state.run if not state.adjustments else _run_of_copy(state)
-    wanted = book.with_name(f"{book.stem}{_label(state)}-results{kind.ending or book.suffix}")
+    wanted = book.with_name(f"{book.stem}{_label(state)}-results{kind.ending or copy_ending(book)}")
     path, _ = free_target(wanted, run.model.workbook.name)
     return kind.write(run, path)
 
@@ -141,30 +141,20 @@ def write_changes(state: AtRest, book: Path, *, into: bool) -> str:
 
     Raises:
         TakenError: a program has the workbook open, or it has changed since it was read.
-        WorkbookError, DefinitionError: as for `save_result`.
+        WorkbookError: it is an old workbook (`.xls`), into which xlmc does not write; or as for `save_result`.
+        DefinitionError: as for `save_result`.
     """
     edited = edited_state(state.own, state.adjustments, state.name)
     if not edited.cells:
         raise SimulationError("nothing is changed", hint="move something first")
     if not into:
-        path = write_edited(edited, _free(book, _label(state)))
+        path = write_edited(edited, unused_path(book.with_name(f"{book.stem}{_label(state)}{copy_ending(book)}")))
         return f"Written: {path}. {_told(edited)}"
-    refuse_if_open(book)
-    if read_workbook(book).sha256 != edited.sha256:
-        raise TakenError("the workbook has changed since it was read", where=book, hint="wait until it was read again")
-    kept = _free(book, "-before")
+    refuse_into_source(book, edited.sha256, "wait until it was read again")
+    kept = unused_path(book.with_name(f"{book.stem}-before{book.suffix}"))
     write_workbook(kept, state.own.workbook.data, lambda: _refuse_taken(kept))
     write_edited(edited, book, overwrite=True)
     return f"Typed into {book.name}. {_told(edited)} The workbook as it was: {kept.name}"
-
-
-def _free(book: Path, label: str) -> Path:
-    """The first name that no file has: `case-before.xlsx`, `case-before-2.xlsx`."""
-    number, path = 1, book.with_name(f"{book.stem}{label}{book.suffix}")
-    while path.exists():
-        number += 1
-        path = book.with_name(f"{book.stem}{label}-{number}{book.suffix}")
-    return path
 
 
 def _refuse_taken(path: Path) -> None:

@@ -18,6 +18,7 @@ from xlmc.errors import WorkbookError, XlmcError
 from xlmc.live.kept_scenarios import Keeper
 from xlmc.workbook.package import is_old_workbook
 from xlmc.workbook.printable import printable
+from xlmc.workbook.target import unused_path
 from xlmc.workbook.writer import write_workbook
 
 __all__ = ["Library", "Sample"]
@@ -110,7 +111,7 @@ class Library:
         sample = self._samples.get(key)
         if sample is None:
             raise WorkbookError("there is no such template")
-        target = _free((self.folder or Path.cwd()) / sample.path.name)
+        target = unused_path((self.folder or Path.cwd()) / sample.path.name)
         write_workbook(target, sample.path.read_bytes(), lambda: None)
         return self._add(target)
 
@@ -152,11 +153,3 @@ def _is_book(path: Path) -> bool:
 
 def _key(path: Path) -> str:
     return hashlib.sha256(os.fsencode(path)).hexdigest()[:20]
-
-
-def _free(path: Path) -> Path:
-    """The path, or the first of `…-2`, `…-3`, … where nothing is."""
-    number, found = 2, path
-    while found.exists() or found.is_symlink():
-        found, number = path.with_name(f"{path.stem}-{number}{path.suffix}"), number + 1
-    return found

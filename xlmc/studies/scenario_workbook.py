@@ -7,7 +7,6 @@ it opens the file.
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -29,9 +28,9 @@ from xlmc.workbook.injection.content_types import roles
 from xlmc.workbook.lazy_sheets import with_values
 from xlmc.workbook.package import is_old_workbook
 from xlmc.workbook.reader import read_workbook
-from xlmc.workbook.target import Target, copy_ending, is_same_file, refuse_into_old_workbook
+from xlmc.workbook.target import Target, copy_ending, is_same_file, refuse_into_source
 from xlmc.workbook.workbook import CellValue, Workbook
-from xlmc.workbook.writer import TakenError, package_bytes, refuse_if_open, write_workbook
+from xlmc.workbook.writer import TakenError, package_bytes, write_workbook
 
 __all__ = ["EditedWorkbook", "edited_workbook", "write_edited"]
 
@@ -118,10 +117,7 @@ def write_edited(edited: EditedWorkbook, path: Path, *, overwrite: bool = False)
         if not overwrite:
             hint = "Name another file, or type the scenario into the workbook with --in-place"
             raise TakenError("this is the workbook itself", where=path, hint=hint)
-        refuse_into_old_workbook(path)
-        refuse_if_open(path)
-        if hashlib.sha256(path.read_bytes()).hexdigest() != edited.sha256:
-            raise TakenError("the workbook has changed since it was read", where=path, hint="Try again")
+        refuse_into_source(path, edited.sha256, "Try again")
 
     check()
     write_workbook(path, edited.data, check)

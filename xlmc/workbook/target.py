@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import unicodedata
 from collections.abc import Iterable, Iterator
@@ -20,8 +21,10 @@ __all__ = [
     "free_target",
     "is_same_file",
     "refuse_into_old_workbook",
+    "refuse_into_source",
     "refuse_same_file",
     "same_name",
+    "unused_path",
 ]
 
 _SEALED = (".xlsx", ".xlsm", *ENDINGS)
@@ -103,6 +106,11 @@ def free_target(path: Path, book: str, *, after: Path | None = None) -> tuple[Pa
     raise AssertionError("numbers do not end")
 
 
+def unused_path(path: Path) -> Path:
+    """The path, or the first of `…-2`, `…-3`, … where nothing is."""
+    return next(each for each in _numbered(path) if not (each.exists() or each.is_symlink()))
+
+
 def copy_ending(source: Path) -> str:
     """The ending of what is written of a workbook: its own, and `.xlsx` of an `.xls`."""
     return ".xlsx" if source.suffix.casefold() == ".xls" else source.suffix
@@ -120,6 +128,24 @@ def refuse_into_old_workbook(path: Path) -> None:
             raise WorkbookError(
                 "this is an old Excel workbook (.xls), and xlmc does not write into it", where=path, hint=hint
             )
+
+
+def refuse_into_source(path: Path, sha256: str, hint: str) -> None:
+    """Refuse to write into a workbook that was read, where that cannot be done or something would be lost.
+
+    Args:
+        path: of the workbook.
+        sha256: of the file as it was read.
+        hint: what to do where it has changed since.
+
+    Raises:
+        TakenError: a program has it open, or it has changed since it was read.
+        WorkbookError: it is an old workbook (`.xls`).
+    """
+    refuse_into_old_workbook(path)
+    refuse_if_open(path)
+    if hashlib.sha256(path.read_bytes()).hexdigest() != sha256:
+        raise TakenError("the workbook has changed since it was read", where=path, hint=hint)
 
 
 def refuse_same_file(outputs: Iterable[Path]) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,8 +13,8 @@ from xlmc.run.model import paused_collection
 from xlmc.run.result_cells import filled_sheets
 from xlmc.workbook.inject import inject, result_sheets
 from xlmc.workbook.seal import sealed_parts
-from xlmc.workbook.target import Target, copy_ending, is_same_file, refuse_into_old_workbook
-from xlmc.workbook.writer import TakenError, package_bytes, refuse_if_open, write_workbook
+from xlmc.workbook.target import Target, copy_ending, is_same_file, refuse_into_source
+from xlmc.workbook.writer import TakenError, package_bytes, write_workbook
 
 if TYPE_CHECKING:
     from xlmc.run.simulation import Simulation
@@ -93,11 +92,7 @@ def _check(simulation: Simulation, path: Path, *, overwrite: bool) -> None:
     if not overwrite:
         hint = "Name another file, or write the result sheets into it with --in-place (in Python: overwrite=True)"
         raise TakenError("this is the workbook itself", where=path, hint=hint)
-    refuse_into_old_workbook(path)
-    refuse_if_open(path)
-    if hashlib.sha256(path.read_bytes()).hexdigest() != simulation.model.workbook.sha256:
-        hint = "Run again, or write to another file"
-        raise TakenError("the workbook has changed since it was read", where=path, hint=hint)
+    refuse_into_source(path, simulation.model.workbook.sha256, "Run again, or write to another file")
 
 
 def _is_source(simulation: Simulation, path: Path) -> bool:

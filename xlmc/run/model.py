@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import gc
-import re
-from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from copy import copy
 from dataclasses import dataclass, replace
@@ -15,16 +14,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import Assumption, Definitions, Forecast, name_key
+from xlmc.definitions.definitions import Assumption, Definitions, name_key
 from xlmc.definitions.evidence import Evidence
-from xlmc.distributions.base import Member
 from xlmc.errors import Notice, SimulationError
 from xlmc.evaluation.engine import Evaluator, Program, Target
 from xlmc.evaluation.engines import ENGINES
 from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.evaluation.passes.bounds import Bounds, NodeBounds
-from xlmc.formula import Graph
 from xlmc.run.correlating import (
     copula_groups,
     copula_notices,
@@ -36,6 +33,7 @@ from xlmc.run.correlating import (
 from xlmc.run.draw_binding import draw_of, dynamic_parameters, with_base_parameters
 from xlmc.run.evidence_filters import chances_of, with_evidence_numbers
 from xlmc.run.forecast_filters import FilteringEvaluator, FilteringProgram, conditions_of, filters_by_forecast
+from xlmc.run.model_notices import example_notices, heavy_notices, still_notices
 from xlmc.run.needed import (
     Needed,
     definitions_of_checks,
@@ -50,9 +48,6 @@ from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.workbook.workbook import Workbook
 
 __all__ = ["Model", "lower_needed", "paused_collection"]
-
-_EXAMPLE: Final = re.compile(r"example\b", re.IGNORECASE)
-_MOST_NAMED: Final = 4
 
 _MOST_GROWN: Final = 4
 """Nodes that changed limits of filters may have added, as a multiple of the first ones, before all are made anew."""
@@ -229,9 +224,9 @@ class Model:
             *tie_notices(self.groups, rows, self._correlated),
             *repair_notices(self.groups, rows, self.needed.live),
             *copula_notices(self.groups, self.definitions.copulas),
-            *_still_notices(self.needed, self._moving(), self.forecasts),
-            *_heavy_notices(self.live, self.draws),
-            *_example_notices(self._sources()),
+            *still_notices(self.needed, self._moving(), self.forecasts),
+            *heavy_notices(self.live, self.draws),
+            *example_notices(self._sources()),
         )
 
     def changed(self, workbook: Workbook, definitions: Definitions) -> Self:
@@ -487,66 +482,3 @@ class Model:
         """Lower every target once, so that a fault is reported when the workbook is loaded."""
         for target in (*self.filter_targets, *self.answer_targets):
             self.lowering.target(target)
-
-
-def _example_notices(sources: Iterable[tuple[str, Cell, str]]) -> list[Notice]:
-    """The sources and reasons that still begin with the word "Example", as those of a template do.
-
-    Args:
-        sources: what each is the source of, the row where it stands, and what it says.
-    """
-    found = [(named, row) for named, row, said in sources if _EXAMPLE.match(said.strip())]
-    if not found:
-        return []
-    named = ", ".join(name for name, _ in found[:_MOST_NAMED])
-    more = f" and {len(found) - _MOST_NAMED} more" if len(found) > _MOST_NAMED else ""
-    begins = "source still says" if len(found) == 1 else f"{len(found)} sources still say"
-    message = f'{begins} "Example": {named}{more}. Write there what each number of this case rests on'
-    return [Notice(message[0].upper() + message[1:], found[0][1])]
-
-
-def _heavy_notices(live: Sequence[Assumption], draws: Mapping[str, Draw]) -> list[Notice]:
-    """The assumptions whose mean is infinite or does not exist, as far as their parameters are numbers."""
-    found = []
-    for assumption in live:
-        draw = draws[assumption.name]
-        if not draw.fixed or (draw.cutoffs is not None and np.isfinite(draw.cutoffs).all()):  # type: ignore[arg-type]
-            continue  # each trial has a mean of its own, or the cutoffs see to it that there is one
-        if not np.isfinite(Member(draw.family, draw.parameters).mean()):
-            message = (
-                f"{assumption.name!r} ({assumption.distribution}) has no finite mean: means and standard deviations of "
-                "what depends on it need not settle, however many trials there are; report medians and percentiles, or "
-                "give it cutoffs at both ends"
-            )
-            found.append(Notice(message, assumption.row))
-    return found
-
-
-def _still_notices(needed: Needed, moving: Set[Cell], forecasts: Sequence[Forecast]) -> list[Notice]:
-    """The forecasts that are the same in every trial.
-
-    Args:
-        needed: what they need.
-        moving: the cells of the live assumptions whose range has more than one value.
-        forecasts: all of them.
-    """
-    reached = needed.graph.varying if len(moving) == len(needed.live) else _reached(needed.graph, moving)
-    still = [forecast for forecast in forecasts if forecast.cell not in reached]
-    if forecasts and len(still) == len(forecasts):
-        why = "no assumption is drawn" if not needed.live else "no assumption that is drawn reaches a forecast"
-        if needed.live and not moving:
-            why = "the range of every assumption that is drawn has a single value"
-        return [Notice(f"nothing varies: {why}, so every trial gives the base case again", still[0].cell)]
-    return [
-        Notice(f"the forecast {forecast.name!r} does not vary: no assumption with a range reaches it", forecast.cell)
-        for forecast in still
-    ]
-
-
-def _reached(graph: Graph, moving: Set[Cell]) -> set[Cell]:
-    """The cells that depend on a moving one."""
-    found = set(moving)
-    for cell in graph.formulas:  # each after the cells it needs
-        if not found.isdisjoint(graph.needs[cell]):
-            found.add(cell)
-    return found

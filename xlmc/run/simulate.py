@@ -92,7 +92,7 @@ def simulate(
     settings = replace(settings, evidence=chosen_way(model, settings))
     if settings.evidence == "weights":
         model, keep_inputs = weighing(model), None  # weights are computed from the draws
-    program = model.program(settings.engine) if own_runner is None else None
+    largest = model.program(settings.engine).largest_block if own_runner is None else own_runner.block
     plan = plan_sampling(model, settings)
     rule, looks = chosen_rule(settings.stopping, model.forecasts), rare_switch(model, settings)
     watch = Watch(rule, plan.trials, settings.stopping.seconds, time.monotonic)
@@ -102,7 +102,6 @@ def simulate(
         raise SimulationError(
             f"the draws of {keep_inputs} trials were asked for", hint="give 0 or more, or None for all"
         )
-    largest = program.largest_block if program is not None else own_runner.block  # type: ignore[union-attr]  # it is one
     block = min(BLOCK, largest)
     piece = block if settings.stopping.asked else min(block, pieces)
     computed = min(piece, -(-plan.trials // _TOGETHER) * _TOGETHER)  # a short run computes no whole block
@@ -112,15 +111,14 @@ def simulate(
     gathered = _Gathered(model, block, piece, most_inputs, plan.trials)
 
     def runner() -> ModelRunner:
-        if program is None:
-            assert own_runner is not None
+        if own_runner is not None:
             return own_runner
-        return model_runner(model, program, settings.engine, settings.seed, computed, plan)
+        return model_runner(model, model.program(settings.engine), settings.engine, settings.seed, computed, plan)
 
     def blocks_of(tasks: Iterator[Task]) -> Generator[Block, None, None]:
-        if program is not None:
-            return pool.blocks(model, program, settings, plan, computed, tasks, gathered.room)
-        return (runner().borrow(task, gathered.room) for task in tasks)
+        if own_runner is not None:
+            return (own_runner.borrow(task, gathered.room) for task in tasks)
+        return pool.blocks(model, model.program(settings.engine), settings, plan, computed, tasks, gathered.room)
 
     needed = disk_needed(model, settings.stopping, plan.trials, piece, most_inputs, runner)
     if needed is not None:

@@ -1,0 +1,85 @@
+"""What a person should know of a model before it is run: what does not vary, what has no mean, what has no source."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence, Set
+from typing import Final
+
+import numpy as np
+
+from xlmc.address import Cell
+from xlmc.definitions.definitions import Assumption, Forecast
+from xlmc.distributions.base import Member
+from xlmc.errors import Notice
+from xlmc.formula import Graph
+from xlmc.run.needed import Needed
+from xlmc.sampling.draws import Draw
+
+__all__ = ["example_notices", "heavy_notices", "still_notices"]
+
+_EXAMPLE: Final = re.compile(r"example\b", re.IGNORECASE)
+_MOST_NAMED: Final = 4
+
+
+def example_notices(sources: Iterable[tuple[str, Cell, str]]) -> list[Notice]:
+    """The sources and reasons that still begin with the word "Example", as those of a template do.
+
+    Args:
+        sources: what each is the source of, the row where it stands, and what it says.
+    """
+    found = [(named, row) for named, row, said in sources if _EXAMPLE.match(said.strip())]
+    if not found:
+        return []
+    named = ", ".join(name for name, _ in found[:_MOST_NAMED])
+    more = f" and {len(found) - _MOST_NAMED} more" if len(found) > _MOST_NAMED else ""
+    begins = "source still says" if len(found) == 1 else f"{len(found)} sources still say"
+    message = f'{begins} "Example": {named}{more}. Write there what each number of this case rests on'
+    return [Notice(message[0].upper() + message[1:], found[0][1])]
+
+
+def heavy_notices(live: Sequence[Assumption], draws: Mapping[str, Draw]) -> list[Notice]:
+    """The assumptions whose mean is infinite or does not exist, as far as their parameters are numbers."""
+    found = []
+    for assumption in live:
+        draw = draws[assumption.name]
+        if not draw.fixed or (draw.cutoffs is not None and np.isfinite(draw.cutoffs).all()):  # type: ignore[arg-type]
+            continue  # each trial has a mean of its own, or the cutoffs see to it that there is one
+        if not np.isfinite(Member(draw.family, draw.parameters).mean()):
+            message = (
+                f"{assumption.name!r} ({assumption.distribution}) has no finite mean: means and standard deviations of "
+                "what depends on it need not settle, however many trials there are; report medians and percentiles, or "
+                "give it cutoffs at both ends"
+            )
+            found.append(Notice(message, assumption.row))
+    return found
+
+
+def still_notices(needed: Needed, moving: Set[Cell], forecasts: Sequence[Forecast]) -> list[Notice]:
+    """The forecasts that are the same in every trial.
+
+    Args:
+        needed: what they need.
+        moving: the cells of the live assumptions whose range has more than one value.
+        forecasts: all of them.
+    """
+    reached = needed.graph.varying if len(moving) == len(needed.live) else _reached(needed.graph, moving)
+    still = [forecast for forecast in forecasts if forecast.cell not in reached]
+    if forecasts and len(still) == len(forecasts):
+        why = "no assumption is drawn" if not needed.live else "no assumption that is drawn reaches a forecast"
+        if needed.live and not moving:
+            why = "the range of every assumption that is drawn has a single value"
+        return [Notice(f"nothing varies: {why}, so every trial gives the base case again", still[0].cell)]
+    return [
+        Notice(f"the forecast {forecast.name!r} does not vary: no assumption with a range reaches it", forecast.cell)
+        for forecast in still
+    ]
+
+
+def _reached(graph: Graph, moving: Set[Cell]) -> set[Cell]:
+    """The cells that depend on a moving one."""
+    found = set(moving)
+    for cell in graph.formulas:  # each after the cells it needs
+        if not found.isdisjoint(graph.needs[cell]):
+            found.add(cell)
+    return found

@@ -12,8 +12,9 @@ from openpyxl.worksheet.table import Table
 
 from xlmc.errors import XlmcError
 from xlmc.live.adjustments import Adjustments
+from xlmc.live.jobs import MOVING_TRIALS, Outcome, SupersededError
 from xlmc.live.protocol import Said, written
-from xlmc.live.session import MOVING_TRIALS, Session, SupersededError
+from xlmc.live.session import Session
 from xlmc.live.window_book import filter_rows
 from xlmc.run.loading import load
 from xlmc.run.simulate import simulate
@@ -334,3 +335,19 @@ def test_evidence_has_no_limit_to_be_moved(tmp_path):
     session.receive(Said("variants", {}))
     assert any("Restitution" in name for name in session.kept)
     assert not any("EDR" in name for name in session.kept)
+
+
+def test_a_tab_that_fails_is_told_once_and_tried_again_with_the_next_state(case):
+    session = Session(case[1])
+    settle(session)
+    session.receive(Said("view", {"forecasts": [], "tab": "tables", "first": "", "second": "", "fits": False}))
+    told = []
+    while (job := session.job()) is not None:
+        failed = job.stage == "part"
+        told += session.finish(job, Outcome(problem="no") if failed else job.run(lambda: True, print, lambda: 0.0))
+        assert len(told) < 10
+    assert [each["text"] for each in told if each["kind"] == "trouble"] == ["no"]
+    session.receive(change(FRICTION, "high", 0.9))
+    told = settle(session)
+    assert [each["text"] for each in told if each["kind"] == "trouble" and each["about"] == "part"] == [""]
+    assert any(each["kind"] == "part" and each["tab"] == "tables" for each in told)

@@ -16,9 +16,10 @@ from watchfiles import awatch
 from xlmc.errors import WorkbookError, XlmcError
 from xlmc.live.adjustments import Adjustments, in_words
 from xlmc.live.hand_over import KINDS, edited_state, save_result, write_changes
+from xlmc.live.jobs import Job, Outcome, SupersededError, View
 from xlmc.live.library import Library
 from xlmc.live.protocol import Message, Said, written
-from xlmc.live.session import Job, Outcome, Session, SupersededError, View
+from xlmc.live.session import Session
 from xlmc.live.study_run import OF_THE_FILE, StudyRun
 from xlmc.live.what_changed import what_changed
 from xlmc.run.loading import load

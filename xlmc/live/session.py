@@ -10,9 +10,9 @@ seed, and assumptions streams of their own: what is not moved is drawn as before
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Final, Literal
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import XlmcError
 from xlmc.live.adjustments import (
@@ -20,29 +20,38 @@ from xlmc.live.adjustments import (
     adjustments_of,
     in_words,
     own_values,
-    scenario_of,
     usual_variants,
 )
-from xlmc.live.frames import bases_of, frame_of, matters_html, pair_of, rest_of, scenarios_html, tables_html
 from xlmc.live.hand_over import AtRest
+from xlmc.live.jobs import (
+    MOVING_TRIALS,
+    PARTS,
+    SKETCHED,
+    Job,
+    Outcome,
+    Sight,
+    Stage,
+    StateRun,
+    View,
+    Work,
+    charts_of,
+    scenario_table,
+    sketched_tab,
+    tab_of,
+)
 from xlmc.live.moving_models import MANY_FORMULAS, KnownModels
 from xlmc.live.protocol import Message, Said
 from xlmc.live.window_book import assumption_rows, filter_rows, forecast_rows, shapes_of
-from xlmc.report.page.element import element, join
 from xlmc.report.page.payload import CONFIDENCE
 from xlmc.results.record.in_words import changes_text
-from xlmc.run.simulate import BLOCK, simulate
+from xlmc.run.simulate import BLOCK
 from xlmc.statistics.estimate import t_quantile
 
 if TYPE_CHECKING:
     from xlmc.run.model import Model
     from xlmc.run.simulation import Simulation
-    from xlmc.run.stopping import Progress
 
-__all__ = ["MOVING_TRIALS", "Job", "Outcome", "Replies", "Session", "SupersededError"]
-
-MOVING_TRIALS: Final = 50_000
-"""Of a run while a handle moves."""
+__all__ = ["Replies", "Session"]
 
 _QUICK_TRIALS, _FEWEST_TRIALS = 2_000, 200
 """Of the first short run, as long as nothing is known of its time, and of any."""
@@ -59,31 +68,11 @@ _PIECE: Final = 0.4
 _SMALLEST_PIECE: Final = 4_096
 """Of trials: with fewer, what does not depend on their number would take most of the time."""
 
-Sight = tuple[int, tuple[str, ...], bool, int]
-"""Version, forecasts, whether with fits, and what is behind."""
-
 _SKETCH: Final = 0.15
 """Seconds that what a tab shows may take while states move; what takes longer waits until they are at rest."""
 
-Stage = Literal["quick", "moving", "sketch", "rest", "shown", "part", "compare"]
-
 OPENS_WITH: Final = 3
 """Forecasts whose charts are open at first."""
-
-
-_PARTS: Final[Mapping[str, Callable[[Simulation, Tab], Message]]] = {
-    "matters": lambda run, _: {"html": matters_html(run)},
-    "tables": lambda run, _: {"html": tables_html(run)},
-    "pairs": lambda run, tab: {"pair": pair_of(run, tab.first, tab.second)},
-}
-"""Tab whose contents are made of a run at rest -> what makes them."""
-
-_SKETCHED: Final = "matters"
-"""The tab that is brought up to date while a state moves, too."""
-
-
-class SupersededError(Exception):
-    """Something newer was asked for, or the run was stopped."""
 
 
 @dataclass(slots=True)
@@ -92,67 +81,6 @@ class Replies:
 
     own: list[Message] = field(default_factory=list)
     all: list[Message] = field(default_factory=list)
-
-
-@dataclass(frozen=True, slots=True)
-class Tab:
-    """An open tab, and the two quantities of the tab `pairs`."""
-
-    key: str = "charts"
-    first: str = ""
-    second: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class View:
-    """What can be seen in all windows together: the charts of these forecasts, these tabs, fitted distributions."""
-
-    forecasts: tuple[str, ...]
-    tabs: tuple[Tab, ...] = (Tab(),)
-    fits: bool = False
-
-    @classmethod
-    def of(cls, said: Iterable[Said], order: Sequence[str]) -> View:
-        """Of what each window said that it shows, the forecasts in the order of the workbook."""
-        views = list(said)
-        seen = {name for each in views for name in each["forecasts"]}
-        tabs = dict.fromkeys(Tab(each["tab"], each["first"], each["second"]) for each in views)
-        return cls(tuple(name for name in order if name in seen), tuple(tabs), any(each["fits"] for each in views))
-
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """What a job found.
-
-    Attributes:
-        seconds: for a trial, roughly; None where nothing was run.
-        problem: why the state cannot be run; None where it can.
-        done: what a job that runs nothing was about.
-    """
-
-    messages: tuple[Message, ...] = ()
-    simulation: Simulation | None = None
-    seconds: float | None = None
-    problem: str | None = None
-    done: object = None
-
-
-@dataclass(frozen=True, slots=True)
-class Job:
-    """A piece of work that a session asks for.
-
-    Attributes:
-        stage: which.
-        version: of the state that it is of.
-        held: whether a handle is held: there is hurry then, and more to come.
-        run: does it; it is given a function that says whether it is still wanted, one that takes the share done, and a
-            clock. It raises `SupersededError` where it is not wanted any more.
-    """
-
-    stage: Stage
-    version: int
-    held: bool
-    run: Callable[[Callable[[], bool], Callable[[float], None], Callable[[], float]], Outcome]
 
 
 class Session:
@@ -191,6 +119,7 @@ class Session:
         self._stopped_at = -1
         self._ended = False
         self._compare = 0
+        self._failed: set[Stage] = set()
 
     # What windows are told
 
@@ -353,31 +282,28 @@ class Session:
         """What comes next; None where all is done."""
         version, stopped = self.version, self._stopped_at == self.version
         if self._done.get("compare", 0) != self._compare:
-            return Job("compare", version, False, self._comparing())
+            work = scenario_table(self.own, dict(self.kept), self._compare)
+            return Job("compare", version, False, work, {"compare": self._compare})
         if self._problem is not None and self._done.get("tried") == version:
             return None
         if not stopped:
             for stage in ("quick", "moving", "sketch", "rest"):
                 if self._wants(stage):
-                    run = self._sketch() if stage == "sketch" else self._runner(stage)
-                    return Job(stage, version, self._held, run)
+                    done = {"rest": version, "shown": self._sight} if stage == "rest" else {stage: version}
+                    return Job(stage, version, self._held, self._work(stage), done)
         if self.rest is not None and self._done.get("rest") == version:
             if self._done.get("shown") != self._sight:
-                return Job("shown", version, self._held, self._shown(self.rest, self._sight))
-            tab = next(
-                (each for each in self.view.tabs if each.key in _PARTS and self._shown_part(each) != version), None
-            )
-            if tab is not None:
-                return Job("part", version, self._held, self._part(self.rest, tab))
+                work = charts_of(self.rest, self._compared, self._seq, self._sight)
+                return Job("shown", version, self._held, work, {"shown": self._sight})
+            for tab in self.view.tabs:
+                key = f"{tab.key} {tab.first} {tab.second}"
+                if tab.key in PARTS and self._done.get(key) != version:
+                    return Job("part", version, self._held, tab_of(self.rest, version, tab), {key: version})
         return None
 
     def look(self, view: View) -> None:
         """Take what can be seen now."""
         self.view = view
-
-    def _shown_part(self, tab: Tab) -> object:
-        """The version that the contents of a tab are of."""
-        return self._done.get(f"{tab.key} {tab.first} {tab.second}")
 
     @property
     def _now(self) -> tuple[int, Adjustments]:
@@ -398,7 +324,7 @@ class Session:
         if self._done.get(stage) == self.version:
             return False
         if stage == "sketch":
-            shown = any(tab.key == _SKETCHED for tab in self.view.tabs)
+            shown = any(tab.key == SKETCHED for tab in self.view.tabs)
             return shown and self._moving is not None and self._sketch_seconds < _SKETCH and not self._is_at_rest
         if stage == "quick":
             return self._is_slow and self.version not in (self._done.get("moving"), self._done.get("rest"))
@@ -427,143 +353,42 @@ class Session:
         known = self._seconds.get(resting, self._seconds.get(False))
         return _QUICK_TRIALS if not known else 1 << max(_FEWEST_TRIALS, int(seconds / known)).bit_length() - 1
 
-    def _runner(self, stage: Stage) -> Callable[..., Outcome]:
-        version, adjustments, models, view = self.version, self.adjustments, self._models, self.view
-        behind, seq = self._compared, self._seq
-        way = "rejection" if self.rest is None else self.rest.settings.evidence
+    def _work(self, stage: Stage) -> Work:
+        """What a stage before the run at rest, or that run itself, has to do."""
+        if stage == "sketch":
+            assert self._moving is not None
+            return sketched_tab(self._moving, self.version)
         resting, slow = stage == "rest", self._is_slow
-        trials = self._trials_in(_QUICK, resting=False) if stage == "quick" else MOVING_TRIALS
-        piece = max(_SMALLEST_PIECE, self._trials_in(_PIECE, resting=resting)) if slow else MOVING_TRIALS
-
-        def run(wanted: Callable[[], bool], tell: Callable[[float], None], clock: Callable[[], float]) -> Outcome:
-            def watch(progress: Progress) -> None:
-                if not wanted():
-                    raise SupersededError
-                tell(progress.share)
-
-            try:
-                if resting:
-                    model = models.at_rest(adjustments)
-                    begun = clock()
-                    found = simulate(model, progress=watch, pieces=piece if slow else BLOCK, evidence=None)
-                    base = bases_of(found)
-                else:
-                    moving = models.moving(adjustments)
-                    model, base = moving.model, moving.base
-                    runner = moving.runner(-(-trials // -(-trials // min(piece, moving.kept.largest_block))))
-                    begun = clock()
-                    watched = slow and stage == "moving"  # one that is quick ends sooner than the next move comes
-                    found = simulate(
-                        model,
-                        trials=trials,
-                        sampling="mc",
-                        engine=moving.kept.engine,
-                        evidence=way or "rejection",
-                        own_runner=None if way == "weights" else runner,  # it computes other filters
-                        progress=watch if watched else None,
-                    )
-                seconds = (clock() - begun) / max(found.evaluated, 1)
-                frame = frame_of(found, behind, view.forecasts, base, moving=not resting, fits=resting and view.fits)
-                messages = [_frame("rest" if resting else "moving", version, seq, frame)]
-                messages += [_pairs(found, version, tab) for tab in view.tabs if tab.key == "pairs" and not resting]
-                messages[0]["shapes"] = shapes_of(model, list(adjustments.assumptions))
-                if resting:
-                    messages.append({"kind": "rest", "version": version, **rest_of(found)})
-            except XlmcError as error:
-                return Outcome(problem=str(error))
-            done = (version, view.forecasts, view.fits, id(behind))
-            return Outcome(tuple(messages), found, seconds, done=done)
-
-        return run
-
-    def _shown(self, simulation: Simulation, sight: Sight) -> Callable[..., Outcome]:
-        """The charts of a run that is done, for what can be seen now."""
-        behind, seq, names = self._compared, self._seq, self.view.forecasts
-
-        def run(*_: object) -> Outcome:
-            frame = frame_of(simulation, behind, names, bases_of(simulation), moving=False, fits=sight[2])
-            return Outcome((_frame("rest", sight[0], seq, frame),), done=sight)
-
-        return run
-
-    def _sketch(self) -> Callable[..., Outcome]:
-        """What matters, of the run of a state that moves."""
-        simulation, version = self._moving, self.version
-        assert simulation is not None
-
-        def run(_wanted: object, _tell: object, clock: Callable[[], float]) -> Outcome:
-            begun = clock()
-            found = _PARTS[_SKETCHED](simulation, Tab(_SKETCHED))
-            message = {"kind": "part", "tab": _SKETCHED, "version": version, **found}
-            return Outcome((message,), seconds=clock() - begun)
-
-        return run
-
-    def _part(self, simulation: Simulation, tab: Tab) -> Callable[..., Outcome]:
-        """The contents of an open tab."""
-        version = self.version
-
-        def run(*_: object) -> Outcome:
-            found = _PARTS[tab.key](simulation, tab)
-            return Outcome(({"kind": "part", "tab": tab.key, "version": version, **found},), done=(tab, version))
-
-        return run
-
-    def _comparing(self) -> Callable[..., Outcome]:
-        """All scenarios in one table, those of the workbook and those that are kept here."""
-        own, asked = self.own, self._compare
-        scenarios = tuple(scenario_of(own.definitions, name, each) for name, each in self.kept.items())
-
-        def run(wanted: Callable[[], bool], tell: Callable[[float], None], clock: Callable[[], float]) -> Outcome:
-            known = [each for each in own.definitions.scenarios if each.name not in self.kept]
-            all_of_them = (*known, *scenarios)
-            model = own.changed(own.workbook, replace(own.definitions, scenarios=all_of_them))
-            begun: list[str] = []
-
-            def told(name: str) -> None:
-                if not wanted():
-                    raise SupersededError
-                begun.append(name)
-                tell(len(begun) / (len(all_of_them) + 1))
-
-            try:
-                html = scenarios_html(model, lambda model: simulate(model, scenarios=True, evidence=None), told)
-            except XlmcError as error:
-                html = join([element("p", str(error), class_="warning")]).source
-            message = {"kind": "part", "tab": "scenarios", "version": asked, "html": html}
-            return Outcome((message,), done=asked)
-
-        return run
+        whole = BLOCK if resting else MOVING_TRIALS
+        return StateRun(
+            stage=stage,
+            version=self.version,
+            seq=self._seq,
+            adjustments=self.adjustments,
+            models=self._models,
+            view=self.view,
+            behind=self._compared,
+            way="rejection" if self.rest is None else self.rest.settings.evidence,
+            trials=self._trials_in(_QUICK, resting=False) if stage == "quick" else MOVING_TRIALS,
+            piece=max(_SMALLEST_PIECE, self._trials_in(_PIECE, resting=resting)) if slow else whole,
+            watched=resting or (slow and stage == "moving"),
+        ).run
 
     def finish(self, job: Job, outcome: Outcome) -> list[Message]:
         """Take what a job found; what windows are told of it."""
-        if job.stage == "compare":
-            self._done["compare"] = self._compare if outcome.done is None else outcome.done
-            self._remember(outcome.messages)
-            return list(outcome.messages)
-        if job.stage == "sketch":
-            self._done["sketch"], self._sketch_seconds = job.version, outcome.seconds or 0.0
-            self._remember(outcome.messages)
-            return list(outcome.messages)
-        if job.stage in ("shown", "part"):
-            if isinstance(outcome.done, tuple) and isinstance(outcome.done[0], Tab):
-                tab, version = outcome.done
-                self._done[f"{tab.key} {tab.first} {tab.second}"] = version
-            else:
-                self._done["shown"] = outcome.done
-            self._remember(outcome.messages)
-            return list(outcome.messages)
+        if job.stage not in ("quick", "moving", "rest"):
+            return self._finish_shown(job, outcome)
         if outcome.problem is not None:
             if job.version != self.version:
                 return []
             self._problem = outcome.problem
             self._done["tried"] = job.version
             return self._trouble()
-        over = self._trouble() if self._problem is not None and job.version == self.version else []
-        if over:
+        over: list[Message] = []
+        if self._problem is not None and job.version == self.version:
             self._problem = None
             over = self._trouble()
-        self._done[job.stage] = job.version
+        self._done |= job.done
         if outcome.seconds is not None and (job.stage != "quick" or not self._seconds):
             resting = job.stage == "rest"
             before = self._seconds.get(resting, outcome.seconds)
@@ -571,11 +396,23 @@ class Session:
         found = list(outcome.messages)
         self._moving = outcome.simulation if job.stage == "moving" and job.version == self.version else None
         if job.stage == "rest" and job.version == self.version:
-            self.rest, self._done["shown"] = outcome.simulation, outcome.done
+            self.rest = outcome.simulation
             if self._pin_next and not self.adjustments and outcome.simulation is not None:
                 self.behind, self._behind_of, self._pin_next = outcome.simulation, self._now, False
         self._remember(found)
         return [*over, *found]
+
+    def _finish_shown(self, job: Job, outcome: Outcome) -> list[Message]:
+        """Take what a job found that shows more of a run; one that failed is not tried again for the same."""
+        self._done |= job.done
+        if job.stage == "sketch":
+            self._sketch_seconds = outcome.seconds or 0.0
+        self._remember(outcome.messages)
+        told = list(outcome.messages)
+        if outcome.problem is not None or job.stage in self._failed:
+            told.append({"kind": "trouble", "about": job.stage, "text": outcome.problem or ""})
+        (self._failed.discard if outcome.problem is None else self._failed.add)(job.stage)
+        return told
 
     def superseded(self, job: Job) -> list[Message]:
         """A job was given up: something newer is wanted, or a person stopped it."""
@@ -596,14 +433,6 @@ class Session:
         for each in messages:
             if each["kind"] in ("frame", "rest", "part"):
                 self._last[f"{each['kind']} {each.get('tab', '')}"] = each
-
-
-def _frame(stage: str, version: int, seq: int, charts: Message) -> Message:
-    return {"kind": "frame", "stage": stage, "version": version, "seq": seq, **charts}
-
-
-def _pairs(simulation: Simulation, version: int, tab: Tab) -> Message:
-    return {"kind": "part", "tab": "pairs", "version": version, **_PARTS["pairs"](simulation, tab)}
 
 
 def _settings_text(model: Model) -> str:

@@ -116,7 +116,7 @@ def _processor_seconds(process: int) -> float:
     path = Path(f"/proc/{process}/stat")
     if not path.exists():
         return float("nan")
-    ticks = path.read_text().rpartition(")")[2].split()[11:13]
+    ticks = path.read_text("utf-8").rpartition(")")[2].split()[11:13]
     return sum(map(int, ticks)) / os.sysconf("SC_CLK_TCK")
 
 

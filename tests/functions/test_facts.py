@@ -66,6 +66,7 @@ LISTS = {
     ("evaluation/graph/running_totals.py", "RunningTotals"): "what FOLDS has",
     ("evaluation/graph/whole_columns.py", "_look_up"): "any other lookup searches as MATCH does, or is refused",
     ("evaluation/graph/whole_columns.py", "_reach"): "any other lookup searches in both directions alike",
+    ("evaluation/llvm/costs.py", "_SAVED_BY"): "any other function of numbers saves the usual time in a loop",
     ("evaluation/llvm/operations.py", "_ROWS"): "any other function is computed by NumPy",
     ("evaluation/llvm/sets.py", "_ROWS"): "any other function is computed by NumPy",
     ("evaluation/numpy/sequence.py", "_sines_with_cosines"): "any other function is computed by itself",

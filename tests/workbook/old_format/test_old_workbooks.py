@@ -211,7 +211,7 @@ NO_HELP = {
 @pytest.mark.parametrize(("script", "seconds", "said", "more"), NO_HELP.values(), ids=NO_HELP)
 def test_a_libreoffice_that_does_not_help_is_told(script, seconds, said, more, tmp_path, monkeypatch):
     program = tmp_path / "soffice"
-    program.write_text(f"#!/bin/sh\n{script}\n")
+    program.write_text(f"#!/bin/sh\n{script}\n", "utf-8")
     program.chmod(0o755)
     monkeypatch.setattr(libreoffice, "_program", lambda: str(program))
     monkeypatch.setattr(libreoffice, "_SECONDS", seconds)

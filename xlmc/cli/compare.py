@@ -114,9 +114,9 @@ def compare(
 
 
 def _contradict(each: ForecastComparison) -> bool:
-    from xlmc.studies.comparison.rivalry import Agreement
+    from xlmc.studies.comparison.rivalry import RivalVerdict
 
-    return each.rivalry is not None and each.rivalry.agreement is Agreement.CONTRADICT
+    return each.rivalry is not None and each.rivalry.agreement is RivalVerdict.CONTRADICT
 
 
 def _pairs(given: tuple[str, ...], option: str, form: str) -> dict[str, str]:

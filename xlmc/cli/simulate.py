@@ -257,9 +257,8 @@ def _show_scenarios(run: Simulation) -> None:
         return
     table("Scenarios", SCENARIO_HEADS, scenario_rows(found), right=(1, 2, 3))
     for index, each in enumerate(found[0].forecasts):
-        units = f", {each.forecast.units}" if each.forecast.units else ""
         heads = answer_heads(found, index)
-        table(f"{each.forecast.name}{units}", heads, answer_rows(found, index), right=range(1, len(heads)))
+        table(each.title, heads, answer_rows(found, index), right=range(1, len(heads)))
     say(paragraph(" ".join(scenario_sentences(found))) + "\n")
 
 

@@ -36,7 +36,7 @@ _IN_SHAPES: Final = re.compile(r"\$?\b[A-Za-z]{1,3}\$?\d+\b|\d+(\.\d+)?")
 _KEPT: Final = 3
 """Sets of held assumptions whose models are kept."""
 
-Held = tuple[tuple[str, bool, float | None], ...]
+_Held = tuple[tuple[str, bool, float | None], ...]
 """Of each assumption that is held or drawn otherwise than in the workbook: its name, whether it is held, and where."""
 
 
@@ -72,8 +72,8 @@ class KnownModels:
 
     def __init__(self, own: Model, trials: int) -> None:
         self.own, self._trials = own, trials
-        self._holding: dict[Held, Model] = {(): own}
-        self._kept: dict[Held, KeptRunner] = {}
+        self._holding: dict[_Held, Model] = {(): own}
+        self._kept: dict[_Held, KeptRunner] = {}
 
     def at_rest(self, adjustments: Adjustments) -> Model:
         """The model of a state.
@@ -114,7 +114,7 @@ class KnownModels:
         changes = changes_of(model.definitions, adjustments)
         return applied(model, changes) if changes else model
 
-    def _of_held(self, held: Held, adjustments: Adjustments) -> Model:
+    def _of_held(self, held: _Held, adjustments: Adjustments) -> Model:
         """The workbook's own model but for what is held; the last ones are kept."""
         if held not in self._holding:
             changes = changes_of(self.own.definitions, adjustments.held(self.own.definitions))
@@ -124,7 +124,7 @@ class KnownModels:
                 self._kept.pop(old, None)
         return self._holding[held]
 
-    def _kept_runner(self, held: Held, model: Model) -> KeptRunner:
+    def _kept_runner(self, held: _Held, model: Model) -> KeptRunner:
         if held not in self._kept or not self._kept[held].holds_for(model):
             self._kept[held] = self._new_runner(model)
         return self._kept[held]
@@ -147,7 +147,7 @@ def _shapes(graph: Graph) -> int:
     return len({_IN_SHAPES.sub("#", graph.text(cell)) for cell in graph.formulas})
 
 
-def _held(definitions: Definitions, adjustments: Adjustments) -> Held:
+def _held(definitions: Definitions, adjustments: Adjustments) -> _Held:
     found, changed = [], adjustments.held(definitions).assumptions
     for assumption in definitions.assumptions if changed else ():
         given = changed.get(assumption.name)
@@ -158,7 +158,7 @@ def _held(definitions: Definitions, adjustments: Adjustments) -> Held:
     return tuple(found)
 
 
-def _held_values(own: Model, held: Held) -> dict[str, float] | None:
+def _held_values(own: Model, held: _Held) -> dict[str, float] | None:
     """Where each assumption stands that is held; None where what is held decides more than the values of draws."""
     named = {each.name: each for each in own.live}
     grouped = {name for group in own.groups for name in group.names}

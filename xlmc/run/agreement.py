@@ -28,7 +28,16 @@ if TYPE_CHECKING:
     from xlmc.definitions.evidence import Evidence, Law
     from xlmc.run.model import Model
 
-__all__ = ["Agreement", "Answer", "ItemAgreement", "Pressed", "Verdict", "agreement"]
+__all__ = [
+    "INCONSISTENT",
+    "STRAINED",
+    "Agreement",
+    "Answer",
+    "ItemAgreement",
+    "Pressed",
+    "Verdict",
+    "agreement",
+]
 
 STRAINED: Final = 0.01
 INCONSISTENT: Final = 0.001

@@ -52,6 +52,11 @@ class ForecastAnswer:
     above: Estimate | None
     differences: Mapping[str, Estimate]
 
+    @property
+    def title(self) -> str:
+        """`Speed, mph`, above its table."""
+        return ", ".join(filter(None, (self.forecast.name, self.forecast.units)))
+
 
 @dataclass(frozen=True, slots=True)
 class ScenarioAnswers:

@@ -16,7 +16,7 @@ def test_draws_come_from_what_the_other_book_answers_in_the_unit_of_the_first(an
     found = compare(mine, other, "1 km/h", feeds={"A": "y"}, **SIZE)
     (each,) = found.forecasts
     assert found.runs == 3
-    assert found.source.model is not None
+    assert found.source.model.path.name == "b.xlsx"
     for number, expected in ((each.difference.mean, 39.6), (each.difference.standard_deviation, 7.2 * 12**-0.5)):
         # the second is drawn from 20,000 trials, which have an error of their own
         assert abs(number.second.value - expected) < 4 * 2**0.5 * number.second.error

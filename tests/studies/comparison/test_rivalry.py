@@ -7,7 +7,7 @@ import pytest
 
 from xlmc.studies.comparison import compare
 from xlmc.studies.comparison.paired_statistics import Accepted, range_of
-from xlmc.studies.comparison.rivalry import Agreement
+from xlmc.studies.comparison.rivalry import RivalVerdict
 from xlmc.studies.comparison.verdicts import verdict_text
 
 SIZE = {"trials": 20_000, "seed": 1}
@@ -40,10 +40,10 @@ def test_the_answer_with_the_smaller_spread_tells_more(answering):
 @pytest.mark.parametrize(
     ("low", "expected"),
     [
-        (0.3, Agreement.AGREE),  # of b − a, a tenth of a tenth is below 0: P = 0.7²/2 doubled is 0.49
-        (0.95, Agreement.STRAINED),  # 0.05²/2 doubled is 0.0025
-        (0.99, Agreement.CONTRADICT),  # 0.0001
-        (2.0, Agreement.CONTRADICT),  # in no trial
+        (0.3, RivalVerdict.AGREE),  # of b − a, a tenth of a tenth is below 0: P = 0.7²/2 doubled is 0.49
+        (0.95, RivalVerdict.STRAINED),  # 0.05²/2 doubled is 0.0025
+        (0.99, RivalVerdict.CONTRADICT),  # 0.0001
+        (2.0, RivalVerdict.CONTRADICT),  # in no trial
     ],
 )
 def test_two_answers_contradict_where_0_is_far_out_among_their_differences(answering, low, expected):
@@ -64,7 +64,7 @@ def test_one_book_may_answer_twice(filled_in):
     )
     found = compare(book, book, pairs={mine: theirs}, **SIZE)
     (each,) = found.rivals
-    assert (each.rivalry.sharper, each.rivalry.agreement) == (0, Agreement.AGREE)
+    assert (each.rivalry.sharper, each.rivalry.agreement) == (0, RivalVerdict.AGREE)
     (text,) = [line for line in verdict_text(found) if "tells more" in line]
     assert text.startswith(f"{mine} ({theirs}): '{mine}' tells more, with a standard deviation of ")
     assert f" mph of '{theirs}'. The two answers agree." in text
@@ -72,7 +72,7 @@ def test_one_book_may_answer_twice(filled_in):
 
 def test_few_trials_contradict_nothing(answering):
     found = compare(answering("a", 0, 1), answering("b", 2, 3), trials=500, seed=1)
-    assert found.rivals[0].rivalry.agreement is Agreement.TOO_FEW
+    assert found.rivals[0].rivalry.agreement is RivalVerdict.TOO_FEW
     assert "Too few trials are accepted by both" in verdict_text(found)[0]
 
 
@@ -96,7 +96,7 @@ def test_energy_tells_more_than_momentum_where_approaches_are_near_parallel(fill
     )
     speeds = [each for each in found.rivals if each.first.name.endswith("impact speed")]
     assert [each.rivalry.sharper for each in speeds] == [0, 0]
-    assert all(each.rivalry.agreement is Agreement.AGREE for each in speeds)
+    assert all(each.rivalry.agreement is RivalVerdict.AGREE for each in speeds)
     width = speeds[0].rivalry.width
     assert width.first.value < 4 < 100 < width.second.value  # km/h
     assert verdict_text(found)[0] == (
@@ -113,7 +113,7 @@ def test_momentum_tells_more_than_energy_where_hardly_any_closing_momentum_is_le
     )
     (slow,) = [each for each in found.rivals if each.first.name == "Vehicle 1 impact speed"]
     assert slow.rivalry.sharper == 1
-    assert slow.rivalry.agreement is Agreement.AGREE
+    assert slow.rivalry.agreement is RivalVerdict.AGREE
     assert slow.rivalry.deviation.first.value > 1.3 * slow.rivalry.deviation.second.value
 
 

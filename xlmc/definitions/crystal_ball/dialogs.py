@@ -51,7 +51,7 @@ from xlmc.formula import formula_text, ir
 from xlmc.sampling.draws import Draw
 from xlmc.workbook.workbook import Workbook
 
-__all__ = ["FromDialogs", "read_dialogs"]
+__all__ = ["UNPROVEN", "FromDialogs", "read_dialogs"]
 
 UNPROVEN: Final = "this was not yet met in a genuine file: compare once in Crystal Ball"
 _CURE: Final = "Define the cell in the table xlmc_assumptions, or look it up in Crystal Ball"

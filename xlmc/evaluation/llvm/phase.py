@@ -229,8 +229,8 @@ class Phase:
                 shape = plan.shape(self._dag)
                 limits = [slot for slot in shape.slots if self._is_limit(slot[0])]
                 numbers = np.array([shape.numbers[shape.slots[slot]] for slot in limits])
-                places = {slot: at for at, slot in enumerate(limits)}
-                yield Loop(self._compile(plan, places), plan.loads, plan.stores, numbers)
+                positions = {slot: at for at, slot in enumerate(limits)}
+                yield Loop(self._compile(plan, positions), plan.loads, plan.stores, numbers)
             return
         shapes = [plan.shape(self._dag) for plan in plans]
         uses = Counter(shape.key for shape in shapes)

@@ -267,9 +267,8 @@ def _scenarios(material: Material) -> Iterator[Block]:
         if each.forecast.name not in material.forecasts:
             continue
         heads = answer_heads(found, index)
-        units = f", {each.forecast.units}" if each.forecast.units else ""
         widths = (1.8, *[1.4] * (len(heads) - 1))
-        caption = f"{each.forecast.name}{units}: the workbook as it is, and the scenarios."
+        caption = f"{each.title}: the workbook as it is, and the scenarios."
         yield material.table(caption, heads, answer_rows(found, index), widths, range(1, len(heads)))
     yield Paragraph(" ".join(scenario_sentences(found)), "small")
 

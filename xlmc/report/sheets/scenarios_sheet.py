@@ -58,9 +58,7 @@ def write_scenario_tables(page: Page, found: Sequence[ScenarioAnswers]) -> None:
     for each in found:
         page.line([*_accepted(each), Shown(_changes(each))], starts, _LAST)
     for index, forecast in enumerate(found[0].forecasts):
-        definition = forecast.forecast
-        units = f", {definition.units}" if definition.units else ""
-        page.heading(f"{definition.name}{units}")
+        page.heading(forecast.title)
         states = [each.forecasts[index] for each in found]
         above = above_head(states)
         answers = [head for name in range_heads(states) for head in (name, "±", "Difference", "±")]

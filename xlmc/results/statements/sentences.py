@@ -62,15 +62,18 @@ def _of(result: ForecastResult) -> list[Statement]:
     told = [Statement(name, "range", f"{name}: {_range_text(found, units, result.statistics.trials)}{part}")]
     above = result.statistics.probability_above
     if definition.threshold is not None and above is not None:
-        joined = ":" if above.value in (0.0, 1.0) else " ="
-        text = f"P({name} > {definition.threshold:g}{units}){joined} {percent_text(above)}{part}"
-        told.append(Statement(name, "threshold", text))
+        event = f"{name} > {definition.threshold:g}{units}"
+        told.append(Statement(name, "threshold", f"{_probability_text(event, above)}{part}"))
     if definition.asked is not None and result.certainty is not None:
-        share = result.certainty
-        joined = ":" if share.value in (0.0, 1.0) else " ="
-        text = f"P({_asked_text(name, *definition.asked, units)}){joined} {percent_text(share)}{part}"
-        told.append(Statement(name, "certainty", text))
+        event = _asked_text(name, *definition.asked, units)
+        told.append(Statement(name, "certainty", f"{_probability_text(event, result.certainty)}{part}"))
     return told
+
+
+def _probability_text(event: str, share: Estimate) -> str:
+    """`P(Speed > 35 mph) = 1.6 % ± 0.3 %`."""
+    joined = ":" if share.value in (0.0, 1.0) else " ="
+    return f"P({event}){joined} {percent_text(share)}"
 
 
 def _asked_text(name: str, low: float, high: float, units: str) -> str:

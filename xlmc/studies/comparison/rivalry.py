@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.definitions.definitions import Forecast, name_key
+from xlmc.run.agreement import INCONSISTENT, STRAINED
 from xlmc.run.needed import upstream
 from xlmc.run.simulation import Simulation
 from xlmc.studies.comparison.differences import Change
@@ -30,21 +31,20 @@ from xlmc.studies.comparison.paired_statistics import (
     standard_deviation_of,
 )
 
-__all__ = ["Agreement", "Rivalry", "own_inputs", "rivalry"]
+__all__ = ["RivalVerdict", "Rivalry", "rivalry"]
 
 _CERTAINTY: Final = 3.0
 """Errors by which the spreads must differ, if one is to be called the smaller."""
 
-STRAINED: Final = 0.01
-CONTRADICT: Final = 0.001
-"""Chances, on both sides, below which two answers are strained, and contradict each other."""
-
-_FEWEST: Final = {STRAINED: 1_000, CONTRADICT: 10_000}
+_FEWEST: Final = {STRAINED: 1_000, INCONSISTENT: 10_000}
 """Trials that both accept, without which a chance below these is not told from one above."""
 
 
-class Agreement(Enum):
-    """What the trials say of two answers to one question; the worst comes last."""
+class RivalVerdict(Enum):
+    """What the trials say of two answers to one question; the worst comes last.
+
+    The chances below which they are strained, and contradict each other, are those of a reading of evidence.
+    """
 
     AGREE = "agree"
     TOO_FEW = "too few trials"
@@ -75,14 +75,14 @@ class Rivalry:
     both: int
 
     @property
-    def agreement(self) -> Agreement:
+    def agreement(self) -> RivalVerdict:
         """Whether the two answers agree."""
         if np.isnan(self.chance):
-            return Agreement.TOO_FEW
-        for limit, found in ((CONTRADICT, Agreement.CONTRADICT), (STRAINED, Agreement.STRAINED)):
+            return RivalVerdict.TOO_FEW
+        for limit, found in ((INCONSISTENT, RivalVerdict.CONTRADICT), (STRAINED, RivalVerdict.STRAINED)):
             if self.chance < limit and self.both >= _FEWEST[limit]:
                 return found
-        return Agreement.AGREE if self.chance >= STRAINED else Agreement.TOO_FEW
+        return RivalVerdict.AGREE if self.chance >= STRAINED else RivalVerdict.TOO_FEW
 
     @property
     def contrary(self) -> bool:
@@ -96,7 +96,7 @@ class Rivalry:
         return self.sharper is not None and _smaller(self.deviation) is None
 
 
-def own_inputs(run: Simulation, forecast: Forecast) -> Mapping[str, str]:
+def _own_inputs(run: Simulation, forecast: Forecast) -> Mapping[str, str]:
     """The drawn assumptions that a forecast is computed from: key -> name. Filters are not asked."""
     model = run.model
     reached = upstream(model.needed.graph, [forecast.cell], model.lowering.led_to)
@@ -115,7 +115,7 @@ def rivalry(
         forecasts: of either book.
         answers: the accepted trials of either, in one unit.
     """
-    mine, theirs = (own_inputs(*each) for each in zip(runs, forecasts, strict=True))
+    mine, theirs = (_own_inputs(*each) for each in zip(runs, forecasts, strict=True))
     own = (
         tuple(name for key, name in mine.items() if key not in theirs),
         tuple(name for key, name in theirs.items() if key not in mine),

@@ -11,7 +11,7 @@ import numpy as np
 from xlmc.statistics import Estimate, format_estimate
 from xlmc.studies.comparison.comparison import Cause, Comparison, ForecastComparison
 from xlmc.studies.comparison.differences import Change
-from xlmc.studies.comparison.rivalry import Agreement, Rivalry
+from xlmc.studies.comparison.rivalry import Rivalry, RivalVerdict
 from xlmc.studies.comparison.tolerances import Judgement, Verdict
 from xlmc.studies.screening import Cost
 
@@ -71,16 +71,16 @@ def _rivals(each: Sequence[ForecastComparison], books: tuple[str, str]) -> Itera
 def _rivals_summary(found: Sequence[Rivalry], books: tuple[str, str]) -> str:
     counts = {side: sum(rivals.sharper == side for rivals in found) for side in (0, 1)}
     more = [f"{books[side]} tells more of {count}" for side, count in counts.items() if count]
-    worst = max((rivals.agreement for rivals in found), key=list(Agreement).index)
+    worst = max((rivals.agreement for rivals in found), key=list(RivalVerdict).index)
     tells = _join_names(more) if more else "neither tells more of any, as far as these trials say"
     return f"Each book computes {len(found)} answers from inputs that the other has not: {tells}; {_ALL_AGREE[worst]}."
 
 
 _ALL_AGREE = {
-    Agreement.AGREE: "all agree",
-    Agreement.TOO_FEW: "of some, too few trials say whether they agree",
-    Agreement.STRAINED: "some are strained",
-    Agreement.CONTRADICT: "some contradict each other",
+    RivalVerdict.AGREE: "all agree",
+    RivalVerdict.TOO_FEW: "of some, too few trials say whether they agree",
+    RivalVerdict.STRAINED: "some are strained",
+    RivalVerdict.CONTRADICT: "some contradict each other",
 }
 
 
@@ -109,10 +109,10 @@ def _spreads(spread: Change, units: str) -> list[str]:
 
 
 _AGREE = {
-    Agreement.AGREE: "The two answers agree.",
-    Agreement.STRAINED: "The two answers are strained: {chance}.",
-    Agreement.CONTRADICT: "The two answers contradict each other: {chance}. A range, or a model, is wrong.",
-    Agreement.TOO_FEW: "Too few trials are accepted by both to say whether the answers agree.",
+    RivalVerdict.AGREE: "The two answers agree.",
+    RivalVerdict.STRAINED: "The two answers are strained: {chance}.",
+    RivalVerdict.CONTRADICT: "The two answers contradict each other: {chance}. A range, or a model, is wrong.",
+    RivalVerdict.TOO_FEW: "Too few trials are accepted by both to say whether the answers agree.",
 }
 
 

@@ -86,8 +86,8 @@ def _properties(shape: bytes) -> dict[int, bytes]:
     for version, kind, at, stop in _records(shape, 0, len(shape)):
         if kind in _TABLES:
             values = at + 6 * (version >> 4)
-            for place in range(at, values, 6):
-                name, length = struct.unpack_from("<HI", shape, place)
+            for entry in range(at, values, 6):
+                name, length = struct.unpack_from("<HI", shape, entry)
                 if name & 0x8000:
                     if values + length > stop:
                         raise _DrawingError("a property is longer than its table")

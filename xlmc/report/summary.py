@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from xlmc.definitions.definitions import name_key
 from xlmc.evaluation.engine import UNDECIDED_RESULT
 from xlmc.results.record.in_words import discards_of, limits_text
 from xlmc.results.statements import reach_text
+from xlmc.run.draw_binding import base_point
 from xlmc.run.rare.account import probability_text
 from xlmc.statistics import Estimate, format_estimate
 
@@ -186,9 +186,8 @@ def base_case(simulation: Simulation) -> BaseCase | None:
     It is computed, not read: a file may hold no cached values, or stale ones.
     """
     model = simulation.model
-    base = {name_key(a.name): a.base for a in model.live}
-    known = {key: np.full(1, value) for key, value in base.items() if value is not None}
-    if len(known) < len(base):
+    known = base_point(model.live)
+    if known is None:
         return None
     settings = simulation.settings  # always in float64
     evaluator = model.program(settings.engine).evaluator(1)

@@ -13,6 +13,7 @@ from xlmc.definitions.definitions import name_key
 from xlmc.distributions.parameters import show
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.engine import BLANK_RESULT, TEXT_RESULT
+from xlmc.run.draw_binding import base_point
 from xlmc.statistics import Estimate, proportion
 
 if TYPE_CHECKING:
@@ -140,9 +141,8 @@ def base_checks(model: Model) -> tuple[BaseCheck, ...]:
     """The checks at the base case, computed, not read: a file may hold no cached values, or stale ones."""
     if not model.checks:
         return ()
-    base = {name_key(a.name): a.base for a in model.checked}
-    known = {key: np.full(1, value) for key, value in base.items() if value is not None}
-    if len(known) < len(base):
+    known = base_point(model.checked)
+    if known is None:
         return tuple(BaseCheck(check, None) for check in model.checks)
     columns = model.check_program().evaluator(1).filters(known, 1)
     return tuple(BaseCheck(check, _held(column, 0)) for check, column in zip(model.checks, columns, strict=True))

@@ -27,12 +27,18 @@ from xlmc.run.needed import upstream
 from xlmc.sampling.draws import Draw, DynamicParameters
 from xlmc.workbook.workbook import Workbook
 
-__all__ = ["draw_of", "dynamic_parameters", "parameter_target", "with_base_parameters"]
+__all__ = ["base_point", "draw_of", "dynamic_parameters", "parameter_target", "with_base_parameters"]
 
 
 def parameter_target(cell: Cell) -> Target:
     """A parameter's cell, taken as a number."""
     return Target(ir.Binary("+", cell, ir.Number(0.0)), cell)
+
+
+def base_point(assumptions: Sequence[Assumption]) -> dict[str, NDArray[np.float64]] | None:
+    """Key of each assumption -> `(1,)` its base value; None where one of them has none."""
+    known = {name_key(a.name): np.full(1, a.base) for a in assumptions if a.base is not None}
+    return known if len(known) == len(assumptions) else None
 
 
 def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:

@@ -22,11 +22,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import Filter, name_key
+from xlmc.definitions.definitions import Filter
 from xlmc.evaluation.engine import Column, Evaluator, Target
 from xlmc.evaluation.engines import ENGINES
-from xlmc.formula import ir
 from xlmc.run.blocks import ModelRunner
+from xlmc.run.draw_binding import base_point, parameter_target
 from xlmc.run.model import Model, paused_collection
 from xlmc.run.needed import filter_condition, filter_limits
 from xlmc.sampling.draws import Draw, DrawStage, Linear, Sampler
@@ -89,13 +89,11 @@ class KeptRunner:
 
         None for a forecast that is no number; None for all where an assumption has no base value.
         """
-        values = [each.base for each in model.live]
-        given = [value for value in values if value is not None]
-        if len(given) < len(values):
+        inputs = base_point(model.live)
+        if inputs is None:
             return None
-        key = tuple(given)
+        key = tuple(value.item() for value in inputs.values())
         if key not in self._bases:
-            inputs = {name_key(a.name): np.full(1, value) for a, value in zip(model.live, given, strict=True)}
             evaluator = self._program.evaluator(1)
             columns = evaluator.filters(inputs | model.certain(1), 1)[-len(model.answer_targets) :]
             found = [float(column.as_floats()[0]) for column in columns]
@@ -113,7 +111,7 @@ def _targets(filter_: Filter) -> tuple[Target, ...]:
     if filter_.evidence is not None or not limits:
         return (Target(filter_condition(filter_), filter_.cell),)
     cells = [filter_.cell, *(bound for _, bound in limits if isinstance(bound, Cell))]
-    return tuple(Target(ir.Binary("+", cell, ir.Number(0.0)), filter_.cell) for cell in cells)
+    return tuple(map(parameter_target, cells))
 
 
 @dataclass(slots=True)

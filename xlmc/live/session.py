@@ -411,7 +411,11 @@ class Session:
         told = list(outcome.messages)
         if outcome.problem is not None or job.stage in self._failed:
             told.append({"kind": "trouble", "about": job.stage, "text": outcome.problem or ""})
-        (self._failed.discard if outcome.problem is None else self._failed.add)(job.stage)
+        if outcome.problem is None:
+            self._failed.discard(job.stage)
+        else:
+            self._failed.add(job.stage)
+            told += self.superseded(job) if job.stage == "compare" else []
         return told
 
     def superseded(self, job: Job) -> list[Message]:

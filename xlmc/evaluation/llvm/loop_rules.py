@@ -10,7 +10,7 @@ from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Constant, uses
 from xlmc.functions import Kind
 
-__all__ = ["PLAIN", "Emit", "Emitter", "Literal", "LoopRule", "Operand", "literal", "reads"]
+__all__ = ["PLAIN", "Emit", "Emitter", "Literal", "LoopRule", "Operand", "first_operand", "literal", "reads"]
 
 PLAIN: Final = (Kind.NUMBER, Kind.LOGICAL)
 """What a value in the loop may be: a double or a truth value."""
@@ -83,6 +83,11 @@ class LoopRule:
     absorbs: Container[int] = ()
     makes: bool = True
     beside: tuple[Operand, ...] = ()
+
+
+def first_operand(_: Emitter, parts: Sequence[Any]) -> Any:
+    """Emits nothing: the value is that of the first operand."""
+    return parts[0]
 
 
 def literal(dag: Dag, operand: Operand) -> Literal | None:

@@ -19,7 +19,7 @@ from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Node, Sele
 from xlmc.evaluation.llvm.lookups import lookup_rule
 from xlmc.evaluation.llvm.loop_arithmetic import arccosine, arcsine, arctangent, arctangent_of_two
 from xlmc.evaluation.llvm.loop_powers import common_logarithm, exponential, logarithm, power
-from xlmc.evaluation.llvm.loop_rules import PLAIN, Emit, Emitter, Literal, LoopRule, Operand, literal
+from xlmc.evaluation.llvm.loop_rules import PLAIN, Emit, Emitter, Literal, LoopRule, Operand, first_operand, literal
 from xlmc.evaluation.llvm.sets import over_cells
 from xlmc.functions import Kind
 from xlmc.functions.denormals import TINIEST
@@ -52,7 +52,7 @@ def loop_rule_of(dag: Dag, node: int) -> LoopRule | None:
     if readable and rule is not None and (folded is None or len(rule.operands) <= _FEW):
         return rule
     if folded is not None and not isinstance(dag.nodes[folded], Constant):  # a count is one only if no cell is an error
-        return LoopRule((Operand(folded, Kind.NUMBER),), _same, makes=False)
+        return LoopRule((Operand(folded, Kind.NUMBER),), first_operand, makes=False)
     return None
 
 
@@ -65,17 +65,13 @@ def _rule(dag: Dag, node: Node, kind: Kind) -> LoopRule | None:
             return LoopRule(operands, _choose, makes=False)
         case IfErrorNode(value) if dag.types[value] is kind:
             # Where the value may be an error the trial is computed again: the other value is never needed here.
-            return LoopRule((Operand(value, kind),), _same, makes=False)
+            return LoopRule((Operand(value, kind),), first_operand, makes=False)
         case _:
             return None
 
 
 def _choose(body: Emitter, parts: Sequence[Any]) -> Any:
     return body.builder.select(*parts)
-
-
-def _same(_: Emitter, parts: Sequence[Any]) -> Any:
-    return parts[0]
 
 
 def _readable(dag: Dag, operand: Operand) -> bool:
@@ -256,7 +252,7 @@ def _last_sum(body: Emitter, parts: Sequence[Any]) -> Any:
 
 _POWERS: Final = {
     0.5: _Row(_root),
-    1.0: _Row(_same, makes=False),
+    1.0: _Row(first_operand, makes=False),
     -1.0: _Row(_reciprocal, (0,)),
     3.0: _Row(_cube),
 }

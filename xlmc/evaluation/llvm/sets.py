@@ -11,7 +11,7 @@ import numpy as np
 
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, Range
-from xlmc.evaluation.llvm.loop_rules import Emit, Emitter, Literal, LoopRule, Operand
+from xlmc.evaluation.llvm.loop_rules import Emit, Emitter, Literal, LoopRule, Operand, first_operand
 from xlmc.functions import Kind
 from xlmc.functions.values import BLANK, LOGICAL, NUMBER, TEXT, Value
 
@@ -128,11 +128,7 @@ def _count(dag: Dag, node: Apply) -> LoopRule | None:
     varying = tuple([Operand(cell, dag.types[cell]) for cell in cells if isinstance(cell, int)])
     if len(varying) > _MOST:
         return None
-    return LoopRule((Literal(float(numbers)),), _first_part, makes=False, beside=varying)
-
-
-def _first_part(_: Emitter, parts: Parts) -> Any:
-    return parts[0]
+    return LoopRule((Literal(float(numbers)),), first_operand, makes=False, beside=varying)
 
 
 def _sum_of_products(dag: Dag, node: Apply) -> LoopRule | None:

@@ -12,10 +12,7 @@ class PairView {
     this.said = make("p", { class: "pair-said" });
     this.chart = make("div", { class: "chart", role: "img", "aria-label": "No trials yet" });
     this.overlay = make("div", { class: "overlay" });
-    const picture = (text, act) => make("button", { type: "button", class: "copy", text, on: { click: act } });
-    const save = make("p", { class: "pictures" }, picture("Copy picture", ({ target }) => copyPng(this.chart, target)),
-      picture("Save PNG", () => savePng(this.chart)),
-      picture("Save SVG", () => this.scatter && saveSvg(this.scatter, this.chart)));
+    const save = pictures(this.chart, "the pair", () => this.scatter && saveSvg(this.scatter, this.chart));
     new ResizeObserver(() => {
       if (this.pair && this.scatter && this.chart.clientWidth && this.scatter.width !== widthOf(this.chart)) this.draw(this.pair);
     }).observe(this.chart);

@@ -28,8 +28,6 @@ function forecastElement({ name, units, marks }, number) {
       box("Certainty", "share", "%"), make("button", { type: "button", class: "reset", text: "Central range" })),
     make("p", { class: "fault", role: "alert" }), make("p", { class: "certainty" }));
   const chart = make("div", { class: "chart", role: "group", "aria-label": `Chart of ${name}, with two grabbers` });
-  const picture = (label, act) => make("button", { type: "button", class: "copy", text: label, "aria-label":
-    `${label} of ${name}`, on: { click: act } });
   return make("article", { class: "forecast", id: about },
     make("h3", {}, named(name)),
     make("p", { class: "moved" }),
@@ -38,9 +36,7 @@ function forecastElement({ name, units, marks }, number) {
         make("p", { class: "fitted" }), ends),
       make("div", { class: "beside-chart" }, make("table", { class: "beside" },
         make("caption", { text: "Accepted trials" }), make("thead"), make("tbody")),
-        make("p", { class: "pictures" }, picture("Copy picture", ({ target }) => copyPng(chart, target)),
-          picture("Save PNG", () => savePng(chart)),
-          picture("Save SVG", () => chart.dispatchEvent(new Event("svg")))))),
+        pictures(chart, name, () => chart.dispatchEvent(new Event("svg"))))),
   );
 }
 
@@ -194,10 +190,13 @@ class LivePanel extends Panel {
   }
 }
 
-function copyPng(chart, button) {
-  Copies.say(button, Copies.copyPicture(async () => Copies.onWhite(chart.querySelector("canvas"))));
-}
-
-function savePng(chart) {
-  Copies.onWhite(chart.querySelector("canvas")).toBlob((picture) => Copies.save(picture, Copies.name(chart, "png")));
+/** Buttons that copy and save a chart; `svg` saves it as vectors. */
+function pictures(chart, name, svg) {
+  const button = (text, act) => make("button", { type: "button", class: "copy", text, "aria-label": `${text} of ${name}`,
+    on: { click: act } });
+  const painted = () => Copies.onWhite(chart.querySelector("canvas"));
+  const png = () => painted().toBlob((picture) => Copies.save(picture, Copies.name(chart, "png")));
+  return make("p", { class: "pictures" },
+    button("Copy picture", ({ target }) => Copies.say(target, Copies.copyPicture(async () => painted()))),
+    button("Save PNG", png), button("Save SVG", svg));
 }

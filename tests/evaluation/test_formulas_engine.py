@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from xlmc.address import Area
-from xlmc.errors import FormulaError
+from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.formulas_engine import FormulasProgram
 from xlmc.workbook.workbook import CellContent, Formula
 
@@ -45,3 +45,12 @@ def test_array_formulas_are_refused(lower):
     with pytest.raises(FormulaError, match="no array formulas") as caught:
         FormulasProgram(lowering, [target], [], frozenset())
     assert caught.value.where == "S!C1"
+
+
+def test_a_power_that_python_makes_complex_is_an_error_as_in_excel(lower):
+    lowering, (target,) = lower({"C1": "=(A1-1)^0.5"}, ["A1"], ["C1"])
+    draws = {"A1": np.array([0.5, 5.0])}
+    (column,) = FormulasProgram(lowering, [target], [], frozenset()).evaluator(2).filters(draws, 2)
+    assert column.codes is not None
+    assert column.codes.tolist() == [ErrorCode.NUM.value, 0]
+    assert column.as_floats()[1] == 2.0

@@ -242,4 +242,6 @@ def _from_foreign(result: Any) -> object:
         return bool(item)
     if item is EMPTY:
         return None
+    if isinstance(item, complex):  # Python's power of a negative number
+        return ErrorCode.NUM
     return item if isinstance(item, str) else float(item)

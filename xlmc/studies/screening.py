@@ -304,7 +304,7 @@ class _Screen:
         )
 
     def _at_ends(self, name: str) -> AtEnds:
-        low, high = (float(end) for end in np.quantile(self._run.prior[name], ENDS))
+        low, high = (float(end) for end in np.quantile(self._run.prior[name], ENDS, method="inverted_cdf"))
         costs = tuple(
             self._cost([name], [name], (), f"{name} held at {value:.4g}", {name_key(name): value})
             for value in (low, high)

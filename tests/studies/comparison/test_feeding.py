@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import openpyxl
 import pytest
 
+import xlmc
 from xlmc.errors import SimulationError
 from xlmc.studies.comparison import Verdict, compare
 from xlmc.studies.comparison.verdicts import verdict_text
@@ -45,6 +47,15 @@ def test_time_and_distance_need_no_model_of_the_impact_where_every_speed_gives_o
 def test_what_cannot_be_fed_is_refused(answering, feeds, units, said):
     with pytest.raises(SimulationError, match=said):
         compare(answering("a", 0, 1, "mph"), answering("b", 0, 1, units), feeds=feeds, **SIZE)
+
+
+def test_a_draw_that_its_formula_may_shift_is_refused(answering, tmp_path):
+    book = openpyxl.Workbook()
+    book.active["A1"], book.active["A2"] = '=RiskNormal(5,1,RiskShift(3),RiskName("a"))', '=A1+RiskOutput("y")'
+    book.save(tmp_path / "shifted.xlsx")
+    with pytest.raises(SimulationError, match="drawn by a call in a formula") as refused:
+        compare(xlmc.load(tmp_path / "shifted.xlsx"), answering("b", 0, 1), feeds={"a": "y"}, **SIZE)
+    assert str(refused.value.where) == "Sheet!A1"
 
 
 def test_too_few_trials_are_no_distribution(answering):

@@ -2,8 +2,8 @@
 
 A template of time and distance takes the speed at the impact as an assumption. A rough range may do: then no model of
 the impact is needed. Whether it does is seen by drawing the assumption from the accepted trials of such a model, and
-comparing. Each accepted trial is as likely as the others; the draws do not depend on those of other assumptions, nor
-on the inputs that both books may share.
+comparing. Each accepted trial is as likely as the others. The draws do not depend on the inputs that both books may
+share; with other assumptions of the first book they are correlated as the replaced draws were.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from typing import Final, TypeVar
 
 import numpy as np
 
+from xlmc.address import InFormula
 from xlmc.definitions.definitions import Assumption, Forecast, name_key
 from xlmc.distributions.empirical import Empirical
 from xlmc.errors import SimulationError
@@ -39,8 +40,8 @@ def fed_model(model: Model, source: Simulation, feeds: Mapping[str, str]) -> Mod
         feeds: name of an assumption -> name of a forecast of the other book.
 
     Raises:
-        SimulationError: there is no such assumption or forecast, nothing needs the assumption, units are of two kinds,
-            or too few trials give a number.
+        SimulationError: there is no such assumption or forecast, nothing needs the assumption, a call in a formula
+            draws it, units are of two kinds, or too few trials give a number.
     """
     named = {name_key(a.name): a for a in model.assumptions}
     given = {name_key(f.name): f for f in source.model.forecasts}
@@ -51,6 +52,9 @@ def fed_model(model: Model, source: Simulation, feeds: Mapping[str, str]) -> Mod
         if assumption in model.needed.idle:
             message = f"no forecast or filter needs the assumption {assumption.name!r}"
             raise SimulationError(message, where=assumption.cell, hint="feed one that the answers depend on")
+        if isinstance(assumption.cell, InFormula):  # whose formula may shift what the call draws
+            message = f"the assumption {assumption.name!r} is drawn by a call in a formula"
+            raise SimulationError(message, where=assumption.row, hint="give it a cell and a row in xlmc_assumptions")
         fed[name_key(assumption.name)] = _drawn_from(assumption, forecast, source)
     definitions = replace(model.definitions, assumptions=tuple(fed.get(name_key(a.name), a) for a in model.assumptions))
     return Model(model.workbook, definitions, Path(f"{model.path.name} fed by {source.model.path.name}"))

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import shutil
+import socket
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -276,6 +278,26 @@ def test_a_port_that_is_taken_is_told():
         taken.listen()
         with pytest.raises(XlmcError, match="--port"):
             bound_socket(taken.getsockname()[1])
+
+
+def test_small_messages_are_sent_at_once():
+    """Else the second of two waits until the first is acknowledged, some 40 ms."""
+    found = []
+
+    async def connected(_, writer):
+        sent_at_once = writer.get_extra_info("socket").getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
+        found.append(bool(sent_at_once))
+        writer.close()
+
+    async def connect_once():
+        with bound_socket(0) as made:
+            async with await asyncio.start_server(connected, sock=made):
+                reader, writer = await asyncio.open_connection(*made.getsockname())
+                await reader.read()
+                writer.close()
+
+    asyncio.run(connect_once())
+    assert found == [True]
 
 
 def test_it_listens_on_the_loopback_address_alone(open_book):

@@ -84,7 +84,8 @@ def bound_socket(port: int) -> socket.socket:
     Raises:
         XlmcError: something else has the port.
     """
-    made = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    # Asyncio sends small messages at once only through sockets that name their protocol; others wait up to 40 ms.
+    made = socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     if hasattr(socket, "SO_EXCLUSIVEADDRUSE"):  # Windows lets two programs share a port otherwise
         made.setsockopt(socket.SOL_SOCKET, socket.SO_EXCLUSIVEADDRUSE, 1)
     try:

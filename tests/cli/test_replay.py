@@ -217,6 +217,7 @@ def test_the_documents_show_what_is_printed(xlmc, short_books, case_study, tmp_p
     page = (DOCS / "json.md").read_text(encoding="utf-8")
     number, program = (re.search(rf"```{kind}\n(.*?)```", page, re.DOTALL)[1] for kind in ("json", "python"))
     found = json.loads((tmp_path / "book.json").read_text(encoding="utf-8"))
-    assert found["forecasts"][0]["statistics"]["mean"] == json.loads(number)
+    # The last digit may differ between kinds of processors: docs/runs.md.
+    assert found["forecasts"][0]["statistics"]["mean"] == pytest.approx(json.loads(number), rel=1e-12)
     printed = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True).stdout
     assert printed.splitlines()[0].startswith("Chevrolet delta-V 11.25")

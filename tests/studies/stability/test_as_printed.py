@@ -104,8 +104,12 @@ def test_every_needed_cell_is_listed_with_what_it_amplifies(found):
 
 
 def test_a_small_change_of_speed_is_computed_without_a_difference_of_speeds(as_printed):
-    """A light second car: (20) is the small difference of two speeds; the form proposed has none."""
-    light = {"w_2": (5, 6), "I_2": (2, 3)}
+    """A light second car: (20) is the small difference of two speeds; the form proposed has none.
+
+    With these directions three times as much is lost as is reported from, so that the last bits of a sine, which differ
+    between processors, do not decide.
+    """
+    light = {"w_2": (5, 6), "I_2": (2, 3), "alpha_1": (184, 185.5), "beta_1": (186, 188)}
     found = stability(as_printed(light), trials=TRIALS, seed=999)
     lost = only(found, "cancellation")
     assert lost.name == "dV1x"

@@ -24,10 +24,15 @@ _CHROMIUM = (
 
 
 class Browser:
-    """One Chromium for all tests, and a new one where it, or its driver, has ended: a busy machine ends them."""
+    """One Chromium for all tests, and a new one where it, or its driver, has ended: a busy machine ends them.
 
-    def __init__(self, profiles):
+    It logs what scripts complain of, and with `requests` also what each page asks for, which takes time with every
+    message that a page gets.
+    """
+
+    def __init__(self, profiles, *, requests):
         self._profiles, self._running = profiles, None
+        self._logged = {"browser": "ALL"} | ({"performance": "ALL"} if requests else {})
 
     def __call__(self):
         if self._running is not None and not self._answers():
@@ -52,7 +57,7 @@ class Browser:
         options.binary_location = shutil.which("chromium")
         for argument in (*_CHROMIUM, f"--user-data-dir={self._profiles.mktemp('profile')}"):
             options.add_argument(argument)
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+        options.set_capability("goog:loggingPrefs", self._logged)
         service = webdriver.ChromeService(shutil.which("chromedriver"), popen_kw={"start_new_session": True})
         found = webdriver.Chrome(options=options, service=service)
         found.set_script_timeout(120)

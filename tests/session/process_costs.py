@@ -6,14 +6,16 @@ import gc
 import os
 import sys
 from collections.abc import Generator, Iterator
+from functools import cached_property
 from pathlib import Path
 
 import pytest
 from _pytest.doctest import DoctestModule
+from openpyxl.reader.workbook import WorkbookParser
 from openpyxl.worksheet.merge import MergedCellRange
 
 _NOT_KEPT = "PYTHONDONTWRITEBYTECODE"
-_BETWEEN_COLLECTIONS = 100_000
+_BETWEEN_COLLECTIONS = 500_000
 """New objects between two collections of garbage; Python's own 700 cost a fifteenth of the suite's time."""
 _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS")
 
@@ -49,9 +51,11 @@ def pytest_sessionstart() -> None:
     """Leave out what costs time and what no test can see.
 
     openpyxl draws the border of a merged range anew for each of its cells, which is half the time it takes to read a
-    result workbook; and the disk need not hold what a test has written.
+    result workbook, and reads all pivot tables anew for each sheet; and the disk need not hold what a test has written.
     """
     MergedCellRange.format = lambda self: None
+    WorkbookParser.pivot_caches = kept = cached_property(WorkbookParser.pivot_caches.fget)
+    kept.__set_name__(WorkbookParser, "pivot_caches")
     os.fsync = lambda descriptor: None
 
 

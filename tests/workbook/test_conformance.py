@@ -2,11 +2,13 @@
 
 import warnings
 from datetime import date, time, timedelta
+from functools import lru_cache
 from pathlib import Path
 
 import openpyxl
 import pytest
 from openpyxl.formula.translate import Translator
+from openpyxl.reader import excel
 from openpyxl.utils.datetime import to_excel
 from openpyxl.utils.escape import unescape
 from openpyxl.worksheet.formula import ArrayFormula, DataTableFormula
@@ -48,17 +50,25 @@ def written(content, place):
     formula = content.formula
     if formula is None or (formula.row, formula.column) == place:
         return formula and formula.text
-    origin, target = (f"{column_letters(column)}{row}" for row, column in ((formula.row, formula.column), place))
-    return Translator(f"={formula.text}", origin=origin).translate_formula(target).removeprefix("=")
+    row, column = place
+    translator = _translator(formula.text, formula.row, formula.column)
+    return translator.translate_formula(f"{column_letters(column)}{row}").removeprefix("=")
+
+
+@lru_cache(maxsize=1_000)  # most cells of a shared formula follow each other
+def _translator(text, row, column):
+    return Translator(f"={text}", origin=f"{column_letters(column)}{row}")
 
 
 def filled(sheet):
-    """Place -> cell, for the cells that hold something."""
-    return {(cell.row, cell.column): cell for row in sheet.iter_rows() for cell in row if cell.value not in (None, "")}
+    """Place -> cell, for the cells that hold something; openpyxl's own iteration makes those that are not there."""
+    return {place: cell for place, cell in sheet._cells.items() if cell.value not in (None, "")}
 
 
 def loaded(path):
-    with warnings.catch_warnings():
+    """Without charts and pictures, which take long to read."""
+    with pytest.MonkeyPatch.context() as patch, warnings.catch_warnings():
+        patch.setattr(excel, "find_images", lambda package, path: ([], []))
         warnings.simplefilter("ignore")  # of extensions that openpyxl would lose on saving
         return openpyxl.load_workbook(path), openpyxl.load_workbook(path, data_only=True)
 
@@ -82,7 +92,7 @@ def _compare_with_openpyxl(path):
     for sheet in formulas.worksheets:
         cells = book.sheets[sheet.title].cells
         theirs, cached = filled(sheet), filled(values[sheet.title])
-        found = {place: written(content, place) for place, content in cells.items() if written(content, place)}
+        found = {place: text for place, content in cells.items() if (text := written(content, place))}
         assert found == {place: formula_of(cell) for place, cell in theirs.items() if formula_of(cell)}
         # An empty text is now blank, now a text to openpyxl.
         found = {place: (type(c.value), c.value) for place, c in cells.items() if c.value not in (None, "")}

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from xlmc.distributions.base import LARGEST, Array, Family, Member, Values
 from xlmc.distributions.parameters import Fault, ParameterSpec, show
+from xlmc.distributions.quadrature import gauss_legendre
 from xlmc.distributions.split_mix import GOLDEN, mixed
 from xlmc.distributions.truncated import Slice, Truncated
 from xlmc.distributions.whole_numbers import WholeNumbers
@@ -119,7 +120,7 @@ class Part:
         cut = Slice(whole, lower, upper) if self.lower or self.upper else whole
         kinks = [float(cut.cdf(end - shift)) for end in _kinks(deductible, limit)]
         edges = np.unique(np.clip([0.0, *kinks, 0.5, 0.99, 0.9999, 1 - 1e-6, 1 - 1e-9, 1 - 1e-12], 0.0, 1 - 1e-12))
-        nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+        nodes, weights = gauss_legendre(_NODES)
         first = second = 0.0
         for low, high in pairwise(edges.tolist()):
             x = _left(cut.ppf(low + (high - low) * (nodes + 1) / 2) + shift, deductible, limit)

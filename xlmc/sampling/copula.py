@@ -25,6 +25,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.distributions.quadrature import gauss_legendre
+
 __all__ = ["GaussianCopula", "Ties", "bounds", "nearest_correlation", "parameter", "spearman", "ties_of"]
 
 Floats = NDArray[np.float64]
@@ -245,7 +247,7 @@ def spearman(first: Ties | None, second: Ties | None, r: float) -> float:
 
 def _quadrature(end: float) -> tuple[Floats, Floats]:
     """Return Gauss and Legendre's points and weights from 0 to `end`."""
-    x, w = np.polynomial.legendre.leggauss(_NODES)
+    x, w = gauss_legendre(_NODES)
     return end * (x + 1) / 2, end * w / 2
 
 

@@ -104,7 +104,7 @@ def browser(tmp_path_factory):
     pytest.importorskip("selenium.webdriver")
     if reason := missing("chromium", "chromedriver"):
         pytest.skip(reason)
-    found = Browser(tmp_path_factory)
+    found = Browser(tmp_path_factory, requests=True)
     yield found
     found.quit()
 

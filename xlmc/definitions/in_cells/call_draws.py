@@ -16,6 +16,7 @@ from xlmc.definitions.definitions import DataRange, Parameter
 from xlmc.definitions.in_cells.call_arguments import elements, is_left_out, rows_of_trees
 from xlmc.definitions.tables.data import data_family
 from xlmc.distributions import FAMILIES, Family, Truncated
+from xlmc.distributions.quadrature import gauss_legendre
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.formula import ir
 
@@ -238,7 +239,7 @@ def _mean_between(family: Family, lower: float, upper: float, known: Mapping[str
     cut = Truncated(family)
     if cut.fault(lower, upper, **known):
         return np.nan
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    nodes, weights = gauss_legendre(_NODES)
     return float(weights @ cut.ppf((nodes + 1) / 2, lower, upper, *family.bind((), known)) / 2)
 
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from xlmc.distributions.base import Array, Member
 from xlmc.distributions.compound import Compound
+from xlmc.distributions.quadrature import gauss_legendre
 from xlmc.distributions.truncated import Slice
 from xlmc.distributions.whole_numbers import WholeNumbers
 from xlmc.errors import FormulaError
@@ -58,7 +59,7 @@ class Distribution:
         if not self._is_smooth:
             return self._expected(lambda x: np.abs(x - mean))
         # Twice what lies below the mean, by Gauss and Legendre's rule over the normal scores up to it.
-        nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+        nodes, weights = gauss_legendre(_NODES)
         last = float(ndtri(self.below(mean + self.shift)))
         z = -_REACH + (last + _REACH) * (nodes + 1) / 2
         density = np.exp(-(z**2) / 2) / math.sqrt(2 * math.pi)

@@ -171,3 +171,15 @@ def test_whether_a_book_needs_another(xlmc, tmp_path):
     outcome = xlmc("compare", first, second, "--feed", "b", *QUICK)
     assert outcome.code == 2
     assert "--feed 'b' must be written 'assumption of the first=forecast of the second'" in outcome.err
+
+
+def test_a_direction_whose_numbers_jump_is_told_of(xlmc, tmp_path):
+    """Both answer with directions around 180°, within 20°: mean and SD of their numbers, from -180 to 180, are none."""
+    first = book(tmp_path / "first.xlsx", "=180-MOD(20-40*B2,360)", units="°", name="PDOF")
+    second = book(tmp_path / "second.xlsx", "=180+40*(B2-0.5)", units="°", name="PDOF")
+    outcome = xlmc("compare", first, second, *QUICK)
+    assert "note: first.xlsx: 'PDOF' is a direction, and its numbers jump by a full turn" in outcome.err
+    assert "second.xlsx: 'PDOF'" not in outcome.err
+    outcome = xlmc("simulate", first, *QUICK)
+    assert outcome.code == 0
+    assert "=x-360*ROUND((x-180)/360,0)" in " ".join(outcome.out.split())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -74,9 +75,10 @@ def compare(
     quiet: bool,
 ) -> None:
     """Run the workbooks FIRST and SECOND over the same trials, and say whether the simpler one is enough."""
-    from xlmc.cli.printing import warnings
+    from xlmc.cli.printing import notices, warnings
     from xlmc.cli.progress_bar import step_line
     from xlmc.report.study_report import Files
+    from xlmc.run.directions import direction_notices
     from xlmc.run.loading import load
     from xlmc.studies import comparison
     from xlmc.studies.comparison.verdicts import book_names
@@ -107,6 +109,7 @@ def compare(
         for path in written:
             say(f"Written: {path}")
     runs = list(zip(book_names(found), (found.first, found.second), strict=True))
+    notices([replace(said, where=name) for name, run in runs for said in direction_notices(run.results.values())])
     doubts = [f"{name}: {warning}" for name, run in runs for warning in run.warnings]
     warnings(doubts, [f"{name}: {warning}" for name, run in runs for warning in run.refused])
     if doubts or found.of(comparison.Verdict.UNDECIDED) or any(_contradict(each) for each in found.rivals):

@@ -20,6 +20,7 @@ from xlmc.run.blocks import FilterTally
 from xlmc.run.cell_errors import Root, error_roots
 from xlmc.run.checking import CheckResult, check_results
 from xlmc.run.digit_watch import lost_digits
+from xlmc.run.directions import direction_notices
 from xlmc.run.forecast_result import ForecastResult, Replicates, tail_notices
 from xlmc.run.result_cells import RunFacts, ShownResults, shown_results
 from xlmc.run.stopping import Stopped
@@ -243,6 +244,7 @@ class Simulation:
             found.append(Notice(f"{few[0].upper()}{few[1:]}. {_OF_FEW}"))
         samples = {name: result.sample for name, result in self.results.items()}
         found += [Notice(f"{each[0].upper()}{each[1:]}") for each in self.agreement.remarks] if self.agreement else []
+        found += direction_notices(self.results.values())
         return (*found, *tail_notices(samples, METHODS[self.plan.method].name))
 
     @property

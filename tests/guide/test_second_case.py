@@ -33,7 +33,7 @@ def camera(tmp_path_factory):
         low, high = map(float, given)
         for column, value in zip((4, 7, 8), ((low + high) / 2, low, high), strict=True):
             sheet.cell(rows[symbol], column).value = value
-    sheet.cell(rows["n"], 4).value = int(re.search(r"is (\d+) frames after", PROSE)[1])
+    sheet.cell(rows["n"], 4).value = int(re.search(r"the hydrant: (\d+) frames", PROSE)[1])
     made.save(path := tmp_path_factory.mktemp("case") / "camera.xlsx")
     return xlmc.load(path).simulate()
 
@@ -77,7 +77,7 @@ def test_the_case_gives_what_the_page_says(book):
     assert f"together they keep {found.ratio.value:.3g} times" in PROSE
     assert found.sentence.partition(":")[0] in PROSE
     first, second = (round(100 * each.chance) for each in found.items)
-    assert f"has a chance of {first} %, one as the camera's {second} %" in PROSE
+    assert f"has a chance of {first} %; one as far as the camera's has a chance of {second} %" in PROSE
     means = {(each.used.partition(" alone")[0], each.forecast): each for each in found.answers}
     used = ["no evidence", "all evidence", *(name for name, *_ in READINGS)]
     shown = [[f"{means[way, name].mean.value:.3f}" for name in FORECASTS] for way in used]

@@ -477,7 +477,7 @@ def _chance_words(item: ItemAgreement) -> str:
 
 
 def _together(found: Agreement) -> str:
-    return f"together they keep {found.ratio.value:.3g} times what they would if they were independent"
+    return f"together they keep {found.ratio.value:.3g} times as many trials as independent items would"
 
 
 def _conflict(found: Agreement, names: Sequence[str]) -> str:

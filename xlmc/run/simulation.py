@@ -105,7 +105,7 @@ class ChangedFrom:
     def sentence(self) -> str:
         """What must be said before the answers."""
         changed = "; ".join(self.changes)
-        return f"These are not results of {self.name} as it stands, but of a copy in which was changed: {changed}."
+        return f"These are not results of {self.name} as it stands, but of a copy with changes: {changed}."
 
 
 def _trials(count: int) -> str:

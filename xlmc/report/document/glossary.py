@@ -30,8 +30,8 @@ GLOSSARY: Final = (
     ),
     (
         "Standard error",
-        "written ±: how far a printed number may lie from the number that infinitely many trials would give. The two "
-        "differ by less than twice ± in about 95 of 100 runs. ± does not say whether the model is right.",
+        "written ±: how far a printed number typically lies from the number that infinitely many trials would give. "
+        "The two differ by less than twice ± in about 95 of 100 runs. ± does not say whether the model is right.",
     ),
     (
         "Standard deviation",
@@ -66,13 +66,13 @@ GLOSSARY: Final = (
 WORDS_OF_EVIDENCE: Final = (
     (
         "Evidence",
-        "a measured number and its error, about a quantity that the model computes. Trials that agree with it are "
-        "kept, or each trial counts with the chance that it agrees (weights).",
+        "a measured number and its error, about a quantity that the model computes. Either only trials that agree "
+        "with it are kept, or each trial counts with the chance that it agrees (weights).",
     ),
     (
         "Effective trials",
-        "how many trials of equal weight would carry as much as the weighted ones. Errors and intervals follow from "
-        "it.",
+        "the number of trials of equal weight that would say as much as the weighted ones. Errors and intervals "
+        "follow from it.",
     ),
 )
 WORDS_OF_SCENARIOS: Final = (

@@ -30,7 +30,7 @@ def book() -> Model:
 def measure(model: Model, trials: int, seed: int) -> dict[str, Any]:
     """Of one run: mean and upper quartile with their errors, the farthest trial's part, and what xlmc said."""
     run = model.simulate(trials, seed, keep_inputs=0)
-    told = " ".join(notice.message for notice in run.notices_of_run if "hang on a single trial" in notice.message)
+    told = " ".join(notice.message for notice in run.notices_of_run if "depend on a single trial" in notice.message)
     found = {}
     for name in FORECASTS:
         mean, quartile = run[name].mean, run[name].percentile(75)

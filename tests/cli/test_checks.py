@@ -74,7 +74,7 @@ def test_check_names_the_cell_that_errors_come_from(xlmc, failing):
     outcome = xlmc("check", failing(rounded="=1/ROUND((B2-2)*100,0)"))
     assert outcome.code == 1
     assert "Model!D11 #DIV/0!: =1/ROUND((B2-2)*100,0)" in outcome.out
-    assert "are in error because of these: Model!D12 #DIV/0!" in outcome.out
+    assert "are errors because of these: Model!D12 #DIV/0!" in outcome.out
     assert "at the base case Model!D11 is #DIV/0!" in outcome.err
 
 

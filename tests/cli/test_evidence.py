@@ -142,7 +142,7 @@ def test_a_weighted_run_says_so_everywhere_and_leaves_out_what_cannot_weight(xlm
     )
     out = " ".join(outcome.out.split())
     assert "Each accepted trial counts with the chance that the evidence would keep it (weights)" in out
-    assert "Left out of weighted results" in out
+    assert "Weighted results leave out" in out
     data = json.loads(found.read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(data)
     assert data["record"]["settings"]["evidence"] == "weights"
@@ -154,7 +154,7 @@ def test_a_weighted_run_says_so_everywhere_and_leaves_out_what_cannot_weight(xlm
     assert "Weight" in [cell.value for row in results["Trials"].iter_rows(max_row=8) for cell in row]
     text = page.read_text(encoding="utf-8")
     assert 'id="sensitivity"' not in text
-    assert "Left out of weighted results" in text
+    assert "Weighted results leave out" in text
     heading, *lines = rows.read_text(encoding="utf-8").splitlines()
     assert heading == "Trial,a,b,Weight,Speed"
     weights, values = zip(*((float(w), float(v)) for *_, w, v in (line.split(",") for line in lines)), strict=True)

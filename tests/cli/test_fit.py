@@ -123,7 +123,7 @@ def test_too_few_values_are_exit_code_1(xlmc, alone):
         ("Tests!E1", "Tests!E1: The data cell has never been calculated"),
         ("A2:A41", "'A2:A41' names no sheet. Write the sheet, too, such as Tests!A2:A41."),
         ("Tets!A2:A41", "There is no worksheet 'Tets'. Did you mean Tests?"),
-        ("Nowhere", "'Nowhere' is no range of cells and no name of one"),
+        ("Nowhere", "'Nowhere' is neither a range of cells nor the name of one"),
         ("Skids[Frction]", "The table Skids has no column 'Frction'. Did you mean Friction?"),
         ("Tests!Z1:Z9", "there is no value to fit"),
     ],

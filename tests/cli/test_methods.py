@@ -93,4 +93,4 @@ def test_nothing_to_draw_with(xlmc, case_study, monkeypatch):
 def test_an_accuracy_that_cannot_be_read(xlmc, case_study):
     outcome = xlmc("methods", case_study, "--accuracy", "good")
     assert outcome.code == 2
-    assert "'good' is no precision" in outcome.err
+    assert "'good' is not a precision" in outcome.err

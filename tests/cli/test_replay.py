@@ -68,7 +68,13 @@ def test_a_changed_cell_is_named(xlmc, results):
     outcome = xlmc("replay", results)
     assert outcome.code == 1
     lines = outcome.out.splitlines()
-    assert lines[1:6] == ["differs.", "Not as the record says:", "  cell Inputs!G6", "    was  6661", "    is   6600"]
+    assert lines[1:6] == [
+        "differs.",
+        "Different from the record:",
+        "  cell Inputs!G6",
+        "    was  6661",
+        "    is   6600",
+    ]
     assert any(line.startswith("  Chevrolet delta-V: mean: recorded 11.") for line in lines)
     assert lines[-2].startswith("  … and ")
     assert lines[-1].startswith("Not compared: the result sheets: the model is no longer")
@@ -178,7 +184,7 @@ def test_another_processor(xlmc, results, monkeypatch):
     outcome = xlmc("replay", results)
     assert outcome.code == 0
     assert "identical: the same" in outcome.out
-    assert "Software or a processor that is not the same as then:" in outcome.out
+    assert "Software and processor features that are not those of the recorded run:" in outcome.out
     assert "    is   arm64" in outcome.out
 
 

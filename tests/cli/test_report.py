@@ -170,7 +170,7 @@ def test_what_is_no_saved_run(xlmc, book):
     other = shutil.copy(book, book.with_suffix(".xlmcrun"))
     outcome = xlmc("report", other)
     assert outcome.code == 2
-    assert outcome.err.startswith(f"xlmc: {other}: the file is no saved run. Save one with xlmc simulate --save-run")
+    assert outcome.err.startswith(f"xlmc: {other}: the file is not a saved run. Save one with xlmc simulate --save-run")
 
 
 def test_results_of_another_kind_of_workbook_are_refused(xlmc, book, tmp_path):

@@ -89,7 +89,7 @@ def test_an_answer_that_needs_no_better_input(xlmc, case_study):
     text = " ".join(outcome.out.split())
     assert "Judged by Chevrolet delta-V only." in text
     assert "Nissan delta-V" not in text
-    free = text.partition("Not needed wherever in their ranges they lie: ")[2].partition(". Held at either end")[0]
+    free = text.partition("Not needed, wherever in their ranges they lie: ")[2].partition(". Held at either end")[0]
     assert "Chevrolet yaw moment of inertia" in free
     assert "departure angle" not in free
     assert re.search(r"Chevrolet weight = 6666 +\d", outcome.out)  # 2.5 % of the way from 6661 to 6861

@@ -178,5 +178,5 @@ def test_a_fixed_draw_that_is_no_number_ends_the_run(book, monkeypatch):
 
     monkeypatch.setattr(type(pareto), "_ppf", holed)
     given_ = {"cell": "A1", "distribution": "Pareto", "location": 1.0, "shape": 3.0}
-    with pytest.raises(SimulationError, match="Pareto of the assumption 'a' gives draws that are no numbers"):
+    with pytest.raises(SimulationError, match="Pareto of the assumption 'a' gives draws that are not numbers"):
         book({"A1": 1.0}, {"a": given_}, {"x": "A1"}).simulate(2000)

@@ -87,7 +87,7 @@ def test_an_interval_of_height_0_is_never_drawn():
     ("values", "heights"), [([0, 1], [0, 0]), ([1, 0], [1, 1]), ([0, 1, 2], [1, -1, 1]), ([0, 0, 1], [1, 1, 1])]
 )
 def test_points_that_are_no_density(values, heights):
-    with pytest.raises(DataError, match="The points are no density") as caught:
+    with pytest.raises(DataError, match="The points are not a density") as caught:
         Piecewise.of_density(values, heights)
     assert caught.value.hint
 

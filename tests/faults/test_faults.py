@@ -166,7 +166,7 @@ def test_a_run_that_is_asked_to_end_clears_away(tmp_path, monkeypatch, number, c
     process.send_signal(number)
     told = process.communicate(timeout=120)[1]
     assert process.returncode == code
-    assert told == f"xlmc: ended by {signal.Signals(number).name}; no half file is left.\n"
+    assert told == f"xlmc: ended by {signal.Signals(number).name}; no file is left half-written.\n"
     assert list(temporary.iterdir()) == []
     assert [left.name for left in tmp_path.iterdir()] == ["temporary"]
 

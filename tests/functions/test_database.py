@@ -78,7 +78,7 @@ def test_fields_in_an_array_give_an_array(evaluate):
 
 
 def test_a_computed_criterion_is_refused(evaluate):
-    with pytest.raises(FormulaError, match="heading that is no field"):
+    with pytest.raises(FormulaError, match="heading that is not a field"):
         evaluate("DSUM", ORCHARD, "Yield", [["Tall"], [True]])
 
 

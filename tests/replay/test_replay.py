@@ -365,7 +365,7 @@ UNREADABLE = {
     "an edited cell": (edit_record("cells[0]", '"Nome"'), "are not those that were written"),
     "an edited number of cells": (edit_record("cells.count", 3), "are not those that were written"),
     "a seed that is none": (edit_record("settings.seed", "x"), "the settings in the record cannot be read"),
-    "a number of trials that is none": (edit_record("settings.trials", 2.5), "2.5 is no whole number"),
+    "a number of trials that is none": (edit_record("settings.trials", 2.5), "2.5 is not a whole number"),
     "a count that is none": (edit_record("counts.trials", "many"), "the record counts 'many' trials"),
 }
 

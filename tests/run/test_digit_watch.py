@@ -26,7 +26,7 @@ def warned(book):
 )
 def test_lost_digits_are_warned_of(warned, formula):
     (warning,) = warned(formula)
-    assert "the digits of 'f' are not there" in warning
+    assert "the digits of 'f' cannot be trusted" in warning
     assert "xlmc stability says where" in warning
 
 

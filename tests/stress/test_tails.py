@@ -53,7 +53,7 @@ def test_the_notice_stands_in_notices_and_is_no_warning(model):
     run = model.simulate(2_000, 1)
     (notice,) = [each for each in run.notices_of_run if "'ratio'" in each.message]
     assert notice in run.notices
-    assert "hang on a single trial" in notice.message
+    assert "depend on a single trial" in notice.message
     assert run.warnings == []
 
 

@@ -124,7 +124,7 @@ SHEET = '<sheet name="{}" sheetId="1" r:id="{}"/>'.format
 @pytest.mark.parametrize(
     ("more", "message"),
     [
-        ({"_rels/.rels": "<Relationships/>"}, "the file is a zip, but no Excel workbook"),
+        ({"_rels/.rels": "<Relationships/>"}, "the file is a zip, but not an Excel workbook"),
         ({"xl/workbook.xml": f"<w:document xmlns:w='{MAIN}'/>"}, "an Office document, but no workbook"),
         ({"xl/workbook.xml": "PK"}, "xl/workbook.xml is not well-formed XML"),
         ({"xl/workbook.xml": WORKBOOK(SHEET("A", "none"))}, "the sheet 'A' is missing from the file"),

@@ -181,5 +181,5 @@ def _end_in_order() -> Iterator[None]:
 def _exit(number: int, frame: FrameType | None) -> None:
     signal.signal(number, signal.SIG_DFL)  # a second one ends it at once
     # Not by `click`: the code that was interrupted may be in the middle of printing.
-    os.write(_STDERR, f"xlmc: ended by {signal.Signals(number).name}; no half file is left.\n".encode())
+    os.write(_STDERR, f"xlmc: ended by {signal.Signals(number).name}; no file is left half-written.\n".encode())
     raise SystemExit(_FROM_SIGNAL + number)

@@ -96,7 +96,7 @@ def _show_base_case(model: Model) -> list[str]:
     if not errors.answers:
         return failing
     cell, code = next(iter(errors.roots.items()))
-    return [*failing, f"at the base case {cell} is {code.text}, and so is a cell that was asked for"]
+    return [*failing, f"at the base case {cell} is {code.text}, and a forecast, filter or check is an error with it"]
 
 
 def _error_lines(model: Model, errors: BaseErrors) -> Iterator[str]:
@@ -111,7 +111,7 @@ def _error_lines(model: Model, errors: BaseErrors) -> Iterator[str]:
     if errors.others:
         named = ", ".join(f"{cell} {code.text}" for cell, code in list(errors.others.items())[:_MOST_CELLS])
         more = f" and {len(errors.others) - _MOST_CELLS:,} more" if len(errors.others) > _MOST_CELLS else ""
-        yield f"Cells that are in error because of these: {named}{more}."
+        yield f"Cells that are errors because of these: {named}{more}."
 
 
 def _show_definitions(definitions: Definitions, model: Model | None) -> None:
@@ -135,7 +135,7 @@ def _show_definitions(definitions: Definitions, model: Model | None) -> None:
         table("Filters", ("Name", "Cell", "Keeps", "Because"), rows)
     if definitions.forecast_filters:
         own = [(f.name, str(f.cell), limits_text(f), "; ".join(f.only_for)) for f in definitions.forecast_filters]
-        table("Filters of some forecasts only", ("Name", "Cell", "Keeps", "Only for"), own)
+        table("Filters for some forecasts only", ("Name", "Cell", "Keeps", "Only for"), own)
     evidence = definitions.evidence if model is None else model.evidence
     if evidence:
         rows = [(each.name, str(each.cell), evidence_text(each), each.source) for each in evidence]

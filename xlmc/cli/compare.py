@@ -30,14 +30,14 @@ UNDECIDED = 1
 @click.option(
     "--tolerance",
     multiple=True,
-    help="What difference counts as none: 0.5, '0.5 mph', '10 %' of the SD, 'Name=0.5 mph'; may be given several"
-    " times.  [default: 10 %]",
+    help="The largest difference that counts as none: 0.5, '0.5 mph', '10 %' of the SD, 'Name=0.5 mph'; may be given"
+    " several times.  [default: 10 %]",
 )
 @click.option(
     "--chance",
     type=float,
-    help="What difference of the probability above a forecast's threshold counts as none, in percentage points."
-    "  [default: a tenth of it or of the probability below, at least 0.1]",
+    help="The largest difference that counts as none, in percentage points, of the probability of being above a"
+    " forecast's threshold.  [default: a tenth of it or of the probability below, at least 0.1]",
 )
 @click.option("--pair", multiple=True, help="'A=B': forecast A of the first book is forecast B of the second.")
 @click.option(
@@ -168,8 +168,8 @@ _MEANING = (
     "± is the standard error of each number (Monte Carlo error). That of a difference allows for the draws that both "
     "books share. The last two lines of a table compare the answers as a whole: the average difference of all "
     "percentiles (Wasserstein's distance), and the largest difference of the cumulative curves (Kolmogorov's "
-    "distance). A verdict clears the tolerance by three errors. It says that two models agree, not that either fits "
-    "the crash."
+    "distance). A verdict is given only where a difference is at least three errors away from the tolerance. It says "
+    "that two models agree, not that either fits the crash."
 )
 
 

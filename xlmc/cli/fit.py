@@ -26,8 +26,8 @@ _DRAWN, _POINTS, _VALUES, _BESIDE = 4, 201, 2_000, 0.1
 """Families that are drawn, their points, the most values, and how far beyond these, as a share of their range."""
 
 _BY = (
-    "What ranks them: aic or bic, how probable the values are, less for every parameter; ad (Anderson-Darling) or ks"
-    " (Kolmogorov-Smirnov), how far the distribution is from the values."
+    "Rank them by: aic or bic (how probable the values are, with a deduction for each parameter); ad"
+    " (Anderson-Darling) or ks (Kolmogorov-Smirnov), both of which say how far the distribution is from the values."
 )
 _BOOK_AND_RANGE = re.compile(r"(?P<book>.+\.(?:xlsx|xlsm|xltx|xltm|xls))!(?P<range>.+)", re.IGNORECASE)
 

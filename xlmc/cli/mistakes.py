@@ -28,7 +28,7 @@ def mistake(error: click.ClickException) -> str:
         case click.BadParameter() if error.param is not None:
             return f"{_name(error.param)}: {_sentence(error.message)}"
         case click.UsageError() if context is not None and (extra := _EXTRA.search(error.message)):
-            return f"{extra[1]!r} is too much. Type: {_usage(context)}"
+            return f"{extra[1]!r} does not belong here. Type: {_usage(context)}"
         case _:
             return _sentence(error.format_message()) + (_see(command) if context is not None else "")
 

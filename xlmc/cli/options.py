@@ -49,7 +49,7 @@ class WholeNumber(click.ParamType):  # type: ignore[type-arg]  # no generic befo
 
         found = value if isinstance(value, int) else typed_whole_number(value)
         if found is None:
-            self.fail(f"{value!r} is no whole number. Type it like 200000, 200,000, 2e5 or 200k.", param, ctx)
+            self.fail(f"{value!r} is not a whole number. Type it like 200000, 200,000, 2e5 or 200k.", param, ctx)
         if found < self._least:
             self.fail(f"{found:,} is too small. Type {self._least:,} or more.", param, ctx)
         if self._most is not None and found > self._most:
@@ -74,7 +74,8 @@ class OneOf(click.Choice):  # type: ignore[type-arg]  # likewise
         words: dict[str, str] = {word.casefold(): word for word in self.choices}
         found = words.get(str(value).strip().casefold())
         if found is None:
-            self.fail(f"{value!r} is none of {', '.join(self.choices)}.{did_you_mean(value, self.choices)}", param, ctx)
+            known = ", ".join(self.choices)
+            self.fail(f"{value!r} is not one of {known}.{did_you_mean(value, self.choices)}", param, ctx)
         return found
 
 

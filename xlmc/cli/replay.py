@@ -61,14 +61,14 @@ def _lines(found: Replayed, path: Path) -> Iterator[str]:
     yield f"{_verdict(found)}."
     if not found.of_this_version and not found.to_the_last_bit:
         yield from _other_version(found)
-    yield from _changes(found.changes, "Not as the record says:")
+    yield from _changes(found.changes, "Different from the record:")
     if found.fault is not None:
         yield f"The workbook cannot be run any more: {found.fault}"
     yield from _numbers(found.numbers)
     yield from _sheet_lines(found)
     if found.of_this_version and not found.changes and not found.identical:
         yield from _unexplained_lines(found)
-    yield from _changes(found.environment, "Software or a processor that is not the same as then:")
+    yield from _changes(found.environment, "Software and processor features that are not those of the recorded run:")
 
 
 def _other_version(found: Replayed) -> Iterator[str]:
@@ -79,10 +79,10 @@ def _other_version(found: Replayed) -> Iterator[str]:
     made = f"xlmc {found.version}" if found.version else "A version of xlmc that did not record its number"
     yield f"{made} made this run, and this is xlmc {__version__}."
     if found.rules:
-        yield "Rules that have changed since, and that its formulas may depend on:"
+        yield "Rules of calculation that have changed since then, and that its formulas may depend on:"
         yield from (f"  {rule.said} ({rule.since})" for rule in found.rules)
     elif not found.identical:
-        yield "No rule that its formulas depend on is known to have changed since."
+        yield "As far as xlmc knows, no rule that its formulas depend on has changed since then."
     if found.version:
         yield "To repeat it as it was made, install that version beside this one, in a clone of xlmc's repository:"
         yield f"  {install(found.version)}"

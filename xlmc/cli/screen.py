@@ -27,21 +27,21 @@ NOT_TO_BE_USED = 1
 @click.option(
     "--tolerance",
     multiple=True,
-    help="What difference counts as none: 0.5, '0.5 mph', '10 %' of the SD, 'Name=0.5 mph'; may be given several"
-    " times.  [default: 10 %]",
+    help="The largest difference that counts as none: 0.5, '0.5 mph', '10 %' of the SD, 'Name=0.5 mph'; may be given"
+    " several times.  [default: 10 %]",
 )
 @click.option(
     "--chance",
     type=float,
-    help="What difference of the probability above a forecast's threshold counts as none, in percentage points."
-    "  [default: a tenth of it or of the probability below, at least 0.1]",
+    help="The largest difference that counts as none, in percentage points, of the probability of being above a"
+    " forecast's threshold.  [default: a tenth of it or of the probability below, at least 0.1]",
 )
 @click.option(
     "--acceptance",
     type=click.FloatRange(0, min_open=True),
     default=10.0,
     show_default=True,
-    help="What change of the share of accepted trials counts as none, in % of it.",
+    help="The largest change of the share of accepted trials that counts as none, in % of it.",
 )
 @click.option(
     "--freeze",
@@ -270,7 +270,7 @@ def _verdicts(found: Screening) -> Iterable[str]:
         yield f"Not screened, because their cells are blank: {'; '.join(found.baseless)}."
     if found.reduced:
         yield (
-            f"{'Filters and evidence' if _has_evidence(found) else 'Filters'} that then decide nothing here: "
+            f"{'Filters and evidence' if _has_evidence(found) else 'Filters'} that then make no difference here: "
             f"{'; '.join(found.reduced.names)}. Without them no number moves by "
             f"more than {found.reduced.size:.2f} of its tolerance. A filter that rejects the impossible may stay."
         )
@@ -281,12 +281,15 @@ def _verdicts(found: Screening) -> Iterable[str]:
 
 def _ends_text(free: Sequence[str]) -> str:
     if not free:
-        return "None of these may lie anywhere in its range: each decides, or is undecided, at one end at least."
+        return (
+            "None of these may be anywhere in its range: held at one end at least, each of them changes an answer by "
+            "more than its tolerance, or it is undecided whether it does."
+        )
     plural = len(free) > 1
     return (
-        f"Not needed wherever in {'their ranges they lie' if plural else 'its range it lies'}: {'; '.join(free)}. Held "
-        f"at either end, {'each alone, they move' if plural else 'it moves'} no number beyond its tolerance: no other "
-        "model, and no better measurement, has to give it."
+        f"Not needed, wherever in {'their ranges they lie' if plural else 'its range it lies'}: {'; '.join(free)}. "
+        f"Held at either end, {'each alone, they move' if plural else 'it moves'} no number beyond its tolerance: no "
+        "other model, and no better measurement, has to give it."
     )
 
 
@@ -298,13 +301,15 @@ def _meaning(found: Screening) -> Iterable[str]:
     yield f"Of {found.cells} formula cells that the book needs, {found.varying} then vary."
     tolerances = "; ".join(f"{name} {_tolerance(found, name)}" for name in found.tolerances)
     yield (
-        "Cost: the largest move of all numbers, measured in its tolerance: of every forecast mean, SD, both ends of "
-        "its central range, and the probability of being above its threshold where it has one. Tolerances: "
-        f"{tolerances}; acceptance {100 * found.acceptance_tolerance:g} % of itself."
+        "Cost: the largest change of any number, divided by its tolerance; above 1 the answer changes. The numbers of "
+        "a forecast are its mean, SD, both ends of its central range, and the probability of being above its "
+        f"threshold where it has one. Tolerances: {tolerances}; acceptance {100 * found.acceptance_tolerance:g} % of "
+        "itself."
     )
     yield (
         f"{found.runs} runs of {found.run.trials:,} trials, seed {found.run.settings.seed}, over the same draws; ± is "
-        "the standard error of a change (Monte Carlo error). A verdict clears the tolerance by three errors."
+        "the standard error of a change (Monte Carlo error). A verdict is given only where a change is at least three "
+        "errors away from the tolerance."
     )
 
 

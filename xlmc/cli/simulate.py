@@ -155,7 +155,7 @@ def simulate(
     of_scenarios = _of_scenarios(answers)
     warnings([*run.warnings, *of_scenarios], run.refused)
     if run.stopped.interrupted:
-        kept = "; what was accepted of them was written" if written else ""
+        kept = "; those that were accepted were written" if written else ""
         say(f"xlmc: interrupted after {run.trials:,} trials{kept}.", err=True)
     if not written:
         raise click.exceptions.Exit(NOT_WRITTEN)

@@ -87,7 +87,7 @@ def _count(findings: Sequence[Finding]) -> str:
     return (
         f"{len(levels)} finding{'s' * (len(levels) != 1)}: {', '.join(parts)}"
         if parts
-        else "no finding: no cell loses digits or misleads"
+        else "no finding: no cell loses digits, and none gives a misleading number"
     )
 
 
@@ -119,7 +119,7 @@ def _report(found: Stability, all_cells: bool) -> StudyReport:
         *_sentences(found),
     ]
     below = f"{found.run.model.workbook.name}: {found.run.trials:,} trials, seed {found.run.settings.seed}"
-    return StudyReport("Are the digits there?", below, blocks)
+    return StudyReport("Can the digits be trusted?", below, blocks)
 
 
 def _finding_texts(number: int, finding: Finding) -> Iterator[str]:
@@ -173,15 +173,15 @@ def _cells(found: Stability, all_cells: bool) -> Table:
 
 def _sentences(found: Stability) -> Iterator[str]:
     yield (
-        "Amplifies: the relative change of the cell per relative change of the assumptions, all together, in the "
-        "median trial and in 1 of 100; through which of them most. No other form of a formula makes it less. Rounding: "
-        "the largest error by rounding, as a share of the central range or of the value. Excess: how many times larger "
-        "it is than what rounding the assumptions alone would bring; up to 7 is what sound formulas have."
+        "Amplifies: if each assumption changes by 1 %, the cell changes by up to so many percent, in the median trial "
+        "and in one trial of 100. Through: the assumption that causes most of it. No other form of a formula makes it "
+        "less. Rounding: the largest error by rounding, as a share of the central range or of the value. Excess: how "
+        "many times larger that error is than the effect of rounding the assumptions alone; up to 7 in sound formulas."
     )
     trials = f"{found.points:,} trial{'s' * (found.points != 1)}"
     yield (
-        f"Looked at: {trials} of a run of {found.run.trials:,}, seed {found.run.settings.seed}, the base case and the "
-        f"ends of all ranges among them; {found.recomputed:,} computed again with 50 digits."
+        f"Examined: {trials} of a run of {found.run.trials:,}, seed {found.run.settings.seed}, among them the base "
+        f"case and the ends of all ranges; {found.recomputed:,} were computed again with 50 digits."
     )
     for cell, functions in found.unchecked:
         yield f"Not checked with 50 digits: {', '.join(functions)} in {cell}."

@@ -37,7 +37,7 @@ def as_tolerance(given: str | float) -> tuple[float, bool]:
     relative = text.endswith("%")
     value = _number(text.removesuffix("%"))
     if value is None or not 0.0 < value < math.inf:
-        message = f"{text!r} is no precision"
+        message = f"{text!r} is not a precision"
         raise SimulationError(message, hint="Give a percentage such as 1%, or a number in the forecast's units")
     return (value / 100.0 if relative else value), relative
 
@@ -57,7 +57,7 @@ def as_numbers(given: str | Sequence[str]) -> tuple[str, ...]:
         found = _PERCENTILE.fullmatch(name)
         if name not in ("mean", "sd", "range") and not (found and 0.0 < float(found[1]) < 100.0):
             hint = "Choose from mean, sd, range, and percentiles above 0 and below 100 such as p75.5"
-            raise SimulationError(f"{name!r} is no number whose precision can be asked for", hint=hint)
+            raise SimulationError(f"{name!r} is not a number whose precision can be asked for", hint=hint)
     if not names:
         raise SimulationError("no number was named whose precision counts", hint="Name one, such as mean")
     return names
@@ -77,7 +77,7 @@ def as_confidence(given: str | float) -> float:
     if value is not None and (text.endswith("%") or value >= 1.0):
         value /= 100.0
     if value is None or not 0.0 < value < 1.0:
-        raise SimulationError(f"{text!r} is no confidence", hint="Give a percentage such as 95")
+        raise SimulationError(f"{text!r} is not a confidence level", hint="Give a percentage such as 95")
     return value
 
 
@@ -95,7 +95,8 @@ def as_seconds(given: str | float) -> float:
     parts = found.groups("0") if found else ()
     value = sum(float(part) * unit for part, unit in zip(parts, (3600.0, 60.0, 1.0), strict=False))
     if not 0.0 < value < math.inf:
-        raise SimulationError(f"{text!r} is no time", hint="Give seconds, or a duration such as 60s, 5m or 1h30m")
+        hint = "Give seconds, or a duration such as 60s, 5m or 1h30m"
+        raise SimulationError(f"{text!r} is not a length of time", hint=hint)
     return value
 
 

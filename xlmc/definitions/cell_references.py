@@ -205,7 +205,7 @@ def area_of_reference(workbook: Workbook, text: str, sheet: str | None, where: o
     name = workbook.defined_name(tail, sheet if head is None else _sheet_named(workbook, head, text, where))
     if name is None:
         refuse_name_of_other_sheet(workbook, tail, where)
-        raise DefinitionError(f"{text!r} is no range of cells and no name of one", where=where, hint=_ONE_RANGE)
+        raise DefinitionError(f"{text!r} is neither a range of cells nor the name of one", where=where, hint=_ONE_RANGE)
     return _area_of_name(workbook, name.text, where)
 
 

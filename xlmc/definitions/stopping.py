@@ -203,7 +203,7 @@ class Precision(Goal):
         as_tolerance(self.tolerance)
         as_numbers(self.numbers)
         if not 0.0 < self.confidence < 1.0:
-            raise SimulationError(f"{self.confidence!r} is no confidence", hint="Give a share such as 0.95")
+            raise SimulationError(f"{self.confidence!r} is not a confidence level", hint="Give a share such as 0.95")
 
     @classmethod
     def of(cls, given: Mapping[str, Any]) -> Self:
@@ -317,7 +317,7 @@ def stopping(
     given = {name: value for name, value in goals.items() if value is not None}
     found = [goal.of(given) for goal in GOALS.values() if any(option.name in given for option in goal.options)]
     if rare is not None and rare not in RARE:
-        message = f"{rare!r} is no way to look for rare trials"
+        message = f"{rare!r} is not a way to look for rare trials"
         raise SimulationError(message, hint=f"Choose one of {', '.join(RARE)}")
     named = (forecasts,) if isinstance(forecasts, str) else tuple(forecasts)
     return Stopping(only_one(found), named, None if time_limit is None else as_seconds(time_limit), rare)

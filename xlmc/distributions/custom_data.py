@@ -104,7 +104,7 @@ def custom_pieces(rows: Sequence[Row], *, cumulative: bool = False) -> list[Piec
         cumulative: each weight is the sum of all up to its row.
 
     Raises:
-        DataError: the data are no distribution.
+        DataError: the data are not a distribution.
     """
     columns = len(rows[0])
     if cumulative and columns not in (2, 3, 4):

@@ -53,7 +53,7 @@ class Piecewise(Family):
             area = areas.sum()
         sound = np.all(self.widths > 0) and np.isfinite(area) and min(self.left.min(), self.right.min()) >= 0
         if not (sound and area > 0):
-            raise DataError("The points are no density", "Values must rise, heights must be 0 or more, one above 0")
+            raise DataError("The points are not a density", "Values must rise, heights must be 0 or more, one above 0")
         self.left, self.right, self.areas = self.left / area, self.right / area, areas / area
         self.below = np.concatenate(([0.0], np.cumsum(self.areas)))
 

@@ -47,7 +47,7 @@ def _match_cell(database: Value, name: Value, criterion: Value, date1904: bool) 
     index = _field_named(database, name)
     if ((index < 0) & ~empty).any():
         raise FormulaError(
-            "a criterion stands under a heading that is no field of the database",
+            "a criterion stands under a heading that is not a field of the database",
             hint="computed criteria are not supported; compute them in a column of the database",
         )
     result = empty[:, None]

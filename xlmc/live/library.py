@@ -124,7 +124,7 @@ class Library:
         plain = re.sub(r"[^\w .()+-]", "_", name.replace("\\", "/").rpartition("/")[2]).strip(" .")[-_LONGEST:]
         if not plain.casefold().endswith(_ENDINGS) or not (data[:2] == b"PK" or is_old_workbook(data)):
             hint = "drop a workbook whose name ends in .xlsx, .xlsm or .xls"
-            raise WorkbookError("this is no Excel workbook", where=printable(plain) or None, hint=hint)
+            raise WorkbookError("this is not an Excel workbook", where=printable(plain) or None, hint=hint)
         folder = self.keeper.dropped / secrets.token_hex(8)
         target = folder / plain
         try:

@@ -155,7 +155,7 @@ def read_message(text: str | bytes) -> Said:
     try:
         found = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise ProtocolError("a message is no JSON") from error
+        raise ProtocolError("a message is not JSON") from error
     kind = found.get("kind") if isinstance(found, dict) else None
     wanted = _FIELDS.get(kind) if isinstance(kind, str) else None
     if wanted is None:

@@ -93,7 +93,7 @@ def bound_socket(port: int) -> socket.socket:
     except OSError as error:
         made.close()
         hint = "give another with --port, or none"
-        raise XlmcError(f"the port {port} cannot be had: {error.strerror or error}", hint=hint) from error
+        raise XlmcError(f"the port {port} cannot be used: {error.strerror or error}", hint=hint) from error
     return made
 
 
@@ -315,7 +315,7 @@ async def _heard(socket: WebSocket) -> str:
         raise WebSocketDisconnect(message.get("code", 1005))
     text = message.get("text")
     if text is None:
-        raise ProtocolError("a message is no text")
+        raise ProtocolError("a message is not text")
     return str(text)
 
 

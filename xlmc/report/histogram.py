@@ -252,7 +252,7 @@ class Figure:
             f"{estimate_text(row.high)}{units}."
         )
         if bins.counted < row.trials:
-            text += f" Trials are weighted; drawn are as many as carry as much, {bins.counted:,}."
+            text += f" Trials are weighted: the chart shows {bins.counted:,} trials of equal weight in their place."
         if bins.below or bins.above:
             text += f" Not drawn: {bins.below:,} trials below and {bins.above:,} above."
         return text

@@ -259,7 +259,7 @@ def _cutoffs(assumption: Assumption, band: Band, lowering: Lowering) -> dict[str
 
 
 def _check(assumption: Assumption, change: Change) -> None:
-    """Refuse numbers that are no distribution, and a distribution for what is not drawn."""
+    """Refuse numbers that are not a distribution, and a distribution for what is not drawn."""
     where = change.where or assumption.row
     if assumption.frozen:
         if isinstance(change, Held):

@@ -97,15 +97,15 @@ def _lost(
         return []
     dust = term_sizes(model.lowering.dag, needed, plain)
     told = [
-        f"the digits of {name!r} are not there: rounding alone moves it by more than a thousandth of its central range "
-        f"in {np.count_nonzero(where):,} of {n:,} accepted trials (xlmc stability says where)"
+        f"the digits of {name!r} cannot be trusted: rounding alone moves it by more than a thousandth of its central "
+        f"range in {np.count_nonzero(where):,} of {n:,} accepted trials (xlmc stability says where)"
         for name, where in lost.items()
         if _is_confirmed(model, nodes[name], draws, numbers_of(plain[nodes[name]], n), where, DUST * dust[nodes[name]])
     ]
     others = {name: node for name, node in blurred.items() if not any(repr(name) in sentence for sentence in told)}
     return told + [
-        f"the digits of {name!r} are not there: its spread is rounding, which puts it off by {error:.1g} in the median "
-        f"trial, where its true central range is {width:.1g} wide (xlmc stability says where)"
+        f"the digits of {name!r} cannot be trusted: its spread comes from rounding. In the median trial rounding moves "
+        f"it by {error:.1g}, and its true central range is {width:.1g} wide (xlmc stability says where)"
         for name, node in others.items()
         for error, width in _blur(model, node, draws, numbers_of(plain[node], n))
         if width > 0 and error > MOST_OF_SPREAD * width

@@ -47,7 +47,7 @@ def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
     Numbers are checked, unless they were as the row was read.
 
     Raises:
-        DefinitionError: the numbers are no distribution.
+        DefinitionError: the numbers are not a distribution.
     """
     data = assumption.data
     family = assumption.family if data is None else _from_data(assumption.family, data, assumption.name, lowering)

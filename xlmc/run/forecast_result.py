@@ -163,7 +163,7 @@ def tail_notices(samples: Mapping[str, Sample], method: str) -> list[Notice]:
     """
     hanging = {name: part for name, sample in samples.items() if sample.n >= TELLING and (part := _farthest(sample))}
     messages = (
-        f"the mean and the standard deviation of {name!r} hang on a single trial, {part}. {_OF_TAILS}"
+        f"the mean and the standard deviation of {name!r} depend on a single trial, {part}. {_OF_TAILS}"
         for name, part in hanging.items()
     )
     others = {name: sample for name, sample in samples.items() if name not in hanging}

@@ -241,7 +241,7 @@ class Model:
             definitions: those of this model, changed.
 
         Raises:
-            DefinitionError: numbers are no distribution, or assumptions need each other in a circle.
+            DefinitionError: numbers are not a distribution, or assumptions need each other in a circle.
             FormulaError: a cell that is needed now cannot be computed.
         """
         own = self.definitions
@@ -419,7 +419,7 @@ class Model:
             probabilities: `(q,)`, between 0 and 1.
 
         Returns:
-            Name of the assumption -> `(q,)`; NaN where the parameters are no distribution.
+            Name of the assumption -> `(q,)`; NaN where the parameters are not a distribution.
         """
         wanted = np.atleast_1d(np.asarray(probabilities, np.float64))
         held: dict[str, NDArray[np.float64]] = {}

@@ -75,7 +75,7 @@ class Draw:
         return Truncated(self.family).fault(*self.cutoffs, *self.parameters)  # type: ignore[arg-type]  # likewise
 
     def fill(self, u: Floats, dynamic: Mapping[Hashable, Floats]) -> None:
-        """Turn uniforms `(n,)` into draws, in their memory; NaN where the parameters of a trial are no distribution.
+        """Turn uniforms `(n,)` into draws, in their memory; NaN where the parameters of a trial are not a distribution.
 
         A draw that is too small a number for a cell is 0.
         """
@@ -118,7 +118,7 @@ class Draw:
         with np.errstate(over="ignore", invalid="ignore"):
             likely = np.isfinite(draws.sum())  # quick; a sum of large numbers may overflow, though
         if not likely and not np.isfinite(draws).all():
-            message = f"{self.family.name} of the assumption {self.name!r} gives draws that are no numbers"
+            message = f"{self.family.name} of the assumption {self.name!r} gives draws that are not numbers"
             raise SimulationError(message, hint="its parameters are too extreme: correct them in the workbook")
 
     def ties(self) -> Ties | None:

@@ -95,13 +95,13 @@ def _links(root: Element, rels: Mapping[str, Relationship]) -> Iterator[str]:
 def _workbook_part(parts: Mapping[str, bytes]) -> str:
     found = next((rel.target for rel in relationships(parts).values() if rel.kind == "officeDocument"), None)
     if found is None:
-        raise WorkbookError("the file is a zip, but no Excel workbook", hint=SAVE_AS)
+        raise WorkbookError("the file is a zip, but not an Excel workbook", hint=SAVE_AS)
     if found not in parts:
         raise WorkbookError(f"the file lacks its workbook part ({found})", hint=REPAIR)
     if found.lower().endswith(".bin"):
         raise WorkbookError("the file is a binary workbook (.xlsb)", hint=SAVE_AS)
     if not tree(parts[found], found).tag.endswith("}workbook"):
-        raise WorkbookError("the file is an Office document, but no workbook", hint=SAVE_AS)
+        raise WorkbookError("the file is an Office document, but not a workbook", hint=SAVE_AS)
     return found
 
 

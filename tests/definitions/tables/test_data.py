@@ -97,7 +97,7 @@ def test_switches(read):
 MISTAKES = {
     "no data": (["Custom", None], {}, "Inputs!D2", "Custom needs Data, a range of cells", "Name the range"),
     "a number": (["Custom", 5], {}, "Inputs!D2", "Data holds 5, which is not a range", "Name the range"),
-    "an unknown name": (["Custom", "Csots"], {}, "Inputs!D2", "'Csots' is no range of cells", "Write one range"),
+    "an unknown name": (["Custom", "Csots"], {}, "Inputs!D2", "'Csots' is neither a range of cells", "Write one range"),
     "a name of something else": (["Custom", "Odd"], {}, "Inputs!D2", "The name stands for Data!A1*2", "one range"),
     "an unknown sheet": (["Custom", "Dta!A1:C2"], {}, "Inputs!D2", "There is no worksheet 'Dta'", "Did you mean Data?"),
     "an unknown table": (["Custom", "Test[Value]"], {}, "Inputs!D2", "There is no table 'Test'", "Did you mean Tests?"),

@@ -57,8 +57,8 @@ def test_the_limits_of_an_instrument_keep_what_lies_within_its_tolerance(reading
 
 MISTAKES = [
     (["y", SPEED, "fast", None, 1], "Answers!C41", "Reading holds the text 'fast'", "Type a number"),
-    (["y", SPEED, 12, "sure", 1], "Answers!D41", "There is no error 'sure'", "Use one of Uniform"),
-    (["y", SPEED, 12, "Nromal", None, 1], "Answers!D41", "There is no error 'Nromal'", "Did you mean Normal?"),
+    (["y", SPEED, 12, "sure", 1], "Answers!D41", "There is no kind of error 'sure'", "Use one of Uniform"),
+    (["y", SPEED, 12, "Nromal", None, 1], "Answers!D41", "There is no kind of error 'Nromal'", "Did you mean Normal?"),
     (["y", SPEED, 12], "Answers!A41", "The error Uniform of 'y' says nothing of its size", "Plus or minus"),
     (["y", SPEED, 12, None, 1, None, 10], "Answers!G41", "is given twice, by Plus or minus and Percent", "Fill in"),
     (["y", SPEED, 12, None, None, 1], "Answers!F41", "The error Uniform of 'y' takes no Std dev", "Plus or minus"),

@@ -99,7 +99,7 @@ WRONG = [
     ("Friction", "0,7", "C2", "'0,7' says nothing of the assumption", "a range such as"),
     ("Friction", "P10", "C2", "'P10' says nothing of the assumption", "a band such as"),
     ("Friction", True, "C2", "'TRUE' says nothing of the assumption", "frozen, or drawn"),
-    ("e", 0.5, "C2", "'0.5' is no limit of the filter 'e'", "at most 0.5"),
+    ("e", 0.5, "C2", "'0.5' is not a limit of the filter 'e'", "at most 0.5"),
     ("Friction", ("=1/0", None), "C2", "Friction has never been calculated", "calculate it"),
 ]
 

@@ -82,7 +82,7 @@ def test_the_sheets_of_a_run_in_replicates(make, opened, rows_of):
     results = [row[0] for row in rows_of(book["Results"]) if row]
     sentence = "Latin hypercube: 16 independent replicates of 250 trials; errors come from the differences between "
     assert any(str(text).startswith(sentence) for text in results)
-    assert any("independent trials, which these samples hardly ever exceed" in str(text) for text in results)
+    assert any("independent trials; the error of these samples is hardly ever larger" in str(text) for text in results)
     texts = [row[0] for row in rows_of(book["Assumptions"]) if row]
     assert any(str(text).startswith("Before filtering, ± is that of independent trials") for text in texts)
     found = filter_effect(run.prior["b"], run.inputs["b"], run.replicate)

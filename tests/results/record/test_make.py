@@ -142,7 +142,7 @@ def test_correlations_warnings_and_notices(run, record):
         "S!A3: no forecast or filter needs the assumption 'idle'",
         *(str(notice) for notice in run.notices_of_run),
     ]
-    assert "'inverse' hang on a single trial" in str(run.notices_of_run[0])  # its denominator passes 0
+    assert "'inverse' depend on a single trial" in str(run.notices_of_run[0])  # its denominator passes 0
 
 
 def test_errors_are_told_by_definition_cell_and_code(run, record):
@@ -150,7 +150,7 @@ def test_errors_are_told_by_definition_cell_and_code(run, record):
     assert rows == [
         ("filter", "root", "S!C1", "#NUM!", run.tally.errors[0]["#NUM!"]),
         ("forecast", "inverse", "S!B2", "#DIV/0!", run.faults["inverse"]["#DIV/0!"]),
-        ("assumption", "late", "S!A5", "parameters are no distribution", run.invalid["late"]),
+        ("assumption", "late", "S!A5", "parameters are not a distribution", run.invalid["late"]),
     ]
     assert all(met.trials > 0 for met in errors_met(run))
 

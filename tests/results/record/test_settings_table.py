@@ -90,9 +90,9 @@ def test_an_older_record_that_does_not_know_a_goal_is_read(run):
 @pytest.mark.parametrize(
     ("entry", "message"),
     [
-        (Entry("until_accepted", "", "many"), "'many' is no whole number"),
+        (Entry("until_accepted", "", "many"), "'many' is not a whole number"),
         (Entry("until_accepted", "", 1), "1 accepted trials were asked for"),
-        (Entry("adaptive", "", 2.5), "2.5 is no whole number"),
+        (Entry("adaptive", "", 2.5), "2.5 is not a whole number"),
         (Entry("precision", "", 1.0), "could not convert|must be a string or a real number"),
     ],
 )

@@ -219,7 +219,7 @@ FAULTS = {
     "a column less": (lambda p, d: p.pop("columns/1.npy"), "lacks 'columns/1.npy'"),
     "a column that nobody lists": (lambda p, d: p.update({"columns/x.npy": b""}), "something else than xlmc"),
     "a path out of the package": (lambda p, d: p.update({"../evil": b""}), "something else than xlmc"),
-    "no document": (lambda p, d: p.pop(RUN), "is no saved run"),
+    "no document": (lambda p, d: p.pop(RUN), "is not a saved run"),
     "another workbook": (lambda p, d: p.update({WORKBOOK: b"PK"}), "is not the one that was run"),
     "another column": (lambda p, d: p.update({"columns/1.npy": p["columns/2.npy"]}), "its SHA-256 is another"),
     "objects": (with_column(1, np.array([{}] * 3, dtype=object)), "not what it says it is"),
@@ -261,7 +261,9 @@ def test_a_run_that_an_earlier_version_saved_is_opened(run, saved, tmp_path):
 
 def test_one_in_float32_is_refused_and_the_version_named(saved, tmp_path):
     path = repacked(saved, tmp_path / "old.xlmcrun", of_version_1("float32"))
-    with pytest.raises(XlmcError, match=r"xlmc 0\.2\.0 computed this run in float32.*with xlmc 0\.2\.0") as caught:
+    with pytest.raises(
+        XlmcError, match=r"xlmc 0\.2\.0 computed this run with 32-bit numbers.*with xlmc 0\.2\.0"
+    ) as caught:
         open_run(path)
     assert "\n" not in str(caught.value)
     assert str(path) in str(caught.value)
@@ -307,8 +309,8 @@ def test_goals_are_saved_and_opened_as_in_version_0_4(model, tmp_path, asked, wr
         ({"accepted": 2.5}, "its goal, accepted trials, number"),
         ({"accepted": True}, "its goal, accepted trials, number"),
         ({"digits": 7}, "7 significant digits were asked for"),
-        ({"precision": {"tolerance": -1}}, "'-1' is no precision"),
-        ({"precision": {"tolerance": 1, "confidence": 95}}, "95 is no confidence"),
+        ({"precision": {"tolerance": -1}}, "'-1' is not a precision"),
+        ({"precision": {"tolerance": 1, "confidence": 95}}, "95 is not a confidence level"),
         ({"precision": {"tolerance": 1, "numbers": ["median"]}}, "'median' is no number"),
         ({"precision": {"tolerance": 1, "key": "x"}}, "the unknown field key"),
         ({"precision": 1}, "its goal, a precision"),

@@ -193,7 +193,7 @@ def test_accuracy_in_units(straight):
 @pytest.mark.parametrize(
     ("asked", "message"),
     [
-        ({"accuracy": "good"}, "is no precision"),
+        ({"accuracy": "good"}, "is not a precision"),
         ({"replicates": 1}, "1 replicates were asked for"),
         ({"trials": 100}, "100 trials were asked for"),
         ({"reference_trials": 10}, "10 reference trials were asked for"),

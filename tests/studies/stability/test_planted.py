@@ -37,7 +37,7 @@ PLANTED = {
     "logarithm": (
         "=LN(1+A1)/A1",
         [(1e-9, 1e-7)],
-        "1+A1 is rounded to 16 digits, and LN keeps only its difference from 1",
+        "1+A1 is rounded to 16 digits, and LN uses only its difference from 1",
         "=IF(1+A1=1,A1,A1*LN(1+A1)/(1+A1-1))/A1",
     ),
     "growth": (

@@ -199,7 +199,10 @@ def test_a_spread_that_is_all_rounding_is_wrong_though_the_number_is_nearly_righ
     (one,) = [each for each in found.findings if each.kind == "cancellation"]
     assert one.level is Level.WRONG
     assert "its spread is rounding" in one.effect
-    assert any("the digits of 'f' are not there: its spread is rounding" in warning for warning in found.run.warnings)
+    assert any(
+        "the digits of 'f' cannot be trusted: its spread comes from rounding" in warning
+        for warning in found.run.warnings
+    )
 
 
 @pytest.mark.parametrize("formula", ["=SIN(A1)^2+COS(A1)^2", "=A1/A1*3", "=A1*1.1/A1"])

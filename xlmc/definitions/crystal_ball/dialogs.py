@@ -287,7 +287,7 @@ class _Dialogs:
         """How it is drawn, where all its numbers are known.
 
         Raises:
-            UnreadableError: they are no distribution.
+            UnreadableError: they are not a distribution.
         """
         values = {key: value for key, value in given.items() if not isinstance(value, Cell)}
         if len(values) < len(given):
@@ -361,7 +361,7 @@ class _Dialogs:
             self._findings.notice(f"{said}: its end is taken as the threshold", cell)
             return ends[0], None
         if low > high:
-            self._findings.notice(f"{said}, which is no range: it is left out", cell)
+            self._findings.notice(f"{said}, which is not a range: it is left out", cell)
             return None, None
         self._findings.notice(f"{said}: the certainty of this range is reported", cell)
         return None, certainty

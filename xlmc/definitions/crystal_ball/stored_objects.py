@@ -274,7 +274,7 @@ def _guid(thing: Thing) -> str:
 def _enumerated(thing: Thing) -> int:
     value = _member(thing, "value__")
     if type(value) is not int:
-        raise StoredError(f"a value of {thing.kind} is no whole number")
+        raise StoredError(f"a value of {thing.kind} is not a whole number")
     return value
 
 

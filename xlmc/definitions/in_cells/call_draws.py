@@ -176,14 +176,14 @@ def built_family(drawn: Drawn, data: DataRange | None, saved: Callable[[Cell], f
     """The family of a draw within another, with its data.
 
     Raises:
-        FormulaError: a cell of the data is not a number, or they are no distribution.
+        FormulaError: a cell of the data is not a number, or they are not a distribution.
     """
     if data is None:
         return drawn.family
     family = _built(drawn.family, data, saved)
     if family is None:
         hint = "give it lists of numbers, or cells that hold numbers"
-        raise FormulaError(f"the data of {drawn.function} are no distribution", hint=hint)
+        raise FormulaError(f"the data of {drawn.function} are not a distribution", hint=hint)
     return family
 
 
@@ -221,7 +221,7 @@ def base_of(
 
 
 def _built(family: Family, data: DataRange, saved: Callable[[Cell], float | None]) -> Family | None:
-    """The family with its data; None where a cell is not calculated yet, or they are no distribution.
+    """The family with its data; None where a cell is not calculated yet, or they are not a distribution.
 
     Of the latter the model tells when it is made.
     """

@@ -243,7 +243,7 @@ def _alternate_draw(
         properties: reads these; takes the name of the function for messages.
 
     Raises:
-        FormulaError: the pairs are no distribution of the family.
+        FormulaError: the pairs are not a distribution of the family.
     """
     if name not in _ALTERNATES_BY_NAME:
         return None

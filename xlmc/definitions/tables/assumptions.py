@@ -296,6 +296,6 @@ def _percent(row: Row, heading: str) -> float:
     match = _HEADING.fullmatch(plain(heading))
     percent = float(match[1]) if match else 0.0
     if not 0 < percent < 100:
-        message = f"{row.heading(heading)} is no percentile"
+        message = f"{row.heading(heading)} is not a percentile"
         raise DefinitionError(message, where=row.cell(heading), hint="Percentiles lie above P0 and below P100")
     return percent

@@ -98,7 +98,7 @@ def data_family(family: Family, data: DataRange, number: Callable[[Cell], float]
         number: gives the value of a cell with a formula.
 
     Raises:
-        DefinitionError: the data are no distribution; it names the cell to look at first.
+        DefinitionError: the data are not a distribution; it names the cell to look at first.
     """
 
     def settled(value: Parameter | None) -> float | None:

@@ -139,7 +139,7 @@ def _error(row: Row) -> str:
     if not typed:
         return "uniform"
     if plain(typed) not in known:
-        message = f"There is no error {typed!r}"
+        message = f"There is no kind of error {typed!r}"
         raise DefinitionError(message, where=row.cell("Error"), hint=did_you_mean(typed, ERRORS.values()))
     return known[plain(typed)]
 

@@ -261,7 +261,7 @@ def _of_filter(heading: str, filter_: Filter) -> _Column:
             key = found[1].casefold().replace(" ", "_")
             other = {"at_least": "above", "above": "at_least", "at_most": "below", "below": "at_most"}[key]
             return Limits(name, {key: _number(found[2]), other: None}, where)
-        raise DefinitionError(f"{text!r} is no limit of the filter {name!r}", where=where, hint=_OF_FILTER)
+        raise DefinitionError(f"{text!r} is not a limit of the filter {name!r}", where=where, hint=_OF_FILTER)
 
     return _Column(heading, ("filter", name_key(name)), take)
 

@@ -129,7 +129,7 @@ def _lognorm(row: Row, _findings: Findings) -> str:
     found = {plain(name): name for name in _LOGNORMS}.get(plain(typed))
     if found is None:
         hint = "Use @RISK (mean and std dev of the draw) or XLRisk (of its logarithm)"
-        raise DefinitionError(f"There is no RiskLognorm of {typed!r}", where=row.cell("Value"), hint=hint)
+        raise DefinitionError(f"There is no RiskLognorm of a program {typed!r}", where=row.cell("Value"), hint=hint)
     return found
 
 
@@ -195,7 +195,7 @@ def _whole_number_as_text(row: Row, name: str) -> int | None:
         return None
     found = typed_whole_number(text)
     if found is None:
-        message = f"{name} is {as_text(text)!r}, which is no whole number"
+        message = f"{name} is {as_text(text)!r}, which is not a whole number"
         raise DefinitionError(message, where=row.cell("Value"), hint="Type it like 200000, 200,000, 2e5 or 200k")
     return found
 
@@ -281,7 +281,7 @@ def _way(row: Row, purpose: str, ways: Collection[str]) -> str:
     """The one of the ways that was typed, in any case."""
     typed = required_text(row, "Value")
     if plain(typed) not in ways:
-        message = f"{typed!r} is no way to {purpose}"
+        message = f"{typed!r} is not a way to {purpose}"
         raise DefinitionError(message, where=row.cell("Value"), hint=f"Use {', '.join(ways)}")
     return plain(typed)
 

@@ -85,7 +85,7 @@ def forecast_drawing(figure: Figure, result: ForecastResult, width: float) -> Dr
     found.append(text_at((left + right) / 2, bottom + 32, answer.units or "value"))
     said = (
         f"{answer.name}: above, how many accepted trials lie in each interval; below, the share of them that is not "
-        f"above each value. Dark: the central {percent(answer.share)}. The upright line is the mean."
+        f"above each value. Dark: the central {percent(answer.share)}. The vertical line is the mean."
     )
     return drawing(found, 570.0, bottom + 40, said, width)
 

@@ -157,11 +157,11 @@ def _forecasts(material: Material) -> Iterator[Block]:
         caption = (
             f"{figure.name}. Above, the accepted trials per {bins.width:g}{units}; below, the share of them that "
             f"is not above each value. Dark: the central {percent(row.share)} of {row.trials:,} accepted trials, from "
-            f"{estimate_text(row.low)} to {estimate_text(row.high)}{units}. Upright line: the mean, "
+            f"{estimate_text(row.low)} to {estimate_text(row.high)}{units}. Vertical line: the mean, "
             f"{estimate_text(row.mean)}{units}."
         )
         if bins.counted < row.trials:
-            caption += f" Trials are weighted; drawn are as many as carry as much, {bins.counted:,}."
+            caption += f" Trials are weighted: the figure shows {bins.counted:,} trials of equal weight in their place."
         if bins.below or bins.above:
             caption += f" Not drawn: {bins.below:,} trials below and {bins.above:,} above."
         yield material.figure(forecast_drawing(figure, simulation.results[row.name], width), caption)
@@ -190,7 +190,7 @@ def _filters(material: Material) -> Iterator[Block]:
     ]
     heads = ("Filter", "Only for", "Must be", "Because", "Discarded trials", "Share")
     yield material.table(
-        "Filters of some forecasts only, and the accepted trials that they discard.",
+        "Filters for some forecasts only, and the accepted trials that they discard.",
         heads,
         lines,
         (2, 1.7, 1.5, 2.5, 1.1, 1.7),

@@ -58,9 +58,10 @@ def _how_to_read(simulation: Simulation, figures: Sequence[Figure]) -> Iterator[
     if max(figure.answer.trials for figure in figures) > most:
         yield element(
             "p",
-            f"Of a forecast with more than {most:,} trials the page holds {most:,} values at equal distances of rank, "
-            f"and how many trials lie between them. The count at an end may be off by {100 / (most - 1):.2g} % of the "
-            "trials at most, as the certainty says; it is exact at the ends of the central range.",
+            f"Of a forecast with more than {most:,} trials the page holds only {most:,} values, evenly spaced in the "
+            "sorted trials, and the number of trials between them. So the count at an end may be wrong by up to "
+            f"{100 / (most - 1):.2g} % of the trials, as the certainty says; it is exact at the ends of the central "
+            "range.",
             class_="remark",
         )
 

@@ -205,9 +205,7 @@ def notices(simulation: Simulation) -> Html:
 
 def record(found: Record) -> Html:
     """The record of the run: every part of it can be opened, and what is open is printed."""
-    said = (
-        "What the numbers depend on, and how to repeat them. Every number stands here in full. What is open is printed."
-    )
+    said = "What the numbers depend on, and how to repeat them. Every number is in full. Only open parts are printed."
     return element(
         "section",
         element("h2", "Record"),

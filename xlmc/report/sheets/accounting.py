@@ -90,7 +90,7 @@ def _pair(simulation: Simulation, index: int, other: int) -> Shown:
 
 
 def _write_discards(page: Page, simulation: Simulation, last: int) -> None:
-    page.heading("Filters of some forecasts only")
+    page.heading("Filters for some forecasts only")
     said = (
         f"These filters reject no trial. Of the {simulation.accepted:,} accepted trials, a forecast named here counts "
         "those that its filters keep; all other forecasts count them all. A trial that two of its filters discard is "

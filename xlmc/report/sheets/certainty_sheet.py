@@ -105,7 +105,7 @@ def _instructions(simulation: Simulation, trials: TrialsAt) -> str:
         which = f"the first {trials.shown:,} of {simulation.accepted:,} accepted trials, which stand"
     else:
         which += ", which stand"
-    said = f"Type the ends of a range into the yellow cells; an empty cell is no limit. Formulas count {which} on the "
+    said = f"Type the ends of a range into the yellow cells; an empty cell means no limit. Formulas count {which} on "
     said += "sheet Trials; both ends belong to the range."
     if simulation.plan.size:
         return f"{said} These trials depend on each other (see Sampling in the Record), so no error is given."

@@ -33,8 +33,8 @@ __all__ = ["WIDTHS", "limit_sentences", "moved_caption", "write_acceptance", "wr
 
 _LAST: Final = len(WIDTHS) - 1
 _PRINTED: Final = (
-    "Printed is how the means change. The shares of trials accepted, the slopes and the numbers of all charts stand "
-    "below, and are not printed unless you clear the print area."
+    "Only the changes of the means are printed. The shares of trials accepted, the slopes and the numbers of all "
+    "charts are below, and are not printed unless you clear the print area."
 )
 _LIMIT, _CHANGE, _OF_RANGE = 1, 4, 10
 """Columns of the long table."""

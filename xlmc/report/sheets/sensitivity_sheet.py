@@ -97,8 +97,8 @@ def write_sensitivity(page: Page, book: Workbook, found: Sensitivities, name: st
 def _printed_sentence(forecasts: int) -> str:
     which = "each forecast" if forecasts <= _PRINTED else f"each of the first {_PRINTED} forecasts"
     return (
-        f"Printed are the first two charts of {which}. The other charts and the numbers of all stand below, and are "
-        "not printed unless you clear the print area."
+        f"Only the first two charts of {which} are printed. The other charts and the numbers of all are below, and "
+        "are not printed unless you clear the print area."
     )
 
 

@@ -189,7 +189,7 @@ def forecast_filter_section(simulation: Simulation) -> Section:
         )
         for each in discards_of(simulation)
     )
-    return Section("forecast_filters", "Filters of some forecasts only", table=RecordTable(_FORECAST_FILTER, rows))
+    return Section("forecast_filters", "Filters for some forecasts only", table=RecordTable(_FORECAST_FILTER, rows))
 
 
 def evidence_section(simulation: Simulation) -> Section:

@@ -20,7 +20,7 @@ __all__ = ["ErrorMet", "errors_met", "lost_sentences", "rest_sentences"]
 _WORDS: Final = {
     "text": "is a text",
     "blank": "is blank",
-    "parameters are no distribution": "has parameters that are no distribution",
+    "parameters are not a distribution": "has parameters that are not a distribution",
 }
 _MOST_NAMED: Final = 5
 
@@ -61,7 +61,7 @@ def _errors(simulation: Simulation) -> Iterator[ErrorMet]:
     for forecast in model.forecasts:
         yield from _of("forecast", forecast.name, forecast.cell, simulation.faults[forecast.name], roots)
     for assumption in model.assumptions:
-        invalid = Counter({"parameters are no distribution": simulation.invalid[name_key(assumption.name)]})
+        invalid = Counter({"parameters are not a distribution": simulation.invalid[name_key(assumption.name)]})
         yield from _of("assumption", assumption.name, assumption.cell, invalid, {})
 
 

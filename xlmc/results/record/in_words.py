@@ -41,13 +41,14 @@ __all__ = [
 
 
 UNWEIGHTED: Final = (
-    "Left out of weighted results, because it takes trials of equal weight: what the answers depend on, filter limits, "
+    "Weighted results leave out what needs trials of equal weight: what the answers depend on, filter limits, "
     "forecasts two at a time, ranges of your own on the sheet Certainty, and rank correlations of accepted trials."
 )
 """What results by weights do not hold."""
 
 REJECTED_SENTENCE: Final = (
-    "± of the trials that a filter rejects is that of independent trials, which these samples hardly ever exceed."
+    "The ± of the trials that a filter rejects is that of independent trials; the error of these samples is hardly "
+    "ever larger."
 )
 """The note where shares are shown whose errors are not computed from the replicates."""
 

@@ -80,19 +80,19 @@ _FORMAT: Final = 2
 """Of the record: from 2 on it holds the settings and the cells that a run can be repeated and checked by."""
 
 _SHARES = {
-    "trials": "accepted of all trials; its interval is Wilson's, 95 %",
-    "accepted": "(N − 1)/(n − 1) for n trials until the N-th was accepted; its interval is exact, 95 %",
+    "trials": "accepted trials divided by all trials; its 95 % interval is by Wilson's formula",
+    "accepted": "(N − 1)/(n − 1) for n trials until the N-th was accepted; its 95 % interval is exact",
 }
 """How the share of accepted trials is estimated, by what ended the run."""
 
-_RARE_SHARE = "the mean weight of the trials drawn where accepted ones lie; its interval is that of its logarithm, 95 %"
+_RARE_SHARE = "the mean weight of the trials drawn where accepted ones lie; its 95 % interval is that of its logarithm"
 _CONVENTIONS = (
     ("percentiles", "Percentiles", "linear between trials, as Excel's PERCENTILE.INC"),
     ("central_range", "Central range", "as many trials lie below it as above it; it is not the shortest such range"),
     ("kurtosis", "Kurtosis", "3 for the normal distribution"),
-    ("mode", "Mode", "half-sample mode; of counts the most frequent value"),
+    ("mode", "Mode", "the half-sample mode (within the densest half, again and again); of counts the most frequent"),
     ("errors", "Standard errors (±)", "Monte Carlo error alone"),
-    ("shares", "Intervals of shares", "Wilson, 95 %; longer where a share rests on a few trials"),
+    ("shares", "Intervals of shares", "95 %, by Wilson's formula; longer where a share rests on a few trials"),
     ("trial_numbers", "Trial numbers", "counted from 0"),
     ("logicals", "Logicals", "TRUE counts as 1, FALSE as 0"),
 )
@@ -173,7 +173,7 @@ def _file(simulation: Simulation) -> Section:
         # Result sheets do not change this one, so a result workbook can be checked against the book it came from.
         Entry(
             "original_sha256",
-            "SHA-256 of its parts without result sheets",
+            "SHA-256 of the file without result sheets",
             original_hash(book.parts) if book.parts else None,
         ),
     )
@@ -207,8 +207,8 @@ def _counts(simulation: Simulation) -> Section:
         Entry("acceptance_error", "Its standard error", plain(simulation.acceptance.error)),
         *_weight_entries(simulation),
         Entry("error_trials", "Lost to errors", simulation.error_trials),
-        Entry("undecided", "Not decided by a filter", simulation.tally.by_error),
-        Entry("invalid", "Draws whose parameters are no distribution", sum(simulation.invalid.values())),
+        Entry("undecided", "Error in a filter, and no filter FALSE", simulation.tally.by_error),
+        Entry("invalid", "Draws whose parameters are not a distribution", sum(simulation.invalid.values())),
     )
     return Section("counts", "Trials", entries)
 
@@ -230,8 +230,8 @@ def _end(simulation: Simulation) -> Section:
     entries = (
         Entry("by", "Ended by", stopped.by),
         Entry("in_words", "In words", stopped.sentence),
-        Entry("goal", "Was to go on until", stopped.goal),
-        Entry("reached", "Came to it", stopped.reached),
+        Entry("goal", "Goal: go on until", stopped.goal),
+        Entry("reached", "Reached it", stopped.reached),
         Entry("most_trials", "Trials at most", simulation.settings.trials),
         Entry("time_limit", "Seconds at most", asked.seconds),
         Entry("blocks", "Blocks of trials", -(-simulation.trials // simulation.block)),
@@ -274,26 +274,26 @@ def _rare(found: RareAccount) -> Section:
         Entry("in_words", "In words", found.sentence),
         Entry("evaluations", "Trials evaluated in all", found.evaluations),
         Entry("learning", "Of them, to learn where accepted ones lie", found.learning),
-        Entry("proposals", "Of them, drawn there", found.proposals),
-        Entry("proposals_accepted", "Of those, accepted by the filters", found.proposals_accepted),
-        Entry("kept", "Of those, kept with equal weight", found.kept),
+        Entry("proposals", "Of them, drawn where accepted ones lie", found.proposals),
+        Entry("proposals_accepted", "Drawn there and accepted by the filters", found.proposals_accepted),
+        Entry("kept", "Kept, with equal weight", found.kept),
         Entry("effective", "Effective sample size of the kept ones", plain(found.size)),
-        Entry("fresh", "Drawn after there were enough, for the probability", found.fresh),
+        Entry("fresh", "Drawn after enough were kept, for the probability", found.fresh),
         Entry("acceptance", "Probability that a trial is accepted", plain(found.acceptance.value)),
-        Entry("acceptance_low", "Its 95 % interval, of its logarithm, from", plain(low)),
+        Entry("acceptance_low", "Its 95 % interval (by its logarithm), from", plain(low)),
         Entry("acceptance_high", "to", plain(high)),
-        Entry("acceptance_effective", "Effective sample size that it comes from", plain(found.effective)),
+        Entry("acceptance_effective", "Effective sample size behind it", plain(found.effective)),
         Entry("searched", "The same probability by splitting, for comparison", plain(found.searched)),
-        Entry("ways", "Ways that were searched apart", found.ways),
-        Entry("explored", "Probability of parts that other accepted trials led to", plain(found.explored)),
-        Entry("at_least", "Known from below only", found.at_least),
+        Entry("ways", "Ways (sets of branches) searched separately", found.ways),
+        Entry("explored", "Probability of parts that splitting missed", plain(found.explored)),
+        Entry("at_least", "The probability is only a lower limit", found.at_least),
         Entry("plain_accepted", "Plain trials before the search that were accepted", found.plain_accepted),
         Entry("checked", "Trials from widened assumptions after the search", found.checked),
-        Entry("missed", "Probability of accepted trials met there but not found", plain(found.missed)),
+        Entry("missed", "Probability of parts met but not described", plain(found.missed)),
         Entry("levels", "Levels of the splitting", found.levels),
         Entry("components", "Normal distributions in the mixture", found.components),
-        Entry("directions", "Directions that it was learned in", found.directions),
-        Entry("dimensions", "Of the assumptions that are drawn", found.dimensions),
+        Entry("directions", "Directions in which it was learned", found.directions),
+        Entry("dimensions", "Assumptions that are drawn", found.dimensions),
         *(
             (Entry("solved", "Assumptions that the filters were solved for", ", ".join(found.solved)),)
             if found.solved

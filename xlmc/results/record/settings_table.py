@@ -30,7 +30,7 @@ def in_float32(version: str, where: Path | None = None) -> WorkbookError:
         where: the file, where the caller does not name it.
     """
     made = f"xlmc {version}" if version else "An older xlmc"
-    message = f"{made} computed this run in float32, and this one computes in float64 only"
+    message = f"{made} computed this run with 32-bit numbers (float32), and this version computes with 64-bit ones only"
     return WorkbookError(message, where=where, hint=f"Open or repeat it with {made.removeprefix('An ')}")
 
 
@@ -113,7 +113,7 @@ def _list(value: Value) -> tuple[str, ...]:
 
 def _whole(value: Value) -> int:
     if not isinstance(value, int | float) or value != int(value):
-        raise ValueError(f"{value!r} is no whole number")
+        raise ValueError(f"{value!r} is not a whole number")
     return int(value)
 
 

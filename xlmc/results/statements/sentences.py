@@ -21,10 +21,10 @@ __all__ = ["MEANING", "Certainty", "Statement", "certainties", "statements"]
 
 _EVEN: Final = 0.5
 MEANING: Final = (
-    "Each share is a share of the accepted trials, counted for the range as it is printed here, and stands with its "
-    "standard error. “More probable than not” is said only where the whole 95 % interval of the share lies above 50 %. "
-    "All of this holds within the model and the ranges of its assumptions: the error given is that of Monte Carlo, not "
-    "that of the reconstruction."
+    "Each share is a share of the accepted trials, counted for the range as it is printed here, and has its standard "
+    "error beside it. “More probable than not” is said only where the whole 95 % interval of the share lies above "
+    "50 %. All of this holds only if the model and the ranges of its assumptions are right: the error given is Monte "
+    "Carlo error, not reconstruction error."
 )
 """The note that stands below the sentences."""
 

@@ -104,15 +104,14 @@ class RareAccount:
         """What was done."""
         directions = f"{self.directions} of {self.dimensions} directions"
         return (
-            f"Plain trials, as they come, would have taken about {_about(self.plain_trials)} "
-            f"for these. Where the accepted ones lie was learned from {self.learning:,} trials (splitting, in "
-            f"{self.levels} levels{self._apart}{self._solved_for}; then a mixture of {self.components} normal "
-            f"distributions in {directions}). "
-            f"{self.proposals:,} further trials were drawn there; {self.proposals_accepted:,} of them pass all "
-            f"filters, and of these each was kept with a chance that gives all kept ones equal weight. The "
-            f"{self.kept:,} kept ones are independent, and spread as those that plain trials would have left "
-            f"(effective sample size {self.size:,.0f}: a few stand more than once). {self._of_acceptance}No method can "
-            "rule out that a separate part of the accepted region was not found."
+            f"About {_about(self.plain_trials)} plain trials would have been needed to accept as many. So the search "
+            f"learned from {self.learning:,} trials where accepted trials lie (by splitting, in {self.levels} levels"
+            f"{self._apart}{self._solved_for}; then by a mixture of {self.components} normal distributions in "
+            f"{directions}). It drew {self.proposals:,} further trials there. {self.proposals_accepted:,} of them pass "
+            "all filters, and each of these was kept with a chance that gives all kept trials equal weight. The "
+            f"{self.kept:,} kept trials are independent, and distributed as those that plain trials would have left "
+            f"(effective sample size {self.size:,.0f}, because a few occur more than once). {self._of_acceptance}No "
+            "method can rule out that a separate part of the accepted region was not found."
         )
 
     @property
@@ -129,8 +128,8 @@ class RareAccount:
         if not self.fresh:
             return ""
         return (
-            f"How likely acceptance is, {self.fresh:,} of those drawn say, after there were enough: how many they are "
-            "was settled before. "
+            f"The probability of acceptance comes from {self.fresh:,} trials that were drawn after enough had been "
+            "kept; their number was fixed beforehand. "
         )
 
     @property
@@ -152,8 +151,8 @@ class RareAccount:
         if self.missed > MOST_MISSED * self.acceptance.value:
             found.append(
                 "accepted trials were met in a part of the region that the search could not describe: "
-                f"the probability of acceptance is at least {self.acceptance.value:.2g}, and that part, of which the "
-                f"trials here have nothing, may add {self.missed:.2g}"
+                f"the probability of acceptance is at least {self.acceptance.value:.2g}, and that part, from which "
+                f"there are no trials here, may add {self.missed:.2g}"
             )
         if self.implausible:
             found.append(

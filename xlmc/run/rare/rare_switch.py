@@ -67,7 +67,7 @@ def rare_switch(model: Model, settings: Settings) -> RareSwitch:
     """
     asked, wanted = settings.stopping.rare, settings.stopping.accepted
     if asked is not None and wanted is None:
-        message = "how rare trials are to be found is said, but not how many"
+        message = "a way to find rare trials was given, but not how many trials are to be accepted"
         raise SimulationError(message, hint="Give a number of accepted trials too, with --until-accepted")
     fault = _fault(model, settings)
     if fault is not None and asked == "always":

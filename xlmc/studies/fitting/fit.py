@@ -141,7 +141,7 @@ def _refuse_hopeless(x: Floats) -> None:
         )
         raise SimulationError(f"there is {count} to fit", hint=hint)
     if not np.isfinite(x).all():
-        raise SimulationError("a value is no finite number", hint="Correct it, or leave it out")
+        raise SimulationError("a value is not a finite number", hint="Correct it, or leave it out")
     if max(-x[0], x[-1]) > _LARGEST:
         raise SimulationError(f"a value is beyond {_LARGEST:g}: too large to fit", hint="Give them in a larger unit")
     if x[0] == x[-1]:

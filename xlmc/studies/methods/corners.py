@@ -48,7 +48,7 @@ class Corners:
         answers = {f.name: _bounds(column) for f, column in zip(model.forecasts, found.T, strict=True)}
         lost = int(np.count_nonzero(np.isnan(found).any(axis=1)))
         if lost:
-            remarks = (*remarks, f"in {lost:,} corners a forecast is no number; these are left out")
+            remarks = (*remarks, f"in {lost:,} corners a forecast is not a number; these are left out")
         return MethodResult(time.perf_counter() - started, evaluate.count, answers, remarks=(*remarks, *box.remarks))
 
 

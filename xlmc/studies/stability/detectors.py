@@ -135,7 +135,7 @@ def narrow_filters(case: Case) -> Iterator[Finding]:
     rejected = {row.name: int(count) for row, count in zip(run.model.filters, run.tally.rejected, strict=True)}
     worst = max(rejected, key=lambda name: rejected[name])
     filter_ = next(row for row in run.model.filters if row.name == worst)
-    effect = "the answer rests on the edge of the ranges" if run.accepted else "there is no answer"
+    effect = "the answer comes from the edge of the ranges" if run.accepted else "there is no answer"
     yield Finding(
         Level.WRONG if not run.accepted else Level.DOUBTFUL,
         "filter",

@@ -185,7 +185,7 @@ def _effect(
     if share >= _UNUSABLE:
         return f"{digits}: the digits shown are wrong{on}"
     if blurred.is_rounding:
-        return f"{digits}, and {blurred}: its spread is rounding{on}"
+        return f"{digits}, and {blurred}: its spread comes from rounding{on}"
     return f"{digits}, {loss.most:.0f} times what rounding the assumptions alone would do{on}"
 
 
@@ -220,8 +220,8 @@ def _explain(
 
 def _of_near_equals(case: Case, cell: Cell, lost: Cancellation) -> tuple[str, str]:
     return "cancellation", (
-        f"{case.trees.text(lost.tree, cell)} is a difference of nearly equal numbers: as little as {lost.left:.1g} of "
-        "its terms is left, and as many of their digits are lost"
+        f"{case.trees.text(lost.tree, cell)} is a difference of nearly equal numbers: it is as small as "
+        f"{lost.left:.1g} of its terms, and their leading digits cancel"
     )
 
 
@@ -230,8 +230,8 @@ def _of_logarithm(case: Case, cell: Cell, part: ir.Call, worst: Sequence[int]) -
     node = case.trees.node_of(part.arguments[0], cell)
     off = min((abs(case.exact_number(node, trial) - 1) for trial in worst), default=0.0) if node is not None else 0.0
     return "cancellation", (
-        f"{argument} is rounded to 16 digits, and {part.name} keeps only its difference from 1, as little as "
-        f"{off:.1g}: as many digits are lost"
+        f"{argument} is rounded to 16 digits, and {part.name} uses only its difference from 1, which is as small as "
+        f"{off:.1g}: most of the digits are lost"
     )
 
 
@@ -324,7 +324,7 @@ class _Spread:
         return self.width > 0 and self.error > MOST_OF_SPREAD * self.width
 
     def __str__(self) -> str:
-        return f"in the median trial by {self.error:.1g}, where its true central range is {self.width:.1g} wide"
+        return f"in the median trial by {self.error:.1g}, while its true central range is {self.width:.1g} wide"
 
 
 def _spread(case: Case, cell: Cell) -> _Spread:

@@ -86,7 +86,7 @@ def with_last_row(xml: bytes, part: str, last: int) -> bytes:
     for element in (document.root, *document.root.find_all("autoFilter")):
         area = parse_address(element.attributes.get("ref", ""), "-")
         if not isinstance(area, Area):
-            raise WorkbookError(f"{part} is no table", hint=REPAIR)
+            raise WorkbookError(f"{part} is not a table", hint=REPAIR)
         document.set(element, "ref", Area("-", area.top, area.left, last, area.right).a1)
     return document.result()
 

@@ -106,7 +106,7 @@ def _stream(data: bytes) -> tuple[bytes, bool]:
         raise _damaged(str(error) or type(error).__name__) from error
     if "book" in names:
         raise WorkbookError("the file is a workbook of Excel 95 or older (.xls)", hint=IN_CRYSTAL_BALL)
-    raise WorkbookError("the file is an old Office file, and no workbook", hint=SAVE_AS)
+    raise WorkbookError("the file is an old Office file, but not a workbook", hint=SAVE_AS)
 
 
 def _damaged(reason: str) -> WorkbookError:

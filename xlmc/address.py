@@ -108,13 +108,13 @@ class Area:
 
     @property
     def whole(self) -> Area:
-        """With its further rows and columns as any others."""
+        """The area with its further rows and columns counted as ordinary ones."""
         bottom, right = self.bottom + self.further_rows, self.right + self.further_columns
         return Area(self.sheet, self.top, self.left, bottom, right)
 
     @property
     def filled(self) -> Area:
-        """Without its further rows and columns."""
+        """The area without its further rows and columns."""
         return Area(self.sheet, self.top, self.left, self.bottom, self.right)
 
     def __contains__(self, cell: Cell) -> bool:

@@ -69,7 +69,7 @@ def write(edited: Edited) -> None:
 
 
 def _six_digits(parameters: Mapping[str, float]) -> dict[str, float]:
-    """As the row to paste has them: more than a fit ever determines."""
+    """The parameters rounded as in the row to paste: six digits are more than a fit ever determines."""
     return {heading: float(f"{value:.6g}") for heading, value in parameters.items()}
 
 

@@ -63,7 +63,7 @@ def _library(book: Path | None) -> Library:
 
 
 def _serve(server: LiveServer) -> None:
-    """Until Ctrl-C, or until nobody looks any more."""
+    """Serve the window until Ctrl-C, or until no window has been open for some minutes."""
     import asyncio
 
     def end(*_: object) -> None:

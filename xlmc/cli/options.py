@@ -87,7 +87,7 @@ jobs_option = click.option(
     show_default=True,
     help="How many threads or processes compute.",
 )
-"""Who computes; the result does not depend on it."""
+"""The option for threads or processes; the result does not depend on it."""
 
 sampling_option = click.option(
     "--sampling", type=OneOf(*METHODS), help=f"{_SAMPLINGS}.  [default: the book's, else mc]"

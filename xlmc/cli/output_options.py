@@ -309,7 +309,7 @@ class Outputs(NamedTuple):
         return path
 
     def _files(self, run: Simulation) -> Iterator[tuple[Path, str, _Write]]:
-        """Each with what is said of it, and what writes it."""
+        """Each file with the words that announce it, and the function that writes it."""
         if self.book is not None:
             yield self.book, "Results are in", run.save
         if self.run is not None:
@@ -352,7 +352,7 @@ class _Write(Protocol):
 
 
 def results_beside(source: Path, ending: str | None = None) -> Path:
-    """Where the results of a workbook or a saved run go by default: `case.xlsx -> case-results.xlsx`."""
+    """The file that the results of a workbook or a saved run go to by default: `case.xlsx -> case-results.xlsx`."""
     from xlmc.workbook.target import copy_ending
 
     return source.with_name(f"{source.stem}-results{copy_ending(source) if ending is None else ending}")

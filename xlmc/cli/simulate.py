@@ -185,7 +185,7 @@ def _with_scenarios(run: Simulation, jobs: int, quiet: bool) -> tuple[Simulation
 
 
 def _of_scenarios(answers: Sequence[ScenarioAnswers]) -> list[str]:
-    """Why the answers of scenarios must not be used, but for what is said of the workbook itself already."""
+    """Why the answers of scenarios must not be used, without the reasons that hold for the workbook itself too."""
     own = answers[0].warnings if answers else []
     return [f"scenario {each.name!r}: {said}" for each in answers[1:] for said in each.warnings if said not in own]
 

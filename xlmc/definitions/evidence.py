@@ -183,7 +183,7 @@ class Evidence:
 
     @property
     def law(self) -> Law:
-        """Its error; all its numbers must be known."""
+        """The reading and its error as a law of probability; all its numbers must be known."""
         reading, sizes = self.reading, self.sizes
         assert isinstance(reading, float)
         assert not any(isinstance(each, Cell) for each in sizes.values())
@@ -204,7 +204,7 @@ class Evidence:
 
     @property
     def bell(self) -> Bell | None:
-        """Its law where it is no limit."""
+        """The law of the reading's error; None where the evidence is a limit."""
         law = self.law if self.error in ("normal", "lognormal") else None
         return law if isinstance(law, Bell) else None
 

@@ -135,7 +135,7 @@ def _can_be_rows(goal: Precision, names: Iterable[str]) -> bool:
 
 
 def _percent(goal: Precision) -> float:
-    """Its share in percent, as people write it."""
+    """A share in percent, as people write it."""
     return float(f"{100.0 * goal.tolerance:.12g}")
 
 

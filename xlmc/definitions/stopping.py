@@ -129,7 +129,7 @@ class WholeGoal(Goal):
 
 
 class AcceptedTrials(WholeGoal):
-    """So many accepted trials."""
+    """The goal: a number of accepted trials."""
 
     __slots__ = ()
     key = "accepted"
@@ -217,7 +217,7 @@ class Precision(Goal):
 
 
 class StableDigits(WholeGoal):
-    """So many significant digits of the results are stable (JCGM 101, 7.9)."""
+    """The goal: a number of significant digits of the results is stable (JCGM 101, 7.9)."""
 
     __slots__ = ()
     key = "adaptive"
@@ -324,4 +324,4 @@ def stopping(
 
 
 NO_GOAL: Final = Stopping()
-"""Nothing but the number of trials ends the run."""
+"""Only the number of trials ends the run."""

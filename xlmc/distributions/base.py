@@ -34,7 +34,9 @@ LARGEST = 1e150
 
 
 TRIED_U = (2.0**-80, SMALLEST_U, 1e-12, 1e-3, 0.1, 0.3, 0.5, 0.7, 0.9, 0.999, 1 - 1e-12, 1 - 2.0**-53)
-"""Where quantiles are tried out before a run. No sampling method asks for one beyond the first and the last."""
+"""Probabilities at which quantiles are tried before a run. No sampling method asks for one beyond the first and the
+last.
+"""
 
 
 class Family(ABC):

@@ -268,7 +268,7 @@ def _scale(role: Role, value: float | None) -> float | None:
 
 
 def _roots(function: Callable[[Array], Array], grid: Array) -> Iterator[float]:
-    """Where the function changes its sign, from the lowest number on; nowhere if it is 0 all over."""
+    """The numbers at which the function changes its sign, from the lowest on; none if it is 0 everywhere."""
     from scipy.optimize import brentq
 
     values = function(grid)
@@ -294,7 +294,7 @@ def _ordered(family: Family, given: Mapping[str, float], points: Points) -> Iter
 
 
 def _least(misfit: Callable[[Array], Array], starts: Iterable[Array]) -> Iterator[Array]:
-    """Where all percentiles are met, looked for from each start."""
+    """The parameters with which all percentiles are met, searched from each start."""
     from scipy.optimize import least_squares
 
     for start in starts:
@@ -320,7 +320,7 @@ class _Chart:
         self.after = range(self.ends[0] + 1 if self.ends else 1, len(ordered))
 
     def starts(self) -> Iterator[Array]:
-        """Where to begin looking."""
+        """The points from which the search begins."""
         for start in product((-1.0, 0.5, 2.0), repeat=len(self.missing)):
             yield np.array(start)
 

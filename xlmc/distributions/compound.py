@@ -57,7 +57,7 @@ class Part:
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
-        """Its parameters, with its name before theirs."""
+        """The parameters of both distributions, with the name of each in front."""
         if self.family is None:
             return (self._spec("", self.name.capitalize()),)
         named = f"{self.name.capitalize()} ({self.family.name})"
@@ -254,7 +254,7 @@ class Compound(Family):
         return _counts(self.count.ppf(u, self._split(values)[0])).astype(float)
 
     def percentile(self, p: Array, *values: Values) -> Array:
-        """Of many draws, which are always the same."""
+        """The percentile of many draws, which are always the same."""
         own = [np.asarray(value).ravel()[0] for value in values]
         drawn = self._ppf((np.arange(_SAMPLE) + 0.5) / _SAMPLE, *own)
         return np.asarray(np.quantile(drawn, p) if np.isfinite(drawn).all() else np.full(np.shape(p), np.nan))

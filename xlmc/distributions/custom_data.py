@@ -28,7 +28,7 @@ from xlmc.distributions.pieces import Piece
 __all__ = ["MOST_VALUES", "custom_pieces", "rows_of", "value_pieces", "weighted_pieces"]
 
 MOST_VALUES = 100_000
-"""No more single values than this may one distribution have."""
+"""A distribution may have no more single values than this."""
 
 _TOLERANCE = 1e-9
 """A range may fall short of a whole number of steps by this share of a step: decimals are not exact."""

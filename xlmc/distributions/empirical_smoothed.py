@@ -202,7 +202,7 @@ def _normal_derivatives(z: Array) -> list[Array]:
 
 
 def _polynomial(coefficients: Array, t: Array) -> Array:
-    """Of rows of coefficients from the lowest power up, each column at its own t."""
+    """The values of polynomials, given as rows of coefficients from the lowest power up; each column has its own t."""
     value = np.zeros(t.shape)
     for row in coefficients[::-1]:
         value = value * t + row

@@ -15,7 +15,7 @@ __all__ = ["Histogrm"]
 
 
 class Histogrm(Family):
-    """As many intervals as there are weights; every value in an interval is equally likely.
+    """Intervals of equal width, one for each weight; all values in an interval are equally likely.
 
     >>> speeds = Histogrm().built(np.array([[1.0], [2.0], [1.0]]))
     >>> print(speeds.ppf(np.array([0.0, 0.25, 0.5, 0.875]), low=20, high=50))

@@ -18,7 +18,7 @@ __all__ = ["Piece", "Pieces"]
 
 
 Indices = NDArray[np.intp]
-"""Of each value, which piece it belongs to."""
+"""For each value, the piece that it belongs to."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -54,7 +54,7 @@ FARTHEST = 2.0**52
 """Whole numbers are told apart up to here."""
 
 Holds = Callable[[Array, NDArray[np.intp]], NDArray[np.bool_]]
-"""Of candidates `(m,)` and the trials `(m,)` they belong to: where it holds. It does from some number up."""
+"""A test of candidates `(m,)` and their trials `(m,)`: whether it holds. It holds from some number up."""
 
 
 class WholeNumbers(Family):

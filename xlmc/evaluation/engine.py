@@ -99,7 +99,7 @@ class KeptBlock:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Room:
-    """Where a block's columns may be written, `(block,)` each.
+    """Memory that a block's columns may be written to, `(block,)` each.
 
     Attributes:
         accepted: for the accepted trials, int64.

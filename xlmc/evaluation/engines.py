@@ -67,4 +67,4 @@ _ROWS: Final = (
 )
 
 ENGINES: Final[dict[str, Engine]] = {row.key: row for row in _ROWS}
-"""By their keys."""
+"""The engines by their keys."""

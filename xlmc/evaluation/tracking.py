@@ -192,7 +192,7 @@ class _Part:
                 live -= sizes.pop(gone)
 
     def _in_arrays(self, node: int, size: int) -> int:
-        """Of the bytes of a value, those that are no single number."""
+        """The bytes of a value that belong to arrays, not to a single number."""
         return 0 if self._dag.sizes[node] is None and self._dag.types[node] in (Kind.NUMBER, Kind.LOGICAL) else size
 
 

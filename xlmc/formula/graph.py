@@ -130,7 +130,7 @@ class _Walk:
         self._computed: dict[Cell, bool] = {}
 
     def upstream(self, target: Cell) -> None:
-        """Put a cell after all that it needs."""
+        """Add a cell to the order, after all cells that it needs."""
         trail, ordered = self._trail, self.ordered
         self._enter(target)
         while trail:

@@ -165,7 +165,9 @@ def _unread(text: str, start: int) -> FormulaError:
 
 
 def _closes_too_early(text: str) -> int | None:
-    """Where a bracket is closed that nothing opened: `formulas` reads `A1)-(B1` as if brackets stood around it."""
+    """The position of a closing bracket without an opening one: `formulas` reads `A1)-(B1` as if brackets stood around
+    it.
+    """
     depths = _depths(QUOTED.sub(lambda quoted: " " * len(quoted[0]), text))
     return next((index for index, depth in enumerate(depths) if depth < 0), None)
 

@@ -54,7 +54,7 @@ class Adjustments:
         return bool(self.assumptions or self.filters)
 
     def having(self, of: str, name: str, key: str, value: Amount | None) -> Adjustments:
-        """With one value set, or, where it is None, as in the workbook again."""
+        """The adjustments with one value set; None sets it back to the workbook's."""
         before = self._part(of)
         own = {k: v for k, v in before.get(name, {}).items() if k != key}
         if value is not None:
@@ -62,7 +62,7 @@ class Adjustments:
         return self._with(of, name, own)
 
     def without(self, of: str, name: str) -> Adjustments:
-        """With everything of one assumption or filter as in the workbook."""
+        """The adjustments with one assumption or filter set back to the workbook's."""
         return self._with(of, name, {})
 
     def only(self, definitions: Definitions) -> Adjustments:

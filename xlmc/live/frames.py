@@ -56,7 +56,7 @@ _VALUES_AT_REST: Final = 4_000
 
 _PERCENTS: Final = (5.0, 25.0, 50.0, 75.0, 95.0)
 _KNOWN: Final[WeakKeyDictionary[ForecastResult, list[tuple[str, Estimate]]]] = WeakKeyDictionary()
-"""Those of the state behind are asked for with every frame."""
+"""The estimates of each forecast: those of the state for comparison are asked for with every frame."""
 
 _POINTS: Final = 2_000
 """Accepted trials that a scatter shows."""
@@ -284,7 +284,7 @@ def pair_of(simulation: Simulation, first: str, second: str) -> dict[str, Any] |
 
 
 def _evenly(weighting: Weighting, n: int) -> NDArray[np.intp]:
-    """Of the first `n` weighted trials as many as carry as much, drawn in proportion to their weights, in order."""
+    """Trials of equal weight for the first `n` weighted ones: drawn in proportion to the weights, in order."""
     reached = np.cumsum(weighting.weights[:n])
     count = max(1, int(reached[-1] ** 2 / np.sum(weighting.weights[:n] ** 2)))
     return np.asarray(np.searchsorted(reached, (np.arange(count) + 0.5) / count * reached[-1]))

@@ -43,7 +43,7 @@ __all__ = [
 ]
 
 MOVING_TRIALS: Final = 50_000
-"""Of a run while a handle moves."""
+"""Trials of a run while a handle moves."""
 
 Sight = tuple[int, tuple[str, ...], bool, int]
 """Version, forecasts, whether with fits, and what is behind."""
@@ -74,7 +74,7 @@ class View:
 
     @classmethod
     def of(cls, said: Iterable[Said], order: Sequence[str]) -> View:
-        """Of what each window said that it shows, the forecasts in the order of the workbook."""
+        """The union of what the windows show, with the forecasts in the order of the workbook."""
         views = list(said)
         seen = {name for each in views for name in each["forecasts"]}
         tabs = dict.fromkeys(Tab(each["tab"], each["first"], each["second"]) for each in views)

@@ -25,7 +25,7 @@ _MOST_BYTES: Final = 4 << 20
 
 
 def state_folder() -> Path:
-    """Where they are kept."""
+    """The folder in which scenarios are kept."""
     if sys.platform == "win32":
         base = os.environ.get("LOCALAPPDATA") or str(Path.home() / "AppData" / "Local")
         return Path(base) / "xlmc" / "live"

@@ -69,7 +69,7 @@ class Library:
         return found
 
     def books(self) -> list[dict[str, str]]:
-        """Those in the folder: name and key."""
+        """The workbooks in the folder: name and key."""
         if self.folder is None:
             return []
         try:
@@ -80,7 +80,7 @@ class Library:
         return [{"name": printable(each.name), "key": self._add(each)} for each in found[:_MOST_LISTED]]
 
     def recent(self) -> list[dict[str, str]]:
-        """Those that were opened before: name, folder and key."""
+        """The workbooks that were opened before: name, folder and key."""
         try:
             found = self.keeper.recent()
         except XlmcError as error:

@@ -37,7 +37,7 @@ _KEPT: Final = 3
 """Sets of held assumptions whose models are kept."""
 
 _Held = tuple[tuple[str, bool, float | None], ...]
-"""Of each assumption that is held or drawn otherwise than in the workbook: its name, whether it is held, and where."""
+"""Each assumption that is held or drawn differently from the workbook: its name, whether it is held, and where."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,7 +159,7 @@ def _held(definitions: Definitions, adjustments: Adjustments) -> _Held:
 
 
 def _held_values(own: Model, held: _Held) -> dict[str, float] | None:
-    """Where each assumption stands that is held; None where what is held decides more than the values of draws."""
+    """The value of each assumption that is held; None where holding it changes more than the values of draws."""
     named = {each.name: each for each in own.live}
     grouped = {name for group in own.groups for name in group.names}
     found: dict[str, float] = {}

@@ -60,7 +60,7 @@ from xlmc.errors import XlmcError
 __all__ = ["MOST_BYTES", "Message", "ProtocolError", "Said", "plain", "read_message", "written"]
 
 MOST_BYTES: Final = 1 << 16
-"""Of a message from the page."""
+"""The fields of each kind of message from the page."""
 
 _LONGEST: Final = 2_000
 """Characters of a name; Excel's cells hold more, its names fewer."""
@@ -68,7 +68,7 @@ _LONGEST: Final = 2_000
 _MOST_NAMES: Final = 500
 
 Message = dict[str, Any]
-"""From the server."""
+"""The kinds of message from the server."""
 
 
 class ProtocolError(XlmcError):

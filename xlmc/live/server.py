@@ -31,7 +31,7 @@ from xlmc.live.protocol import MOST_BYTES, ProtocolError, read_message
 __all__ = ["IDLE_SECONDS", "LiveServer", "bound_socket"]
 
 IDLE_SECONDS: Final = 600.0
-"""After the last window was closed."""
+"""Seconds from the closing of the last window to the end of the server."""
 
 _MOST_WINDOWS: Final = 32
 _HELLO_SECONDS: Final = 10.0

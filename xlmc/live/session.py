@@ -54,7 +54,7 @@ if TYPE_CHECKING:
 __all__ = ["Replies", "Session"]
 
 _QUICK_TRIALS, _FEWEST_TRIALS = 2_000, 200
-"""Of the first short run, as long as nothing is known of its time, and of any."""
+"""Trials of the first short run, before its time is known, and the fewest of any."""
 
 _SLOW: Final = 0.2
 """Seconds that a run of `MOVING_TRIALS` may take; one that takes longer has a shorter one before it."""
@@ -66,7 +66,7 @@ _PIECE: Final = 0.4
 """Seconds after which a longer run looks whether something newer is wanted."""
 
 _SMALLEST_PIECE: Final = 4_096
-"""Of trials: with fewer, what does not depend on their number would take most of the time."""
+"""Trials: with fewer, most of the time would go into what does not depend on their number."""
 
 _SKETCH: Final = 0.15
 """Seconds that what a tab shows may take while states move; what takes longer waits until they are at rest."""
@@ -154,7 +154,7 @@ class Session:
         }
 
     def _scenarios(self) -> Iterator[Message]:
-        """Those of the workbook, then those that are kept here, which take the place of one of the same name."""
+        """The scenarios of the workbook, then those kept here, which replace one of the same name."""
         definitions = self.own.definitions
         for scenario in definitions.scenarios:
             if scenario.name not in self.kept:

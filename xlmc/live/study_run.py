@@ -29,7 +29,7 @@ STUDIES: Final = {
 """Command -> what it is given beside the workbook."""
 
 OF_THE_FILE: Final = frozenset({"verify"})
-"""Those that ask what stands in the file, and not what would be if something were other."""
+"""The studies that examine the file itself, not the state that is shown."""
 
 _COLUMNS: Final = "108"
 _STEP: Final = re.compile(r"running: ([^\x1b\r\n]+)")
@@ -66,7 +66,7 @@ class StudyRun:
         self.last: Message = self._message("running", "")
 
     async def run(self) -> None:
-        """Until it is done, or cancelled."""
+        """Wait until the study is done, or cancelled."""
         if self._data is None:
             await self._run(self._books)
             return

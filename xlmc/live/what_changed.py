@@ -50,7 +50,7 @@ def _names(what: str, before: Iterable[str], after: Iterable[str]) -> Iterator[s
 def _rows(
     what: str, before: Mapping[str, Row], after: Mapping[str, Row], differing: Callable[[Row, Row], Iterator[str]]
 ) -> Iterator[str]:
-    """Of rows by name: what is other in those that stay, those that are new, those that are gone."""
+    """What changed in rows with names: in those that are still there, those that are new, and those that are gone."""
     for name, row in after.items():
         phrases = list(differing(before[name], row)) if name in before else []
         if phrases:

@@ -106,7 +106,7 @@ def shapes_of(model: Model, names: Sequence[str] | None = None) -> dict[str, dic
 
 
 def _shape(values: NDArray[np.float64]) -> dict[str, Any] | None:
-    """Of `(q,)` quantiles; None of those that are no numbers."""
+    """The shape of `(q,)` quantiles; None where they are not numbers."""
     held = values[np.isfinite(values)]
     if held.size < _SHAPE_DRAWS // 2:
         return None

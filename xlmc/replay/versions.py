@@ -138,7 +138,7 @@ RULES: Final = (
     ),
     Rule("0.6.0", "the error of the standard error of a mean may differ in its last bit", _ANY),
 )
-"""In the order of versions."""
+"""The rules in the order of versions."""
 
 _COMMITS: Final = {
     "0.1.0": "46fd152e6dd49dcf68dc416c020a215c696d0a3d",

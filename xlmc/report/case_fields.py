@@ -1,4 +1,6 @@
-"""Whose case a report is: from the optional table `xlmc_case` of the workbook, and what a person gives beside it."""
+"""The fields that say whose case a report is about, from the optional table `xlmc_case` of the workbook, and what a
+person gives beside it.
+"""
 
 from __future__ import annotations
 

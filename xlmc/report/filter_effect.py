@@ -38,7 +38,7 @@ PERCENTS = (5.0, 50.0, 95.0)
 
 _BINS = 24
 _LONG = 1.3
-"""Where all draws reach over more than this much of the middle 99.6 % of them, their tails are not drawn."""
+"""If all draws cover more than this multiple of their middle 99.6 %, the chart leaves out their tails."""
 
 
 @dataclass(frozen=True, slots=True)

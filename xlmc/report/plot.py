@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["plot"]
 
 _WIDTH, _HEIGHT, _HEAD = 10.0, 2.9, 0.75
-"""In inches: the width of the figure, the heights of a forecast and of the title."""
+"""Lengths in inches: the width of the figure, the heights of a forecast and of the title."""
 
 _POINTS: Final = 1_001
 """Points of a cumulative curve: one for each tenth of a percent, finer than a line is thick."""

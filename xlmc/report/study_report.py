@@ -241,7 +241,7 @@ def _book(report: StudyReport, sheet: str) -> dict[str, bytes]:
 
 
 def _widths(report: StudyReport) -> list[float]:
-    """Of the sheet's columns: wider where a table has long texts."""
+    """The widths of the sheet's columns: wider where a table has long texts."""
     widths = list(_WIDTHS)
     for each in report.blocks:
         if isinstance(each, Table):

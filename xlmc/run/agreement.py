@@ -126,7 +126,7 @@ class Pressed:
 
     @property
     def sentence(self) -> str:
-        """It in words, without a full stop."""
+        """The finding in words, without a full stop."""
         return (
             f"given the evidence, {self.share:.0%} of {self.assumption!r} lies in the {self.end} twentieth of its "
             "range: the range, not the evidence, decides there"
@@ -371,7 +371,7 @@ def _tail(law: Law, m: Floats, others: Floats, given: Estimate) -> float:
 
 
 def _verdict(law: Law, m: Floats, tail: float, effective: float, *, settled: bool) -> Verdict:
-    """By the chance of such a reading; `INDEPENDENT` where it is no surprise.
+    """The verdict by the chance of such a reading; `INDEPENDENT` where the reading is no surprise.
 
     Args:
         law: of the reading's error.

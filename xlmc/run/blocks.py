@@ -64,7 +64,7 @@ class FilterTally:
 
     @classmethod
     def empty(cls, filters: int) -> FilterTally:
-        """Nothing counted yet."""
+        """A tally in which nothing is counted yet."""
         zeros = np.zeros(filters, np.int64)
         square = np.zeros((filters, filters), np.int64)
         return cls(zeros, zeros.copy(), square, [Counter() for _ in range(filters)], 0)
@@ -131,7 +131,7 @@ class Portable(Protocol):
     """What can be pickled and makes a runner in another process."""
 
     def runner(self) -> Runner:
-        """It, made or made again."""
+        """Make the runner."""
 
 
 class Drawing(Protocol):

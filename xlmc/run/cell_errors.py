@@ -60,7 +60,7 @@ def errors_at_base(model: Model) -> BaseErrors:
 
 
 def error_roots(model: Model, cells: Sequence[Cell], drawn: Sequence[Mapping[str, Floats]]) -> dict[Cell, Root]:
-    """Where errors of trials come from: cell -> the first cell upstream that is an error by itself, and its error.
+    """The origin of errors in trials: cell -> the first cell upstream that is an error by itself, and its error.
 
     One trial is looked at for each cell, the first that shows the error. A cell whose error no trial shows is left out.
 

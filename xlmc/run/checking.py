@@ -39,7 +39,7 @@ MOST_CHECKED: Final = 1 << 16
 """Accepted trials that the checks are evaluated in: enough to see a failing share of 0.1 % to an eighth of it."""
 
 FAILING_SHARE: Final = 0.001
-"""Above this share of accepted trials that fail a check the answer must not be used as it stands."""
+"""If a larger share of the accepted trials fails a check, the answer must not be used as it is."""
 
 _BLOCK: Final = 1 << 13
 
@@ -59,12 +59,12 @@ class BaseCheck:
 
     @property
     def holds(self) -> bool | None:
-        """None where there is no base case."""
+        """Whether the check holds at the base case; None where there is none."""
         return None if self.found is None else self.found == "TRUE"
 
     @property
     def fault(self) -> str:
-        """Why it fails, as a sentence without a full stop; only where it does."""
+        """Why the check fails, as a sentence without a full stop; only if it fails."""
         check = self.definition
         return f"the base case fails the check {check.name!r}: {check.cell} is {self.found}{meaning(check)}"
 
@@ -101,7 +101,7 @@ class CheckResult:
 
     @property
     def holds(self) -> bool | None:
-        """At the base case; None where there is none."""
+        """Whether the check holds at the base case; None where there is none."""
         return self.base.holds
 
     @property
@@ -112,7 +112,7 @@ class CheckResult:
 
     @property
     def share(self) -> Estimate:
-        """Of the accepted trials that fail it."""
+        """The share of the accepted trials that fail the check."""
         return proportion(self.failed, self.trials)
 
     @property

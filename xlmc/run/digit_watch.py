@@ -32,16 +32,16 @@ _MOST_CELLS: Final = 100_000
 """Cells of all arrays among them."""
 
 _VISIBLE: Final = 1e-3
-"""Of a forecast's central range, or of its value where that is larger."""
+"""A share of a forecast's central range, or of its value where that is larger: a larger change is visible."""
 
 DUST: Final = 1e-12
-"""Of the largest number that was added or subtracted on the way: what should be 0 and is less than that is as good."""
+"""A share of the largest number that was added or subtracted on the way: a result below it counts as 0."""
 
 MOST_OF_SPREAD: Final = 0.1
-"""Of the true central range, that the error in the median trial may be; from there on the spread is rounding."""
+"""The largest error in the median trial, as a share of the true central range; above it the spread is rounding."""
 
 _WORTH_A_LOOK: Final = 3e-14
-"""Of a number: a smaller error makes no spread that anybody would take for one."""
+"""A share of a number: a smaller error makes no spread that anybody would notice."""
 
 _CONFIRMED_SPREAD: Final = 15
 """Trials that are computed again with 50 digits for a spread."""
@@ -50,7 +50,7 @@ _CONFIRMED: Final = 3
 """Trials that are computed again with 50 digits before anybody is warned."""
 
 _SHARE: Final = 0.01
-"""Of the trials looked at: a few that are next to a jump say nothing of the digits."""
+"""A share of the trials examined: a few that are next to a jump say nothing about the digits."""
 
 
 def lost_digits(model: Model, inputs: Mapping[str, Floats]) -> list[str]:
@@ -157,7 +157,7 @@ def _is_confirmed(
 
 
 def _off(plain: Floats, moved: Floats) -> NDArray[np.bool_]:
-    """Where a number is visibly another, or is one in one evaluation only, `(n,)`."""
+    """The trials in which a number visibly differs, or is a number in one evaluation only, `(n,)`."""
     known = np.isfinite(plain)
     if not known.any():
         return np.zeros(plain.size, bool)

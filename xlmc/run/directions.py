@@ -28,10 +28,10 @@ _TURNS: Final = {
 """Units -> a full turn, as a number and in a formula, and the step to which the middle of a formula is rounded."""
 
 _TOGETHER: Final = 1 / 6
-"""Of a turn: directions with a larger standard deviation have no middle that they lie around."""
+"""A share of a turn: directions with a larger standard deviation have no middle that they lie around."""
 
 _CLOSER: Final = 0.95
-"""Of the standard deviation of the numbers: that of the directions is no more where the jump matters."""
+"""A share of the standard deviation of the numbers: that of the directions is not larger if the jump matters."""
 
 _ENOUGH: Final = 100_000
 """Trials that are looked at, evenly spread over the sorted ones."""

@@ -47,7 +47,7 @@ class DiskNeeded:
 
     @property
     def bytes(self) -> int:
-        """Of all these numbers."""
+        """The bytes that all these numbers take."""
         return NUMBER * (self.kept + self.sorted)
 
     def sentence(self) -> str:

@@ -25,7 +25,7 @@ TELLING: Final = 1_000
 """Accepted trials from which on a single one can make up little of a variance, if there is one."""
 
 FARTHEST_PART: Final = 0.1
-"""Above this part in the sum of squares mean and standard deviation hang on a single trial."""
+"""If one trial has more than this part of the sum of squares, mean and standard deviation depend on it."""
 
 LEAST_BEYOND: Final = 10.0
 """Effective trials that must lie beyond a quantile, if it is to be given where trials are weighted."""
@@ -198,13 +198,13 @@ def _only_from_trials(sample: Sample) -> list[str]:
 
 
 def _named(samples: Mapping[str, Sample], concerned: Callable[[Sample], list[str]]) -> str:
-    """Such as "the mean of 'x' and the standard deviation of 'y'"; empty where there is none."""
+    """The numbers in words, such as "the mean of 'x' and the standard deviation of 'y'"; empty where there is none."""
     numbers = [f"the {number} of {name!r}" for name, sample in samples.items() for number in concerned(sample)]
     more = [f"{len(numbers) - _MOST_NAMED} more"] if len(numbers) > _MOST_NAMED else []
     return list_of([*numbers[:_MOST_NAMED], *more]) if numbers else ""
 
 
 def _farthest(sample: Sample) -> str:
-    """In words; empty where no trial has too large a part."""
+    """The part of the farthest trial, in words; empty where no trial has too large a part."""
     part = statistics.farthest_part(sample)
     return f"which makes up {part:.0%} of the variance of {sample.n:,}" if part > FARTHEST_PART else ""

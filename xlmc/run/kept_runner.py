@@ -36,7 +36,7 @@ __all__ = ["KeptRunner"]
 Floats = NDArray[np.float64]
 
 _MOST_BYTES: Final = 1 << 26
-"""Of draws that are kept; where all of a run would take more, none is."""
+"""The most bytes of draws that are kept; if all draws of a run would take more, none is kept."""
 
 _COMPARES: Final[Mapping[str, Callable[..., NDArray[np.bool_]]]] = {
     ">=": operator.ge,
@@ -136,7 +136,7 @@ class _Draws:
         self._whole: Sampler | None = None
         self._some: tuple[tuple[Draw, ...], Sampler] | None = None
         self.known: Known | None = None
-        """Of the last draws; None where they were not kept."""
+        """The blocks of the last draws; None where they were not kept."""
 
     def take(self, model: Model) -> None:
         """Draw this model from now on."""

@@ -188,7 +188,7 @@ class _Showing:
                 yield from (each for each in self._formulas | self._missing.keys() if each in area)
 
     def _looked_at(self, cells: frozenset[Cell]) -> dict[Cell, set[Cell]]:
-        """Where OFFSET and INDIRECT lead in these formulas, which see what Excel saved in all cells."""
+        """The cells that OFFSET and INDIRECT lead to in these formulas, by the values that Excel saved."""
         if not cells:
             return {}
         resolver = Resolver(self._workbook, strict=False)

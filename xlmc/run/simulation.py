@@ -51,7 +51,7 @@ __all__ = [
 ]
 
 ERROR_SHARE: Final = 0.001
-"""Above this share of error trials the answer must not be used as it stands."""
+"""If a larger share of the trials is lost to errors, the answer must not be used as it is."""
 
 TRIAL: Final = "Trial"
 """The heading of the trials' numbers in tables of trials."""
@@ -76,7 +76,7 @@ _OF_FEW = (
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Where a saved run was made.
+    """The software and the processor of a saved run.
 
     Attributes:
         software: name -> version.
@@ -269,7 +269,7 @@ class Simulation:
 
     @property
     def refused(self) -> list[str]:
-        """Those of the warnings that concern a forecast without an answer alone: the answers of others may be used."""
+        """The warnings that concern only a forecast without an answer: the answers of others may be used."""
         return [str(each).rstrip(".") for each in self.model.definitions.refused]
 
     @cached_property
@@ -314,7 +314,7 @@ class Simulation:
 
     @property
     def kept_inputs(self) -> int:
-        """Of how many accepted trials, from the first on, the draws are kept."""
+        """The number of accepted trials, from the first on, whose draws are kept."""
         return next((int(values.size) for values in self.inputs.values()), self.accepted)
 
     def frame(self, *, inputs: bool = True) -> pandas.DataFrame:

@@ -34,7 +34,7 @@ _COMPARED = 4_096
 """Accepted trials that are compared with the forecasts: they know a rank correlation to 0.016."""
 
 _DECIMALS = 6
-"""Of the scores: the last bits, which may differ from processor to processor, must not decide."""
+"""The rounding of the scores: the last bits, which may differ from processor to processor, must not decide."""
 
 Floats = NDArray[np.float64]
 

@@ -180,7 +180,7 @@ class Ties:
 
     @cached_property
     def steps(self) -> Floats:
-        """By how much the mean rank grows from one value to the next, `(m - 1,)`."""
+        """The growth of the mean rank from one value to the next, `(m - 1,)`."""
         return np.asarray((self.chances[:-1] + self.chances[1:]) / 2)
 
     @cached_property

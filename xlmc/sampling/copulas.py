@@ -121,7 +121,7 @@ class StudentTCopula(_Joined):
             u[i] = np.clip(stdtr(self.degrees, self._mix[i, : i + 1] @ z[: i + 1]), _LEAST, _MOST)
 
     def pair(self, i: int, j: int) -> float:
-        """By 12·E[UV] − 3 over a grid of the uniforms that are joined."""
+        """The rank correlation 12·E[UV] − 3, over a grid of the uniforms that are joined."""
         middle = (np.arange(_T_SIDE) + 0.5) / _T_SIDE
         u = np.stack([np.repeat(middle, _T_SIDE), np.tile(middle, _T_SIDE)])
         StudentTCopula(self.matrix[np.ix_([i, j], [i, j])], self.degrees).join(u)
@@ -152,7 +152,7 @@ class Archimedean(_Joined):
             np.clip(self.generator(-np.log(u) / frailty), _LEAST, _MOST, out=u)
 
     def pair(self, i: int, j: int) -> float:
-        """By 12·∫∫C − 3 over a grid."""
+        """The rank correlation 12·∫∫C − 3, over a grid."""
         middle = self.inverse((np.arange(_SIDE) + 0.5) / _SIDE)
         with np.errstate(all="ignore"):
             return 12 * float(np.mean(self.generator(middle[:, None] + middle))) - 3

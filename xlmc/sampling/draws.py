@@ -58,7 +58,7 @@ class Draw:
 
     @classmethod
     def of(cls, name: str, family: Family, given: Mapping[str, Hashable]) -> Draw:
-        """Of parameters by key, `lower_cutoff` and `upper_cutoff` among them where the draw is cut off."""
+        """A draw from parameters by key, `lower_cutoff` and `upper_cutoff` among them where the draw is cut off."""
         parameters = dict(given)
         for key, each in given.items():
             if isinstance(each, Real):
@@ -142,7 +142,7 @@ class Draw:
         return (float(ends[0]), float(ends[1])) if np.isfinite(ends).all() else None
 
     def offset_and_factor(self) -> tuple[float, float] | None:
-        """With these, offset + factor·u is the draw, to the bit; None where it is not so simple."""
+        """Two numbers with which offset + factor·u is the draw, to the bit; None where it is not so simple."""
         if not isinstance(self.family, Uniform) or self.cutoffs is not None:
             return None
         low, high = self.parameters
@@ -268,7 +268,7 @@ class Sampler:
 
 
 def _by_margins(margins: Sequence[Margin], maps: Sequence[tuple[float, float]], rows: Floats) -> Callable[[int], None]:
-    """As a `Filler`, by asking each margin."""
+    """A `Filler` that asks each margin."""
     parts = list(zip(margins, rows, maps, strict=True))
 
     def fill(start: int) -> None:

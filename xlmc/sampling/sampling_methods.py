@@ -140,4 +140,4 @@ _ROWS: Final = (
 )
 
 METHODS: Final[dict[str, SamplingMethod]] = {row.key: row for row in _ROWS}
-"""By their keys; the first is used where nothing else is asked for."""
+"""The methods by their keys; the first is used if no other is asked for."""

@@ -28,7 +28,7 @@ _SUMMABLE = 1e290
 """Sums of larger values may pass the largest number."""
 
 _SHRUNK = 100
-"""After so many halvings, no sum of values can."""
+"""After this many halvings, no sum of values can overflow."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -222,7 +222,7 @@ def _forecast(run: Simulation, base: Simulation, forecast: Forecast, differs: bo
 def _differences(
     run: Simulation, base: Simulation, forecast: Forecast, found: Mapping[str, Estimate], *, paired: bool
 ) -> dict[str, Estimate]:
-    """Each number less the workbook's own."""
+    """The difference of each number from the workbook's own."""
     own = base.results[forecast.name]
     low, high = own.central()
     theirs = {"mean": own.mean, "low": low, "high": high}

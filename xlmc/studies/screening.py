@@ -48,10 +48,10 @@ from xlmc.studies.comparison.variations import with_changes, with_plain_sampling
 __all__ = ["ACCEPTANCE_TOLERANCE", "ENDS", "AtEnds", "Cost", "Expected", "Screening", "screen"]
 
 ACCEPTANCE_TOLERANCE: Final = 0.1
-"""Of the share of accepted trials: the change that counts as none."""
+"""The change of the share of accepted trials, as a share of it, that counts as none."""
 
 SLICE: Final = 0.2
-"""Of the prior, about the base value: wide enough to hold trials, narrow enough to stand for the value."""
+"""The part of the prior around the base value: wide enough to hold trials, narrow enough to represent the value."""
 
 ENDS: Final = (0.025, 0.975)
 """Percentiles of an assumption that stand for the ends of its range."""
@@ -422,7 +422,7 @@ def _names_text(names: Sequence[str]) -> str:
 
 
 def _names_of(text: str, known: Sequence[str], kind: str) -> tuple[str, ...]:
-    """Those of the known names that a list of patterns fits.
+    """The known names that a list of patterns fits.
 
     Raises:
         SimulationError: a pattern fits none.

@@ -111,7 +111,7 @@ def seal_file(file: BinaryIO, book: str) -> None:
 
 
 def blank_seal(book: str) -> bytes:
-    """As many bytes as the seal will take."""
+    """A placeholder with as many bytes as the seal will have."""
     return _seal(book, hashlib.sha256())
 
 
@@ -136,7 +136,7 @@ def _seal_at_end(path: Path, ending: str) -> Seal | None:
 
 
 def _digest(file: BinaryIO, size: int) -> hashlib._Hash:
-    """Of the first bytes of a file."""
+    """The SHA-256 of the first bytes of a file."""
     digest = hashlib.sha256()
     file.seek(0)
     while size > 0 and (chunk := file.read(min(size, _CHUNK))):

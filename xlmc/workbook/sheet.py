@@ -66,7 +66,7 @@ def parse_sheet(xml: bytes, entry: SheetEntry, context: CellContext) -> Sheet:
 
 
 class _Pass:
-    """Where the pass is, the cell it is in, and what it has found."""
+    """The state of a pass over the sheet: the place, the cell, and what was found."""
 
     def __init__(self, sheet: str, context: CellContext) -> None:
         self.cells: dict[tuple[int, int], CellContent] = {}

@@ -63,7 +63,7 @@ class Target:
 
     @property
     def foreign(self) -> str | None:
-        """Why the file is not ours to replace; None where it is, or where there is none."""
+        """Why xlmc must not replace the file; None if it may, or if there is no file."""
         if not self.path.exists():
             return None
         ending = self.path.suffix.casefold()

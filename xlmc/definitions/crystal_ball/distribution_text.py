@@ -30,7 +30,7 @@ _FIRST_OF_FAMILY: Final = 3
 
 
 class UnreadableError(ValueError):
-    """It cannot be said for certain what is drawn."""
+    """The text and the numbers do not say for certain what is drawn."""
 
 
 @dataclass(frozen=True, slots=True)

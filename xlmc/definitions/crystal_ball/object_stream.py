@@ -47,7 +47,7 @@ class _Reference(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class _Empty:
-    """So many empty elements of an array."""
+    """A number of empty elements of an array."""
 
     count: int
 
@@ -138,7 +138,7 @@ class _Reader:
         return self._objects[number]
 
     def _resolve(self) -> None:
-        """Put the objects themselves where they are referred to."""
+        """Replace references to objects by the objects themselves."""
         for each in self._made:
             held: Any = each.members if isinstance(each, Thing) else each
             for key, value in list(held.items() if isinstance(held, dict) else enumerate(held)):

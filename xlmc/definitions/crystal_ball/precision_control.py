@@ -79,7 +79,7 @@ def _goal(asked: Precision) -> Goal:
 
 
 def _why_not(said: Collection[str], goals: Mapping[str, Goal]) -> str:
-    """Why the goals are not those of the run, in words; empty where they are."""
+    """Why the goals are not used for the run, in words; empty if they are used."""
     if said:
         return "the table xlmc_settings says how to run (its rows Precision, Precision of and Look at ask for one)"
     if len(set(goals.values())) > 1:

@@ -38,7 +38,7 @@ OF_PARAMETERS: Final = "ParmControlId"
 OF_NAMES: Final = ("AsmValueRefEnum", "FrcValueRefEnum", "DecVarValueRefEnum")
 OF_COEFFICIENTS: Final = "CorrelationCoefRefEnum"
 NAME: Final = 0
-"""Of `OF_NAMES`: the cell gives the name."""
+"""The member of `OF_NAMES` that says: the cell gives the name."""
 
 _GUID: Final = (("_a", 8), ("_b", 4), ("_c", 4), *((f"_{letter}", 2) for letter in "defghijk"))
 """Members of a GUID, and their hexadecimal digits."""

@@ -79,7 +79,7 @@ class InCells:
 
     @property
     def refused(self) -> Iterator[FormulaError]:
-        """Why cells cannot be computed that show no results."""
+        """Why cells that show no results cannot be computed."""
         for cell, found in self.rewritten.items():
             if isinstance(found, FormulaError) and cell not in self.results and cell not in self.unavailable:
                 yield found
@@ -147,7 +147,7 @@ def _take(reading: CellReading, found: InCells, claims: Claims, findings: Findin
 
 
 def _free_name(assumption: Assumption, claims: Claims, findings: Findings) -> str:
-    """Its own name; with its cell behind it where another has that name."""
+    """The draw's own name, followed by its cell where another draw has that name."""
     name = assumption.name
     if name_key(name) in claims.names:
         name = f"{name} ({assumption.cell})"

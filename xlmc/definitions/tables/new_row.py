@@ -1,4 +1,4 @@
-"""Where a distribution goes in a workbook's table `xlmc_assumptions`: the row of that name, or a new one below."""
+"""The row for a distribution in a workbook's table `xlmc_assumptions`: the row of that name, or a new one below."""
 
 from __future__ import annotations
 

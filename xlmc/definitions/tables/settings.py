@@ -33,7 +33,7 @@ _Reader = Callable[[Row, Findings], Any]
 T = TypeVar("T")
 
 LEAST_PERCENT = 0.1
-"""Of a precision: what is below is a number in a cell of percent format, most likely."""
+"""A precision in percent below this is most likely a number in a cell of percent format."""
 
 _OTHERS = {"Precision %": "precision", "Rare": "rare", "Look at": "forecasts", "Time limit": "time_limit"}
 """Setting -> what `stopping` calls it, of those that are no option of a goal."""

@@ -121,7 +121,7 @@ class Row:
 
 
 def is_blank(content: CellContent) -> bool:
-    """Nothing to see: no value and no formula, or text of blanks."""
+    """Whether a cell looks empty: no value and no formula, or a text of blanks."""
     if isinstance(content.value, str):
         return not content.value.strip()
     return content.value is None and content.formula is None

@@ -108,7 +108,7 @@ class Thunk:
     tree: ir.Expression
     scope: Scope
     known: dict[tuple[bool, bool, bool], int] = field(default_factory=dict)
-    """Its node for each way to take ranges (see `Scope.taking`), once it was lowered."""
+    """The node of a cell for each way to take ranges (see `Scope.taking`), once the cell was lowered."""
     callee: Callee | None = None
     """The function that it gives, once it was called."""
 
@@ -154,7 +154,7 @@ Callee = Closure | Native | Fork
 
 @dataclass(frozen=True, eq=False)
 class Scope:
-    """Where a tree stands.
+    """The place of a tree in the workbook.
 
     Attributes:
         cell: whose formula it is in.

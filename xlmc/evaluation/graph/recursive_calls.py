@@ -101,7 +101,7 @@ class _Frame:
         return found
 
     def of(self, index: Trials) -> _Frame:
-        """Some of the trials, for one branch."""
+        """The call for some of the trials, those of one branch."""
         if index.size == self.trials.size:
             return self
         return _Frame({}, self.trials[index], self.own_trials[index], self.depth, self, index)
@@ -319,7 +319,7 @@ def _ask(frame: _Frame, slots: Sequence[int]) -> Asking:
 
 
 def _decide(condition: Value) -> tuple[NDArray[np.bool_], Codes]:
-    """Where a condition is true, and its errors."""
+    """The trials in which a condition is true, and its errors."""
     if condition.numbers.ndim == 3:
         raise FormulaError("an array decides whether a LAMBDA calls itself", hint="use a single condition")
     truth, errors = condition.to_logicals()

@@ -40,7 +40,7 @@ _SHORTEST: Final = 16
 """The fewest cells of a range that is worth looking up."""
 
 _LONG: Final = 64
-"""So many cells that vary are folded one by one: they need not wait for each other."""
+"""From this number of varying cells on, they are added one by one, and need not wait for each other."""
 
 _MOST_FOLDS: Final = 4
 """Ranges, of one function, that a cell is folded in one by one."""

@@ -46,7 +46,7 @@ _MOST_FILTERS: Final = 16
 """The most filters: every pair of them is counted."""
 
 _PATIENCE: Final = 4
-"""Where more than one block in so many must be run in the usual way, whole blocks are not tried any more."""
+"""If more than one block in this many must be run step by step, whole blocks are not tried any more."""
 
 
 Counts = NDArray[np.int64]

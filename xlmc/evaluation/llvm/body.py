@@ -90,7 +90,7 @@ class Body:
         return function(Arithmetic(self.builder, self._fused), *arguments)
 
     def sine_and_cosine(self, angle: Any) -> tuple[Any, Any]:
-        """Both, computed once for each angle."""
+        """The sine and the cosine of an angle, computed once for each angle."""
         if id(angle) not in self._sines_and_cosines:
             self._sines_and_cosines[id(angle)] = angle, sine_and_cosine(self.builder, angle, self._fused)
         return self._sines_and_cosines[id(angle)][1]
@@ -146,7 +146,7 @@ class Body:
         return isinstance(self._dag.nodes[part.node], Constant)
 
     def _source(self, part: Operand) -> tuple[Operand, Loaded]:
-        """Where the operand's value is, and the kind that it has there."""
+        """The place of the operand's value, and the kind that it has there."""
         if part not in self._known:
             part = Operand(part.node, self._dag.types[part.node])
         return part, self._known[part]

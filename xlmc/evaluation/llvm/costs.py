@@ -17,7 +17,7 @@ from xlmc.functions import Kind
 __all__ = ["loops_pay"]
 
 _SAVED: Final = 0.5
-"""By a node in a loop of which the table below says nothing: arithmetic and functions of one number."""
+"""What a loop saves for a node that is not in the table below: arithmetic and functions of one number."""
 
 _SAVED_BY: Final = {
     "^": -1.5,

@@ -103,7 +103,7 @@ def _folder() -> Path | None:
 
 
 def _caches() -> Path:
-    """Where programs keep what they can make again."""
+    """The folder in which programs keep files that they can make again."""
     if sys.platform == "win32":
         return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
     if sys.platform == "darwin":

@@ -234,7 +234,9 @@ _ARCTANGENT_STEPS: Final = (
     (19 / 16, 9.82793723247329054082e-01, 1.39033110312309984516e-17),
     (39 / 16, *_HALF_PI),
 )
-"""From this number on it is reduced by the arctangent of 1/2, 1, 3/2 or infinity, which is the sum of the other two."""
+"""From this number on the argument is reduced by the arctangent of 1/2, 1, 3/2 or infinity, which is the sum of the
+other two.
+"""
 
 _ARCTANGENT: Final = (
     *(3.33333333333329318027e-01, -1.99999999998764832476e-01, 1.42857142725034663711e-01),

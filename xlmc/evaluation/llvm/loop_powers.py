@@ -28,12 +28,12 @@ _EXPONENTIAL: Final = (
     *(0.00019841269874820627, 2.4801587325547743e-05, 2.7557255400206422e-06, 2.75572736431103e-07),
     *(2.5105217004720745e-08, 2.0914686968086876e-09),
 )
-"""Of r, from its second power on."""
+"""Coefficients of the powers of r, from the second power on."""
 _LOGARITHM: Final = (
     *(0.666666666666667, 0.3999999999989938, 0.28571428626031065, 0.2222221112572281),
     *(0.18182889786191042, 0.15331699633543858, 0.14616721179861816),
 )
-"""Of s², from its first power on: 2·atanh(s) = 2s + s·(…)."""
+"""Coefficients of the powers of s², from the first power on: 2·atanh(s) = 2s + s·(…)."""
 _FINE_LOGARITHM: Final = (
     *(0.4, 0.2857142857142937, 0.2222222222165554, 0.1818181833547124),
     *(0.15384594954137945, 0.13334805149611875, 0.11706224135460942, 0.11723306234080849),
@@ -43,7 +43,7 @@ _FINE_LOGARITHM: Final = (
 _LEAST: Final = -708.3964185322640
 """The exponential of a smaller number is too small for Excel, or for a double."""
 _MOST: Final = 709.782712893384
-"""That of a larger one is too large."""
+"""The exponential of a larger number is too large."""
 
 _ROOT_OF_HALF: Final = 0x3FE6A09E667F3BCD
 _ONE: Final = 0x3FF0000000000000

@@ -40,7 +40,7 @@ class Emitter(Protocol):
         """A function that is made of arithmetic."""
 
     def sine_and_cosine(self, angle: Any) -> tuple[Any, Any]:
-        """Both, computed once for each angle."""
+        """The sine and the cosine of an angle, computed once for each angle."""
 
     def flush(self, value: Any) -> Any:
         """0 instead of a number too small for Excel."""

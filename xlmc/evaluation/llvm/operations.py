@@ -268,7 +268,7 @@ def _power(dag: Dag, node: Apply) -> _Row:
 
 
 def _power_of_any(body: Emitter, parts: Sequence[Any]) -> Any:
-    """Left to the careful path where the base is 0 or less."""
+    """A power of any base; where the base is 0 or less, it is left to the careful path."""
     body.flag(body.builder.fcmp_ordered("<=", parts[0], body.number(0.0)))
     return body.of_doubles(power, *parts)
 

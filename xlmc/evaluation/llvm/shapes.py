@@ -103,9 +103,8 @@ def _portions(nodes: Sequence[int], longest: int) -> list[Sequence[int]]:
 
 
 def _repetition(dag: Dag, nodes: Sequence[int], rules: Mapping[int, LoopRule], longest: int) -> tuple[int, int, int]:
-    """Where nodes repeat themselves longest: the first, how many a period has, and the one after the last.
-
-    The period is 0 where they do not, or not often. What lies as far back as a part is long lies in another part.
+    """The longest repetition of nodes: its first node, the length of a period, and the node after its last. The period
+    is 0 where they do not, or not often. What lies as far back as a part is long lies in another part.
     """
     at = {node: position for position, node in enumerate(nodes)}
     known: dict[object, int] = {}

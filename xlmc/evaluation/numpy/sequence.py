@@ -293,7 +293,7 @@ def _drop_values(nodes: list[int]) -> Step:
 
 
 _RARE: Final = 16
-"""Where a choice falls the same way in all but one of so many trials, the processor guesses it."""
+"""If a choice falls the same way in all but one of this many trials, the processor predicts it."""
 
 
 def _choose(condition: Any, yes: Any, no: Any, out: NDArray[Any]) -> NDArray[Any]:

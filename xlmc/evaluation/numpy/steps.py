@@ -56,7 +56,7 @@ class Frame:
     live: int = 0
 
     def flush(self, node: int) -> None:
-        """Set those of the node's numbers to 0 that are too small for Excel."""
+        """Set the node's numbers that are too small for Excel to 0."""
         self.underflow.raised = False
         flush(self.values[node])
 

@@ -32,7 +32,7 @@ class NodeBounds:
         self._found: list[Bounds] = []
 
     def of(self, node: int) -> Bounds | None:
-        """Those of a node; None where they are not known."""
+        """The bounds of a node; None where they are not known."""
         if not self._inputs:
             return _of_constant(self._dag, node)
         while len(self._found) <= node:
@@ -41,7 +41,7 @@ class NodeBounds:
         return None if self._found[node] == _ANY else self._found[node]
 
     def _next(self) -> Bounds:
-        """Those of the first node that was not looked at, from those of the nodes before it."""
+        """The bounds of the first node that has none yet, from those of the nodes before it."""
         node_id, found = len(self._found), self._found
         match self._dag.nodes[node_id]:
             case Input(name):

@@ -80,7 +80,7 @@ class Exact:
 
 
 def as_double(value: Item) -> float:
-    """As a double; NaN for what is no number."""
+    """The value as a double; NaN if it is not a number."""
     value = _single(value)
     if isinstance(value, bool):
         return float(value)

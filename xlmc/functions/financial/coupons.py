@@ -115,7 +115,7 @@ class Coupons:
 
     @property
     def refused(self) -> Bools:
-        """Where Excel gives `#NUM!`: bought on or after maturity, or no such frequency or basis."""
+        """The trials in which Excel gives `#NUM!`: bought on or after maturity, or no such frequency or basis."""
         known = is_frequency(self.frequency) & is_basis(self.basis)
         return np.asarray(~known | np.greater_equal(self.settlement, self.maturity))
 

@@ -26,7 +26,7 @@ def _years(start: Any, end: Any, basis: Any) -> tuple[Floats, Bools]:
 
 
 def _all_positive(*amounts: Any) -> Bools:
-    """Where all are above 0."""
+    """The trials in which all numbers are above 0."""
     result = np.ones(1, bool)
     for amount in amounts:
         result = result & (np.asarray(amount) > 0)

@@ -104,7 +104,7 @@ def count_if(cells: Value, criterion: Value, *, date1904: bool = False) -> Value
 
 @excel("COUNTIFS", Cells(repeat=True), Anything(repeat=True), dated=True, facts=Facts(exact_steps=True))
 def count_ifs(*pairs: Value, date1904: bool = False) -> Value:
-    """In how many positions all ranges meet the criteria behind them."""
+    """The number of positions at which all ranges meet the criteria that follow them."""
     return _conditional(pairs[0], pairs, _count, date1904)
 
 

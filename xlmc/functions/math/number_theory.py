@@ -24,7 +24,7 @@ _MOST: Final = 2.0**31 - 1
 """The functions that count ways to choose refuse this number and larger ones."""
 
 _ALL_OVERFLOW: Final = 520
-"""To choose so many of at least twice as many always makes more ways than a double holds."""
+"""From this number on, choosing so many of at least twice as many gives more ways than a double holds."""
 
 
 def _double_factorial(n: int) -> float:

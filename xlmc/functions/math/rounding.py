@@ -29,7 +29,7 @@ _HALF_OF_15TH_DIGIT: Final = np.array([0.0, *(float(f"5e{n - 15}") for n in rang
 
 _SHOWN: Final = Context(prec=15, rounding=ROUND_HALF_UP)
 _LAST_BIT: Final = 2.3e-16
-"""As a share of a double: more than its last bit, less than half a unit of its 15th digit."""
+"""A share of a double: more than its last bit, less than half a unit of its 15th digit."""
 
 _FIFTEEN_DIGITS: Final = 1e14
 _HALF: Final = np.asarray(0.5)

@@ -240,12 +240,12 @@ def fraction_layout(tokens: Sequence[Token]) -> _FractionLayout:
 
 
 def _end_of_digits(tokens: Sequence[Token]) -> int:
-    """Where the last digit placeholder ends; 0 without one."""
+    """The position at which the last digit placeholder ends; 0 without one."""
     return max((index + 1 for index, token in enumerate(tokens) if token.mark is Mark.DIGIT), default=0)
 
 
 def _start_of_run(tokens: Sequence[Token]) -> int:
-    """Where the run of digit placeholders at the end starts."""
+    """The position at which the digit placeholders at the end start."""
     start = len(tokens)
     while start and tokens[start - 1].mark is Mark.DIGIT:
         start -= 1

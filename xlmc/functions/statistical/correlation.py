@@ -78,7 +78,7 @@ def _line(y: Floats, x: Floats, counts: Bools) -> tuple[Floats, Floats, Floats, 
 @excel("INTERCEPT", Arrays, Arrays, facts=Facts(empty_cells=EmptyCells.PAIRED))
 @of_pairs
 def intercept(y: Floats, x: Floats, counts: Bools) -> Floats:
-    """Where the line of least squares meets x = 0; `#DIV/0!` where x does not vary."""
+    """The value of the line of least squares at x = 0; `#DIV/0!` where x does not vary."""
     mean_x, mean_y, steepness, varies = _line(y, x, counts)
     return np.where(varies, mean_y - steepness * mean_x, DIV0)
 

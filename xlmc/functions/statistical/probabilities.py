@@ -67,7 +67,7 @@ def by_form(cumulative: Bools, probability: Callable[[], Any], density: Callable
 
 _SERIES_FROM: Final = 16.0
 _STIRLING: Final = (1 / 12, -1 / 360, 1 / 1260, -1 / 1680, 1 / 1188)
-"""Of 1/x, 1/x³, 1/x⁵, …: from 16 on the first term left out is below 1e-16."""
+"""Coefficients of 1/x, 1/x³, 1/x⁵, …: from 16 on the first term left out is below 1e-16."""
 
 _NEAR: Final = 0.1
 _DEVIANCE_TERMS: Final = 9

@@ -85,7 +85,7 @@ def right(text: str, count: float) -> object:
 @per_element
 @in_units
 def middle(text: str, start: float, count: float) -> object:
-    """So many characters from a position on."""
+    """A number of characters from a position on."""
     if start < 1 or count < 0:
         return ErrorCode.VALUE
     first = math.trunc(start) - 1
@@ -122,7 +122,7 @@ _WILDCARD: Final = re.compile(r"~[*?~]|.", re.DOTALL)
 @per_element
 @in_units
 def find(wanted: str, text: str, start: float) -> object:
-    """Where a text first stands in another from a position on; capitals count."""
+    """The position of a text in another one, searched from a position on; capitals count."""
     first = math.trunc(start) - 1
     found = text.find(wanted, first) if 0 <= first <= len(text) else -1
     return ErrorCode.VALUE if found < 0 else found + 1.0

@@ -84,7 +84,7 @@ def _whole_number(item: object, default: int) -> int | None:
 
 
 def _occurrence(text: str, marks: list[str], number: int, fold: bool, at_end: bool) -> tuple[int, int] | None:
-    """Where the n-th delimiter starts and ends, counted from the end if negative; None when there are fewer.
+    """The start and the end of the n-th delimiter, counted from the end if negative; None when there are fewer.
 
     With `at_end`, the end of the text that the count runs to is a delimiter, too. An empty delimiter is found at once.
     """

@@ -73,7 +73,7 @@ class Drawing:
 
 
 Content = str | Drawing
-"""Of a cell of a table."""
+"""The content of a cell of a table."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from xlmc.studies.methods import Study, recommendation
 __all__ = ["document"]
 
 _WIDTH: Final = 170.0
-"""Of a figure, in millimetres."""
+"""The width of a figure, in millimetres."""
 
 _FIGURES: Final[tuple[tuple[Work, str], ...]] = (("seconds", "time"), ("evaluations", "evaluations of the workbook"))
 

@@ -176,7 +176,7 @@ def bounds_table(study: Study) -> Table:
 
 
 def ends_lines(study: Study) -> list[tuple[str, str]]:
-    """Each optimised bound, and the point that it is reached at: the workbook accepts it, and gives this forecast."""
+    """Each optimised bound, and the point at which it is reached: the workbook accepts it, and gives this forecast."""
     units = {forecast.name: f" {forecast.units}" if forecast.units else "" for forecast in study.model.forecasts}
     found = []
     for curve in study.once:

@@ -148,14 +148,15 @@ def column_of(picture: Picture) -> list[Label]:
 
 
 def _end(line: Line, right: float) -> tuple[float, float]:
-    """Where a line's label belongs to: the end of its dotted part, or else its last measured point."""
+    """The point that a line's label belongs to: the end of its dotted part, or else its last measured point."""
     if line.once:
         return right, line.points[-1].y
     return line.ahead[-1] if line.ahead else (line.points[-1].x, line.points[-1].y)
 
 
 def guides_of(picture: Picture, bottom: float) -> tuple[float, float]:
-    """Where the lines of slope −1/2 and −1 begin, and how many decades they fall: in the larger gap between words.
+    """The start of the lines of slope −1/2 and −1, and the decades over which they fall, in the larger gap between
+    words.
 
     Args:
         picture: the chart.
@@ -248,7 +249,9 @@ def _kind(study: Study, curve: Curve, found: Choice) -> tuple[str, str]:
 def _ahead(
     study: Study, curve: Curve, work: Work, scale: float, kind: tuple[str, str], wanted: Need
 ) -> tuple[tuple[float, float], ...]:
-    """From the longest runs to the finer accuracy, as the law has it; nothing where a method does not get there."""
+    """The dotted part of a line, from the longest runs to the finer accuracy; nothing where the method never reaches
+    it.
+    """
     tolerance = study.tolerance(kind[0])
     rule = law(study, curve, kind)
     budget = float(curve.rungs[-1].budget)

@@ -204,6 +204,6 @@ def _header(simulation: Simulation, keys: list[str]) -> Html:
 
 
 def _buttons() -> Iterator[Html]:
-    """For the tables that are closed at first; only what is open is printed."""
+    """The buttons for the tables that are closed at first; only open tables are printed."""
     for key, label in (("open", "Open all tables"), ("closed", "Close them")):
         yield element("button", label, type="button", data_all=key)

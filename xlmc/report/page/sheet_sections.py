@@ -152,7 +152,7 @@ def _remarks(simulation: Simulation) -> Iterator[str]:
 
 
 def _assumption(simulation: Simulation, assumption: Assumption) -> Html:
-    """Its name above two rows, in a body of their own so that they stay together."""
+    """An assumption's name above two rows, in a table body of their own so that they stay together."""
     found = filter_effect_of(simulation, assumption.name)
     shape = EMPTY if found is None else _shape(simulation, assumption.name)
     named = element("tr", element("th", shape, *_name_line(assumption), scope="rowgroup", colspan=str(_COLUMNS)))
@@ -164,7 +164,7 @@ def _assumption(simulation: Simulation, assumption: Assumption) -> Html:
 
 
 def _shape(simulation: Simulation, name: str) -> Html:
-    """Its draws before filtering and the accepted ones as a small picture; nothing where they are one value."""
+    """A small picture of the draws before filtering and of the accepted ones; nothing where all draws are one value."""
     found = shapes_of(simulation, name)
     if found is None:
         return EMPTY

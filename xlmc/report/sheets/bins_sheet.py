@@ -32,7 +32,7 @@ _COUNTS = (3, 4)
 
 @dataclass(frozen=True, slots=True)
 class BinsAt:
-    """Where a table of bins stands; rows and columns are counted from 0.
+    """The place of a table of bins; rows and columns are counted from 0.
 
     Attributes:
         header: the row of column headings; the bins follow it, and above it stand the chart's title and its axis's.

@@ -30,7 +30,7 @@ __all__ = [
 ]
 
 NONE = "–"
-"""Where there is no number to show."""
+"""The text shown if there is no number."""
 
 NOISE = '"noise";"noise";"noise"'
 """The format of a number that is no more than noise: it shows the word."""

@@ -26,7 +26,7 @@ _HEAD_HEIGHT = 48
 
 @dataclass(frozen=True, slots=True)
 class TableAt:
-    """Where a table of numbers stands; above its headings are a chart's title and the name of its axis."""
+    """The place of a table of numbers; above its headings are a chart's title and the name of its axis."""
 
     sheet: str
     left: int

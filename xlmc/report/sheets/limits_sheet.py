@@ -186,7 +186,7 @@ def _across(limit: FilterLimit) -> str:
 
 
 def _share_axis(limit: FilterLimit) -> dict[str, float]:
-    """From 0 to above the whiskers, and never beyond 100 %."""
+    """The axis of the shares: from 0 to above the whiskers, and never beyond 100 %."""
     tops = [each.acceptance.value + (each.acceptance.error or 0.0) for each in limit.points]
     return bounds(0.0, min(1.0, max(tops, default=0.0)))
 

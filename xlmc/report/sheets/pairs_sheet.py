@@ -39,7 +39,7 @@ _PRINTED = ACROSS
 _ABOVE_CHARTS = 6
 """Pairs whose table leaves room for them."""
 _FORECASTS = 6
-"""More have more pairs than are looked at."""
+"""The most forecasts; with more there are more pairs than the sheet shows."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -82,7 +82,7 @@ def _write_table(page: Page, section: str, table: RecordTable) -> None:
 
 
 def _column_starts(keys: Sequence[str]) -> tuple[list[int], int]:
-    """Where each column of a table starts, and where the last one ends."""
+    """The column of the sheet at which each column of a table starts, and at which the last one ends."""
     starts, column = [], _FIRST
     for key in keys:
         starts.append(column)

@@ -56,7 +56,7 @@ _SIZE: Final = (620, 23 * CHART_ROWS)
 """The size of a chart in pixels."""
 
 MOST_LINES: Final = 6
-"""More cannot be told apart in a spider."""
+"""The most lines of a spider chart; more cannot be told apart."""
 
 _COLOURS: Final = ("#2F6DA8", "#C8553D", "#4F8A5B", "#8E5EA2", "#D99A2B", "#52606D", "#3AA6A6", "#A23B5B")
 

@@ -38,7 +38,7 @@ _WIDTH = 13
 
 @dataclass(frozen=True, slots=True)
 class TrialsAt:
-    """Where the trials stand.
+    """The place of the trials in the workbook.
 
     Attributes:
         sheet: its name.

@@ -213,7 +213,7 @@ def sampling_sentence(simulation: Simulation) -> str:
 
 
 def generator_text(simulation: Simulation) -> str:
-    """Where the random numbers come from."""
+    """The source of the random numbers, in words."""
     if simulation.rare is not None:
         return f"{GENERATOR}, seeded by (seed, purpose): a stream to learn with, and one to draw the trials with"
     return METHODS[simulation.plan.method].generator

@@ -56,7 +56,7 @@ def versions(engine: str = "numpy") -> dict[str, str]:
 
 @cache
 def _installed(library: str) -> str:
-    """Its version, which is looked for in files once a process."""
+    """The version of a library, which is read from files only once in a process."""
     return version(library)
 
 
@@ -77,7 +77,7 @@ CHANGED_FROM: Final = "changed"
 """Key of the section on the workbook that the run's own was made of."""
 
 _FORMAT: Final = 2
-"""Of the record: from 2 on it holds the settings and the cells that a run can be repeated and checked by."""
+"""The format of the record: from 2 on it holds the settings and the cells that a run can be repeated and checked by."""
 
 _SHARES = {
     "trials": "accepted trials divided by all trials; its 95 % interval is by Wilson's formula",

@@ -17,7 +17,7 @@ from xlmc.workbook.workbook import CellContent, Sheet, Workbook
 __all__ = ["Entry", "Record", "RecordTable", "Section", "Value", "read_record"]
 
 Value = str | int | float | bool | None
-"""None where there is nothing to say: no units, no cutoff, no trial to take a mean of."""
+"""A value in the record. It is None if there is none: no units, no cutoff, no trial to take a mean of."""
 
 
 @dataclass(frozen=True, slots=True)

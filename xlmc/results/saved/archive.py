@@ -85,7 +85,7 @@ class Package:
         return name in self._sizes
 
     def size(self, name: str) -> int:
-        """Of an entry, in bytes.
+        """The size of an entry, in bytes.
 
         Raises:
             WorkbookError: there is no such entry.

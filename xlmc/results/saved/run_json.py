@@ -161,7 +161,7 @@ def stopped_of(found: object) -> Stopped:
 
 
 def rare_of(found: object) -> RareAccount | None:
-    """Where the accepted trials come from, if they are rare.
+    """How the accepted trials were found, if they are rare.
 
     Raises:
         ValueError: it is something else.
@@ -176,7 +176,7 @@ def rare_of(found: object) -> RareAccount | None:
 
 
 def origin_of(found: object) -> Origin:
-    """Where the run was made.
+    """The software and the processor of the run.
 
     Raises:
         ValueError: it is something else.

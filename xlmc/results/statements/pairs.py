@@ -140,7 +140,7 @@ def _by_replicate(hit: NDArray[np.bool_], replicate: Replicates | None, size: in
 
 
 def _together(columns: tuple[Floats, Floats]) -> Iterator[tuple[slice, Floats, Floats]]:
-    """Both columns a part at a time, for they may lie on disk."""
+    """Both columns, one part at a time, because they may be on disk."""
     start = 0
     for first, second in zip(*map(parts, columns), strict=True):
         where = slice(start, start + first.size)

@@ -14,10 +14,10 @@ MOST_LOST: Final = 0.001
 """Above this share of trials lost to errors the answer must not be used as it stands, as of plain trials."""
 
 MOST_MISSED: Final = 0.01
-"""Of the probability of acceptance: above this share, what was met and not found is said, and the answer not used."""
+"""A share of the probability of acceptance: if more was met and not found, a warning says so."""
 
 LEAST_CHANCE: Final = 1e-3
-"""Below it, the number of plain trials that were accepted is no chance."""
+"""If the chance of so many accepted plain trials is below this, they are no coincidence."""
 
 MOST_APART: Final = math.log(2.0)
 """Two estimates of the probability of acceptance, as logarithms: the first is known to some tenths, and less well where
@@ -26,7 +26,7 @@ the populations of several ways share its points."""
 
 @dataclass(frozen=True, slots=True)
 class RareAccount:
-    """Where the accepted trials of a run come from.
+    """How the accepted trials of a run were found.
 
     Attributes:
         evaluations: trials in all, plain ones with them.
@@ -91,12 +91,12 @@ class RareAccount:
 
     @property
     def plain_trials(self) -> float:
-        """That plain rejection would have needed, on average."""
+        """The trials that plain rejection would have needed, on average."""
         return self.kept / self.acceptance.value
 
     @property
     def method(self) -> str:
-        """In a few words."""
+        """The method in a few words."""
         return "rejection from a learned proposal: independent trials of equal weight"
 
     @property

@@ -44,7 +44,7 @@ _PATIENCE: Final = 1 << 23
 """Proposals after which it counts whether there will ever be enough."""
 
 _SURPRISE: Final = math.log(30.0)
-"""By how much the envelope may grow, as a logarithm, before the proposal is to be learnt anew."""
+"""How much the envelope may grow, as a logarithm, before the proposal must be learned again."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -204,7 +204,7 @@ class _Kept:
         return copies(self.logs, self.luck, envelope)
 
     def under(self, envelope: float) -> _Kept:
-        """Those that are left under an envelope, and under any higher one among them."""
+        """The trials that are left under an envelope, and under any higher one among them."""
         inside = self.luck < np.exp(self.logs - envelope)
         return _Kept(self.points[inside], self.logs[inside], self.luck[inside])
 
@@ -231,7 +231,7 @@ class _Sums:
         self._second += float(np.square(weights).sum())
 
     def for_accepted(self, fewest: int) -> int:
-        """As many proposals again, or so many that `fewest` can be expected to be accepted."""
+        """The number of further proposals: as many again, or so many that `fewest` can be expected to be accepted."""
         return max(self.proposals, -(-self.proposals * fewest // max(self.accepted, 1)))
 
     @property

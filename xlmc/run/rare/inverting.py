@@ -46,7 +46,7 @@ _MOST_STEPS: Final = 2_000
 """Parts of a formula that is written out as a line."""
 
 _MOST_CELLS: Final = 200
-"""Of an area that is written out."""
+"""The most cells of an area that is written out."""
 
 
 def conjuncts(filters: Sequence[Shortfall]) -> Iterator[Shortfall]:
@@ -86,7 +86,7 @@ class Inverting:
         self.turned: list[int] = []
 
     def region(self, of: Shortfall) -> Region | None:
-        """Where something that is asked can hold; None where that is not known."""
+        """The values with which a condition can hold; None where they are not known."""
         if isinstance(of, Leaf):
             return self._comparison(of.holds)
         if not isinstance(of, Together):
@@ -126,7 +126,7 @@ class Inverting:
         return found
 
     def _known(self, tree: ir.Expression, cell: Cell) -> int:
-        """Where the number that a tree gives will be known."""
+        """The place in which the number that a tree gives will be known."""
         self.targets.append(Target(ir.Binary("+", tree, ir.Number(0.0)), cell))
         return len(self.targets) - 1
 
@@ -215,14 +215,14 @@ class Inverting:
         return lambda value, known: choose(known[index] == 1.0, first(value, known), second(value, known))
 
     def _value(self, tree: ir.Expression, cell: Cell) -> Undo | None:
-        """Of a tree that may not depend on the assumption at all: then anything will do, or nothing."""
+        """How to undo a tree that may not depend on the assumption at all: then all values are possible, or none."""
         if self._depends(tree):
             return self._undo(tree, cell)
         index = self._known(tree, cell)
         return lambda value, known: Spans.where(value.contain(known[index]))
 
     def _of_many(self, tree: ir.Call, cell: Cell) -> Undo | None:
-        """Of a function of several arguments, one of which depends on the assumption."""
+        """How to undo a function of several arguments, one of which depends on the assumption."""
         parts = list(_written_out(tree.arguments))
         varying = [part for part in parts if self._depends(part)]
         rest = tuple(part for part in parts if not self._depends(part))
@@ -239,7 +239,7 @@ class Inverting:
         return self._beside(step, one, ir.Call(tree.name, rest), cell)
 
     def _straight(self, trees: Sequence[ir.Expression], cell: Cell) -> Undo | None:
-        """Of a + b·x, or of (a + b·x) / (c + d·x) where there are two trees; x is the assumption or a gate."""
+        """How to undo a + b·x, or (a + b·x) / (c + d·x) where there are two trees; x is the assumption or a gate."""
         for gate in self._gates:
             lines = [self._line(each, gate) for each in trees]
             known = [each for each in lines if each is not None]
@@ -291,7 +291,7 @@ class Inverting:
 
 
 def _minus(value: Spans, o: Floats) -> Spans:
-    """Of s − o."""
+    """The inverse of s − o."""
     return preimage.term(value, -o)
 
 

@@ -31,7 +31,7 @@ SCALING_TRIALS: Final = 16_384
 """Draws whose distances, the median of each, all distances are measured by."""
 
 OUTSIDE: Final = 1e3
-"""More than the logarithm of any distance."""
+"""A number above the logarithm of any distance."""
 
 _LARGEST: Final = 1.0 - 2.0**-53
 _LEAST: Final = 2.0**-54

@@ -55,7 +55,7 @@ class Layered:
 
     @property
     def lost(self) -> int:
-        """Of them, those in which a filter or a draw is an error."""
+        """The number of evaluations in which a filter or a draw is an error."""
         return self._landscape.lost
 
     @property

@@ -36,11 +36,11 @@ __all__ = ["Layer", "layers_of"]
 Floats = NDArray[np.float64]
 
 _THIN: Final = 0.002
-"""Of the range between an assumption's quartiles: the longest interval that counts as thin. Wider ones the search
-describes well as they are."""
+"""The longest interval that counts as thin, as a share of the range between an assumption's quartiles. Wider ones the
+search describes well as they are."""
 
 _OFTEN: Final = 0.01
-"""Of the trials in which it can be accepted at all: the share in which the intervals must be thin."""
+"""The share of the trials in which it can be accepted at all, in which the intervals must be thin."""
 
 _SOME: Final = 30
 """Trials, of those that are looked at, in which an assumption can be accepted."""
@@ -49,16 +49,16 @@ _LEAST: Final = 1e-12
 """Chance of an interval, on average over accepted trials; those that are shorter have too few of the 2^53 uniforms."""
 
 _EXACT: Final = 1e-6
-"""By how much a uniform may differ after it went through its distribution and back."""
+"""How much a uniform may differ after it went through its distribution and back."""
 
 _MOST: Final = 1e300
 _MOST_LAYERS: Final = 4
 _MOST_CANDIDATES: Final = 64
 _MOST_LOOKS: Final = 2_000_000
-"""At cells, to see which vary with an assumption."""
+"""The most looks at cells, to see which vary with an assumption."""
 
 _MOST_CONJUNCTS: Final = 8
-"""Of those that depend on one assumption: so many are tried in pairs."""
+"""The most filters that depend on one assumption and are tried in pairs."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -92,7 +92,7 @@ class Layer:
         return intersection([region(known) for region in self.regions])
 
     def rearranged(self, draws: dict[str, Floats], n: int) -> Rearranged:
-        """Its uniform with those that are left to it first."""
+        """The assumption's uniform number, reordered so that the intervals left to it come first."""
         return _rearranged(self.draw, self.spans(self.known(draws, n)))
 
 
@@ -116,7 +116,7 @@ def layers_of(model: Model, filters: Sequence[Shortfall], drawing: Drawing, unif
 
 
 class _Looking:
-    """For assumptions that a thin layer can be solved for."""
+    """A search for assumptions that a thin layer can be solved for."""
 
     def __init__(self, model: Model, filters: Sequence[Shortfall], drawing: Drawing, uniforms: Floats) -> None:
         self._model, self._block = model, drawing.block

@@ -116,13 +116,15 @@ class Learned:
         return min(usable, key=self.unevenness, default=None)
 
     def unevenness(self, drawn: Round) -> float:
-        """Of the weights of a round's proposal, at the points of the populations: see `Proposal.unevenness`."""
+        """The unevenness of the weights of a round's proposal, at the points of the populations: see
+        `Proposal.unevenness`.
+        """
         points, weights, _ = _of_descents(self.descents)
         return drawn.proposal.unevenness(points, weights)
 
     @property
     def probability(self) -> float:
-        """Of acceptance, as the populations have it; they know it to some tenths."""
+        """The probability of acceptance that the populations give; its error is some tenths of it."""
         return self.searched + self.explored
 
     @property
@@ -207,7 +209,7 @@ def _described(learned: Learned, random: np.random.Generator) -> Proposal:
 def _with_strays(
     distance: Distance, learned: Learned, random: np.random.Generator, most: float
 ) -> tuple[Learned, Proposal]:
-    """With populations about those accepted trials that the others did not come to, and a first proposal."""
+    """What was learned, with populations around accepted trials that the others did not reach, and a first proposal."""
     proposal = _described(learned, random)
     for _ in range(_EXPLORED):
         found = learned.strays(proposal, learned.known)
@@ -268,7 +270,7 @@ def _of_descents(descents: Sequence[Descent]) -> tuple[Floats, Floats, NDArray[n
 
 
 def _dealt(halves: NDArray[np.int64], random: np.random.Generator) -> NDArray[np.intp]:
-    """Some of the points, those of either half by turns: points of one population are alike, and what is fitted to one
+    """Some of the points, taken from both halves in turn: points of one population are alike, and what is fitted to one
     must prove itself on the other.
     """
     first, second = (random.permutation(np.flatnonzero(halves == half)) for half in (0, 1))

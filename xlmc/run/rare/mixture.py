@@ -32,7 +32,7 @@ _GAIN: Final = 0.01
 """What one more step of components must add to the mean log-likelihood: a hundredth of the trials."""
 
 _DECIMALS: Final = 9
-"""Of what was fitted: the last bits, which matrix products may give otherwise with more threads, must not matter."""
+"""Digits that are kept of what was fitted: matrix products may give other last bits with more threads."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,4 +1,5 @@
-"""Where trials are proposed: a mixture of normals in the directions that matter, the assumptions as they are in others.
+"""The proposal, from which trials are drawn: a mixture of normals in the directions that matter, the assumptions as
+they are in others.
 
 Trials that are accepted differ from all trials in some directions only. Those in which neither mean nor spread differ
 are left alone, so that there may be many assumptions (Uribe, Papaioannou, Marzouk & Straub 2021).
@@ -45,30 +46,31 @@ _SHARES: Final = (
     ((0.4, 1.0, 1.0), (0.24, 2.5, 1.2), (0.14, 6.0, 1.4), (0.06, 15.0, 1.7)),
     ((0.3, 1.0, 1.0), (0.22, 2.5, 1.3), (0.2, 6.0, 1.7), (0.12, 15.0, 2.5)),
 )
-"""Of the mixture, from each fitted component with its covariance times so much, first in thin directions, then in the
-others: the one of these is taken under which the accepted points weigh least, and so the weights of proposals vary
+"""Parts of the mixture from each fitted component with its covariance times so much, first in thin directions, then in
+the others: the one of these is taken under which the accepted points weigh least, and so the weights of proposals vary
 least. What a layer's bend leaves has longer tails than a normal distribution, and tails in all directions are dear."""
 
 _WIDE: Final = 0.16
-"""Of the mixture, from components as wide as the assumptions themselves, so that few weights are far above the usual
-(Hesterberg 1995)."""
+"""The part of the mixture from components as wide as the assumptions themselves, so that few weights are far above the
+usual (Hesterberg 1995)."""
 
 _PRIOR: Final = 0.02
-"""Of the proposals, from the assumptions themselves: no weight is above the inverse of it (Owen & Zhou 2000)."""
+"""The part of the proposals from the assumptions themselves: no weight is above the inverse of it (Owen & Zhou 2000).
+"""
 
 _POINTS_A_TERM: Final = 30
 
 _DECIMALS: Final = 9
 
 COPIED: Final = 0.01
-"""By how much Σc² may exceed Σc, c the copies of each trial, as a share of Σc."""
+"""The share by which Σc² may exceed Σc; c are the copies of each trial."""
 
 _STEPS: Final = 50
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Proposal:
-    """Where trials are proposed, in d independent standard normals.
+    """The distribution from which trials are drawn, in d independent standard normals.
 
     Attributes:
         basis: (d, d) orthonormal directions: those that are thin, the others that matter, those that do not.
@@ -190,7 +192,7 @@ def _widened(root: Floats) -> Floats:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Shear:
-    """Of (n, d) points, the first t coordinates being the thin ones: what a + b·x + x·C·x says of each.
+    """What a + b·x + x·C·x gives for each of (n, d) points, whose first t coordinates are the thin ones.
 
     Attributes:
         constant: (t,) a.

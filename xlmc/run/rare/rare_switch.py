@@ -1,7 +1,6 @@
-"""When plain trials are given up for a search: where they would reach their limit before enough are accepted.
-
-Looks are taken at numbers of trials that are known before, and see nothing but counts: the decision is the same however
-the blocks are divided, and whatever the clock says.
+"""The switch from plain trials to a search, if they would reach their limit before enough are accepted. Looks are taken
+at numbers of trials that are known before, and see nothing but counts: the decision is the same however the blocks are
+divided, and whatever the clock says.
 """
 
 from __future__ import annotations

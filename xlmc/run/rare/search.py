@@ -36,10 +36,10 @@ _SURVEY: Final = 65_536
 """Trials from the widened assumptions, before and after."""
 
 _BATCH: Final = 8_192
-"""Of them, at a time."""
+"""Trials of a survey that are drawn at a time."""
 
 _LOOKED_AT: Final = 32
-"""Of the limit, a survey takes this part at most."""
+"""A survey takes at most one in this many of the limit's trials."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -137,8 +137,8 @@ _PURPOSE: Final = "rare acceptance: "
 
 _PART: Final = 16
 _LEAST_PART: Final = 1 << 25
-"""Of the limit of trials, a search takes one part of so many, or so many trials where that is more: what is described
-well needs far less, and what is not is known by then."""
+"""The part of the limit of trials that a search may take, and the trials that it may take in any case: what is
+described well needs far less, and what is not is known by then."""
 
 _MOST_PLAIN: Final = 4_096
 """Accepted plain trials that are looked at: the first of them."""
@@ -251,7 +251,7 @@ def _random(seed: int, purpose: str) -> np.random.Generator:
 
 
 def _failure(model: Model, landscape: Ground, found: Found, wanted: int, left: int) -> str:
-    """Why there are no trials, in words; so many of the limit of trials were none of a search's."""
+    """Why there are no trials, in words."""
     reached = [each for each in found.learned.descents if each.reached]
     if not reached:
         nearest = np.stack([each.nearest for each in found.learned.descents])
@@ -296,7 +296,7 @@ def plain_uniforms(model: Model, seed: int, accepted: NDArray[np.int64]) -> Floa
 
 
 def _streams(model: Model, seed: int) -> Sequence[Stream]:
-    """In the order of the coordinates."""
+    """The random streams, in the order of the coordinates."""
     found: list[Stream] = []
 
     def filler(streams: Sequence[Stream], _maps: object, _rows: Floats) -> Callable[[int], None]:

@@ -127,7 +127,7 @@ def _gap(relation: str, left: ir.Expression, right: ir.Expression) -> ir.Express
 
 
 def leaves(of: Shortfall) -> list[Leaf]:
-    """In order."""
+    """The leaves, in order."""
     if isinstance(of, Leaf):
         return [of]
     return [leaf for part in (of.parts if isinstance(of, Together) else (of.part,)) for leaf in leaves(part)]

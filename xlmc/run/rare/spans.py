@@ -22,10 +22,10 @@ Floats = NDArray[np.float64]
 _LARGEST: Final = 1.0 - 2.0**-53
 
 _MARGIN: Final = 1e-3
-"""By which share of itself an interval is taken longer at either end: rounding must not cut off what is accepted."""
+"""The share of itself by which an interval is made longer at either end: rounding must not cut off what is accepted."""
 
 _BITS: Final = 8.0
-"""By how many of the last bits of its ends, beside."""
+"""The number of last bits by which it is made longer in addition."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -107,7 +107,7 @@ def choose(holds: NDArray[np.bool_], yes: Spans, no: Spans) -> Spans:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rearranged:
-    """Of n trials.
+    """The intervals of n trials, moved to the front.
 
     Attributes:
         start: (p, n) of the intervals, in order; ∞ for those that are not there.
@@ -123,7 +123,7 @@ class Rearranged:
 
     @classmethod
     def of(cls, low: Floats, high: Floats) -> Rearranged:
-        """For intervals (p, n) of the uniform; those that are empty have no length."""
+        """The rearrangement for intervals (p, n) of the uniform; empty ones have no length."""
         with np.errstate(invalid="ignore"):
             margin = _MARGIN * (high - low) + _BITS * np.spacing(np.where(low < high, high, 1.0))
         found = union_of_pairs([_within(low, high, margin)])

@@ -33,7 +33,7 @@ _KEPT: Final = 0.2
 _SWEEPS: Final = 8
 _LAST_SWEEPS: Final = 8
 _SNAPSHOTS: Final = 4
-"""Of the population in the region, each so many moves after the last: more points to fit a proposal to."""
+"""Copies of the population in the region, each some moves after the one before: more points to fit a proposal to."""
 
 _LEAST: Final = 16
 """Points below a level from which a population is made again, where more of them stand level."""
@@ -45,7 +45,7 @@ _TRIES: Final = 4
 """Times that a population is moved on without coming nearer, before it counts as stuck."""
 
 _LEAST_LOG: Final = math.log(1e-15)
-"""Where acceptance is likelier nowhere, the search ends."""
+"""The search ends if the probability of acceptance is below this."""
 
 _WANTED_RATE: Final = 0.3
 
@@ -53,7 +53,7 @@ _EXPLORERS: Final = 1_024
 """A population that begins within the region."""
 
 _FIRST_STEP: Final = 0.3
-"""Its steps, at first."""
+"""The size of the steps, at first."""
 
 EXPLORING: Final = _EXPLORERS * _SWEEPS * (_SNAPSHOTS + 1)
 """Distances that it asks for, at most."""

@@ -50,7 +50,7 @@ _ONE: Final = 4.0
 """The spread of one assumption alone, the others being as they are."""
 
 _LARGEST: Final = 64.0
-"""Of the ratio of densities at the median, which the spread of all assumptions together may have."""
+"""The largest ratio of densities at the median that the spread of all assumptions together may have."""
 
 
 class Source(Protocol):
@@ -91,7 +91,7 @@ class Evidence:
 
     @classmethod
     def of(cls, proposal: Source, trials: int, points: Floats) -> Evidence:
-        """With weights by the proposal."""
+        """The trials with weights by the proposal."""
         return cls(proposal, trials, points, proposal.log_weights(points))
 
     @property
@@ -130,7 +130,7 @@ def join_evidence(known: Sequence[Evidence]) -> Evidence:
 
 
 def find_strays(proposal: Source, known: Sequence[Evidence], points: Floats, weights: Floats) -> Evidence:
-    """Those among known accepted trials that a proposal hardly ever comes to; it may be none.
+    """The known accepted trials that a proposal hardly ever reaches; there may be none.
 
     Args:
         proposal: that was learned.

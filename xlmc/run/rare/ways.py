@@ -32,10 +32,10 @@ from xlmc.run.rare.shortfall import Fails, Leaf, Together, comparisons_of, leave
 __all__ = ["MOST_WAYS", "ways_of"]
 
 _MOST_CELLS: Final = 1_000
-"""Of an area that are looked at."""
+"""The most cells of an area that are looked at."""
 
 _RANKS: Final = np.concatenate([[1e-12, 1e-9, 1e-6], np.linspace(1e-4, 1.0 - 1e-4, 4_001), [1 - 1e-6, 1 - 1e-9]])
-"""Where values of a discrete assumption are looked for."""
+"""The probabilities at which values of a discrete assumption are looked for."""
 
 
 def ways_of(model: Model, filters: Sequence[Shortfall]) -> list[tuple[Shortfall, ...]]:
@@ -96,19 +96,19 @@ MOST_WAYS: Final = 12
 """Ways that are explored apart: more have too small populations."""
 
 _MOST_ARGUMENTS: Final = 6
-"""Of a function whose alternatives are told apart."""
+"""The most arguments of a function whose alternatives are separated."""
 
 _MOST_SWITCHES: Final = 32
-"""That are looked for: far fewer can be told apart."""
+"""The most switches that are looked for; far fewer can be separated."""
 
 _LONGEST_AREA: Final = 100
-"""Of an area that is looked through."""
+"""The most cells of an area that is searched."""
 
 _OF_AREAS: Final = frozenset({"SUM", "MAX", "MIN", "AVERAGE", "COUNT", "COUNTA", "AND", "OR", "SUMSQ", "PRODUCT"})
 """Functions that make one value of an area."""
 
 Switch = tuple[Shortfall, ...]
-"""Its alternatives, one of which every trial takes."""
+"""The alternatives of a switch, one of which every trial takes."""
 
 
 def _combine(switches: Sequence[Switch]) -> list[tuple[Shortfall, ...]]:
@@ -129,7 +129,8 @@ def _value_switch(cell: Cell, values: Sequence[float]) -> Switch:
 def _formula_switches(
     filters: Sequence[Shortfall], formulas: Mapping[Cell, ir.Expression]
 ) -> list[tuple[ir.Expression | None, Switch]]:
-    """Those of the filters' formulas, the nearest to the filters first; each with the value that decides it, if any.
+    """The switches in the filters' formulas, the nearest to the filters first; each with the value that decides it, if
+    any.
 
     Args:
         filters: what they ask.
@@ -185,7 +186,7 @@ def _any_of(shortfall: Shortfall) -> Iterator[Switch]:
 def _alternatives(
     tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expression], rising: int
 ) -> tuple[ir.Expression | None, Switch] | None:
-    """Of a function that takes one of several values; None of anything else."""
+    """The alternatives of a function that takes one of several values; None for anything else."""
     match tree:
         case ir.Call("IF", (condition, *_)):
             return condition, tuple(
@@ -218,7 +219,7 @@ def _first_of(conditions: Sequence[Shortfall]) -> Switch:
 
 
 def _extreme(relation: str, number: int, values: Sequence[ir.Expression], cell: Cell) -> Shortfall:
-    """Of several values this one is the largest, or the smallest."""
+    """The condition that this one of several values is the largest, or the smallest."""
     others = [value for i, value in enumerate(values) if i != number]
     return Together(tuple(_comparison(relation, values[number], other, cell) for other in others), every=True)
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["by_cluster"]
 
 MOST_BLOCKS = 8
-"""In one Dask task: enough that the scheduler's milliseconds do not count beside them."""
+"""Blocks in one Dask task: enough that the scheduler's milliseconds do not count beside them."""
 
 PATIENCE = 30.0
 """Seconds to wait for a scheduler, and for its first worker."""
@@ -74,7 +74,9 @@ def _client(scheduler: str, workers: int | None) -> Iterator[Client]:
         return
 
     class Closing(Client):  # type: ignore[misc]  # Dask tells mypy nothing of its types
-        """It closes itself where it cannot start: an open one that is deleted may wait for a lock of the next one."""
+        """A cluster that closes itself if it cannot start: an open one that is deleted may wait for a lock of the next
+        one.
+        """
 
         def start(self, **options: Any) -> None:
             try:

@@ -68,7 +68,7 @@ class IdlePool:
         self._lock = Lock()
 
     def take(self, count: int) -> list[WorkerProcess]:
-        """So many processes: idle ones first, then new ones.
+        """A number of processes: idle ones first, then new ones.
 
         Raises:
             SimulationError: one cannot be started.

@@ -55,13 +55,13 @@ class RunSpec:
         block: int,
         plan: SamplingPlan | None = None,
     ) -> RunSpec:
-        """Of a run of this model."""
+        """The specification of a run of this model."""
         bare = replace(model.workbook, parts={}, data=b"")  # the file as it was: only the result sheets need it
         needed = plan if plan is not None and plan.size else None  # independent trials may be any number
         return cls(bare, model.definitions, model.path, engine, seed, block, needed)
 
     def pack(self) -> bytes:
-        """It and the software that it was made with, as bytes for `unpacked`."""
+        """The specification and the software that it was made with, as bytes for `unpacked`."""
         return pickle.dumps((software(), pickle.dumps(self, protocol=5)), protocol=5)
 
     def model(self) -> Model:

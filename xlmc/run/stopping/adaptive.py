@@ -1,4 +1,5 @@
-"""Until the results are stable to so many significant digits: the adaptive procedure of JCGM 101:2008, 7.9.
+"""The rule that ends a run when the results are stable to a number of significant digits: the adaptive procedure of
+JCGM 101:2008, 7.9.
 
 Accepted trials are taken in sequences of M = max(J, 10,000), J being the least whole number from 100/(1 − p) up and p
 the share of the central range. Each gives a mean, a standard deviation and the two ends of the range; the run is stable

@@ -1,11 +1,10 @@
-"""Until numbers of forecasts are known well enough: every half width of their intervals is small enough.
-
-Such a rule may end a run because its numbers look known better than they are. With a tolerance that goes to 0 its
-intervals keep their confidence (Chow & Robbins 1965 for the mean; Glynn & Whitt 1992 for any number whose error is
+"""The rule that ends a run when numbers of forecasts are known well enough: half the width of every interval is small
+enough. Such a rule may end a run because its numbers look known better than they are. With a tolerance that goes to 0
+its intervals keep their confidence (Chow & Robbins 1965 for the mean; Glynn & Whitt 1992 for any number whose error is
 estimated consistently). So that they keep it in runs as short as people make, the rule looks only after a growing
-number of blocks, and only when there are 1,000 numbers or more of each forecast, or 10,000 where these
-are all the same, for what is rare may not have come yet; and it stops only when all that was asked for is precise
-enough at one and the same look.
+number of blocks, and only when there are 1,000 numbers or more of each forecast, or 10,000 where these are all the
+same, for what is rare may not have come yet; and it stops only when all that was asked for is precise enough at one and
+the same look.
 
 A rule that looks after every block gets many chances to find its numbers known well by luck, and costs most. With
 numbers of blocks that grow by a constant factor there are few looks, each at much more than the one before.
@@ -36,11 +35,11 @@ __all__ = [
 ]
 
 LEAST_NUMBERS: Final = 1_000
-"""Of a forecast, before it is looked at."""
+"""The numbers that a forecast must have before the rule looks at it."""
 
 LEAST_EQUAL: Final = 10_000
-"""Of a forecast that has not varied. Of what comes in 1 of 1,000 trials, 1,000 numbers hold none in 37 % of the runs,
-10,000 in 1 of 22,000."""
+"""The numbers that a forecast must have if it has not varied. Of what comes in 1 of 1,000 trials, 1,000 numbers hold
+none in 37 % of the runs, 10,000 in 1 of 22,000."""
 
 _FIRST = 4
 """Blocks before the first look."""

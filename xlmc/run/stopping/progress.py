@@ -34,7 +34,7 @@ class RunningMoments:
         self.n = 0
         self._pivot = self._mean = 0.0
         self._sums = np.zeros(7 if spread else 4)
-        """Of the powers 0, 1, 2, …; of the first always 0."""
+        """The sums of the powers 0, 1, 2, … about the mean; that of the first power is always 0."""
 
     def add(self, column: Floats) -> None:
         """Take `(m,)` more; NaN is no number."""
@@ -92,7 +92,7 @@ class RunningMoments:
 
 
 def _sums_of_powers(apart: Floats, count: int) -> Floats:
-    """Of the powers 0, 1, … of values about their mean."""
+    """The sums of the powers 0, 1, … of values about their mean."""
     sums, power = np.zeros(count), apart
     sums[0] = apart.size
     for exponent in range(2, count):

@@ -63,7 +63,7 @@ def be(things: int) -> str:
 
 
 def duration(seconds: float) -> str:
-    """In the largest units it is whole in.
+    """A duration in the largest units in which it is whole.
 
     >>> duration(60), duration(5400), duration(0.5), duration(3661)
     ('1 min', '1 h 30 min', '0.5 s', '1 h 1 min 1 s')

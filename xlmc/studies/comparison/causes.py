@@ -30,7 +30,8 @@ from xlmc.studies.comparison.variations import with_changes
 __all__ = ["Inputs", "Step", "Unlike", "Variations", "cause_of", "inputs_of", "steps_between"]
 
 _SAME: Final = 1e-9
-"""Of the largest draw: draws that differ by less come from one distribution, and differ by rounding of units."""
+"""A share of the largest draw: draws that differ by less come from one distribution, and differ by rounding of units.
+"""
 
 Floats = NDArray[np.float64]
 

@@ -295,7 +295,7 @@ def _match_forecasts(first: Model, second: Model, pairs: Mapping[str, str]) -> l
 
 
 def _factor(mine: Forecast, theirs: Forecast) -> float:
-    """By what to multiply the second's numbers.
+    """The factor that converts the second book's numbers.
 
     Raises:
         SimulationError: the units are not of one kind.

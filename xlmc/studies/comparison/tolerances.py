@@ -76,14 +76,15 @@ _CERTAINTY: Final = 3.0
 """Errors by which a difference must be below or above the tolerance: by chance it is on the wrong side once in 740."""
 
 _SHARE_OF_SD: Final = 0.1
-"""Of a forecast's standard deviation: the tolerance where none is stated."""
+"""The tolerance where none is stated, as a share of a forecast's standard deviation."""
 
 _SHARE_OF_CHANCE: Final = 0.1
 _LEAST_OF_CHANCE: Final = 0.001
-"""Of P(> threshold), or of its complement where that is smaller: its tolerance where none is stated, and the least."""
+"""The tolerance of P(> threshold) where none is stated, as a share of it or of its complement, and the least one."""
 
 _AT_THE_TOLERANCE: Final = 0.05
-"""Of the tolerance: a difference known to be this near to it is as large as the tolerance, and stays undecided."""
+"""A share of the tolerance: a difference known to be this near to it is as large as the tolerance, and stays undecided.
+"""
 
 
 class Verdict(Enum):
@@ -189,7 +190,7 @@ class _Stated:
     unit: str
 
     def of(self, forecast: Forecast, deviation: float) -> float | None:
-        """In the forecast's unit; None where the units are of different kinds."""
+        """The tolerance in the forecast's unit; None where the units are of different kinds."""
         if self.unit == "%":
             return self.value / 100.0 * deviation
         factor = 1.0 if not self.unit else factor_between(self.unit, forecast.units)

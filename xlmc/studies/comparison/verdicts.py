@@ -184,7 +184,7 @@ def _too_few(comparison: Comparison, each: ForecastComparison) -> str:
 
 
 _ENOUGH: Final = 100
-"""So many numbers are enough to know an error."""
+"""The fewest numbers that are enough to know an error."""
 
 
 def _more(judgement: Judgement, comparison: Comparison) -> str:

@@ -56,7 +56,7 @@ def _inverse_gaussian_log(x: Floats, location: float, mean: float, shape: float)
 
 
 def _log_logistic(x: Floats) -> Params:
-    """Its logarithm is logistic."""
+    """The log-logistic distribution, whose logarithm is logistic."""
     refuse(x[0] <= 0, "it takes values above 0 only")
     logs = np.log(x)
     mean, spread = float(logs.mean()), float(logs.std())

@@ -122,7 +122,9 @@ def _logistic_cdf(x: Floats, mean: float, scale: float) -> Floats:
 
 
 def _student(x: Floats) -> Params:
-    """On values measured from their median in interquartile ranges, from three degrees of freedom up."""
+    """The fit of Student's t, on values measured from their median in interquartile ranges, from three degrees of
+    freedom up.
+    """
     quarter, middle, three_quarters = (float(value) for value in np.percentile(x, [25, 50, 75]))
     spread = three_quarters - quarter
     refuse(not spread > 0, "half of the values are equal")
@@ -266,7 +268,7 @@ TRIANGULAR = Candidate(
 def maximise(
     log_likelihood: Callable[[Floats], float], start: list[float], *, tolerance: float = 1e-10, most: int = 4000
 ) -> Floats:
-    """Where it is highest, by the simplex method, begun twice so that a simplex that collapsed early is found out.
+    """The highest point, by the simplex method, begun twice so that a simplex that collapsed early is noticed.
 
     Args:
         log_likelihood: of parameters that may be any numbers.
@@ -294,7 +296,7 @@ def maximise(
 
 
 def root(rising: Callable[[float], float], low: float, high: float) -> float:
-    """Where a rising function of a positive number crosses zero; the bracket is widened as need be.
+    """The zero of a rising function of a positive number; the bracket is widened as needed.
 
     Raises:
         Unfit: it does not, within 1e-6 to 1e6.

@@ -165,7 +165,7 @@ def answer_of(values: Floats, weights: Floats | None, central: float) -> Answer:
 
 
 def statistic_words(statistic: str) -> str:
-    """As it stands in a sentence: `lower end`, `SD`."""
+    """The statistic as it is written in a sentence: `lower end`, `SD`."""
     name = STATISTICS[statistic]
     return name if name.isupper() else name.lower()
 

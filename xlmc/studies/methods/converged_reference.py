@@ -36,7 +36,7 @@ _ROUNDING: Final = 1e-12
 """A standard deviation that is smaller beside the mean is none."""
 
 _NORMAL_WIDTH: Final = 3.289707
-"""From the 5 % to the 95 % quantile of a normal distribution, in standard deviations."""
+"""The width from the 5 % to the 95 % quantile of a normal distribution, in standard deviations."""
 
 _WATCHED: Final = 256
 """Accepted trials whose draws are kept: the watch for lost digits looks at so many."""
@@ -155,7 +155,7 @@ def unfiltered_of(model: Model, reference: Reference) -> Reference | None:
 
 
 def _width(sample: Sample, answer: Answer) -> float:
-    """From the 5 % to the 95 % quantile; 0 where a forecast does not vary."""
+    """The width from the 5 % to the 95 % quantile; 0 where a forecast does not vary."""
     if sample.n < 2 or not answer.sd > _ROUNDING * abs(answer.mean):
         return 0.0
     low, high = sample.quantile(np.array([0.05, 0.95]))

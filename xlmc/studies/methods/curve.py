@@ -54,7 +54,7 @@ class Rms:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Where the true root mean square error lies, with 95 % confidence (χ² of as many replicates).
+        """The 95 % interval of the true root mean square error (χ² of as many replicates).
 
         Of a single answer, within 1.96 standard errors of the reference.
         """
@@ -177,7 +177,9 @@ class Curve:
         return tuple(rung for rung in self.rungs if rung.settled) or self.rungs[-1:]
 
     def slope(self, statistic: str, against: str = "seconds") -> float:
-        """Of the error in logarithms, against `seconds`, `evaluations` or `budget`; NaN where these hardly differ."""
+        """The slope of the error, in logarithms, against `seconds`, `evaluations` or `budget`; NaN where these hardly
+        differ.
+        """
         across = [float(getattr(rung, against)) for rung in self.settled]
         weights = [max(max(error.n for error in rung.errors.values()) - 1.0, 1.0) for rung in self.settled]
         return slope_of(across, [rung.shares[statistic] for rung in self.settled], weights)

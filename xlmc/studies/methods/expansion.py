@@ -24,7 +24,7 @@ Floats = NDArray[np.float64]
 
 _DRAWN: Final = 65_536
 _STEPS: Final = 1 << 16
-"""Of the midpoint rule over the quantile function of a distribution with cutoffs."""
+"""Points of the midpoint rule over the quantile function of a distribution with cutoffs."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,7 +68,7 @@ def _remarks(found: Derivatives) -> list[str]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Moments:
-    """Of `k` assumptions, in the order of the model's.
+    """Moments of `k` assumptions, in the order of the model's.
 
     Attributes:
         mean: `(k,)`.

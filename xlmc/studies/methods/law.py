@@ -39,7 +39,7 @@ _HARDLY: Final = 1e-5
 """Probability below which the runs of independent trials say that theory's constant does not hold here."""
 
 CONFIDENCE: Final = 0.95
-"""Of all comparisons of a study together."""
+"""The confidence of all comparisons of a study together."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -124,7 +124,7 @@ class _Round(Generic[Asked, Answered]):
 
 _PILOT: Final = 32_768
 _STARTS: Final = 2
-"""From which each end is looked for: the accepted trials of the pilot that are nearest to it."""
+"""The starts of the search for each end: the accepted trials of the pilot that are nearest to it."""
 
 _MOST: Final = 200
 """Assumptions; a step's work grows with the third power of their number."""

@@ -22,7 +22,7 @@ from xlmc.studies.methods.study import Study
 __all__ = ["Parts", "parts_of", "recommendation"]
 
 _FAR: Final = 64.0
-"""So many times beyond the measured runs, errors are only carried on with a word of warning."""
+"""If errors are carried on to more than this many times the measured runs, a sentence says so."""
 
 _ERROR_WORDS: Final = (
     "All errors here are those of computing the answer, measured against the reference; none says whether the model "
@@ -245,7 +245,7 @@ def _bounds_text(study: Study) -> list[str]:
 
 @dataclass(frozen=True, slots=True)
 class Parts:
-    """Of an error, in the forecast's units, with its sign.
+    """The parts of an error, in the forecast's units, with its sign.
 
     Attributes:
         filters: what the filters do, which the method does not see.

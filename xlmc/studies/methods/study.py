@@ -33,7 +33,7 @@ __all__ = ["ACCURACY", "LENGTHS", "REPLICATES", "STEP", "Study", "ladder_of", "q
 
 ACCURACY: Final = "1%"
 REPLICATES: Final = 24
-"""So many runs of each length tell a root mean square error to 15 %."""
+"""This number of runs of each length gives a root mean square error to 15 %."""
 
 STEP: Final = 4
 """The trials of each run length over those of the next shorter one."""

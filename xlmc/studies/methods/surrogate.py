@@ -27,8 +27,8 @@ from xlmc.studies.methods.points import Evaluation
 __all__ = ["Quadratic", "Surrogate", "fit_quadratic"]
 
 _TOLERANCE: Final = 0.03
-"""Of a cell's standard deviation: the largest error of a polynomial that replaces it. An error of that size that
-has nothing to do with the value widens its spread by one part in 2,000."""
+"""The largest error, as a share of a cell's standard deviation, of a polynomial that replaces it. An error of that size
+that has nothing to do with the value widens its spread by one part in 2,000."""
 
 _MOST_CELLS: Final = 2_000
 _BLOCK: Final = 8_192
@@ -45,7 +45,9 @@ _AT_ONCE: Final = 1_024
 """Points whose terms stay in the cache."""
 
 _RIDGE: Final = 1e-10
-"""Of a term's mean square: what settles terms that say the same, as the square of a variable that has two values."""
+"""A share of a term's mean square, which decides between terms that say the same, as the square of a variable that has
+two values.
+"""
 
 
 @dataclass(frozen=True, slots=True)

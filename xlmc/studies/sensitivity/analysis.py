@@ -22,7 +22,7 @@ __all__ = ["sensitivities"]
 
 _MOST_LIMITS: Final = 40
 _MOST_LIMIT_FORECASTS: Final = 12
-"""More would be no chart, and a long wait."""
+"""The most limits; more would make no readable charts, and take long."""
 
 _WORDS: Final = {">=": "at least", "<=": "at most", ">": "above", "<": "below"}
 _FOUND: Final[WeakKeyDictionary[Simulation, Sensitivities]] = WeakKeyDictionary()

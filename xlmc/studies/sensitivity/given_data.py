@@ -70,7 +70,7 @@ __all__ = [
 
 Floats = NDArray[np.float64]
 _CHANCE = 0.05
-"""That noise alone lifts any of a forecast's assumptions above the floor."""
+"""The probability that noise alone lifts any of a forecast's assumptions above the floor."""
 
 Indices = NDArray[np.intp]
 

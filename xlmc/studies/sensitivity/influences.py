@@ -40,13 +40,13 @@ MOST_ASSUMPTIONS: Final = 200
 Floats = NDArray[np.float64]
 Ids = NDArray[np.int64]
 _MOST_TRIALS: Final = 1 << 13
-"""They know a rank correlation to 0.011."""
+"""The most trials; they give a rank correlation to 0.011."""
 
 _LEAST_TRIALS: Final = 20
 """Fewer say nothing of an influence."""
 
 _COARSE_TRIALS: Final = 1 << 10
-"""For a first look at very many assumptions: a rank correlation to 0.03."""
+"""The trials of a first look at very many assumptions; they give a rank correlation to 0.03."""
 
 _FEWEST = 1 << 11
 _VALUES = 1 << 20
@@ -57,7 +57,9 @@ _REPLICATES = 32
 
 @dataclass(frozen=True)
 class Influences:
-    """Of every assumption on one forecast, by the variance explained; `trials` are those it is a number in."""
+    """The influence of every assumption on one forecast, by the variance explained; `trials` are those it is a number
+    in.
+    """
 
     trials: int
     found: tuple[Influence, ...]
@@ -82,7 +84,7 @@ def ranked_assumptions(simulation: Simulation) -> list[str]:
 
 
 def influences(simulation: Simulation, assumptions: Sequence[str]) -> list[Influences]:
-    """Of the assumptions of these names on every forecast, in the order of the workbook."""
+    """The influences of the assumptions of these names on every forecast, in the order of the workbook."""
     forecasts = simulation.model.forecasts
     rows, replicate = _examined_rows(simulation, _trials_for(len(assumptions) * len(forecasts)))
     draws = [_read(simulation.inputs[name], rows) for name in assumptions]
@@ -119,7 +121,7 @@ class _Table:
         return cls([Ranked.of(column[known]) for column in draws] if enough else [], units)
 
     def influences(self, named: Sequence[tuple[str, str]], y: Floats) -> Influences:
-        """Of the assumptions with these names and units on one forecast."""
+        """The influences of the assumptions with these names and units on one forecast."""
         if not self.columns or not (ranked := Ranked.of(y)).varies:
             return Influences(int(y.size), ())
         correlations = [rank_correlation(x, ranked, self.units) for x in self.columns]

@@ -105,7 +105,7 @@ class _LimitCells:
 
 
 def _asked_of(filter_: Filter) -> Target:
-    """Its cell; or, of evidence whose error is no limit, whether it keeps the trial."""
+    """The filter's cell; or, for evidence whose error is not a limit, whether it keeps the trial."""
     if filter_.evidence is not None and filter_.evidence.bell is not None:
         return Target(filter_condition(filter_), filter_.cell)
     return parameter_target(filter_.cell)
@@ -208,7 +208,7 @@ def _look_at_accepted(simulation: Simulation, cells: _LimitCells, m: int) -> _Ce
 def _find_rejected(
     simulation: Simulation, cells: _LimitCells, grids: Mapping[int, tuple[float, ...]], again: int, forecasts: int
 ) -> dict[int, _More]:
-    """Of each limit those of the first `again` trials that it alone rejects and its loosest value to try lets in."""
+    """For each limit, those of the first `again` trials that it alone rejects and that its loosest value lets in."""
     parts: dict[int, list[_More]] = {i: [] for i in grids}
     chosen = [p for p, limits in grids.items() if limits and simulation.tally.only[cells.limits[p].filter_index]]
     program, plan = cells.program, simulation.plan

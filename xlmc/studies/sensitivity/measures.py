@@ -26,10 +26,11 @@ __all__ = [
 ]
 
 PERCENTS = (10.0, 25.0, 50.0, 75.0, 90.0)
-"""Of an assumption's own distribution: where tornado (the first and the last) and spider (all) put it."""
+"""The percentiles of its own distribution at which tornado (the first and the last) and spider (all) put an assumption.
+"""
 
 _CHANCE: Final = 0.05
-"""That noise alone passes for an influence, in any of a forecast's assumptions."""
+"""The probability that noise alone counts as an influence, in any of a forecast's assumptions."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +109,7 @@ class Bar:
 
     @property
     def span(self) -> float:
-        """From the smallest to the largest of the five answers; 0 where there are none."""
+        """The width from the smallest to the largest of the five answers; 0 where there are none."""
         known = [answer for answer in self.answers if answer is not None]
         return max(known) - min(known) if known else 0.0
 
@@ -264,7 +265,7 @@ class Noise:
 
 
 def noise(found: ForecastSensitivity) -> tuple[Noise, ...]:
-    """Of the influences on a forecast, in their order."""
+    """The noise of the influences on a forecast, in their order."""
     count = max(len(found.influences), 1)
     each = 1.0 - (1.0 - _CHANCE) ** (1.0 / count)
     return tuple(_noise(one, _errors(each / 2.0), _errors(each)) for one in found.influences)

@@ -26,7 +26,7 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 _STEPS = 3
-"""On either side of the limit as it is; the last on the tight side leaves about half of the accepted trials."""
+"""Steps on either side of the limit as it is; the last on the tight side leaves about half of the accepted trials."""
 
 _ROUND = (1.0, 2.0, 2.5, 5.0)
 
@@ -161,7 +161,7 @@ class _Moved(NamedTuple):
 
 
 def _move(y: Floats, weights: Floats, held: Bools, units: Units, now: tuple[float, Floats], central: float) -> _Moved:
-    """Of the trials held, in ascending order; `now` is the mean of the accepted ones."""
+    """The result of a moved limit, from the trials held, in ascending order; `now` is the mean of the accepted ones."""
     mean, pulls = _mean(y, weights, held, units)
     change = _estimate(mean - now[0], pulls - now[1], units, held)
     low, high = central_interval(_sample(y, weights, held, units), central)
@@ -171,7 +171,7 @@ def _move(y: Floats, weights: Floats, held: Bools, units: Units, now: tuple[floa
 def _slope(
     found: LimitTrials, means: Sequence[tuple[float, Floats]], limits: Sequence[float], units: Units, held: Bools
 ) -> Estimate:
-    """Of the mean, over one step on either side."""
+    """The slope of the mean, over one step on either side."""
     index = list(limits).index(found.limit)
     (before, pulls), (after, more) = means[index - 1], means[index + 1]
     width = limits[index + 1] - limits[index - 1]
@@ -196,7 +196,7 @@ def _estimate(value: float, pulls: Floats, units: Units, held: Bools) -> Estimat
 
 
 def _sample(y: Floats, weights: Floats, held: Bools, units: Units) -> Sample:
-    """Of ascending values; made directly, for they are in order."""
+    """A sample of ascending values; it is made directly, because they are in order."""
     w = weights[held]
     even = bool(np.all(w == w[0])) if w.size else True
     group, groups = None, 0

@@ -33,7 +33,7 @@ class Units:
 
     @classmethod
     def of(cls, n: int, ids: NDArray[np.int64] | None = None) -> Units:
-        """From the replicate ids of the trials, `(n,)`, if there are any."""
+        """The errors by the replicate ids of the trials, `(n,)`, if there are any."""
         if ids is None:
             return cls(n)
         return cls(n, np.unique(ids, return_inverse=True)[1].astype(np.intp))

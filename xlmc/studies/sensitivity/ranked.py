@@ -23,7 +23,7 @@ _LEAST_IN_A_CLASS = 50
 """Trials, where there is more than one class: enough to lay a line through."""
 
 _FLAT = 1e-24
-"""Of the column's variance: less within a class is rounding, and no line is laid through it."""
+"""A share of the column's variance: less within a class is rounding, and no line is fitted there."""
 
 _LARGE = 1e100
 """From here on squares may overflow when many are added up."""

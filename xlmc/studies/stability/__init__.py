@@ -1,4 +1,4 @@
-"""Where a workbook loses digits or blows up within the ranges of its assumptions, and by how much.
+"""A study of where a workbook loses digits or becomes huge within the ranges of its assumptions, and by how much.
 
 Three things are kept apart. What a cell *amplifies* comes from its derivatives: it is in the problem, and no other form
 of the formula cures it. What *rounding* does comes from evaluations with random rounding, and from trials computed

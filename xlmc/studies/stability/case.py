@@ -51,7 +51,7 @@ _FEWEST_OF_EITHER: Final = 64
 """Trials as drawn, and accepted ones; and how few there may be of each in a large book."""
 
 _BYTES: Final = 1 << 29
-"""For the values of all nodes, and the derivatives of all cells: as many trials as fit."""
+"""Bytes for the values of all nodes, and the derivatives of all cells: they limit the number of trials."""
 
 
 class Case:
@@ -117,7 +117,7 @@ class Case:
 
     @cached_property
     def first_accepted(self) -> int:
-        """From which trial on they are accepted ones; before it, of all that were drawn."""
+        """The index of the first accepted trial; the trials before it are of all that were drawn."""
         kept = min(self.run.kept_inputs, self.run.accepted, self._room(_ACCEPTED))
         return self.n - kept if self.names else self.n
 
@@ -180,7 +180,7 @@ class Case:
 
     @cached_property
     def derivatives(self) -> Derivatives:
-        """Of every needed cell."""
+        """The derivatives of every needed cell."""
         inputs = {a.name: self.draws[key] for a, key in zip(self.model.live, self.names, strict=True)}
         return derivatives(self.model, inputs, cells=self.cells)
 
@@ -295,13 +295,13 @@ class Case:
 
 
 _MOVE: Final = 2.0**-30
-"""By how much inputs are moved, as a share: far more than the roundings on the way."""
+"""The share by which inputs are moved: far more than the roundings on the way."""
 
 _FEWEST: Final = 5
 """Trials that take up little of some range for no reason."""
 
 _TELLING: Final = 0.5
-"""Of an assumption's range: what trials take up more than that of has nothing to do with it."""
+"""A share of an assumption's range: if trials cover more than that, the finding has nothing to do with it."""
 
 
 _RARELY: Final = 1e-3

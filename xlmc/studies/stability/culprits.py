@@ -25,7 +25,7 @@ __all__ = ["Cancellation", "Division", "cancellation", "culprit", "divisions", "
 
 _HEALED: Final = 0.1
 _SURELY_HEALED: Final = 1e-3
-"""Of the error, that may be left: the first where that is no more than a sound formula has."""
+"""Shares of the error that may be left: the first if that is no more than a sound formula has."""
 
 _SOUND: Final = 10.0
 """Times what rounding the assumptions alone would bring."""
@@ -184,7 +184,7 @@ def only_assumption(case: Case, node: int) -> str | None:
 
 
 def zeros(case: Case, node: int, key: str) -> list[float]:
-    """Where a node is 0 as its only assumption goes through its range, and as far again to either side.
+    """The values of its only assumption at which a node is 0, within the range and as far again to either side.
 
     Rounded to 12 digits where that is as near, so that 270° is 270.
     """

@@ -30,16 +30,16 @@ _FEW: Final = 1e-3
 """Share of accepted trials, of all."""
 
 _LEFT: Final = 0.1
-"""Of the larger angle: a difference above it loses less than a digit."""
+"""A share of the larger angle: a difference above it loses less than a digit."""
 
 _CLOSE: Final = 1e-3
-"""Of the spread of the argument: an argument that comes nearer to the edge than that is reported."""
+"""A share of the spread of the argument: an argument that comes nearer to the edge is reported."""
 
 _NEAREST: Final = 20
 """Trials nearest to where the condition changes."""
 
 _TOLD: Final = 0.01
-"""Of the cell's central range."""
+"""A share of the cell's central range: a smaller jump is not reported."""
 
 
 def heavy_tails(case: Case) -> Iterator[Finding]:

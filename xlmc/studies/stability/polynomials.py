@@ -128,7 +128,7 @@ class Polynomials:
         return (of, rest) if of else None
 
     def without_roots(self, polynomial: Polynomial) -> Polynomial:
-        """With `SQRT(a)^2` as `a`."""
+        """The polynomial with `SQRT(a)^2` replaced by `a`."""
         found: Polynomial = {}
         for monomial, coefficient in polynomial.items():
             term: Polynomial = {ONE: coefficient}
@@ -142,7 +142,7 @@ class Polynomials:
         return found
 
     def tree(self, polynomial: Polynomial) -> Tree:
-        """As a formula, what is added before what is subtracted."""
+        """The polynomial as a formula, with what is added before what is subtracted."""
         terms = sorted(polynomial.items(), key=lambda each: each[1] < 0)
         built: Tree | None = None
         for monomial, coefficient in terms:

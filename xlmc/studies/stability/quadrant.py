@@ -32,14 +32,14 @@ _SLIGHT: Final = 1e-4
 """Radians: a small turn of the angle, which tells how a cell follows it."""
 
 _ALIKE: Final = 1e-9
-"""Of a number or of a turn: what differs by less is the same."""
+"""A share of a number or of a turn: numbers that differ by less count as the same."""
 
 _MOST: Final = 256
 """Trials in which it is tried out."""
 
 _MOST_COMPARISONS: Final = 2000
-"""That are looked through for those that tell the divisor's sign without naming it, as `x2<x1` for `x2-x1`. A book with
-more has a column of them; there only those that name the divisor count."""
+"""The most comparisons that are searched for those that tell the divisor's sign without naming it, as `x2<x1` for
+`x2-x1`. A book with more has a column of them; there only those that name the divisor count."""
 
 
 @dataclass(frozen=True, slots=True)

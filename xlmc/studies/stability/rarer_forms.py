@@ -116,7 +116,7 @@ def of_one_and(name: str, u: Tree, x: Tree) -> Tree:
 
 
 def of_small_angle(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
-    """Of `x-SIN(x)`."""
+    """A steady form of `x-SIN(x)`."""
     for key, x in calls(found, algebra, "SIN"):
         split = algebra.split(found, key, 1)
         if split is None:
@@ -141,7 +141,7 @@ def _series(x: Tree) -> Tree:
 
 
 def of_growth(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
-    """Of `(1+x)^n-1`."""
+    """A steady form of `(1+x)^n-1`."""
     for key in dict.fromkeys(key for monomial in found for key, _ in monomial):
         atom = algebra.atoms[key]
         split = algebra.split(found, key, 1)
@@ -157,7 +157,7 @@ def of_growth(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form
 
 
 def of_hyperbolic_cosine(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
-    """Of `COSH(x)-1`."""
+    """A steady form of `COSH(x)-1`."""
     for key, x in calls(found, algebra, "COSH"):
         split = algebra.split(found, key, 1)
         if split is not None and not algebra.sum(*split):
@@ -167,7 +167,7 @@ def of_hyperbolic_cosine(_: Tree, found: Polynomial, algebra: Polynomials) -> It
 def of_arccosine(
     part: ir.Call, algebra: Polynomials, of_sum: Callable[[Tree, Polynomials], Iterator[Form]]
 ) -> Iterator[Form]:
-    """Of `ACOS(u)` where u is near 1, kept at 1 by MIN or not.
+    """A steady form of `ACOS(u)` where u is near 1, kept at 1 by MIN or not.
 
     Args:
         part: the call.
@@ -198,7 +198,7 @@ def _of_haversine(h: Tree) -> Tree:
 
 
 def _without_bounds(u: Tree) -> Tree:
-    """Without `MIN(1,…)` and `MAX(-1,…)`."""
+    """The argument without `MIN(1,…)` and `MAX(-1,…)`."""
     bounds = (UNIT, ir.Number(-1.0), ir.Unary("-", UNIT))
     while isinstance(u, ir.Call) and u.name in ("MIN", "MAX") and len(u.arguments) == 2:
         inner = [one for one in u.arguments if one not in bounds]

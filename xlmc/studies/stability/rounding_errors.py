@@ -38,13 +38,13 @@ _EXCESS: Final = 10.0
 that are well written stay below 7 in the worst of some thousand trials."""
 
 _NOTICED: Final = 3e-14
-"""Of a central range: two of sixteen digits. Less than that is not worth another formula."""
+"""A share of a central range: two of sixteen digits. Less than that is not worth another formula."""
 
 _VISIBLE: Final = 1e-6
-"""Of a central range: an error of this size is reported whatever it comes from."""
+"""A share of a central range: an error of this size is reported, whatever its cause."""
 
 _UNUSABLE: Final = 1e-3
-"""Of a central range: the numbers must not be used."""
+"""A share of a central range: with an error of this size the numbers must not be used."""
 
 _WORST: Final = 12
 """Trials that are computed again with 50 digits for a cell."""
@@ -62,7 +62,7 @@ _STEEP: Final = frozenset({"ACOS", "ASIN"})
 _SMALL: Final = 0.2
 
 _LEAST: Final = 0.01
-"""Of a central range: a change is measured against no less than that where the value itself goes through 0."""
+"""A share of a central range: a change is divided by no less than that where the value itself goes through 0."""
 
 _TRIALS: Final = 24
 
@@ -308,7 +308,7 @@ def _is_zero(case: Case, cell: Cell, loss: _Loss) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _Spread:
-    """Of some trials computed again with 50 digits.
+    """What some trials computed again with 50 digits show.
 
     Attributes:
         error: how far off the cell is by rounding, in the median of them.

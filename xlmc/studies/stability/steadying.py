@@ -32,7 +32,7 @@ _DIGITS: Final = 20
 _BETTER: Final = 0.1
 _OTHERS: Final = 16
 _MOST_RANGES: Final = 4
-"""Of so many assumptions all corners are tried, of more the two extreme ones."""
+"""Up to this number of assumptions all corners are tried, with more only the two extreme ones."""
 
 _WORSE: Final = 10.0
 _UNLIKE: Final = 30.0

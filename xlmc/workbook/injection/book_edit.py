@@ -139,7 +139,7 @@ def _keep_strays_astray(document: SplicedXml, present: int, added: int) -> None:
 
 
 def _add_names(document: SplicedXml, new: Iterable[tuple[int, SheetName]]) -> None:
-    """Put each name where Excel's order wants it: alphabetical, then by sheet."""
+    """Add each name at its place in Excel's order: alphabetical, then by sheet."""
     holder = document.root.find("definedNames")
     present = [(_order(element.attributes), element) for element in (holder.children if holder else ())]
     names = sorted((_attributes(index, name) for index, name in new), key=lambda found: _order(found[0]))

@@ -32,7 +32,7 @@ _ESCAPE: Final = re.compile("_(?=x[0-9A-Fa-f]{4}_)")
 """What begins an escape: Excel would read the letter that it stands for."""
 
 Content = str | float | bool | None
-"""Of a cell: a text, a number, a logical, or nothing."""
+"""The content of a cell: a text, a number, a logical, or nothing."""
 
 
 def with_contents(xml: bytes, part: str, sheet: str, contents: Mapping[tuple[int, int], Content]) -> bytes:
@@ -119,7 +119,7 @@ def _put(document: SplicedXml, row: Element, own: Mapping[int, Element], fragmen
 def _insert(
     document: SplicedXml, parent: Element, children: Mapping[int, Element], number: int, fragment: bytes
 ) -> None:
-    """Put a new child where its number belongs."""
+    """Insert a new child at the place of its number."""
     behind = min((each for each in children if each > number), default=None)
     if behind is None:
         document.append(parent, fragment)

@@ -159,7 +159,7 @@ class _StyleList:
         self._known = {_StyleEntry.of(entry).key(): index for index, entry in enumerate(entries)}
 
     def index_of(self, entry: _StyleEntry) -> int:
-        """Where the entry is, added if it is new."""
+        """The index of the entry, which is added if it is new."""
         index = self._known.setdefault(entry.key(), self._size)
         if index == self._size:
             self._new.append(entry)

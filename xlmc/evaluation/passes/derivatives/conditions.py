@@ -20,7 +20,7 @@ __all__ = ["hold_still", "if_", "if_error"]
 _STEP: Final = "the value jumps there"
 
 _NEAR: Final = 1e-14
-"""As a share of a number: Excel, which shows 15 digits, may take two numbers that differ by less for equal."""
+"""A share of a number: Excel, which shows 15 digits, may treat two numbers that differ by less as equal."""
 
 
 @rule("<", "<=", ">", ">=", why="the two sides are equal there", jumps=True)
@@ -120,7 +120,7 @@ def _or_0(part: Any) -> Any:
 
 
 def _find_nudged(function: Function, result: Value, operands: Sequence[Operand], index: int = 0) -> Bools:
-    """Where the result changes with the 15th digit of an operand, in the result's shape."""
+    """The trials in which the result changes with the 15th digit of an operand, in the result's shape."""
     changed = np.zeros(1, bool)
     for nudge in (1 - _NEAR, 1 + _NEAR):
         values = [operand.value for operand in operands]

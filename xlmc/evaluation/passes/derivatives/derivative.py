@@ -64,7 +64,7 @@ class Kink:
 
 @dataclass(frozen=True, slots=True)
 class Undefined:
-    """Where derivatives were lost.
+    """A place where there is no derivative.
 
     Attributes:
         cell: whose formula it is in.
@@ -171,7 +171,7 @@ class Notes:
         return tuple(sorted(found, key=lambda kink: -kink.share))
 
     def undefined(self, owners: Mapping[int, Cell], concerned: Iterable[int]) -> tuple[Undefined, ...]:
-        """Where derivatives were lost, in trials that concern a cell that was asked for; most trials first."""
+        """The places without a derivative, in trials that concern a cell that was asked for; most trials first."""
         those = np.fromiter(concerned, np.intp)
         found = []
         for node, reasons in self.lost.items():

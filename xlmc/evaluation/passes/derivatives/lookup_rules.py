@@ -84,7 +84,9 @@ def match(function: Function, result: Value, operands: Sequence[Operand]) -> Out
 
 
 def _steps(call: Callable[[Values], Value], found: Value, values: Values) -> Bools:
-    """Where a key that differs in the 15th digit finds another cell; if it finds none, the key is a label."""
+    """The trials in which a key that differs in the 15th digit finds another cell; where it finds none, the key is a
+    label.
+    """
     step = np.zeros(1, bool)
     for nudge in (1 - _NEAR, 1 + _NEAR):
         key = replace(values[0], numbers=values[0].numbers * nudge)

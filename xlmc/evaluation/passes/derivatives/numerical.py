@@ -31,7 +31,7 @@ _CLOSE: Final = 2.0**-20
 _SMALLEST: Final = 1e-100
 
 _TOLERANCE: Final = 1e-4
-"""As a share of a derivative: where the estimate of its error is larger, there is none, as at a jump."""
+"""A share of a derivative: if the estimate of its error is larger, there is no derivative, as at a jump."""
 
 Moved = Callable[[Sequence[Floats | None]], Floats]
 """Takes what is added to each operand's numbers, and gives the function's values."""

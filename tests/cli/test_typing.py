@@ -45,7 +45,7 @@ def test_other_counts_and_seeds_too(xlmc, case_study):
 
 @pytest.mark.parametrize("typed", ["200.000", "many", "1.5", "", "2,00", "0,200", "1e-3", "1e400", "9" * 500, "nan"])
 def test_a_number_that_could_mean_two_or_none(one_line, typed):
-    assert "no whole number. Type it like 200000" in one_line("simulate", BOOK, "-n", typed)
+    assert "not a whole number. Type it like 200000" in one_line("simulate", BOOK, "-n", typed)
 
 
 @pytest.mark.parametrize(("typed", "said"), [("0", "too small. Type 1 or more."), ("-5", "too small")])

@@ -125,7 +125,7 @@ SHEET = '<sheet name="{}" sheetId="1" r:id="{}"/>'.format
     ("more", "message"),
     [
         ({"_rels/.rels": "<Relationships/>"}, "the file is a zip, but not an Excel workbook"),
-        ({"xl/workbook.xml": f"<w:document xmlns:w='{MAIN}'/>"}, "an Office document, but no workbook"),
+        ({"xl/workbook.xml": f"<w:document xmlns:w='{MAIN}'/>"}, "an Office document, but not a workbook"),
         ({"xl/workbook.xml": "PK"}, "xl/workbook.xml is not well-formed XML"),
         ({"xl/workbook.xml": WORKBOOK(SHEET("A", "none"))}, "the sheet 'A' is missing from the file"),
         ({"xl/workbook.xml": WORKBOOK(SHEET("A", "s1") + SHEET("a", "s2"))}, "the sheet 'A' is in the file twice"),

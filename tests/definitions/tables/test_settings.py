@@ -42,7 +42,7 @@ MISTAKES = [
     ("Look at", "x", "Answers!A30", "forecasts to look at are named, but not what for", "stable digits too"),
     ("Time limit", "soon", VALUE, "'soon' is not a length of time", "such as 60s"),
     ("Time limit", 1 / 288, VALUE, "Time limit must be 1 second or more", "not a clock time"),
-    ("Lognorm", "mine", VALUE, "There is no RiskLognorm of 'mine'", "Use @RISK"),
+    ("Lognorm", "mine", VALUE, "There is no RiskLognorm of a program 'mine'", "Use @RISK"),
     ("Arithmetic", "float32", VALUE, "There is no arithmetic 'float32': xlmc computes in float64", "Delete the row"),
     ("Range %", 100, VALUE, "Range % (100) must be above 0 and below 100", "such as 51"),
 ]

@@ -311,7 +311,7 @@ def test_goals_are_saved_and_opened_as_in_version_0_4(model, tmp_path, asked, wr
         ({"digits": 7}, "7 significant digits were asked for"),
         ({"precision": {"tolerance": -1}}, "'-1' is not a precision"),
         ({"precision": {"tolerance": 1, "confidence": 95}}, "95 is not a confidence level"),
-        ({"precision": {"tolerance": 1, "numbers": ["median"]}}, "'median' is no number"),
+        ({"precision": {"tolerance": 1, "numbers": ["median"]}}, "'median' is not a number"),
         ({"precision": {"tolerance": 1, "key": "x"}}, "the unknown field key"),
         ({"precision": 1}, "its goal, a precision"),
         ({"goal": {"number": 5}}, "its end has the unknown field goal"),

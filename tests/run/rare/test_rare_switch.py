@@ -48,7 +48,7 @@ def test_always_is_after_the_prior(model):
 
 
 REFUSED = [
-    ({}, {}, "not how many"),
+    ({}, {}, "but not how many trials"),
     ({"until_accepted": 5}, {"engine": "formulas"}, "engine numpy"),
     ({"until_accepted": 5}, {"trials": 100_000}, "the limit is 100,000"),
     ({"until_accepted": 10**7}, {}, "room for 1,000,000"),

@@ -198,7 +198,7 @@ def test_a_spread_that_is_all_rounding_is_wrong_though_the_number_is_nearly_righ
     found = looked_at(formula, near, D1=1e8 + 3000.0, D2=1e8 - 3000.0)
     (one,) = [each for each in found.findings if each.kind == "cancellation"]
     assert one.level is Level.WRONG
-    assert "its spread is rounding" in one.effect
+    assert "its spread comes from rounding" in one.effect
     assert any(
         "the digits of 'f' cannot be trusted: its spread comes from rounding" in warning
         for warning in found.run.warnings

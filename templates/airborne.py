@@ -87,7 +87,7 @@ _STEPS = (
         "[ft|m]",
         "h+d*TAN(RADIANS(theta))",
         "h + d·tan θ",
-        "0 or less: no speed lands there. One degree of θ changes the speed by d/q · 0.9 %.",
+        "0 or less: at no speed would it land there. One degree of θ changes the speed by d/q · 0.9 %.",
         number_format="0.000",
     ),
     Equation("t", "t", "Time in the air", "s", "SQRT(2*q/g)", "q = g·t²/2"),
@@ -141,7 +141,11 @@ _ANSWERS = (
 _CHECKS = checks_section(
     3,
     check(
-        "check_fall", "The landing lies below the line of take-off", "q>0", "geometry", "FALSE: no speed lands there."
+        "check_fall",
+        "The landing lies below the line of take-off",
+        "q>0",
+        "geometry",
+        "FALSE: at no speed would it land there.",
     ),
     check(
         "check_distance",

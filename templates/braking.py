@@ -43,7 +43,7 @@ STOPPING_SPEED = Equation(
 RESPONSE_FILTER = FilterRow(
     "Response time",
     "t_response",
-    "Nobody responds sooner; later would be another story",
+    "Nobody responds sooner; a later response would be a different account of what happened",
     at_least=0.5,
     at_most=3,
 )

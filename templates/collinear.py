@@ -302,7 +302,7 @@ _GUIDE = (
             "Positive is the direction of «1». «2» has a negative speed if it came the other way.",
             "Restitution matters: delta-V is proportional to 1 + e. At low speeds it is far from 0.",
             "Not for impacts off centre: enter the lever arms on sheet Inputs to see by how much delta-V is "
-            "overstated. The next rungs are momentum and planar-impact (directions and run-out known) and "
+            "overstated. The next models are momentum and planar-impact (directions and run-out known) and "
             "planar-forward.",
             "Not where tyre forces matter: at f = 0.8 they take about 1.8 mph (2.8 km/h) for each 0.1 s of contact, "
             "much of a low-speed delta-V.",

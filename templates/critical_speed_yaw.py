@@ -181,8 +181,8 @@ _GUIDE = (
     GuideSection(
         "When to use this model",
         (
-            "A vehicle that left curved, striated yaw marks while it neither braked nor accelerated hard: its tyres "
-            "held sideways all that friction gave, so that the radius tells the speed.",
+            "A vehicle that left curved, striated yaw marks while it neither braked nor accelerated hard: all friction "
+            "of its tyres acted sideways, so the radius gives the speed.",
             "Measure chord and middle ordinate near the beginning of the mark, where the rear tyre has just left the "
             "front tyre's track. Later radii are smaller, because the vehicle slows: enter one to check.",
             "A short chord makes a small middle ordinate whose reading error decides the answer: the radius varies as "

@@ -448,15 +448,15 @@ _GUIDE = (
     GuideSection(
         "When to use this model",
         (
-            "Damage was measured and stiffness data fit the vehicles, but momentum is blind: near-parallel approaches, "
-            "one vehicle that did not leave the scene, unknown run-out. It answers delta-V, not the speeds of the "
-            "vehicles.",
+            "Damage was measured and stiffness data fit the vehicles, but momentum says little: near-parallel "
+            "approaches, one vehicle that did not leave the scene, unknown run-out. It answers delta-V, not the "
+            "speeds of the vehicles.",
             "Enter residual crush at six stations evenly spaced over the width. For a fixed barrier as the second "
             "vehicle: width 0, a weight of 1,000,000,000.",
             "Stiffness from one test at one speed is a straight line through one point: stay near its crush. A and B "
             "of one test are bound to each other: b0 and b1 are drawn and both computed from them. Published A and B "
             "may be entered under Optional; they are then single values without a distribution, which is worth saying.",
-            "The next rungs: momentum and planar-impact where directions and run-out are known. Where both can be "
+            "The next models: momentum and planar-impact, if directions and run-out are known. If both kinds can be "
             "used, use both: two independent answers that agree are worth more than either.",
             "Not for sideswipes, override or underride, nor for crush far beyond the test's.",
         ),
@@ -477,7 +477,7 @@ TEMPLATE = Template(
     title="Delta-V from crush energy",
     subtitle="Energy of the crush by profile and stiffness; effective masses; restitution",
     rung=7,
-    question="What delta-V left this damage, where momentum is blind?",
+    question="What delta-V left this damage, where momentum says little?",
     needs="crush profiles, stiffness, weights, line of the force",
     assumptions=_assumptions(),
     constants=_constants(),

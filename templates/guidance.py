@@ -24,8 +24,9 @@ FIRST_STEPS = GuideSection(
         "4.  Sheet Model: look at the checks at the bottom. Red means that the single values contradict physics.",
         "5.  Sheet Results wanted: the forecasts, the filters with the evidence for their limits, trials and seed.",
         "6.  Save, close, and type   xlmc simulate this-file.xlsx   A copy with the results is written beside it.",
-        "Sheets Model, Scene and Guide are locked against slips, without a password (Review, Unprotect Sheet). Inputs "
-        "and Results wanted stay open, so that rows can be added; Excel asks before a formula there is typed over.",
+        "Sheets Model, Scene and Guide are locked against accidental changes, without a password (Review, Unprotect "
+        "Sheet). Inputs and Results wanted stay open, so that rows can be added; Excel asks before a formula there is "
+        "typed over.",
         "The limits of a filter belong to the scene. Write down the evidence before looking at the answers.",
     ),
 )

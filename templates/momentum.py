@@ -81,8 +81,8 @@ _WHEN = GuideSection(
     "When to use this model",
     (
         "Two vehicles whose approach and departure directions and run-out can be estimated, and whose approaches "
-        "differ by more than about 10°. Rotation needs not be known: its impulse changes no speed and no delta-V.",
-        "The next rung, planar-impact, gives the same speeds and delta-V in every trial. It adds yaw and restitution, "
+        "differ by more than about 10°. Rotation need not be known: it changes no speed and no delta-V.",
+        "The next model, planar-impact, gives the same speeds and delta-V in every trial. It adds yaw and restitution, "
         "with which impossible combinations can be rejected: often most of them. Use it once inertia, impact centre "
         "and contact direction can be given.",
         "Not for near-parallel approaches (|sin δ| small): an uncertainty σ of an angle, in radians, becomes one of "
@@ -96,8 +96,8 @@ _TRUST = GuideSection(
     "Reading the results of this model",
     (
         "Without restitution to judge the trials, ranges are wider than those of planar-impact for the same scene.",
-        "PDOF is collected counter-clockwise from the front, −180 to 180, so that a blow from ahead does not jump "
-        "between 0 and 360. Sheet Model gives it clockwise too.",
+        "PDOF, the principal direction of force, is counted counter-clockwise from the front, −180 to 180, so that a "
+        "blow from ahead does not jump between 0 and 360. Sheet Model gives it clockwise too.",
         "A blow from behind jumps between 180 and −180: enter its direction from the damage on sheet Evidence, with "
         "Use FALSE if it is not to be evidence. PDOF is then counted to within 180° of that.",
         "The speeds are correlated with the delta-Vs: do not combine the ends of separate ranges freely.",

@@ -230,7 +230,7 @@ _SPEEDS = (
         "[lb·s|N·s]",
         "m_2*V_close-ABS(p_across)",
         "definition",
-        "Below 0 no speed fits. Near 0 the energy is blind, and momentum answers better.",
+        "Below 0 no speed fits. Near 0 energy says little, and momentum answers better.",
         number_format="#,##0.00",
     ),
     Equation(
@@ -398,7 +398,7 @@ _CHECKS = (
 _WHEN = GuideSection(
     "When to use this model",
     (
-        "Two vehicles whose approaches are near-parallel, head-on or from behind, where momentum alone is blind: there "
+        "Two vehicles whose approaches are near-parallel, head-on or from behind, where momentum alone says little: "
         "an angle uncertain by 3° can make a speed uncertain by hundreds of [mph|km/h]. The energy that crush took "
         "gives the closing speed at any angle; momentum gives only its direction.",
         "Where a speed after the impact is known rather than the travel to rest, enter the travel V²/(2·g·f) that goes "

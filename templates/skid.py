@@ -421,7 +421,7 @@ _GUIDE = (
             "stopped in the whole length, counted from the application of the brakes, not from the first mark.",
             "Not for a rolling vehicle, for one that spins (use critical-speed-yaw where it left curved yaw marks), "
             "nor where only some wheels brake unless their share is entered.",
-            "Next rungs: collinear, momentum and planar-impact take run-out to rest, computed as here, as the speed "
+            "Next models: collinear, momentum and planar-impact take run-out to rest, computed as here, as the speed "
             "after an impact.",
         ),
     ),

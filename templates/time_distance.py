@@ -193,7 +193,7 @@ def _instead(driver: str, who: str, response: str) -> tuple[Equation, ...]:
             "[ft|m]/s",
             f"IF(s_{driver}<=0,V_s,SQRT(MAX(V_s^2-2*b*s_{driver},0)))",
             "√(V² − 2·b·s)",
-            "Steep near a stop: give its percentiles rather than its mean." if driver == "same" else "",
+            "It changes fast near a stop: give its percentiles, not its mean." if driver == "same" else "",
         ),
         Equation(
             f"t_arrive_{driver}",
@@ -354,7 +354,8 @@ _GUIDE = (
         "Two drivers, two questions",
         (
             "Same driver: would this crash have been avoided, had this driver been at the speed in question and "
-            "responded as here? The response time that the crash implies is kept. This answers but for the speed.",
+            "responded as here? The response time that the crash implies is kept. This shows what the speed alone "
+            "changed.",
             "Ordinary driver: would a driver drawn from the published distribution have avoided it from there? Another "
             "question, with another answer, often a very different one. Say which one you answer.",
             "The implied response time is evidence: below 0.5 s nobody responds, and a filter rejects it. The row on "

@@ -191,8 +191,9 @@ _GUIDE = (
         (
             "A camera that stands still saw a vehicle pass two places whose distance is known. Count the frames from "
             "the first frame after the vehicle passed the first place to the first frame after it passed the last.",
-            "One place does as well where both axles pass it: the distance is then the wheelbase.",
-            "Read crossings, not positions, where you can: of a crossing one knows the two frames it lies between. "
+            "One place is enough if both axles pass it: the distance is then the wheelbase.",
+            "If you can, read when the vehicle passes a mark, not where it is in a frame: the frames just before and "
+            "just after it passes are known. "
             "Take the longest stretch that the video shows: the error of a frame shrinks with the frames counted.",
             "Where the vehicle brakes, the mean speed is not the speed at the last mark. Enter the deceleration, as "
             "wide as it is uncertain.",

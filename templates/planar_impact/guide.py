@@ -19,8 +19,8 @@ _WHEN = GuideSection(
         "km/h) for each 0.1 s of contact. Enter a duration on sheet Inputs to see how much.",
         "Both vehicles are rigid and move in the plane; the impulse acts at one point, at one instant, at full crush.",
         "Rotation (inertia, impact centre, γ) enters the speeds and delta-V only through the restitution filters. The "
-        "rung below, momentum, gives the same speeds and delta-V in every trial, and needs none of them.",
-        "The rung above, planar-forward, is this model turned round: given speeds and restitution, where do they go? "
+        "simpler model, momentum, gives the same speeds and delta-V in every trial, and needs none of them.",
+        "The next model, planar-forward, is this one turned round: given speeds and restitution, where do they go? "
         "crush-energy takes over where the approaches are near-parallel.",
     ),
 )

@@ -18,7 +18,7 @@ ANGLES = check(
     "The approaches are at least 10° from parallel",
     "ABS(sin_delta)>=SIN(RADIANS(10))",
     "conditioning",
-    "FALSE: momentum alone is blind here. 1° of β1 moves V1i by 9 % at δ = 10° and 94 % at 1°; use crush energy.",
+    "FALSE: momentum alone says little here. 1° of β1 moves V1i by 9 % at δ = 10° and 94 % at 1°; use crush energy.",
 )
 FORWARD = check(
     "check_forward",

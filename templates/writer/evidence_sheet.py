@@ -29,7 +29,7 @@ _SUBTITLE = (
     "What was measured of the crash itself. A row is used once it has a reading, unless Use is FALSE. "
     "Decide how far a reading may be off before you look at the answers, and use each fact once."
 )
-_POINTS = "This formula says which quantity was read. Change it only to speak of another one."
+_POINTS = "This formula says which quantity was read. Change it only to name another one."
 
 
 def draw_evidence(sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: Values) -> None:

@@ -26,7 +26,9 @@ _SETTINGS = ("Setting", "Value")
 _WIDTHS = (38, 22, 12, 12, 12, 12, 76, 34)
 _ONLY_FOR = 7
 """Column of the last of both headings that only a template needs in which a filter is about one forecast."""
-_SUBTITLE = "What a run collects, which trials it keeps, how many it makes. The Cell columns point into sheet Model."
+_SUBTITLE = (
+    "What a run reports, which trials it keeps, and how many trials it runs. The Cell columns point to sheet Model."
+)
 _ROOM = 3
 """Blank rows below a table, into which Excel lets it grow by typing."""
 _POINTS = "This formula says which quantity the row speaks of. Change it only to ask for another one."

@@ -299,7 +299,7 @@ def test_the_usual_variants_are_scenarios(case):
     session = Session(case[1])
     session.receive(Said("variants", {}))
     names = [*session.kept]
-    assert names[:2] == ["every range half as wide", "every range half again as wide"]
+    assert names[:2] == ["every range half as wide", "every range one and a half times as wide"]
     assert "Restitution, tangential at most 0.125 (half)" in names
     narrow = session.kept["every range half as wide"].assumptions
     assert narrow[FRICTION] == {"low": 0.6875, "high": 0.8625}

@@ -284,7 +284,7 @@ def usual_variants(definitions: Definitions) -> dict[str, Adjustments]:
     Ranges are those of the assumptions with numbers `low` and `high`; a limit of 0 stays.
     """
     found: dict[str, Adjustments] = {}
-    for said, factor in (("half as wide", 0.5), ("half again as wide", 1.5)):
+    for said, factor in (("half as wide", 0.5), ("one and a half times as wide", 1.5)):
         made = Adjustments()
         for name, low, high in _ranges(definitions):
             middle, half = 0.5 * (low + high), 0.5 * (high - low) * factor

@@ -162,9 +162,9 @@ class HandView {
         save("Saved run", "run"), make("button", { type: "button", text: "Print", on: { click: () => print() } })),
       make("h2", { text: "Type the changes into" }),
       make("p", { class: "actions-left" }, this.copy, this.into), this.sure,
-      make("h2", { text: "Further questions" }),
-      make("p", { class: "remark", text: "Asked of the state that is shown, in a copy; Verify asks the workbook's own file. "
-        + "They run beside the window." }),
+      make("h2", { text: "Further studies" }),
+      make("p", { class: "remark", text: "They examine the state that is shown, in a copy; Verify examines the workbook's own file. "
+        + "You can go on while they run." }),
       make("p", { class: "actions-left" }, ask("Verify against Excel", "verify"), ask("Stability", "stability"),
         ask("Screen", "screen"), ask("Methods", "methods"), this.comparing),
       make("p", { class: "actions-left" }, this.stand, this.cancel), this.answer);

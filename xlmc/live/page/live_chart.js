@@ -180,13 +180,13 @@ class LivePanel extends Panel {
     table.tBodies[0].replaceChildren(...beside.map(([label, now, before, apart]) => make("tr", {},
       make("th", { scope: "row", text: label }),
       ...(compared ? [now, before, apart] : [now]).map((text) => make("td", { class: "number", text })))));
-    table.caption.textContent = compared ? `Accepted trials. Behind: ${LivePanel.behind}` : "Accepted trials";
+    table.caption.textContent = compared ? `Accepted trials. Violet line: ${LivePanel.behind}` : "Accepted trials";
     this.find(".moved").textContent = said ?? "";
     this.find(".reset").textContent = `Central ${this.forecast.range.said} range`;
   }
 
   legend() {
-    return `${super.legend()}${this.forecast.behind ? "    violet line: the state behind" : ""}`;
+    return `${super.legend()}${this.forecast.behind ? "    violet line: the state for comparison" : ""}`;
   }
 }
 

@@ -177,7 +177,7 @@ def test_the_way_evidence_is_used_is_an_option(xlmc, book, tmp_path):
         assert xlmc("replay", tmp_path / "book-results.xlsx").code == 0
     assert accepted["weights"] == 20_000 > accepted["rejection"] == accepted["auto"]
     refused = xlmc("simulate", path, "--evidence", "both")
-    assert (refused.code, "'both' is none of auto, rejection, weights" in refused.err) == (2, True)
+    assert (refused.code, "'both' is not one of auto, rejection, weights" in refused.err) == (2, True)
 
 
 def test_the_weights_of_trials_have_a_heading_of_their_own(xlmc, book, tmp_path):

@@ -132,7 +132,7 @@ def test_draws_that_were_not_saved_are_blank_and_said_to_be(xlmc, small_book, tm
         (("--pdf", "no/a.pdf"), "there is no folder"),
         (("--pdf", "a.pdf", "--sections", "answer,nothing"), "a report has no section 'nothing'"),
         (("--pdf", "a.pdf", "--case", "nothing"), "a field of the case is not 'nothing'"),
-        (("--pdf", "a.pdf", "--paper", "a5"), "'a5' is none of letter, a4"),
+        (("--pdf", "a.pdf", "--paper", "a5"), "'a5' is not one of letter, a4"),
         (("--sections", "answer"), "give --pdf or --docx"),
     ],
 )

@@ -31,8 +31,8 @@ def calculate_labels(workbook: Workbook) -> Workbook:
         return workbook
     written: dict[str, dict[tuple[int, int], CellContent]] = {}
     for cell, text in calculated_texts(workbook, missing).items():
-        place = cell.row, cell.column
-        written.setdefault(cell.sheet, {})[place] = replace(workbook.sheets[cell.sheet].cells[place], value=text)
+        at = cell.row, cell.column
+        written.setdefault(cell.sheet, {})[at] = replace(workbook.sheets[cell.sheet].cells[at], value=text)
     sheets = ((name, workbook.sheets[name], cells) for name, cells in written.items())
     calculated = {name: replace(sheet, cells={**sheet.cells, **cells}) for name, sheet, cells in sheets}
     # A ChainMap reads a sheet when it is looked up, and nobody writes to this one.

@@ -223,7 +223,7 @@ def test_settings_of_a_run_in_float32_are_refused(run, made, said):
     section = settings_section(run)
     older = replace(section, entries=(*section.entries, Entry("arithmetic", "Arithmetic", "float32")))
     software = Section("software", "Software", () if made is None else (Entry("xlmc", "xlmc", made),))
-    with pytest.raises(WorkbookError, match=f"^{said} this run in float32"):
+    with pytest.raises(WorkbookError, match=f"^{said} this run with 32-bit numbers"):
         recorded_settings(Record((older, software)))
 
 

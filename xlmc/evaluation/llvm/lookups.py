@@ -78,12 +78,12 @@ def _search(body: Emitter, search: Search, key: Any) -> Any:
     if search.step:
         found = _by_division(body, search, key)
     else:
-        found = _by_halves(body, search, key, "<" if search.places is not None else "<=")
-    if search.places is None:
+        found = _by_halves(body, search, key, "<" if search.positions is not None else "<=")
+    if search.positions is None:
         body.flag(builder.fcmp_unordered("<", key, body.number(float(search.rising[0]))))
         return builder.sitofp(found, body.real)
     body.flag(builder.fcmp_unordered("!=", key, _Column(body, search.rising).at(found)))
-    return _Column(body, search.places.astype(float)).at(found)
+    return _Column(body, search.positions.astype(float)).at(found)
 
 
 def _by_division(body: Emitter, search: Search, key: Any) -> Any:

@@ -56,7 +56,7 @@ class Search:
     Attributes:
         rising: `(k,)` the numbers in rising order, each times `sign`; infinity follows.
         sign: -1 where they are in falling order.
-        places: `(k,)` where each of them stands, counted from 1, if a key must equal one of them, the first of equal
+        positions: `(k,)` where each of them stands, counted from 1, if a key must equal one of them, the first of equal
             ones; None where a key has the position of the last number that is not beyond it.
         step: from one of them to the next, where they are evenly spaced; else 0.
         divides: whether the whole steps from the first number to a key say where it is, whatever the key.
@@ -64,7 +64,7 @@ class Search:
 
     rising: Floats
     sign: float
-    places: NDArray[np.intp] | None
+    positions: NDArray[np.intp] | None
     step: float
     divides: bool = False
     nin: ClassVar[int] = 1
@@ -88,7 +88,7 @@ class Search:
 
     def finds(self, keys: Floats) -> bool:
         """Whether every key, none of them infinite, has a position."""
-        if self.places is not None:
+        if self.positions is not None:
             return bool((self.rising.take(np.searchsorted(self.rising, keys)) == keys).all())
         least = np.min(keys) if self.sign > 0 else -np.max(keys)
         return bool(least >= self.rising[0])
@@ -107,9 +107,9 @@ class Search:
         return out
 
     def _positions(self, keys: Floats) -> NDArray[np.intp]:
-        if self.places is not None:
-            places: NDArray[np.intp] = self.places.take(np.searchsorted(self.rising, keys))
-            return places
+        if self.positions is not None:
+            positions: NDArray[np.intp] = self.positions.take(np.searchsorted(self.rising, keys))
+            return positions
         keys = keys if self.sign > 0 else -keys
         return self._by_division(keys) if self.step else np.searchsorted(self.rising, keys, "right")
 

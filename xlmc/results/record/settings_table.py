@@ -31,7 +31,7 @@ def in_float32(version: str, where: Path | None = None) -> WorkbookError:
     """
     made = f"xlmc {version}" if version else "An older xlmc"
     message = f"{made} computed this run with 32-bit numbers (float32), and this version computes with 64-bit ones only"
-    return WorkbookError(message, where=where, hint=f"Open or repeat it with {made.removeprefix('An ')}")
+    return WorkbookError(message, where=where, hint=f"Open or repeat it with {made.replace('An', 'an', 1)}")
 
 
 def settings_section(simulation: Simulation) -> Section:

@@ -83,6 +83,28 @@ def test_a_column_that_was_given_away_stays_as_it_is(monkeypatch, in_memory):
         assert column.tolist() == [float(each) for each in range(number + 1) for _ in range(3)]
 
 
+@pytest.mark.parametrize("in_memory", [0, 100, 1 << 27])
+def test_columns_in_one_piece_of_memory_are_what_was_added(monkeypatch, in_memory):
+    """Some as long as expected, one longer, one that has another length, one of which nothing was said."""
+    monkeypatch.setattr(column_store, "IN_MEMORY", in_memory)
+    types = {"a": np.dtype(np.float64), "b": np.dtype(np.int64), "c": np.dtype(np.float64), "d": np.dtype(np.int8)}
+    keeper = ColumnStore({**types, "e": types["a"]}, {"a": 20, "b": 20, "c": 20, "d": 9}, filled=True)
+    expected = {key: [] for key in "abcde"}
+    for number in range(5):
+        for key, numbers in expected.items():
+            added = np.arange(4 if key != "c" else 7) + 100 * number
+            room = keeper.room(key, added.size)
+            room[:] = added
+            keeper.add(key, room if number % 2 else room.copy())
+            numbers += room.tolist()
+        keeper.settle()
+    found = keeper.columns({key: key for key in expected})
+    assert {key: column.tolist() for key, column in found.items()} == expected
+    assert {key: column.dtype for key, column in found.items()} == {**types, "e": types["a"]}
+    if in_memory > 100:
+        assert found["a"].base is found["b"].base is not found["d"].base
+
+
 REAL = np.dtype(np.float64)
 
 

@@ -82,7 +82,8 @@ class Block:
         discards: per forecast, number of one of its own filters -> accepted trials that this discards.
         invalid: assumption -> trials in which its parameters were no distribution.
         lost: trials with an error of any kind: in a draw, in an undecided filter, in a forecast that counts.
-        prior: assumption -> `(n,)` draws of all trials; None when not asked for.
+        prior: assumption -> `(n,)` draws of all trials; None when not asked for. Where all trials are accepted and
+            their draws asked for, it is `draws` itself.
     """
 
     trials: int
@@ -98,12 +99,15 @@ class Block:
 
     def owned(self) -> Block:
         """The same with its columns in memory of their own."""
+        draws, prior = _copied(self.draws), self.prior
+        if prior is not None:
+            prior = draws if prior is self.draws else _copied(prior)
         return replace(
             self,
             accepted=self.accepted.copy(),
-            draws=_copied(self.draws),
+            draws=draws,
             forecasts=[column.copy() for column in self.forecasts],
-            prior=None if self.prior is None else _copied(self.prior),
+            prior=prior,
         )
 
 
@@ -183,7 +187,7 @@ class ModelRunner:
         start, trials = task.start, task.trials
         whole = None if self._run_whole is None else self._run_whole(start, trials, task.inputs, room)
         if whole is not None:
-            return _block_of(whole, task, self._draw_all(whole, task) if task.prior else None)
+            return _block_of(whole, self._prior(None, whole.draws, whole.accepted.size, task), task.trials)
         draws = self._sampler.draw(start)
         columns = self._evaluator.filters(draws, self.block)
         invalid = {name: np.isnan(draws[name]) for name in sorted(self._fallible)}
@@ -195,29 +199,42 @@ class ModelRunner:
         survivors = survivors[: np.searchsorted(survivors, trials)]
         lost = _any([undecided, *(bad[:trials] for bad in invalid.values())], trials)
         m = survivors.size
+        accepted_draws = {}
+        if task.inputs:
+            accepted_draws = {name: v[:m] if m == trials else v[survivors] for name, v in draws.items()}
         for column in forecasts:
             if column.codes is not None:
                 lost[survivors] |= (column.codes[:m] > 0) & (column.codes[:m] < DISCARDED_FIRST)
         return Block(
             trials,
             survivors + start,
-            {name: values[:m] if m == trials else values[survivors] for name, values in draws.items()}
-            if task.inputs
-            else {},
+            accepted_draws,
             [column.as_floats(copy=False)[:m] for column in forecasts],
             [_faults(column, m) for column in forecasts],
             tally,
             Counter({name: int(np.count_nonzero(bad[:trials])) for name, bad in invalid.items() if bad[:trials].any()}),
             int(np.count_nonzero(lost)),
-            {name: values[:trials] for name, values in draws.items()} if task.prior else None,
+            self._prior(draws, accepted_draws, m, task),
             [_discards(column, m) for column in forecasts],
         )
 
-    def _draw_all(self, kept: KeptBlock, task: Task) -> Mapping[str, Floats]:
-        """The draws of all trials of a block: those that were kept, or drawn once more where some were not."""
-        if kept.draws and kept.accepted.size == task.trials:
-            return kept.draws
-        return self._sampler.draw(task.start)
+    def _prior(
+        self, drawn: Mapping[str, Floats] | None, kept: dict[str, Floats], accepted: int, task: Task
+    ) -> dict[str, Floats] | None:
+        """The draws of all trials of a block, if they are asked for: those that were kept, where these are all.
+
+        Args:
+            drawn: the block's draws; where it is None they are drawn once more.
+            kept: those of the accepted trials; empty where they were not asked for.
+            accepted: how many trials are accepted.
+            task: what was asked for.
+        """
+        if not task.prior:
+            return None
+        if task.inputs and accepted == task.trials:
+            return kept
+        drawn = self._sampler.draw(task.start) if drawn is None else drawn
+        return {name: values[: task.trials] for name, values in drawn.items()}
 
     def _forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
         """The bodies of functions need not know what to make of no trials at all."""
@@ -226,13 +243,12 @@ class ModelRunner:
         return [Column(np.empty(0)) for _ in range(self._width)]
 
 
-def _block_of(kept: KeptBlock, task: Task, drawn: Mapping[str, Floats] | None) -> Block:
-    """A block without errors; `drawn` are the draws of all its trials."""
+def _block_of(kept: KeptBlock, prior: dict[str, Floats] | None, trials: int) -> Block:
+    """A block of so many trials without errors; `prior` are the draws of all, if they are asked for."""
     faults: list[Counter[str]] = [Counter() for _ in kept.forecasts]
     errors: list[Counter[str]] = [Counter() for _ in kept.only]
     tally = FilterTally(np.diagonal(kept.together).copy(), kept.only, kept.together, errors, 0)
-    prior = None if drawn is None else {name: values[: task.trials] for name, values in drawn.items()}
-    return Block(task.trials, kept.accepted, kept.draws, kept.forecasts, faults, tally, Counter(), 0, prior)
+    return Block(trials, kept.accepted, kept.draws, kept.forecasts, faults, tally, Counter(), 0, prior)
 
 
 def _any(masks: Sequence[Bools], n: int) -> Bools:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable, Generator, Hashable, Iterator
+from collections.abc import Callable, Generator, Hashable, Iterator, Mapping
 from contextlib import closing
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -250,7 +250,9 @@ class _Gathered:
         expected: dict[Hashable, int] = {("trial", 0): trials, **dict.fromkeys(self._forecasts.values(), trials)}
         expected |= dict.fromkeys(self._inputs.values(), min(keep_inputs + piece, trials))
         expected |= dict.fromkeys(self._prior.values(), min(PRIOR_TRIALS, trials))
-        self._keeper = ColumnStore({("trial", 0): whole, **dict.fromkeys(columns, real)}, expected)
+        types: dict[Hashable, np.dtype[Any]] = {("trial", 0): whole, **dict.fromkeys(columns, real)}
+        self._keeper = ColumnStore(types, expected, filled=not model.filters)
+        self._prior_trials, self._prior_is_inputs = 0, True
         self._tally = FilterTally.empty(len(model.filters))
         self._invalid: Counter[str] = Counter()
         self._faults: list[Counter[str]] = [Counter() for _ in model.forecasts]
@@ -279,11 +281,26 @@ class _Gathered:
         room = max(0, self._keep_inputs - self.accepted)
         for key, values in block.draws.items():
             self._keeper.add(("input", key), values[:room])
-        for key, values in (block.prior or {}).items():
-            self._keeper.add(("prior", key), values)
+        if block.prior is not None:
+            self._keep_prior(block, block.prior, room)
         for number, values in enumerate(block.forecasts):
             self._keeper.add(("forecast", number), values)
         self._keeper.settle()
+
+    def _keep_prior(self, block: Block, prior: Mapping[str, NDArray[np.float64]], room: int) -> None:
+        """Keep the draws of all trials; as long as every trial is accepted they are the draws that are kept anyway."""
+        if self._prior_is_inputs and (prior is not block.draws or room < block.trials):
+            self._prior_is_inputs = False
+            if self._prior_trials:
+                for name, values in self._prior_columns(self._inputs).items():
+                    self._keeper.add(self._prior[name], values)
+        if not self._prior_is_inputs:
+            for key, values in prior.items():
+                self._keeper.add(("prior", key), values)
+        self._prior_trials += block.trials
+
+    def _prior_columns(self, keys: Mapping[str, Hashable]) -> Mapping[str, NDArray[np.float64]]:
+        return self._keeper.columns(keys, self._prior_trials)
 
     def room(self) -> Room:
         """The memory that the next block's columns go to."""
@@ -304,6 +321,7 @@ class _Gathered:
         return self._keeper.columns({"": ("forecast", number)})[""]
 
     def simulation(self, settings: Settings, plan: SamplingPlan, stopped: Stopped) -> Simulation:
+        prior = self._inputs if self._prior_is_inputs else self._prior
         return Simulation(
             model=self._model,
             settings=settings,
@@ -312,7 +330,7 @@ class _Gathered:
             trials=self.trials,
             trial_index=self.accepted_trials,
             inputs=self._keeper.columns({a.name: self._inputs[a.name] for a in self._model.live}),
-            prior=self._keeper.columns({a.name: self._prior[a.name] for a in self._model.live}),
+            prior=self._prior_columns({a.name: prior[a.name] for a in self._model.live}),
             forecasts=self._keeper.columns(self._forecasts),
             faults={f.name: counts for f, counts in zip(self._model.forecasts, self._faults, strict=True)},
             tally=self._tally,

@@ -195,6 +195,9 @@ class Sampler:
         block: trials per block.
         plan: the method and its replicates; by default independent trials.
         filler: draws the uniforms instead of the streams, the same bits; None for the streams themselves.
+
+    Attributes:
+        streams: those of the assumptions, row by row, where trials are independent.
     """
 
     def __init__(
@@ -223,16 +226,18 @@ class Sampler:
                 if draw.name not in grouped and (found := draw.offset_and_factor()) is not None:
                     maps[draw.name] = found
                     self._filled.add(draw.name)
-        ordered = list(maps.values())
-        self._streams = [margin for margin in self._margins if isinstance(margin, Stream)]
-        self._fill: Callable[[int], None]
-        if filler is None or len(self._streams) < len(names):
-            self._fill = _by_margins(self._margins, ordered, self._rows)
-        else:
-            self._fill = filler(self._streams, ordered, self._rows)
+        self._maps, self._filler = list(maps.values()), filler
+        self.streams = [margin for margin in self._margins if isinstance(margin, Stream)]
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Sampler, self._made_of
+
+    @cached_property
+    def _fill(self) -> Callable[[int], None]:
+        """See `Filler`; made when it is first needed, since the engine may draw in code of its own."""
+        if self._filler is None or len(self.streams) < len(self._margins):
+            return _by_margins(self._margins, self._maps, self._rows)
+        return self._filler(self.streams, self._maps, self._rows)
 
     @property
     def row_of(self) -> Mapping[str, int]:
@@ -244,9 +249,9 @@ class Sampler:
         """All draws as offset + factor·uniform of independent trials; None where any is more."""
         draws = [draw for stage in self._stages for draw in stage.draws]
         maps = [draw.offset_and_factor() for draw in draws]
-        if self._groups or None in maps or len(self._streams) < len(draws):
+        if self._groups or None in maps or len(self.streams) < len(draws):
             return None
-        streams = tuple(self._streams[self._row_of[draw.name]] for draw in draws)
+        streams = tuple(self.streams[self._row_of[draw.name]] for draw in draws)
         return Linear(tuple(draw.name for draw in draws), streams, tuple(found for found in maps if found is not None))
 
     def draw(self, start: int) -> dict[str, Floats]:

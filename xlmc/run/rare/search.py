@@ -25,7 +25,6 @@ from xlmc.statistics.estimate import Estimate, with_relative_error
 if TYPE_CHECKING:
     from xlmc.definitions.definitions import Settings
     from xlmc.run.model import Model
-    from xlmc.sampling.streams import Stream
 
 __all__ = ["Found", "Search", "accepted_blocks", "find", "plain_uniforms", "search"]
 
@@ -287,21 +286,9 @@ def accepted_blocks(model: Model, uniforms: Floats, block: int, wants_inputs: Ca
 
 def plain_uniforms(model: Model, seed: int, accepted: NDArray[np.int64]) -> Floats:
     """(k, d) the uniforms of plain trials with these numbers, (k,)."""
-    streams = _streams(model, seed)
+    streams = model.sampler(seed, 1).streams
     uniforms = np.empty((len(streams), accepted.size))
     for row, stream in zip(uniforms, streams, strict=True):
         for index, trial in enumerate(accepted.tolist()):
             stream.uniforms(trial, row[index : index + 1])
     return uniforms.T
-
-
-def _streams(model: Model, seed: int) -> Sequence[Stream]:
-    """The random streams, in the order of the coordinates."""
-    found: list[Stream] = []
-
-    def filler(streams: Sequence[Stream], _maps: object, _rows: Floats) -> Callable[[int], None]:
-        found.extend(streams)
-        return lambda _: None
-
-    model.sampler(seed, 1, filler=filler)
-    return found

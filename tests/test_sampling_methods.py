@@ -160,7 +160,7 @@ def test_the_books_own_setting(model):
 @pytest.mark.parametrize(
     ("method", "words", "errors"),
     [
-        ("mc", "Monte Carlo: independent trials", "from the trials, which are independent"),
+        ("mc", "Monte Carlo: independent trials", "from the spread of the trials"),
         (
             "lhs",
             f"Latin hypercube: 16 independent replicates of 63 trials{ROUNDED}",

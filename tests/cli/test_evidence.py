@@ -93,7 +93,7 @@ def test_evidence_that_contradicts_stands_first_and_is_no_success(xlmc, book, tm
         "book.xlsx: evidence that contradicts The evidence is inconsistent: 'EDR' and 'video' are out of reach"
     )
     assert "warning: the evidence is inconsistent" in outcome.err
-    assert "Do not use these results as they stand: the evidence is inconsistent" in " ".join(
+    assert "Do not use these results as they are: the evidence is inconsistent" in " ".join(
         str(cell.value) for cell in openpyxl.load_workbook(tmp_path / "book-results.xlsx")["Results"]["A"]
     )
 

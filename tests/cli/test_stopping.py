@@ -80,7 +80,7 @@ def test_a_goal_that_was_not_reached_is_exit_code_1_and_still_written(xlmc, book
         (("--until-accepted", 1), "--until-accepted"),
         (("--precision", "much"), "'much' is not a precision"),
         (("--precision", 1, "--until-accepted", 9), "were both asked for"),
-        (("--precision-of", "mean"), "how well numbers must be known is not said"),
+        (("--precision-of", "mean"), "no precision was given"),
         (("--precision", 1, "--for", "Ford"), "there is no forecast 'Ford'"),
         (("--adaptive", 0), "--adaptive"),
         (("--time-limit", "later"), "'later' is not a length of time"),

@@ -52,7 +52,7 @@ def test_results_of_a_changed_state_say_so_first_and_can_be_repeated(state, book
     assert path.name == "case-changed-results.xlsx"
     sheet = openpyxl.load_workbook(path)["Results"]
     texts = [cell.value for row in sheet.iter_rows(max_row=8) for cell in row if isinstance(cell.value, str)]
-    assert any(text.startswith("These are not results of case.xlsx as it stands") and said in text for text in texts)
+    assert any(text.startswith("These are not results of case.xlsx as it is") and said in text for text in texts)
     again = replay(path)
     assert again.to_the_last_bit
     assert again.record["changed.name"] == "case.xlsx"
@@ -72,7 +72,7 @@ def test_saved_runs_pages_and_json_carry_the_changes(state, book):
     assert make_record(run).rows("changed") == [{"change": said}]
     assert run.forecasts.keys() == state.run.forecasts.keys()
     page = save_result(state, book, "page").read_text("utf-8")
-    assert "These are not results of case.xlsx as it stands" in page
+    assert "These are not results of case.xlsx as it is" in page
     found = json.loads(save_result(state, book, "json").read_text("utf-8"))
     assert found["record"]["changed"]["rows"] == [{"change": said}]
 

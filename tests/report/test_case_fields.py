@@ -61,7 +61,7 @@ def test_no_table_gives_no_fields():
 @pytest.mark.parametrize(
     ("workbook", "said"),
     [
-        (book(("Date", 1.0), ("date", 2.0)), "Date stands twice in xlmc_case"),
+        (book(("Date", 1.0), ("date", 2.0)), "Date occurs twice in xlmc_case"),
         (book(tables=2), "both say whose case this is"),
         (book(("Date", 1.0, 2.0), columns=("a", "b", "c")), "must have two columns"),
     ],

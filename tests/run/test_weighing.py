@@ -121,7 +121,7 @@ def test_percentiles_beyond_which_few_effective_trials_lie_are_not_given(model):
     if share < 49:
         assert not math.isnan(found.percentile(share + 1).value)
     assert math.isnan(found.statistics.percentiles[0.0].value)
-    assert any("carry as much as" in str(notice) for notice in run.notices_of_run)
+    assert any("say as much as" in str(notice) for notice in run.notices_of_run)
     fewer = simulate(model(4.0, 0.1), trials=500, evidence="weights")
     assert math.isnan(fewer["y"].central()[0].value)
     assert "too few effective trials" in statements(fewer)[0].text

@@ -1,7 +1,7 @@
 """The command line: `xlmc new`, `xlmc check`, `xlmc fit`, `xlmc verify`, `xlmc simulate`, `xlmc open`,
 `xlmc report`, `xlmc replay`, `xlmc compare`, `xlmc screen`, `xlmc methods`, `xlmc stability`.
 
-Exit codes: 0 done; 1 the run finished but its answer must not be used as it stands; 2 bad input, with the cell and what
+Exit codes: 0 done; 1 the run finished but its answer must not be used as it is; 2 bad input, with the cell and what
 to do; 130 interrupted by Ctrl-C; 143 ended by SIGTERM. Modules here import what costs time inside their functions.
 """
 
@@ -88,7 +88,9 @@ class _Commands(click.Group):
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
 @click.version_option(__version__, prog_name="xlmc")
-@click.option("--no-kept-code", is_flag=True, help="With the engine jit, compile anew and keep no code for later.")
+@click.option(
+    "--no-kept-code", is_flag=True, help="With the engine jit, compile again and keep no code for later runs."
+)
 @click.pass_context
 def xlmc(context: click.Context, no_kept_code: bool) -> None:
     """Monte Carlo simulation of Excel workbooks, without Excel."""

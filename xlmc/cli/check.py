@@ -70,7 +70,7 @@ def check(book: Path) -> None:
         say(f"{len(problems)} problem{'s' * (len(problems) > 1)} found; nothing can be run yet.", err=True)
         raise click.exceptions.Exit(2)
     for fault in faults:
-        say(f"warning: {fault}; an answer must not be used as it stands.", err=True)
+        say(f"warning: {fault}; an answer must not be used as it is.", err=True)
     for refused in definitions.refused:
         say(f"warning: {refused}", err=True)
     if faults or definitions.refused:
@@ -79,7 +79,7 @@ def check(book: Path) -> None:
 
 
 def _show_base_case(model: Model) -> list[str]:
-    """Print the checks that fail and the cells in error; return why the answer must not be used as it stands."""
+    """Print the checks that fail and the cells in error; return why the answer must not be used as it is."""
     from xlmc.run.cell_errors import errors_at_base
     from xlmc.run.checking import base_checks
 

@@ -40,7 +40,7 @@ NOT_TO_BE_USED = 1
     "--trials",
     type=WholeNumber(1_024),
     help="Trials of the longest runs; others have a fourth of them, a sixteenth, and so on.  [default: 16384 times as"
-    " many as the shortest runs, or what takes two seconds]",
+    " many as the shortest runs, or what takes two and a half seconds]",
 )
 @click.option("--replicates", type=WholeNumber(2), help="How many runs of each length.  [default: 24]")
 @click.option("--quick", is_flag=True, help="Few and short runs: a first look, in about half a minute.")

@@ -51,7 +51,7 @@ def warnings(found: Sequence[str], missing: Collection[str] = ()) -> None:
     """Print why an answer must not be used, to stderr; of those that are `missing`, that others do not need them."""
     for warning in found:
         meaning = "this answer is missing, and the others do not need it"
-        said = meaning if warning in missing else "the answer must not be used as it stands"
+        said = meaning if warning in missing else "the answer must not be used as it is"
         say(f"warning: {warning}; {said}.", err=True)
 
 

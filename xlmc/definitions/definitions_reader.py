@@ -156,7 +156,7 @@ def _rows_for_calls(assumptions: Iterable[Assumption], findings: Findings) -> di
         if each.call is None:
             continue
         if each.call in found:
-            message = f"two rows stand for the call {each.call}, this one and that of {found[each.call]}"
+            message = f"two rows replace the call {each.call}, this one and that of {found[each.call]}"
             findings.problem(message, each.row, "Keep one of them")
         found[each.call] = each.cell
     return found
@@ -165,7 +165,7 @@ def _rows_for_calls(assumptions: Iterable[Assumption], findings: Findings) -> di
 def _refuse_lost_calls(assumptions: Iterable[Assumption], taken: Collection[Cell], findings: Findings) -> None:
     for each in assumptions:
         if each.call is not None and each.call not in taken:
-            message = f"the row {each.name!r} stands for the call {each.call}, and there is none"
+            message = f"the row {each.name!r} replaces the call {each.call}, and there is no such call"
             findings.problem(message, each.row, "Correct Call in and Call, or clear both")
 
 

@@ -209,7 +209,7 @@ class Precision(Goal):
     def of(cls, given: Mapping[str, Any]) -> Self:
         """See `Goal`."""
         if "precision" not in given:
-            message = "how well numbers must be known is not said"
+            message = "no precision was given"
             raise SimulationError(message, hint="Give a precision too, such as 1% or 0.1")
         numbers = as_numbers(given.get("precision_of", USUAL_NUMBERS))
         confidence = as_confidence(given.get("confidence", USUAL_CONFIDENCE))

@@ -78,7 +78,7 @@ def parse_table_reference(table: str | None, inner: str) -> ir.TableReference:
     pieces = _pieces(inner.lstrip()[1:] if this_row else inner)
     order = "".join(piece if piece in ",:" else ("i" if piece.startswith("#") else "c") for piece in pieces)
     if not (_ORDER_OF_THIS_ROW if this_row else _ORDER).fullmatch(order):
-        raise ValueError(f"{inner!r} is not what may stand in a table's brackets")
+        raise ValueError(f"{inner!r} is not allowed in a table's brackets")
     items = [piece.casefold() for piece, kind in zip(pieces, order, strict=True) if kind == "i"]
     columns = [_unescaped(piece) for piece, kind in zip(pieces, order, strict=True) if kind == "c"]
     first = columns[0] if columns else None
@@ -92,7 +92,7 @@ def _pieces(body: str) -> list[str]:
         return [body.strip()] if body.strip() else []
     found = list(_PIECE.finditer(body))
     if "".join(piece[0] for piece in found) != body or any(piece["name"] == "" for piece in found):
-        raise ValueError(f"{body!r} is not what may stand in a table's brackets")
+        raise ValueError(f"{body!r} is not allowed in a table's brackets")
     return [piece["name"] or piece["sign"] for piece in found]
 
 

@@ -124,7 +124,7 @@ def _rows(workbook: Workbook) -> Iterable[tuple[str, CellValue]]:
             field = _field(name)
             if field in seen:
                 raise DefinitionError(
-                    f"{field} stands twice in {table.name}", where=where, hint="Delete one of the rows"
+                    f"{field} occurs twice in {table.name}", where=where, hint="Delete one of the rows"
                 )
             seen.add(field)
             yield field, workbook.content(Cell(area.sheet, row, area.left + 1)).value

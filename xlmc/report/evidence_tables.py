@@ -34,14 +34,15 @@ ITEM_HEADS: Final = (
 )
 
 MEANING: Final = (
-    "Shares are of the trials that pass all other filters. The chance is that of a reading so far out, or farther, "
-    "with its own error, given the model and the other evidence: below 1 % an item is strained, below 0.1 %, or where "
-    "it lies beyond all trials, inconsistent. That an item keeps few trials does not count against it."
+    "Shares are shares of the trials that pass all other filters. Chance: that of a reading as far from the model as "
+    "this one, or farther, given its error and the other evidence. Below 1 % an item is strained; below 0.1 %, or if "
+    "it lies beyond all trials, it is inconsistent. z of best trial: standard deviations from the reading to the "
+    "trial that agrees best with all evidence. It does not count against an item that it keeps few trials."
 )
 
 MOVES_MEANING: Final = (
-    "Each trial counts with the chance that the evidence keeps it. Effective trials: how many of equal weight carry as "
-    "much; the standard errors come from them."
+    "Each trial counts with the chance that the evidence keeps it. Effective trials: the number of trials of equal "
+    "weight that would say as much; the standard errors come from them."
 )
 
 _NONE: Final = "–"

@@ -195,7 +195,7 @@ class Agreement:
 
     @property
     def conflicts(self) -> bool:
-        """Whether the answers must not be used as they stand."""
+        """Whether the answers must not be used as they are."""
         return self.verdict is Verdict.INCONSISTENT
 
     @property

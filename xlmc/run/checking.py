@@ -117,7 +117,7 @@ class CheckResult:
 
     @property
     def warnings(self) -> list[str]:
-        """Why the answer must not be used as it stands."""
+        """Why the answer must not be used as it is."""
         found = [] if self.holds in (None, True) else [self.base.fault]
         if self.failed > FAILING_SHARE * self.trials:
             check = self.base.definition

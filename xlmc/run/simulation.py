@@ -105,7 +105,7 @@ class ChangedFrom:
     def sentence(self) -> str:
         """What must be said before the answers."""
         changed = "; ".join(self.changes)
-        return f"These are not results of {self.name} as it stands, but of a copy with changes: {changed}."
+        return f"These are not results of {self.name} as it is, but of a copy with changes: {changed}."
 
 
 def _trials(count: int) -> str:
@@ -240,7 +240,7 @@ class Simulation:
         effective = self.accepted if self.weighting is None else round(self.weighting.effective)
         if not self.plan.replicates and 0 < effective < FEW:
             few = f"only {_trials(self.accepted)} accepted" if self.weighting is None else ""
-            few = few or f"the accepted trials carry as much as {effective} of equal weight"
+            few = few or f"the accepted trials say as much as {effective} trials of equal weight"
             found.append(Notice(f"{few[0].upper()}{few[1:]}. {_OF_FEW}"))
         samples = {name: result.sample for name, result in self.results.items()}
         found += [Notice(f"{each[0].upper()}{each[1:]}") for each in self.agreement.remarks] if self.agreement else []
@@ -249,7 +249,7 @@ class Simulation:
 
     @property
     def warnings(self) -> list[str]:
-        """Why the answer must not be used as it stands; empty when it may be."""
+        """Why the answer must not be used as it is; empty when it may be."""
         found = []
         if self.accepted == 0 and self.stopped.by != "search":
             most = self.acceptance.interval

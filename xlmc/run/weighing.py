@@ -64,9 +64,9 @@ class Weighting:
         """What weights mean for the numbers, and how large they are."""
         return (
             "Each accepted trial counts with the chance that the evidence would keep it (weights): together the "
-            f"{self.weights.size:,} carry as much as {self.effective:,.0f} of equal weight (effective sample size), "
-            f"and errors and intervals allow for that. Mean weight {self.mean:.3g}, largest {self.largest:.3g}. "
-            "Percentiles that fewer than ten effective trials lie beyond are not given"
+            f"{self.weights.size:,} say as much as {self.effective:,.0f} trials of equal weight (effective sample "
+            f"size), and errors and intervals allow for that. Mean weight {self.mean:.3g}, largest {self.largest:.3g}. "
+            "Percentiles are not given if fewer than ten effective trials lie beyond them"
         )
 
 

@@ -85,7 +85,7 @@ class ScenarioAnswers:
 
     @property
     def warnings(self) -> list[str]:
-        """Why its answers must not be used as they stand."""
+        """Why its answers must not be used as they are."""
         return self.run.warnings
 
 

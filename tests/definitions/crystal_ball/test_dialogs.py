@@ -85,7 +85,7 @@ UNREADABLE = {
         replace(SKID, family="Uniform", parameters={"Min": 0.0, "Max": 1.0}, code=3),
         "the code 3 Normal",
     ),
-    "a parameter that nobody knows": (replace(SKID, references={7: "$A$2"}), "it cannot be said which"),
+    "a parameter that nobody knows": (replace(SKID, references={7: "$A$2"}), "it is not clear which"),
     "a lost reference": (replace(SKID, references={2: "#REF!"}), "has lost its cell"),
 }
 

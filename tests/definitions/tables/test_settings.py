@@ -36,7 +36,7 @@ MISTAKES = [
     ("Precision", "1%", VALUE, "Precision holds the text '1%', not a number", "Type a number"),
     ("Precision %", 0.01, VALUE, "Precision % must be 0.1 or more, not 0.01", "Type 1 for 1 %"),
     ("Precision of", "median", VALUE, "'median' is not a number whose precision", "Choose from mean, sd, range"),
-    ("Precision of", "mean", "Answers!A30", "how well numbers must be known is not said", "Give a precision too"),
+    ("Precision of", "mean", "Answers!A30", "no precision was given", "Give a precision too"),
     ("Confidence %", 200, VALUE, "'200.0' is not a confidence level", "such as 95"),
     ("Significant digits", 9, VALUE, "Significant digits must be a whole number from 1 to 6", "Correct"),
     ("Look at", "x", "Answers!A30", "forecasts to look at are named, but not what for", "stable digits too"),

@@ -99,7 +99,7 @@ REFUSED = [
     ("LOG(A1,2,3)", "LOG has 3 arguments; it takes 1 to 2", None),
     ("SUM()", "SUM has 0 arguments; it takes 1 or more", None),
     ("IF(A1)", "IF has 1 argument; it takes 2 to 3", None),
-    ("(A1,A2)+1", "several areas joined by commas stand where one value is needed", None),
+    ("(A1,A2)+1", "one value is needed here, and several areas joined by commas are given", None),
 ]
 
 

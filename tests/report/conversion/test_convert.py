@@ -147,7 +147,7 @@ def converts(path, left=()):
 @pytest.mark.parametrize("cells", BOOKS.values(), ids=BOOKS)
 def test_calls_become_rows(tmp_path, cells):
     new = converts(written(tmp_path / "book.xlsx", cells))
-    with pytest.raises(WorkbookError, match="stands in xlmc's tables"):
+    with pytest.raises(WorkbookError, match="is in xlmc's tables already"):
         convert(load(new), tmp_path / "again.xlsx")
 
 
@@ -247,7 +247,7 @@ def test_rows_for_calls_follow_their_cells_and_say_when_the_call_is_gone(tmp_pat
     book = openpyxl.load_workbook(new)
     book["S"]["A1"] = "=RiskUniform(0,1)"
     book.save(new)
-    with pytest.raises(Exception, match="stands for the call S!A1#2, and there is none"):
+    with pytest.raises(Exception, match="replaces the call S!A1#2, and there is no such call"):
         load(new)
 
 

@@ -166,7 +166,7 @@ def test_the_record_is_the_whole_record(run, page_of):
 def test_warnings_come_first(none_accepted, page_of):
     (section,) = page_of(none_accepted).all("section", id="answer")
     warning = section.all("p", class_="warning")[0]
-    assert warning.text.startswith("Do not use these results as they stand: no trial was accepted")
+    assert warning.text.startswith("Do not use these results as they are: no trial was accepted")
     assert [child for child in section.children if child != "\n"].index(warning) == 1
 
 

@@ -92,7 +92,7 @@ def test_errors_are_listed_by_cell_and_code(run, book, row_of):
 def test_too_many_errors_are_a_red_warning(run, book):
     assert run.error_trials > 5
     warning = book["Results"]["A3"]
-    assert warning.value.startswith("Do not use these results as they stand: ")
+    assert warning.value.startswith("Do not use these results as they are: ")
     assert "lost to errors" in warning.value
     assert warning.font.color.rgb == "FF9C0006"
     assert book["Results"]["A4"].value.startswith("S!")  # then the cell that they were lost in

@@ -280,7 +280,7 @@ class _Dialogs:
         keys = [key for key, number in saved.items() if number == value]
         if len(keys) != 1:
             where = formula_text(tree)
-            raise UnreadableError(f"it takes a parameter from {where}, and it cannot be said which")
+            raise UnreadableError(f"it takes a parameter from {where}, and it is not clear which")
         return keys[0]
 
     def _checked(self, name: str, read: Distribution, given: Mapping[str, Parameter]) -> Draw | None:

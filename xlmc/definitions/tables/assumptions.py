@@ -120,7 +120,7 @@ def _call(row: Row) -> InFormula | None:
     missing = next((heading for heading in ("Value", "Call in", "Call") if not row.has(heading)), None)
     missing = missing or next((heading for heading in ("Call in", "Call") if not row.filled(heading)), None)
     if missing is not None:
-        message = f"a row that stands for a call needs {missing}"
+        message = f"a row that replaces a call needs {missing}"
         hint = "Fill in Call in with the call's cell, such as =Model!B7, and Call with its number in the formula"
         raise DefinitionError(message, where=row.where, hint=hint)
     where, content = row.cell("Call in"), row.content("Call in")

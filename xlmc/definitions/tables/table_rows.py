@@ -256,7 +256,7 @@ def _point_out_row_below(
     taken = table.table.totals_rows or any(row.where in other.area for other in workbook.tables)
     if filled > 1 and all(map(row.filled, required)) and not taken:
         name = table.table.name
-        message = f"This row stands below the table {name} and is not read: drag the table's corner over it"
+        message = f"This row is right below the table {name} and is not read: drag the table's corner over it"
         findings.notice(f"{message}, or leave a blank row above it", row.where)
 
 

@@ -114,7 +114,7 @@ class ExpressionLowering(TreeLowering):
         except NoReference as found:
             return self.error(found.code)
         if areas is None or len(areas) != 1:
-            raise FormulaError("several areas joined by commas stand where one value is needed")
+            raise FormulaError("one value is needed here, and several areas joined by commas are given")
         return self.lower(areas[0], scope)
 
     def _intersect(self, area: Area, host: Cell) -> int:

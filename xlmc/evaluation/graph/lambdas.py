@@ -30,7 +30,7 @@ class NothingCallsError(FormulaError):
     """A LAMBDA stands where a value is needed."""
 
     def __init__(self) -> None:
-        super().__init__("a LAMBDA stands here that nothing calls", hint="call it, as in LAMBDA(x,x+1)(2)")
+        super().__init__("nothing calls this LAMBDA", hint="call it, as in LAMBDA(x,x+1)(2)")
 
 
 def lower(

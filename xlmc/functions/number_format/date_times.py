@@ -84,7 +84,7 @@ def moment_layout(tokens: Sequence[Token]) -> MomentLayout:
             return moment_layout(tokenise(_SYSTEM[token.text])[0])
     parts = _with_minutes(_with_fractions(_with_years(tokens)))
     if any(token.mark in (Mark.DIGIT, Mark.AT, Mark.PERCENT, Mark.EXPONENT) for token in parts):
-        raise FormatError("parts of a date stand beside digit placeholders")
+        raise FormatError("parts of a date are mixed with digit placeholders")
     if any(_has_name(t) for t in parts) and any(_is_foreign(t) for t in parts):
         raise UnknownFormat("the names of months and days are known in English only")
     return MomentLayout(tuple(_literal_unless_part(token) for token in parts if token.mark is not Mark.LANGUAGE))

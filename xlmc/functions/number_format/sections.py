@@ -183,7 +183,7 @@ def _layout(tokens: Sequence[Token]) -> Layout:
     kept = [token for token in tokens if token.mark is not Mark.LANGUAGE]
     marks = {token.mark for token in kept}
     if Mark.AT in marks:
-        raise FormatError("a text stands in a section for numbers")
+        raise FormatError("a section for numbers holds a text placeholder")
     if Mark.EXPONENT in marks:
         return exponent_layout(kept)
     if Mark.SLASH in marks:
@@ -198,6 +198,6 @@ def _general(tokens: Sequence[Token]) -> Layout:
     start = next(index for index, token in enumerate(plain) if token.mark is Mark.GENERAL)
     rest = plain[:start] + plain[start + 1 :]
     if any(token.mark in (Mark.GENERAL, Mark.DIGIT, Mark.PART, Mark.AT, Mark.EXPONENT) for token in rest):
-        raise FormatError("General stands beside other placeholders")
+        raise FormatError("General is mixed with other placeholders")
     before, after = ("".join(token.text for token in part) for part in (rest[:start], rest[start:]))
     return GeneralLayout(before, after)

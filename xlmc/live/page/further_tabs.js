@@ -112,12 +112,12 @@ class ScenarioView {
 
   state({ changes, scenarios, shown }) {
     this.now.replaceChildren(make("b", { text: shown ? `Shown: ${shown}. ` : "Shown: " }),
-      changes.length ? named(changes.join("; ")) : "the workbook as it stands");
+      changes.length ? named(changes.join("; ")) : "the workbook as it is");
     const act = (kind, name, text) => make("button", { type: "button", text, "aria-label": `${text} ${name || "the workbook"}`,
       on: { click: () => this.wire.say({ kind, name }) } });
     const lines = [{ name: "", changes: [], own: true, shows: true }, ...scenarios].map(({ name, changes: said, own, shows }) => make("li",
       { class: name === shown ? "shown" : null },
-      name ? make("b", {}, named(name)) : make("b", { text: "The workbook as it stands" }), " ",
+      name ? make("b", {}, named(name)) : make("b", { text: "The workbook as it is" }), " ",
       changesOf(said), " ", ...(shows ? [act("show", name, "Show")] : []),
       ...(own ? [name ? make("small", { text: " of the workbook" }) : ""] : [" ", act("drop", name, "Forget")])));
     this.list.replaceChildren(...lines);
@@ -173,7 +173,7 @@ class HandView {
   /** What the files will be of. */
   state({ changes, shown }) {
     const of = changes.length ? [shown ? `of ${shown}: ` : "with these changes: ", named(changes.join("; ")),
-      ". The results say so first, and their record says what differs."] : ["of the workbook as it stands."];
+      ". The results say so first, and their record says what differs."] : ["of the workbook as it is."];
     this.changes.replaceChildren("Written beside the workbook, ", ...of);
     for (const button of [this.copy, this.into]) button.disabled = !changes.length;
     if (!changes.length) this.sure.hidden = true;

@@ -71,7 +71,7 @@ def convert(model: Model, path: Path, *, overwrite: bool = False) -> Converted:
     left = tuple(_left(workbook, definitions, tables))
     if not tables:
         hint = "It can be run as it is"
-        raise WorkbookError("all that the workbook defines stands in xlmc's tables", where=model.path, hint=hint)
+        raise WorkbookError("all that the workbook defines is in xlmc's tables already", where=model.path, hint=hint)
     parts = inject(
         remove_result_sheets(workbook.parts),
         built_sheet(tables, left, _free_name(workbook)),

@@ -36,8 +36,8 @@ _WIDTHS: Final = (30, 24, 24, 24, 34, 16, *([14] * 14))
 
 _INTRODUCTION: Final = (
     "What Crystal Ball's dialogs and functions in cells define, as xlmc's tables. The other sheets are as they were.",
-    "A row with Call in and Call stands for that call of the cell's formula: what its cell under Value draws is taken "
-    "instead. Lines in red could not be converted.",
+    "A row with Call in and Call replaces that call in the cell's formula: the formula uses what the row's cell under "
+    "Value draws. Lines in red could not be converted.",
 )
 
 

@@ -336,10 +336,10 @@ def _sensitivity(material: Material) -> Iterator[Block]:
     if not shown:
         return
     yield Paragraph(
-        "Variance explained: how much of the forecast's variance would go, on average, if the assumption's true value "
-        "were known. It is found from the accepted trials; shares need not add up to 100 %. “Noise” is no more than "
-        "trials alone would show. The rank correlation says whether the forecast rises (above 0) or falls with the "
-        "assumption. No sensitivity says whether the model fits the crash."
+        "Variance explained: how much of the forecast's variance would vanish, on average, if the assumption's true "
+        "value were known. It is found from the accepted trials; shares need not add up to 100 %. “Noise” means: no "
+        "more than chance alone would show. The rank correlation says whether the forecast rises (above 0) or falls "
+        "with the assumption. No sensitivity says whether the model fits the crash."
     )
     lines: list[tuple[str, ...]] = []
     most = _MOST_BARS if len(shown) <= _FEW else _MOST_OF_MANY

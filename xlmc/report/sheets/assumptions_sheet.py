@@ -60,9 +60,9 @@ STRATIFIED = (
 )
 
 _CORRELATIONS = (
-    "Asked for, and drawn with: before filtering. They differ where the correlations that were asked for are not "
-    "possible all at once, or where an assumption takes so few different values that only less is possible. Filters "
-    "change correlations as they change assumptions: those of the accepted trials stand beside them."
+    "“Asked for” and “drawn with” are before filtering. They differ if the correlations asked for are not all possible "
+    "at once, or if an assumption takes so few different values that only a weaker one is possible. Filters change "
+    "correlations as they change assumptions; those of the accepted trials are beside them."
 )
 
 

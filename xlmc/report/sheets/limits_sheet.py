@@ -63,10 +63,10 @@ def write_limits(page: Page, book: Workbook, found: Sensitivities, name: str) ->
 def limit_sentences(found: Sensitivities) -> list[str]:
     """Sentences that say what moving a limit means."""
     said = [
-        "One limit is moved, all others stay. Tightened, it keeps some of the accepted trials. Loosened, it lets in "
-        "trials that nothing else rejects, found among the run's first ones, so their errors are larger. Changes and "
-        "slopes compare runs that share trials, and their errors allow for that. A limit is evidence: what is "
-        "shown is how much its exact value matters, not which value is right."
+        "One limit is moved; all others stay. A tighter limit keeps some of the accepted trials. A looser one also "
+        "accepts trials that nothing else rejects; these come from the run's first trials, so their errors are larger. "
+        "Changes and slopes compare runs that share trials, and their errors allow for that. A limit is evidence: "
+        "this sheet shows how much its exact value matters, not which value is right."
     ]
     if found.varying_limits:
         said.append(f"Not moved, because the limit varies with the assumptions: {', '.join(found.varying_limits)}.")
@@ -203,11 +203,11 @@ def _nothing_moves(limit: FilterLimit) -> str:
     """What changes of 0 ± 0 mean."""
     if len({point.trials for point in limit.points}) > 1:
         return ""
-    return " No trial that all else keeps lies between these limits, so nothing moves; of more trials some may."
+    return " No trial that everything else keeps lies between these limits, so nothing moves; with more trials it may."
 
 
 def _share_caption(limit: FilterLimit) -> str:
     return (
-        f"The share of all trials that are accepted then, from {limit.trials:,} trials; where the limit is loosened, "
-        f"the further ones from {limit.loosened_trials:,}."
+        f"The share of all trials that are accepted with each limit, from {limit.trials:,} trials; what a looser limit "
+        f"adds comes from {limit.loosened_trials:,}."
     )

@@ -114,7 +114,7 @@ def _name_and_limit(pair: Pair, index: int) -> str:
 def pair_sentences(simulation: Simulation, pairs: Sequence[Pair]) -> list[str]:
     """What the table is of."""
     trials, ranked = {pair.trials for pair in pairs}, {pair.ranked for pair in pairs}
-    said = "A limit is the forecast's threshold, or where it has none its median, taken as the number that stands here."
+    said = "A limit is the forecast's threshold or, if it has none, its median; it is used as the number printed here."
     said += " Probabilities are shares of the accepted trials in which both forecasts are numbers"
     said += f" ({min(trials):,})." if len(trials) == 1 else f" ({min(trials):,} to {max(trials):,})."
     if max(ranked) < max(trials):

@@ -56,7 +56,7 @@ def opening_sentences(simulation: Simulation) -> list[str]:
     return [
         *([] if simulation.changed_from is None else [simulation.changed_from.sentence]),
         *(f"An answer is missing: {warning}. The answers of other forecasts do not need it." for warning in missing),
-        *(f"Do not use these results as they stand: {each}" for each in simulation.warnings if each not in missing),
+        *(f"Do not use these results as they are: {each}" for each in simulation.warnings if each not in missing),
         *lost_sentences(simulation),
         *([f"Fewer trials than were asked for: {ended.sentence}"] if ended.interrupted else []),
     ]

@@ -74,7 +74,7 @@ def write_scenario_tables(page: Page, found: Sequence[ScenarioAnswers]) -> None:
 def scenario_warnings(found: Sequence[ScenarioAnswers]) -> list[str]:
     """Why answers of scenarios must not be used."""
     names = ((each.name, warning) for each in found[1:] for warning in each.warnings)
-    return [f"Do not use the answers of {name!r} as they stand: {warning}" for name, warning in names]
+    return [f"Do not use the answers of {name!r} as they are: {warning}" for name, warning in names]
 
 
 def scenario_sentences(found: Sequence[ScenarioAnswers]) -> Iterator[str]:

@@ -234,14 +234,14 @@ def influence_charts(book: Workbook, at: TableAt, found: ForecastSensitivity, so
 def influence_captions(found: ForecastSensitivity, pairs: int) -> list[str]:
     """A caption for each chart: what it is and what it is not."""
     explained = (
-        "Variance explained: how much of the forecast's variance would go, on average, if the assumption's true value "
-        "were known. From the accepted trials as they are, so it holds with filters and correlations; shares need not "
-        "add up to 100 %. Pale, and the word noise in the table: no more than trials alone would show."
+        "Variance explained: how much of the forecast's variance would vanish, on average, if the assumption's true "
+        "value were known. It is found from the accepted trials, so it holds with filters and correlations; shares "
+        "need not add up to 100 %. Pale bars, and the word noise in the table: no more than chance alone would show."
     )
     dependence = (
         "Dependence (index of Cramér and von Mises): 0 only if no part of the forecast's distribution depends on the "
-        "assumption, 100 % if nothing else matters. Unlike variance explained it also sees what widens the forecast "
-        "or acts only together with others; it is not a share of the variance."
+        "assumption, 100 % if nothing else matters. Unlike variance explained it also shows an assumption that "
+        "only widens the forecast or acts only together with others; it is not a share of the variance."
     )
     total = (
         f"Total effect (Sobol), from {pairs:,} pairs of trials of their own: the variance that would be left, on "
@@ -250,7 +250,7 @@ def influence_captions(found: ForecastSensitivity, pairs: int) -> list[str]:
     )
     rank = (
         f"Rank correlation on {found.trials:,} accepted trials: whether the forecast rises or falls with the "
-        "assumption. It is blind to effects that rise and fall, and is not a share of anything."
+        "assumption. It does not show effects that rise and fall, and it is not a share of the variance."
     )
     contribution = (
         "Contribution to variance as Crystal Ball shows it: squared rank correlations scaled to 100 %. Approximate, "
@@ -308,15 +308,15 @@ def move_captions(found: ForecastSensitivity) -> list[str]:
     bent = any(bar.monotonic is False for bar in found.bars[:BARS])
     tornado = (
         f"Tornado: how far the forecast moves from its base case{at} when one assumption goes to its 10th or 90th "
-        "percentile and all others stay at their base values. No trials are behind it: it knows no probability, no "
-        "filter and no correlation."
+        "percentile and all others stay at their base values. It uses no trials, so probabilities, filters and "
+        "correlations have no part in it."
     )
     if bent:
         tornado += " Where the table says that it does not only rise or fall, the bar hides what lies between."
     lines = min(MOST_LINES, len(found.bars))
     spider = (
         f"Spider: the same over five points of each assumption's own distribution before filtering, for the {lines} "
-        "that move it most; a bent line is an effect that a correlation describes badly. A steep line is not a "
-        "likely one: it shows how the model answers, not what is probable."
+        "that move it most; a bent line is an effect that a correlation describes badly. A steep line does not mean "
+        "that a change is probable: it shows how the model reacts."
     )
     return [tornado, spider]

@@ -196,7 +196,7 @@ def errors_text(simulation: Simulation) -> str:
     """What the standard errors and intervals are made from."""
     plan = simulation.plan
     if not plan.size:
-        return "from the trials, which are independent"
+        return "from the spread of the trials"
     groups = min(plan.replicates, MOST_GROUPS)
     what = "replicates" if groups == plan.replicates else f"{groups} groups of replicates"
     return f"from the differences between {what}, with Student's t of {groups - 1} degrees of freedom"

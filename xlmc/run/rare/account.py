@@ -11,7 +11,7 @@ from xlmc.statistics import Estimate, format_estimate
 __all__ = ["RareAccount", "probability_text"]
 
 MOST_LOST: Final = 0.001
-"""Above this share of trials lost to errors the answer must not be used as it stands, as of plain trials."""
+"""Above this share of trials lost to errors the answer must not be used as it is, as of plain trials."""
 
 MOST_MISSED: Final = 0.01
 """A share of the probability of acceptance: if more was met and not found, a warning says so."""
@@ -141,7 +141,7 @@ class RareAccount:
 
     @property
     def warnings(self) -> list[str]:
-        """Why the answer must not be used as it stands."""
+        """Why the answer must not be used as it is."""
         found = []
         if self._disagree:
             found.append(

@@ -58,7 +58,7 @@ class Reference:
             number, the same of a normal distribution with its standard deviation.
         acceptance: the share of accepted trials.
         heavy: forecast -> attributes of `Answer` that do not converge, because its tail is too heavy.
-        warnings: why its answers must not be used as they stand.
+        warnings: why its answers must not be used as they are.
         extremes: its lowest and highest accepted trials.
     """
 

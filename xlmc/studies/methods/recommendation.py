@@ -41,9 +41,7 @@ _ELSE: Final = "it leaves something out of the formulas"
 
 def recommendation(study: Study) -> list[str]:
     """Paragraphs: what to use, why, what else would do, and what the others cannot."""
-    warned = [
-        f"Warning: {warning}; the answers must not be used as they stand." for warning in study.reference.warnings
-    ]
+    warned = [f"Warning: {warning}; the answers must not be used as they are." for warning in study.reference.warnings]
     return [*warned, *_paragraphs(study)]
 
 

@@ -19,7 +19,7 @@ class Level(IntEnum):
     """How much a finding matters; lower is worse."""
 
     WRONG = 0
-    """The numbers must not be used as they stand."""
+    """The numbers must not be used as they are."""
     DOUBTFUL = 1
     """Right in what was looked at, but digits are lost that another form would keep, or a statistic is in doubt."""
     NOTE = 2
@@ -126,5 +126,5 @@ class Stability:
 
     @property
     def wrong(self) -> bool:
-        """Whether numbers must not be used as they stand."""
+        """Whether numbers must not be used as they are."""
         return any(finding.level is Level.WRONG for finding in self.findings)

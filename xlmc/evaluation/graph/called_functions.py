@@ -59,7 +59,7 @@ _ADD_INS: Final = ("CB.", "RISK")
 _CODE: Final = ("vbaproject", "macrosheets")
 """Words in the names of the parts of a file that hold the workbook's own functions."""
 
-LEFT_OUT: Final = (
+_WITHOUT_BODY: Final = (
     frozenset({"DBCS", "JIS", "PHONETIC", "BAHTTEXT", "EUROCONVERT", "INFO"})
     | {"REGEXTEST", "REGEXEXTRACT", "REGEXREPLACE", "TRANSLATE", "DETECTLANGUAGE", "COPILOT"}
     | {"FORECAST.ETS", "FORECAST.ETS.CONFINT", "FORECAST.ETS.SEASONALITY", "FORECAST.ETS.STAT"}
@@ -67,6 +67,9 @@ LEFT_OUT: Final = (
     | {"CUBEKPIMEMBER", "CUBEMEMBER", "CUBEMEMBERPROPERTY", "CUBERANKEDMEMBER", "CUBESET", "CUBESETCOUNT", "CUBEVALUE"}
     | {"CALL", "REGISTER.ID", "RTD", "SQL.REQUEST", "WEBSERVICE", "FILTERXML", "IMAGE", "IMPORTCSV", "IMPORTTEXT"}
 )
+"""Functions of Excel that had no body when they were listed; a name may stay when its function gets one."""
+
+LEFT_OUT: Final = _WITHOUT_BODY - REGISTRY.keys()
 """Functions of Excel that xlmc has no body for."""
 
 

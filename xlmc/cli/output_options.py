@@ -26,7 +26,7 @@ NOT_WRITTEN = 2
 F = TypeVar("F", bound=Callable[..., Any])
 
 _PATH = click.Path(readable=False, path_type=Path)  # a file that may not be read is refused later, with a hint
-_OPTIONS = (
+_FILES = (
     click.option("--html", type=_PATH, metavar="PAGE.html", help="Write the results as one web page."),
     click.option("--json", "json_path", type=_PATH, metavar="FILE.json", help="Write all results as JSON."),
     click.option(
@@ -38,6 +38,9 @@ _OPTIONS = (
     ),
     click.option("--pdf", type=_PATH, metavar="REPORT.pdf", help="Write the report to hand over, as PDF."),
     click.option("--docx", type=_PATH, metavar="REPORT.docx", help="Write the same report as a Word file."),
+)
+
+_WISHES = (
     click.option(
         "--case",
         "case",
@@ -55,12 +58,14 @@ _OPTIONS = (
         help="A forecast that the report is about; may be given several times.  [default: all]",
     ),
     click.option("--paper", type=OneOf("letter", "a4"), default="letter", show_default=True, help="Of the report."),
-    click.option(
-        "--overwrite",
-        is_flag=True,
-        help="Replace existing files, whoever wrote them. Without it only files that xlmc wrote for BOOK, and"
-        " that nobody has changed since.",
-    ),
+)
+"""What the reports are to hold: each is a field of `Wishes`, and is named where they are refused without a report."""
+
+_OVERWRITE = click.option(
+    "--overwrite",
+    is_flag=True,
+    help="Replace existing files, whoever wrote them. Without it only files that xlmc wrote for BOOK, and"
+    " that nobody has changed since.",
 )
 
 
@@ -68,21 +73,12 @@ def output_options(command: F) -> F:
     """Add the options; the command is given `html`, `json_path`, `extract`, `overwrite`, `reports` and `wishes`."""
 
     @wraps(command)
-    def packed(
-        *args: Any,
-        pdf: Path | None,
-        docx: Path | None,
-        case: tuple[str, ...],
-        sections: str | None,
-        report_forecasts: tuple[str, ...],
-        paper: str,
-        **others: Any,
-    ) -> Any:
-        wishes = Wishes(case, sections, report_forecasts, paper)
+    def packed(*args: Any, pdf: Path | None, docx: Path | None, **others: Any) -> Any:
+        wishes = Wishes(**{name: others.pop(name) for name in Wishes._fields})
         return command(*args, reports=Reports(pdf, docx), wishes=wishes, **others)
 
     found: Any = packed
-    for option in reversed(_OPTIONS):
+    for option in reversed((*_FILES, *_WISHES, _OVERWRITE)):
         found = option(found)
     return cast(F, found)
 
@@ -116,11 +112,11 @@ class Reports(NamedTuple):
 
 
 class Wishes(NamedTuple):
-    """What the reports are to hold, as it was typed; see `xlmc.report.document.Wanted`."""
+    """What the reports are to hold, as it was typed: a field for each of `_WISHES`; see `report.document.Wanted`."""
 
     case: tuple[str, ...] = ()
     sections: str | None = None
-    forecasts: tuple[str, ...] = ()
+    report_forecasts: tuple[str, ...] = ()
     paper: str = "letter"
 
     def wanted(self) -> Wanted:
@@ -132,7 +128,7 @@ class Wishes(NamedTuple):
         from xlmc.report.document import Wanted, check_wanted, fields_from
 
         sections = () if self.sections is None else tuple(name.strip() for name in self.sections.split(","))
-        wanted = Wanted(fields_from(self.case), sections, self.forecasts, self.paper)
+        wanted = Wanted(fields_from(self.case), sections, self.report_forecasts, self.paper)
         check_wanted(wanted)
         return wanted
 

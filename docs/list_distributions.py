@@ -125,7 +125,16 @@ be formulas, but must not depend on another assumption.
 
 
 def page() -> str:
-    """The page's text."""
+    """The page's text.
+
+    Raises:
+        SystemExit: a family has no parameters for its picture.
+    """
+    missing = [name for name in FAMILIES if name not in EXAMPLES]
+    if missing:
+        raise SystemExit(
+            f"give EXAMPLES, in docs/list_distributions.py, parameters for the picture of: {', '.join(missing)}"
+        )
     parts = [HEAD, _table(), *(_section(family) for family in FAMILIES.values())]
     names = [family.name for family in FAMILIES.values() if family.roles]
     parts.append(PERCENTILES.format(families=f"{', '.join(names[:-1])} and {names[-1]}"))
@@ -148,14 +157,11 @@ def picture_name(family: Family) -> str:
 
 
 def _section(family: Family) -> str:
-    lines = [f"## {family.name}", ""]
-    if family.name in EXAMPLES:
-        shown = ", ".join(
-            f"{spec.heading} {show(value)}"
-            for spec, value in zip(family.parameters, EXAMPLES[family.name], strict=True)
-        )
-        lines += [f"![{family.name}](pictures/distributions/{picture_name(family)})", ""]
-        lines += [f"Drawn: {shown}", ""] if shown else []
+    lines = [f"## {family.name}", "", f"![{family.name}](pictures/distributions/{picture_name(family)})", ""]
+    shown = ", ".join(
+        f"{spec.heading} {show(value)}" for spec, value in zip(family.parameters, EXAMPLES[family.name], strict=True)
+    )
+    lines += [f"Drawn: {shown}", ""] if shown else []
     lines += [f"* {_parameter(spec)}" for spec in family.parameters]
     lines += [f"* `Data`: {family.data.content}"] if family.data else []
     lines += [f"* also: {', '.join(family.aliases)}"] * bool(family.aliases)
@@ -246,6 +252,6 @@ def _labels(low: float, high: float) -> Iterator[str]:
 
 if __name__ == "__main__":
     PAGE.write_text(page(), encoding="utf-8")
-    PICTURES.mkdir(exist_ok=True)
+    PICTURES.mkdir(parents=True, exist_ok=True)
     for each in EXAMPLES:
         (PICTURES / picture_name(FAMILIES[each])).write_text(picture(FAMILIES[each]), encoding="utf-8")

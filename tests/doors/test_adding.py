@@ -61,6 +61,8 @@ def enlarged(tmp_path_factory):
     """The folder in which the copy lies; bytecode goes with it, which spares compiling it."""
     folder = tmp_path_factory.mktemp("enlarged")
     shutil.copytree(ROOT / "xlmc", folder / "xlmc")
+    (folder / "docs").mkdir()
+    shutil.copy(ROOT / "docs" / "list_distributions.py", folder / "docs")
     for block in BLOCK.findall(PAGE.read_text(encoding="utf-8")):
         apply(block, folder)
     return folder
@@ -183,6 +185,26 @@ def test_the_help_lists_them(run):
     text = " ".join(run("-m", "xlmc", "simulate", "--help").stdout.split())
     assert "antithetic: antithetic pairs" in text
     assert "slow: the careful path alone" in text
+
+
+def test_the_page_of_distributions_shows_it(enlarged, run):
+    assert run("docs/list_distributions.py").returncode == 0
+    section = (enlarged / "docs" / "distributions.md").read_text(encoding="utf-8").partition("\n## Arcsine\n")[2]
+    assert "Drawn: Location 0, Amplitude 1" in section.partition("\n## ")[0]
+    drawn = (enlarged / "docs" / "pictures" / "distributions" / "arcsine.svg").read_text(encoding="utf-8")
+    assert "<title>Arcsine: 0, 1</title>" in drawn
+
+
+def test_the_page_of_distributions_is_not_written_without_the_numbers_of_a_picture(enlarged):
+    """The script as it is, and a copy of xlmc that has one distribution more."""
+    without = enlarged / "without" / "list_distributions.py"
+    without.parent.mkdir()
+    shutil.copy(ROOT / "docs" / "list_distributions.py", without)
+    variables = {**os.environ, "PYTHONPATH": str(enlarged)}
+    done = subprocess.run([sys.executable, without], env=variables, capture_output=True, text=True, encoding="utf-8")
+    assert done.returncode == 1
+    assert done.stderr.strip().endswith("parameters for the picture of: Arcsine")
+    assert [path.name for path in without.parent.iterdir()] == ["list_distributions.py"]
 
 
 def test_the_pages_that_it_names_are_those_that_lack_its_examples(run):

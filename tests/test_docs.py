@@ -43,7 +43,8 @@ def script_of_docs(name):
 def test_every_distribution_is_documented():
     script = script_of_docs("list_distributions")
     page = script.page()
-    assert (ROOT / "docs" / "distributions.md").read_text(encoding="utf-8") == page
+    written = (ROOT / "docs" / "distributions.md").read_text(encoding="utf-8")
+    assert written == page, "write docs/distributions.md anew: python docs/list_distributions.py"
     assert script.EXAMPLES.keys() == FAMILIES.keys()
     for family in FAMILIES.values():
         assert f"\n## {family.name}\n" in page
@@ -55,12 +56,14 @@ def test_every_distribution_is_documented():
 
 
 def test_every_sampling_method_engine_result_sheet_and_distribution_is_described():
-    assert undescribed() == []
+    lacking = undescribed()
+    assert not lacking, "describe in docs/ what `python tests/session/described.py` prints:\n" + "\n".join(lacking)
 
 
 def test_every_function_is_documented():
     script = script_of_docs("list_functions")
-    assert (ROOT / "docs" / "functions.md").read_text(encoding="utf-8") == script.page()
+    written = (ROOT / "docs" / "functions.md").read_text(encoding="utf-8")
+    assert written == script.page(), "write docs/functions.md anew: python docs/list_functions.py"
     assert len(script.names()) >= 350
 
 

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import shutil
+import sys
 
 import committed_books
 import openpyxl
@@ -8,22 +9,11 @@ import pytest
 
 from xlmc.cli.new import templates
 
-TEMPLATES = [
-    "skid",
-    "critical-speed-yaw",
-    "collinear",
-    "momentum",
-    "planar-impact",
-    "planar-forward",
-    "crush-energy",
-    "pedestrian-throw",
-    "time-distance",
-    "airborne",
-    "edr-speed",
-    "video-speed",
-    "momentum-energy",
-    "pedestrian",
-]
+sys.path.append(str(committed_books.ROOT))
+
+from templates.build import TEMPLATES as DESCRIBED
+
+TEMPLATES = sorted(DESCRIBED, key=lambda name: DESCRIBED[name].rung)
 """The simplest first."""
 
 

@@ -177,7 +177,8 @@ def test_a_wrong_row_is_told_with_its_cell(small_book, tmp_path):
 
 
 def test_the_documents_lack_it_by_name():
-    assert undescribed() == ["docs/command-line.md: --until-rejected", "docs/workbooks.md: Until rejected"]
+    lacking = [line for line in undescribed() if "until" in line.casefold() and "rejected" in line]
+    assert lacking == ["docs/command-line.md: --until-rejected", "docs/workbooks.md: Until rejected"]
 
 
 def test_every_goal_has_a_rule_and_every_rule_a_goal(monkeypatch):

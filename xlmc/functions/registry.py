@@ -4,6 +4,9 @@ A body of *element* arguments (`Number`, `Logical`, `Text`) gets arrays that bro
 array; it sees no errors, and puts its own into the result (see `values.NUM`). A body of *set* arguments (`Numbers`,
 `Logicals`) gets all of its arguments flattened to one `(n, k)` array, and a mask of the cells that count. A body with
 an `Anything` or `Cells` argument gets `Value`s, and handles kinds and errors itself; only sets and `Cells` take ranges.
+Of a function that has no formula for arrays, such as most of texts, write the body for one trial, and `@per_element`
+above it, `@per_object` if an argument is `Anything` (`functions/per_element.py`). `returns` says what the result is,
+if it is no number: `returns=Kind.TEXT`.
 
 A row with a `ufunc` promises that the ufunc alone gives the body's values wherever no floating-point flag is raised and
 `guard` holds. That is what the fast engine runs.

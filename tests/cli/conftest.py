@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from fewer_sheets import CHARTS, SENSITIVITY, keep_few_trials, leave_out, leave_out_fits
+from fewer_sheets import CHARTS, SENSITIVITY, keep_few_trials, leave_out, leave_out_fits, leave_out_shapes
 
 from xlmc.cli import main
 
@@ -49,8 +49,9 @@ def whole_book() -> None:
 
 @pytest.fixture
 def short_books(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Results without what takes longest, unless the test takes `whole_book`: charts, sensitivity, trials, fits."""
+    """Results without what takes longest, unless the test takes `whole_book`: charts, sensitivity, trials, fits…"""
     if "whole_book" not in request.fixturenames:
         leave_out(monkeypatch, *CHARTS, *SENSITIVITY)
         keep_few_trials(monkeypatch)
         leave_out_fits(monkeypatch)
+        leave_out_shapes(monkeypatch)

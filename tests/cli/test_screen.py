@@ -3,6 +3,30 @@ from __future__ import annotations
 import json
 import re
 
+import pytest
+
+from xlmc.studies import screening
+
+
+@pytest.fixture(scope="module")
+def kept():
+    """What was asked for -> what was found."""
+    return {}
+
+
+@pytest.fixture(autouse=True)
+def screened_once(kept, monkeypatch):
+    """A screening is run once and told in several forms: what is asked again is what was found before."""
+    screen = screening.screen
+
+    def once(model, tolerance=(), *, told=None, **asked):
+        key = model.path, model.workbook.sha256, tolerance, *asked.items()
+        if key not in kept:
+            kept[key] = screen(model, tolerance, told=told, **asked)
+        return kept[key]
+
+    monkeypatch.setattr(screening, "screen", once)
+
 
 def test_the_case_study(xlmc, case_study):
     """The inertias are not needed; what impact centre and tangent cost stands in the table, alone and together."""

@@ -25,6 +25,8 @@ from xlmc.workbook.printable import printable
 pytestmark = pytest.mark.usefixtures("short_books")
 
 ROOT = Path(__file__).resolve().parents[2]
+FOUND = os.pathsep.join(map(str, (ROOT, ROOT / "tests" / "session")))
+"""Where a program of its own finds xlmc, and `short_xlmc`."""
 RAW = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
 ENCODINGS = ["cp1252", "cp437", "ascii", "utf-8"]
 
@@ -89,8 +91,8 @@ def test_no_encoding_stops_a_command(greek, tmp_path, typed, arguments, encoding
 
 def test_a_closed_pipe_is_quiet_and_the_files_are_written(greek, tmp_path):
     shutil.copy(greek, tmp_path / "case.xlsx")
-    where = {**os.environ, "PYTHONPATH": str(ROOT)}
-    command = [sys.executable, "-m", "xlmc", "simulate", "case.xlsx", "-n", "4000", "--json", "case.json"]
+    where = {**os.environ, "PYTHONPATH": FOUND}
+    command = [sys.executable, "-m", "short_xlmc", "simulate", "case.xlsx", "-n", "4000", "--json", "case.json"]
     reading, writing = os.pipe()
     os.close(reading)
     done = subprocess.run(command, cwd=tmp_path, env=where, stdout=writing, stderr=subprocess.PIPE, check=False)
@@ -105,8 +107,8 @@ def test_a_closed_pipe_is_quiet_and_the_files_are_written(greek, tmp_path):
 def test_output_into_a_full_file_is_one_line_and_the_files_are_written(greek, tmp_path):
     shutil.copy(greek, tmp_path / "case.xlsx")
     with open("/dev/full", "wb") as full:
-        where = {**os.environ, "PYTHONPATH": str(ROOT)}
-        command = [sys.executable, "-m", "xlmc", "simulate", "case.xlsx", "-n", "4000"]
+        where = {**os.environ, "PYTHONPATH": FOUND}
+        command = [sys.executable, "-m", "short_xlmc", "simulate", "case.xlsx", "-n", "4000"]
         done = subprocess.run(
             command, cwd=tmp_path, env=where, stdout=full, stderr=subprocess.PIPE, check=False, text=True
         )
@@ -253,8 +255,8 @@ def test_the_progress_bar_is_drawn_in_every_encoding(greek, tmp_path, encoding):
 
     shutil.copy(greek, tmp_path / "case.xlsx")
     master, slave = pty.openpty()
-    where = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONIOENCODING": encoding, "TERM": "xterm", "COLUMNS": "100"}
-    command = [sys.executable, "-m", "xlmc", "simulate", "case.xlsx", "-n", "20000", "-j", "1"]
+    where = {**os.environ, "PYTHONPATH": FOUND, "PYTHONIOENCODING": encoding, "TERM": "xterm", "COLUMNS": "100"}
+    command = [sys.executable, "-m", "short_xlmc", "simulate", "case.xlsx", "-n", "20000", "-j", "1"]
     running = subprocess.Popen(command, cwd=tmp_path, env=where, stdout=subprocess.PIPE, stderr=slave)
     os.close(slave)
     drawn = b""

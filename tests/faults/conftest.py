@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from fewer_sheets import CHARTS, SENSITIVITY, keep_few_trials, leave_out, leave_out_fits, leave_out_shapes
 
 if sys.platform == "win32":
     pytest.skip("needs fork and kill", allow_module_level=True)
@@ -12,7 +13,18 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path += [str(ROOT), str(ROOT / "benchmarks")]
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module", autouse=True)
+def _short_books():
+    """What is written does not matter here, but that it is whole."""
+    with pytest.MonkeyPatch.context() as patch:
+        leave_out(patch, *CHARTS, *SENSITIVITY)
+        keep_few_trials(patch)
+        leave_out_fits(patch)
+        leave_out_shapes(patch)
+        yield
+
+
+@pytest.fixture(scope="module")
 def writers():
     """Two short runs of the case study."""
     from faults import Writers

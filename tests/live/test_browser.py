@@ -114,7 +114,7 @@ class Page:
 
 @pytest.fixture
 def case(tmp_path):
-    return edited(CASE, tmp_path / "case.xlsx", {}, {"Trials": 40_000})
+    return edited(CASE, tmp_path / "case.xlsx", {}, {"Trials": 20_000})
 
 
 def accepted(book, *changes):

@@ -7,10 +7,14 @@ third of the number that the test sets, so that the whole suite is quick; `explo
 
 from __future__ import annotations
 
+import inspect
 import os
+from functools import cache
+from types import SimpleNamespace
 
 import pytest
 from hypothesis import is_hypothesis_test, settings
+from hypothesis.internal import reflection
 from hypothesis.internal.conjecture import providers
 
 FIXED, EXPLORE, SHARE, FACTOR = "fixed", "explore", 3, 10
@@ -26,12 +30,22 @@ def _without_constants_of_modules() -> None:
     providers._get_local_constants = lambda: none
 
 
+def _read_sources_once() -> None:
+    """Read and tokenize a test's source once, not twice for each of its parameters: a sixth of the time of such tests.
+
+    What a test's examples follow from stays the same.
+    """
+    reflection._clean_source = cache(reflection._clean_source)
+    reflection.inspect = SimpleNamespace(**vars(inspect) | {"getsource": cache(inspect.getsource)})
+
+
 @pytest.hookimpl(tryfirst=True)  # before hypothesis loads what its own options ask for
 def pytest_configure(config: pytest.Config) -> None:
     name = config.getoption("--hypothesis-profile") or os.environ.get(VARIABLE) or FIXED
     if name not in (FIXED, EXPLORE):
         raise pytest.UsageError(f"there is no hypothesis profile {name!r}: choose {FIXED} or {EXPLORE}")
     settings.load_profile(name)
+    _read_sources_once()
     if name == FIXED:
         _without_constants_of_modules()
 

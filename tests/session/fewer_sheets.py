@@ -6,9 +6,9 @@ import pytest
 
 from xlmc.replay import sheets as repeated_sheets
 from xlmc.report.page import payload
-from xlmc.report.sheets import book, save
+from xlmc.report.sheets import assumptions_sheet, book, save
 
-__all__ = ["CHARTS", "FEW", "SENSITIVITY", "keep_few_trials", "leave_out", "leave_out_fits"]
+__all__ = ["CHARTS", "FEW", "SENSITIVITY", "keep_few_trials", "leave_out", "leave_out_fits", "leave_out_shapes"]
 
 CHARTS = ("Charts", "Pairs")
 FEW = 40
@@ -24,6 +24,11 @@ def leave_out(patch: pytest.MonkeyPatch, *names: str) -> None:
 def leave_out_fits(patch: pytest.MonkeyPatch) -> None:
     """Have pages without fitted distributions, as long as the patch lasts."""
     patch.setattr(payload, "fitted_curves", lambda x, bins: [])
+
+
+def leave_out_shapes(patch: pytest.MonkeyPatch) -> None:
+    """Have no shapes drawn beside the assumptions, as long as the patch lasts."""
+    patch.setattr(assumptions_sheet, "_DRAWN", 0)
 
 
 def keep_few_trials(patch: pytest.MonkeyPatch, rows: int = FEW) -> None:

@@ -30,7 +30,7 @@ def task_of(book: str, path: Path, seconds: float) -> Task:
 
     model = xlmc.load(path)
     drawn = model.sampler(7, ROWS).draw(0)
-    rows = [list(row) for row in zip(*(drawn[_key(a.name)].tolist() for a in model.live), strict=True)]
+    rows = [list(row) for row in zip(*(drawn[a.name].tolist() for a in model.live), strict=True)]
     check = rows[:CHECK]
     if model.filters:
         run = model.simulate(100 * ROWS, seed=7)
@@ -152,9 +152,3 @@ def _cells(path: Path) -> int:
 
     graph = xlmc.load(path).needed.graph
     return sum(cell in graph.varying for cell in graph.formulas)
-
-
-def _key(name: str) -> str:
-    from xlmc.definitions.definitions import name_key
-
-    return name_key(name)

@@ -32,7 +32,7 @@ class Xlmc:
         import numpy as np
 
         names = [self._names[place] for place in self._task.inputs]
-        inputs = {_key(name): np.array(column) for name, column in zip(names, zip(*rows, strict=True), strict=True)}
+        inputs = {name: np.array(column) for name, column in zip(names, zip(*rows, strict=True), strict=True)}
         evaluator = self._program.evaluator(len(rows))
         evaluator.filters(inputs, len(rows))
         columns = evaluator.forecasts(np.arange(len(rows)))
@@ -56,12 +56,6 @@ class Xlmc:
 def prepare(task: Task) -> Xlmc:
     """See `Contestant`."""
     return Xlmc(task)
-
-
-def _key(name: str) -> str:
-    from xlmc.definitions.definitions import name_key
-
-    return name_key(name)
 
 
 def _versions(*packages: str) -> dict[str, str]:

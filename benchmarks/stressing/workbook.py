@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from stressing.forms import CONSTANTS, FORMS, INPUTS, PRINTED, REWRITTEN
 from xlmc.api import Model, load
-from xlmc.definitions.definitions import name_key
 
 __all__ = ["FORMS_ENGINES", "book_of", "forms_book", "values_of"]
 
@@ -101,6 +100,6 @@ def values_of(model: Model, inputs: Mapping[str, Floats], engine: str) -> dict[s
         return model.function(inputs)
     n = next(iter(inputs.values())).size
     evaluator = model.program(engine).evaluator(n)
-    evaluator.filters({name_key(name): np.ascontiguousarray(column) for name, column in inputs.items()}, n)
+    evaluator.filters({name: np.ascontiguousarray(column) for name, column in inputs.items()}, n)
     columns = evaluator.forecasts(np.arange(n))
     return {f.name: column.as_floats() for f, column in zip(model.forecasts, columns, strict=True)}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import xlmc
-from xlmc.definitions.definitions import name_key
+from xlmc.distributions.spelling import name_key
 
 CELLS = 200
 OF_THE_ANSWER = 3

@@ -28,7 +28,6 @@ __all__ = [
     "Forecast",
     "Parameter",
     "Settings",
-    "name_key",
 ]
 
 Parameter = float | Cell
@@ -40,11 +39,6 @@ DIALOG: Final = "Crystal Ball"
 
 CUTOFFS: Final = {"lower_cutoff": "Lower cutoff", "upper_cutoff": "Upper cutoff"}
 """Key of a cutoff -> its heading."""
-
-
-def name_key(name: str) -> str:
-    """Two names are one when they differ only in case and outer blanks."""
-    return name.strip().casefold()
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,7 +19,6 @@ from xlmc.definitions.definitions import (
     Filter,
     Forecast,
     Settings,
-    name_key,
 )
 from xlmc.definitions.in_cells.calls import InCells, in_cell_forecasts, read_in_cells
 from xlmc.definitions.in_cells.joined_draws import in_cell_copulas, in_cell_correlations
@@ -42,7 +41,7 @@ from xlmc.definitions.unavailable import (
     remark_on_unavailable,
     tables_of_run,
 )
-from xlmc.distributions.spelling import did_you_mean
+from xlmc.distributions.spelling import did_you_mean, name_key
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.formula.ir import Expression
 from xlmc.workbook.workbook import Workbook
@@ -91,7 +90,7 @@ def read_definitions(workbook: Workbook, engines: Collection[str], tabulated: in
 
     names = {key: name for key, (name, _) in uncertain.names.items()}
     assumptions = *assumptions, *dialogs.assumptions, *calls.assumptions
-    frozen = [name_key(each.name) for each in assumptions if each.frozen]
+    frozen = [each.name for each in assumptions if each.frozen]
     correlations = read_correlations(workbook, tables["xlmc_correlations"], names, frozen, findings)
     correlations = *correlations, *_take_pairs(correlations, dialogs.correlations, findings)
     more = in_cell_correlations(workbook, calls.assumptions, calls.draws, correlations, findings)
@@ -171,9 +170,9 @@ def _refuse_lost_calls(assumptions: Iterable[Assumption], taken: Collection[Cell
 
 def _take_pairs(taken: Sequence[Correlation], more: Iterable[Correlation], findings: Findings) -> Iterator[Correlation]:
     """The correlations of dialogs that no row of a table is about."""
-    rows = {frozenset(map(name_key, (row.first, row.second))): row for row in taken}
+    rows = {frozenset((row.first, row.second)): row for row in taken}
     for each in more:
-        row = rows.get(frozenset(map(name_key, (each.first, each.second))))
+        row = rows.get(frozenset((each.first, each.second)))
         if row is None:
             yield each
         else:

@@ -1,4 +1,4 @@
-"""How people spell names: case, blanks, underscores and hyphens do not count; near misses are offered."""
+"""How people spell names: what of a spelling does not count, and near misses, which are offered."""
 
 from __future__ import annotations
 
@@ -6,9 +6,21 @@ import re
 from collections.abc import Iterable
 from difflib import get_close_matches
 
-__all__ = ["did_you_mean", "nearest", "plain"]
+__all__ = ["did_you_mean", "name_key", "nearest", "plain"]
 
 _SEPARATORS = re.compile(r"[\s_\-]+")
+
+
+def name_key(name: str) -> str:
+    """The spelling that two names share where they are one: case and outer blanks do not count.
+
+    Within a workbook, everything goes by the names as defined. This is for names that people type, and for the names
+    of two workbooks.
+
+    >>> name_key(" Speed in ") == name_key("speed in")
+    True
+    """
+    return name.strip().casefold()
 
 
 def plain(text: str) -> str:

@@ -27,11 +27,11 @@ from typing import Final
 import numpy as np
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Parameter, name_key
+from xlmc.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Parameter
 from xlmc.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Tabulated, Typed
 from xlmc.definitions.tables.changed_cells import cells_that_change
 from xlmc.definitions.tables.filters import LIMITS, contradiction
-from xlmc.distributions.spelling import did_you_mean
+from xlmc.distributions.spelling import did_you_mean, name_key
 from xlmc.errors import DefinitionError
 from xlmc.evaluation.graph.lower import Lowering
 from xlmc.run.draw_binding import draw_of
@@ -272,6 +272,6 @@ def _check(assumption: Assumption, change: Change) -> None:
         raise DefinitionError(f"{assumption.name}: {assumption.family.name} cannot be cut off", where=where, hint=hint)
     if assumption.cells:
         return  # the model computes them, and checks what they give
-    draw = Draw.of(name_key(assumption.name), assumption.family, {**assumption.parameters, **assumption.cutoffs})
+    draw = Draw.of(assumption.name, assumption.family, {**assumption.parameters, **assumption.cutoffs})
     if (fault := draw.fault()) is not None:
         raise DefinitionError(f"{assumption.name}: {fault.message}", where=where, hint=fault.hint)

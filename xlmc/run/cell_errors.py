@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell, InFormula
-from xlmc.definitions.definitions import Forecast, name_key
+from xlmc.definitions.definitions import Forecast
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.engine import TEXT_RESULT, Target
 from xlmc.run.model import lower_needed
@@ -82,7 +82,7 @@ def error_roots(model: Model, cells: Sequence[Cell], drawn: Sequence[Mapping[str
 
 def _first_error(model: Model, cell: Cell, drawn: Mapping[str, Floats]) -> dict[str, float] | None:
     """The draws of the first trial in which a cell is an error."""
-    draws = {name_key(a.name): drawn[a.name] for a in model.live}
+    draws = {a.name: drawn[a.name] for a in model.live}
     trials = min((values.size for values in draws.values()), default=0)
     evaluator = model.evaluator([Target(cell, cell)], _BLOCK)
     for start in range(0, trials, _BLOCK):
@@ -115,7 +115,7 @@ def _held(model: Model, trial: Mapping[str, float]) -> Lowering:
 
 def _without_draws(definitions: Definitions, trial: Mapping[str, float]) -> Definitions:
     def held(assumption: Assumption) -> Assumption:
-        return replace(assumption, frozen=True, base=trial.get(name_key(assumption.name), assumption.base))
+        return replace(assumption, frozen=True, base=trial.get(assumption.name, assumption.base))
 
     cells = [(check.name, check.cell) for check in definitions.checks]
     cells += [(a.name, cell) for a in definitions.assumptions if not a.frozen for cell in a.cells]

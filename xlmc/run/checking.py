@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.definitions import name_key
 from xlmc.distributions.parameters import show
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.engine import BLANK_RESULT, TEXT_RESULT
@@ -158,7 +157,7 @@ def check_results(model: Model, inputs: Mapping[str, Floats], accepted: int) -> 
     """
     if not model.checks:
         return ()
-    draws = {name_key(a.name): inputs[a.name] for a in model.checked}
+    draws = {a.name: inputs[a.name] for a in model.checked}
     trials = min(accepted, MOST_CHECKED, *(values.size for values in draws.values()))
     failed, held = _failures(model, draws, trials)
     return tuple(

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import Copula, Correlation, Definitions, name_key
+from xlmc.definitions.definitions import Copula, Correlation, Definitions
 from xlmc.distributions.parameters import show
 from xlmc.distributions.whole_numbers import WholeNumbers
 from xlmc.errors import DefinitionError, Notice
@@ -47,9 +47,9 @@ def correlated_groups(correlations: Sequence[Correlation], draws: Mapping[str, D
 
     Args:
         correlations: the rows.
-        draws: key of a drawn assumption -> how it is drawn, at least of all that the rows name.
+        draws: name of a drawn assumption -> how it is drawn, at least of all that the rows name.
     """
-    pairs = {(name_key(c.first), name_key(c.second)): c for c in correlations if c.value}
+    pairs = {(c.first, c.second): c for c in correlations if c.value}
     pairs = {pair: c for pair, c in pairs.items() if pair[0] in draws and pair[1] in draws}
     groups = []
     for names in _connected(list(draws), list(pairs)):
@@ -63,18 +63,18 @@ def correlated_groups(correlations: Sequence[Correlation], draws: Mapping[str, D
     return groups
 
 
-def copula_groups(copulas: Sequence[Copula], draws: Mapping[str, Draw]) -> list[CorrelatedGroup]:
+def copula_groups(copulas: Sequence[Copula], drawn: Collection[str]) -> list[CorrelatedGroup]:
     """The assumptions that copulas join, those left out that are not drawn.
 
     Args:
         copulas: as defined.
-        draws: key of a drawn assumption -> how it is drawn.
+        drawn: the names of all that is drawn.
     """
     groups = []
     for copula in copulas:
-        kept = [i for i, name in enumerate(copula.names) if name_key(name) in draws]
+        kept = [i for i, name in enumerate(copula.names) if name in drawn]
         if len(kept) > 1:
-            names = tuple(name_key(copula.names[i]) for i in kept)
+            names = tuple(copula.names[i] for i in kept)
             groups.append(CorrelatedGroup(names, _joining(copula, kept), copula.row))
     return groups
 
@@ -140,8 +140,8 @@ def _coefficient(row: Correlation, lowering: Lowering) -> float:
 def drawn_correlation(groups: Sequence[CorrelatedGroup], first: str, second: str) -> float | None:
     """The rank correlation that two assumptions, by name, are drawn with; None where one of them is not drawn."""
     for group in groups:
-        if name_key(first) in group.names and name_key(second) in group.names:
-            return float(group.copula.spearman[group.names.index(name_key(first)), group.names.index(name_key(second))])
+        if first in group.names and second in group.names:
+            return float(group.copula.spearman[group.names.index(first), group.names.index(second)])
     return None
 
 
@@ -155,10 +155,10 @@ def tie_notices(
     Args:
         groups: of correlated assumptions.
         correlations: the rows.
-        draws: key of an assumption in them -> how it is drawn.
+        draws: name of an assumption in them -> how it is drawn.
     """
     for row in correlations:
-        pair = name_key(row.first), name_key(row.second)
+        pair = row.first, row.second
         group = next((each for each in groups if set(pair) <= set(each.names)), None)
         if group is None or not row.value:
             continue
@@ -190,29 +190,25 @@ def _out_of_reach(row: Correlation, wanted: float, drawn: float) -> Notice:
     return Notice(message, row.row)
 
 
-def repair_notices(
-    groups: Sequence[CorrelatedGroup], correlations: Sequence[Correlation], names: Sequence[str]
-) -> Iterator[Notice]:
+def repair_notices(groups: Sequence[CorrelatedGroup], correlations: Sequence[Correlation]) -> Iterator[Notice]:
     """What was changed, group by group, the largest change first.
 
     Args:
         groups: of correlated assumptions.
         correlations: the rows.
-        names: the drawn assumptions, as defined.
     """
-    asked = {frozenset((name_key(c.first), name_key(c.second))): c for c in correlations}
-    spelt = {name_key(name): name for name in names}
+    asked = {frozenset((c.first, c.second)): c for c in correlations}
     for group in groups:
         if group.copula.repaired and group.where is None:
-            yield _repair(group, asked, spelt)
+            yield _repair(group, asked)
 
 
-def _repair(group: CorrelatedGroup, asked: dict[frozenset[str], Correlation], spelt: dict[str, str]) -> Notice:
+def _repair(group: CorrelatedGroup, asked: dict[frozenset[str], Correlation]) -> Notice:
     changes = []
     for i, j in combinations(range(len(group.names)), 2):
         row = asked.get(frozenset((group.names[i], group.names[j])))
         before, after = float(group.copula.wanted[i, j]), float(group.copula.spearman[i, j])
-        pair = f"{spelt[group.names[i]]!r} and {spelt[group.names[j]]!r} {before:g} → {after:.3f}"
+        pair = f"{group.names[i]!r} and {group.names[j]!r} {before:g} → {after:.3f}"
         row_text = "in no row, which counts as 0" if row is None else str(row.row)
         changes.append((-abs(after - before), f"{pair} ({row_text})"))
     changes.sort()

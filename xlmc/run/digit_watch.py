@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.definitions import name_key
 from xlmc.evaluation.passes.random_rounding import RandomRounding, closure, evaluate, numbers_of, term_sizes
 from xlmc.functions.budget import TooLargeError
 
@@ -60,7 +59,7 @@ def lost_digits(model: Model, inputs: Mapping[str, Floats]) -> list[str]:
         model: the workbook.
         inputs: assumption -> its accepted draws, `(m,)`; the first few hundred are looked at.
     """
-    draws = {name_key(a.name): inputs[a.name][:_TRIALS] for a in model.live}
+    draws = {a.name: inputs[a.name][:_TRIALS] for a in model.live}
     n = next((column.size for column in draws.values()), 0)
     if not n:
         return []

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell, InFormula
-from xlmc.definitions.definitions import CUTOFFS, Assumption, DataRange, Definitions, Parameter, name_key
+from xlmc.definitions.definitions import CUTOFFS, Assumption, DataRange, Definitions, Parameter
 from xlmc.definitions.tables.data import data_family
 from xlmc.distributions import Family
 from xlmc.distributions.parameters import show
@@ -36,8 +36,8 @@ def parameter_target(cell: Cell) -> Target:
 
 
 def base_point(assumptions: Sequence[Assumption]) -> dict[str, NDArray[np.float64]] | None:
-    """Key of each assumption -> `(1,)` its base value; None where one of them has none."""
-    known = {name_key(a.name): np.full(1, a.base) for a in assumptions if a.base is not None}
+    """Name of each assumption -> `(1,)` its base value; None where one of them has none."""
+    known = {a.name: np.full(1, a.base) for a in assumptions if a.base is not None}
     return known if len(known) == len(assumptions) else None
 
 
@@ -53,7 +53,7 @@ def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
     family = assumption.family if data is None else _from_data(assumption.family, data, assumption.name, lowering)
     computed = {key: fold_cell(cell, lowering) for key, cell in assumption.formulas.items()}
     given = {**assumption.parameters, **assumption.cutoffs, **computed}
-    draw = Draw.of(name_key(assumption.name), family, given)
+    draw = Draw.of(assumption.name, family, given)
     if family.given_by and draw.varying:  # the member is searched for once
         message = f"{assumption.name}: a distribution given by {family.given_by} cannot depend on another assumption"
         raise DefinitionError(message, where=draw.varying[0], hint="give it by its parameters, or by numbers")
@@ -92,7 +92,7 @@ def lower_fixed(workbook: Workbook, definitions: Definitions, cells: Collection[
         FormulaError: one cannot be computed.
     """
     assumptions = definitions.assumptions
-    drawn = {a.cell: name_key(a.name) for a in assumptions if not a.frozen}
+    drawn = {a.cell: a.name for a in assumptions if not a.frozen}
     held = {a.cell: a.base for a in assumptions if a.frozen and a.base is not None}
     resolver = Resolver(workbook, [a.cell for a in assumptions], rewritten=definitions.rewritten)
     return lower_cells(resolver, cells, drawn, held)
@@ -191,7 +191,7 @@ class _Own:
     def _computed(self, cell: Cell) -> Parameter:
         """What the cell is with the assumption at its base value; the cell where another assumption reaches it."""
         assumptions, own = self._definitions.assumptions, self._assumption.cell
-        drawn = {a.cell: name_key(a.name) for a in assumptions if not a.frozen and a.cell != own}
+        drawn = {a.cell: a.name for a in assumptions if not a.frozen and a.cell != own}
         held = {a.cell: a.base for a in assumptions if a.cell not in drawn and a.base is not None}
         return fold_cell(cell, lower_cells(self._resolver, [cell], drawn, held))
 

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.definitions import name_key
 from xlmc.evaluation.engine import Target
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.run.draw_binding import parameter_target
@@ -150,7 +149,7 @@ class _Ends:
         for a in fixed:
             low, high = map(float, quantiles[a.name])
             if low < high:
-                self._limits[a.name] = name_key(a.name), low, high
+                self._limits[a.name] = a.name, low, high
         self._low, self._high = dict.fromkeys(self._limits, 0.0), dict.fromkeys(self._limits, 0.0)
         self._all, self._largest = 0.0, -np.inf
 

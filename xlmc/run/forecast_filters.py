@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.definitions import Filter, Forecast, name_key
+from xlmc.definitions.definitions import Filter, Forecast
 from xlmc.evaluation.engine import DISCARDED_FIRST, UNDECIDED_RESULT, Column, Evaluator, Program, Target
 from xlmc.run.needed import filter_condition
 
@@ -31,8 +31,7 @@ _LAST: Final = 255
 def filters_by_forecast(forecasts: Sequence[Forecast], filters: Sequence[Filter]) -> tuple[tuple[int, ...], ...]:
     """The indices of each forecast's own filters, in the order of both."""
     return tuple(
-        tuple(index for index, each in enumerate(filters) if name_key(forecast.name) in map(name_key, each.only_for))
-        for forecast in forecasts
+        tuple(index for index, each in enumerate(filters) if forecast.name in each.only_for) for forecast in forecasts
     )
 
 

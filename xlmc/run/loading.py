@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import Filter, name_key
+from xlmc.definitions.definitions import Filter
 from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.definitions.tables.filters import LIMIT_HINT
 from xlmc.distributions.parameters import show
@@ -83,9 +83,9 @@ def filter_faults(model: Model) -> list[DefinitionError]:
     if not filters:
         return []
     targets = [target for each in filters for target in (Target(each.cell, each.cell), _length(each))]
-    drawn = frozenset(name_key(a.name) for a in model.live)
+    drawn = frozenset(a.name for a in model.live)
     evaluator = NumpyProgram.of(model.lowering, targets, [], drawn).evaluator(_DRAWN)
-    base = {name_key(a.name): np.full(1, np.nan if a.base is None else a.base) for a in model.live}
+    base = {a.name: np.full(1, np.nan if a.base is None else a.base) for a in model.live}
     base |= model.certain(1)
     found = dict(_faults(filters, evaluator.filters(base, 1), "at the base case", texts=True))
     if any(not filter_limits(each) and each.cell not in found for each in filters):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import gc
-from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from copy import copy
 from dataclasses import dataclass, replace
@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import Assumption, Definitions, name_key
+from xlmc.definitions.definitions import Assumption, Definitions
 from xlmc.definitions.evidence import Evidence
+from xlmc.distributions.spelling import name_key
 from xlmc.errors import Notice, SimulationError
 from xlmc.evaluation.engine import Evaluator, Program, Target
 from xlmc.evaluation.engines import ENGINES
@@ -76,7 +77,7 @@ def lower_needed(workbook: Workbook, definitions: Definitions) -> tuple[Needed, 
         FormulaError, DefinitionError: as for `load`.
     """
     definitions = replace(definitions, assumptions=(*definitions.assumptions, *chances_of(definitions.filters)))
-    inputs = {a.cell: name_key(a.name) for a in definitions.assumptions if not a.frozen}
+    inputs = {a.cell: a.name for a in definitions.assumptions if not a.frozen}
     held = {a.cell: a.base for a in definitions.assumptions if a.frozen and a.base is not None}
     found: list[Needed] = []
 
@@ -95,7 +96,7 @@ def lower_needed(workbook: Workbook, definitions: Definitions) -> tuple[Needed, 
 
 @dataclass(frozen=True, slots=True)
 class _Compiled:
-    """A program, and the least and largest draws, by key of the assumption, that it was compiled for."""
+    """A program, and the least and largest draws, by name of the assumption, that it was compiled for."""
 
     program: Program
     ends: Mapping[str, Bounds]
@@ -103,13 +104,13 @@ class _Compiled:
     def holds_for(self, ends: Mapping[str, Bounds]) -> bool:
         """Whether draws with these ends lie within its own."""
         return all(
-            key in ends and low <= ends[key][0] and ends[key][1] <= high for key, (low, high) in self.ends.items()
+            name in ends and low <= ends[name][0] and ends[name][1] <= high for name, (low, high) in self.ends.items()
         )
 
 
 def _hull(first: Mapping[str, Bounds], second: Mapping[str, Bounds]) -> dict[str, Bounds]:
     """The ends that hold the draws of two models, and more where a range was moved; none where one of them has none."""
-    return {key: _wider(ends, second[key]) for key, ends in first.items() if key in second}
+    return {name: _wider(ends, second[name]) for name, ends in first.items() if name in second}
 
 
 def _wider(first: Bounds, second: Bounds) -> Bounds:
@@ -204,14 +205,14 @@ class Model:
         drawn = [{**named, **chances}[name] for name in self.needed.live]
         self.live: tuple[Assumption, ...] = tuple(a for a in drawn if a.name not in chances)
         self.draws: Mapping[str, Draw] = {a.name: known.get(a.name) or draw_of(a, self.lowering) for a in drawn}
-        found = {draw.name: draw.support() for draw in self.draws.values()}
-        self._ends = {key: ends for key, ends in found.items() if ends is not None}
+        found = {name: draw.support() for name, draw in self.draws.items()}
+        self._ends = {name: ends for name, ends in found.items() if ends is not None}
         rows = definitions.correlations
-        tied = {name_key(name) for row in rows for name in (row.first, row.second)}
-        self._correlated = {draw.name: draw for draw in self.draws.values() if draw.name in tied}
+        tied = {name for row in rows for name in (row.first, row.second)}
+        self._correlated = {name: draw for name, draw in self.draws.items() if name in tied}
         self.groups: tuple[CorrelatedGroup, ...] = (
             *correlated_groups(rows, self._correlated),
-            *copula_groups(definitions.copulas, {draw.name: draw for draw in self.draws.values()}),
+            *copula_groups(definitions.copulas, self.draws.keys()),
         )
 
     def _take_notices(self) -> None:
@@ -222,7 +223,7 @@ class Model:
             *self.needed.notices(frozenset() if self._checks is None else self._checks.graph.reached),
             *self.lowering.notices,
             *tie_notices(self.groups, rows, self._correlated),
-            *repair_notices(self.groups, rows, self.needed.live),
+            *repair_notices(self.groups, rows),
             *copula_notices(self.groups, self.definitions.copulas),
             *still_notices(self.needed, self._moving(), self.forecasts),
             *heavy_notices(self.live, self.draws),
@@ -276,8 +277,8 @@ class Model:
 
     def _moving(self) -> set[Cell]:
         """The cells of the live assumptions whose range has more than one value, as far as it is known."""
-        still = {key for key, (low, high) in self._ends.items() if low >= high}
-        return {a.cell for a in self.live if name_key(a.name) not in still}
+        still = {name for name, (low, high) in self._ends.items() if low >= high}
+        return {a.cell for a in self.live if a.name not in still}
 
     @property
     def evidence(self) -> tuple[Evidence, ...]:
@@ -286,14 +287,9 @@ class Model:
         found = (each if not each.used else used.get(each.name) for each in self.definitions.evidence)
         return tuple(each for each in found if each is not None)
 
-    @property
-    def drawn_keys(self) -> tuple[str, ...]:
-        """Keys of all that is drawn: the live assumptions, and the chances after them."""
-        return tuple(name_key(a.name) for a in (*self.live, *self.chances))
-
     def certain(self, n: int) -> dict[str, NDArray[np.float64]]:
-        """Key of each chance -> `(n,)` the number that keeps every trial, for whoever draws the assumptions alone."""
-        return {name_key(a.name): np.zeros(n) for a in self.chances}
+        """Name of each chance -> `(n,)` the number that keeps every trial, for whoever draws the assumptions alone."""
+        return {a.name: np.zeros(n) for a in self.chances}
 
     @property
     def read(self) -> frozenset[Cell]:
@@ -315,8 +311,8 @@ class Model:
 
     @property
     def fallible(self) -> frozenset[str]:
-        """Keys of the assumptions whose draws may be errors: their parameters vary."""
-        return frozenset(name_key(name) for stage in self.needed.stages[1:] for name in stage)
+        """Names of the assumptions whose draws may be errors: their parameters vary."""
+        return frozenset(name for stage in self.needed.stages[1:] for name in stage)
 
     def function(self, inputs: Mapping[str, ArrayLike]) -> dict[str, NDArray[np.float64]]:
         """The workbook as a function: values of every live assumption in, every forecast out. Filters are not asked.
@@ -333,13 +329,13 @@ class Model:
         full, n = self.points(inputs)
         if n == 0:
             return {forecast.name: np.empty(0) for forecast in self.forecasts}
-        needed = frozenset(name_key(a.name) for a in self.live)
+        needed = frozenset(a.name for a in self.live)
         evaluator = NumpyProgram.of(self.lowering, self._forecast_targets, [], needed).evaluator(n)
         columns = evaluator.filters(full, n)
         return {f.name: column.as_floats() for f, column in zip(self.forecasts, columns, strict=True)}
 
     def points(self, inputs: Mapping[str, ArrayLike]) -> tuple[dict[str, NDArray[np.float64]], int]:
-        """Values of every live assumption as engines take them: key -> `(n,)`, in the order of `live`, and `n`.
+        """Values of every live assumption as engines take them: name -> `(n,)`, in the order of `live`, and `n`.
 
         Args:
             inputs: name of the assumption -> `(n,)` or a number.
@@ -347,28 +343,33 @@ class Model:
         Raises:
             SimulationError: an assumption is missing, unknown or frozen, or the values are of different lengths.
         """
-        given = {name_key(name): np.asarray(values, np.float64) for name, values in inputs.items()}
-        self._check_names(inputs)
+        spelt = self._spelt(inputs)
+        given = {spelt[name]: np.asarray(values, np.float64) for name, values in inputs.items()}
         sizes = {values.size for values in given.values() if values.ndim} - {1} or {1}
         if len(sizes) > 1 or any(values.ndim > 1 for values in given.values()):
             hint = "give lists of the same length"
             raise SimulationError("an assumption takes one number or one list of numbers", hint=hint)
         (n,) = sizes
-        keys = [name_key(a.name) for a in self.live]
-        return {key: np.ascontiguousarray(np.broadcast_to(given[key], (n,))) for key in keys}, n
+        return {a.name: np.ascontiguousarray(np.broadcast_to(given[a.name], (n,))) for a in self.live}, n
 
-    def _check_names(self, names: Collection[str]) -> None:
-        known = {name_key(a.name): a for a in self.assumptions}
+    def _spelt(self, names: Iterable[str]) -> dict[str, str]:
+        """Names of all live assumptions, as somebody typed them -> as defined.
+
+        Raises:
+            SimulationError: one is missing, unknown or frozen.
+        """
+        known, found = {name_key(a.name): a for a in self.assumptions}, dict[str, str]()
         for name in names:
-            if name_key(name) not in known:
+            assumption = known.get(name_key(name))
+            if assumption is None:
                 hint = f"choose from {', '.join(repr(a.name) for a in self.live)}"
                 raise SimulationError(f"there is no assumption {name!r}", hint=hint)
-            if known[name_key(name)].frozen:
+            if assumption.frozen:
                 raise SimulationError(f"the assumption {name!r} is frozen", hint="it is held at its cell's own value")
-        given = {name_key(name) for name in names}
-        missing = [a.name for a in self.live if name_key(a.name) not in given]
-        if missing:
+            found[name] = assumption.name
+        if missing := [a.name for a in self.live if a.name not in found.values()]:
             raise SimulationError(f"no values for the assumption {missing[0]!r}", hint="give every live assumption")
+        return found
 
     def program(self, engine: str) -> Program:
         """The filters and forecasts, compiled for an engine once.
@@ -433,7 +434,7 @@ class Model:
                 values, base = np.append(wanted, 0.5), bases[name]
                 values = self.draws[name].percentiles(values, varying)
                 found[name] = values[:-1]
-                held[name_key(name)] = values[-1:] if base is None else np.full(1, base)
+                held[name] = values[-1:] if base is None else np.full(1, base)
         return found
 
     def program_of(self, filters: Sequence[Target]) -> Program:

@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.address import Cell, host_of
-from xlmc.definitions.definitions import Assumption, name_key
+from xlmc.definitions.definitions import Assumption
 from xlmc.definitions.in_cells.call_arguments import number_of
 from xlmc.definitions.in_cells.result_functions import (
     CRYSTAL_BALL_STATISTICS,
@@ -24,6 +24,7 @@ from xlmc.definitions.in_cells.result_functions import (
     result_call,
 )
 from xlmc.definitions.unavailable import areas_text
+from xlmc.distributions.spelling import name_key
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.graph.arrays import size_of
 from xlmc.evaluation.graph.lower import Lowering, lower_until_complete

@@ -242,9 +242,8 @@ class _Gathered:
     def __init__(self, model: Model, block: int, piece: int, keep_inputs: int, trials: int) -> None:
         self._model, self._block, self._piece, self._keep_inputs = model, block, piece, keep_inputs
         real, whole = np.dtype(np.float64), np.dtype(np.int64)
-        drawn = [*model.live, *model.chances]
-        self._inputs = {a.name: ("input", key) for a, key in zip(drawn, model.drawn_keys, strict=True)}
-        self._prior = {a.name: ("prior", key) for a, key in zip(drawn, model.drawn_keys, strict=True)}
+        self._inputs = {name: ("input", name) for name in model.draws}
+        self._prior = {name: ("prior", name) for name in model.draws}
         self._forecasts = {f.name: ("forecast", number) for number, f in enumerate(model.forecasts)}
         columns = (*self._inputs.values(), *self._prior.values(), *self._forecasts.values())
         expected: dict[Hashable, int] = {("trial", 0): trials, **dict.fromkeys(self._forecasts.values(), trials)}
@@ -279,8 +278,8 @@ class _Gathered:
     def _keep(self, block: Block) -> None:
         self._keeper.add(("trial", 0), block.accepted)
         room = max(0, self._keep_inputs - self.accepted)
-        for key, values in block.draws.items():
-            self._keeper.add(("input", key), values[:room])
+        for name, values in block.draws.items():
+            self._keeper.add(("input", name), values[:room])
         if block.prior is not None:
             self._keep_prior(block, block.prior, room)
         for number, values in enumerate(block.forecasts):
@@ -295,8 +294,8 @@ class _Gathered:
                 for name, values in self._prior_columns(self._inputs).items():
                     self._keeper.add(self._prior[name], values)
         if not self._prior_is_inputs:
-            for key, values in prior.items():
-                self._keeper.add(("prior", key), values)
+            for name, values in prior.items():
+                self._keeper.add(("prior", name), values)
         self._prior_trials += block.trials
 
     def _prior_columns(self, keys: Mapping[str, Hashable]) -> Mapping[str, NDArray[np.float64]]:
@@ -307,7 +306,7 @@ class _Gathered:
         room, inputs = self._keeper.room, self._inputs.values() if self.wants_inputs else ()
         return Room(
             room(("trial", 0), self._piece),
-            {key: room((kind, key), self._piece) for kind, key in inputs},
+            {name: room((kind, name), self._piece) for kind, name in inputs},
             [room(key, self._piece) for key in self._forecasts.values()],
         )
 

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from xlmc import statistics
 from xlmc.columns import parts
-from xlmc.definitions.definitions import Settings, name_key
+from xlmc.definitions.definitions import Settings
+from xlmc.distributions.spelling import name_key
 from xlmc.errors import Notice, SimulationError
 from xlmc.run.agreement import Agreement, agreement
 from xlmc.run.blocks import FilterTally
@@ -126,7 +127,7 @@ class Simulation:
         forecasts: forecast -> `(m,)`, NaN where it has no number.
         faults: forecast -> fault -> accepted trials in which it has no number.
         tally: what the filters rejected.
-        invalid: assumption key -> trials in which its parameters were no distribution.
+        invalid: assumption -> trials in which its parameters were no distribution.
         error_trials: trials lost to errors: undecided by a filter, drawn from no distribution, or accepted without a
             number in some forecast. Each counts once.
         stopped: what ended it.

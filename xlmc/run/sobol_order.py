@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.definitions import name_key
 from xlmc.run.blocks import Block, Task
 from xlmc.run.scheduling.run_spec import model_runner
 from xlmc.sampling.sampling_methods import METHODS
@@ -46,8 +45,8 @@ def plan_sampling(model: Model, settings: Settings) -> SamplingPlan:
 
 
 def _order_by_importance(model: Model, seed: int) -> tuple[str, ...]:
-    """The keys of the drawn assumptions; those that matter alike stay in the order of the workbook."""
-    chances = {name_key(a.name) for a in model.chances}  # last, so that evidence moves no other draw
+    """The names of the drawn assumptions; those that matter alike stay in the order of the workbook."""
+    chances = {a.name for a in model.chances}  # last, so that evidence moves no other draw
     program = model.program("numpy")  # whatever runs the trials, so that every engine has the same order
     block = min(PILOT_TRIALS, program.largest_block)
     runner = model_runner(model, program, "numpy", seed, block)
@@ -58,7 +57,7 @@ def _order_by_importance(model: Model, seed: int) -> tuple[str, ...]:
         name: round(_score(draws, accepted.get(name, np.empty(0)), forecasts), _DECIMALS)
         for name, draws in _joined([each.prior or {} for each in blocks]).items()
     }
-    return tuple(sorted(model.drawn_keys, key=lambda name: (name in chances, -scores[name])))
+    return tuple(sorted(model.draws, key=lambda name: (name in chances, -scores[name])))
 
 
 def _score(prior: Floats, accepted: Floats, forecasts: Sequence[Floats]) -> float:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.definitions import Filter, name_key
+from xlmc.definitions.definitions import Filter
 from xlmc.definitions.evidence_ways import EVIDENCE_WAYS
 from xlmc.errors import SimulationError
 from xlmc.run.draw_binding import parameter_target
@@ -128,13 +128,12 @@ def weighting_of(model: Model, inputs: Mapping[str, Floats]) -> Weighting | None
     items = [(each.cell, each.evidence.law) for each in model.filters if each.evidence and each.evidence.weighed]
     if not items:
         return None
-    draws = {name_key(a.name): inputs[a.name] for a in model.live}
-    m = next((values.size for values in draws.values()), 0)
+    m = next((values.size for values in inputs.values()), 0)
     evaluator = model.evaluator([parameter_target(cell) for cell, _ in items], _BLOCK)
     logs = np.zeros(m)
     for start in range(0, m, _BLOCK):
         n = min(_BLOCK, m - start)
-        block = {key: np.ascontiguousarray(values[start : start + n]) for key, values in draws.items()}
+        block = {name: np.ascontiguousarray(values[start : start + n]) for name, values in inputs.items()}
         columns = evaluator.filters(block, n)
         logs[start : start + n] = sum(
             law.log_weight(column.as_floats()) for (_, law), column in zip(items, columns, strict=True)

@@ -241,7 +241,7 @@ class Sampler:
 
     @property
     def row_of(self) -> Mapping[str, int]:
-        """Key of an assumption -> its row among the uniforms that a filler fills in."""
+        """Name of an assumption -> its row among the uniforms that a filler fills in."""
         return self._row_of
 
     @property

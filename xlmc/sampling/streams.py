@@ -10,6 +10,8 @@ import hashlib
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.distributions.spelling import name_key
+
 __all__ = ["Stream"]
 
 
@@ -18,15 +20,15 @@ class Stream:
 
     Args:
         seed: of the run.
-        name: of the assumption, as `name_key` folds it.
+        name: of the assumption; its case and outer blanks do not count.
         purpose: what the numbers are for, unless they are the draws themselves; each purpose has its own stream.
 
-    The generator is PCG64DXSM with `SeedSequence(seed, spawn_key=SHA-256(name))`; trial i takes its i-th number. A
-    purpose adds the words of its own SHA-256 to the key.
+    The generator is PCG64DXSM with `SeedSequence(seed, spawn_key=SHA-256(name_key(name)))`; trial i takes its i-th
+    number. A purpose adds the words of its own SHA-256 to the key.
     """
 
     def __init__(self, seed: int, name: str, purpose: str = "") -> None:
-        key = _words(name) + (_words(purpose) if purpose else ())
+        key = _words(name_key(name)) + (_words(purpose) if purpose else ())
         self._bits = np.random.PCG64DXSM(np.random.SeedSequence(seed, spawn_key=key))
         self._start = self._bits.state
         self._generator = np.random.Generator(self._bits)

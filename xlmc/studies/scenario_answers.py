@@ -18,9 +18,10 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.definitions import Forecast, name_key
+from xlmc.definitions.definitions import Forecast
 from xlmc.definitions.scenarios import Scenario
 from xlmc.definitions.stopping import stopping
+from xlmc.distributions.spelling import name_key
 from xlmc.errors import DefinitionError, SimulationError, XlmcError
 from xlmc.run.applied_changes import applied
 from xlmc.run.model import Model

@@ -25,7 +25,8 @@ from numpy.typing import NDArray
 
 from xlmc import statistics
 from xlmc.address import Cell
-from xlmc.definitions.definitions import Assumption, Forecast, name_key
+from xlmc.definitions.definitions import Assumption, Forecast
+from xlmc.distributions.spelling import name_key
 from xlmc.errors import SimulationError
 from xlmc.run.model import Model
 from xlmc.run.simulate import simulate
@@ -277,9 +278,8 @@ class _Screen:
         reduced = self._together(filters, left_out)
         alone = [cost.names[0] for cost in single if cost.judgement.verdict is Verdict.WITHIN]
         at_ends = tuple(self._at_ends(name) for name in alone) if ends else None
-        without = [*map(name_key, reduced.names if reduced else ())]
         before = model.needed.graph
-        after = with_changes(model, frozen=[*map(name_key, frozen)], without=without).needed.graph
+        after = with_changes(model, frozen=frozen, without=reduced.names if reduced else ()).needed.graph
         return Screening(
             run=self._run,
             tolerances=self._tolerances,
@@ -306,8 +306,7 @@ class _Screen:
     def _at_ends(self, name: str) -> AtEnds:
         low, high = (float(end) for end in np.quantile(self._run.prior[name], ENDS, method="inverted_cdf"))
         costs = tuple(
-            self._cost([name], [name], (), f"{name} held at {value:.4g}", {name_key(name): value})
-            for value in (low, high)
+            self._cost([name], [name], (), f"{name} held at {value:.4g}", {name: value}) for value in (low, high)
         )
         return AtEnds(name, (low, high), (costs[0], costs[1]))
 
@@ -325,8 +324,7 @@ class _Screen:
         """Run the book with a change, over the same trials."""
         self._tell(purpose)
         self._runs += 1
-        keys = [*map(name_key, frozen)]
-        model = with_changes(self._run.model, frozen=keys, without=[*map(name_key, without)], held_at=held_at)
+        model = with_changes(self._run.model, frozen=frozen, without=without, held_at=held_at)
         settings = self._run.settings
         run = simulate(
             model, trials=settings.trials, seed=settings.seed, engine=self._engine, jobs=self._jobs, keep_inputs=0

@@ -135,7 +135,7 @@ def test_where_all_trials_are_kept_they_are_written_to_the_room(book, forecasts,
     for block in (5, 6):
         rows = np.empty((len(forecasts) + len(GIVEN), BLOCK))
         draws = dict(zip(GIVEN, rows[len(forecasts) :], strict=True))
-        room = Room(np.empty(BLOCK, np.int64), {name.casefold(): row for name, row in draws.items()}, list(rows))
+        room = Room(np.empty(BLOCK, np.int64), dict(draws), list(rows))
         task = Task(block * BLOCK, BLOCK, False)
         found = runner.borrow(task, lambda room=room: room)
         assert bits(found) == bits(runner.run(task))

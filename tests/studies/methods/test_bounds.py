@@ -3,7 +3,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.definitions.definitions import name_key
 from xlmc.errors import SimulationError
 from xlmc.studies.methods import Corners, ImportanceGrid, Optimised, WorstCase
 from xlmc.studies.methods import corners as corners_file
@@ -199,7 +198,7 @@ def test_an_extreme_trial_is_drawn_again_as_it_was(case_study, method):
     assert len(extremes) == 2 * len(case_study.forecasts)
     for each in extremes:
         drawn = case_study.sampler(each.seed, 1, plan=each.plan).draw(each.trial)
-        point = {a.name: drawn[name_key(a.name)][0] for a in case_study.live}
+        point = {a.name: drawn[a.name][0] for a in case_study.live}
         value, accepted = accepted_forecast(case_study, each.forecast, point)
         assert accepted
         assert value == pytest.approx(each.value, rel=1e-12)

@@ -38,7 +38,6 @@ from xlmc.definitions.definitions import (
     Filter,
     Forecast,
     Parameter,
-    name_key,
 )
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.fields import number_in, static_value
@@ -46,6 +45,7 @@ from xlmc.definitions.tables.identity import Claims
 from xlmc.definitions.tables.table_rows import is_blank
 from xlmc.distributions import FAMILIES
 from xlmc.distributions.parameters import show
+from xlmc.distributions.spelling import name_key
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.formula import formula_text, ir
 from xlmc.sampling.draws import Draw
@@ -292,7 +292,7 @@ class _Dialogs:
         values = {key: value for key, value in given.items() if not isinstance(value, Cell)}
         if len(values) < len(given):
             return None
-        draw = Draw.of(name_key(name), FAMILIES[read.family], values)
+        draw = Draw.of(name, FAMILIES[read.family], values)
         if (fault := draw.fault()) is not None:
             raise UnreadableError(fault.message)
         return draw
@@ -385,12 +385,12 @@ class _Dialogs:
         if not -1 <= value <= 1:
             message = f"The rank correlation of {first!r} and {second!r} ({show(value)}) must lie between -1 and 1"
             raise DefinitionError(message, where=where, hint="Correct it")
-        pair = {name_key(first), name_key(second)}
+        pair = {first, second}
         if len(pair) == 1:
             raise DefinitionError(
                 f"{first!r} is correlated with itself", where=where, hint="Correct it in Crystal Ball"
             )
-        if any({name_key(each.first), name_key(each.second)} == pair for each in self._found.correlations):
+        if any({each.first, each.second} == pair for each in self._found.correlations):
             message = f"Crystal Ball correlates {first!r} and {second!r} twice"
             raise DefinitionError(message, where=where, hint="Keep one of the two correlations")
         refers = any(reference.kind == OF_COEFFICIENTS for reference in stored.references)

@@ -17,11 +17,12 @@ from typing import Final
 
 from xlmc.address import Cell
 from xlmc.definitions.computed import Computed
-from xlmc.definitions.definitions import Assumption, Forecast, name_key
+from xlmc.definitions.definitions import Assumption, Forecast
 from xlmc.definitions.in_cells.reading import CellDraw, CellReading, Output
 from xlmc.definitions.in_cells.result_functions import ResultCall, mentions_result
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.identity import Claims
+from xlmc.distributions.spelling import name_key
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.formula import Resolver, ir
 from xlmc.workbook.lazy_sheets import LazySheets

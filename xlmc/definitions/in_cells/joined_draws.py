@@ -19,7 +19,7 @@ from itertools import combinations, pairwise
 from typing import Final
 
 from xlmc.address import Area, Cell
-from xlmc.definitions.definitions import Assumption, Copula, Correlation, Parameter, name_key
+from xlmc.definitions.definitions import Assumption, Copula, Correlation, Parameter
 from xlmc.definitions.in_cells.call_draws import MatrixRow
 from xlmc.definitions.in_cells.reading import CellDraw
 from xlmc.definitions.problems import Findings
@@ -181,11 +181,11 @@ def in_cell_copulas(
         correlations: of any assumptions; none of them may be in a copula, too.
         findings: takes mistakes.
     """
-    correlated = {name_key(name): row for row in correlations for name in (row.first, row.second)}
+    correlated = {name: row for row in correlations for name in (row.first, row.second)}
     found = []
     for group in _groups(assumptions, draws, "copula"):
         group.sort(key=lambda each: each[1].position)
-        both = next((a for a, _ in group if name_key(a.name) in correlated), None)
+        both = next((a for a, _ in group if a.name in correlated), None)
         twice = next((b for a, b in pairwise(group) if a[1].position == b[1].position), None)
         if both is not None:
             message = f"{both.name!r} is joined by a copula, and correlated in another way, too"

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from xlmc.address import Cell, InFormula
 from xlmc.definitions.cell_references import cell_of_reference, formula_at
 from xlmc.definitions.computed import Computed
-from xlmc.definitions.definitions import CUTOFFS, Assumption, Parameter, name_key
+from xlmc.definitions.definitions import CUTOFFS, Assumption, Parameter
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.data import OPTIONS, cached_data_family, given_data, refuse_options
 from xlmc.definitions.tables.fields import logical, number_in, optional_text, parameter, required_text, static_value
@@ -208,7 +208,7 @@ def _checked(name: str, family: Family, row: _Filled, workbook: Workbook) -> Dra
     saved = {key: static_value(cell, workbook) for key, cell in given.items() if isinstance(cell, Cell)}
     if None in saved.values():
         return None
-    draw = Draw.of(name_key(name), family, {**given, **saved})
+    draw = Draw.of(name, family, {**given, **saved})
     if (fault := draw.fault()) is not None:
         raise DefinitionError(fault.message, where=row.cells[fault.key], hint=fault.hint)
     return draw

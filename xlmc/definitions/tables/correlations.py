@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import Correlation, Parameter, name_key
+from xlmc.definitions.definitions import Correlation, Parameter
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.fields import parameter, required_text, static_value
 from xlmc.definitions.tables.table_rows import DefinitionTable, Row, rows_of
 from xlmc.distributions.parameters import show
-from xlmc.distributions.spelling import did_you_mean
+from xlmc.distributions.spelling import did_you_mean, name_key
 from xlmc.errors import DefinitionError
 from xlmc.workbook.workbook import Workbook
 
@@ -34,7 +34,7 @@ def read_correlations(
         workbook: where they are read.
         tables: the tables that hold them.
         names: every assumption, also one with a mistake of its own: name key -> name as defined.
-        frozen: the keys of assumptions that do not vary.
+        frozen: the names of assumptions that do not vary.
         findings: takes mistakes and remarks.
     """
     held, pairs = frozenset(frozen), _Pairs()
@@ -51,7 +51,7 @@ def _correlation(
     value = findings.attempt(_coefficient, row)
     if first is None or second is None or findings.attempt(_take_pair, row, first, second, pairs) is None:
         return None
-    held = [name for name in (first, second) if name_key(name) in frozen]
+    held = [name for name in (first, second) if name in frozen]
     if held:
         findings.notice(f"{held[0]!r} is frozen, so this correlation has no effect", row.where)
     return None if held or value is None else Correlation(first, second, value, row.where)
@@ -88,7 +88,7 @@ def _take_pair(row: Row, first: str, second: str, pairs: _Pairs) -> bool:
     Raises:
         DefinitionError: both are one assumption, or another row has the pair.
     """
-    pair = frozenset((name_key(first), name_key(second)))
+    pair = frozenset((first, second))
     if len(pair) == 1:
         message = f"{first!r} is correlated with itself"
         raise DefinitionError(message, where=row.cell("Second"), hint="Name two different assumptions")

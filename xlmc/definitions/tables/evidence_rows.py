@@ -10,14 +10,14 @@ from typing import Final
 
 from xlmc.address import Cell
 from xlmc.definitions.computed import Computed
-from xlmc.definitions.definitions import Filter, Parameter, name_key
+from xlmc.definitions.definitions import Filter, Parameter
 from xlmc.definitions.evidence import ERRORS, SIZES, Evidence, Within
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.fields import logical, optional_text, parameter, static_value
 from xlmc.definitions.tables.identity import Claims, identify
 from xlmc.definitions.tables.table_rows import DefinitionTable, Row, as_text, holds_rows, rows_of
 from xlmc.distributions.parameters import show
-from xlmc.distributions.spelling import did_you_mean, plain
+from xlmc.distributions.spelling import did_you_mean, name_key, plain
 from xlmc.errors import DefinitionError
 from xlmc.workbook.workbook import Workbook
 

@@ -6,12 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import name_key
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.assumptions import PARAMETERS, is_percentile
 from xlmc.definitions.tables.table_rows import DefinitionTable, Row, as_text, definition_tables, is_blank
 from xlmc.distributions import FAMILIES
-from xlmc.distributions.spelling import plain
+from xlmc.distributions.spelling import name_key, plain
 from xlmc.errors import DefinitionError
 from xlmc.workbook.workbook import Table, Workbook
 

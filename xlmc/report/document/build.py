@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
-from xlmc.definitions.definitions import name_key
+from xlmc.distributions.spelling import name_key
 from xlmc.errors import SimulationError
 from xlmc.report.case_fields import case_of
 from xlmc.report.document.parts import Block, Document, Heading

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from xlmc.definitions.definitions import name_key
+from xlmc.distributions.spelling import name_key
 from xlmc.report.page.element import EMPTY, Html, element, join
 from xlmc.report.page.flow import estimate_html, share_html
 from xlmc.report.summary import SummaryRow, percent, summarise

@@ -9,7 +9,6 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import name_key
 from xlmc.results.record.in_words import (
     cutoffs_text,
     discards_of,
@@ -289,13 +288,12 @@ def correlations_met(simulation: Simulation) -> list[CorrelationMet]:
 
 def _unnamed(simulation: Simulation) -> Iterator[tuple[str, str, float, Cell | None]]:
     model = simulation.model
-    named = {frozenset((name_key(c.first), name_key(c.second))) for c in model.definitions.correlations}
-    spelt = {name_key(a.name): a.name for a in model.live}
+    named = {frozenset((c.first, c.second)) for c in model.definitions.correlations}
     for group in model.groups:
         for first, second in combinations(group.names, 2):
             found = drawn_correlation(model.groups, first, second)
             if frozenset((first, second)) not in named and found is not None and abs(found) >= CHANGED:
-                yield spelt[first], spelt[second], 0.0 if group.where is None else found, group.where
+                yield first, second, 0.0 if group.where is None else found, group.where
 
 
 def _met(simulation: Simulation, first: str, second: str, asked: float, row: Cell | None) -> CorrelationMet:
@@ -304,8 +302,7 @@ def _met(simulation: Simulation, first: str, second: str, asked: float, row: Cel
         return CorrelationMet(first, second, asked, row)
     if simulation.weighting is not None:
         return CorrelationMet(first, second, asked, row, drawn)
-    columns = {name_key(name): values for name, values in simulation.inputs.items()}
-    x, y = columns[name_key(first)], columns[name_key(second)]
+    x, y = simulation.inputs[first], simulation.inputs[second]
     replicate = simulation.replicate
     accepted = rank_correlation(x, y, None if replicate is None else replicate[: x.size])
     return CorrelationMet(first, second, asked, row, drawn, accepted)

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import name_key
 from xlmc.results.record.needed_cells import content_text
 from xlmc.run.cell_errors import Root
 
@@ -61,7 +60,7 @@ def _errors(simulation: Simulation) -> Iterator[ErrorMet]:
     for forecast in model.forecasts:
         yield from _of("forecast", forecast.name, forecast.cell, simulation.faults[forecast.name], roots)
     for assumption in model.assumptions:
-        invalid = Counter({"parameters are not a distribution": simulation.invalid[name_key(assumption.name)]})
+        invalid = Counter({"parameters are not a distribution": simulation.invalid[assumption.name]})
         yield from _of("assumption", assumption.name, assumption.cell, invalid, {})
 
 

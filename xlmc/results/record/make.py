@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from xlmc.columns import parts
 from xlmc.definitions.stopping import LIMIT
+from xlmc.distributions.spelling import name_key
 from xlmc.results.record.definition_tables import (
     assumption_section,
     check_section,
@@ -261,7 +262,7 @@ def _sampling(simulation: Simulation) -> Section:
         *(replicates if plan.size else ()),
         Entry("errors", "Errors come", errors_text(simulation)),
         Entry("generator", "Generator", generator_text(simulation)),
-        *([Entry("dimensions", "Sobol dimensions", ", ".join(plan.order))] if plan.order else []),
+        *([Entry("dimensions", "Sobol dimensions", ", ".join(map(name_key, plan.order)))] if plan.order else []),
         Entry("engine", "Engine", settings.engine),
         Entry("block", "Trials in a block", simulation.block),
     )

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.distributions.spelling import name_key
 from xlmc.errors import SimulationError, WorkbookError
 from xlmc.results.record.make import processor, versions
 from xlmc.results.saved.archive import RUN, SUFFIX, WORKBOOK, column_header, column_parts, write_entries
@@ -111,12 +112,12 @@ def _document(simulation: Simulation, columns: list[dict[str, Any]]) -> dict[str
         "version": VERSION,
         "workbook": {"name": model.workbook.name, "sha256": model.workbook.sha256},
         "settings": settings_document(simulation.settings),
-        "order": list(simulation.plan.order),
+        "order": [name_key(name) for name in simulation.plan.order],
         "block": simulation.block,
         "trials": simulation.trials,
         "error_trials": simulation.error_trials,
         "tally": tally_document(simulation.tally),
-        "invalid": dict(sorted(simulation.invalid.items())),
+        "invalid": dict(sorted((name_key(name), count) for name, count in simulation.invalid.items())),
         "faults": {name: dict(sorted(faults.items())) for name, faults in simulation.faults.items()},
         "discards": {name: dict(discards) for name, discards in simulation.discards.items()},
         "stopped": asdict(simulation.stopped),

@@ -7,7 +7,7 @@ import json
 import zipfile
 from collections import Counter
 from collections.abc import Hashable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.columns import ColumnStore, parts
-from xlmc.definitions.definitions import name_key
+from xlmc.distributions.spelling import name_key
 from xlmc.errors import SimulationError, WorkbookError, XlmcError
 from xlmc.results.record.settings_table import FLOAT64, in_float32
 from xlmc.results.saved.archive import AGAIN, DAMAGE, RUN, WORKBOOK, Package, open_package, read_column
@@ -27,12 +27,12 @@ from xlmc.results.saved.run_json import (
     counts,
     mapping,
     origin_of,
-    plan_of,
     rare_of,
     require,
     settings_of,
     stopped_of,
     tally_of,
+    texts,
     whole,
 )
 from xlmc.run.forecast_filters import filters_by_forecast
@@ -40,6 +40,7 @@ from xlmc.run.loading import build_model
 from xlmc.run.model import Model
 from xlmc.run.simulation import Simulation
 from xlmc.run.weighing import weighing
+from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.workbook.package import LIMITS
 from xlmc.workbook.reader import read_workbook
 
@@ -203,13 +204,13 @@ class _Columns:
 
 
 def _simulation(found: Document, model: Model, columns: _Columns) -> Simulation:
-    settings = settings_of(found["settings"])
-    plan, trials = plan_of(settings, found["order"]), whole(found["trials"], "its number of trials")
+    settings, spelt = settings_of(found["settings"]), {name_key(name): name for name in model.draws}
+    order, invalid = texts(found["order"], "its order of dimensions"), counts(found["invalid"], "its invalid draws")
+    require(set(order) <= spelt.keys(), "its order of dimensions")
+    require(set(invalid) <= spelt.keys(), "its invalid draws")
+    plan = replace(SamplingPlan.of(settings.sampling, settings.trials), order=tuple(map(spelt.__getitem__, order)))
+    trials = whole(found["trials"], "its number of trials")
     require(1 <= trials <= plan.trials, "its number of trials")
-    live = {name_key(a.name) for a in model.live}
-    require(set(plan.order) <= {*model.drawn_keys}, "its order of dimensions")
-    invalid = counts(found["invalid"], "its invalid draws")
-    require(set(invalid) <= live, "its invalid draws")
     index = columns.of("trial")[""]
     rare = rare_of(found["rare"])
     _check_index(index, trials if rare is None else rare.kept)
@@ -231,7 +232,7 @@ def _simulation(found: Document, model: Model, columns: _Columns) -> Simulation:
         forecasts=forecasts,
         faults={name: counts(faults[name], f"the faults of {name!r}") for name in forecasts},
         tally=tally_of(found["tally"], len(model.filters), trials),
-        invalid=invalid,
+        invalid=Counter({spelt[name]: count for name, count in invalid.items()}),
         error_trials=whole(found["error_trials"], "its number of trials with errors"),
         stopped=stopped_of(found["stopped"]),
         rare=rare,

@@ -19,7 +19,6 @@ from xlmc.run.rare.account import RareAccount
 from xlmc.run.simulation import ChangedFrom, Origin
 from xlmc.run.stopping.stopped import WITHOUT_GOAL, Stopped
 from xlmc.sampling.sampling_methods import METHODS
-from xlmc.sampling.sampling_plan import SamplingPlan
 
 __all__ = [
     "FORMAT",
@@ -28,7 +27,6 @@ __all__ = [
     "counts",
     "mapping",
     "origin_of",
-    "plan_of",
     "rare_of",
     "require",
     "settings_document",
@@ -97,15 +95,6 @@ def _goal_of(kind: type[Goal], found: object) -> Goal | None:
     if found is None:
         return None
     return build(kind, {"number": found} if issubclass(kind, WholeGoal) else found, f"its goal, {kind.noun}")
-
-
-def plan_of(settings: Settings, order: object) -> SamplingPlan:
-    """The plan again: a function of the settings, but for the order of the dimensions.
-
-    Raises:
-        ValueError: the order is none.
-    """
-    return replace(SamplingPlan.of(settings.sampling, settings.trials), order=texts(order, "its order of dimensions"))
 
 
 def tally_document(tally: FilterTally) -> dict[str, Any]:

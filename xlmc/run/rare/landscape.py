@@ -80,7 +80,7 @@ class Drawing:
 
     Attributes:
         block: trials at a time, at most.
-        row_of: key of an assumption -> its row among the uniforms.
+        row_of: name of an assumption -> its row among the uniforms.
     """
 
     def __init__(self, model: Model) -> None:
@@ -116,7 +116,7 @@ class Landscape:
 
     def __init__(self, model: Model, random: np.random.Generator) -> None:
         formulas = model.needed.graph.formulas
-        self.dimensions = len(model.drawn_keys)
+        self.dimensions = len(model.draws)
         self._filters = [shortfall(filter_condition(f), f.cell, formulas) for f in model.filters]
         self._ways = ways_of(model, self._filters)
         gates = [gate for way in self._ways for gate in way]

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import name_key
 from xlmc.formula import ir
 from xlmc.formula.precedents import references
 from xlmc.run.needed import upstream
@@ -128,7 +127,7 @@ class _Looking:
         asked = upstream(graph, {cell for each in self._parts for cell in _cells(each)}, self._led_to)
         varied = upstream(graph, [cell for each in model.live for cell in each.cells], self._led_to)
         self._formulas = [cell for cell in graph.formulas if cell in asked or cell in varied]
-        candidates = [each for each in model.live if each.cell in asked and name_key(each.name) not in grouped]
+        candidates = [each for each in model.live if each.cell in asked and each.name not in grouped]
         most = min(_MOST_CANDIDATES, _MOST_LOOKS // max(1, len(self._formulas)))
         self._candidates = [each for each in candidates if self._is_smooth(each)][:most]
         self._row_of = drawing.row_of

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from xlmc.address import Area, Cell
-from xlmc.definitions.definitions import name_key
 from xlmc.formula import ir
 from xlmc.run.needed import filter_limits, upstream
 from xlmc.run.rare.shortfall import Shortfall
@@ -67,7 +66,7 @@ def _strata(model: Model, assumption: Assumption) -> Switch | None:
     values = _RANKS.copy()
     draw.fill(values, {})
     found = np.unique(values)
-    if not 1 < found.size <= MOST_WAYS // 2 or name_key(assumption.name) in model.fallible:
+    if not 1 < found.size <= MOST_WAYS // 2 or assumption.name in model.fallible:
         return None
     return _value_switch(assumption.cell, found.tolist())
 

@@ -8,8 +8,9 @@ from collections.abc import Callable, Sequence
 from types import FrameType, TracebackType
 from typing import Any, Final
 
-from xlmc.definitions.definitions import Forecast, name_key
+from xlmc.definitions.definitions import Forecast
 from xlmc.definitions.stopping import Stopping
+from xlmc.distributions.spelling import name_key
 from xlmc.errors import SimulationError
 from xlmc.run.stopping.adaptive import UntilStable
 from xlmc.run.stopping.precision import UntilPrecise

@@ -19,7 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import Assumption, Filter, name_key
+from xlmc.definitions.definitions import Assumption, Filter
+from xlmc.distributions.spelling import name_key
 from xlmc.results.record.in_words import distribution_text
 from xlmc.run.model import Model
 from xlmc.run.needed import filter_limits
@@ -201,8 +202,8 @@ class Variations:
     def _side(self, side: int, steps: frozenset[Step]) -> Simulation:
         if (side, steps) not in self._made:
             book, other = self._books[side].model, _by_key(self._books[1 - side].model)
-            names = {kind: [name_key(s.name) for s in steps if s.kind == kind] for kind in _KINDS}
-            swapped = {key: other[key] for key in names["distribution"]}
+            names = {kind: [s.name for s in steps if s.kind == kind] for kind in _KINDS}
+            swapped = {name: other[name_key(name)] for name in names["distribution"]}
             model = with_changes(book, frozen=names["assumption"], without=names["filter"], drawn_as=swapped)
             what = ", ".join(sorted(repr(step.name) for step in steps))
             self._made[side, steps] = self._run(model, f"{book.path.name} without {what}")

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from math import ceil, inf
 
 from xlmc import statistics
-from xlmc.definitions.definitions import Forecast, name_key
+from xlmc.definitions.definitions import Forecast
+from xlmc.distributions.spelling import name_key
 from xlmc.errors import SimulationError
 from xlmc.run.model import Model
 from xlmc.run.simulate import simulate

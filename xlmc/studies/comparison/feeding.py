@@ -16,8 +16,9 @@ from typing import Final, TypeVar
 import numpy as np
 
 from xlmc.address import InFormula
-from xlmc.definitions.definitions import Assumption, Forecast, name_key
+from xlmc.definitions.definitions import Assumption, Forecast
 from xlmc.distributions.empirical import Empirical
+from xlmc.distributions.spelling import name_key
 from xlmc.errors import SimulationError
 from xlmc.run.model import Model
 from xlmc.run.simulation import Simulation
@@ -55,8 +56,8 @@ def fed_model(model: Model, source: Simulation, feeds: Mapping[str, str]) -> Mod
         if isinstance(assumption.cell, InFormula):  # whose formula may shift what the call draws
             message = f"the assumption {assumption.name!r} is drawn by a call in a formula"
             raise SimulationError(message, where=assumption.row, hint="give it a cell and a row in xlmc_assumptions")
-        fed[name_key(assumption.name)] = _drawn_from(assumption, forecast, source)
-    definitions = replace(model.definitions, assumptions=tuple(fed.get(name_key(a.name), a) for a in model.assumptions))
+        fed[assumption.name] = _drawn_from(assumption, forecast, source)
+    definitions = replace(model.definitions, assumptions=tuple(fed.get(a.name, a) for a in model.assumptions))
     return Model(model.workbook, definitions, Path(f"{model.path.name} fed by {source.model.path.name}"))
 
 

@@ -18,7 +18,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.definitions import Forecast, name_key
+from xlmc.definitions.definitions import Forecast
+from xlmc.distributions.spelling import name_key
 from xlmc.run.agreement import INCONSISTENT, STRAINED
 from xlmc.run.needed import upstream
 from xlmc.run.simulation import Simulation

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
-from xlmc.definitions.definitions import Forecast, name_key
+from xlmc.definitions.definitions import Forecast
+from xlmc.distributions.spelling import name_key
 from xlmc.errors import SimulationError
 from xlmc.statistics import Estimate
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 
-from xlmc.definitions.definitions import Assumption, name_key
+from xlmc.definitions.definitions import Assumption
 from xlmc.definitions.stopping import NO_GOAL
 from xlmc.errors import SimulationError
 from xlmc.run.model import Model
@@ -29,10 +29,10 @@ def with_changes(
 
     Args:
         model: stays as it is.
-        frozen: keys (`name_key`) of the assumptions to hold at their base values.
-        without: keys of the filters to leave out.
-        drawn_as: key of an assumption -> the one whose distribution it takes.
-        held_at: key of an assumption to hold -> the value to hold it at, instead of its base value.
+        frozen: names of the assumptions to hold at their base values.
+        without: names of the filters to leave out.
+        drawn_as: name of an assumption -> the one whose distribution it takes.
+        held_at: name of an assumption to hold -> the value to hold it at, instead of its base value.
 
     Raises:
         SimulationError: an assumption to hold has no base value.
@@ -40,7 +40,7 @@ def with_changes(
     definitions = replace(
         model.definitions,
         assumptions=tuple(_assumption(a, frozen, drawn_as or {}, held_at or {}) for a in model.assumptions),
-        filters=tuple(f for f in model.filters if name_key(f.name) not in without),
+        filters=tuple(f for f in model.filters if f.name not in without),
     )
     return Model(model.workbook, definitions, model.path)
 
@@ -64,16 +64,16 @@ def _assumption(
     drawn_as: Mapping[str, Assumption],
     held_at: Mapping[str, float],
 ) -> Assumption:
-    key = name_key(assumption.name)
-    if key in held_at:
-        return replace(assumption, frozen=True, base=held_at[key])
-    if key in frozen:
+    name = assumption.name
+    if name in held_at:
+        return replace(assumption, frozen=True, base=held_at[name])
+    if name in frozen:
         if assumption.base is None:
-            message = f"the assumption {assumption.name!r} has no base value to be held at"
+            message = f"the assumption {name!r} has no base value to be held at"
             raise SimulationError(message, where=assumption.cell, hint="type one into its cell")
         return replace(assumption, frozen=True)
-    if key in drawn_as:
-        other = drawn_as[key]
+    if name in drawn_as:
+        other = drawn_as[name]
         return replace(
             assumption,
             distribution=other.distribution,

@@ -9,7 +9,6 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.definitions import name_key
 from xlmc.distributions.base import Member
 from xlmc.errors import SimulationError
 from xlmc.evaluation.passes.derivatives import Derivative, Derivatives
@@ -112,10 +111,9 @@ def draw_assumptions(model: Model, seed: int) -> Iterator[Floats]:
     """65,536 Sobol draws of the assumptions, before any filter, `(n, k)` block by block."""
     plan = SamplingPlan.of("sobol", _DRAWN)
     made = model.sampler(seed, plan.size, plan=plan)
-    keys = [name_key(a.name) for a in model.live]
     for start in range(0, plan.trials, plan.size):
         block = made.draw(start)
-        yield np.column_stack([block[key] for key in keys])
+        yield np.column_stack([block[a.name] for a in model.live])
 
 
 def _of_draw(draw: Draw) -> tuple[float, float]:
@@ -131,13 +129,13 @@ def _of_draw(draw: Draw) -> tuple[float, float]:
 
 def _correlations(model: Model, draws: Floats, varying: list[int]) -> Floats:
     """Pearson's, where something correlates; 0 elsewhere."""
-    keys = [name_key(a.name) for a in model.live]
+    names = [a.name for a in model.live]
     sound = draws[~np.isnan(draws).any(axis=1)]
     with np.errstate(invalid="ignore"):
-        every = np.nan_to_num(np.corrcoef(sound, rowvar=False)).reshape(len(keys), len(keys))
-    related = np.eye(len(keys), dtype=bool)
+        every = np.nan_to_num(np.corrcoef(sound, rowvar=False)).reshape(len(names), len(names))
+    related = np.eye(len(names), dtype=bool)
     for group in model.groups:
-        indices = [keys.index(name) for name in group.names]
+        indices = [names.index(name) for name in group.names]
         related[np.ix_(indices, indices)] = True
     related[varying, :] = related[:, varying] = True
     found = np.where(related, every, 0.0)

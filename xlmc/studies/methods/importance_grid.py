@@ -17,7 +17,6 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.definitions import name_key
 from xlmc.errors import SimulationError
 from xlmc.run.blocks import Task
 from xlmc.run.model import Model
@@ -73,17 +72,17 @@ class ImportanceGrid:
 
 
 def _learned(model: Model, trials: int, seed: int) -> dict[str, Floats]:
-    """Key of an assumption -> density of its uniforms in each bin, `(BINS,)`, 1 where it is as without a grid."""
+    """Name of an assumption -> density of its uniforms in each bin, `(BINS,)`, 1 where it is as without a grid."""
     run = simulate(model, trials=trials, seed=seed, sampling="mc", engine="numpy", keep_inputs=0)
     if not run.accepted:
         message = f"the filters accept none of {trials:,} trials, so there is nothing to learn a grid from"
         raise SimulationError(message, hint="run more trials, or see whether the filters contradict the assumptions")
     found = {}
-    for key in (name_key(a.name) for a in model.live):
+    for name in (a.name for a in model.live):
         uniforms = np.empty(trials)
-        Stream(seed, key).uniforms(0, uniforms)
+        Stream(seed, name).uniforms(0, uniforms)
         counts = np.bincount((uniforms[run.trial_index] * BINS).astype(np.intp), minlength=BINS)
-        found[key] = _density(counts.astype(np.float64))
+        found[name] = _density(counts.astype(np.float64))
     return found
 
 
@@ -119,7 +118,7 @@ class _GridPlan(SamplingPlan):
     """Independent trials, denser where the grids say.
 
     Attributes:
-        grids: key of an assumption -> density in each bin.
+        grids: name of an assumption -> density in each bin.
         weights: of the trials of the block drawn last.
     """
 

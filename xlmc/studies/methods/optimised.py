@@ -21,7 +21,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import name_key
 from xlmc.errors import SimulationError
 from xlmc.evaluation.passes.derivatives import Derivative
 from xlmc.functions.values import ERROR, TEXT
@@ -196,7 +195,7 @@ def widen_bounds(
     ends: dict[End, Point] = {}
     for (name, end), each in _outside(bounds, extremes).items():
         drawn = model.sampler(each.seed, 1, plan=each.plan).draw(each.trial)
-        point = np.column_stack([drawn[name_key(assumption)] for assumption in names])
+        point = np.column_stack([drawn[assumption] for assumption in names])
         found = evaluate(point)
         if not found.accepted[0]:
             continue

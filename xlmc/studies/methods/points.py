@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import name_key
 from xlmc.evaluation.engine import Target
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.run.model import Model
@@ -127,12 +126,12 @@ class Evaluation:
     """
 
     def __init__(self, model: Model, cells: tuple[Cell, ...] = ()) -> None:
-        self._keys = [name_key(a.name) for a in model.live]
+        self._names = [a.name for a in model.live]
         self._filters, self._forecasts, self._cells = len(model.filters), len(model.forecasts), len(cells)
         asked = [Target(filter_condition(each), each.cell) for each in model.filters]
         asked += [Target(each.cell, each.cell) for each in model.forecasts]
         asked += [Target(cell, cell) for cell in cells]
-        program = NumpyProgram.of(model.lowering, asked, [], frozenset(self._keys))
+        program = NumpyProgram.of(model.lowering, asked, [], frozenset(self._names))
         self._portion = min(_PORTION, program.largest_block)
         self._evaluator = program.evaluator(self._portion)
         self.count = 0
@@ -149,7 +148,7 @@ class Evaluation:
     def _parts(self, points: Floats) -> Iterator[Floats]:
         for start in range(0, len(points), self._portion):
             part = points[start : start + self._portion]
-            inputs = {key: np.ascontiguousarray(part[:, index]) for index, key in enumerate(self._keys)}
+            inputs = {name: np.ascontiguousarray(part[:, index]) for index, name in enumerate(self._names)}
             columns = self._evaluator.filters(inputs, len(part))
             yield np.column_stack([np.array(column.as_floats()) for column in columns])
 

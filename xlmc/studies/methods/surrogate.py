@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import Assumption, name_key
+from xlmc.definitions.definitions import Assumption
 from xlmc.errors import SimulationError
 from xlmc.run.model import Model
 from xlmc.run.needed import targets_of
@@ -96,7 +96,7 @@ def _pilot_size(k: int) -> int:
 def _draws(model: Model, trials: int, seed: int) -> Floats:
     """Independent draws, `(trials, k)`, without those that are no number because parameters were no distribution."""
     drawn = model.sampler(seed, trials).draw(0)
-    points = np.column_stack([drawn[name_key(a.name)] for a in model.live])
+    points = np.column_stack([drawn[a.name] for a in model.live])
     return np.asarray(points[~np.isnan(points).any(axis=1)])
 
 
@@ -146,10 +146,10 @@ def _run(model: Model, replaced: list[Cell], polynomials: Quadratic, trials: int
     for start in range(0, trials, _BLOCK):
         drawn = made.draw(start)
         n = min(_BLOCK, trials - start)
-        points = np.column_stack([drawn[name_key(a.name)][:n] for a in model.live])
-        given = {name_key(a.name): column for a, column in zip(model.live, points.T, strict=True)}
-        given |= {name_key(inputs[cell]): c for cell, c in zip(replaced, polynomials(points).T, strict=True)}
-        found = evaluate(np.column_stack([given[name_key(a.name)] for a in rest.live]))
+        points = np.column_stack([drawn[a.name][:n] for a in model.live])
+        given = {a.name: column for a, column in zip(model.live, points.T, strict=True)}
+        given |= {inputs[cell]: c for cell, c in zip(replaced, polynomials(points).T, strict=True)}
+        found = evaluate(np.column_stack([given[a.name] for a in rest.live]))
         accepted = found.accepted & ~np.isnan(points).any(axis=1)
         count += int(np.count_nonzero(accepted))
         columns.append(found.forecasts[accepted])

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import name_key
 from xlmc.evaluation.engine import Target
 from xlmc.run.draw_binding import parameter_target
 from xlmc.run.needed import filter_condition, filter_limits
@@ -195,8 +194,7 @@ def _look_at_accepted(simulation: Simulation, cells: _LimitCells, m: int) -> _Ce
     for start in range(0, m, block):
         n = min(block, m - start)
         draws = {
-            name_key(a.name): np.ascontiguousarray(simulation.inputs[a.name][start : start + n])
-            for a in simulation.model.live
+            a.name: np.ascontiguousarray(simulation.inputs[a.name][start : start + n]) for a in simulation.model.live
         }
         parts.append(cells.look(evaluator, draws | simulation.model.certain(n), n))
     filters = [np.concatenate(columns) for columns in zip(*(part.filters for part in parts), strict=True)]

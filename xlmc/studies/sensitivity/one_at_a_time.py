@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.definitions import name_key
 from xlmc.studies.sensitivity.measures import PERCENTS, Bar
 
 if TYPE_CHECKING:
@@ -74,13 +73,12 @@ def _evaluate(model: Model, base: dict[str, float], moved: dict[str, Floats]) ->
     rejected = []
     for first in range(0, cases, block):
         n = min(block, cases - first)
-        columns = {name: np.full(n, value) for name, value in base.items()}
+        columns = {name: np.full(n, value) for name, value in base.items()} | model.certain(n)
         for name, start in starts.items():
             rows = np.arange(start, start + len(PERCENTS)) - first
             inside = (rows >= 0) & (rows < n)
             columns[name][rows[inside]] = moved[name][inside]
-        given = {name_key(name): column for name, column in columns.items()} | model.certain(n)
-        filters = evaluator.filters(given, n)
+        filters = evaluator.filters(columns, n)
         rejected.append(np.logical_or.reduce([np.zeros(n, bool), *(_fails(column) for column in filters)]))
         answers.append([column.as_floats() for column in evaluator.forecasts(np.arange(n))])
     return [np.concatenate(parts) for parts in zip(*answers, strict=True)], np.concatenate(rejected)

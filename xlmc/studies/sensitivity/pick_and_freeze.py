@@ -20,7 +20,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.definitions import name_key
 from xlmc.statistics import Estimate
 from xlmc.studies.sensitivity.pull_errors import Units
 
@@ -91,8 +90,7 @@ def pick_and_freeze(model: Model, assumptions: Sequence[str], trials: int, seed:
     a, b = (_answers(evaluator, draws, pairs, block) for draws in (first, second))
     found = {}
     for name in chosen:
-        key = name_key(name)
-        c = _answers(evaluator, {**first, key: second[key]}, pairs, block)
+        c = _answers(evaluator, {**first, name: second[name]}, pairs, block)
         found[name] = tuple(sobol_indices(*answers) for answers in zip(a, b, c, strict=True))
     return SobolRun(pairs, found)
 
@@ -100,11 +98,11 @@ def pick_and_freeze(model: Model, assumptions: Sequence[str], trials: int, seed:
 def _draws(model: Model, seed: int, start: int, count: int, block: int) -> dict[str, Floats]:
     """`(count,)` draws of independent trials from `start` on."""
     sampler = model.sampler(seed, block)
-    drawn = {key: np.empty(count) for key in model.drawn_keys}
+    drawn = {name: np.empty(count) for name in model.draws}
     for first in range(0, count, block):
         part = sampler.draw(start + first)
-        for key, values in drawn.items():
-            values[first : first + block] = part[key][: count - first]
+        for name, values in drawn.items():
+            values[first : first + block] = part[name][: count - first]
     return drawn
 
 

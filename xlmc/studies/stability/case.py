@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import name_key
 from xlmc.evaluation.engine import Target
 from xlmc.evaluation.graph.nodes import Apply, Input, uses
 from xlmc.evaluation.passes.derivatives import Derivatives
@@ -70,7 +69,7 @@ class Case:
         self.cells = [cell for cell in self.lowering.graph.formulas if cell not in self.lowering.inputs]
         targets = [*(f.cell for f in model.forecasts), *(f.cell for f in model.filters)]
         self.node = {cell: self.lowering.cell(cell) for cell in (*self.cells, *targets)}
-        self.names = [name_key(a.name) for a in model.live]
+        self.names = [a.name for a in model.live]
         self.conditions = [
             self.lowering.target(Target(filter_condition(f, certain=True), f.cell)) for f in model.filters
         ]
@@ -80,7 +79,7 @@ class Case:
 
     @cached_property
     def draws(self) -> dict[str, Floats]:
-        """Key of the assumption -> `(n,)`."""
+        """Assumption -> `(n,)`."""
         if not self.names:
             return {}
         special = self._special()
@@ -88,7 +87,7 @@ class Case:
         accepted = np.column_stack([self.run.inputs[a.name][: self._room(_ACCEPTED)] for a in self.model.live])
         rows = np.concatenate([special, prior, accepted])
         rows = rows[np.isfinite(rows).all(axis=1)]
-        return {key: np.ascontiguousarray(column) for key, column in zip(self.names, rows.T, strict=True)}
+        return {name: np.ascontiguousarray(column) for name, column in zip(self.names, rows.T, strict=True)}
 
     def _room(self, trials: int) -> int:
         """How many trials of so many there is room for."""
@@ -181,8 +180,7 @@ class Case:
     @cached_property
     def derivatives(self) -> Derivatives:
         """The derivatives of every needed cell."""
-        inputs = {a.name: self.draws[key] for a, key in zip(self.model.live, self.names, strict=True)}
-        return derivatives(self.model, inputs, cells=self.cells)
+        return derivatives(self.model, self.draws, cells=self.cells)
 
     @cached_property
     def of_inputs(self) -> dict[int, Floats]:
@@ -250,13 +248,13 @@ class Case:
             return ()
         needed = self.inputs_of(node)
         shares = []
-        for number, (assumption, key) in enumerate(zip(self.model.live, self.names, strict=True)):
-            draws = self.draws[key][self.special :]
+        for number, assumption in enumerate(self.model.live):
+            draws = self.draws[assumption.name][self.special :]
             here = draws[among]
             share = float(np.mean((draws >= here.min()) & (draws <= here.max())))
             width = float(draws.max() - draws.min())
-            if key in needed and width > 0 and _by_chance(share, count) * len(needed) < _RARELY:
-                told = self.draws[key][trials]
+            if assumption.name in needed and width > 0 and _by_chance(share, count) * len(needed) < _RARELY:
+                told = self.draws[assumption.name][trials]
                 shares.append((float(here.max() - here.min()) / width, number, assumption, told))
         shares.sort(key=lambda each: each[:2])
         named = [each for each in shares if each[0] < _TELLING][:most]
@@ -266,7 +264,7 @@ class Case:
         )
 
     def inputs_of(self, node: int) -> set[str]:
-        """The keys of the assumptions that a node depends on."""
+        """The names of the assumptions that a node depends on."""
         formulas = (formula_of(self.dag, part) for part in closure(self.dag, [node]))
         return {formula.name for formula in formulas if isinstance(formula, Input)}
 

@@ -174,7 +174,7 @@ def _with(case: Case, whole: int, node: int, cured: Floats, trials: Sequence[int
 
 
 def only_assumption(case: Case, node: int) -> str | None:
-    """The key of the only assumption that a node depends on; None where there are none or several."""
+    """The name of the only assumption that a node depends on; None where there are none or several."""
     found = {
         formula.name
         for part in closure(case.dag, [node])

@@ -250,20 +250,19 @@ def _division(case: Case, cell: Cell, division: Division) -> tuple[str, tuple[Wh
     values = np.abs(case.number(division.node))
     trial = int(np.nanargmin(values))
     sentence = f"it divides by {factor}, which gets as small as {values[trial]:.2g}"
-    key = only_assumption(case, division.node)
-    if key is None:
+    name = only_assumption(case, division.node)
+    if name is None:
         return sentence, case.where(np.asarray(values <= 2 * division.least * np.nanmedian(values)), division.node)
-    assumption = next(a for a, name in zip(case.model.live, case.names, strict=True) if name == key)
-    units = assumption.units or ""
-    draws = case.draws[key]
-    sentence += f" at {assumption.name} = {draws[trial]:.6g} {units}".rstrip()
-    known = zeros(case, division.node, key)
+    units = next(a.units for a in case.model.live if a.name == name)
+    draws = case.draws[name]
+    sentence += f" at {name} = {draws[trial]:.6g} {units}".rstrip()
+    known = zeros(case, division.node, name)
     if known:
         near = min(known, key=partial(_distance, float(draws.min()), float(draws.max())))
         sentence += f" and is 0 at {near:.12g} {units}".rstrip()
     limit = max(2 * float(values[trial]), min(0.1, 0.5 * float(np.nanmedian(values))))
     here = draws[values <= limit]
-    return sentence, (Where(assumption.name, float(here.min()), float(here.max()), units),) if here.size else ()
+    return sentence, (Where(name, float(here.min()), float(here.max()), units),) if here.size else ()
 
 
 def _distance(low: float, high: float, x: float) -> float:

@@ -28,14 +28,9 @@ class Computed:
         if self._workbook.content(cell).formula is not None:
             return True
         if cell.sheet not in self._arrays:  # only the sheets that are asked about need to be read
-            self._arrays[cell.sheet] = _array_areas(self._workbook, cell.sheet)
+            self._arrays[cell.sheet] = [*self._workbook.sheets[cell.sheet].arrays.values()]
         return any(cell in area for area in self._arrays[cell.sheet])
 
     def at_all(self, cell: Cell) -> bool:
         """Whether anything does; otherwise the cell is a constant."""
         return cell in self._drawn or self.by_formula(cell)
-
-
-def _array_areas(workbook: Workbook, sheet: str) -> list[Area]:
-    cells = workbook.sheets[sheet].cells.values()
-    return [cell.formula.array for cell in cells if cell.formula is not None and cell.formula.array is not None]

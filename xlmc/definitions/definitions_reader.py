@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Final
 
-from xlmc.address import Cell
 from xlmc.definitions.computed import Computed
 from xlmc.definitions.crystal_ball.dialogs import FromDialogs, read_dialogs
 from xlmc.definitions.crystal_ball.lost_data import remark_on_lost_data
 from xlmc.definitions.crystal_ball.precision_control import with_precision
-from xlmc.definitions.crystal_ball.refused import refusals, refused_rows
+from xlmc.definitions.crystal_ball.refused import refused_forecasts, refused_rows
 from xlmc.definitions.definitions import (
-    Assumption,
     Correlation,
     Definitions,
     Filter,
@@ -42,8 +40,7 @@ from xlmc.definitions.unavailable import (
     tables_of_run,
 )
 from xlmc.distributions.spelling import did_you_mean, name_key
-from xlmc.errors import DefinitionError, FormulaError
-from xlmc.formula.ir import Expression
+from xlmc.errors import DefinitionError
 from xlmc.workbook.workbook import Workbook
 
 __all__ = ["read_definitions"]
@@ -77,9 +74,7 @@ def read_definitions(workbook: Workbook, engines: Collection[str], tabulated: in
         dialogs = FromDialogs(rewritten={**refused_cells}, stored=True)
     else:
         dialogs = read_dialogs(workbook, computed, central, uncertain, answers, findings)
-    rows = _rows_for_calls(assumptions, findings)
-    calls = read_in_cells(workbook, computed, settings.lognorm or "@RISK", uncertain, findings, rows, tabulated)
-    _refuse_lost_calls(assumptions, calls.taken, findings)
+    calls = read_in_cells(workbook, computed, settings.lognorm or "@RISK", uncertain, findings, tabulated)
     if not dialogs.stored:
         remark_on_lost_data(workbook, bool(calls or any(tables.values())), findings)
     if not (dialogs or calls or any(tables.values())):
@@ -105,7 +100,13 @@ def read_definitions(workbook: Workbook, engines: Collection[str], tabulated: in
     remark_on_unavailable(calls.unavailable, findings)
     rewritten = {**dialogs.rewritten, **calls.rewritten, **faults_of(workbook, what_if.varying)}
     asked = forecasts
-    forecasts, refused = _without_refused(workbook, dialogs, rewritten, assumptions, forecasts, filters, own, findings)
+    refused = tuple(DefinitionError(damage, where=workbook.name, hint=SAVE_AGAIN) for damage in dialogs.damages)
+    if dialogs.refused:
+        found = refused_forecasts(workbook, dialogs.refused, rewritten, assumptions, forecasts, filters, own, findings)
+        refused = *refused, *found.values()
+        forecasts = tuple(each for each in forecasts if each.name not in found)
+    if refused and not forecasts:
+        findings.problems += refused
     own, left_out = _parted(own, asked, forecasts)
     settings = with_precision(settings, said, dialogs.precisions, forecasts, findings)
     if not (calls.assumptions or dialogs.assumptions):
@@ -114,8 +115,9 @@ def read_definitions(workbook: Workbook, engines: Collection[str], tabulated: in
         _say_how_to_mark(workbook, findings)
     elif not (forecasts or refused):
         _refuse_none(workbook, "forecast", tables["xlmc_forecasts"], findings)
-    scenarios = read_scenarios(workbook, tables, assumptions, (*filters, *own), findings)
-    scenarios = *scenarios, *simtable_scenarios(calls.simtables, findings)
+    scenarios = tuple(simtable_scenarios(calls.simtables, findings))
+    if tables["xlmc_scenarios"]:
+        scenarios = *read_scenarios(workbook, tables, assumptions, (*filters, *own), findings), *scenarios
     return Definitions(
         assumptions=assumptions,
         forecasts=forecasts,
@@ -146,26 +148,6 @@ def _remark_on_calls(calls: InCells, settings: Settings, findings: Findings) -> 
             "those of the logarithm: for that, set Lognorm to XLRisk in the table xlmc_settings"
         )
         findings.notice(message, calls.lognorms[0])
-
-
-def _rows_for_calls(assumptions: Iterable[Assumption], findings: Findings) -> dict[Cell, Cell]:
-    """The calls that rows stand for, each with the cell that is drawn in its place."""
-    found: dict[Cell, Cell] = {}
-    for each in assumptions:
-        if each.call is None:
-            continue
-        if each.call in found:
-            message = f"two rows replace the call {each.call}, this one and that of {found[each.call]}"
-            findings.problem(message, each.row, "Keep one of them")
-        found[each.call] = each.cell
-    return found
-
-
-def _refuse_lost_calls(assumptions: Iterable[Assumption], taken: Collection[Cell], findings: Findings) -> None:
-    for each in assumptions:
-        if each.call is not None and each.call not in taken:
-            message = f"the row {each.name!r} replaces the call {each.call}, and there is no such call"
-            findings.problem(message, each.row, "Correct Call in and Call, or clear both")
 
 
 def _take_pairs(taken: Sequence[Correlation], more: Iterable[Correlation], findings: Findings) -> Iterator[Correlation]:
@@ -213,29 +195,6 @@ def _parted(
             if of:
                 found.append(replace(each, only_for=of))
     return tuple(kept), tuple(out)
-
-
-def _without_refused(
-    workbook: Workbook,
-    dialogs: FromDialogs,
-    rewritten: Mapping[Cell, Expression | FormulaError],
-    assumptions: Sequence[Assumption],
-    forecasts: tuple[Forecast, ...],
-    filters: Sequence[Filter],
-    own: Sequence[Filter],
-    findings: Findings,
-) -> tuple[tuple[Forecast, ...], tuple[DefinitionError, ...]]:
-    """The forecasts that need no cell of Crystal Ball that cannot be read; and what of the others is to be told."""
-    found = refusals(workbook, dialogs.refused, rewritten, assumptions, forecasts, filters, own)
-    findings.problems += found.filters.values()
-    for cell in found.idle:
-        findings.notice(f"no forecast or filter needs this cell: {dialogs.refused[cell].message}", cell)
-    damages = [DefinitionError(damage, where=workbook.name, hint=SAVE_AGAIN) for damage in dialogs.damages]
-    refused = (*damages, *found.forecasts.values())
-    left = tuple(each for each in forecasts if each.name not in found.forecasts)
-    if refused and not left:
-        findings.problems += refused
-    return left, refused
 
 
 def _refuse_no_assumption(

@@ -101,12 +101,7 @@ class Family(ABC):
 
     def fault(self, *params: float, **named: float) -> Fault | None:
         """The first rule that these numbers break, if any, or that draws would be too large for a number."""
-        values = self.bind(params, named)
-        if broken := self.broken_rule(*values):
-            return broken
-        if self.always_finite or not values or np.isfinite(Member(self, values).ppf(np.array(TRIED_U))).all():
-            return None
-        return self.overflow_fault(values, "Correct the number, or cut the distribution off at both ends")
+        return Member(self, self.bind(params, named)).fault()
 
     def overflow_fault(self, values: tuple[Any, ...], hint: str) -> Fault:
         """What to say where draws would not be finite; it blames the parameter that bends the distribution most."""
@@ -248,7 +243,7 @@ class Family(ABC):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Member:
-    """A family with its parameters. Nothing is checked here: `Family.fault` or `Family.checked` did that.
+    """A family with its parameters. Nothing is checked when it is made: `fault` or `Family.checked` does that.
 
     Its functions are those of `Family`, and give NaN in the trials whose parameters break a rule.
 
@@ -261,6 +256,14 @@ class Member:
     family: Family
     values: tuple[Any, ...]
     invalid: Any = None
+
+    def fault(self) -> Fault | None:
+        """See `Family.fault`; the parameters are numbers."""
+        if broken := self.family.broken_rule(*self.values):
+            return broken
+        if self.family.always_finite or not self.values or np.isfinite(self.ppf(np.array(TRIED_U))).all():
+            return None
+        return self.family.overflow_fault(self.values, "Correct the number, or cut the distribution off at both ends")
 
     def ppf(self, u: Values, out: Array | None = None) -> Array:
         """See `Family.ppf`."""
@@ -323,7 +326,7 @@ def _open(family: Family, u: Array) -> Array:
 
 def _own_copy(u: Values, values: tuple[Any, ...]) -> Array:
     """`u` in memory of its own, in the shape that the result will have."""
-    shape = np.broadcast_shapes(np.shape(u), *(np.shape(value) for value in values))
+    shape = np.broadcast_shapes(np.shape(u), *map(np.shape, values))
     return np.array(np.broadcast_to(u, shape), dtype=float)
 
 

@@ -20,7 +20,7 @@ from xlmc.formula.precedents import references
 from xlmc.formula.resolve import Resolver
 from xlmc.formula.stencil import Stencil
 from xlmc.formula.strips import Needs, Part, Stretch, Strips
-from xlmc.workbook.workbook import Sheet, Workbook
+from xlmc.workbook.workbook import Workbook
 
 __all__ = ["Filled", "Graph", "Spills", "build_graph", "circular"]
 
@@ -317,22 +317,20 @@ class Spills:
         """The cell whose array formula fills this other one; None where there is none."""
         if cell.sheet not in self._sheets:
             sheet = self._workbook.sheets.get(cell.sheet)
-            self._sheets[cell.sheet] = ({}, []) if sheet is None else _filled(sheet)
+            self._sheets[cell.sheet] = ({}, []) if sheet is None else _filled(sheet.arrays)
         listed, large = self._sheets[cell.sheet]
         if cell in listed:
             return listed[cell]
         return next((anchor for area, anchor in large if cell in area and cell != anchor), None) if large else None
 
 
-def _filled(sheet: Sheet) -> tuple[dict[Cell, Cell], list[tuple[Area, Cell]]]:
+def _filled(arrays: Mapping[Cell, Area]) -> tuple[dict[Cell, Cell], list[tuple[Area, Cell]]]:
     """The anchors of the cells that array formulas fill, and large areas with theirs."""
     listed: dict[Cell, Cell] = {}
     large = []
-    for position, content in sheet.cells.items():
-        area = None if content.formula is None else content.formula.array
-        if area is None or area.rows * area.columns == 1:
+    for anchor, area in arrays.items():
+        if area.rows * area.columns == 1:
             continue
-        anchor = Cell(sheet.name, *position)
         if area.rows * area.columns > _MOST_LISTED:
             large.append((area, anchor))
         else:

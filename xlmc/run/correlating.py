@@ -9,16 +9,15 @@ from itertools import combinations
 import numpy as np
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import Copula, Correlation, Definitions
+from xlmc.definitions.definitions import Copula, Correlation
 from xlmc.distributions.parameters import show
 from xlmc.distributions.whole_numbers import WholeNumbers
 from xlmc.errors import DefinitionError, Notice
 from xlmc.evaluation.graph.lower import Lowering
-from xlmc.run.draw_binding import fold_cell, lower_fixed
+from xlmc.run.draw_binding import fold_cell
 from xlmc.sampling.copula import GaussianCopula
 from xlmc.sampling.copulas import Clayton, Frank, Gumbel, Joining, Reflected, StudentTCopula
 from xlmc.sampling.draws import CorrelatedGroup, Draw
-from xlmc.workbook.workbook import Workbook
 
 __all__ = [
     "CHANGED",
@@ -28,7 +27,7 @@ __all__ = [
     "drawn_correlation",
     "repair_notices",
     "tie_notices",
-    "with_correlation_numbers",
+    "with_correlation_number",
 ]
 
 _ROUNDING = 1e-9
@@ -111,22 +110,12 @@ def copula_notices(groups: Sequence[CorrelatedGroup], copulas: Sequence[Copula])
         yield Notice(message, copula.row)
 
 
-def with_correlation_numbers(workbook: Workbook, definitions: Definitions) -> Definitions:
-    """The definitions with a number for each rank correlation that a formula computes.
+def with_correlation_number(row: Correlation, lowering: Lowering) -> Correlation:
+    """The row with a number for the rank correlation, which a formula may compute.
 
     Raises:
         DefinitionError: it depends on an assumption, is no number, or not from -1 to 1.
-        FormulaError: it cannot be computed.
     """
-    cells = [row.value for row in definitions.correlations if isinstance(row.value, Cell)]
-    if not cells:
-        return definitions
-    lowering = lower_fixed(workbook, definitions, cells)
-    rows = (replace(row, value=_coefficient(row, lowering)) for row in definitions.correlations)
-    return replace(definitions, correlations=tuple(rows))
-
-
-def _coefficient(row: Correlation, lowering: Lowering) -> float:
     value = fold_cell(row.value, lowering) if isinstance(row.value, Cell) else row.value
     if isinstance(value, Cell):
         message = f"The rank correlation of {row.first!r} and {row.second!r} varies with an assumption"
@@ -134,7 +123,7 @@ def _coefficient(row: Correlation, lowering: Lowering) -> float:
     if not -1 <= value <= 1:
         message = f"Correlation ({show(value)}) must lie between -1 and 1"
         raise DefinitionError(message, where=row.row, hint="Correct the formula: a rank correlation is from -1 to 1")
-    return value
+    return replace(row, value=value)
 
 
 def drawn_correlation(groups: Sequence[CorrelatedGroup], first: str, second: str) -> float | None:

@@ -11,32 +11,22 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import Assumption, Definitions, Filter, Parameter
+from xlmc.definitions.definitions import Assumption, Filter, Parameter
 from xlmc.definitions.evidence import Evidence
 from xlmc.definitions.tables.evidence_rows import as_filter, check_sizes
 from xlmc.errors import DefinitionError
 from xlmc.evaluation.graph.lower import Lowering
-from xlmc.run.draw_binding import fold_cell, lower_fixed
-from xlmc.workbook.workbook import Workbook
+from xlmc.run.draw_binding import fold_cell
 
 __all__ = ["chances_of", "with_evidence_numbers"]
 
 
-def with_evidence_numbers(workbook: Workbook, definitions: Definitions) -> Definitions:
-    """The definitions with a number for each reading and each size of an error that a formula computes.
+def with_evidence_numbers(filter_: Filter, lowering: Lowering) -> Filter:
+    """The filter with a number for each reading and each size of an error that a formula computes.
 
     Raises:
         DefinitionError: such a cell depends on an assumption, or is no number.
-        FormulaError: it cannot be computed.
     """
-    cells = [cell for each in definitions.filters if each.evidence for cell in each.evidence.cells]
-    if not cells:
-        return definitions
-    lowering = lower_fixed(workbook, definitions, cells)
-    return replace(definitions, filters=tuple(_with_numbers(each, lowering) for each in definitions.filters))
-
-
-def _with_numbers(filter_: Filter, lowering: Lowering) -> Filter:
     evidence = filter_.evidence
     if evidence is None or not any(evidence.cells):
         return filter_

@@ -16,7 +16,7 @@ from xlmc.evaluation.graph.lower import Lowering, lower_cells
 from xlmc.formula import Resolver
 from xlmc.workbook.workbook import CellContent, Table, Workbook
 
-__all__ = ["calculate_labels", "calculated_texts", "is_uncalculated"]
+__all__ = ["calculate_labels", "calculated_texts"]
 
 _TABLES = "xlmc"
 _POINTS = "cell"
@@ -26,7 +26,7 @@ _POINTS = "cell"
 def calculate_labels(workbook: Workbook) -> Workbook:
     """The workbook with the texts of its tables `xlmc_…` calculated where the file has none; itself if it has all."""
     tables = (table for table in workbook.tables if table.name.casefold().startswith(_TABLES))
-    missing = [cell for table in tables for cell in _body(table) if is_uncalculated(workbook.content(cell))]
+    missing = [cell for table in tables for cell in _body(table) if workbook.content(cell).is_uncalculated]
     if not missing:
         return workbook
     written: dict[str, dict[tuple[int, int], CellContent]] = {}
@@ -56,11 +56,6 @@ def _body(table: Table) -> Iterator[Cell]:
     for column, heading in enumerate(table.columns, area.left):
         if heading.strip().casefold() != _POINTS:
             yield from (Cell(area.sheet, row, column) for row in range(area.top, area.bottom + 1))
-
-
-def is_uncalculated(content: CellContent) -> bool:
-    """Whether the cell has a formula of its own, and the file does not say what it gives."""
-    return content.formula is not None and content.formula.array is None and content.value is None
 
 
 def _text(lowering: Lowering, cell: Cell) -> str | None:

@@ -29,9 +29,9 @@ from xlmc.run.correlating import (
     correlated_groups,
     repair_notices,
     tie_notices,
-    with_correlation_numbers,
+    with_correlation_number,
 )
-from xlmc.run.draw_binding import draw_of, dynamic_parameters, with_base_parameters
+from xlmc.run.draw_binding import draw_of, dynamic_parameters, lower_fixed, with_base_parameters
 from xlmc.run.evidence_filters import chances_of, with_evidence_numbers
 from xlmc.run.forecast_filters import FilteringEvaluator, FilteringProgram, conditions_of, filters_by_forecast
 from xlmc.run.model_notices import example_notices, heavy_notices, still_notices
@@ -92,6 +92,25 @@ def lower_needed(workbook: Workbook, definitions: Definitions) -> tuple[Needed, 
         live = [named[name] for name in needed.live]  # in this order, on which correlated draws depend
         needed = replace(needed, stages=drawing_order(needed.graph, live, lowering.led_to))
     return needed, lowering
+
+
+def _with_fixed_numbers(workbook: Workbook, definitions: Definitions) -> Definitions:
+    """The definitions with a number for what formulas compute and no assumption may vary: evidence and correlations.
+
+    Raises:
+        DefinitionError: such a cell depends on an assumption, or does not hold what it must.
+        FormulaError: one cannot be computed.
+    """
+    cells = [cell for each in definitions.filters if each.evidence for cell in each.evidence.cells]
+    cells += [row.value for row in definitions.correlations if isinstance(row.value, Cell)]
+    if not cells:
+        return definitions
+    lowering = lower_fixed(workbook, definitions, cells)
+    return replace(
+        definitions,
+        filters=tuple(with_evidence_numbers(each, lowering) for each in definitions.filters),
+        correlations=tuple(with_correlation_number(row, lowering) for row in definitions.correlations),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,9 +200,7 @@ class Model:
     """
 
     def __init__(self, workbook: Workbook, definitions: Definitions, path: Path) -> None:
-        given = definitions
-        definitions = with_evidence_numbers(workbook, with_base_parameters(workbook, definitions))
-        definitions = with_correlation_numbers(workbook, definitions)
+        given, definitions = definitions, _with_fixed_numbers(workbook, with_base_parameters(workbook, definitions))
         self._folded = definitions is not given
         self.workbook, self.path = workbook, path
         self.needed, self.lowering = lower_needed(workbook, definitions)
@@ -201,10 +218,15 @@ class Model:
         self.filters, self.checks = definitions.filters, definitions.checks
         self.forecast_filters = definitions.forecast_filters
         self.chances = chances_of(self.filters)
-        named, chances = {a.name: a for a in self.assumptions}, {a.name: a for a in self.chances}
-        drawn = [{**named, **chances}[name] for name in self.needed.live]
-        self.live: tuple[Assumption, ...] = tuple(a for a in drawn if a.name not in chances)
-        self.draws: Mapping[str, Draw] = {a.name: known.get(a.name) or draw_of(a, self.lowering) for a in drawn}
+        named, chances = {a.name: a for a in (*self.assumptions, *self.chances)}, {a.name for a in self.chances}
+        live: list[Assumption] = []
+        draws: dict[str, Draw] = {}
+        for name in self.needed.live:
+            draws[name] = known.get(name) or draw_of(named[name], self.lowering)
+            if name not in chances:
+                live.append(named[name])
+        self.live: tuple[Assumption, ...] = tuple(live)
+        self.draws: Mapping[str, Draw] = draws
         found = {name: draw.support() for name, draw in self.draws.items()}
         self._ends = {name: ends for name, ends in found.items() if ends is not None}
         rows = definitions.correlations
@@ -226,7 +248,7 @@ class Model:
             *repair_notices(self.groups, rows),
             *copula_notices(self.groups, self.definitions.copulas),
             *still_notices(self.needed, self._moving(), self.forecasts),
-            *heavy_notices(self.live, self.draws),
+            *heavy_notices(a for a in self.live if not self.draws[a.name].has_mean),
             *example_notices(self._sources()),
         )
 

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Sequence, Set
 from typing import Final
-
-import numpy as np
 
 from xlmc.address import Cell
 from xlmc.definitions.definitions import Assumption, Forecast
-from xlmc.distributions.base import Member
 from xlmc.errors import Notice
 from xlmc.formula import Graph
 from xlmc.run.needed import Needed
-from xlmc.sampling.draws import Draw
 
 __all__ = ["example_notices", "heavy_notices", "still_notices"]
 
@@ -38,21 +34,15 @@ def example_notices(sources: Iterable[tuple[str, Cell, str]]) -> list[Notice]:
     return [Notice(message[0].upper() + message[1:], found[0][1])]
 
 
-def heavy_notices(live: Sequence[Assumption], draws: Mapping[str, Draw]) -> list[Notice]:
-    """The assumptions whose mean is infinite or does not exist, as far as their parameters are numbers."""
-    found = []
-    for assumption in live:
-        draw = draws[assumption.name]
-        if not draw.fixed or (draw.cutoffs is not None and np.isfinite(draw.cutoffs).all()):  # type: ignore[arg-type]
-            continue  # each trial has a mean of its own, or the cutoffs see to it that there is one
-        if not np.isfinite(Member(draw.family, draw.parameters).mean()):
-            message = (
-                f"{assumption.name!r} ({assumption.distribution}) has no finite mean: means and standard deviations of "
-                "what depends on it need not settle, however many trials there are; report medians and percentiles, or "
-                "give it cutoffs at both ends"
-            )
-            found.append(Notice(message, assumption.row))
-    return found
+def heavy_notices(heavy: Iterable[Assumption]) -> Iterator[Notice]:
+    """The assumptions whose mean is infinite or does not exist."""
+    for assumption in heavy:
+        message = (
+            f"{assumption.name!r} ({assumption.distribution}) has no finite mean: means and standard deviations of "
+            "what depends on it need not settle, however many trials there are; report medians and percentiles, or "
+            "give it cutoffs at both ends"
+        )
+        yield Notice(message, assumption.row)
 
 
 def still_notices(needed: Needed, moving: Set[Cell], forecasts: Sequence[Forecast]) -> list[Notice]:

@@ -121,7 +121,7 @@ def shown_results(
     """
     answers = _Answers(workbook, tuple(results), run)
     trees = {cell: answers.formula(tree) for cell, tree in formulas.items() if cell not in unavailable}
-    return _Showing(workbook, trees, unavailable).found() if trees or unavailable else ShownResults()
+    return _Showing(workbook, trees, unavailable).found()
 
 
 def recalculated(workbook: Workbook, cells: Iterable[Cell]) -> ShownResults:

@@ -277,6 +277,8 @@ class Simulation:
     def shown_results(self) -> ShownResults:
         """What the workbook's own cells show of this run, `=RiskMean(B9)` and all that depends on it."""
         asked = self.model.definitions
+        if not (asked.results or asked.unavailable):
+            return ShownResults()
         run = RunFacts(self.trials, self.plan.trials, self.model.assumptions, self.model.draws)
         return shown_results(self.model.workbook, asked.results, asked.unavailable, self.results.values(), run)
 

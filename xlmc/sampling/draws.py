@@ -21,7 +21,6 @@ from xlmc.errors import SimulationError
 from xlmc.functions.denormals import TINIEST, flush
 from xlmc.sampling.copula import Ties, ties_of
 from xlmc.sampling.copulas import Joining
-from xlmc.sampling.sampling_methods import Margin
 from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.sampling.streams import Stream
 
@@ -71,7 +70,7 @@ class Draw:
         if not self.fixed:
             return None
         if self.cutoffs is None:
-            return self.family.fault(*self.parameters)  # type: ignore[arg-type]  # numbers, as they are fixed
+            return Member(self.family, self.parameters).fault()
         return Truncated(self.family).fault(*self.cutoffs, *self.parameters)  # type: ignore[arg-type]  # likewise
 
     def fill(self, u: Floats, dynamic: Mapping[Hashable, Floats]) -> None:
@@ -106,6 +105,13 @@ class Draw:
     def fixed(self) -> bool:
         """Whether no parameter and no cutoff varies by trial."""
         return not self.varying
+
+    @property
+    def has_mean(self) -> bool:
+        """Whether its mean is a finite number; where parameters vary, each trial has a mean of its own."""
+        if not self.fixed or (self.cutoffs is not None and np.isfinite(self.cutoffs).all()):  # type: ignore[arg-type]
+            return True
+        return bool(np.isfinite(Member(self.family, self.parameters).mean()))
 
     def refuse_no_numbers(self, draws: Floats) -> None:
         """Check what was filled in, `(n,)`; where parameters vary, NaN is an error trial, and counted as one.
@@ -236,7 +242,7 @@ class Sampler:
     def _fill(self) -> Callable[[int], None]:
         """See `Filler`; made when it is first needed, since the engine may draw in code of its own."""
         if self._filler is None or len(self.streams) < len(self._margins):
-            return _by_margins(self._margins, self._maps, self._rows)
+            return self._fill_by_margins
         return self._filler(self.streams, self._maps, self._rows)
 
     @property
@@ -271,16 +277,10 @@ class Sampler:
                     draw.refuse_no_numbers(drawn[draw.name])
         return drawn
 
-
-def _by_margins(margins: Sequence[Margin], maps: Sequence[tuple[float, float]], rows: Floats) -> Callable[[int], None]:
-    """A `Filler` that asks each margin."""
-    parts = list(zip(margins, rows, maps, strict=True))
-
-    def fill(start: int) -> None:
-        for margin, row, (offset, factor) in parts:
+    def _fill_by_margins(self, start: int) -> None:
+        """Do what a `Filler` does, by asking each margin."""
+        for margin, row, (offset, factor) in zip(self._margins, self._rows, self._maps, strict=True):
             margin.uniforms(start, row)
             if (offset, factor) != (0.0, 1.0):
                 np.multiply(row, factor, out=row)
                 np.add(row, offset, out=row)
-
-    return fill

@@ -51,6 +51,18 @@ class CellContent:
     value: CellValue = None
     formula: Formula | None = None
 
+    @property
+    def is_blank(self) -> bool:
+        """Whether the cell looks empty: no value and no formula, or a text of blanks."""
+        if isinstance(self.value, str):
+            return not self.value.strip()
+        return self.value is None and self.formula is None
+
+    @property
+    def is_uncalculated(self) -> bool:
+        """Whether the cell has a formula of its own, and the file does not say what it gives."""
+        return self.formula is not None and self.formula.array is None and self.value is None
+
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
@@ -70,6 +82,12 @@ class Sheet:
     hidden_rows: frozenset[int] = frozenset()
     filtered: tuple[Area, ...] = ()
     data_tables: tuple[DataTable, ...] = ()
+
+    @property
+    def arrays(self) -> dict[Cell, Area]:
+        """The cell of each array formula -> the area that it fills."""
+        formulas = ((at, content.formula) for at, content in self.cells.items() if content.formula is not None)
+        return {Cell(self.name, *at): formula.array for at, formula in formulas if formula.array is not None}
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,7 +42,6 @@ from xlmc.definitions.definitions import (
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.fields import number_in, static_value
 from xlmc.definitions.tables.identity import Claims
-from xlmc.definitions.tables.table_rows import is_blank
 from xlmc.distributions import FAMILIES
 from xlmc.distributions.parameters import show
 from xlmc.distributions.spelling import name_key
@@ -233,7 +232,7 @@ class _Dialogs:
         if self._computed.by_formula(cell):
             raise UnreadableError("its cell holds a formula, which every draw would overwrite")
         content = self._workbook.content(cell)
-        return None if is_blank(content) else number_in("its cell", content, cell)
+        return None if content.is_blank else number_in("its cell", content, cell)
 
     def _given(
         self,

@@ -6,7 +6,6 @@ A filter that needs one decides over all trials, so that then nothing can be run
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 from xlmc.address import Cell
@@ -19,7 +18,7 @@ from xlmc.errors import DefinitionError, FormulaError
 from xlmc.formula import Graph, Resolver, build_graph, ir
 from xlmc.workbook.workbook import Workbook
 
-__all__ = ["REFUSED_CELL", "Refusals", "refusals", "refused_rows"]
+__all__ = ["REFUSED_CELL", "refused_forecasts", "refused_rows"]
 
 REFUSED_CELL: Final = "Refused cell"
 """The column of the table `xlmc_converted` with the cells that could not be converted."""
@@ -53,16 +52,7 @@ def refused_rows(
     return found
 
 
-@dataclass(frozen=True, slots=True)
-class Refusals:
-    """What needs a cell that cannot be read, each with the error to tell; and the refused cells that nothing needs."""
-
-    forecasts: Mapping[str, DefinitionError]
-    filters: Mapping[str, DefinitionError]
-    idle: tuple[Cell, ...]
-
-
-def refusals(
+def refused_forecasts(
     workbook: Workbook,
     refused: Mapping[Cell, FormulaError],
     rewritten: Mapping[Cell, ir.Expression | FormulaError],
@@ -70,8 +60,9 @@ def refusals(
     forecasts: Sequence[Forecast],
     filters: Sequence[Filter],
     own: Sequence[Filter],
-) -> Refusals:
-    """Which forecasts and filters need a refused cell.
+    findings: Findings,
+) -> dict[str, DefinitionError]:
+    """The forecasts that need a refused cell, by name, each with the error to tell.
 
     Args:
         workbook: that holds them.
@@ -81,9 +72,8 @@ def refusals(
         forecasts: of the workbook.
         filters: of all forecasts.
         own: filters of some forecasts only, which need what these need.
+        findings: takes the filters that need one, and a remark on each that nothing needs.
     """
-    if not refused:
-        return Refusals({}, {}, ())
     parameters = {a.cell: a.cells for a in assumptions if not a.frozen}
     asked = {
         each.name: (each.cell, *(cell for filter_ in own if each.name in filter_.only_for for cell in _cells(filter_)))
@@ -105,11 +95,12 @@ def refusals(
         error = refused[needed[0]]
         return DefinitionError(f"the {what} {name!r} needs {error.where}. {error.message}", hint=error.hint)
 
-    return Refusals(
-        {name: error for name, cells in asked.items() if (error := fault("forecast", name, cells))},
-        {name: error for name, cells in kept.items() if (error := fault(kinds[name], name, cells))},
-        tuple(cell for cell in refused if cell not in reached),
-    )
+    found = {name: error for name, cells in asked.items() if (error := fault("forecast", name, cells))}
+    findings.problems += [error for name, cells in kept.items() if (error := fault(kinds[name], name, cells))]
+    for cell in refused:
+        if cell not in reached:
+            findings.notice(f"no forecast or filter needs this cell: {refused[cell].message}", cell)
+    return found
 
 
 def _cells(filter_: Filter) -> Iterator[Cell]:

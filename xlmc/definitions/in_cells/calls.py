@@ -11,7 +11,7 @@ of rank correlations.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Final
 
@@ -92,7 +92,6 @@ def read_in_cells(
     lognorm: str,
     claims: Claims,
     findings: Findings,
-    rows: Mapping[Cell, Cell] | None = None,
     tabulated: int = 1,
 ) -> InCells:
     """Every call in the formulas of a workbook.
@@ -101,16 +100,16 @@ def read_in_cells(
         workbook: to look through.
         computed: which cells something gives a value.
         lognorm: whose `RiskLognorm` is meant, `@RISK` or `XLRisk`.
-        claims: takes the names of assumptions; those of the tables are taken.
-        findings: takes remarks.
-        rows: the calls that rows of a table stand for, each with the cell that is drawn in its place.
+        claims: takes the names of assumptions; those of the tables are taken, and so are the calls that rows stand for.
+        findings: takes remarks, and the rows that stand for a call that is not there.
         tabulated: which of its values every `RiskSimtable` gives, from 1.
     """
     found = InCells()
     resolver = Resolver(workbook, claims.cells)
     bases: dict[Cell, float | None] = {}
+    rows = {call: cell for call, (_, cell) in claims.calls.items()}
     for cell, formula in _suspects(workbook):
-        reading = CellReading(workbook, computed, lognorm, bases, cell, rows or {}, tabulated)
+        reading = CellReading(workbook, computed, lognorm, bases, cell, rows, tabulated)
         try:
             found.rewritten[cell] = reading.rewrite(resolver.formula(cell, formula))
             _take(reading, found, claims, findings)
@@ -124,6 +123,10 @@ def read_in_cells(
             found.results[cell] = reading.asked
         if reading.shown is not None and (reading.asked or not isinstance(found.rewritten[cell], FormulaError)):
             found.shown[cell] = reading.shown
+    for call, (name, cell) in claims.calls.items():
+        if call not in found.taken:
+            message = f"the row {name!r} replaces the call {call}, and there is no such call"
+            findings.problem(message, claims.cells[cell], "Correct Call in and Call, or clear both")
     return found
 
 
@@ -177,10 +180,11 @@ def _suspects(workbook: Workbook) -> Iterator[tuple[Cell, Formula]]:
         names = sheets.mentioning(words)
     any_name = _any_of(named)
     for name in names:
-        for (row, column), content in sorted(sheets[name].cells.items(), key=lambda item: item[0]):
-            formula = content.formula
-            if formula is not None and (holds_call(formula.text) or (any_name and any_name.search(formula.text))):
-                yield Cell(name, row, column), formula
+        formulas = {at: content.formula for at, content in sheets[name].cells.items() if content.formula is not None}
+        for at in sorted(formulas):
+            formula = formulas[at]
+            if holds_call(formula.text) or (any_name and any_name.search(formula.text)):
+                yield Cell(name, *at), formula
 
 
 def _names_of_calls(workbook: Workbook) -> set[str]:

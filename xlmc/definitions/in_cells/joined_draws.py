@@ -24,7 +24,6 @@ from xlmc.definitions.in_cells.call_draws import MatrixRow
 from xlmc.definitions.in_cells.reading import CellDraw
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.fields import number_in
-from xlmc.definitions.tables.table_rows import is_blank
 from xlmc.distributions.parameters import show
 from xlmc.distributions.spelling import plain
 from xlmc.errors import DefinitionError
@@ -112,9 +111,9 @@ def _correlation(workbook: Workbook, first: _Row, second: _Row) -> Correlation:
     below, above = (
         Cell(area.sheet, area.top + row - 1, area.left + column - 1) for row, column in ((lower, upper), (upper, lower))
     )
-    cell = above if is_blank(workbook.content(below)) else below
+    cell = above if workbook.content(below).is_blank else below
     content = workbook.content(cell)
-    if is_blank(content):
+    if content.is_blank:
         hint = "Fill it in, or the one beside it across the diagonal"
         raise DefinitionError("The cell of a rank correlation is blank", where=below, hint=hint)
     if content.formula is not None and content.value is None:
@@ -264,7 +263,7 @@ def _beside(workbook: Workbook, grid: Mapping[Cell, object], area: Area, labels:
         if isinstance(value, str) and plain(value).rstrip(":") in labels:
             for other in (Cell(cell.sheet, cell.row, cell.column + 1), Cell(cell.sheet, cell.row + 1, cell.column)):
                 content = workbook.content(other)
-                if other in area and not is_blank(content) and not isinstance(content.value, str):
+                if other in area and not content.is_blank and not isinstance(content.value, str):
                     return number_in("The parameter of the copula", content, other)
     return None
 
@@ -289,9 +288,9 @@ def _matrix(workbook: Workbook, area: Area, least: int, where: Cell) -> list[lis
                 best = [[1.0] * size for _ in range(size)]
                 for i, j in combinations(range(size), 2):
                     low, high = rows[top + j][left + i], rows[top + i][left + j]
-                    content, cell_row, cell_column = (low, j, i) if not is_blank(low) else (high, i, j)
+                    content, cell_row, cell_column = (low, j, i) if not low.is_blank else (high, i, j)
                     cell = Cell(area.sheet, area.top + top + cell_row, area.left + left + cell_column)
-                    if is_blank(content):
+                    if content.is_blank:
                         hint = "Fill it in, or the one beside it across the diagonal"
                         raise DefinitionError("The cell of a correlation is blank", where=cell, hint=hint)
                     value = number_in("The matrix of the copula", content, cell)

@@ -21,7 +21,7 @@ from xlmc.definitions.in_cells.risk_properties import is_property, properties_of
 from xlmc.definitions.in_cells.stand_ins import STAND_INS, stand_in, unsupported
 from xlmc.definitions.in_cells.theory import THEORETICAL, Distribution, theoretical
 from xlmc.definitions.tables.fields import number_in, static_value
-from xlmc.definitions.tables.table_rows import as_text, is_blank
+from xlmc.definitions.tables.table_rows import as_text
 from xlmc.distributions import FAMILIES
 from xlmc.errors import FormulaError
 from xlmc.formula import Resolver, formula_text, ir
@@ -430,7 +430,7 @@ class CellReading:
     def _element(self, tree: ir.Expression, label: str) -> Parameter | None:
         if isinstance(tree, Cell) and tree not in self._bases and not self._computed.at_all(tree):
             content = self._workbook.content(tree)
-            return None if is_blank(content) else number_in("The data cell", content, tree)
+            return None if content.is_blank else number_in("The data cell", content, tree)
         return self._parameter(tree, label)
 
     def _base_number(self, tree: ir.Expression) -> float | None:

@@ -14,7 +14,7 @@ from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.data import OPTIONS, cached_data_family, given_data, refuse_options
 from xlmc.definitions.tables.fields import logical, number_in, optional_text, parameter, required_text, static_value
 from xlmc.definitions.tables.identity import Claims, identify
-from xlmc.definitions.tables.table_rows import DefinitionTable, Row, is_blank, rows_of
+from xlmc.definitions.tables.table_rows import DefinitionTable, Row, rows_of
 from xlmc.distributions import FAMILIES, Family, ParameterSpec, family_named
 from xlmc.distributions.by_percentiles import by_percentiles
 from xlmc.distributions.parameters import show
@@ -87,6 +87,8 @@ def _assumption(
         return None
     name, cell = identity
     checked = None if family is None else _checked(name, family, filled, row.workbook)
+    if call is not None:
+        claims.take_call(call, name, cell)
     if checked is not None and not frozen:
         _remark_on_range(checked, filled.cells, base, cell, findings)
     return Assumption(
@@ -149,7 +151,7 @@ def _base(workbook: Workbook, computed: Computed, cell: Cell, frozen: bool, find
         raise DefinitionError(
             message, where=cell, hint="Replace the formula by its value (Copy, Paste Special ▸ Values)"
         )
-    if not is_blank(content):
+    if not content.is_blank:
         return number_in("The assumption cell", content, cell)
     if frozen:
         message = "The assumption is frozen, and its cell is blank"

@@ -12,7 +12,7 @@ from xlmc.definitions.computed import Computed
 from xlmc.definitions.definitions import CUTOFFS, DataRange, Parameter
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.fields import logical, number_in, parameter, static_value
-from xlmc.definitions.tables.table_rows import Row, as_text, is_blank
+from xlmc.definitions.tables.table_rows import Row, as_text
 from xlmc.distributions import DataError, Family
 from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError
@@ -58,7 +58,7 @@ def area_values(workbook: Workbook, area: Area, computed: Computed) -> tuple[tup
 
     def value(cell: Cell) -> Parameter | None:
         content = workbook.content(cell)
-        if is_blank(content):
+        if content.is_blank:
             return None
         if computed.by_formula(cell) and content.value is None:
             return cell

@@ -10,7 +10,7 @@ from typing import NoReturn
 from xlmc.address import Cell
 from xlmc.definitions.definitions import Parameter
 from xlmc.definitions.problems import Findings
-from xlmc.definitions.tables.table_rows import Row, as_text, is_blank
+from xlmc.definitions.tables.table_rows import Row, as_text
 from xlmc.errors import DefinitionError, ErrorCode
 from xlmc.workbook.workbook import CellContent, Workbook
 
@@ -74,7 +74,7 @@ def parameter(row: Row, heading: str) -> Parameter | None:
             was #NAME? is no such error.
     """
     content = row.content(heading)
-    if is_blank(content):
+    if content.is_blank:
         return None
     if content.formula is not None and (content.value is None or content.value is ErrorCode.NAME):
         # Never calculated yet, or by a program that does not know a function of @RISK: each run calculates it.

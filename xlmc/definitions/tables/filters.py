@@ -11,7 +11,7 @@ from xlmc.definitions.definitions import Check, Filter, Parameter
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.fields import optional_text, parameter, static_value
 from xlmc.definitions.tables.identity import Claims, identify
-from xlmc.definitions.tables.table_rows import DefinitionTable, Row, as_text, holds_rows, is_blank, rows_of
+from xlmc.definitions.tables.table_rows import DefinitionTable, Row, as_text, holds_rows, rows_of
 from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError, ErrorCode
 from xlmc.workbook.workbook import Workbook
@@ -119,7 +119,7 @@ def _look_at(workbook: Workbook, cell: Cell, must_be_true: bool, computed: bool,
     if computed:
         return
     content = workbook.content(cell)
-    if is_blank(content):
+    if content.is_blank:
         raise DefinitionError("The filter cell is blank", where=cell, hint="Point to the cell to be tested")
     if isinstance(content.value, str) and content.value.strip():
         message = f"The filter cell holds the text {as_text(content.value)!r}"
@@ -168,7 +168,7 @@ def _check(row: Row, computed: Computed, claims: Claims, findings: Findings) -> 
     if len(findings.problems) > before or not identity:
         return None
     name, cell = identity
-    if is_blank(row.workbook.content(cell)) and not computed.at_all(cell):
+    if row.workbook.content(cell).is_blank and not computed.at_all(cell):
         findings.problem("The check cell is blank", cell, "Point to a cell that is TRUE or FALSE, such as =B7>0")
         return None
     if not computed.at_all(cell):

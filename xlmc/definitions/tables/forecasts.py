@@ -11,7 +11,7 @@ from xlmc.definitions.definitions import Forecast
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.fields import central_share, number, number_in, optional_text
 from xlmc.definitions.tables.identity import Claims, identify
-from xlmc.definitions.tables.table_rows import DefinitionTable, Row, is_blank, rows_of
+from xlmc.definitions.tables.table_rows import DefinitionTable, Row, rows_of
 from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError
 from xlmc.workbook.workbook import Workbook
@@ -96,7 +96,7 @@ def _remark_on_constant(workbook: Workbook, cell: Cell, findings: Findings) -> N
         DefinitionError: its cell is blank, or holds text or an error.
     """
     content = workbook.content(cell)
-    if is_blank(content):
+    if content.is_blank:
         raise DefinitionError("The forecast cell is blank", where=cell, hint="Point to the cell with the result")
     if not isinstance(content.value, bool):
         number_in("The forecast cell", content, cell)

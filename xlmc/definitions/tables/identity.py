@@ -32,12 +32,16 @@ class Claims:
 
     Attributes:
         shared: whether several rows may be about one cell.
+        names: key of a name -> the name, and where it stands.
+        cells: cell -> the row that is about it.
+        calls: call of a formula that a row stands for -> the name of the row, and its cell.
     """
 
     kind: str
     shared: bool = False
     names: dict[str, tuple[str, Cell]] = field(default_factory=dict)
     cells: dict[Cell, Cell] = field(default_factory=dict)
+    calls: dict[Cell, tuple[str, Cell]] = field(default_factory=dict)
 
     def take_name(self, name: str, where: Cell) -> str:
         """Take the name for the row at `where`.
@@ -64,6 +68,17 @@ class Claims:
             raise DefinitionError(message, where=where, hint="Keep one row for each cell")
         self.cells[cell] = where
         return cell
+
+    def take_call(self, call: Cell, name: str, cell: Cell) -> None:
+        """Take the call of a formula for a row that has its name and its cell.
+
+        Raises:
+            DefinitionError: another row stands for it.
+        """
+        if call in self.calls:
+            message = f"two rows replace the call {call}, this one and that of {self.calls[call][1]}"
+            raise DefinitionError(message, where=self.cells[cell], hint="Keep one of them")
+        self.calls[call] = name, cell
 
 
 def identify(row: Row, claims: Claims, findings: Findings) -> tuple[str, Cell] | None:

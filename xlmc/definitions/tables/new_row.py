@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from xlmc.address import Cell
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.assumptions import PARAMETERS, is_percentile
-from xlmc.definitions.tables.table_rows import DefinitionTable, Row, as_text, definition_tables, is_blank
+from xlmc.definitions.tables.table_rows import DefinitionTable, Row, as_text, definition_tables
 from xlmc.distributions import FAMILIES
 from xlmc.distributions.spelling import name_key, plain
 from xlmc.errors import DefinitionError
@@ -117,7 +117,7 @@ def _place(workbook: Workbook, tables: Sequence[DefinitionTable]) -> tuple[Defin
         body = table.table.body
         for number in range(body.top, body.bottom + 1):
             cells = (Cell(body.sheet, number, column) for column in range(body.left, body.right + 1))
-            if all(is_blank(workbook.content(cell)) for cell in cells):
+            if all(workbook.content(cell).is_blank for cell in cells):
                 return table, number
     return tables[-1], _row_below(workbook, tables[-1])
 
@@ -131,7 +131,7 @@ def _row_below(workbook: Workbook, table: DefinitionTable) -> int:
     area = table.table.area
     number = area.bottom + 1
     row = [Cell(area.sheet, number, column) for column in range(area.left, area.right + 1)]
-    taken = [cell for cell in row if not is_blank(workbook.content(cell))]
+    taken = [cell for cell in row if not workbook.content(cell).is_blank]
     taken += [cell for cell in row if any(cell in other.area for other in workbook.tables)]
     if table.table.totals_rows or taken:
         hint = "Add an empty row to the table in Excel, with the name in it"

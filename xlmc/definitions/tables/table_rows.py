@@ -22,7 +22,6 @@ __all__ = [
     "as_text",
     "definition_tables",
     "holds_rows",
-    "is_blank",
     "rows_of",
 ]
 
@@ -86,7 +85,7 @@ class Row:
 
     def filled(self, heading: str) -> bool:
         """Whether the table has the column and the row holds something in it."""
-        return self.has(heading) and not is_blank(self.content(heading))
+        return self.has(heading) and not self.content(heading).is_blank
 
     @property
     def headings(self) -> tuple[str, ...]:
@@ -118,13 +117,6 @@ class Row:
             for spelling, (written, _) in self.table.columns.items()
             if spelling not in spellings and self.filled(written)
         }
-
-
-def is_blank(content: CellContent) -> bool:
-    """Whether a cell looks empty: no value and no formula, or a text of blanks."""
-    if isinstance(content.value, str):
-        return not content.value.strip()
-    return content.value is None and content.formula is None
 
 
 def as_text(value: CellValue) -> str:

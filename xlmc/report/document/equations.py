@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from xlmc.address import Cell
 from xlmc.definitions.tables.table_rows import as_text
-from xlmc.run.labels import calculated_texts, is_uncalculated
+from xlmc.run.labels import calculated_texts
 from xlmc.run.model import Model
 from xlmc.workbook.workbook import CellContent, Sheet, Workbook
 
@@ -56,7 +56,7 @@ def _of_sheet(workbook: Workbook, sheet: Sheet, needed: set[int]) -> Iterator[Eq
         return
     below = {row: heads[max(above)] for row in sorted(needed) if (above := [start for start in starts if start < row])}
     spots = [(row, at) for row, columns in below.items() for at in columns.values() if (row, at) in cells]
-    missing = [Cell(sheet.name, *spot) for spot in spots if is_uncalculated(cells[spot])]
+    missing = [Cell(sheet.name, *spot) for spot in spots if cells[spot].is_uncalculated]
     calculated = {cell[1:]: text for cell, text in calculated_texts(workbook, missing).items()} if missing else {}
     said = {spot: calculated.get(spot) or as_text(cells[spot].value) for spot in spots}
     for row, columns in below.items():

@@ -99,8 +99,7 @@ def _columns(simulation: Simulation, shown: int) -> list[tuple[Shown, NDArray[np
     inputs = [column(_heading(a.name, a.units, "header assumption"), simulation.inputs[a.name]) for a in live]
     outputs = [column(_heading(f.name, f.units, "header forecast"), simulation.forecasts[f.name]) for f in forecasts]
     weighting = simulation.weighting
-    names = [*(each.name for each in live), *(each.name for each in forecasts)]
-    heading = Shown(weight_heading(names), look="header")
+    heading = Shown(weight_heading([*simulation.inputs, *simulation.forecasts]), look="header")
     weights = [] if weighting is None else [column(heading, weighting.weights)]
     return inputs + outputs + weights
 

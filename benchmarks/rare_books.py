@@ -68,7 +68,7 @@ class RareBook:
                 row=cell,
                 base=1.0,
                 distribution=given["distribution"],
-                parameters={key: float(value) for key, value in given.items() if key != "distribution"},
+                given={key: float(value) for key, value in given.items() if key != "distribution"},
             )
             for i, (cell, given) in enumerate(zip(places, self.drawn, strict=True), 1)
         )

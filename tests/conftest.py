@@ -54,9 +54,8 @@ def _assumption(name, given, workbook):
     cell = parse_address(given.pop("cell"), "S")
     fixed = {key: given.pop(key) for key in ("distribution", "frozen") if key in given}
     given = {key: _parameter(value) for key, value in given.items()}
-    cutoffs = {key: given.pop(key) for key in ("lower_cutoff", "upper_cutoff") if key in given}
-    fixed = {"distribution": "Uniform", **fixed, **cutoffs}
-    return Assumption(name, cell, parameters=given, row=cell, base=workbook.content(cell).value, **fixed)
+    fixed = {"distribution": "Uniform", **fixed}
+    return Assumption(name, cell, given=given, row=cell, base=workbook.content(cell).value, **fixed)
 
 
 def _filter(name, given):

@@ -25,7 +25,7 @@ def test_a_workbook_without_mistakes(read):
         name="Weight",
         cell=Cell("Inputs", 2, 2),
         distribution="Uniform",
-        parameters={"low": 6661.0, "high": 6861.0},
+        given={"low": 6661.0, "high": 6861.0},
         row=Cell("Inputs", 2, 1),
         base=6761.0,
         units="lb",
@@ -34,7 +34,7 @@ def test_a_workbook_without_mistakes(read):
     assert found.assumptions[1].notes == {"Witness": "Officer Lee"}
     reaction, friction, gravity = found.assumptions[2:]
     assert (reaction.distribution, reaction.parameters) == ("Normal", {"mean": 1.25, "std_dev": 0.46})
-    assert (reaction.lower_cutoff, reaction.upper_cutoff) == (0.5, 2.5)
+    assert reaction.cutoffs == {"lower_cutoff": 0.5, "upper_cutoff": 2.5}
     assert friction.parameters == {"low": 0.6, "low_likeliest": 0.7, "high_likeliest": 0.85, "high": 0.95}
     assert (gravity.distribution, gravity.frozen, gravity.base) == ("Triangular", True, 32.174)
     assert found.forecasts == (Forecast("Speed", Cell("Model", 1, 2), Cell("Answers", 2, 1), units="mph"),)

@@ -56,14 +56,14 @@ def test_numbers_that_are_no_distribution(book, given, message):
     assert caught.value.hint
 
 
-def by_percentiles(book, p10, **more):
+def by_percentiles(book, p10, **cutoffs):
     """A model with one assumption `a` in A1, normal by its percentiles 10 and 90; `b` is uniform in A2."""
     model = book(
         {"A1": 1.0, "A2": 1.0, "B1": "=2/2", "B2": "=A2+1"}, {"b": {"cell": "A2", **UNIT}}, {"x": "A1", "y": "A2"}
     )
-    given = {"p10": p10, "p90": 9.0}
+    given = {"p10": p10, "p90": 9.0, **cutoffs}
     family = ByPercentiles(FAMILIES["Normal"], (), (10.0, 90.0))
-    a = Assumption("a", Cell("S", 1, 1), "Normal", given, Cell("S", 1, 1), base=1.0, own_family=family, **more)
+    a = Assumption("a", Cell("S", 1, 1), "Normal", given, Cell("S", 1, 1), base=1.0, own_family=family)
     definitions = replace(model.definitions, assumptions=(a, *model.definitions.assumptions))
     return Model(model.workbook, definitions, model.path)
 
@@ -183,7 +183,7 @@ def test_every_parameter_and_cutoff_may_be_one(book):
     more = {"C3": "=A1", "C4": "=A1-1", "C5": "=A1+2"}
     assumption = book(CELLS | more, {"v": given | cutoffs}, {"x": "B1"}).assumptions[0]
     assert assumption.parameters == {"low": 97.0, "likeliest": 100.0, "high": 103.0}
-    assert (assumption.lower_cutoff, assumption.upper_cutoff) == (99.0, 102.0)
+    assert [*assumption.cutoffs.values()] == [99.0, 102.0]
 
 
 def test_a_frozen_assumption_shows_the_same_limits(book):
@@ -304,7 +304,7 @@ def test_the_column_value_of_a_saved_table(tmp_path, low, high):
     model = load(saved_book(tmp_path / "a.xlsx", rows, name=("speed", "Inputs!$B$2")))
     assumption = model.assumptions[0]
     assert dict(assumption.parameters) == pytest.approx({"low": 38.8, "high": 41.2}, rel=1e-15)
-    assert assumption.upper_cutoff == pytest.approx(40.8, rel=1e-15)
+    assert assumption.cutoffs["upper_cutoff"] == pytest.approx(40.8, rel=1e-15)
 
 
 def test_the_column_cell_of_a_saved_table(tmp_path):
@@ -362,7 +362,7 @@ def test_numbers_that_take_the_place_of_those_that_were_read_are_checked(read_bo
 @pytest.mark.parametrize("number", [int, np.int64, np.float32, np.float64])
 def test_numbers_of_other_types_are_taken_as_floats(read_book, number):
     speed, *others = read_book.assumptions
-    same = replace(speed, parameters={"low": number(38), "high": number(42)})
+    same = replace(speed, given={"low": number(38), "high": number(42)})
     definitions = replace(read_book.definitions, assumptions=(same, *others))
     found = Model(read_book.workbook, definitions, read_book.path).simulate(100, seed=1)
     assert found.inputs["speed"].tolist() == read_book.simulate(100, seed=1).inputs["speed"].tolist()

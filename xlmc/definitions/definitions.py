@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 from xlmc.address import Area, Cell, InFormula
@@ -73,8 +73,8 @@ class Assumption:
 
     Attributes:
         distribution: the family's name as `xlmc.distributions.FAMILIES` spells it.
-        parameters: the family's parameter key (`low`, `high`, …) -> value; one left out has its default.
-        lower_cutoff, upper_cutoff: truncation; None where there is none.
+        given: key of a parameter of the family (`low`, `high`, …) or of a cutoff -> value. A parameter that is left out
+            has its default, and a cutoff that is left out cuts nothing off.
         base: the cell's own value, the base case.
         frozen: held at `base`, not drawn.
         row: where it is defined.
@@ -89,11 +89,9 @@ class Assumption:
     name: str
     cell: Cell
     distribution: str
-    parameters: Mapping[str, Parameter]
+    given: Mapping[str, Parameter]
     row: Cell
     base: float | None = None
-    lower_cutoff: Parameter | None = None
-    upper_cutoff: Parameter | None = None
     units: str = ""
     source: str = ""
     frozen: bool = False
@@ -109,15 +107,24 @@ class Assumption:
         return FAMILIES[self.distribution] if self.own_family is None else self.own_family
 
     @property
+    def parameters(self) -> dict[str, Parameter]:
+        """Key of each parameter that is given -> value."""
+        return {key: value for key, value in self.given.items() if key not in CUTOFFS}
+
+    @property
     def cutoffs(self) -> dict[str, Parameter]:
         """Key of each cutoff that is given -> value."""
-        given = {"lower_cutoff": self.lower_cutoff, "upper_cutoff": self.upper_cutoff}
-        return {key: value for key, value in given.items() if value is not None}
+        return {key: self.given[key] for key in CUTOFFS if key in self.given}
 
     @property
     def formulas(self) -> dict[str, Cell]:
         """Key of a parameter or cutoff that a formula computes -> the formula's cell."""
-        return {key: value for key, value in {**self.parameters, **self.cutoffs}.items() if isinstance(value, Cell)}
+        return {key: value for key, value in self.given.items() if isinstance(value, Cell)}
+
+    def with_numbers(self, numbers: Mapping[str, Parameter | None]) -> Assumption:
+        """The assumption with these parameters and cutoffs instead of its own; None takes a cutoff away."""
+        given = {key: value for key, value in {**self.given, **numbers}.items() if value is not None}
+        return replace(self, given=given)
 
     @property
     def cells(self) -> tuple[Cell, ...]:

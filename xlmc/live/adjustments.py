@@ -238,11 +238,10 @@ def _assumption(assumption: Assumption, changed: Changed) -> Assumption:
     given = dict(changed.get(assumption.name, {}))
     if not given:
         return assumption
-    rest: dict[str, Any] = {key: given.pop(key) for key in ("base", "frozen", *CUTOFFS) if key in given}
+    held: dict[str, Any] = {key: given.pop(key) for key in ("base", "frozen") if key in given}
     for key in BAND:
         given.pop(key, None)
-    parameters = {**assumption.parameters, **{key: float(value) for key, value in given.items()}}
-    return replace(assumption, parameters=parameters, **rest)
+    return replace(assumption.with_numbers({key: float(value) for key, value in given.items()}), **held)
 
 
 def _filter(filter_: Filter, changed: Changed) -> Filter:

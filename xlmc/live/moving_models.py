@@ -192,11 +192,9 @@ def _holding_still(definitions: Definitions, values: Mapping[str, float]) -> Def
             assumption,
             distribution="Uniform",
             own_family=None,
-            parameters={"low": value, "high": value},
+            given={"low": value, "high": value},
             base=value,
             checked=None,
-            lower_cutoff=None,
-            upper_cutoff=None,
         )
 
     return replace(definitions, assumptions=tuple(map(still, definitions.assumptions)))

@@ -27,7 +27,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Parameter
+from xlmc.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter
 from xlmc.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Tabulated, Typed
 from xlmc.definitions.tables.changed_cells import cells_that_change
 from xlmc.definitions.tables.filters import LIMITS, contradiction
@@ -188,9 +188,9 @@ def _merged(again: Definitions, old: Definitions, new: Definitions) -> Definitio
 
 
 def _with_difference(again: Assumption, old: Assumption, new: Assumption) -> Assumption:
-    before, after = {**old.parameters, **old.cutoffs}, {**new.parameters, **new.cutoffs}
-    numbers = {key: after.get(key) for key in before.keys() | after.keys() if before.get(key) != after.get(key)}
-    return replace(_with_numbers(again, numbers), frozen=new.frozen, base=new.base)
+    keys = [*new.given, *old.given]
+    numbers = {key: new.given.get(key) for key in keys if old.given.get(key) != new.given.get(key)}
+    return replace(again.with_numbers(numbers), frozen=new.frozen, base=new.base)
 
 
 def _known(name: str, those: Mapping[str, Assumption] | Mapping[str, Filter], what: str, change: Change) -> str:
@@ -230,18 +230,12 @@ def _other(assumption: Assumption, change: Change, lowering: Lowering) -> Assump
         case Range(_, low, high):
             ends = ("low", "high") if {"low", "high"} <= {*assumption.family.keys} else tuple(CUTOFFS)
             given = {key: end for key, end in zip(ends, (low, high), strict=True) if end is not None}
-            return _with_numbers(assumption, given)
+            return assumption.with_numbers(given)
         case Numbers(_, values):
-            return _with_numbers(assumption, values)
+            return assumption.with_numbers(values)
         case Band(_, low, high):
-            return _with_numbers(assumption, _cutoffs(assumption, change, lowering))
+            return assumption.with_numbers(_cutoffs(assumption, change, lowering))
     raise TypeError(change)
-
-
-def _with_numbers(assumption: Assumption, values: Mapping[str, Parameter | None]) -> Assumption:
-    cutoffs = {key: value for key, value in values.items() if key in CUTOFFS}
-    parameters = {key: value for key, value in values.items() if key not in CUTOFFS}
-    return replace(assumption, parameters={**assumption.parameters, **parameters}, **cutoffs)  # type: ignore[dict-item, arg-type]
 
 
 def _cutoffs(assumption: Assumption, band: Band, lowering: Lowering) -> dict[str, float]:
@@ -272,6 +266,6 @@ def _check(assumption: Assumption, change: Change) -> None:
         raise DefinitionError(f"{assumption.name}: {assumption.family.name} cannot be cut off", where=where, hint=hint)
     if assumption.cells:
         return  # the model computes them, and checks what they give
-    draw = Draw.of(assumption.name, assumption.family, {**assumption.parameters, **assumption.cutoffs})
+    draw = Draw.of(assumption.name, assumption.family, assumption.given)
     if (fault := draw.fault()) is not None:
         raise DefinitionError(f"{assumption.name}: {fault.message}", where=where, hint=fault.hint)

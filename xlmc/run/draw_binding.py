@@ -52,7 +52,7 @@ def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
     data = assumption.data
     family = assumption.family if data is None else _from_data(assumption.family, data, assumption.name, lowering)
     computed = {key: fold_cell(cell, lowering) for key, cell in assumption.formulas.items()}
-    given = {**assumption.parameters, **assumption.cutoffs, **computed}
+    given = {**assumption.given, **computed}
     draw = Draw.of(assumption.name, family, given)
     if family.given_by and draw.varying:  # the member is searched for once
         message = f"{assumption.name}: a distribution given by {family.given_by} cannot depend on another assumption"
@@ -154,7 +154,7 @@ def with_base_parameters(workbook: Workbook, definitions: Definitions) -> Defini
     if not numbers:
         return definitions
     notices = (_notice(rows[cell], found) for cell, found in numbers.items())
-    changed_ones = tuple(_with_numbers(a, numbers.get(a.cell, {})) for a in assumptions)
+    changed_ones = tuple(a.with_numbers(numbers[a.cell]) if a.cell in numbers else a for a in assumptions)
     return replace(definitions, assumptions=changed_ones, notices=(*definitions.notices, *notices))
 
 
@@ -194,14 +194,6 @@ class _Own:
         drawn = {a.cell: a.name for a in assumptions if not a.frozen and a.cell != own}
         held = {a.cell: a.base for a in assumptions if a.cell not in drawn and a.base is not None}
         return fold_cell(cell, lower_cells(self._resolver, [cell], drawn, held))
-
-
-def _with_numbers(assumption: Assumption, numbers: Mapping[str, float]) -> Assumption:
-    if not numbers:
-        return assumption
-    parameters = {key: numbers.get(key, value) for key, value in assumption.parameters.items()}
-    cutoffs = {key: number for key, number in numbers.items() if key in CUTOFFS}
-    return replace(assumption, parameters=parameters, **cutoffs)  # type: ignore[arg-type]
 
 
 def _notice(assumption: Assumption, numbers: Mapping[str, float]) -> Notice:

@@ -114,7 +114,7 @@ def test_cutoffs_and_parameters_may_come_from_cells(read):
     found = read(SKID, speed, TOTAL, cells=cells)
     drawn = found.assumptions[1]
     assert str(drawn.parameters["mean"]) == "Sheet1!B2"
-    assert (drawn.lower_cutoff, drawn.upper_cutoff) == (-1.0, 30.0)
+    assert [*drawn.cutoffs.values()] == [-1.0, 30.0]
 
 
 def test_a_parameter_of_another_family_comes_from_the_cell_that_holds_its_number(read):

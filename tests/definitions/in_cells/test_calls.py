@@ -229,7 +229,7 @@ def test_what_is_drawn(understood, formula):
     (drawn,) = found.assumptions
     assert drawn.distribution == drawn.family.name == family
     assert drawn.parameters == pytest.approx(parameters) if _all_numbers(parameters) else drawn.parameters == parameters
-    assert [drawn.lower_cutoff, drawn.upper_cutoff] == (cutoffs or [None, None])
+    assert [*map(drawn.cutoffs.get, ("lower_cutoff", "upper_cutoff"))] == (cutoffs or [None, None])
     assert (drawn.cell, str(drawn.cell), drawn.row) == (part("1"), "S!I9#1", HERE)
 
 

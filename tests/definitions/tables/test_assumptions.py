@@ -116,7 +116,7 @@ class TestParameters:
         found = read({"Inputs!D2": "=6600+61", "Inputs!I4": "=1-1"})
         assert found.problems == found.notices == ()
         assert found.assumptions[0].parameters["low"] == Cell("Inputs", 2, 4)
-        assert found.assumptions[2].lower_cutoff == Cell("Inputs", 4, 9)
+        assert found.assumptions[2].cutoffs["lower_cutoff"] == Cell("Inputs", 4, 9)
 
     @pytest.mark.parametrize(
         ("column", "row", "heading"),
@@ -146,7 +146,7 @@ class TestParameters:
     def test_one_cutoff_is_enough(self, read, cutoffs):
         found = read({"Inputs!I2": cutoffs[0], "Inputs!J2": cutoffs[1]})
         assert found.problems == ()
-        assert (found.assumptions[0].lower_cutoff, found.assumptions[0].upper_cutoff) == cutoffs
+        assert tuple(map(found.assumptions[0].cutoffs.get, ("lower_cutoff", "upper_cutoff"))) == cutoffs
 
     @pytest.mark.parametrize("typed", ["Triangular", "triang", " TRIANGLE "])
     def test_the_family_is_spelt_as_the_registry_does(self, read, typed):

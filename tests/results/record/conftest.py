@@ -49,7 +49,7 @@ def _definitions():
         assumptions=(
             replace(uniform, units="ft", source="tape", notes={"By": "JD", "Day": "3"}),
             Assumption(
-                "length", cell("A2"), "Normal", {"mean": 3.0, "std_dev": 0.5}, cell("A2"), 3.0, lower_cutoff=2.0
+                "length", cell("A2"), "Normal", {"mean": 3.0, "std_dev": 0.5, "lower_cutoff": 2.0}, cell("A2"), 3.0
             ),
             replace(uniform, name="idle", cell=cell("A3")),
             replace(uniform, name="held", cell=cell("A4"), frozen=True, base=10.0),

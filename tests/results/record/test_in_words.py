@@ -50,7 +50,7 @@ DISTRIBUTIONS = [
 
 @pytest.mark.parametrize(("family", "parameters", "cutoffs", "text"), DISTRIBUTIONS)
 def test_distributions(family, parameters, cutoffs, text):
-    assert distribution_text(Assumption("a", HERE, family, parameters, HERE, **cutoffs)) == text
+    assert distribution_text(Assumption("a", HERE, family, parameters | cutoffs, HERE)) == text
 
 
 @pytest.mark.parametrize(

@@ -370,15 +370,14 @@ class CellReading:
             hint = "add RiskStatic with the value to hold it at"
             raise FormulaError(f"{drawn.function} is locked, and its value is not known", hint=hint)
         self.idle += properties.idle
+        cutoffs = {key: limit for key, limit in zip(CUTOFFS, (lower, upper), strict=True) if limit is not None}
         return Assumption(
             name="" if properties.name is None else self._text("RiskName", properties.name),
             cell=self.host,
             distribution=drawn.family.name,
-            parameters=parameters,
+            given=parameters | cutoffs,
             row=self.host,
             base=base,
-            lower_cutoff=lower,
-            upper_cutoff=upper,
             units="" if properties.units is None else self._text("RiskUnits", properties.units),
             source=f"{drawn.function} in the cell{'' if properties.shift is None else ', before its shift'}",
             frozen=properties.locked,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
 from xlmc.address import Cell, InFormula
 from xlmc.definitions.cell_references import cell_of_reference, formula_at
@@ -75,31 +74,30 @@ def _assumption(
     frozen = findings.attempt(logical, row, "Frozen") or False
     base = None if identity is None else findings.attempt(_base, row.workbook, computed, identity[1], frozen, findings)
     kind = findings.attempt(_family, row)
-    filled = family = data = None
+    given: dict[str, Parameter] = {}
+    family = data = None
     if kind is not None:
         refuse_options(row, kind, findings)
-        filled = _filled(row, kind, findings)
+        given = _given(row, kind, findings)
         data = None if kind.data is None else findings.attempt(given_data, row, kind, computed, findings)
         family = kind if data is None else findings.attempt(cached_data_family, data, kind, row.workbook)
     units = findings.attempt(optional_text, row, "Units") or ""
     source = findings.attempt(optional_text, row, "Source") or ""
-    if len(findings.problems) > before or not (identity and kind and filled):
+    if len(findings.problems) > before or not (identity and kind):
         return None
     name, cell = identity
-    checked = None if family is None else _checked(name, family, filled, row.workbook)
+    checked = None if family is None else _checked(name, family, given, row)
     if call is not None:
         claims.take_call(call, name, cell)
     if checked is not None and not frozen:
-        _remark_on_range(checked, filled.cells, base, cell, findings)
+        _remark_on_range(checked, row, base, cell, findings)
     return Assumption(
         name=name,
         cell=cell,
         distribution=kind.name,
-        parameters=filled.parameters,
+        given=given,
         row=row.where,
         base=base,
-        lower_cutoff=filled.cutoffs.get("lower_cutoff"),
-        upper_cutoff=filled.cutoffs.get("upper_cutoff"),
         units=units,
         source=source,
         frozen=frozen,
@@ -160,28 +158,14 @@ def _base(workbook: Workbook, computed: Computed, cell: Cell, frozen: bool, find
     return None
 
 
-@dataclass(frozen=True, slots=True)
-class _Filled:
-    """The parameters and cutoffs of a row by key, as a run needs them.
-
-    Attributes:
-        cells: the table's own cells that hold them; the row's first cell for one that is left to its default.
-    """
-
-    parameters: dict[str, Parameter]
-    cutoffs: dict[str, Parameter]
-    cells: dict[str, Cell]
-
-
-def _filled(row: Row, family: Family, findings: Findings) -> _Filled:
-    """The family's parameters and the cutoffs in this row; every mistake is recorded on its own."""
-    parameters: dict[str, Parameter] = {
+def _given(row: Row, family: Family, findings: Findings) -> dict[str, Parameter]:
+    """The family's parameters and the cutoffs in this row by key; every mistake is recorded on its own."""
+    found: dict[str, Parameter] = {
         spec.key: spec.default
         for spec in family.parameters
         if spec.default is not None and not any(map(row.filled, spec.headings))
     }
-    found = _Filled(parameters, {}, dict.fromkeys(parameters, row.where))
-    required = (spec for spec in family.parameters if spec.key not in parameters)
+    required = (spec for spec in family.parameters if spec.key not in found)
     headings = {spec.key: findings.attempt(_heading_of, row, family, spec) for spec in required}
     headings |= {key: heading for key, heading in CUTOFFS.items() if row.filled(heading)}
     for key, heading in headings.items():
@@ -189,13 +173,18 @@ def _filled(row: Row, family: Family, findings: Findings) -> _Filled:
             continue
         with findings.recording():
             if (value := parameter(row, heading)) is not None:
-                found.cells[key] = row.cell(heading)
-                (found.cutoffs if key in CUTOFFS else found.parameters)[key] = value
+                found[key] = value
     _refuse_unused(row, family, findings)
     return found
 
 
-def _checked(name: str, family: Family, row: _Filled, workbook: Workbook) -> Draw | None:
+def _cell_of(row: Row, family: Family, key: str) -> Cell:
+    """The cell that gives a parameter or a cutoff; the row's first cell for one that is left to its default."""
+    headings = next((spec.headings for spec in family.parameters if spec.key == key), (CUTOFFS.get(key, ""),))
+    return next((row.cell(heading) for heading in headings if row.filled(heading)), row.where)
+
+
+def _checked(name: str, family: Family, given: Mapping[str, Parameter], row: Row) -> Draw | None:
     """Check the rules of the family on the numbers as they are now, typed in or as Excel cached them.
 
     A run checks dynamic ones in every trial.
@@ -206,22 +195,21 @@ def _checked(name: str, family: Family, row: _Filled, workbook: Workbook) -> Dra
     Raises:
         DefinitionError: a rule is broken; it names the cell of the parameter to look at first.
     """
-    given = {**row.parameters, **row.cutoffs}
-    saved = {key: static_value(cell, workbook) for key, cell in given.items() if isinstance(cell, Cell)}
+    saved = {key: static_value(cell, row.workbook) for key, cell in given.items() if isinstance(cell, Cell)}
     if None in saved.values():
         return None
     draw = Draw.of(name, family, {**given, **saved})
     if (fault := draw.fault()) is not None:
-        raise DefinitionError(fault.message, where=row.cells[fault.key], hint=fault.hint)
+        raise DefinitionError(fault.message, where=_cell_of(row, family, fault.key), hint=fault.hint)
     return draw
 
 
-def _remark_on_range(draw: Draw, cells: Mapping[str, Cell], base: float | None, cell: Cell, findings: Findings) -> None:
+def _remark_on_range(draw: Draw, row: Row, base: float | None, cell: Cell, findings: Findings) -> None:
     """Point out what is allowed but may be a slip: a constant, a base case that could never be drawn.
 
     Args:
         draw: the assumption, by numbers.
-        cells: where its parameters stand, by key.
+        row: that defines it.
         base: the base case, if there is any.
         cell: of the assumption.
         findings: takes the remarks.
@@ -229,7 +217,7 @@ def _remark_on_range(draw: Draw, cells: Mapping[str, Cell], base: float | None, 
     family, (low, high) = draw.family, map(float, draw.distribution.support())
     if low == high:
         both = "Low and High are both" if {"low", "high"} <= {*family.keys} else "Every draw is"
-        where = cells[family.keys[0]] if family.keys else cell
+        where = _cell_of(row, family, family.keys[0]) if family.keys else cell
         findings.notice(f"{both} {show(low)}: the assumption does not vary", where)
     if base is not None and not low <= base <= high:
         reach = f"{show(low)} to {show(high)}"

@@ -231,7 +231,7 @@ def assumption_section(simulation: Simulation) -> Section:
             status(simulation.model, assumption.name, assumption.frozen),
             assumption.distribution,
             parameters_text(assumption),
-            cutoffs_text(assumption.lower_cutoff, assumption.upper_cutoff),
+            cutoffs_text(assumption),
             assumption.base,
             assumption.units,
             assumption.source,

@@ -60,7 +60,7 @@ def number_text(value: Parameter) -> str:
 
 def parameters_text(assumption: Assumption) -> str:
     """`Low 6661, High 6861`; `Data Inputs!Q2:R9` for a distribution built from data."""
-    given = assumption.parameters
+    given = assumption.given
     parts = [
         f"{spec.heading} {number_text(given[spec.key])}" for spec in assumption.family.parameters if spec.key in given
     ]
@@ -73,15 +73,15 @@ def _data_text(data: DataRange) -> str:
     return f"Data {data.text or data.area}{weights}{bandwidth}"
 
 
-def cutoffs_text(lower: Parameter | None, upper: Parameter | None) -> str:
+def cutoffs_text(assumption: Assumption) -> str:
     """`below 0.5, above 0.9`: what is cut off; empty where nothing is."""
-    cutoffs = ("below", lower), ("above", upper)
-    return ", ".join(f"{side} {number_text(cutoff)}" for side, cutoff in cutoffs if cutoff is not None)
+    sides = {"lower_cutoff": "below", "upper_cutoff": "above"}
+    return ", ".join(f"{sides[key]} {number_text(cutoff)}" for key, cutoff in assumption.cutoffs.items())
 
 
 def distribution_text(assumption: Assumption) -> str:
     """`Normal: Mean 0.77, Std dev 0.05; cut off below 0.6`."""
-    cutoffs = cutoffs_text(assumption.lower_cutoff, assumption.upper_cutoff)
+    cutoffs = cutoffs_text(assumption)
     ending = f"; cut off {cutoffs}" if cutoffs else ""
     return f"{assumption.distribution}: {parameters_text(assumption)}{ending}"
 

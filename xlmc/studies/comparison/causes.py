@@ -18,7 +18,6 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.address import Cell
 from xlmc.definitions.definitions import Assumption, Filter
 from xlmc.distributions.spelling import name_key
 from xlmc.results.record.in_words import distribution_text
@@ -174,9 +173,7 @@ def _by_key(model: Model) -> dict[str, Assumption]:
 
 def _may_swap(first: Assumption, second: Assumption) -> bool:
     """Whether the second may be drawn as the first: in the same unit, and from no cell of the first's book."""
-    own = (*first.parameters.values(), first.lower_cutoff, first.upper_cutoff)
-    from_cells = any(isinstance(value, Cell) for value in own)
-    return factor_between(second.units, first.units) == 1.0 and not from_cells and first.data is None
+    return factor_between(second.units, first.units) == 1.0 and not first.formulas and first.data is None
 
 
 class Variations:

@@ -82,9 +82,7 @@ def _drawn_from(assumption: Assumption, forecast: Forecast, source: Simulation) 
     return replace(
         assumption,
         distribution=f"from {source.model.path.name}",
-        parameters={},
-        lower_cutoff=None,
-        upper_cutoff=None,
+        given={},
         frozen=False,
         own_family=Empirical().built(values[:, np.newaxis]),
         data=None,

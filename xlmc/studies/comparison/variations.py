@@ -77,9 +77,7 @@ def _assumption(
         return replace(
             assumption,
             distribution=other.distribution,
-            parameters=other.parameters,
-            lower_cutoff=other.lower_cutoff,
-            upper_cutoff=other.upper_cutoff,
+            given=other.given,
             own_family=other.own_family,
             data=other.data,
         )

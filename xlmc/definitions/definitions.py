@@ -117,6 +117,12 @@ class Assumption:
         return {key: self.given[key] for key in CUTOFFS if key in self.given}
 
     @property
+    def headings(self) -> dict[str, str]:
+        """Key of each parameter and cutoff that is given -> its heading, in the family's order."""
+        every = {spec.key: spec.heading for spec in self.family.parameters} | CUTOFFS
+        return {key: heading for key, heading in every.items() if key in self.given}
+
+    @property
     def formulas(self) -> dict[str, Cell]:
         """Key of a parameter or cutoff that a formula computes -> the formula's cell."""
         return {key: value for key, value in self.given.items() if isinstance(value, Cell)}

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Parameter
+from xlmc.definitions.definitions import Assumption, Definitions, Filter, Parameter
 from xlmc.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Scenario
 from xlmc.results.record.in_words import number_text
 
@@ -137,9 +137,7 @@ class Adjustments:
 
 def assumption_numbers(assumption: Assumption) -> dict[str, tuple[str, Parameter]]:
     """Key of each parameter and cutoff that is given -> its heading and its value."""
-    given = assumption.parameters
-    found = {spec.key: (spec.heading, given[spec.key]) for spec in assumption.family.parameters if spec.key in given}
-    return found | {key: (CUTOFFS[key], value) for key, value in assumption.cutoffs.items()}
+    return {key: (heading, assumption.given[key]) for key, heading in assumption.headings.items()}
 
 
 def own_values(definitions: Definitions, of: str, name: str) -> dict[str, Parameter | bool | None]:

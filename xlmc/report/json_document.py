@@ -336,7 +336,7 @@ def _assumption(simulation: Simulation, each: Assumption) -> Json:
         "status": status(simulation.model, each.name, each.frozen),
         "distribution": each.distribution,
         "parameters": parameters_text(each),
-        "cutoffs": cutoffs_text(each),
+        "cutoffs": cutoffs_text(each.cutoffs),
         "base": each.base,
         "source": each.source,
         "prior": None,

@@ -186,7 +186,7 @@ def base_case(simulation: Simulation) -> BaseCase | None:
     It is computed, not read: a file may hold no cached values, or stale ones.
     """
     model = simulation.model
-    known = base_point(model.live)
+    known = base_point(model.bases)
     if known is None:
         return None
     settings = simulation.settings  # always in float64

@@ -140,7 +140,7 @@ def base_checks(model: Model) -> tuple[BaseCheck, ...]:
     """The checks at the base case, computed, not read: a file may hold no cached values, or stale ones."""
     if not model.checks:
         return ()
-    known = base_point(model.checked)
+    known = base_point({a.name: a.base for a in model.checked})
     if known is None:
         return tuple(BaseCheck(check, None) for check in model.checks)
     columns = model.check_program().evaluator(1).filters(known, 1)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell, InFormula
-from xlmc.definitions.definitions import CUTOFFS, Assumption, DataRange, Definitions, Parameter
+from xlmc.definitions.definitions import Assumption, DataRange, Definitions, Parameter
 from xlmc.definitions.tables.data import data_family
 from xlmc.distributions import Family
 from xlmc.distributions.parameters import show
@@ -35,10 +35,10 @@ def parameter_target(cell: Cell) -> Target:
     return Target(ir.Binary("+", cell, ir.Number(0.0)), cell)
 
 
-def base_point(assumptions: Sequence[Assumption]) -> dict[str, NDArray[np.float64]] | None:
+def base_point(bases: Mapping[str, float | None]) -> dict[str, NDArray[np.float64]] | None:
     """Name of each assumption -> `(1,)` its base value; None where one of them has none."""
-    known = {a.name: np.full(1, a.base) for a in assumptions if a.base is not None}
-    return known if len(known) == len(assumptions) else None
+    known = {name: np.full(1, base) for name, base in bases.items() if base is not None}
+    return known if len(known) == len(bases) else None
 
 
 def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
@@ -174,7 +174,7 @@ class _Own:
         """The number; None where another assumption reaches it, and this one is held, so that nothing asks for it."""
         own = self._assumption
         if own.base is None:
-            message = f"{_heading(own, key)} of {own.name!r} depends on the assumption's own cell, which is blank"
+            message = f"{own.headings[key]} of {own.name!r} depends on the assumption's own cell, which is blank"
             raise DefinitionError(message, where=cell, hint=f"Type the measured value into {own.cell}")
         others = (a for a in self._definitions.assumptions if not a.frozen and a.cell != own.cell)
         value = self._computed(cell)
@@ -183,7 +183,7 @@ class _Own:
         if isinstance(value, Cell):
             other = next((a for a in others if a.cell in upstream), None)
             more = "another assumption" if other is None else f"the assumption {other.name!r}"
-            message = f"{_heading(own, key)} of {own.name!r} depends on the assumption's own cell and on {more}"
+            message = f"{own.headings[key]} of {own.name!r} depends on the assumption's own cell and on {more}"
             hint = f"In its formula, type the number {show(own.base)} instead of {own.cell}"
             raise DefinitionError(message, where=cell, hint=hint)
         return value
@@ -198,10 +198,5 @@ class _Own:
 
 def _notice(assumption: Assumption, numbers: Mapping[str, float]) -> Notice:
     base = "" if assumption.base is None else f" ({show(assumption.base)})"
-    shown = ", ".join(f"{_heading(assumption, key)} {show(number)}" for key, number in numbers.items())
+    shown = ", ".join(f"{assumption.headings[key]} {show(number)}" for key, number in numbers.items())
     return Notice(f"computed from the base value of the assumption's own cell{base}: {shown}", assumption.row)
-
-
-def _heading(assumption: Assumption, key: str) -> str:
-    headings = {spec.key: spec.heading for spec in assumption.family.parameters}
-    return headings.get(key) or CUTOFFS[key]

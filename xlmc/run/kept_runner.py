@@ -89,7 +89,7 @@ class KeptRunner:
 
         None for a forecast that is no number; None for all where an assumption has no base value.
         """
-        inputs = base_point(model.live)
+        inputs = base_point(model.bases)
         if inputs is None:
             return None
         key = tuple(value.item() for value in inputs.values())

@@ -85,7 +85,7 @@ def filter_faults(model: Model) -> list[DefinitionError]:
     targets = [target for each in filters for target in (Target(each.cell, each.cell), _length(each))]
     drawn = frozenset(a.name for a in model.live)
     evaluator = NumpyProgram.of(model.lowering, targets, [], drawn).evaluator(_DRAWN)
-    base = {a.name: np.full(1, np.nan if a.base is None else a.base) for a in model.live}
+    base = {name: np.full(1, np.nan if base is None else base) for name, base in model.bases.items()}
     base |= model.certain(1)
     found = dict(_faults(filters, evaluator.filters(base, 1), "at the base case", texts=True))
     if any(not filter_limits(each) and each.cell not in found for each in filters):

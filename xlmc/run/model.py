@@ -120,12 +120,6 @@ class _Compiled:
     program: Program
     ends: Mapping[str, Bounds]
 
-    def holds_for(self, ends: Mapping[str, Bounds]) -> bool:
-        """Whether draws with these ends lie within its own."""
-        return all(
-            name in ends and low <= ends[name][0] and ends[name][1] <= high for name, (low, high) in self.ends.items()
-        )
-
 
 def _hull(first: Mapping[str, Bounds], second: Mapping[str, Bounds]) -> dict[str, Bounds]:
     """The ends that hold the draws of two models, and more where a range was moved; none where one of them has none."""
@@ -192,6 +186,7 @@ class Model:
         assumptions, forecasts, filters, checks: as defined.
         forecast_filters: filters of some forecasts only, as defined.
         live: the assumptions that are drawn: needed and not frozen.
+        bases: name of each live assumption -> its base value; None where its cell is blank.
         chances: what decides which trials are kept by evidence whose error is no limit; drawn as assumptions are.
         draws: name of a live assumption or a chance -> how it is drawn.
         lowering: the nodes of the needed cells.
@@ -226,6 +221,7 @@ class Model:
             if name not in chances:
                 live.append(named[name])
         self.live: tuple[Assumption, ...] = tuple(live)
+        self.bases: Mapping[str, float | None] = {a.name: a.base for a in live}
         self.draws: Mapping[str, Draw] = draws
         found = {name: draw.support() for name, draw in self.draws.items()}
         self._ends = {name: ends for name, ends in found.items() if ends is not None}
@@ -402,9 +398,10 @@ class Model:
         """
         if engine not in ENGINES:
             raise SimulationError(f"there is no engine {engine!r}", hint=f"choose one of {', '.join(ENGINES)}")
-        row, known = ENGINES[engine], self._programs.get(engine)
-        if known is None or (row.bounded and not known.holds_for(self._ends)):
-            ends = self._ends if known is None else _hull(known.ends, self._ends)
+        row, known, ends = ENGINES[engine], self._programs.get(engine), self._ends
+        if known is not None and known.ends != ends:
+            ends = _hull(known.ends, ends)
+        if known is None or (row.bounded and known.ends != ends):
             parts = self.lowering, self.filter_targets, self.answer_targets, self.fallible
             more = {"bounds": NodeBounds(self.lowering.dag, ends)} if row.bounded else {}
             with paused_collection():
@@ -447,13 +444,12 @@ class Model:
         wanted = np.atleast_1d(np.asarray(probabilities, np.float64))
         held: dict[str, NDArray[np.float64]] = {}
         found: dict[str, NDArray[np.float64]] = {}
-        bases = {a.name: a.base for a in self.live}
         for number, names in enumerate(self.needed.stages):
             varying: Mapping[Hashable, NDArray[np.float64]] = {}
             if number:  # no chance: its parameters are numbers
                 varying = dynamic_parameters([self.draws[name] for name in names], self.lowering, 1)(held, 1)
-            for name in (name for name in names if name in bases):
-                values, base = np.append(wanted, 0.5), bases[name]
+            for name in (name for name in names if name in self.bases):
+                values, base = np.append(wanted, 0.5), self.bases[name]
                 values = self.draws[name].percentiles(values, varying)
                 found[name] = values[:-1]
                 held[name] = values[-1:] if base is None else np.full(1, base)

@@ -224,22 +224,13 @@ def check_section(simulation: Simulation) -> Section:
 
 def assumption_section(simulation: Simulation) -> Section:
     """Every assumption, drawn or not."""
-    rows = tuple(
-        (
-            assumption.name,
-            str(assumption.cell),
-            status(simulation.model, assumption.name, assumption.frozen),
-            assumption.distribution,
-            parameters_text(assumption),
-            cutoffs_text(assumption),
-            assumption.base,
-            assumption.units,
-            assumption.source,
-            notes_text(assumption.notes),
-        )
-        for assumption in simulation.model.assumptions
-    )
-    return Section("assumptions", "Assumptions", table=RecordTable(_ASSUMPTION, rows))
+    rows: list[tuple[Value, ...]] = []
+    for assumption in simulation.model.assumptions:
+        said = status(simulation.model, assumption.name, assumption.frozen), assumption.distribution
+        given = parameters_text(assumption), cutoffs_text(assumption.cutoffs), assumption.base
+        notes = assumption.units, assumption.source, notes_text(assumption.notes)
+        rows.append((assumption.name, str(assumption.cell), *said, *given, *notes))
+    return Section("assumptions", "Assumptions", table=RecordTable(_ASSUMPTION, tuple(rows)))
 
 
 def correlation_section(simulation: Simulation) -> Section:

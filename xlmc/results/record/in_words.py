@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from xlmc.address import Cell
-from xlmc.definitions.definitions import Assumption, DataRange, Filter, Parameter
+from xlmc.definitions.definitions import CUTOFFS, Assumption, DataRange, Filter, Parameter
 from xlmc.definitions.evidence import ERRORS, SIZES, Evidence, Within
 from xlmc.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Scenario, Tabulated, Typed
 from xlmc.definitions.tables.table_rows import as_text
@@ -60,11 +60,13 @@ def number_text(value: Parameter) -> str:
 
 def parameters_text(assumption: Assumption) -> str:
     """`Low 6661, High 6861`; `Data Inputs!Q2:R9` for a distribution built from data."""
-    given = assumption.given
-    parts = [
-        f"{spec.heading} {number_text(given[spec.key])}" for spec in assumption.family.parameters if spec.key in given
-    ]
-    return ", ".join(parts if assumption.data is None else [*parts, _data_text(assumption.data)])
+    parts = []
+    for key, heading in assumption.headings.items():
+        if key not in CUTOFFS:
+            parts.append(f"{heading} {number_text(assumption.given[key])}")
+    if assumption.data is not None:
+        parts.append(_data_text(assumption.data))
+    return ", ".join(parts)
 
 
 def _data_text(data: DataRange) -> str:
@@ -73,15 +75,15 @@ def _data_text(data: DataRange) -> str:
     return f"Data {data.text or data.area}{weights}{bandwidth}"
 
 
-def cutoffs_text(assumption: Assumption) -> str:
+def cutoffs_text(cutoffs: Mapping[str, Parameter]) -> str:
     """`below 0.5, above 0.9`: what is cut off; empty where nothing is."""
     sides = {"lower_cutoff": "below", "upper_cutoff": "above"}
-    return ", ".join(f"{sides[key]} {number_text(cutoff)}" for key, cutoff in assumption.cutoffs.items())
+    return ", ".join(f"{sides[key]} {number_text(cutoff)}" for key, cutoff in cutoffs.items())
 
 
 def distribution_text(assumption: Assumption) -> str:
     """`Normal: Mean 0.77, Std dev 0.05; cut off below 0.6`."""
-    cutoffs = cutoffs_text(assumption)
+    cutoffs = cutoffs_text(assumption.cutoffs)
     ending = f"; cut off {cutoffs}" if cutoffs else ""
     return f"{assumption.distribution}: {parameters_text(assumption)}{ending}"
 

@@ -159,7 +159,7 @@ def _values(book: Path, reference: str) -> tuple[list[float], str, int]:
     from xlmc.definitions.cell_references import area_of_reference
     from xlmc.definitions.computed import Computed
     from xlmc.definitions.tables.data import area_values
-    from xlmc.definitions.tables.fields import number_in
+    from xlmc.definitions.tables.table_rows import number_in
     from xlmc.workbook.reader import read_workbook
 
     workbook = read_workbook(book)

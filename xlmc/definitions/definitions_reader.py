@@ -28,9 +28,10 @@ from xlmc.definitions.tables.evidence_rows import as_filter, read_evidence
 from xlmc.definitions.tables.filters import read_checks, read_filters
 from xlmc.definitions.tables.forecasts import read_forecasts
 from xlmc.definitions.tables.identity import Claims
+from xlmc.definitions.tables.reserved_tables import CONVERTED, DefinitionTable, definition_tables
 from xlmc.definitions.tables.scenario_rows import read_scenarios
 from xlmc.definitions.tables.settings import read_settings
-from xlmc.definitions.tables.table_rows import CONVERTED, DefinitionTable, definition_tables, holds_rows
+from xlmc.definitions.tables.table_rows import holds_rows
 from xlmc.definitions.unavailable import (
     TABLE_REASON,
     TablesOfRun,

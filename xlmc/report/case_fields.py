@@ -10,7 +10,8 @@ from datetime import date, timedelta
 from typing import Final
 
 from xlmc.address import Cell
-from xlmc.definitions.tables.table_rows import CASE, as_text
+from xlmc.definitions.tables.reserved_tables import CASE
+from xlmc.definitions.tables.table_rows import as_text
 from xlmc.distributions.spelling import plain
 from xlmc.errors import DefinitionError, SimulationError
 from xlmc.workbook.printable import label

@@ -3,7 +3,8 @@ from __future__ import annotations
 import pytest
 
 from xlmc.definitions.problems import Findings
-from xlmc.definitions.tables.table_rows import as_text, definition_tables, rows_of
+from xlmc.definitions.tables.reserved_tables import definition_tables
+from xlmc.definitions.tables.table_rows import as_text, rows_of
 from xlmc.errors import ErrorCode
 
 HEADINGS = ["Name", " CELL ", "At_Least", "Comment"]

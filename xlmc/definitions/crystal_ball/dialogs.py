@@ -40,8 +40,8 @@ from xlmc.definitions.definitions import (
     Parameter,
 )
 from xlmc.definitions.problems import Findings
-from xlmc.definitions.tables.fields import number_in, static_value
 from xlmc.definitions.tables.identity import Claims
+from xlmc.definitions.tables.table_rows import number_in, static_value
 from xlmc.distributions import FAMILIES
 from xlmc.distributions.parameters import show
 from xlmc.distributions.spelling import name_key

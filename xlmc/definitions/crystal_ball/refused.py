@@ -12,8 +12,8 @@ from xlmc.address import Cell
 from xlmc.definitions.cell_references import cell_of_reference, formula_at
 from xlmc.definitions.definitions import Assumption, Filter, Forecast
 from xlmc.definitions.problems import Findings
-from xlmc.definitions.tables.fields import optional_text
-from xlmc.definitions.tables.table_rows import DefinitionTable, as_text, rows_of
+from xlmc.definitions.tables.reserved_tables import DefinitionTable
+from xlmc.definitions.tables.table_rows import as_text, optional_text, rows_of
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.formula import Graph, Resolver, build_graph, ir
 from xlmc.workbook.workbook import Workbook

@@ -23,7 +23,7 @@ from xlmc.definitions.definitions import Assumption, Copula, Correlation, Parame
 from xlmc.definitions.in_cells.call_draws import MatrixRow
 from xlmc.definitions.in_cells.reading import CellDraw
 from xlmc.definitions.problems import Findings
-from xlmc.definitions.tables.fields import number_in
+from xlmc.definitions.tables.table_rows import number_in
 from xlmc.distributions.parameters import show
 from xlmc.distributions.spelling import plain
 from xlmc.errors import DefinitionError

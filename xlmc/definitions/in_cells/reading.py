@@ -20,8 +20,7 @@ from xlmc.definitions.in_cells.risk_functions import risk_draw
 from xlmc.definitions.in_cells.risk_properties import is_property, properties_of
 from xlmc.definitions.in_cells.stand_ins import STAND_INS, stand_in, unsupported
 from xlmc.definitions.in_cells.theory import THEORETICAL, Distribution, theoretical
-from xlmc.definitions.tables.fields import number_in, static_value
-from xlmc.definitions.tables.table_rows import as_text
+from xlmc.definitions.tables.table_rows import as_text, number_in, static_value
 from xlmc.distributions import FAMILIES
 from xlmc.errors import FormulaError
 from xlmc.formula import Resolver, formula_text, ir

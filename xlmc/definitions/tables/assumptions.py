@@ -11,9 +11,18 @@ from xlmc.definitions.computed import Computed
 from xlmc.definitions.definitions import CUTOFFS, Assumption, Parameter
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.data import OPTIONS, cached_data_family, given_data, refuse_options
-from xlmc.definitions.tables.fields import logical, number_in, optional_text, parameter, required_text, static_value
 from xlmc.definitions.tables.identity import Claims, identify
-from xlmc.definitions.tables.table_rows import DefinitionTable, Row, rows_of
+from xlmc.definitions.tables.reserved_tables import DefinitionTable
+from xlmc.definitions.tables.table_rows import (
+    Row,
+    logical,
+    number_in,
+    optional_text,
+    parameter,
+    required_text,
+    rows_of,
+    static_value,
+)
 from xlmc.distributions import FAMILIES, Family, ParameterSpec, family_named
 from xlmc.distributions.by_percentiles import by_percentiles
 from xlmc.distributions.parameters import show

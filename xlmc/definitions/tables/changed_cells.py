@@ -8,7 +8,8 @@ from xlmc.address import Cell, InFormula
 from xlmc.definitions.definitions import CUTOFFS, Assumption, Filter, Parameter
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.filters import LIMITS
-from xlmc.definitions.tables.table_rows import Row, definition_tables
+from xlmc.definitions.tables.reserved_tables import definition_tables
+from xlmc.definitions.tables.table_rows import Row
 from xlmc.workbook.workbook import CellValue, Workbook
 
 __all__ = ["NO_TABLE", "cells_that_change"]

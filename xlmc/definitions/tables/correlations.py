@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 from xlmc.address import Cell
 from xlmc.definitions.definitions import Correlation, Parameter
 from xlmc.definitions.problems import Findings
-from xlmc.definitions.tables.fields import parameter, required_text, static_value
-from xlmc.definitions.tables.table_rows import DefinitionTable, Row, rows_of
+from xlmc.definitions.tables.reserved_tables import DefinitionTable
+from xlmc.definitions.tables.table_rows import Row, parameter, required_text, rows_of, static_value
 from xlmc.distributions.parameters import show
 from xlmc.distributions.spelling import did_you_mean, name_key
 from xlmc.errors import DefinitionError

@@ -11,8 +11,7 @@ from xlmc.definitions.cell_references import area_of_reference, formula_at
 from xlmc.definitions.computed import Computed
 from xlmc.definitions.definitions import CUTOFFS, DataRange, Parameter
 from xlmc.definitions.problems import Findings
-from xlmc.definitions.tables.fields import logical, number_in, parameter, static_value
-from xlmc.definitions.tables.table_rows import Row, as_text
+from xlmc.definitions.tables.table_rows import Row, as_text, logical, number_in, parameter, static_value
 from xlmc.distributions import DataError, Family
 from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError

@@ -13,9 +13,18 @@ from xlmc.definitions.computed import Computed
 from xlmc.definitions.definitions import Filter, Parameter
 from xlmc.definitions.evidence import ERRORS, SIZES, Evidence, Within
 from xlmc.definitions.problems import Findings
-from xlmc.definitions.tables.fields import logical, optional_text, parameter, static_value
 from xlmc.definitions.tables.identity import Claims, identify
-from xlmc.definitions.tables.table_rows import DefinitionTable, Row, as_text, holds_rows, rows_of
+from xlmc.definitions.tables.reserved_tables import DefinitionTable
+from xlmc.definitions.tables.table_rows import (
+    Row,
+    as_text,
+    holds_rows,
+    logical,
+    optional_text,
+    parameter,
+    rows_of,
+    static_value,
+)
 from xlmc.distributions.parameters import show
 from xlmc.distributions.spelling import did_you_mean, name_key, plain
 from xlmc.errors import DefinitionError

@@ -9,9 +9,9 @@ from xlmc.address import Cell
 from xlmc.definitions.computed import Computed
 from xlmc.definitions.definitions import Check, Filter, Parameter
 from xlmc.definitions.problems import Findings
-from xlmc.definitions.tables.fields import optional_text, parameter, static_value
 from xlmc.definitions.tables.identity import Claims, identify
-from xlmc.definitions.tables.table_rows import DefinitionTable, Row, as_text, holds_rows, rows_of
+from xlmc.definitions.tables.reserved_tables import DefinitionTable
+from xlmc.definitions.tables.table_rows import Row, as_text, holds_rows, optional_text, parameter, rows_of, static_value
 from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError, ErrorCode
 from xlmc.workbook.workbook import Workbook

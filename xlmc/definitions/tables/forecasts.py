@@ -9,9 +9,9 @@ from xlmc.address import Cell
 from xlmc.definitions.computed import Computed
 from xlmc.definitions.definitions import Forecast
 from xlmc.definitions.problems import Findings
-from xlmc.definitions.tables.fields import central_share, number, number_in, optional_text
 from xlmc.definitions.tables.identity import Claims, identify
-from xlmc.definitions.tables.table_rows import DefinitionTable, Row, rows_of
+from xlmc.definitions.tables.reserved_tables import DefinitionTable
+from xlmc.definitions.tables.table_rows import Row, central_share, number, number_in, optional_text, rows_of
 from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError
 from xlmc.workbook.workbook import Workbook

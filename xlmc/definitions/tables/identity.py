@@ -17,8 +17,7 @@ from xlmc.definitions.cell_references import (
     split_sheet,
 )
 from xlmc.definitions.problems import Findings
-from xlmc.definitions.tables.fields import required_text
-from xlmc.definitions.tables.table_rows import Row, as_text
+from xlmc.definitions.tables.table_rows import Row, as_text, required_text
 from xlmc.distributions.spelling import name_key
 from xlmc.errors import DefinitionError
 from xlmc.workbook.workbook import DefinedName, Workbook

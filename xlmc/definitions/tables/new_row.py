@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from xlmc.address import Cell
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.assumptions import PARAMETERS, is_percentile
-from xlmc.definitions.tables.table_rows import DefinitionTable, Row, as_text, definition_tables
+from xlmc.definitions.tables.reserved_tables import DefinitionTable, definition_tables
+from xlmc.definitions.tables.table_rows import Row, as_text
 from xlmc.distributions import FAMILIES
 from xlmc.distributions.spelling import name_key, plain
 from xlmc.errors import DefinitionError

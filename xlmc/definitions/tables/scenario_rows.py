@@ -21,10 +21,10 @@ from xlmc.definitions.cell_references import cell_of_reference, is_address, spli
 from xlmc.definitions.definitions import CUTOFFS, Assumption, Filter
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Scenario, Typed
-from xlmc.definitions.tables.fields import number_in, optional_text
 from xlmc.definitions.tables.filters import LIMITS
 from xlmc.definitions.tables.identity import Claims
-from xlmc.definitions.tables.table_rows import DefinitionTable, Row, as_text, rows_of
+from xlmc.definitions.tables.reserved_tables import DefinitionTable
+from xlmc.definitions.tables.table_rows import Row, as_text, number_in, optional_text, rows_of
 from xlmc.distributions.spelling import name_key, nearest, plain
 from xlmc.errors import DefinitionError, ErrorCode
 from xlmc.workbook.workbook import CellContent, CellValue, Workbook

@@ -11,8 +11,8 @@ from xlmc.definitions.definitions import Settings
 from xlmc.definitions.evidence_ways import EVIDENCE_WAYS
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.stopping import GOALS, LIMIT, MOST_TRIALS, NO_GOAL, RARE, Option, Stopping, stopping
-from xlmc.definitions.tables.fields import central_share, number_in, required_text
-from xlmc.definitions.tables.table_rows import DefinitionTable, Row, as_text, rows_of
+from xlmc.definitions.tables.reserved_tables import DefinitionTable
+from xlmc.definitions.tables.table_rows import Row, as_text, central_share, number_in, required_text, rows_of
 from xlmc.distributions.parameters import show
 from xlmc.distributions.spelling import did_you_mean, plain
 from xlmc.errors import DefinitionError, SimulationError

@@ -1,74 +1,44 @@
-"""The reserved tables of a workbook, their headings and their rows."""
+"""The rows of a reserved table, and what their cells mean: a text, a number, a parameter, a yes or no.
+
+Each reader of a cell raises a `DefinitionError` that names the cell and says what to do.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from difflib import SequenceMatcher
+from typing import NoReturn
 
 from xlmc.address import Cell
+from xlmc.definitions.definitions import Parameter
 from xlmc.definitions.problems import Findings
+from xlmc.definitions.tables.reserved_tables import NEAR_MISS, DefinitionTable
 from xlmc.distributions.spelling import nearest, plain
-from xlmc.errors import ErrorCode
+from xlmc.errors import DefinitionError, ErrorCode
 from xlmc.workbook.printable import label
-from xlmc.workbook.workbook import CellContent, CellValue, Table, Workbook
+from xlmc.workbook.workbook import CellContent, CellValue, Workbook
 
 __all__ = [
-    "CASE",
-    "CONVERTED",
-    "KINDS",
-    "DefinitionTable",
     "Row",
     "as_text",
-    "definition_tables",
+    "central_share",
     "holds_rows",
+    "logical",
+    "number",
+    "number_in",
+    "optional_text",
+    "parameter",
+    "required_text",
     "rows_of",
+    "static_value",
 ]
 
-CONVERTED = "xlmc_converted"
-"""What the name of the table starts with that `xlmc convert` writes: a workbook that has it has its definitions in
-tables, also those of Crystal Ball's dialogs, where they could be converted."""
-
-KINDS = (
-    "xlmc_assumptions",
-    "xlmc_forecasts",
-    "xlmc_filters",
-    "xlmc_evidence",
-    "xlmc_checks",
-    "xlmc_correlations",
-    "xlmc_scenarios",
-    "xlmc_settings",
-    CONVERTED,
-)
-"""What the names of the tables start with; a copied sheet's `xlmc_assumptions3` counts too."""
-
-CASE = "xlmc_case"
-"""What the name of the table starts with that says whose case it is: for reports; a run does not read it."""
-
-_PREFIX = "xlmc"
-
-_NEAR_MISS = 0.8  # likeness above which an unknown name is taken for a slip
-_SLIP = 0.74  # likeness of the first letters above which they are: one of four is another
 _MISSPELT = 0.85  # likeness above which a heading is taken for one that the table lacks
 
 _TOLD = frozenset({"units", "source", "because"})
 """Columns that are only shown: a slip in their heading changes no number."""
 
-
-@dataclass(frozen=True, slots=True)
-class DefinitionTable:
-    """A reserved table. `columns` maps the plain spelling of a heading to the heading as written and its column."""
-
-    kind: str
-    table: Table
-    columns: Mapping[str, tuple[str, int]]
-
-    @property
-    def where(self) -> Cell:
-        return Cell(self.table.area.sheet, self.table.area.top, self.table.area.left)
-
-    def heading_cell(self, column: int) -> Cell:
-        return Cell(self.table.area.sheet, self.table.area.top, column)
+_WORDS = {"true": True, "yes": True, "on": True, "false": False, "no": False, "off": False}
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,42 +104,6 @@ def as_text(value: CellValue) -> str:
             return format(value, ".15g")
 
 
-def definition_tables(workbook: Workbook, findings: Findings) -> dict[str, list[DefinitionTable]]:
-    """The reserved tables of every sheet by kind, each kind present."""
-    found: dict[str, list[DefinitionTable]] = {kind: [] for kind in KINDS}
-    for table in workbook.tables:
-        kind = next((kind for kind in KINDS if table.name.casefold().startswith(kind)), None)
-        if kind is not None:
-            found[kind].append(_with_headings(kind, table, findings))
-        elif not table.name.casefold().startswith(CASE):
-            _point_out_unknown(table, findings)
-    return found
-
-
-def _point_out_unknown(table: Table, findings: Findings) -> None:
-    """Refuse a name that is nearly a reserved one: a misspelt table of filters would filter nothing.
-
-    Any other name with xlmc's prefix gets a notice, and so does a reserved name without the prefix.
-    """
-    where = Cell(table.area.sheet, table.area.top, table.area.left)
-    begins = plain(table.name)
-    for kind in KINDS:
-        if _starts_like(begins, _PREFIX, _SLIP) and _starts_like(begins, plain(kind), _NEAR_MISS):
-            hint = f"Rename it {kind} (Table Design); if it is not meant for xlmc, give it a name without xlmc"
-            findings.problem(f"The table {table.name} is not read: did you mean {kind}?", where, hint)
-            return
-    if begins.startswith(_PREFIX):
-        findings.notice(f"The table {table.name} is not read: xlmc reads {', '.join(KINDS)}", where)
-    elif slip := nearest(table.name, KINDS, _NEAR_MISS):
-        findings.notice(f"The table {table.name} is not read: did you mean {slip}?", where)
-
-
-def _starts_like(text: str, known: str, closeness: float) -> bool:
-    """Whether a text begins as a known one does, but for a slip; what follows does not count."""
-    lengths = range(len(known) - 1, len(known) + 2)
-    return any(SequenceMatcher(None, text[:length], known).ratio() > closeness for length in lengths)
-
-
 def rows_of(
     workbook: Workbook,
     tables: Iterable[DefinitionTable],
@@ -196,20 +130,6 @@ def holds_rows(workbook: Workbook, table: DefinitionTable) -> bool:
     return next(_filled_rows(workbook, table), None) is not None
 
 
-def _with_headings(kind: str, table: Table, findings: Findings) -> DefinitionTable:
-    columns: dict[str, tuple[str, int]] = {}
-    for number, heading in enumerate(table.columns, start=table.area.left):
-        heading = label(heading)
-        spelling = plain(heading)
-        if spelling in columns:
-            message = f"The table {table.name} has two columns {columns[spelling][0]!r} and {heading!r}"
-            where = Cell(table.area.sheet, table.area.top, number)
-            findings.problem(message, where, "Rename or delete one of them")
-        else:
-            columns[spelling] = heading, number
-    return DefinitionTable(kind, table, columns)
-
-
 def _complete(table: DefinitionTable, required: tuple[str, ...], findings: Findings) -> bool:
     missing = [heading for heading in required if plain(heading) not in table.columns]
     for heading in missing:
@@ -226,7 +146,7 @@ def _point_out_slips(
     missing = [heading for heading in known if plain(heading) not in table.columns and plain(heading) not in _TOLD]
     missing = [heading for heading in missing if heading not in required]  # `_complete` tells of these
     for spelling, (written, number) in table.columns.items():
-        slip = None if spelling in spellings else nearest(written, known, _NEAR_MISS)
+        slip = None if spelling in spellings else nearest(written, known, NEAR_MISS)
         if slip is None:
             continue
         where = table.heading_cell(number)
@@ -258,3 +178,147 @@ def _filled_rows(workbook: Workbook, table: DefinitionTable) -> Iterator[Row]:
         row = Row(workbook, table, number)
         if any(row.filled(written) for written, _ in table.columns.values()):
             yield row
+
+
+def required_text(row: Row, heading: str) -> str:
+    """The text of the cell, trimmed.
+
+    Raises:
+        DefinitionError: the cell is blank or holds an error.
+    """
+    text = optional_text(row, heading)
+    if not text:
+        message = f"{row.heading(heading)} is blank"
+        raise DefinitionError(message, where=row.cell(heading), hint=f"Fill in {heading}, or clear the whole row")
+    return text
+
+
+def optional_text(row: Row, heading: str) -> str:
+    """The text of the cell, trimmed; '' where it is blank or the table has no such column.
+
+    Raises:
+        DefinitionError: the cell holds an error, or a formula that was never calculated.
+    """
+    if not row.filled(heading):
+        return ""
+    value = row.content(heading).value
+    if value is None or isinstance(value, ErrorCode):
+        refuse(row.heading(heading), row.content(heading), row.cell(heading))
+    return as_text(value)
+
+
+def number(row: Row, heading: str) -> float | None:
+    """The number in the cell, typed in or as Excel cached it; None where it is blank.
+
+    Raises:
+        DefinitionError: the cell holds anything else.
+    """
+    if not row.filled(heading):
+        return None
+    return number_in(row.heading(heading), row.content(heading), row.cell(heading))
+
+
+def parameter(row: Row, heading: str) -> Parameter | None:
+    """The number in the cell, or the cell itself where it holds a formula; None where it is blank.
+
+    Raises:
+        DefinitionError: the cell holds text, a logical or an error, typed in or as Excel cached it. A formula that
+            was #NAME? is no such error.
+    """
+    content = row.content(heading)
+    if content.is_blank:
+        return None
+    if content.formula is not None and (content.value is None or content.value is ErrorCode.NAME):
+        # Never calculated yet, or by a program that does not know a function of @RISK: each run calculates it.
+        return row.cell(heading)
+    value = number_in(row.heading(heading), content, row.cell(heading))
+    return value if content.formula is None else row.cell(heading)
+
+
+def static_value(given: Parameter | None, workbook: Workbook) -> float | None:
+    """The number, or the one that Excel cached for the cell, if any."""
+    if not isinstance(given, Cell):
+        return given
+    value = workbook.content(given).value
+    return float(value) if isinstance(value, int | float) and not isinstance(value, bool | ErrorCode) else None
+
+
+def logical(row: Row, heading: str) -> bool:
+    """TRUE or FALSE, also as the words true, false, yes, no, on, off; blank is FALSE.
+
+    Raises:
+        DefinitionError: the cell holds anything else.
+    """
+    if not row.filled(heading):
+        return False
+    value = row.content(heading).value
+    if isinstance(value, bool):
+        return value
+    word = _WORDS.get(value.strip().casefold()) if isinstance(value, str) else None
+    if word is None:
+        message = f"{row.heading(heading)} holds {as_text(value)!r}, neither TRUE nor FALSE"
+        raise DefinitionError(message, where=row.cell(heading), hint="Type TRUE or FALSE, or leave the cell blank")
+    return word
+
+
+def central_share(what: str, value: float, where: Cell, findings: Findings) -> float:
+    """A percentage above 0 and below 100 as a share.
+
+    A number below 1 is taken for a share, as a cell in percent format holds it, with a notice.
+
+    Args:
+        what: what a person calls the number, for the message.
+        value: the number.
+        where: its cell.
+        findings: takes the notice.
+
+    Raises:
+        DefinitionError: the number lies outside.
+    """
+    if not 0 < value < 100:
+        message = f"{what} ({as_text(value)}) must be above 0 and below 100"
+        raise DefinitionError(message, where=where, hint="Type the central range in percent, such as 51")
+    share = value if value < 1 else value / 100
+    if value <= 1:
+        findings.notice(f"{what} {as_text(value)} is read as {share * 100:.12g} %", where)
+    return share
+
+
+def number_in(what: str, content: CellContent, where: Cell) -> float:
+    """The number that a cell holds.
+
+    Args:
+        what: what a person calls the cell, for the message.
+        content: what the cell holds; not blank.
+        where: the cell.
+
+    Raises:
+        DefinitionError: it holds text, a logical, an error, or a formula that was never calculated.
+    """
+    value = content.value
+    if value is None or isinstance(value, bool | str | ErrorCode):
+        refuse(what, content, where)
+    return float(value)
+
+
+def refuse(what: str, content: CellContent, where: Cell) -> NoReturn:
+    """Say what the cell holds where it should hold something else."""
+    match content.value:
+        case None:
+            message, hint = f"{what} has never been calculated", "Open the workbook in Excel, calculate it and save it"
+        case ErrorCode() as code:
+            message, hint = f"{what} holds the error {code.text}", "Correct the cell, or what it depends on"
+        case bool() as value:
+            message, hint = f"{what} holds {as_text(value)}, not a number", "Type a number"
+        case value:
+            message = f"{what} holds the text {as_text(value)!r}, not a number"
+            hint = "Type it again as a number" if _reads_as_number(str(value)) else "Type a number"
+    raise DefinitionError(message, where=where, hint=hint)
+
+
+def _reads_as_number(text: str) -> bool:
+    try:
+        float(text.replace(",", ""))
+    except ValueError:
+        return False
+    return True

@@ -11,7 +11,7 @@ from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 from xlmc.address import Cell, quote_sheet
 from xlmc.definitions.crystal_ball.refused import REFUSED_CELL
 from xlmc.definitions.new_tables import Block, Entry, Formula, NewTable, text_of
-from xlmc.definitions.tables.table_rows import CONVERTED
+from xlmc.definitions.tables.reserved_tables import CONVERTED
 from xlmc.errors import ErrorCode
 from xlmc.report.sheets.exact_book import ExactBook
 from xlmc.report.sheets.styles import CREATED

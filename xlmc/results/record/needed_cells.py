@@ -18,7 +18,7 @@ from collections.abc import Collection, Container, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Final
 
 from xlmc.address import Area, Cell, host_of, parse_address, quote_sheet
-from xlmc.definitions.tables.table_rows import KINDS
+from xlmc.definitions.tables.reserved_tables import KINDS
 from xlmc.distributions.spelling import name_key
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.formula.shape import text_at

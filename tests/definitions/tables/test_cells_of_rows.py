@@ -4,8 +4,16 @@ import pytest
 
 from xlmc.address import Cell
 from xlmc.definitions.problems import Findings
-from xlmc.definitions.tables.fields import logical, number, optional_text, parameter, required_text, static_value
-from xlmc.definitions.tables.table_rows import definition_tables, rows_of
+from xlmc.definitions.tables.reserved_tables import definition_tables
+from xlmc.definitions.tables.table_rows import (
+    logical,
+    number,
+    optional_text,
+    parameter,
+    required_text,
+    rows_of,
+    static_value,
+)
 from xlmc.errors import DefinitionError, ErrorCode
 
 HERE = Cell("S", 2, 2)

@@ -6,7 +6,7 @@ that cell: a draw cannot have limits that move with itself. What a person means 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Hashable, Mapping, Sequence, Set
+from collections.abc import Collection, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -119,14 +119,14 @@ class _Varying:
     evaluator: Evaluator
     cells: tuple[Cell, ...]
 
-    def __call__(self, drawn: Mapping[str, NDArray[np.float64]], n: int) -> dict[Hashable, NDArray[np.float64]]:
+    def __call__(self, drawn: Mapping[str, NDArray[np.float64]], n: int) -> dict[Cell, NDArray[np.float64]]:
         columns = self.evaluator.filters(drawn, n)
         return {cell: column.as_floats() for cell, column in zip(self.cells, columns, strict=True)}
 
 
 def dynamic_parameters(draws: Sequence[Draw], lowering: Lowering, block: int) -> DynamicParameters:
     """What computes the varying parameters of a stage from the draws of the stages before it; for one thread."""
-    cells = tuple(dict.fromkeys(p for draw in draws for p in draw.varying if isinstance(p, Cell)))
+    cells = tuple(dict.fromkeys(p for draw in draws for p in draw.varying))
     targets = [parameter_target(cell) for cell in cells]
     program = NumpyProgram.of(lowering, targets, [], frozenset(lowering.inputs.values()))
     return _Varying(program.evaluator(block), cells)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import gc
-from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from copy import copy
 from dataclasses import dataclass, replace
@@ -445,7 +445,7 @@ class Model:
         held: dict[str, NDArray[np.float64]] = {}
         found: dict[str, NDArray[np.float64]] = {}
         for number, names in enumerate(self.needed.stages):
-            varying: Mapping[Hashable, NDArray[np.float64]] = {}
+            varying: Mapping[Cell, NDArray[np.float64]] = {}
             if number:  # no chance: its parameters are numbers
                 varying = dynamic_parameters([self.draws[name] for name in names], self.lowering, 1)(held, 1)
             for name in (name for name in names if name in self.bases):

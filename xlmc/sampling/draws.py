@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from numbers import Real
@@ -31,7 +31,7 @@ Floats = NDArray[np.float64]
 _SMALL: Final = 2.0**-900
 """Numbers below it may have a share, of 2^-53 at least, that is too small for a cell."""
 
-DynamicParameters = Callable[[Mapping[str, Floats], int], Mapping[Hashable, Floats]]
+DynamicParameters = Callable[[Mapping[str, Floats], int], Mapping[Cell, Floats]]
 """Takes the draws made so far and the number of trials, gives the parameters that depend on them; NaN for an error."""
 
 Filler = Callable[[Sequence[Stream], Sequence[tuple[float, float]], Floats], Callable[[int], None]]
@@ -44,7 +44,7 @@ class Draw:
     """How one assumption is drawn.
 
     Attributes:
-        parameters: numbers, or keys into what `DynamicParameters` gives, in the family's order.
+        parameters: numbers, or cells whose numbers `DynamicParameters` gives, in the family's order.
         cutoffs: lower and upper, likewise; None without truncation.
 
     Those that vary are checked in every trial. Where all are numbers, `fault` checks them, and nothing else does.
@@ -52,11 +52,11 @@ class Draw:
 
     name: str
     family: Family
-    parameters: tuple[Hashable, ...]
-    cutoffs: tuple[Hashable, Hashable] | None = None
+    parameters: tuple[float | Cell, ...]
+    cutoffs: tuple[float | Cell, float | Cell] | None = None
 
     @classmethod
-    def of(cls, name: str, family: Family, given: Mapping[str, Hashable]) -> Draw:
+    def of(cls, name: str, family: Family, given: Mapping[str, float | Cell]) -> Draw:
         """A draw from parameters by key, `lower_cutoff` and `upper_cutoff` among them where the draw is cut off."""
         parameters = dict(given)
         for key, each in given.items():
@@ -73,7 +73,7 @@ class Draw:
             return Member(self.family, self.parameters).fault()
         return Truncated(self.family).fault(*self.cutoffs, *self.parameters)  # type: ignore[arg-type]  # likewise
 
-    def fill(self, u: Floats, dynamic: Mapping[Hashable, Floats]) -> None:
+    def fill(self, u: Floats, dynamic: Mapping[Cell, Floats]) -> None:
         """Turn uniforms `(n,)` into draws, in their memory; NaN where the parameters of a trial are not a distribution.
 
         A draw that is too small a number for a cell is 0.
@@ -87,7 +87,7 @@ class Draw:
         whole = Member(self.family, self.parameters)
         return whole if self.cutoffs is None else Slice(whole, *self.cutoffs)  # type: ignore[arg-type]  # numbers
 
-    def _of_trials(self, dynamic: Mapping[Hashable, Floats]) -> Member | Slice:
+    def _of_trials(self, dynamic: Mapping[Cell, Floats]) -> Member | Slice:
         """What the parameters of each trial make of it."""
         values = [p if isinstance(p, float) else dynamic[p] for p in (*(self.cutoffs or ()), *self.parameters)]
         return self.family.checked(*values) if self.cutoffs is None else Truncated(self.family).checked(*values)
@@ -97,7 +97,7 @@ class Draw:
         return self.distribution.cdf(x)
 
     @property
-    def varying(self) -> list[Hashable]:
+    def varying(self) -> list[Cell]:
         """The parameters and cutoffs that vary by trial."""
         return [p for p in (*self.parameters, *(self.cutoffs or ())) if not isinstance(p, float)]
 
@@ -109,7 +109,7 @@ class Draw:
     @property
     def has_mean(self) -> bool:
         """Whether its mean is a finite number; where parameters vary, each trial has a mean of its own."""
-        if not self.fixed or (self.cutoffs is not None and np.isfinite(self.cutoffs).all()):  # type: ignore[arg-type]
+        if not self.fixed or (self.cutoffs is not None and np.isfinite(self.cutoffs).all()):
             return True
         return bool(np.isfinite(Member(self.family, self.parameters).mean()))
 
@@ -134,7 +134,7 @@ class Draw:
     def _quantiles(self, u: Floats) -> Floats:
         return _flush(self.distribution.order(u))
 
-    def percentiles(self, p: Floats, dynamic: Mapping[Hashable, Floats]) -> Floats:
+    def percentiles(self, p: Floats, dynamic: Mapping[Cell, Floats]) -> Floats:
         """The values that are not exceeded with these probabilities, `(q,)`, where the parameters are these."""
         return _flush((self.distribution if self.fixed else self._of_trials(dynamic)).percentile(p))
 

@@ -29,7 +29,7 @@ from xlmc.evaluation.engine import (
 )
 from xlmc.sampling.draws import Linear
 
-__all__ = ["Block", "FilterTally", "ModelRunner", "Portable", "Runner", "Task", "fault_text"]
+__all__ = ["Block", "FilterTally", "ModelRunner", "Portable", "Runner", "Task", "fault_text", "portions"]
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
@@ -335,3 +335,10 @@ def fault_text(code: int) -> str:
     if code == UNDECIDED_RESULT:
         return "error in a filter of its own"
     return "blank" if code == BLANK_RESULT else ErrorCode(code).text
+
+
+def portions(draws: Mapping[str, Floats], n: int, size: int) -> Iterator[tuple[slice, dict[str, Floats]]]:
+    """The first n trials of draws that are known, up to `size` at a time: which they are, and name -> their draws."""
+    for start in range(0, n, size):
+        trials = slice(start, min(start + size, n))
+        yield trials, {name: np.ascontiguousarray(values[trials]) for name, values in draws.items()}

@@ -13,6 +13,7 @@ from xlmc.address import Cell, InFormula
 from xlmc.definitions.definitions import Forecast
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.engine import TEXT_RESULT, Target
+from xlmc.run.blocks import portions
 from xlmc.run.model import lower_needed
 
 if TYPE_CHECKING:
@@ -82,19 +83,16 @@ def error_roots(model: Model, cells: Sequence[Cell], drawn: Sequence[Mapping[str
 
 def _first_error(model: Model, cell: Cell, drawn: Mapping[str, Floats]) -> dict[str, float] | None:
     """The draws of the first trial in which a cell is an error."""
-    draws = {a.name: drawn[a.name] for a in model.live}
-    trials = min((values.size for values in draws.values()), default=0)
+    trials = min((values.size for values in drawn.values()), default=0)
     evaluator = model.evaluator([Target(cell, cell)], _BLOCK)
-    for start in range(0, trials, _BLOCK):
-        n = min(_BLOCK, trials - start)
-        block = {key: np.ascontiguousarray(values[start : start + n]) for key, values in draws.items()}
-        (column,) = evaluator.filters(block, n)
+    for part, block in portions(drawn, trials, _BLOCK):
+        (column,) = evaluator.filters(block, part.stop - part.start)
         if column.codes is None:
             continue
         whole = np.all([np.isfinite(values) for values in block.values()], axis=0)
         wrong = np.flatnonzero((column.codes > 0) & (column.codes < TEXT_RESULT) & whole)
         if wrong.size:
-            return {key: float(values[wrong[0]]) for key, values in block.items()}
+            return {name: float(values[wrong[0]]) for name, values in block.items()}
     return None
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from xlmc.distributions.parameters import show
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.engine import BLANK_RESULT, TEXT_RESULT
+from xlmc.run.blocks import portions
 from xlmc.run.draw_binding import base_point
 from xlmc.statistics import Estimate, proportion
 
@@ -191,10 +192,8 @@ def _failures(model: Model, draws: Mapping[str, Floats], trials: int) -> tuple[N
     program = model.check_program()
     size = min(_BLOCK, program.largest_block)
     evaluator = program.evaluator(size)
-    for start in range(0, trials, size):
-        n = min(size, trials - start)
-        block = {key: np.ascontiguousarray(values[start : start + n]) for key, values in draws.items()}
-        for index, column in enumerate(evaluator.filters(block, n)):
+    for part, block in portions(draws, trials, size):
+        for index, column in enumerate(evaluator.filters(block, part.stop - part.start)):
             fails = np.flatnonzero(_fails(column))
             failed[index] += fails.size
             if fails.size and not held[index]:

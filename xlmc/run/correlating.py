@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 
-from xlmc.address import Cell
 from xlmc.definitions.definitions import Copula, Correlation
-from xlmc.distributions.parameters import show
 from xlmc.distributions.whole_numbers import WholeNumbers
-from xlmc.errors import DefinitionError, Notice
-from xlmc.evaluation.graph.lower import Lowering
-from xlmc.run.draw_binding import fold_cell
+from xlmc.errors import Notice
 from xlmc.sampling.copula import GaussianCopula
 from xlmc.sampling.copulas import Clayton, Frank, Gumbel, Joining, Reflected, StudentTCopula
 from xlmc.sampling.draws import CorrelatedGroup, Draw
@@ -27,7 +22,6 @@ __all__ = [
     "drawn_correlation",
     "repair_notices",
     "tie_notices",
-    "with_correlation_number",
 ]
 
 _ROUNDING = 1e-9
@@ -108,22 +102,6 @@ def copula_notices(groups: Sequence[CorrelatedGroup], copulas: Sequence[Copula])
                 "; no variables can have all of its correlations at once, so the nearest that they can have are used"
             )
         yield Notice(message, copula.row)
-
-
-def with_correlation_number(row: Correlation, lowering: Lowering) -> Correlation:
-    """The row with a number for the rank correlation, which a formula may compute.
-
-    Raises:
-        DefinitionError: it depends on an assumption, is no number, or not from -1 to 1.
-    """
-    value = fold_cell(row.value, lowering) if isinstance(row.value, Cell) else row.value
-    if isinstance(value, Cell):
-        message = f"The rank correlation of {row.first!r} and {row.second!r} varies with an assumption"
-        raise DefinitionError(message, where=value, hint="A correlation is one number for all trials: type it")
-    if not -1 <= value <= 1:
-        message = f"Correlation ({show(value)}) must lie between -1 and 1"
-        raise DefinitionError(message, where=row.row, hint="Correct the formula: a rank correlation is from -1 to 1")
-    return replace(row, value=value)
 
 
 def drawn_correlation(groups: Sequence[CorrelatedGroup], first: str, second: str) -> float | None:

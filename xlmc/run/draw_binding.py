@@ -1,4 +1,4 @@
-"""Assumptions of a workbook as draws: constant parameters checked, dynamic ones compiled.
+"""Assumptions of a workbook as draws: constant parameters checked, dynamic ones compiled; and numbers that are fixed.
 
 A parameter that is computed from its assumption's own cell, `Low` as `=D7*0.97`, is computed from the base value of
 that cell: a draw cannot have limits that move with itself. What a person means is 3 % below the value in the cell.
@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell, InFormula
-from xlmc.definitions.definitions import Assumption, DataRange, Definitions, Parameter
+from xlmc.definitions.definitions import Assumption, Correlation, DataRange, Definitions, Filter, Parameter
+from xlmc.definitions.evidence import Evidence
 from xlmc.definitions.tables.data import data_family
+from xlmc.definitions.tables.evidence_rows import as_filter, check_sizes
 from xlmc.distributions import Family
 from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError, Notice
@@ -27,7 +29,7 @@ from xlmc.run.needed import upstream
 from xlmc.sampling.draws import Draw, DynamicParameters
 from xlmc.workbook.workbook import Workbook
 
-__all__ = ["base_point", "draw_of", "dynamic_parameters", "parameter_target", "with_base_parameters"]
+__all__ = ["base_point", "draw_of", "dynamic_parameters", "parameter_target", "with_numbers"]
 
 
 def parameter_target(cell: Cell) -> Target:
@@ -51,7 +53,7 @@ def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
     """
     data = assumption.data
     family = assumption.family if data is None else _from_data(assumption.family, data, assumption.name, lowering)
-    computed = {key: fold_cell(cell, lowering) for key, cell in assumption.formulas.items()}
+    computed = {key: _fold_cell(cell, lowering) for key, cell in assumption.formulas.items()}
     given = {**assumption.given, **computed}
     draw = Draw.of(assumption.name, family, given)
     if family.given_by and draw.varying:  # the member is searched for once
@@ -69,7 +71,7 @@ def _from_data(family: Family, data: DataRange, name: str, lowering: Lowering) -
         raise _varying_data(name, drawn)
 
     def number(cell: Cell) -> float:
-        value = fold_cell(cell, lowering)
+        value = _fold_cell(cell, lowering)
         if isinstance(value, Cell):
             raise _varying_data(name, cell)
         return value
@@ -85,20 +87,7 @@ def _varying_data(name: str, cell: Cell) -> DefinitionError:
     )
 
 
-def lower_fixed(workbook: Workbook, definitions: Definitions, cells: Collection[Cell]) -> Lowering:
-    """Cells of definitions that must hold numbers, lowered: `fold_cell` finds the number, or that it varies.
-
-    Raises:
-        FormulaError: one cannot be computed.
-    """
-    assumptions = definitions.assumptions
-    drawn = {a.cell: a.name for a in assumptions if not a.frozen}
-    held = {a.cell: a.base for a in assumptions if a.frozen and a.base is not None}
-    resolver = Resolver(workbook, [a.cell for a in assumptions], rewritten=definitions.rewritten)
-    return lower_cells(resolver, cells, drawn, held)
-
-
-def fold_cell(cell: Cell, lowering: Lowering) -> Parameter:
+def _fold_cell(cell: Cell, lowering: Lowering) -> Parameter:
     """The number of a parameter's cell; the cell where an assumption reaches it.
 
     Raises:
@@ -132,7 +121,76 @@ def dynamic_parameters(draws: Sequence[Draw], lowering: Lowering, block: int) ->
     return _Varying(program.evaluator(block), cells)
 
 
-def with_base_parameters(workbook: Workbook, definitions: Definitions) -> Definitions:
+def with_numbers(workbook: Workbook, definitions: Definitions) -> Definitions:
+    """The definitions with a number for what formulas compute and no assumption may vary.
+
+    These are parameters that depend on their assumption's own cell, readings and errors of evidence, and rank
+    correlations.
+
+    Raises:
+        DefinitionError: such a cell depends on an assumption, or does not hold what it must.
+        FormulaError: one cannot be computed.
+    """
+    if any(a.formulas for a in definitions.assumptions):
+        definitions = _with_base_parameters(workbook, definitions)
+    cells = [cell for each in definitions.filters if each.evidence for cell in each.evidence.cells]
+    cells += [row.value for row in definitions.correlations if isinstance(row.value, Cell)]
+    if not cells:
+        return definitions
+    lowering = _lower_fixed(workbook, definitions, cells)
+    return replace(
+        definitions,
+        filters=tuple(_with_evidence_numbers(each, lowering) for each in definitions.filters),
+        correlations=tuple(_with_coefficient(row, lowering) for row in definitions.correlations),
+    )
+
+
+def _lower_fixed(workbook: Workbook, definitions: Definitions, cells: Collection[Cell]) -> Lowering:
+    """Cells of definitions that must hold numbers, lowered: `_fold_cell` finds the number, or that it varies."""
+    assumptions = definitions.assumptions
+    drawn = {a.cell: a.name for a in assumptions if not a.frozen}
+    held = {a.cell: a.base for a in assumptions if a.frozen and a.base is not None}
+    resolver = Resolver(workbook, [a.cell for a in assumptions], rewritten=definitions.rewritten)
+    return lower_cells(resolver, cells, drawn, held)
+
+
+def _with_evidence_numbers(filter_: Filter, lowering: Lowering) -> Filter:
+    """The filter with a number for each reading and each size of an error that a formula computes."""
+    evidence = filter_.evidence
+    if evidence is None or not any(evidence.cells):
+        return filter_
+    reading = _number(evidence, evidence.reading, lowering)
+    sizes = {key: _number(evidence, value, lowering) for key, value in evidence.sizes.items()}
+    check_sizes(evidence, reading, sizes)
+    return as_filter(replace(evidence, reading=reading, sizes=sizes))
+
+
+def _number(evidence: Evidence, value: Parameter | None, lowering: Lowering) -> float:
+    assert value is not None, "a row without a reading is no filter"
+    found = _fold_cell(value, lowering) if isinstance(value, Cell) else value
+    if isinstance(found, Cell):
+        message = f"A number of the evidence {evidence.name!r} varies with an assumption"
+        hint = (
+            "A reading and its error are fixed: where a reading rests on uncertain inputs, let Cell be the difference "
+            "of the model's quantity and what they give, with Reading 0"
+        )
+        raise DefinitionError(message, where=found, hint=hint)
+    return found
+
+
+def _with_coefficient(row: Correlation, lowering: Lowering) -> Correlation:
+    """The row with a number for the rank correlation, which a formula may compute."""
+    value = _fold_cell(row.value, lowering) if isinstance(row.value, Cell) else row.value
+    if isinstance(value, Cell):
+        message = f"The rank correlation of {row.first!r} and {row.second!r} varies with an assumption"
+        raise DefinitionError(message, where=value, hint="A correlation is one number for all trials: type it")
+    if not -1 <= value <= 1:
+        message = f"Correlation ({show(value)}) must lie between -1 and 1"
+        raise DefinitionError(message, where=row.row, hint="Correct the formula: a rank correlation is from -1 to 1")
+    return replace(row, value=value)
+
+
+def _with_base_parameters(workbook: Workbook, definitions: Definitions) -> Definitions:
     """The definitions with a number for every parameter and cutoff that depends on its assumption's own cell.
 
     Raises:
@@ -193,7 +251,7 @@ class _Own:
         assumptions, own = self._definitions.assumptions, self._assumption.cell
         drawn = {a.cell: a.name for a in assumptions if not a.frozen and a.cell != own}
         held = {a.cell: a.base for a in assumptions if a.cell not in drawn and a.base is not None}
-        return fold_cell(cell, lower_cells(self._resolver, [cell], drawn, held))
+        return _fold_cell(cell, lower_cells(self._resolver, [cell], drawn, held))
 
 
 def _notice(assumption: Assumption, numbers: Mapping[str, float]) -> Notice:

@@ -29,14 +29,13 @@ from xlmc.run.correlating import (
     correlated_groups,
     repair_notices,
     tie_notices,
-    with_correlation_number,
 )
-from xlmc.run.draw_binding import draw_of, dynamic_parameters, lower_fixed, with_base_parameters
-from xlmc.run.evidence_filters import chances_of, with_evidence_numbers
+from xlmc.run.draw_binding import draw_of, dynamic_parameters, with_numbers
 from xlmc.run.forecast_filters import FilteringEvaluator, FilteringProgram, conditions_of, filters_by_forecast
 from xlmc.run.model_notices import example_notices, heavy_notices, still_notices
 from xlmc.run.needed import (
     Needed,
+    chances_of,
     definitions_of_checks,
     drawing_order,
     filter_condition,
@@ -92,25 +91,6 @@ def lower_needed(workbook: Workbook, definitions: Definitions) -> tuple[Needed, 
         live = [named[name] for name in needed.live]  # in this order, on which correlated draws depend
         needed = replace(needed, stages=drawing_order(needed.graph, live, lowering.led_to))
     return needed, lowering
-
-
-def _with_fixed_numbers(workbook: Workbook, definitions: Definitions) -> Definitions:
-    """The definitions with a number for what formulas compute and no assumption may vary: evidence and correlations.
-
-    Raises:
-        DefinitionError: such a cell depends on an assumption, or does not hold what it must.
-        FormulaError: one cannot be computed.
-    """
-    cells = [cell for each in definitions.filters if each.evidence for cell in each.evidence.cells]
-    cells += [row.value for row in definitions.correlations if isinstance(row.value, Cell)]
-    if not cells:
-        return definitions
-    lowering = lower_fixed(workbook, definitions, cells)
-    return replace(
-        definitions,
-        filters=tuple(with_evidence_numbers(each, lowering) for each in definitions.filters),
-        correlations=tuple(with_correlation_number(row, lowering) for row in definitions.correlations),
-    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,7 +175,7 @@ class Model:
     """
 
     def __init__(self, workbook: Workbook, definitions: Definitions, path: Path) -> None:
-        given, definitions = definitions, _with_fixed_numbers(workbook, with_base_parameters(workbook, definitions))
+        given, definitions = definitions, with_numbers(workbook, definitions)
         self._folded = definitions is not given
         self.workbook, self.path = workbook, path
         self.needed, self.lowering = lower_needed(workbook, definitions)

@@ -15,6 +15,7 @@ from xlmc.workbook.workbook import Workbook
 
 __all__ = [
     "Needed",
+    "chances_of",
     "definitions_of_checks",
     "drawing_order",
     "filter_condition",
@@ -208,7 +209,11 @@ def filter_condition(filter_: Filter, *, certain: bool = False) -> ir.Expression
 
 
 def kept_by_chance(bell: Bell, cell: Cell, chance: Cell | None) -> ir.Expression:
-    """Whether a trial is kept, with probability exp(-z²/2).
+    """Whether a trial is kept, with probability exp(-z²/2): the quantity is z standard deviations from the reading.
+
+    An item of evidence has a uniform number U of its own, from a random stream of its own, and keeps the trial where
+    U ≤ exp(-z²/2). What is kept are then exact draws, of equal weight, from the inputs given the reading (rejection
+    sampling).
 
     Args:
         bell: the error of the reading.
@@ -224,6 +229,16 @@ def kept_by_chance(bell: Bell, cell: Cell, chance: Cell | None) -> ir.Expression
         return kept
     positive = ir.Binary(">", ir.Binary("+", cell, ir.Number(0.0)), ir.Number(0.0), all_bits=True)
     return ir.Call("IF", (positive, kept, ir.Logical(value=False)))
+
+
+def chances_of(filters: Iterable[Filter]) -> tuple[Assumption, ...]:
+    """The uniform numbers of the filters whose error is no limit; their base value, 0, keeps every trial."""
+    items = [each.evidence for each in filters if each.evidence is not None]
+    return tuple(
+        Assumption(each.stream, each.chance, "Uniform", {"low": 0.0, "high": 1.0}, each.row, base=0.0)
+        for each in items
+        if each.by_chance
+    )
 
 
 def _bound(bound: float | Cell) -> ir.Expression:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from xlmc.definitions.definitions import Filter
 from xlmc.definitions.evidence_ways import EVIDENCE_WAYS
 from xlmc.errors import SimulationError
+from xlmc.run.blocks import portions
 from xlmc.run.draw_binding import parameter_target
 from xlmc.run.evidence_trials import evidence_trials
 
@@ -131,13 +132,9 @@ def weighting_of(model: Model, inputs: Mapping[str, Floats]) -> Weighting | None
     m = next((values.size for values in inputs.values()), 0)
     evaluator = model.evaluator([parameter_target(cell) for cell, _ in items], _BLOCK)
     logs = np.zeros(m)
-    for start in range(0, m, _BLOCK):
-        n = min(_BLOCK, m - start)
-        block = {name: np.ascontiguousarray(values[start : start + n]) for name, values in inputs.items()}
-        columns = evaluator.filters(block, n)
-        logs[start : start + n] = sum(
-            law.log_weight(column.as_floats()) for (_, law), column in zip(items, columns, strict=True)
-        )
+    for part, block in portions(inputs, m, _BLOCK):
+        columns = evaluator.filters(block, part.stop - part.start)
+        logs[part] = sum(law.log_weight(column.as_floats()) for (_, law), column in zip(items, columns, strict=True))
     largest = float(logs.max(initial=-np.inf))
     if largest == -np.inf:
         return Weighting(np.zeros(m), 0.0, 0.0)

@@ -204,12 +204,13 @@ def _checked(name: str, family: Family, given: Mapping[str, Parameter], row: Row
     Raises:
         DefinitionError: a rule is broken; it names the cell of the parameter to look at first.
     """
-    numbers: dict[str, float] = {}
-    for key, value in given.items():
-        number = static_value(value, row.workbook)
-        if number is None:
-            return None
-        numbers[key] = number
+    numbers = {**given}
+    for key, cell in given.items():
+        if isinstance(cell, Cell):
+            saved = static_value(cell, row.workbook)
+            if saved is None:
+                return None
+            numbers[key] = saved
     draw = Draw.of(name, family, numbers)
     if (fault := draw.fault()) is not None:
         raise DefinitionError(fault.message, where=_cell_of(row, family, fault.key), hint=fault.hint)

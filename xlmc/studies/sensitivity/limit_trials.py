@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from xlmc.address import Cell
 from xlmc.evaluation.engine import Target
+from xlmc.run.blocks import portions
 from xlmc.run.draw_binding import parameter_target
 from xlmc.run.needed import filter_condition, filter_limits
 from xlmc.studies.sensitivity.moved_limit import LimitTrials, grid, holds_to
@@ -191,11 +192,8 @@ def _look_at_accepted(simulation: Simulation, cells: _LimitCells, m: int) -> _Ce
     """What decides the limits in the first m accepted trials."""
     block = min(m, cells.program.largest_block)
     evaluator, parts = cells.program.evaluator(block), []
-    for start in range(0, m, block):
-        n = min(block, m - start)
-        draws = {
-            a.name: np.ascontiguousarray(simulation.inputs[a.name][start : start + n]) for a in simulation.model.live
-        }
+    for part, draws in portions(simulation.inputs, m, block):
+        n = part.stop - part.start
         parts.append(cells.look(evaluator, draws | simulation.model.certain(n), n))
     filters = [np.concatenate(columns) for columns in zip(*(part.filters for part in parts), strict=True)]
     return _CellValues(

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.run.blocks import portions
 from xlmc.statistics import Estimate
 from xlmc.studies.sensitivity.pull_errors import Units
 
@@ -109,9 +110,8 @@ def _draws(model: Model, seed: int, start: int, count: int, block: int) -> dict[
 def _answers(evaluator: Evaluator, draws: Mapping[str, Floats], count: int, block: int) -> list[Floats]:
     """`(count,)` a forecast, NaN where it is no number."""
     found: list[list[Floats]] = []
-    for first in range(0, count, block):
-        part = {key: values[first : first + block] for key, values in draws.items()}
-        n = min(block, count - first)
+    for trials, part in portions(draws, count, block):
+        n = trials.stop - trials.start
         evaluator.filters(part, n)
         found.append([column.as_floats() for column in evaluator.forecasts(np.arange(n))])
     return [np.concatenate(columns) for columns in zip(*found, strict=True)]

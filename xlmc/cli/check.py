@@ -117,7 +117,7 @@ def _error_lines(model: Model, errors: BaseErrors) -> Iterator[str]:
 def _show_definitions(definitions: Definitions, model: Model | None) -> None:
     from xlmc.cli.printing import table
     from xlmc.report.summary import percent
-    from xlmc.results.record.in_words import distribution_text, evidence_text, limits_text
+    from xlmc.results.statements.in_words import distribution_text, evidence_text, limits_text
 
     table(
         "Assumptions",
@@ -153,7 +153,7 @@ def _show_definitions(definitions: Definitions, model: Model | None) -> None:
 def scenario_table(definitions: Definitions) -> None:
     """Print what each scenario changes; nothing where there are none."""
     from xlmc.cli.printing import table
-    from xlmc.results.record.in_words import changes_text
+    from xlmc.results.statements.in_words import changes_text
 
     changes = [(each.name, changes_text(each), each.note) for each in definitions.scenarios]
     if changes:

@@ -206,7 +206,7 @@ def show_run(run: Simulation) -> None:
     from xlmc.cli.check import check_table, show_first
     from xlmc.cli.printing import table
     from xlmc.report.summary import ERROR_SENTENCE, summarise, summary_text
-    from xlmc.results.record.in_words import sampling_sentence
+    from xlmc.results.statements.in_words import sampling_sentence
     from xlmc.run.stopping.stopped import ALL_TRIALS
 
     show_first(run)
@@ -280,7 +280,7 @@ def _acceptance_sentence(run: Simulation) -> str:
 
 def _discards(run: Simulation) -> list[tuple[str, ...]]:
     from xlmc.report.summary import share_text
-    from xlmc.results.record.in_words import discards_of, limits_text
+    from xlmc.results.statements.in_words import discards_of, limits_text
 
     return [
         (found.filter.name, found.forecast, limits_text(found.filter), f"{found.trials:,}", share_text(found.share))
@@ -289,7 +289,7 @@ def _discards(run: Simulation) -> list[tuple[str, ...]]:
 
 
 def _rejections(run: Simulation) -> list[tuple[str, ...]]:
-    from xlmc.results.record.in_words import limits_text
+    from xlmc.results.statements.in_words import limits_text
 
     counts = zip(run.model.filters, run.tally.rejected, run.tally.only, strict=True)
     return [(f.name, limits_text(f), f"{rejected:,}", f"{only:,}") for f, rejected, only in counts]

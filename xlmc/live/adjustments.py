@@ -13,7 +13,7 @@ from typing import Any, Final
 from xlmc.address import Cell
 from xlmc.definitions.definitions import Assumption, Definitions, Filter, Parameter
 from xlmc.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Scenario
-from xlmc.results.record.in_words import number_text
+from xlmc.results.statements.in_words import number_text
 
 __all__ = [
     "BAND",

@@ -28,8 +28,8 @@ from xlmc.report.page.sheet_sections import (
 from xlmc.report.sheets.results_sheet import opening_sentences
 from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, base_case, share_text
 from xlmc.results.record import make_record
-from xlmc.results.record.in_words import sampling_sentence
 from xlmc.results.statements import statements
+from xlmc.results.statements.in_words import sampling_sentence
 from xlmc.statistics import (
     Estimate,
     Sample,

@@ -43,7 +43,7 @@ from xlmc.live.moving_models import MANY_FORMULAS, KnownModels
 from xlmc.live.protocol import Message, Said
 from xlmc.live.window_book import assumption_rows, filter_rows, forecast_rows, shapes_of
 from xlmc.report.page.payload import CONFIDENCE
-from xlmc.results.record.in_words import changes_text
+from xlmc.results.statements.in_words import changes_text
 from xlmc.run.simulate import BLOCK
 from xlmc.statistics.estimate import t_quantile
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 
 from xlmc.live.adjustments import LIMITS, assumption_numbers
-from xlmc.results.record.in_words import distribution_text, limits_text, number_text
+from xlmc.results.statements.in_words import distribution_text, limits_text, number_text
 
 if TYPE_CHECKING:
     from xlmc.definitions.definitions import Assumption, Filter

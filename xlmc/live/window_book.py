@@ -14,7 +14,7 @@ from xlmc.definitions.definitions import CUTOFFS, Assumption, Filter, Parameter
 from xlmc.distributions.whole_numbers import WholeNumbers
 from xlmc.live.adjustments import BAND, LIMITS, Adjustments, adjusted_definitions, assumption_numbers, movable_limits
 from xlmc.live.protocol import plain
-from xlmc.results.record.in_words import distribution_text, limits_text, status
+from xlmc.results.statements.in_words import distribution_text, limits_text, status
 from xlmc.run.model import Model
 
 __all__ = ["assumption_rows", "filter_rows", "forecast_rows", "shapes_of"]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 from xlmc.report.summary import estimate_text, share_text
-from xlmc.results.record.in_words import evidence_text
+from xlmc.results.statements.in_words import evidence_text
 
 if TYPE_CHECKING:
     from xlmc.run.agreement import Agreement, Answer, ItemAgreement

@@ -17,7 +17,8 @@ from xlmc.report.summary import BaseCase, base_case
 from xlmc.results.record import make_record
 from xlmc.results.record.definition_tables import correlations_met
 from xlmc.results.record.errors_met import errors_met, lost_sentences
-from xlmc.results.record.in_words import (
+from xlmc.results.statements import certainties, pairs_of, statements
+from xlmc.results.statements.in_words import (
     UNWEIGHTED,
     changes_text,
     cutoffs_text,
@@ -27,7 +28,6 @@ from xlmc.results.record.in_words import (
     parameters_text,
     status,
 )
-from xlmc.results.statements import certainties, pairs_of, statements
 from xlmc.statistics import Estimate, proportion
 from xlmc.studies.scenario_answers import ForecastAnswer, ScenarioAnswers, scenario_answers
 from xlmc.studies.sensitivity import sensitivities

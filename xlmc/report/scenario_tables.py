@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.report.sheets.scenarios_sheet import POINTS, above_head, range_heads
 from xlmc.report.summary import estimate_text, share_text
-from xlmc.results.record.in_words import changes_text
+from xlmc.results.statements.in_words import changes_text
 from xlmc.statistics import format_estimate
 
 if TYPE_CHECKING:

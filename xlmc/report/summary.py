@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from xlmc.evaluation.engine import UNDECIDED_RESULT
-from xlmc.results.record.in_words import discards_of, limits_text
 from xlmc.results.statements import reach_text
+from xlmc.results.statements.in_words import discards_of, limits_text
 from xlmc.run.draw_binding import base_point
 from xlmc.run.rare.account import probability_text
 from xlmc.statistics import Estimate, format_estimate

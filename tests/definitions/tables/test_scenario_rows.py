@@ -6,7 +6,7 @@ import pytest
 
 from xlmc.address import parse_address
 from xlmc.definitions.scenarios import Band, Drawn, Held, Limits, Numbers, Range, Typed
-from xlmc.results.record.in_words import changes_text
+from xlmc.results.statements.in_words import changes_text
 
 TABLE = {"xlmc_scenarios": "Scenarios!A1:C2"}
 

@@ -15,8 +15,8 @@ from packed_sheets import packed_sheets
 from xlmc.cli.simulate import show_run
 from xlmc.cli.simulate import simulate as command
 from xlmc.results.record import make_record
-from xlmc.results.record.in_words import sampling_sentence
 from xlmc.results.record.make import fingerprint
+from xlmc.results.statements.in_words import sampling_sentence
 from xlmc.run.rare import rare_switch
 
 CELLS = {"A1": 1.0, "A2": 1.0, "B1": "=A1*A2", "C1": "=A1+A2", "C2": "=A1-A2"}

@@ -30,7 +30,8 @@ from xlmc.report.summary import (
     summarise,
 )
 from xlmc.results.record.definition_tables import correlations_met
-from xlmc.results.record.in_words import (
+from xlmc.results.statements import MEANING, statements
+from xlmc.results.statements.in_words import (
     REJECTED_SENTENCE,
     discards_of,
     distribution_text,
@@ -39,7 +40,6 @@ from xlmc.results.record.in_words import (
     sampling_sentence,
     status,
 )
-from xlmc.results.statements import MEANING, statements
 from xlmc.run.checking import checks_sentence
 from xlmc.run.stopping.stopped import ALL_TRIALS
 from xlmc.statistics import proportion

@@ -9,8 +9,8 @@ from xlmc.report.page.element import EMPTY, Html, element
 from xlmc.report.page.flow import estimate_html, number, share_html
 from xlmc.report.sheets.results_sheet import base_sentences, opening_sentences, range_sentences
 from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, percent, question, range_heading, summarise
-from xlmc.results.record.in_words import sampling_sentence
 from xlmc.results.statements import MEANING, statements
+from xlmc.results.statements.in_words import sampling_sentence
 from xlmc.run.stopping.stopped import ALL_TRIALS
 
 if TYPE_CHECKING:

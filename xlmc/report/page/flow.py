@@ -15,7 +15,7 @@ from xlmc.report.page.element import Html, element, join
 from xlmc.report.sheets.cells import NOISE, NONE, Shown
 from xlmc.report.sheets.page import Page
 from xlmc.report.summary import estimate_text, share_text
-from xlmc.results.record.in_words import number_text
+from xlmc.results.statements.in_words import number_text
 from xlmc.statistics import Estimate
 
 __all__ = ["Flow", "estimate_html", "number", "share_html", "shown_html", "shown_text"]

@@ -10,7 +10,7 @@ from xlmc.distributions.spelling import name_key
 from xlmc.report.page.element import EMPTY, Html, element, join
 from xlmc.report.page.flow import estimate_html, share_html
 from xlmc.report.summary import SummaryRow, percent, summarise
-from xlmc.results.record.in_words import distribution_text, limits_text, status
+from xlmc.results.statements.in_words import distribution_text, limits_text, status
 from xlmc.statistics import Estimate
 
 if TYPE_CHECKING:

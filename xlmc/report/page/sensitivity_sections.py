@@ -18,7 +18,7 @@ from xlmc.report.sheets.sensitivity_sheet import (
     write_influences,
     write_moves,
 )
-from xlmc.results.record.in_words import number_text
+from xlmc.results.statements.in_words import number_text
 from xlmc.studies.sensitivity.measures import noise
 
 if TYPE_CHECKING:

@@ -19,8 +19,8 @@ from xlmc.report.sheets.results_sheet import LAST, write_counts
 from xlmc.report.sheets.scenarios_sheet import write_scenario_tables
 from xlmc.report.sheets.statistics_sheet import write_forecast
 from xlmc.results.record import Entry, Record, RecordTable, Section, Value
-from xlmc.results.record.in_words import distribution_text, number_text, status
 from xlmc.results.statements import pairs_of
+from xlmc.results.statements.in_words import distribution_text, number_text, status
 from xlmc.statistics import Estimate
 from xlmc.studies.scenario_answers import scenario_answers
 from xlmc.workbook.printable import printable

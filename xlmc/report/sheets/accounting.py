@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
 from xlmc.results.record.errors_met import ErrorMet, errors_met
-from xlmc.results.record.in_words import REJECTED_SENTENCE, discards_of, limits_text
+from xlmc.results.statements.in_words import REJECTED_SENTENCE, discards_of, limits_text
 from xlmc.run.checking import checks_sentence
 from xlmc.statistics import proportion
 

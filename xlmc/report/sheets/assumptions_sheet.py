@@ -19,7 +19,7 @@ from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.curves_sheet import SHARE
 from xlmc.report.sheets.styles import DARK, LIGHT, straight
 from xlmc.results.record.definition_tables import correlations_met
-from xlmc.results.record.in_words import distribution_text, status
+from xlmc.results.statements.in_words import distribution_text, status
 from xlmc.statistics import Estimate
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 from xlmc.report.evidence_tables import ITEM_HEADS, MEANING, MOVES_MEANING, chance_text, trials_sentence
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
-from xlmc.results.record.in_words import evidence_text
+from xlmc.results.statements.in_words import evidence_text
 from xlmc.run.agreement import Verdict
 
 if TYPE_CHECKING:

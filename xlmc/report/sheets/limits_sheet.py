@@ -20,7 +20,7 @@ from xlmc.report.sheets.sensitivity_charts import (
     set_up_printing,
 )
 from xlmc.report.sheets.styles import bounds
-from xlmc.results.record.in_words import number_text
+from xlmc.results.statements.in_words import number_text
 
 if TYPE_CHECKING:
     from xlsxwriter.workbook import Workbook

@@ -10,7 +10,7 @@ from xlmc.report.sheets.accounting import write_accounting, write_checks
 from xlmc.report.sheets.cells import Shown
 from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, base_case, percent, range_heading, summarise
 from xlmc.results.record.errors_met import lost_sentences
-from xlmc.results.record.in_words import sampling_sentence
+from xlmc.results.statements.in_words import sampling_sentence
 from xlmc.run.stopping.stopped import ALL_TRIALS
 from xlmc.statistics import Estimate, proportion
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import BLANK, Shown
 from xlmc.report.summary import percent
-from xlmc.results.record.in_words import changes_text
+from xlmc.results.statements.in_words import changes_text
 from xlmc.run.simulation import FEW
 from xlmc.statistics import Estimate
 from xlmc.studies.scenario_answers import ForecastAnswer, ScenarioAnswers, scenario_answers

@@ -9,7 +9,8 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from xlmc.address import Cell
-from xlmc.results.record.in_words import (
+from xlmc.results.record.record_parts import RecordTable, Section, Value
+from xlmc.results.statements.in_words import (
     cutoffs_text,
     discards_of,
     evidence_text,
@@ -18,7 +19,6 @@ from xlmc.results.record.in_words import (
     parameters_text,
     status,
 )
-from xlmc.results.record.record_parts import RecordTable, Section, Value
 from xlmc.run.correlating import CHANGED, drawn_correlation
 from xlmc.statistics import Estimate, rank_correlation
 

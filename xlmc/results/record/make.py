@@ -27,10 +27,10 @@ from xlmc.results.record.definition_tables import (
     plain,
 )
 from xlmc.results.record.errors_met import errors_met
-from xlmc.results.record.in_words import errors_text, generator_text, method_text
 from xlmc.results.record.needed_cells import cell_section, needed_contents, structure_section
 from xlmc.results.record.record_parts import Entry, Record, RecordTable, Section
 from xlmc.results.record.settings_table import settings_section
+from xlmc.results.statements.in_words import errors_text, generator_text, method_text
 from xlmc.run.simulation import KEPT_INPUTS, ChangedFrom
 from xlmc.workbook.inject import original_hash
 

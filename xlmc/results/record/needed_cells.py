@@ -22,8 +22,8 @@ from xlmc.definitions.tables.reserved_tables import KINDS
 from xlmc.distributions.spelling import name_key
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.formula.shape import text_at
-from xlmc.results.record.in_words import number_text
 from xlmc.results.record.record_parts import Entry, Record, RecordTable, Section
+from xlmc.results.statements.in_words import number_text
 from xlmc.workbook.workbook import CellValue, Formula
 
 if TYPE_CHECKING:

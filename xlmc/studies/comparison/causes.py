@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from xlmc.definitions.definitions import Assumption, Filter
 from xlmc.distributions.spelling import name_key
-from xlmc.results.record.in_words import distribution_text
+from xlmc.results.statements.in_words import distribution_text
 from xlmc.run.model import Model
 from xlmc.run.needed import filter_limits
 from xlmc.run.simulation import Simulation

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from xlmc.address import Area, Cell
 from xlmc.definitions.definitions import Assumption, DataRange, Filter
-from xlmc.results.record.in_words import (
+from xlmc.results.statements.in_words import (
     distribution_text,
     limits_text,
     notes_text,

@@ -341,12 +341,15 @@ def test_numbers_are_checked_once(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"parameters": {"low": 43.0, "high": 42.0}}, "speed: Low (43) is above High (42)"),
-        ({"lower_cutoff": 50.0}, "speed: Lower cutoff (50) leaves nothing of the distribution"),
-        ({"upper_cutoff": np.nan}, "speed: Upper cutoff must be a number"),
-        ({"parameters": {"low": 38.0, "high": np.nan}}, "speed: High (nan) must be a number between -1E150 and 1E150"),
+        ({"given": {"low": 43.0, "high": 42.0}}, "speed: Low (43) is above High (42)"),
         (
-            {"distribution": "Discrete Uniform", "parameters": {"low": 38.5, "high": 42.0}},
+            {"given": {"low": 38.0, "high": 42.0, "lower_cutoff": 50.0}},
+            "speed: Lower cutoff (50) leaves nothing of the distribution",
+        ),
+        ({"given": {"low": 38.0, "high": 42.0, "upper_cutoff": np.nan}}, "speed: Upper cutoff must be a number"),
+        ({"given": {"low": 38.0, "high": np.nan}}, "speed: High (nan) must be a number between -1E150 and 1E150"),
+        (
+            {"distribution": "Discrete Uniform", "given": {"low": 38.5, "high": 42.0}},
             "speed: Low (38.5) must be a whole number from -1,000,000,000 to 1,000,000,000",
         ),
     ],

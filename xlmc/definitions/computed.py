@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Container
 
-from xlmc.address import Area, Cell
+from xlmc.address import Cell
+from xlmc.formula.graph import Spills
 from xlmc.workbook.workbook import Workbook
 
 __all__ = ["Computed"]
@@ -21,15 +22,11 @@ class Computed:
     def __init__(self, workbook: Workbook, drawn: Container[Cell]) -> None:
         self._workbook = workbook
         self._drawn = drawn
-        self._arrays: dict[str, list[Area]] = {}
+        self._spills = Spills(workbook)
 
     def by_formula(self, cell: Cell) -> bool:
         """Whether a formula does: its own, or an array formula of another cell that fills it."""
-        if self._workbook.content(cell).formula is not None:
-            return True
-        if cell.sheet not in self._arrays:  # only the sheets that are asked about need to be read
-            self._arrays[cell.sheet] = [*self._workbook.sheets[cell.sheet].arrays.values()]
-        return any(cell in area for area in self._arrays[cell.sheet])
+        return self._workbook.content(cell).formula is not None or self._spills.anchor(cell) is not None
 
     def at_all(self, cell: Cell) -> bool:
         """Whether anything does; otherwise the cell is a constant."""

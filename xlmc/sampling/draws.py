@@ -239,11 +239,22 @@ class Sampler:
         return Sampler, self._made_of
 
     @cached_property
-    def _fill(self) -> Callable[[int], None]:
-        """See `Filler`; made when it is first needed, since the engine may draw in code of its own."""
+    def _filling(self) -> Callable[[int], None] | None:
+        """What draws the uniforms instead of the streams; made when it is needed, since an engine may draw itself."""
         if self._filler is None or len(self.streams) < len(self._margins):
-            return self._fill_by_margins
+            return None
         return self._filler(self.streams, self._maps, self._rows)
+
+    def _fill(self, start: int) -> None:
+        """Fill each row with offset + factor·uniform, from the trial `start` on."""
+        if self._filling is not None:
+            self._filling(start)
+            return
+        for margin, row, (offset, factor) in zip(self._margins, self._rows, self._maps, strict=True):
+            margin.uniforms(start, row)
+            if (offset, factor) != (0.0, 1.0):
+                np.multiply(row, factor, out=row)
+                np.add(row, offset, out=row)
 
     @property
     def row_of(self) -> Mapping[str, int]:
@@ -276,11 +287,3 @@ class Sampler:
                     draw.fill(drawn[draw.name], known)
                     draw.refuse_no_numbers(drawn[draw.name])
         return drawn
-
-    def _fill_by_margins(self, start: int) -> None:
-        """Do what a `Filler` does, by asking each margin."""
-        for margin, row, (offset, factor) in zip(self._margins, self._rows, self._maps, strict=True):
-            margin.uniforms(start, row)
-            if (offset, factor) != (0.0, 1.0):
-                np.multiply(row, factor, out=row)
-                np.add(row, offset, out=row)

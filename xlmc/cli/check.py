@@ -33,7 +33,7 @@ _MOST_CELLS = 12
 def check(book: Path) -> None:
     """Show the assumptions, forecasts and filters of BOOK as xlmc understands them, and every problem with its cell.
 
-    Checks that fail at the base case, and cells in error there, stand first.
+    Checks that fail at the base case, and cells that are errors there, come first.
     """
     from xlmc.cli.printing import notices
     from xlmc.definitions.definitions_reader import read_definitions

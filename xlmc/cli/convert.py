@@ -21,7 +21,7 @@ __all__ = ["convert"]
 )
 @click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")
 def convert(book: Path, output: Path | None, overwrite: bool) -> None:
-    """Write what the dialogs of Crystal Ball and calls in cells define in BOOK into tables on one sheet of a copy.
+    """Turn what Crystal Ball's dialogs and calls in cells define in BOOK into tables, on a new sheet of a copy.
 
     The copy gives the same accepted trials as BOOK, to the last bit.
     """

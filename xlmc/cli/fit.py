@@ -38,7 +38,7 @@ _BOOK_AND_RANGE = re.compile(r"(?P<book>.+\.(?:xlsx|xlsm|xltx|xltm|xls))!(?P<ran
 @click.option(
     "--kind",
     type=OneOf("continuous", "counts"),
-    help="What the values are.  [default: counts if all are whole numbers, 0 or more]",
+    help="The kind of values.  [default: counts if all are whole numbers, 0 or more]",
 )
 @click.option("--by", type=OneOf("aic", "bic", "ad", "ks"), default="aic", show_default=True, help=_BY)
 @click.option("--name", default="", help="Name of the assumption, for the row to paste or to write.")

@@ -44,7 +44,7 @@ NOT_TO_BE_USED = 1
 )
 @click.option("--replicates", type=WholeNumber(2), help="How many runs of each length.  [default: 24]")
 @click.option("--quick", is_flag=True, help="Few and short runs: a first look, in about half a minute.")
-@click.option("--seed", type=WholeNumber(0), help="Seed of the reference; runs follow it.  [default: the book's]")
+@click.option("--seed", type=WholeNumber(0), help="Seed of the reference; the runs have others.  [default: the book's]")
 @click.option(
     "-o",
     "--output",

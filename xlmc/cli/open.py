@@ -29,7 +29,7 @@ _LAST_PORT = 65_535
 @click.option("--no-browser", is_flag=True, help="Print the link, and open no browser.")
 @click.option("--port", type=WholeNumber(1, _LAST_PORT), help="Port of the window.  [default: a free one]")
 def open_window(book: Path | None, no_browser: bool, port: int | None) -> None:
-    """Open the live window on BOOK, or on the workbooks of FOLDER: move ranges, and watch the answer follow."""
+    """Open the live window on BOOK, or on the workbooks of FOLDER: move ranges, and see the answers change."""
     import webbrowser
 
     from xlmc.live.server import LiveServer, bound_socket

@@ -85,7 +85,7 @@ jobs_option = click.option(
     type=WholeNumber(1, _MOST_JOBS),
     default=1,
     show_default=True,
-    help="How many threads or processes compute.",
+    help="Threads or processes to use.",
 )
 """The option for threads or processes; the result does not depend on it."""
 

@@ -46,8 +46,8 @@ _WISHES = (
         "case",
         multiple=True,
         metavar="FIELD=TEXT",
-        help="On the report's first page, such as 'Case number=2026-17'; may be given several times. Wins over the"
-        " table xlmc_case.",
+        help="On the report's first page, such as 'Case number=2026-17'; may be given several times. Replaces what"
+        " the table xlmc_case says.",
     ),
     click.option("--sections", metavar="NAME,NAME", help="Sections of the report.  [default: all]"),
     click.option(
@@ -57,7 +57,7 @@ _WISHES = (
         metavar="FORECAST",
         help="A forecast that the report is about; may be given several times.  [default: all]",
     ),
-    click.option("--paper", type=OneOf("letter", "a4"), default="letter", show_default=True, help="Of the report."),
+    click.option("--paper", type=OneOf("letter", "a4"), default="letter", show_default=True, help="Paper size."),
 )
 """What the reports are to hold: each is a field of `Wishes`, and is named where they are refused without a report."""
 

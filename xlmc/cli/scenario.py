@@ -21,14 +21,14 @@ _MOST_TOLD = 8
 @click.command()
 @click.argument("book", type=click.Path(path_type=Path))
 @click.argument("name", required=False)
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Write a copy of BOOK that says what NAME says.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Write a copy of BOOK with NAME typed in.")
 @click.option("--in-place", is_flag=True, help="Type it into BOOK itself.")
 @click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")
 def scenario(book: Path, name: str | None, output: Path | None, in_place: bool, overwrite: bool) -> None:
     """Type the scenario NAME of BOOK's table xlmc_scenarios into a workbook; without NAME, list the scenarios.
 
-    The very cells that it changes are typed into, and the formulas that depend on them get their new values. Without
-    --output and --in-place nothing is written, and the cells are shown.
+    The cells that the scenario changes get its contents, and the formulas that depend on them get their new values.
+    Without --output and --in-place nothing is written; the cells are only shown.
     """
     from xlmc.cli.check import scenario_table
     from xlmc.run.loading import load

@@ -86,8 +86,8 @@ def screen(
     as_json: bool,
     quiet: bool,
 ) -> None:
-    """Find which assumptions of BOOK may be held at their base values, and which filters left out, without moving its
-    answers.
+    """Find which assumptions of BOOK may be held at their base values, and which filters may be left out, without
+    changing its answers.
     """
     from xlmc.cli.printing import warnings
     from xlmc.cli.progress_bar import step_line

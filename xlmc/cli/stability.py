@@ -29,7 +29,7 @@ NOT_TO_BE_USED = 1
 @jobs_option
 @study_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-@click.option("--quiet", is_flag=True, help="Print no notes of what is being done.")
+@click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
 def stability(
     book: Path,
     all_cells: bool,

@@ -37,9 +37,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def in_parts(items: list[pytest.Item], workers: int, config: pytest.Config) -> list[pytest.Item]:
     """The tests in as many parts of equal number as there are workers, long ones first in each."""
     folders = [config.rootpath / "tests" / name for name in SHORT]
+    is_short = {path: any(path.is_relative_to(folder) for folder in folders) for path in {item.path for item in items}}
     kinds: dict[bool, list[pytest.Item]] = {False: [], True: []}
     for item in items:
-        kinds[any(item.path.is_relative_to(folder) for folder in folders)].append(item)
+        kinds[is_short[item.path]].append(item)
     found = []
     for worker in range(workers):
         for kind in kinds.values():

@@ -88,10 +88,10 @@ def test_a_million_draws(book):
     """Chi-square at 1e-4: pieces of Custom by their weights, Empirical smoothed in fifty equally likely cells."""
     rows = [["Unit cost", 45, "Custom", "Data!A1:D6"], ["Smoothed", 0.77, "Empirical smoothed", "Tests", None, 0.02]]
     draws = xlmc.load(book(rows)).sampler(999, 1_000_000).draw(0)
-    counts, _ = np.histogram(draws["unit cost"], [10, 20, 30, 55, 85, 95, 101])
+    counts, _ = np.histogram(draws["Unit cost"], [10, 20, 30, 55, 85, 95, 101])
     assert stats.chisquare(counts, 1e6 * np.array([0.2, 0.1, 0.3, 0.3, 0.05, 0.05])).pvalue > 1e-4
     mixture = stats.norm(np.array(MEASURED)[:, None], 0.02)
-    counts, _ = np.histogram(mixture.cdf(draws["smoothed"]).mean(axis=0), np.linspace(0, 1, 51))
+    counts, _ = np.histogram(mixture.cdf(draws["Smoothed"]).mean(axis=0), np.linspace(0, 1, 51))
     assert stats.chisquare(counts).pvalue > 1e-4
 
 

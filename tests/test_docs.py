@@ -67,6 +67,14 @@ def test_every_function_is_documented():
     assert len(script.names()) >= 350
 
 
+def test_the_readme_has_a_line_for_each_command():
+    block = re.search(r"^```sh\n(xlmc new.*?)^```", README, re.DOTALL | re.MULTILINE)
+    assert block is not None
+    found = [re.fullmatch(r"xlmc ([a-z]+)\b[^#]*? +# [^#]+", line) for line in block[1].splitlines()]
+    assert all(found)
+    assert {line[1] for line in found} == set(xlmc.commands) - {"report", "scenario"}  # they come after a run
+
+
 def test_ci_runs_the_readmes_test_command():
     command = next(line for line in README.splitlines() if "pytest" in line and "venv" in line)
     assert command in (ROOT / ".ci" / "run").read_text(encoding="utf-8").splitlines()

@@ -11,6 +11,7 @@ from templates.writer.page import (
     add_table,
     begin_sheet,
     fit_row,
+    fit_to_pages,
     guard,
     repeat_header,
     write_formula,
@@ -23,7 +24,7 @@ __all__ = ["draw_evidence"]
 
 _OFF_BY = ("Plus or minus", "Std dev", "Percent", "Resolution")
 _HEADERS = ("Name", "Cell", "Units", "Reading", "Error", *_OFF_BY, "Use", "Source")
-_WIDTHS = (44, 16, 11, 11, 13, 13, 11, 11, 12, 9, 84)
+_WIDTHS = (44, 16, 11, 11, 13, 13, 11, 11, 12, 9, 72)
 _ERRORS = ("Uniform", "Instrument", "Normal", "Lognormal", "At least", "At most")
 _SUBTITLE = (
     "What was measured of the crash itself. A row is used once it has a reading, unless Use is FALSE. "
@@ -49,6 +50,7 @@ def draw_evidence(sheet: Worksheet, styles: Styles, template: Template, at: dict
     _offer(sheet, first, last, "Error", _ERRORS)
     _offer(sheet, first, last, "Use", ("TRUE", "FALSE"))
     repeat_header(sheet, HEADER_ROW, 1)
+    fit_to_pages(sheet)
 
 
 def _draw_reading(sheet: Worksheet, styles: Styles, reading: EvidenceRow, unit: str, row: int) -> None:

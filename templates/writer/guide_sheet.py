@@ -6,12 +6,13 @@ from xlsxwriter.worksheet import Worksheet
 
 from templates.description import GuideSection, Template
 from templates.writer.cached import Values
-from templates.writer.page import begin_sheet, fit_row, protect, write_label
+from templates.writer.page import begin_sheet, fit_row, fit_to_pages, protect, write_label
 from templates.writer.styles import LEGEND, Styles
 
 __all__ = ["draw_guide"]
 
-_WIDTHS = (44, 108)
+_WIDTHS = (48, 124)
+_GAP = 6.0
 
 
 def draw_guide(sheet: Worksheet, styles: Styles, template: Template, values: Values) -> None:
@@ -19,7 +20,9 @@ def draw_guide(sheet: Worksheet, styles: Styles, template: Template, values: Val
     begin_sheet(sheet, styles, template.title, "Guide", _WIDTHS)
     row = _draw_legend(sheet, styles, 3)
     for section in template.guide:
+        sheet.set_row(row - 1, _GAP)
         row = _draw_section(sheet, styles, section, row, values)
+    fit_to_pages(sheet, upright=True)
     protect(sheet)
 
 

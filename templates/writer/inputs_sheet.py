@@ -7,7 +7,16 @@ from xlsxwriter.worksheet import Worksheet
 from templates.description import ALL_CHECKS, PARAMETER_COLUMNS, Input, Template
 from templates.vehicles import name_cell
 from templates.writer.cached import Values
-from templates.writer.page import add_table, begin_sheet, fit_row, guard, repeat_header, write_formula, write_label
+from templates.writer.page import (
+    add_table,
+    begin_sheet,
+    fit_row,
+    fit_to_pages,
+    guard,
+    repeat_header,
+    write_formula,
+    write_label,
+)
 from templates.writer.places import HEADER_ROW, MOST_CAPTIONS, VALUE_COLUMN, Place, name_cells
 from templates.writer.styles import Styles
 
@@ -37,6 +46,7 @@ def draw_inputs(sheet: Worksheet, styles: Styles, template: Template, at: dict[s
     _draw_fixed(sheet, styles, "Held fixed", template.constants, at, values)
     _draw_fixed(sheet, styles, "Optional: leave blank what does not apply", template.optional, at, values)
     repeat_header(sheet, HEADER_ROW, 1)
+    fit_to_pages(sheet)
 
 
 def _fold_columns(sheet: Worksheet) -> None:

@@ -11,14 +11,14 @@ from xlsxwriter.worksheet import Worksheet
 from templates.description import Equation, Role, Template
 from templates.notation import printed
 from templates.writer.cached import Values
-from templates.writer.page import begin_sheet, fit_row, protect, repeat_header, write_formula, write_label
+from templates.writer.page import begin_sheet, fit_row, fit_to_pages, protect, repeat_header, write_formula, write_label
 from templates.writer.places import HEADER_ROW, VALUE_COLUMN, Place
 from templates.writer.styles import Styles
 
 __all__ = ["draw_model"]
 
 _HEADERS = ("Quantity", "Symbol", "Cell name", "Value", "Units", "Equation", "Source", "Note")
-_WIDTHS = (46, 11, 17, 13, 10, 58, 21, 60)
+_WIDTHS = (48, 10, 16, 11, 9, 51, 22, 60)
 _TEXT_COLUMNS = (0, 5, 6, 7)
 _LOOK = {Role.STEP: "step", Role.ANSWER: "answer", Role.CHECK: "check"}
 _SUBTITLE = (
@@ -42,6 +42,7 @@ def draw_model(sheet: Worksheet, styles: Styles, template: Template, at: dict[st
             _draw_equation(sheet, styles, equation, at[equation.symbol][1], style, values)
             _draw_words(sheet, styles, equation, at[equation.symbol][1], notation, values)
     repeat_header(sheet, HEADER_ROW, 1)
+    fit_to_pages(sheet)
     protect(sheet)
 
 

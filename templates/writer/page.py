@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import ceil
 from textwrap import wrap
 
 from xlsxwriter.format import Format
@@ -16,6 +17,7 @@ __all__ = [
     "add_table",
     "begin_sheet",
     "fit_row",
+    "fit_to_pages",
     "guard",
     "protect",
     "repeat_header",
@@ -23,8 +25,14 @@ __all__ = [
     "write_label",
 ]
 
-_LINE = 15.0
+_LINE = 14.5
 """Height of a line of text, in points."""
+_POINTS = 0.75
+"""In a pixel."""
+_LANDSCAPE, _UPRIGHT = (748.0, 547.0), (568.0, 727.0)
+"""Width and height of a letter page within the margins, in points."""
+_SMALLEST = 0.585
+"""The least scale: letters of 11 points are then 6.4 points high."""
 _LETTERS = 1.12
 """Letters of running text in one unit of column width, which is the width of a digit."""
 _ROOMY = ("Twelve chars",) * 9
@@ -33,19 +41,35 @@ _FOLLOWS = "This label follows the name of the {of} at the top of sheet Inputs. 
 
 
 def begin_sheet(sheet: Worksheet, styles: Styles, title: str, subtitle: str, widths: Sequence[float]) -> None:
-    """Title and subtitle in A1 and A2, column widths, and a landscape page one sheet wide."""
+    """Title and subtitle in A1 and A2, column widths, head and foot of the printed page."""
     sheet.hide_gridlines(2)
     for column, width in enumerate(widths):
         sheet.set_column(column, column, width)
     sheet.set_row(0, 24)
     sheet.write_string(0, 0, title, styles("title"))
     sheet.write_string(1, 0, subtitle, styles("subtitle"))
-    sheet.set_landscape()
     sheet.set_paper(1)
-    sheet.fit_to_pages(1, 0)
-    sheet.set_margins(left=0.5, right=0.5, top=0.75, bottom=0.7)
-    sheet.set_header(f"&L{title.replace('&', '&&')}&R&A")
-    sheet.set_footer("&L&F&CPage &P of &N&R&D")
+    sheet.set_margins(left=0.3, right=0.3, top=0.45, bottom=0.45)
+    sheet.set_header(f"&L{title.replace('&', '&&')}&R&A", {"margin": 0.2})
+    sheet.set_footer("&L&F&CPage &P of &N&R&D", {"margin": 0.2})
+
+
+def fit_to_pages(sheet: Worksheet, rows: int | None = None, *, upright: bool = False) -> None:
+    """Print a sheet, once it is written, on as few pages as leave its letters readable.
+
+    The number of pages is said outright, so that it does not depend on the fonts of the computer that prints.
+
+    Args:
+        sheet: as it is written.
+        rows: how many are printed; by default all.
+        upright: whether its pages are higher than wide.
+    """
+    width = _POINTS * sum(sheet._size_col(column) for column in range(sheet.dim_colmax + 1))
+    height = _POINTS * sum(sheet._size_row(row) for row in range(rows or sheet.dim_rowmax + 1))
+    across, down = _UPRIGHT if upright else _LANDSCAPE
+    if not upright:
+        sheet.set_landscape()
+    sheet.fit_to_pages(1, ceil(height * min(_SMALLEST, across / width) / down))
 
 
 def fit_row(sheet: Worksheet, row: int, texts: Sequence[tuple[str, float]]) -> None:
@@ -54,7 +78,7 @@ def fit_row(sheet: Worksheet, row: int, texts: Sequence[tuple[str, float]]) -> N
     LibreOffice does not do so by itself when it opens the file. There is room for vehicles with longer names.
     """
     lines = max(len(wrap(shown_label(text, _ROOMY), int(_LETTERS * width) - 1)) for text, width in texts)
-    sheet.set_row(row, _LINE * max(lines, 1) + 2)
+    sheet.set_row(row, _LINE * max(lines, 1) + 1)
 
 
 def repeat_header(sheet: Worksheet, row: int, frozen_columns: int) -> None:

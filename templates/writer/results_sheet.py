@@ -12,7 +12,7 @@ from xlsxwriter.worksheet import Worksheet
 from templates.description import ALL_CHECKS, CorrelationRow, FilterRow, ForecastRow, Role, Template
 from templates.vehicles import names_a_vehicle
 from templates.writer.cached import Values
-from templates.writer.page import add_table, begin_sheet, fit_row, guard, write_formula, write_label
+from templates.writer.page import add_table, begin_sheet, fit_row, fit_to_pages, guard, write_formula, write_label
 from templates.writer.places import Place, reference
 from templates.writer.styles import Styles
 
@@ -23,6 +23,11 @@ _FILTERS = ("Name", "Cell", "At least", "At most", "Above", "Below", "Because")
 _CHECKS = ("Name", "Cell", "Because")
 _CORRELATIONS = ("First", "Second", "Correlation")
 _SETTINGS = ("Setting", "Value")
+_LOGICAL = '"TRUE";"TRUE";"FALSE"'
+"""How LibreOffice shows a logical that a formula points at, instead of 1; Excel has its own words.
+
+It is the format of a condition, not of the cell: LibreOffice would save the cell as a number then.
+"""
 _WIDTHS = (38, 22, 12, 12, 12, 12, 76, 34)
 _ONLY_FOR = 7
 """Column of the last of both headings that only a template needs in which a filter is about one forecast."""
@@ -45,6 +50,7 @@ def draw_results_wanted(
     row = _draw_checks(sheet, styles, template, at, values, row + _ROOM)
     row = _draw_correlations(sheet, styles, template, at, values, row + _ROOM)
     _draw_settings(sheet, styles, template.settings, values, row + _ROOM)
+    fit_to_pages(sheet)
 
 
 def _head(sheet: Worksheet, styles: Styles, row: int, title: str, remark: str, values: Values) -> None:
@@ -139,8 +145,9 @@ def _draw_checks(
         fit_row(sheet, row, [(check.name, _WIDTHS[0])])
     last = top + 1 + len(checks)
     guard(sheet, (top + 2, 1, last, 1), "A formula", _POINTS)
-    rule = {"type": "formula", "criteria": f"=NOT(IFERROR($B{top + 3},FALSE))", "format": styles("wrong")}
-    sheet.conditional_format(top + 2, 1, last, 1, rule)
+    for criteria, look in ((f"=NOT(IFERROR($B{top + 3},FALSE))", "wrong"), ("=TRUE", "as it is")):
+        rule = {"type": "formula", "criteria": criteria, "format": styles(look, _LOGICAL)}
+        sheet.conditional_format(top + 2, 1, last, 1, rule)
     return last + 1
 
 

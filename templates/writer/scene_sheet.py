@@ -12,7 +12,7 @@ from xlsxwriter.worksheet import Worksheet
 from templates.description import Curve, Diagram, Look
 from templates.vehicles import names_a_vehicle
 from templates.writer.cached import Values
-from templates.writer.page import begin_sheet, protect, write_formula, write_label
+from templates.writer.page import begin_sheet, fit_to_pages, protect, write_formula, write_label
 from templates.writer.styles import Styles
 
 __all__ = ["chart_size", "draw_scene"]
@@ -60,6 +60,7 @@ def draw_scene(workbook: Workbook, sheet: Worksheet, styles: Styles, diagram: Di
     _finish(chart, diagram)
     sheet.insert_chart(_TOP, 0, chart, {"object_position": 2})
     sheet.print_area(0, 0, first - 2, len(_WIDTHS) - 1)
+    fit_to_pages(sheet, first - 1)
     protect(sheet)
 
 

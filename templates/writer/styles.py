@@ -36,6 +36,7 @@ _LOOKS: dict[str, dict[str, Any]] = {
     "answer": _NUMBER | {"bg_color": "#BBDDF7", "bold": True},
     "check": _CELL | {"bg_color": "#F0F0F0", "align": "center"},
     "wrong": {"bg_color": "#F4B6B0", "font_color": "#9C0006", "bold": True},
+    "as it is": {},
     "margin": {"bold": True, "font_color": _INK, "valign": "top", "text_wrap": True},
     "paragraph": {"text_wrap": True, "valign": "top"},
 }

@@ -225,7 +225,8 @@ def _as_json(found: Comparison) -> dict[str, object]:
 
 
 def _entry(each: ForecastComparison, books: tuple[str, str]) -> dict[str, object]:
-    from xlmc.cli.study_output import difference_json, estimate_json, finite
+    from xlmc.cli.study_output import difference_json, estimate_json
+    from xlmc.statistics.estimate import finite
 
     entry: dict[str, object] = {
         "name": each.first.name,

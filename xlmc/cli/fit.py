@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from xlmc.cli.options import OneOf
-from xlmc.cli.study_output import finite, show, study_options
+from xlmc.cli.study_output import show, study_options
 from xlmc.cli.terminal import say, say_json
 
 if TYPE_CHECKING:
@@ -188,6 +188,8 @@ def _as_json(found: Fitting, source: str, blank: int, row: dict[str, str]) -> di
 
 
 def _entry(fitted: Fitted) -> dict[str, object]:
+    from xlmc.statistics.estimate import finite
+
     return {
         "distribution": fitted.name,
         "parameters": dict(fitted.parameters),

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from xlmc.cli.options import WholeNumber
-from xlmc.cli.study_output import estimate_json, finite
+from xlmc.cli.study_output import estimate_json
 from xlmc.cli.terminal import paragraph, say, say_json
+from xlmc.statistics.estimate import finite
 
 if TYPE_CHECKING:
     from xlmc.studies.methods import Curve, Rung, Study

@@ -352,7 +352,8 @@ def _as_json(found: Screening) -> dict[str, object]:
 
 
 def _entry(cost: Cost, found: Screening) -> dict[str, object]:
-    from xlmc.cli.study_output import acceptance_json, difference_json, finite
+    from xlmc.cli.study_output import acceptance_json, difference_json
+    from xlmc.statistics.estimate import finite
 
     expected = {each.name: each.size for each in found.expected}
     return {

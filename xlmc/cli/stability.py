@@ -201,7 +201,7 @@ def _as_json(found: Stability) -> dict[str, object]:
 
 
 def _finding_json(finding: Finding) -> dict[str, object]:
-    from xlmc.cli.study_output import finite
+    from xlmc.statistics.estimate import finite
 
     return {
         "level": finding.level.name.lower(),
@@ -220,7 +220,7 @@ def _finding_json(finding: Finding) -> dict[str, object]:
 
 
 def _cell_json(cell: CellDigits) -> dict[str, object]:
-    from xlmc.cli.study_output import finite
+    from xlmc.statistics.estimate import finite
 
     return {
         "cell": str(cell.cell),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -16,7 +15,7 @@ if TYPE_CHECKING:
     from xlmc.statistics import Estimate
     from xlmc.studies.comparison import Acceptance, Change, Difference
 
-__all__ = ["acceptance_json", "difference_json", "estimate_json", "finite", "show", "study_options"]
+__all__ = ["acceptance_json", "difference_json", "estimate_json", "show", "study_options"]
 
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -49,18 +48,17 @@ def show(blocks: Iterable[Block]) -> None:
             spaced = True
 
 
-def finite(value: float | None) -> float | None:
-    """The number; None where it is none."""
-    return value if value is not None and math.isfinite(value) else None
-
-
 def estimate_json(estimate: Estimate) -> dict[str, float | None]:
     """Value and standard error."""
+    from xlmc.statistics.estimate import finite
+
     return {"value": finite(estimate.value), "error": finite(estimate.error)}
 
 
 def difference_json(found: Difference) -> dict[str, object]:
     """The four numbers of a forecast in two runs, and the distances."""
+    from xlmc.statistics.estimate import finite
+
     return {
         "mean": _change(found.mean),
         "standard_deviation": _change(found.standard_deviation),

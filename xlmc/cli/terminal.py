@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import codecs
 import errno
-import math
 import os
 import sys
 import unicodedata
@@ -93,7 +92,7 @@ def say_json(value: object) -> None:
     """
     import json
 
-    text = json.dumps(_finite(value), indent=2, ensure_ascii=not _is_unicode(sys.stdout), allow_nan=False)
+    text = json.dumps(_without_infinities(value), indent=2, ensure_ascii=not _is_unicode(sys.stdout), allow_nan=False)
     if printable(text) != text:
         text = "".join(one if printable(one) == one else json.dumps(one)[1:-1] for one in text)
     put(f"{text}\n")
@@ -155,15 +154,17 @@ def encodable(text: str, *, err: bool = False) -> str:
     return text.encode(encoding, _HANDLER).decode(encoding)
 
 
-def _finite(value: object) -> object:
+def _without_infinities(value: object) -> object:
     """The value with null for a number that JSON cannot hold."""
+    from xlmc.statistics.estimate import finite
+
     match value:
         case float():
-            return value if math.isfinite(value) else None
+            return finite(value)
         case dict():
-            return {key: _finite(each) for key, each in value.items()}
+            return {key: _without_infinities(each) for key, each in value.items()}
         case list() | tuple():
-            return [_finite(each) for each in value]
+            return [_without_infinities(each) for each in value]
         case _:
             return value
 

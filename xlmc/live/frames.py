@@ -10,7 +10,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.live.protocol import Message, plain
+from xlmc.live.protocol import Message
 from xlmc.report.histogram import Figure, figures_of, histogram, multiples
 from xlmc.report.page.element import element, join
 from xlmc.report.page.payload import forecast_payload
@@ -39,6 +39,7 @@ from xlmc.statistics import (
     percentiles,
     rank_correlation,
 )
+from xlmc.statistics.estimate import finite
 from xlmc.studies.scenario_answers import scenario_answers
 from xlmc.studies.sensitivity import sensitivities
 
@@ -200,7 +201,7 @@ def _bars_behind(figure: Figure, sample: Sample) -> dict[str, Any]:
         "trials": int(x.size),
         "parts": figure.bins.width / width,
         "curve": [[float(x[round(share * (x.size - 1))]), 100.0 * share] for share in np.linspace(0.0, 1.0, 101)],
-        "mean": plain(float(np.mean(x))),
+        "mean": finite(float(np.mean(x))),
     }
 
 
@@ -277,7 +278,7 @@ def pair_of(simulation: Simulation, first: str, second: str) -> dict[str, Any] |
         "x": x[:_POINTS].tolist(),
         "y": y[:_POINTS].tolist(),
         "trials": int(x.size),
-        "correlation": plain(rank_correlation(x, y).value) if x.size > 2 else None,
+        "correlation": finite(rank_correlation(x, y).value) if x.size > 2 else None,
         "units": [_units(simulation, first), _units(simulation, second)],
         "together": _together(simulation, (first, second)),
     }

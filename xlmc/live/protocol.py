@@ -57,7 +57,7 @@ from typing import Any, Final
 
 from xlmc.errors import XlmcError
 
-__all__ = ["MOST_BYTES", "Message", "ProtocolError", "Said", "plain", "read_message", "written"]
+__all__ = ["MOST_BYTES", "Message", "ProtocolError", "Said", "read_message", "written"]
 
 MOST_BYTES: Final = 1 << 16
 """The fields of each kind of message from the page."""
@@ -164,11 +164,6 @@ def read_message(text: str | bytes) -> Said:
         if name not in found or not fits(found[name]):
             raise ProtocolError(f"{name!r} of a message {kind!r} is not what it must be")
     return Said(str(kind), {name: found[name] for name in wanted})
-
-
-def plain(value: float | None) -> float | None:
-    """The number; None where it is no finite one, which JSON does not have."""
-    return None if value is None or not math.isfinite(value) else float(value)
 
 
 def written(message: Message) -> str:

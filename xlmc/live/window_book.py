@@ -13,9 +13,9 @@ from xlmc.address import Cell
 from xlmc.definitions.definitions import CUTOFFS, Assumption, Filter, Parameter
 from xlmc.distributions.whole_numbers import WholeNumbers
 from xlmc.live.adjustments import BAND, LIMITS, Adjustments, adjusted_definitions, assumption_numbers, movable_limits
-from xlmc.live.protocol import plain
 from xlmc.results.statements.in_words import distribution_text, limits_text, status
 from xlmc.run.model import Model
+from xlmc.statistics.estimate import finite
 
 __all__ = ["assumption_rows", "filter_rows", "forecast_rows", "shapes_of"]
 
@@ -141,8 +141,8 @@ def _filter(filter_: Filter, own: Filter) -> dict[str, Any]:
             {
                 "key": key,
                 "heading": LIMITS[key],
-                "value": None if isinstance(now, Cell) else plain(now),
-                "own": None if isinstance(before, Cell) else plain(before),
+                "value": None if isinstance(now, Cell) else finite(now),
+                "own": None if isinstance(before, Cell) else finite(before),
                 "cell": str(now) if isinstance(now, Cell) else "",
             }
             for key, now, before in given

@@ -6,7 +6,6 @@ JSON holds no NaN and no infinity: null stands for them, and an estimate says wh
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -29,6 +28,7 @@ from xlmc.results.statements.in_words import (
     status,
 )
 from xlmc.statistics import Estimate, proportion
+from xlmc.statistics.estimate import finite
 from xlmc.studies.scenario_answers import ForecastAnswer, ScenarioAnswers, scenario_answers
 from xlmc.studies.sensitivity import sensitivities
 from xlmc.workbook.seal import sealed_text
@@ -57,7 +57,6 @@ __all__ = [
     "check_json_path",
     "document",
     "estimate_json",
-    "number_json",
     "save_json",
 ]
 
@@ -238,7 +237,7 @@ def _forecast(result: ForecastResult, base: BaseCase | None) -> Json:
         if above is None
         else {"threshold": definition.threshold, "probability_above": estimate_json(above)},
         "certainties": [_as_json(each) for each in certainties(result)],
-        "base_case": None if base is None else number_json(base.forecasts[definition.name]),
+        "base_case": None if base is None else finite(base.forecasts[definition.name]),
         "without_number": {error: count for error, count in sorted(result.faults.items()) if count},
     }
 
@@ -295,7 +294,7 @@ def _item(each: ItemAgreement) -> Json:
         "kept_alone": estimate_json(each.alone),
         "kept_given_others": estimate_json(each.given_others),
         "ratio": estimate_json(each.ratio),
-        "chance": number_json(each.chance),
+        "chance": finite(each.chance),
         "z_of_best_trial": each.best_z,
         "mean_z": each.mean_z,
         "verdict": each.verdict.value,
@@ -369,7 +368,7 @@ def _correlation(met: CorrelationMet) -> Json:
         "first": met.first,
         "second": met.second,
         "asked": met.asked,
-        "used": None if met.used is None else number_json(met.used),
+        "used": None if met.used is None else finite(met.used),
         "accepted": None if met.accepted is None else estimate_json(met.accepted),
         "row": None if met.row is None else str(met.row),
     }
@@ -387,17 +386,12 @@ def _as_json(value: Any) -> Any:
     if isinstance(value, Estimate):
         return estimate_json(value)
     if isinstance(value, float):
-        return number_json(value)
+        return finite(value)
     if value is None or isinstance(value, bool | int | str):
         return value
     if isinstance(value, tuple | list):
         return [_as_json(each) for each in value]
     return {field.name: _as_json(getattr(value, field.name)) for field in fields(value)}
-
-
-def number_json(value: float | None) -> float | None:
-    """The number; None where it is none."""
-    return float(value) if value is not None and math.isfinite(value) else None
 
 
 def estimate_json(found: Estimate) -> _EstimateJson:
@@ -410,7 +404,7 @@ def estimate_json(found: Estimate) -> _EstimateJson:
     'no standard error can be given'
     """
     low, high = found.interval or (None, None)
-    numbers = [number_json(number) for number in (found.value, found.error, low, high)]
+    numbers = [finite(number) for number in (found.value, found.error, low, high)]
     entry: _EstimateJson = dict(zip(("value", "error", "low", "high"), numbers, strict=True))
     if None in numbers:
         entry["reason"] = _reason(numbers[0], numbers[1], found.interval is not None)

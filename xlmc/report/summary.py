@@ -15,6 +15,7 @@ from xlmc.results.statements.in_words import discards_of, limits_text
 from xlmc.run.draw_binding import base_point
 from xlmc.run.rare.account import probability_text
 from xlmc.statistics import Estimate, format_estimate
+from xlmc.statistics.estimate import finite
 
 if TYPE_CHECKING:
     from xlmc.evaluation.engine import Column
@@ -206,8 +207,7 @@ def _fails(column: Column) -> bool:
 def _number(column: Column) -> float | None:
     """The only value, also that of a forecast which its own filter discards: a base case is told all the same."""
     discarded = column.codes is not None and column.codes[0] >= UNDECIDED_RESULT
-    value = float(column.values[0] if discarded else column.as_floats()[0])
-    return value if np.isfinite(value) else None
+    return finite(column.values[0] if discarded else column.as_floats()[0])
 
 
 class Said(NamedTuple):

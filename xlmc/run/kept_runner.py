@@ -30,6 +30,7 @@ from xlmc.run.draw_binding import base_point, parameter_target
 from xlmc.run.model import Model, paused_collection
 from xlmc.run.needed import filter_condition, filter_limits
 from xlmc.sampling.draws import Draw, DrawStage, Linear, Sampler
+from xlmc.statistics.estimate import finite
 
 __all__ = ["KeptRunner"]
 
@@ -97,12 +98,8 @@ class KeptRunner:
             evaluator = self._program.evaluator(1)
             columns = evaluator.filters(inputs | model.certain(1), 1)[-len(model.answer_targets) :]
             found = [float(column.as_floats()[0]) for column in columns]
-            self._bases = {key: dict(zip((f.name for f in model.forecasts), map(_finite, found), strict=False))}
+            self._bases = {key: dict(zip((f.name for f in model.forecasts), map(finite, found), strict=False))}
         return self._bases[key]
-
-
-def _finite(value: float) -> float | None:
-    return value if np.isfinite(value) else None
 
 
 def _targets(filter_: Filter) -> tuple[Target, ...]:

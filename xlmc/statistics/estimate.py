@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-__all__ = ["Estimate", "format_estimate", "supported_digits", "two_digit_exponent"]
+__all__ = ["Estimate", "finite", "format_estimate", "supported_digits", "two_digit_exponent"]
 
 LEAST_DOF = 1.0 - 1e-9
 """Fewer degrees of freedom give no error; the margin is for the rounding of an effective sample size."""
@@ -36,6 +36,15 @@ class Estimate:
     error: float | None = None
     interval: tuple[float, float] | None = None
     n: int = 0
+
+
+def finite(value: float | None) -> float | None:
+    """The number; None where it is none, or infinite, which JSON does not have.
+
+    >>> finite(1), finite(math.nan), finite(None)
+    (1.0, None, None)
+    """
+    return None if value is None or not math.isfinite(value) else float(value)
 
 
 def with_error(value: float, error: float, dof: float, confidence: float, n: int, skewness: float = 0.0) -> Estimate:

@@ -11,46 +11,49 @@ from xlmc.statistics import rank_correlation
 
 @pytest.fixture
 def lines(book, rows_of):
-    """Name -> its two lines, without empty cells at their ends."""
+    """Name with its units -> its three lines, without empty cells at their ends."""
     rows = rows_of(book["Assumptions"])
-    return {row[0]: (row, rows[n + 1]) for n, row in enumerate(rows[:-1]) if row}
+    return {row[0]: rows[n : n + 3] for n, row in enumerate(rows[:-2]) if row}
 
 
 def test_definition_and_draws_before_and_after_stand_together(run, lines):
-    before, accepted = lines["width"]
+    before, accepted, change = lines["width (ft)"]
     found = filter_effect(run.prior["width"], run.inputs["width"])
-    assert before[:5] == ["width", "S!A1", "Uniform: Low 1, High 3", "before", run.prior["width"].size]
-    assert accepted[:5] == ["ft", 2.0, "tape", "accepted", run.accepted]
+    assert before[:5] == ["width (ft)", None, 2.0, "before", run.prior["width"].size]
+    assert accepted[:5] == ["Uniform: Low 1, High 3", None, "S!A1", "accepted", run.accepted]
     for line, part in ((before, found.prior), (accepted, found.accepted)):
         estimates = [part.mean, part.standard_deviation, *part.percentiles.values()]
         assert line[5:15] == [number for estimate in estimates for number in (estimate.value, estimate.error)]
-    assert accepted[15:] == [found.shift.value, found.shift.error, found.narrowing.value, found.narrowing.error]
+    changes = [found.shift.value, found.shift.error, found.narrowing.value, found.narrowing.error]
+    assert change == ["tape", None, None, "change", None, *changes]
 
 
 def test_the_numbers_agree_with_plain_ones(run, lines):
-    _, accepted = lines["width"]
+    _, accepted, _ = lines["width (ft)"]
     assert accepted[5] == pytest.approx(np.mean(run.inputs["width"]))
     assert accepted[9] == pytest.approx(np.percentile(run.inputs["width"], 5))
 
 
 def test_what_the_filters_changed_is_marked(book, lines):
     sheet = book["Assumptions"]
-    row = next(cell.row for cell in sheet["A"] if cell.value == "width") + 1
-    assert lines["width"][1][17] < 0.8
-    assert sheet.cell(row, 18).fill.fgColor.rgb == "FFFCE4B6"
-    assert abs(lines["width"][1][15]) < 0.5
-    assert sheet.cell(row, 16).fill.fgColor.rgb != "FFFCE4B6"
+    row = next(cell.row for cell in sheet["A"] if cell.value == "width (ft)") + 2
+    mean, deviation = sheet.cell(row, 6), sheet.cell(row, 8)
+    assert deviation.value < 0.8
+    assert deviation.fill.fgColor.rgb == "FFFCE4B6"
+    assert deviation.number_format.startswith('"× "')
+    assert abs(mean.value) < 0.5
+    assert mean.fill.fgColor.rgb != "FFFCE4B6"
+    assert mean.number_format.endswith('" SD"')
 
 
 @pytest.mark.parametrize(("name", "status"), [("idle", "not needed"), ("held", "frozen")])
 def test_assumptions_that_are_not_drawn_are_listed_too(lines, name, status):
-    first, second = lines[name]
-    assert first[3:] == [status]
-    assert second[1] == (1.0 if name == "idle" else 10.0)
+    first, _, _ = lines[name]
+    assert first[2:] == [1.0 if name == "idle" else 10.0, status]
 
 
 def test_a_source_that_looks_like_a_formula_stays_text(lines):
-    assert lines["length"][1][2] == "=plan"
+    assert lines["length (ft)"][2][0] == "=plan"
 
 
 def test_the_header_is_frozen_and_repeated(book):
@@ -67,9 +70,9 @@ def test_correlations_are_listed(make, opened, row_of):
     )
     sheet = opened(run)["Assumptions"]
     rows = [row for row in sheet.iter_rows(values_only=True) if row[0] == "a" and row[1] == "b"]
-    assert [row[3:5] for row in rows] == [(0.7, 0.7)]
+    assert [(row[5], row[7]) for row in rows] == [(0.7, 0.7)]
     found = rank_correlation(run.inputs["a"], run.inputs["b"])
-    assert [row[5:7] for row in rows] == [(found.value, found.error)]
+    assert [row[9:11] for row in rows] == [(found.value, found.error)]
 
 
 def test_the_sheets_of_a_run_in_replicates(make, opened, rows_of):
@@ -99,7 +102,7 @@ def test_small_charts_show_the_shapes_of_the_draws(run, book):
     """Each assumption that is drawn has one: its draws before filtering and the accepted ones, over the same bins."""
     charts = book["Assumptions"]._charts
     assert len(charts) == len(run.inputs)
-    row = next(cell.row for cell in book["Assumptions"]["A"] if cell.value == "width")
+    row = next(cell.row for cell in book["Assumptions"]["A"] if cell.value == "width (ft)")
     (chart,) = [chart for chart in charts if chart.anchor._from.row == row - 1]
     expected = shapes(run.prior["width"], run.inputs["width"])
     for part, shares in zip(chart._charts, (expected.before, expected.accepted), strict=True):

@@ -75,12 +75,9 @@ def test_parts_hold_no_clock_and_nothing_that_cannot_be_injected(request, name):
     assert re.findall("<definedName (?!.*localSheetId)", workbook) == []
 
 
-UPRIGHT = dict.fromkeys(("Statistics", "Certainty"), "portrait")
-
-
 def test_every_sheet_is_set_up_for_printing(book):
     for sheet in book:
-        assert sheet.page_setup.orientation == UPRIGHT.get(sheet.title, "landscape")
+        assert sheet.sheet_properties.pageSetUpPr.fitToPage
         assert sheet.oddFooter.left.text == "book.xlsx"
         assert "Page" in sheet.oddFooter.right.text
         assert not sheet.sheet_view.showGridLines

@@ -178,7 +178,7 @@ def test_a_formula_like_name_is_a_title_and_a_long_one_is_shortened(make):
 def test_without_accepted_trials_there_are_no_charts(none_accepted, opened):
     book = opened(none_accepted)
     assert book["Charts"]._charts == []
-    assert book["Charts"]["A5"].value == "No forecast has a number in an accepted trial: nothing to draw."
+    assert book["Charts"]["A4"].value == "No forecast has a number in an accepted trial: nothing to draw."
 
 
 def test_a_single_trial_is_one_bar(one_accepted):

@@ -86,13 +86,45 @@ def test_spread_merges_up_to_the_next_start(written):
     assert sheet["C1"].value == 1.0
 
 
-def test_pages_print_fitted_to_their_width_or_at_a_scale_with_breaks(written):
-    fitted = written(lambda page: page.set_up_printing("a & b.xlsx", repeat=3))
-    assert fitted.sheet_properties.pageSetUpPr.fitToPage
-    assert (fitted.page_setup.fitToWidth or 1, fitted.page_setup.fitToHeight) == (1, 0)
-    assert fitted.page_setup.orientation == "landscape"
-    assert fitted.print_title_rows == "$4:$4"
-    assert fitted.oddFooter.left.text == "a && b.xlsx"
-    broken = written(lambda page: page.set_up_printing("b.xlsx", scale=70, breaks=[5, 9]))
-    assert broken.page_setup.scale == 70
-    assert [brk.id for brk in broken.row_breaks.brk] == [5, 9]
+def test_a_sheet_prints_on_one_page_or_in_whole_sections(written):
+    def short(page):
+        page.line([Shown("text", look="text")])
+        page.set_up_printing("a & b.xlsx", repeat=0)
+
+    one = written(short)
+    assert one.sheet_properties.pageSetUpPr.fitToPage
+    assert (one.page_setup.fitToWidth or 1, one.page_setup.fitToHeight or 1) == (1, 1)
+    assert one.print_title_rows == "$1:$1"
+    assert one.oddFooter.left.text == "a && b.xlsx"
+
+    def long(page):
+        for number in range(6):
+            page.heading(f"Section {number}")
+            for _ in range(30):
+                page.line([Shown("x", look="text"), Shown("word " * 30, look="text")], [0, 1], 12)
+        page.set_up_printing("b.xlsx")
+
+    several = written(long)
+    assert several.page_setup.fitToHeight == 0
+    begins = [brk.id + 1 for brk in several.row_breaks.brk]
+    assert begins
+    assert all(str(several.cell(row, 1).value).startswith("Section") for row in begins)
+
+
+def test_what_is_not_printed_begins_a_page_of_its_own(written):
+    def act(page):
+        page.line([Shown("printed", look="text")])
+        last = page.row
+        page.line([Shown("not printed", look="text")])
+        page.set_up_printing("b.xlsx", printed=last, columns=(0, 3))
+
+    sheet = written(act)
+    assert sheet.print_area.endswith("$A$1:$D$1")
+    assert sheet.page_setup.fitToHeight == 0
+    assert [brk.id for brk in sheet.row_breaks.brk] == [1]
+
+
+def test_a_logical_has_a_format_that_says_true(written):
+    cell = written(lambda page: page.put(0, 0, Shown(True, look="text")))["A1"]
+    assert cell.value is True
+    assert cell.number_format == '"TRUE";"TRUE";"FALSE"'

@@ -38,12 +38,12 @@ def test_table_2_holds_the_simulations_numbers(run, book, row_of):
         high.value,
         high.error,
         16.0,
-        16.0,
-        above.value,
-        above.error,
-        *above.interval,
     ]
     assert row_of(sheet, "difference")[11:] == [-1.0]
+    heading = next(cell.row for cell in sheet["A"] if cell.value == "Values above a threshold")
+    thresholds = [cell.value for cell in sheet[heading + 2]][:7]
+    assert thresholds == ["area", "ft", 16.0, above.value, above.error, *above.interval]
+    assert sheet.cell(heading + 3, 1).value is None  # a forecast without a threshold has no row
 
 
 def test_formats_show_the_digits_the_errors_support(run, book):
@@ -122,5 +122,5 @@ def test_the_base_case_says_which_filter_would_reject_it(none_accepted, opened, 
 def test_without_an_accepted_trial_the_warning_stands_first_and_no_number_is_made_up(none_accepted, opened, row_of):
     sheet = opened(none_accepted)["Results"]
     assert "no trial was accepted: the filters contradict the assumptions" in sheet["A3"].value
-    assert row_of(sheet, "x") == ["x", None, 0, *["–"] * 8, 1.0, 1.0, *["–"] * 4]
+    assert row_of(sheet, "x") == ["x", None, 0, *["–"] * 8, 1.0]
     assert row_of(sheet, "Accepted")[2:4] == [0, 0]

@@ -75,7 +75,7 @@ def test_sheets_of_numbers_that_charts_draw_open_hidden(book, name):
     assert str(book[name]["A2"].value).endswith("This sheet opens hidden; hidden sheets are not printed.")
 
 
-def test_of_the_trials_the_heading_alone_is_printed(book):
+def test_the_trials_are_not_printed_and_say_so(book):
     sheet = book["Trials"]
-    assert sheet.print_area == "'Trials'!$A$1:$L$2"
-    assert str(sheet["A2"].value).endswith("Only this heading is printed, unless you clear the print area.")
+    assert sheet.print_area == "'Trials'!$XFD$1048576"
+    assert str(sheet["A2"].value).endswith("This sheet is not printed, unless you clear its print area, a blank cell.")

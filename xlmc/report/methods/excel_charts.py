@@ -38,7 +38,8 @@ _MARKERS: Final = {
 _MAIN: Final = (1_180, 640)
 _SMALL: Final = (236, 232)
 _MAIN_ROWS: Final = 29
-_SCALE: Final = 62
+_SMALL_ROWS: Final = 11
+_POINTS: Final = "The points of the first chart stand on the sheet Chart data, those of the others on the sheet Runs."
 _WIDE: Final = 17
 """The last column that the main chart covers."""
 
@@ -88,7 +89,9 @@ def write_charts(
         chart = _small(made, study, title, column, curve_rows)
         if chart is not None:
             page.sheet.insert_chart(top, 0, chart, {"object_position": 1, "x_offset": number * _SMALL[0]})
-    page.set_up_printing(study.model.workbook.name, scale=_SCALE)
+    page.row = top + _SMALL_ROWS
+    page.wide(_POINTS, "remark", _WIDE)
+    page.set_up_printing(study.model.workbook.name)
 
 
 def _main(made: Workbook, data: _Data, picture: Picture) -> ChartScatter:

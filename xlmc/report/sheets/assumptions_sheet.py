@@ -1,14 +1,13 @@
 """The sheet Assumptions: what each one is and why, and beside it how the filters changed it.
 
-Each has two lines: name, cell, distribution and the draws before filtering; below them units, base case, source and the
-accepted draws. At their end a small
-chart shows the shapes of both.
+Each has three lines: name, units, base case and the draws before filtering; distribution, cell and the accepted draws;
+its source, and how mean and standard deviation changed. At their end a small chart shows the shapes of both.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from xlsxwriter.chart import Chart
     from xlsxwriter.workbook import Workbook
 
+    from xlmc.definitions.definitions import Assumption
     from xlmc.report.sheets.curves_sheet import Curves, TableAt
     from xlmc.report.sheets.page import Page
     from xlmc.run.simulation import Simulation
@@ -35,15 +35,25 @@ __all__ = ["HEADER", "MEANING", "MOVED", "NARROWED", "STRATIFIED", "WIDTHS", "wr
 HEADER = 3
 """The row of the headings, counted from 0."""
 
-_STATISTICS = 14
-_SHAPE = 5 + _STATISTICS
-WIDTHS = (36, 12, 44, 10, 8, *[9] * _STATISTICS, 24)
-_SIZE = (166, 42)
-"""The size of a small chart in pixels: within the cells of two lines."""
+_STATISTICS = 10
+"""Columns of the mean, the standard deviation and three percentiles, each with its error."""
+_NAMED = 3
+"""Columns that say what the assumption is: lines begin in the first, the last has its base case and its cell."""
+_SHAPE = _NAMED + 2 + _STATISTICS
+WIDTHS = (32, 9.5, 12.5, 10.5, 7, *(8, 6.1) * (_STATISTICS // 2), 13.5)
+_LINES = 3
+_ROW = 15.0
+_SIZE = (98, 62)
+"""The size of a small chart in pixels: within the cells of three lines."""
 _DRAWN = 100
 """The most assumptions whose shapes are drawn: more would make the file slow to open."""
-_READABLE = 10
-"""The column that paragraphs reach to, so that they can be read without scrolling."""
+_READABLE = _SHAPE
+"""The column that paragraphs reach to."""
+
+_HEADS = (
+    *("Assumption and its units; distribution; source", "Base case; cell", "Draws", "Trials"),
+    *("Mean", "±", "Standard deviation", "±", "5 %", "±", "50 %", "±", "95 %", "±", "Before (pale), accepted (line)"),
+)
 
 MOVED, NARROWED = 0.5, 0.8
 
@@ -52,6 +62,11 @@ MEANING = (
     "distributed differently among the accepted trials, although its range is the same. "
     f"Marked: a mean that moved by {MOVED:g} standard deviations or more; a standard deviation that shrank to "
     f"{NARROWED:g} of what it was or less."
+)
+
+_CHANGE = (
+    "The third line of each assumption has its change: how far the mean moved, in standard deviations of the draws "
+    "before filtering (SD), and what part of that standard deviation is left (×)."
 )
 
 STRATIFIED = (
@@ -72,12 +87,19 @@ def write_assumptions(page: Page, book: Workbook, simulation: Simulation, curves
     of = f" of {simulation.trials:,}" if simulation.rare is None else ""
     page.title("Assumptions", f"{name}: {simulation.accepted:,}{of} trials accepted")
     page.row = HEADER
-    page.table(_headers(), _lines(simulation))
+    page.height = _ROW
+    starts = [0, *range(_NAMED - 1, _NAMED - 1 + len(_HEADS) - 1)]
+    looks = ["header left", *["header"] * (len(_HEADS) - 1)]
+    page.line([Shown(head, look=look) for head, look in zip(_HEADS, looks, strict=True)], starts)
+    for assumption in simulation.model.assumptions:
+        page.may_begin()
+        _write_assumption(page, simulation, assumption)
     page.sheet.freeze_panes(HEADER + 1, 1)
     _draw_shapes(page, book, simulation, curves)
     write_correlations(page, simulation)
     page.heading("What this shows")
     page.wide(MEANING, "paragraph", _READABLE)
+    page.wide(_CHANGE, "paragraph", _READABLE)
     early = max((values.size for values in simulation.prior.values()), default=0)
     page.wide(f"Before filtering: the first {early:,} trials. ± is the standard error.", "paragraph", _READABLE)
     if simulation.plan.size:
@@ -88,19 +110,13 @@ def write_assumptions(page: Page, book: Workbook, simulation: Simulation, curves
     page.set_up_printing(name, repeat=HEADER)
 
 
-def _headers() -> list[str]:
-    heads = ["Assumption and its units", "Cell and base case", "Distribution and source", "Draws", "Trials"]
-    heads += ["Mean", "±", "Standard deviation", "±", "5 %", "±", "50 %", "±", "95 %", "±"]
-    return [*heads, "Shift of mean in SDs", "±", "SD accepted / before", "±", "Before (pale) and accepted (line)"]
-
-
 def _draw_shapes(page: Page, book: Workbook, simulation: Simulation, curves: Curves) -> None:
     """Draw how often each assumption has each value, beside its lines."""
     drawn = []
     for index, assumption in enumerate(simulation.model.assumptions[:_DRAWN]):
         found = shapes_of(simulation, assumption.name)
         if found is not None:
-            drawn.append((HEADER + 1 + 2 * index, assumption.name, found))
+            drawn.append((HEADER + 1 + _LINES * index, assumption.name, found))
     if not drawn:
         return
     heads = [f"{name}, {which}" for _, name, _ in drawn for which in ("before", "accepted")]
@@ -116,7 +132,7 @@ def _draw_shapes(page: Page, book: Workbook, simulation: Simulation, curves: Cur
 
 
 def _shape_chart(book: Workbook, table: TableAt, column: int) -> Chart:
-    """A chart without axes, over both lines of an assumption: columns before filtering, a line of the accepted."""
+    """A chart without axes, over the lines of an assumption: columns before filtering, a line of the accepted."""
     chart = book.add_chart({"type": "column"})
     chart.add_series(
         {
@@ -141,28 +157,29 @@ def _shape_chart(book: Workbook, table: TableAt, column: int) -> Chart:
     return chart
 
 
-def _lines(simulation: Simulation) -> Iterator[list[Shown]]:
-    """The lines, two for each assumption."""
-    for assumption in simulation.model.assumptions:
-        before, accepted = _statistics(simulation, assumption.name, assumption.frozen)
-        words = distribution_text(assumption)
-        yield [Shown(assumption.name, look="name"), Shown(str(assumption.cell)), Shown(words), *before]
-        base = Shown(cells.NONE if assumption.base is None else assumption.base, look="second number")
-        source = Shown(assumption.source or cells.NONE, look="second")
-        yield [Shown(assumption.units, look="second"), base, source, *accepted]
+def _write_assumption(page: Page, simulation: Simulation, assumption: Assumption) -> None:
+    """Write the lines of an assumption."""
+    before, accepted, change = _statistics(simulation, assumption)
+    starts = [0, *range(_NAMED - 1, _NAMED + len(before))]
+    name = f"{assumption.name} ({assumption.units})" if assumption.units else assumption.name
+    base = Shown(cells.NONE if assumption.base is None else assumption.base)
+    page.line([Shown(name, look="name"), base, *before], starts)
+    words = Shown(distribution_text(assumption), look="second")
+    page.line([words, Shown(str(assumption.cell), look="second"), *accepted], starts)
+    page.line([Shown(assumption.source or cells.NONE), *change], [0, *range(_NAMED, _NAMED + len(change))])
 
 
-def _statistics(simulation: Simulation, name: str, frozen: bool) -> tuple[list[Shown], list[Shown]]:
-    """The cells of the draws before filtering, and of the accepted ones; or why the assumption is not drawn."""
-    found = filter_effect_of(simulation, name)
+def _statistics(simulation: Simulation, assumption: Assumption) -> tuple[list[Shown], list[Shown], list[Shown]]:
+    """The cells of the draws before filtering, of the accepted ones and of the change; or why it is not drawn."""
+    found = filter_effect_of(simulation, assumption.name)
     if found is None:
-        why = Shown(status(simulation.model, name, frozen))
-        return [why, *_blank(_STATISTICS + 1)], _blank(_STATISTICS + 2, "second")
-    return _before(found), _accepted(found)
+        why = Shown(status(simulation.model, assumption.name, assumption.frozen))
+        return [why, *_blank(_STATISTICS + 1)], _blank(_STATISTICS + 2, "second"), _blank(_STATISTICS + 2)
+    return _before(found), _accepted(found), _change(found)
 
 
 def _before(found: FilterEffect) -> list[Shown]:
-    return [Shown("before"), cells.count(found.prior.trials), *_marginal(found.prior), *_blank(4)]
+    return [Shown("before"), cells.count(found.prior.trials), *_marginal(found.prior)]
 
 
 def _accepted(found: FilterEffect) -> list[Shown]:
@@ -170,8 +187,6 @@ def _accepted(found: FilterEffect) -> list[Shown]:
         Shown("accepted", look="second"),
         Shown(found.accepted.trials, cells.count(0).format, "second number"),
         *_marginal(found.accepted, "second number", "second error"),
-        *_change(found.shift, abs(found.shift.value) >= MOVED),
-        *_change(found.narrowing, found.narrowing.value <= NARROWED),
     ]
 
 
@@ -180,8 +195,16 @@ def _marginal(found: Marginal, look: str = "number", error_look: str = "error") 
     return [shown for estimate in estimates for shown in cells.estimate(estimate, look, error_look)]
 
 
-def _change(found: Estimate, marked: bool) -> list[Shown]:
-    return cells.estimate(found, "moved" if marked else "second number", "second error")
+def _change(found: FilterEffect) -> list[Shown]:
+    shift = cells.estimate(found.shift, "moved" if abs(found.shift.value) >= MOVED else "number")
+    ratio = cells.estimate(found.narrowing, "moved" if found.narrowing.value <= NARROWED else "number")
+    changes = [
+        replace(shift[0], format=f'{shift[0].format}" SD"'),
+        shift[1],
+        replace(ratio[0], format=f'"× "{ratio[0].format}'),
+        ratio[1],
+    ]
+    return [Shown("change"), cells.BLANK, *changes, *_blank(_STATISTICS - len(changes))]
 
 
 def _blank(columns: int, look: str = "number") -> list[Shown]:
@@ -194,7 +217,7 @@ def write_correlations(page: Page, simulation: Simulation) -> None:
     if not met:
         return
     page.heading("Rank correlations")
-    starts, last = (0, 1, 3, 4, 5, 6), 6
+    starts, last = (0, 1, 5, 7, 9, 10), 10
     headers = ("First", "Second", "Asked for", "Drawn with", "Accepted", "±")
     page.line([Shown(header, look="header left") for header in headers], starts, last)
     for pair in met:

@@ -15,6 +15,7 @@ from xlmc.statistics.estimate import two_digit_exponent
 
 __all__ = [
     "BLANK",
+    "LOGICAL",
     "NOISE",
     "NONE",
     "Shown",
@@ -31,6 +32,9 @@ __all__ = [
 
 NONE = "–"
 """The text shown if there is no number."""
+
+LOGICAL = '"TRUE";"TRUE";"FALSE"'
+"""The format of a logical: LibreOffice shows 1 or 0 without it; Excel has its own words and does not heed it."""
 
 NOISE = '"noise";"noise";"noise"'
 """The format of a number that is no more than noise: it shows the word."""

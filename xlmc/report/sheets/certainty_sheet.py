@@ -30,12 +30,9 @@ if TYPE_CHECKING:
 __all__ = ["LAST", "WIDTHS", "write_certainty", "write_ranges"]
 
 
-WIDTHS = (34, 26, 12, 12, 11, 11, 11)
+WIDTHS = (44, 38, 13, 13, 12, 12, 12)
 
 LAST = len(WIDTHS) - 1
-
-_ON_A_PAGE, _SCALE = 58, 60
-"""Rows, and the percentage at which so many fit."""
 
 _PERCENT = "0.0%"
 
@@ -53,10 +50,8 @@ def write_certainty(page: Page, simulation: Simulation, trials: TrialsAt) -> Non
     page.wide(MEANING, "remark", LAST)
     page.heading("Certainty of ranges")
     write_ranges(page, simulation)
-    start = page.row
     _write_own_ranges(page, simulation, trials)
-    apart = start // _ON_A_PAGE != page.row // _ON_A_PAGE
-    page.set_up_printing(name, scale=_SCALE, breaks=[start] if apart else [], upright=True)
+    page.set_up_printing(name)
 
 
 def write_ranges(page: Page, simulation: Simulation) -> None:

@@ -15,6 +15,7 @@ from xlmc.report.sheets.bins_sheet import BinsAt, histogram_chart
 from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.curve_charts import MOST, cumulative_charts, group_by_units, overlay_chart, trend_chart
 from xlmc.report.sheets.curves_sheet import Curves
+from xlmc.report.sheets.page import ROW
 from xlmc.report.summary import percent
 
 if TYPE_CHECKING:
@@ -24,23 +25,28 @@ if TYPE_CHECKING:
     from xlmc.report.sheets.page import Page
     from xlmc.run.simulation import Simulation
 
-__all__ = ["ACROSS", "WIDTHS", "Drawing", "place_drawings", "write_charts"]
+__all__ = ["WIDTHS", "Drawing", "place_drawings", "write_charts"]
 
-ACROSS = 2
+_ACROSS = 2
 _COLUMNS = 9
 """Drawings side by side, and the columns of the sheet that each takes."""
 
-_ON_A_PAGE, _SCALE = 3, 47
-"""Rows of drawings, and the percentage at which so many fit."""
-
 _PRINTED = "The cumulative charts stand behind the others and are not printed, unless you clear the print area."
 
-_CHART_ROWS = 16
+CHART_ROWS = 16
+"""Rows of the sheet that a chart covers: a page has room for three such charts with their captions."""
+
+_GAP = 8
+"""Points below a caption."""
+
 _OFFSET = 3
 """Pixels above a chart, so that its frame is not drawn on the page before."""
 
-_FIRST = 4
-WIDTHS = (8.43,) * (ACROSS * _COLUMNS)
+_WIDTH = 548
+"""Pixels of a chart: what its columns have, but for a gap."""
+
+_FIRST = 3
+WIDTHS = (8.14,) * (_ACROSS * _COLUMNS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,33 +76,37 @@ def write_charts(
         Drawing(histogram_chart(book, at, figure.bins), figure.caption)
         for figure, at in zip(figures, bins, strict=True)
     ]
-    breaks = place_drawings(page, [*drawings, *_comparison_drawings(book, curves, simulation, figures)])
+    place_drawings(page, [*drawings, *_comparison_drawings(book, curves, simulation, figures)])
     printed = page.row
-    breaks += [printed, *place_drawings(page, list(_cumulative_drawings(book, curves, simulation, figures)))]
-    page.set_up_printing(name, scale=_SCALE, breaks=breaks)
-    page.sheet.print_area(0, 0, printed - 1, len(WIDTHS) - 1)
+    place_drawings(page, list(_cumulative_drawings(book, curves, simulation, figures)))
+    page.set_up_printing(name, printed=printed, columns=(0, len(WIDTHS) - 1))
 
 
-def place_drawings(page: Page, drawings: Sequence[Drawing]) -> list[int]:
-    """Put charts with their captions on the sheet, two side by side; the rows that begin further pages."""
-    breaks = []
-    for number, start in enumerate(range(0, len(drawings), ACROSS)):
-        if number and number % _ON_A_PAGE == 0:
-            breaks.append(page.row)
-        _place_row(page, drawings[start : start + ACROSS])
-    return breaks
+def place_drawings(page: Page, drawings: Sequence[Drawing], rows: int = CHART_ROWS) -> None:
+    """Put charts with their captions on the sheet, two side by side.
+
+    Args:
+        page: the sheet.
+        drawings: the charts.
+        rows: how many rows of the sheet each is high.
+    """
+    for start in range(0, len(drawings), _ACROSS):
+        page.may_begin()
+        _place_row(page, drawings[start : start + _ACROSS], rows)
 
 
-def _place_row(page: Page, drawings: Sequence[Drawing]) -> None:
+def _place_row(page: Page, drawings: Sequence[Drawing], rows: int) -> None:
     starts, captions = [], []
     for column, drawing in enumerate(drawings):
         left = column * _COLUMNS
         options = {"object_position": 1, "y_offset": _OFFSET, "description": drawing.caption}
+        drawing.chart.set_size({"width": _WIDTH, "height": int(rows * ROW / 0.75) - 2 * _OFFSET})
         page.sheet.insert_chart(page.row, left, drawing.chart, options)
         starts += [left, left + _COLUMNS - 1]
         captions += [Shown(drawing.caption, look="caption"), Shown("", look="caption")]
-    page.row += _CHART_ROWS
+    page.row += rows
     page.line(captions, starts, starts[-1])
+    page.sheet.set_row(page.row, _GAP)
     page.row += 1
 
 

@@ -11,13 +11,13 @@ from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.sensitivity_charts import (
     CHART_ROWS,
+    CHARTED,
     RIGHT,
     WIDTHS,
     Captioned,
     TableAt,
     limit_chart,
     place_rows,
-    set_up_printing,
 )
 from xlmc.report.sheets.styles import bounds
 from xlmc.results.statements.in_words import number_text
@@ -44,20 +44,20 @@ def write_limits(page: Page, book: Workbook, found: Sensitivities, name: str) ->
     """Write the sheet; its first charts draw the tables that stand below them, so room is left for them."""
     page.title("Filter limits: how the answers move as each limit moves", name)
     for sentence in (*limit_sentences(found), _PRINTED):
-        page.wide(sentence, "remark", _LAST)
+        page.wide(sentence, "remark", CHARTED)
     units = {f.forecast: f.units for f in found.forecasts}
     page.row += 1
     top, drawn = page.row, sum(bool(limit.points) for limit in found.filter_limits)
-    tops = range(top, top + (drawn + 1) // 2 * (CHART_ROWS + 1), CHART_ROWS + 1)
-    page.row = printed = tops.stop
+    for _ in range(0, drawn, 2):
+        page.may_begin()
+        page.row += CHART_ROWS + 1
+    printed = page.row
     charts: list[Captioned] = []
-    details = []
     for limit in found.filter_limits:
-        details.append(page.row)
         charts += _write_limit(page, book, limit, units)
     page.row = top
     place_rows(page, charts)
-    set_up_printing(page, name, tops, printed, details)
+    page.set_up_printing(name, printed=printed, columns=(0, CHARTED))
 
 
 def limit_sentences(found: Sensitivities) -> list[str]:
@@ -100,7 +100,7 @@ def write_acceptance(page: Page, limit: FilterLimit) -> TableAt:
     header = page.row
     page.table(["Limit", "Value", "Trials", "Share", "±"], [_acceptance(point, limit) for point in limit.points])
     bottom, page.row = page.row, header
-    starts, last = (RIGHT, 12, 13), 13
+    starts, last = (RIGHT + 1, 12, 13), 13
     headers = ("Slope: change of the mean of …, per unit of the limit", "Slope", "±")
     page.line([Shown(header, look="header left") for header in headers], starts, last)
     for slope in limit.slopes:

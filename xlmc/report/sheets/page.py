@@ -7,7 +7,8 @@ from collections.abc import Iterable, Sequence
 from itertools import count, islice
 from typing import TYPE_CHECKING
 
-from xlmc.report.sheets.cells import NONE, Shown
+from xlmc.report.sheets.cells import LOGICAL, NONE, Shown
+from xlmc.report.sheets.paper import MARGINS, lay_out
 
 if TYPE_CHECKING:
     from xlmc.report.sheets.exact_book import ExactSheet
@@ -21,7 +22,13 @@ LONGEST_TEXT = 32_767
 ROW = 17.25
 """The height of a row, in points: 23 pixels."""
 
-_HEADING_COLUMNS = 11
+_LAST_CELL = (1_048_575, 16_383)
+"""The row and column of the sheet's last cell, which is blank: the print area of a sheet that is not printed."""
+_EDGE = 0.25
+"""Inches between the edge of the paper and the head or the foot."""
+_GAP = 9.0
+_POINTS = 0.75
+"""In a pixel."""
 _LINE = 15.0
 _HIGHEST = 409.0
 _WIDTH = 8.43
@@ -32,6 +39,7 @@ class Page:
 
     Attributes:
         row: counted from 0.
+        height: of a row of one line, in points.
 
     Args:
         sheet: the worksheet.
@@ -44,6 +52,8 @@ class Page:
         self.sheet, self._styles, self._widths = sheet, styles, list(widths)
         self._header = header
         self.row = 0
+        self.height = ROW
+        self._begins: list[int] = []
         for column, width in enumerate(widths):
             sheet.set_column(column, column, width)
         sheet.set_default_row(ROW)
@@ -51,7 +61,8 @@ class Page:
 
     def put(self, row: int, column: int, shown: Shown) -> None:
         """Write one cell."""
-        style, value = self._styles(shown.look, shown.format), shown.value
+        value = shown.value
+        style = self._styles(shown.look, LOGICAL if isinstance(value, bool) else shown.format)
         if value is None or value == "":
             self.sheet.write_blank(row, column, None, style)
         elif isinstance(value, str):
@@ -97,7 +108,7 @@ class Page:
             if isinstance(shown.value, str):
                 lines = max(lines, self._lines(shown, first, end))
         if fit:  # every row, or LibreOffice chooses heights of its own
-            self.sheet.set_row(self.row, ROW if lines == 1 else min(_LINE * lines + 3.0, _HIGHEST))
+            self.sheet.set_row(self.row, min(self.height + _LINE * (lines - 1), _HIGHEST))
         self.row += 1
 
     def wide(self, value: str, look: str, last: int, first: int = 0) -> None:
@@ -119,26 +130,35 @@ class Page:
         self.row += 2
 
     def title_of_data(self, value: str, below: str, name: str, header: int, *, hidden: bool = False) -> None:
-        """Write the title of a sheet that would fill many pages; of it, the title and the line below are printed.
+        """Write the title of a sheet that would fill many pages, and is not printed.
 
         Args:
             value: the title.
-            below: the line below; what is printed is added to it.
+            below: the line below; that it is not printed is added to it.
             name: of the workbook, for the foot of the page.
-            header: the row of headings, which stands on top of every page once the numbers are printed, too.
-            hidden: whether the sheet opens hidden, so that nothing of it is printed.
+            header: the row of headings, which stands on top of every page once the numbers are printed.
+            hidden: whether the sheet opens hidden.
         """
         if hidden:
             self.title(value, f"{below} This sheet opens hidden; hidden sheets are not printed.")
             self.sheet.hide()
         else:
-            self.title(value, f"{below} Only this heading is printed, unless you clear the print area.")
-            self.sheet.print_area(0, 0, 1, _HEADING_COLUMNS)
-        self.set_up_printing(name, repeat=header)
+            self.title(value, f"{below} This sheet is not printed, unless you clear its print area, a blank cell.")
+            self.sheet.print_area(*_LAST_CELL, *_LAST_CELL)
+        self.sheet.set_landscape()
+        self.sheet.fit_to_pages(1, 0)
+        self.sheet.repeat_rows(header, header)
+        self._head_and_foot(name)
+
+    def may_begin(self) -> None:
+        """Say that the next row may begin a page."""
+        self._begins.append(self.row)
 
     def heading(self, value: str, column: int = 0) -> None:
         """Write the heading of a section, with space above it."""
-        self.sheet.set_row(self.row + 1, 21)
+        self.sheet.set_row(self.row, _GAP)
+        self.sheet.set_row(self.row + 1, 18)
+        self._begins.append(self.row + 1)
         self.put(self.row + 1, column, Shown(value, look="heading"))
         self.row += 2
 
@@ -147,38 +167,44 @@ class Page:
         name: str,
         *,
         repeat: int | None = None,
-        repeat_from: int | None = None,
-        scale: int = 100,
-        breaks: Sequence[int] = (),
-        columns: Sequence[int] = (),
-        upright: bool = False,
+        printed: int | None = None,
+        columns: tuple[int, int] | None = None,
     ) -> None:
-        """Set up how the sheet prints: one page wide, unless columns are given to break at.
+        """Set up how the sheet prints: one page wide, and whole sections on a page; see `paper`.
 
         Args:
             name: of the workbook, for the foot of the page.
             repeat: the row to stand on top of every page, counted from 0.
-            repeat_from: the first of several such rows.
-            scale: in percent; 100 without breaks fits the sheet to the page's width, where Excel heeds no break.
-            breaks: the rows that begin a new page, counted from 0.
-            columns: the columns that do.
-            upright: whether its pages are higher than wide.
+            printed: the row behind the last that is printed, where the rest is not unless the print area is cleared;
+                by default all is printed.
+            columns: the first and the last column that are printed; by default all are.
         """
-        if not upright:
+        rows = (self.sheet.dim_rowmax or 0) + 1
+        first, last = columns or (0, self.sheet.dim_colmax or 0)
+        width = _POINTS * sum(self.sheet._size_col(column) for column in range(first, last + 1))
+        heights = [_POINTS * self.sheet._size_row(row) for row in range(rows)]
+        repeated = 0.0 if repeat is None else heights[repeat]
+        end = rows if printed is None else printed
+        found = lay_out(width, heights[:end], self._begins, repeated, whole=printed is None)
+        if not found.upright:
             self.sheet.set_landscape()
-        if breaks or columns or scale != 100:
-            self.sheet.set_print_scale(scale)
-            self.sheet.set_h_pagebreaks(list(breaks))
-            self.sheet.set_v_pagebreaks(list(columns))
-            self.sheet.center_horizontally()
-        else:
-            self.sheet.fit_to_pages(1, 0)
-        self.sheet.set_margins(left=0.5, right=0.5, top=0.6, bottom=0.7)
-        self.sheet.set_footer(f"&L{_plain(name)}&C&A&RPage &P of &N")
-        if self._header:
-            self.sheet.set_header(f"&R{_plain(self._header)}")
+        self.sheet.fit_to_pages(1, 1 if found.whole else 0)
+        breaks = list(found.breaks)
+        if printed is not None:
+            begins = [row - end for row in self._begins]
+            breaks += [end, *(end + row for row in lay_out(width, heights[end:], begins, repeated, whole=False).breaks)]
+        self.sheet.set_h_pagebreaks(breaks)
+        if printed is not None or columns is not None:
+            self.sheet.print_area(0, first, end - 1, last)
+        self._head_and_foot(name)
         if repeat is not None:
-            self.sheet.repeat_rows(repeat if repeat_from is None else repeat_from, repeat)
+            self.sheet.repeat_rows(repeat, repeat)
+
+    def _head_and_foot(self, name: str) -> None:
+        self.sheet.set_margins(**MARGINS)
+        self.sheet.set_footer(f"&L{_plain(name)}&C&A&RPage &P of &N", {"margin": _EDGE})
+        if self._header:
+            self.sheet.set_header(f"&R{_plain(self._header)}", {"margin": _EDGE})
 
     def _lines(self, shown: Shown, first: int, last: int) -> int:
         """How many lines a text takes, of letters somewhat narrower than the digits that widths are counted in."""

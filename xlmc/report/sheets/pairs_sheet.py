@@ -10,7 +10,7 @@ import numpy as np
 
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import BLANK, Shown
-from xlmc.report.sheets.charts_sheet import ACROSS, Drawing, place_drawings
+from xlmc.report.sheets.charts_sheet import Drawing, place_drawings
 from xlmc.report.sheets.curves_sheet import Curves, TableAt
 from xlmc.report.sheets.styles import DARK, Reference, across, axis_format, bounds, finish, straight, upwards
 from xlmc.results.statements import PAIRS, Pair, pairs_of
@@ -30,14 +30,13 @@ __all__ = ["POINTS", "WIDTHS", "pair_sentences", "write_pair_table", "write_pair
 POINTS: Final = 1_000
 """Points in a scatter chart: more would hide each other and make the file slow to open."""
 
-WIDTHS = (*[8.43] * 14, 11.5, *[8.43] * 3)
+WIDTHS = (*[8.14] * 14, 10.6, *[7.3] * 3)
 _LAST = 17
 _STARTS = (0, 3, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17)
-_SCALE = 60
-_PRINTED = ACROSS
-"""Charts that fit on a page below the table of the pairs of four forecasts: those that are printed."""
-_ABOVE_CHARTS = 6
-"""Pairs whose table leaves room for them."""
+_CHART_ROWS = 12
+"""Rows of the sheet that a chart covers: a page has room for the pairs of four forecasts, and a chart of each."""
+_PRINTED = 6
+"""The most pairs whose charts are printed: those that have room on a page with their table."""
 _FORECASTS = 6
 """The most forecasts; with more there are more pairs than the sheet shows."""
 
@@ -61,24 +60,20 @@ def write_pairs(page: Page, book: Workbook, simulation: Simulation, curves: Curv
         page.wide(
             "There are no two forecasts that vary and have numbers in the same accepted trials.", "paragraph", _LAST
         )
-        page.set_up_printing(name, scale=_SCALE)
+        page.set_up_printing(name)
         return
     page.heading("Joint probability and rank correlation")
     write_pair_table(page, pairs)
     sentences = pair_sentences(simulation, pairs)
-    on_paper = min(len(pairs), _PRINTED) if len(pairs) <= _ABOVE_CHARTS else 0
-    if on_paper < len(pairs):
-        which = f"Only the first {on_paper} scatter charts are" if on_paper else "The scatter charts are not"
-        sentences.append(f"{which} printed, unless you clear the print area.")
+    on_paper = len(pairs) <= _PRINTED
+    if not on_paper:
+        sentences.append("The scatter charts are not printed, unless you clear the print area.")
     for sentence in sentences:
         page.wide(sentence, "remark", _LAST)
     page.row += 1
-    drawings = _drawings(book, curves, simulation, pairs, trials)
-    place_drawings(page, drawings[:on_paper])
-    printed = page.row
-    breaks = [printed, *place_drawings(page, drawings[on_paper:])]
-    page.set_up_printing(name, scale=_SCALE, breaks=breaks)
-    page.sheet.print_area(0, 0, printed - 1, _LAST)
+    table = page.row
+    place_drawings(page, _drawings(book, curves, simulation, pairs, trials), _CHART_ROWS)
+    page.set_up_printing(name, printed=None if on_paper else table, columns=(0, _LAST))
 
 
 def write_pair_table(page: Page, pairs: Sequence[Pair]) -> None:

@@ -18,10 +18,11 @@ if TYPE_CHECKING:
 
 __all__ = ["WIDTHS", "write_record"]
 
-_UNIT = 12.0
+_UNIT = 9.0
 _UNITS = 13
-WIDTHS = (24, 34, *[_UNIT] * _UNITS)
+WIDTHS = (24, 40, *[_UNIT] * _UNITS)
 _FIRST, _LAST = 1, len(WIDTHS) - 1
+_ROW = 15.0
 _SPANS = {"limits": 2, "because": 5, "parameters": 2, "source": 3, "notes": 2, "error": 3, "message": 14, "first": 3}
 """How many columns of the sheet a column of a table takes; all others take one."""
 
@@ -31,20 +32,42 @@ _PLAIN = frozenset({"seed"})
 """Whole numbers that are names, not counts: without separators of thousands."""
 
 _LISTED = frozenset({"structure", "cells"})
-"""Sections as long as the model, at the end: each row takes one line, however long its text, and is not printed."""
+"""Sections as long as the model: each row takes one line, however long its text."""
+
+_ELSEWHERE = frozenset(
+    {"forecasts", "filters", "forecast_filters", "evidence", "checks", "assumptions", "correlations"}
+)
+"""Sections whose contents other result sheets print."""
+
+_BEHIND = (
+    "Below stand the definitions of forecasts, filters, checks and assumptions, which the sheets Results and "
+    "Assumptions print; lists without entries; and the cells, names and tables that the run needed. They are not "
+    "printed, unless you clear the print area. What was not asked for is folded away."
+)
 
 
 def write_record(page: Page, record: Record, name: str) -> None:
-    """Write the sheet."""
+    """Write the sheet: what is printed first, then what is not."""
     page.sheet.set_column(0, 0, WIDTHS[0], None, {"level": 1, "hidden": True})
     page.sheet.set_column(1, 1, WIDTHS[1], None, {"collapsed": True})
+    page.height = _ROW
     page.title("Record of the run", f"{name}: what the numbers depend on, and how to repeat them", _FIRST)
-    printed = 0
+    behind = [section for section in record.sections if _is_behind(section)]
     for section in record.sections:
+        if section not in behind:
+            _write_section(page, section)
+    page.wide(_BEHIND, "remark", _LAST, _FIRST)
+    printed = page.row
+    for section in behind:
         _write_section(page, section)
-        printed = printed if section.key in _LISTED else page.row
-    page.sheet.print_area(0, _FIRST, printed, _LAST)
-    page.set_up_printing(name)
+    page.set_up_printing(name, printed=printed, columns=(_FIRST, _LAST))
+
+
+def _is_behind(section: Section) -> bool:
+    """Whether it stands behind what is printed."""
+    return section.key in _LISTED | _ELSEWHERE or (
+        not section.entries and section.table is not None and not section.table.rows
+    )
 
 
 def _write_section(page: Page, section: Section) -> None:
@@ -65,6 +88,8 @@ def _write_entry(page: Page, section: str, entry: Entry) -> None:
         return
     look = "code" if entry.key in _CODE else "text"
     page.line([Shown(entry.label, look="label"), _cell(entry.value, look, entry.key)], (_FIRST, _FIRST + 1), _LAST)
+    if entry.value is None:
+        page.sheet.set_row(page.row - 1, None, None, {"level": 1, "hidden": True})
 
 
 def _write_table(page: Page, section: str, table: RecordTable) -> None:

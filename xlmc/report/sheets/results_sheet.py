@@ -20,11 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["LAST", "WIDTHS", "base_sentences", "opening_sentences", "range_sentences", "write_counts", "write_results"]
 
-WIDTHS = (30, 9, *[10] * 16)
+WIDTHS = (30, 9, *[9.5] * 10)
 LAST = 11
-
-_SCALE, _SCALE_WITH_THRESHOLDS = 60, 45
-"""The percentages at which the sheet is as wide as a page."""
 
 
 def write_results(page: Page, simulation: Simulation) -> None:
@@ -36,15 +33,10 @@ def write_results(page: Page, simulation: Simulation) -> None:
         page.wide(sentence, "warning", LAST)
     _write_answers(page, simulation)
     write_counts(page, simulation)
-    checks_from = page.row
     write_checks(page, simulation, LAST)
     write_accounting(page, simulation, LAST)
     _write_notices(page, simulation)
-    if simulation.checks:  # so that no table is cut in two
-        wide = any(forecast.threshold is not None for forecast in simulation.model.forecasts)
-        page.set_up_printing(book, scale=_SCALE_WITH_THRESHOLDS if wide else _SCALE, breaks=[checks_from])
-    else:
-        page.set_up_printing(book)
+    page.set_up_printing(book)
 
 
 def opening_sentences(simulation: Simulation) -> list[str]:
@@ -74,13 +66,12 @@ def _write_answers(page: Page, simulation: Simulation) -> None:
         *base_sentences(simulation),
     ):
         page.wide(sentence, "remark", LAST)
+    _write_thresholds(page, rows)
 
 
 def _headers(rows: Sequence[SummaryRow]) -> list[str]:
     heads = ["Forecast", "Units", "Accepted trials", "Mean", "±", "Standard deviation", "±"]
     heads += [f"{range_heading(rows)} from", "±", "to", "±", "Base case"]
-    if any(row.threshold is not None for row in rows):
-        heads += ["Threshold", "Above threshold", "±", "95 % from", "to"]
     return heads if len({row.share for row in rows}) < 2 else [*heads, "Range holds"]
 
 
@@ -95,15 +86,27 @@ def _answer(row: SummaryRow, rows: Sequence[SummaryRow]) -> list[Shown]:
         *cells.estimate(row.high, "answer"),
         cells.exact(row.base, cells.paired_format(row.mean)),
     ]
-    if any(other.threshold is not None for other in rows):
-        shown += _above(row)
     return shown if len({other.share for other in rows}) < 2 else [*shown, Shown(percent(row.share))]
 
 
-def _above(row: SummaryRow) -> list[Shown]:
-    if row.above is None:
-        return [cells.BLANK] * 5
-    return [cells.exact(row.threshold), *_share(row.above)]
+def _write_thresholds(page: Page, rows: Sequence[SummaryRow]) -> None:
+    """Write how probable values above the thresholds are; nothing where there is no threshold."""
+    found = [row for row in rows if row.threshold is not None]
+    if not found:
+        return
+    page.heading("Values above a threshold")
+    page.table(
+        ["Forecast", "Units", "Threshold", "Above it", "±", "95 % from", "to"],
+        [
+            [
+                Shown(row.name, look="name"),
+                Shown(row.units),
+                cells.exact(row.threshold),
+                *([Shown(cells.NONE)] * 4 if row.above is None else _share(row.above)),
+            ]
+            for row in found
+        ],
+    )
 
 
 def range_sentences(rows: Sequence[SummaryRow]) -> list[str]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from xlmc.report.sheets.cells import Shown
+from xlmc.report.sheets.page import ROW
 from xlmc.report.sheets.styles import AXIS, DARK, FONT, GRID, INK, LIGHT, axis_format, no_reference, straight
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from xlmc.report.sheets.page import Page
 
 __all__ = [
+    "CHARTED",
     "CHART_ROWS",
     "MOST_LINES",
     "RIGHT",
@@ -31,7 +33,6 @@ __all__ = [
     "bar_chart",
     "limit_chart",
     "place_rows",
-    "set_up_printing",
     "spider_chart",
     "tornado_chart",
 ]
@@ -40,20 +41,20 @@ __all__ = [
 WIDTHS: Final = (38, 10, 10, 9, 9, 11, 9, 9, 11, 9, 13, *[9] * 5)
 """The columns of both sheets."""
 
-RIGHT: Final = 6
+RIGHT: Final = 5
 """The column of the right-hand chart."""
+
+CHARTED: Final = 12
+"""The last column that charts and their captions take: what is printed."""
 
 CHART_ROWS: Final = 13
 """Rows of a sheet that a chart covers."""
 
-_ON_A_PAGE, _SCALE = 3, 45
-"""Rows of charts with their headings, and the percentage at which so many fit on a page."""
-
 Captioned: TypeAlias = tuple[Any, str]
 """A chart, and what it is and is not in words."""
 
-_SIZE: Final = (620, 23 * CHART_ROWS)
-"""The size of a chart in pixels."""
+_WIDTH: Final = 550
+"""Pixels of a chart: what the columns before `RIGHT` have."""
 
 MOST_LINES: Final = 6
 """The most lines of a spider chart; more cannot be told apart."""
@@ -107,30 +108,27 @@ class TableAt:
         return f"={xl_range_formula(self.sheet, self.first, column, self.last, column)}"
 
 
-def place_rows(page: Page, charts: Sequence[Captioned]) -> None:
-    """Put charts on a sheet, two side by side with their captions below, and go to the row behind them."""
-    for start in range(0, len(charts), 2):
-        row, columns = charts[start : start + 2], (0, RIGHT)
-        for (chart, caption), column in zip(row, columns, strict=False):
-            page.sheet.insert_chart(page.row, column, chart, {"object_position": 1, "description": caption})
-        page.row += CHART_ROWS
-        left, right = (Shown(caption, look="caption") for caption in (*(text for _, text in row), "")[:2])
-        gap = Shown("", look="caption")
-        page.line([left, gap, right, gap], [0, RIGHT - 1, RIGHT, len(WIDTHS) - 1], len(WIDTHS) - 1)
-
-
-def set_up_printing(page: Page, name: str, rows: Sequence[int], last: int, details: Sequence[int]) -> None:
-    """Have the charts that stand first printed, and what stands behind them only once the print area is cleared.
+def place_rows(
+    page: Page, charts: Sequence[Captioned], rows: int = CHART_ROWS, captions: Sequence[str] | None = None
+) -> None:
+    """Put charts on a sheet, two side by side with their captions below, and go to the row behind them.
 
     Args:
         page: the sheet.
-        name: of the workbook.
-        rows: where a row of charts begins, with its heading.
-        last: the row behind the last.
-        details: the rows that begin the pages of what is not printed.
+        charts: what to put there.
+        rows: how many rows of the sheet each is high.
+        captions: what stands below them, where that is not what describes them.
     """
-    page.set_up_printing(name, breaks=sorted({*rows[_ON_A_PAGE::_ON_A_PAGE], last, *details}), scale=_SCALE)
-    page.sheet.print_area(0, 0, last - 1, len(WIDTHS) - 1)
+    captions = [caption for _, caption in charts] if captions is None else captions
+    for start in range(0, len(charts), 2):
+        pair, columns = charts[start : start + 2], (0, RIGHT)
+        for (chart, caption), column in zip(pair, columns, strict=False):
+            chart.set_size({"width": _WIDTH, "height": int(rows * ROW / 0.75)})
+            page.sheet.insert_chart(page.row, column, chart, {"object_position": 1, "description": caption})
+        page.row += rows
+        left, right = (Shown(text, look="caption") for text in (*captions[start : start + 2], "")[:2])
+        gap = Shown("", look="caption")
+        page.line([left, gap, right, gap], [0, RIGHT - 1, RIGHT, CHARTED], CHARTED)
 
 
 def bar_chart(
@@ -292,10 +290,9 @@ def _line(index: int) -> dict[str, Any]:
 
 
 def _finish(chart: Any, title: str) -> Any:
-    """The chart with its title, in its size."""
+    """The chart with its title; `place_rows` gives it its size."""
     chart.set_title(
         {"name": no_reference(title), "name_font": {"size": 12, "bold": True, "color": INK}, "overlay": False}
     )
-    chart.set_size({"width": _SIZE[0], "height": _SIZE[1]})
     chart.set_chartarea({"border": {"color": GRID}})
     return chart

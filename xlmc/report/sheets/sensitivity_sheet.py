@@ -14,13 +14,13 @@ from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.sensitivity_charts import (
     CHART_ROWS,
+    CHARTED,
     MOST_LINES,
     WIDTHS,
     Captioned,
     TableAt,
     bar_chart,
     place_rows,
-    set_up_printing,
     spider_chart,
     tornado_chart,
 )
@@ -62,11 +62,38 @@ _EXPLAINED, _DEPENDENCE, _RANK, _CONTRIBUTION, _FIRST, _TOTAL = 2, 5, 8, 10, 12,
 _HEADING: Final = 2
 """The rows of a heading."""
 
+_DRAWN: Final = 8
+"""Bars on a chart of the sheet, where more would have no room for their names."""
+
+_FIRST_ROWS: Final = 11
+"""Rows of the sheet that the first two charts of a forecast cover: a page has room for those of four forecasts."""
+
+_NAMES_WIDE, _BARS_WIDE, _TORNADO_WIDE = 0.43, 0.53, 0.4
+"""Parts of the width of such a chart: the names of its bars, and the bars, of which a tornado has a legend beside them.
+
+Without them LibreOffice wraps long names, and then leaves out every other one.
+"""
+
 _PRINTED: Final = 12
-"""Forecasts whose first charts are printed: four pages."""
+"""Forecasts whose first charts are printed: three pages."""
 
 _CHANGES: Final = 5
 """The column of the first of the five changes."""
+
+
+_EXPLAINED_CHART: Final = (
+    "Variance explained: how much of the forecast's variance would vanish, on average, if the assumption's true "
+    "value were known. It is found from the accepted trials, so it holds with filters and correlations; shares "
+    "need not add up to 100 %. Pale bars, and the word noise in the table: no more than chance alone would show."
+)
+
+_TORNADO_CHART: Final = (
+    "Tornado: how far the forecast moves from its base case when one assumption goes to its 10th or 90th "
+    "percentile and all others stay at their base values. It uses no trials, so probabilities, filters and "
+    "correlations have no part in it."
+)
+
+_BENT: Final = "Where the table says that it does not only rise or fall, the bar hides what lies between."
 
 
 def write_sensitivity(page: Page, book: Workbook, found: Sensitivities, name: str) -> None:
@@ -75,23 +102,24 @@ def write_sensitivity(page: Page, book: Workbook, found: Sensitivities, name: st
     The charts draw the tables that stand below them, so room is left for them.
     """
     page.title("Sensitivity: what the answers depend on", f"{name}: {found.accepted:,} accepted trials")
-    for sentence in (*sensitivity_sentences(found), _printed_sentence(len(found.forecasts))):
-        page.wide(sentence, "remark", _LAST)
+    bent = f" {_BENT}" if any(map(_is_bent, found.forecasts)) else ""
+    printed_only = _printed_sentence(len(found.forecasts))
+    for sentence in (*sensitivity_sentences(found), _EXPLAINED_CHART, f"{_TORNADO_CHART}{bent}", printed_only):
+        page.wide(sentence, "remark", CHARTED)
     tops = []
     for forecast in found.forecasts:
         tops.append(page.row)
         _write_heading(page, forecast)
-        page.row += CHART_ROWS + 1 if _is_drawn(forecast) else 0
-    printed, details = [*tops, page.row][min(len(tops), _PRINTED)], []
+        page.row += _FIRST_ROWS + 1 if _is_drawn(forecast) else 0
+    printed = [*tops, page.row][min(len(tops), _PRINTED)]
     for top, forecast in zip(tops, found.forecasts, strict=True):
         if not _is_drawn(forecast):
             continue
-        details.append(page.row)
         charts = _write_details(page, book, forecast, found)
         bottom, page.row = page.row, top + _HEADING
-        place_rows(page, charts)
+        place_rows(page, charts, _FIRST_ROWS, _brief(forecast))
         page.row = bottom
-    set_up_printing(page, name, tops, printed, details)
+    page.set_up_printing(name, printed=printed, columns=(0, CHARTED))
 
 
 def _printed_sentence(forecasts: int) -> str:
@@ -141,8 +169,8 @@ def _write_details(
     moves: Sequence[Captioned] = ()
     if forecast.influences:
         at = write_influences(page, forecast, sobol)
-        drawn = influence_charts(book, at, forecast, sobol)
-        influences = list(zip(drawn, influence_captions(forecast, found.sobol_trials), strict=True))
+        bars = influence_charts(book, at, forecast, sobol)
+        influences = list(zip(bars, influence_captions(forecast, found.sobol_trials), strict=True))
         _write_rest(page, len(forecast.influences))
     else:
         page.wide(_nothing(forecast), "paragraph", _LAST)
@@ -150,11 +178,31 @@ def _write_details(
         page.row += 1
         at = write_moves(page, forecast)
         moves = list(zip(move_charts(book, at, forecast), move_captions(forecast), strict=True))
+    for drawn, width in ((influences[:1], _BARS_WIDE), (moves[:1], _TORNADO_WIDE)):
+        for chart, _ in drawn:
+            chart.set_plotarea({"layout": {"x": _NAMES_WIDE, "y": 0.13, "width": width, "height": 0.62}})
     charts = [*influences[:1], *moves[:1], *influences[1:], *moves[1:]]
     bottom, page.row = page.row, top
     place_rows(page, charts[2:])
     page.row = bottom
     return charts[:2]
+
+
+def _brief(forecast: ForecastSensitivity) -> list[str] | None:
+    """The captions of its first two charts, which the top of the sheet explains; None where they are of one kind."""
+    if not (forecast.influences and forecast.bars):
+        return None
+    tornado = f"Tornado: {forecast.forecast} about its base case{_base_text(forecast)}."
+    return [f"Variance explained: {forecast.forecast}.", tornado]
+
+
+def _base_text(found: ForecastSensitivity) -> str:
+    return "" if found.base is None else f" of {found.base:.6g} {found.units}".rstrip()
+
+
+def _is_bent(found: ForecastSensitivity) -> bool:
+    """Whether it does not only rise or fall with an assumption that is drawn."""
+    return any(bar.monotonic is False for bar in found.bars[:BARS])
 
 
 def _nothing(forecast: ForecastSensitivity) -> str:
@@ -180,7 +228,7 @@ def write_influences(page: Page, found: ForecastSensitivity, sobol: bool) -> Tab
         [*headers, *(["First order", "±", "Total effect", "±"] if sobol else [])],
         [_row(one, its, sobol) for one, its in zip(shown, weak, strict=False)],
     )
-    return TableAt(page.sheet.get_name(), header, header + 1, header + min(len(shown), BARS))
+    return TableAt(page.sheet.get_name(), header, header + 1, header + min(len(shown), _DRAWN))
 
 
 def _row(found: Influence, weak: Noise, sobol: bool) -> list[Shown]:
@@ -209,7 +257,7 @@ def _as_noise(shown: list[Shown], is_noise: bool) -> list[Shown]:
 
 def influence_charts(book: Workbook, at: TableAt, found: ForecastSensitivity, sobol: bool) -> list[Any]:
     """Variance explained, dependence or total effects, rank correlation and contribution to variance."""
-    of = noise(found)[:BARS]
+    of = noise(found)[:_DRAWN]
     weak, unseen = [each.explained for each in of], [each.dependence for each in of]
     flat, lone = [each.correlation for each in of], [each.total for each in of]
     second = (
@@ -233,11 +281,6 @@ def influence_charts(book: Workbook, at: TableAt, found: ForecastSensitivity, so
 
 def influence_captions(found: ForecastSensitivity, pairs: int) -> list[str]:
     """A caption for each chart: what it is and what it is not."""
-    explained = (
-        "Variance explained: how much of the forecast's variance would vanish, on average, if the assumption's true "
-        "value were known. It is found from the accepted trials, so it holds with filters and correlations; shares "
-        "need not add up to 100 %. Pale bars, and the word noise in the table: no more than chance alone would show."
-    )
     dependence = (
         "Dependence (index of Cramér and von Mises): 0 only if no part of the forecast's distribution depends on the "
         "assumption, 100 % if nothing else matters. Unlike variance explained it also shows an assumption that "
@@ -257,7 +300,7 @@ def influence_captions(found: ForecastSensitivity, pairs: int) -> list[str]:
         "and wrong where filters or correlations tie assumptions together or an effect rises and falls: trust variance "
         "explained then."
     )
-    return [explained, total if pairs else dependence, rank, contribution]
+    return [_EXPLAINED_CHART, total if pairs else dependence, rank, contribution]
 
 
 def write_moves(page: Page, found: ForecastSensitivity) -> TableAt:
@@ -274,7 +317,7 @@ def write_moves(page: Page, found: ForecastSensitivity) -> TableAt:
     ]
     header, shown = page.row, found.bars[:ROWS]
     page.table(headers, [_move_row(bar, found.base or 0.0, found.bars[0].span) for bar in shown])
-    return TableAt(page.sheet.get_name(), header, header + 1, header + min(len(shown), BARS))
+    return TableAt(page.sheet.get_name(), header, header + 1, header + min(len(shown), _DRAWN))
 
 
 def _move_row(bar: Bar, base: float, widest: float) -> list[Shown]:
@@ -304,15 +347,9 @@ def move_charts(book: Workbook, at: TableAt, found: ForecastSensitivity) -> list
 
 def move_captions(found: ForecastSensitivity) -> list[str]:
     """A caption for each chart: what it is and what it is not."""
-    at = "" if found.base is None else f" of {found.base:.6g} {found.units}".rstrip()
-    bent = any(bar.monotonic is False for bar in found.bars[:BARS])
-    tornado = (
-        f"Tornado: how far the forecast moves from its base case{at} when one assumption goes to its 10th or 90th "
-        "percentile and all others stay at their base values. It uses no trials, so probabilities, filters and "
-        "correlations have no part in it."
-    )
-    if bent:
-        tornado += " Where the table says that it does not only rise or fall, the bar hides what lies between."
+    tornado = _TORNADO_CHART.replace("its base case", f"its base case{_base_text(found)}")
+    if _is_bent(found):
+        tornado += f" {_BENT}"
     lines = min(MOST_LINES, len(found.bars))
     spider = (
         f"Spider: the same over five points of each assumption's own distribution before filtering, for the {lines} "

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
@@ -16,29 +17,74 @@ if TYPE_CHECKING:
 
 __all__ = ["WIDTHS", "write_forecast", "write_statistics"]
 
-_BLOCK = (26, 9, 11, 10, 10, 10)
-WIDTHS = (*_BLOCK, 2, 18, 11, 10, 10, 10)
-_RIGHT = len(_BLOCK) + 1
-_LAST = len(WIDTHS) - 1
-_ON_A_PAGE, _SCALE = 3, 48
-"""Forecasts, and the percentage at which so many fit, of A4 too, and with a font that is wider than Excel's own."""
+_Value: TypeAlias = str | float | None
+
+_ACROSS: Final = 4
+"""Forecasts side by side: as many as can be read on a page."""
+
+_COLUMNS = (8.5, 6.5, 8.5, 8.5)
+"""Of a forecast."""
+
+WIDTHS = (25, *_COLUMNS * _ACROSS)
 
 _ENDS = ["Value", "±", "95 % from", "to"]
+_NOTHING = [cells.BLANK] * len(_ENDS)
+
+_RIGHT = 7
+"""The column of the percentiles, where they stand beside the statistics of one forecast."""
 
 
 def write_statistics(page: Page, simulation: Simulation) -> None:
-    """Write the sheet."""
+    """Write the sheet: forecasts side by side, their statistics and below these their percentiles."""
     name = simulation.model.workbook.name
     below = f"{name}: {simulation.accepted:,} accepted trials. From … to: the 95 % interval of each number"
     page.title("Statistics of the accepted trials", below)
-    page.row += 1
-    page.wide(ERROR_SENTENCE, "remark", _LAST)
-    breaks = []
-    for number, result in enumerate(simulation.results.values()):
-        if number and number % _ON_A_PAGE == 0:
-            breaks.append(page.row)
-        write_forecast(page, result)
-    page.set_up_printing(name, breaks=breaks, scale=_SCALE, upright=True)
+    results = list(simulation.results.values())
+    last = len(_COLUMNS) * min(max(len(results), 1), _ACROSS)
+    page.wide(f"{ERROR_SENTENCE} A variance has the square of the units.", "remark", last)
+    for start in range(0, len(results), _ACROSS):
+        page.row += 1
+        if start:
+            page.may_begin()
+        _write_group(page, results[start : start + _ACROSS])
+    page.set_up_printing(name)
+
+
+def _write_group(page: Page, results: Sequence[ForecastResult]) -> None:
+    """Write the table of some forecasts."""
+    starts = [0, *(1 + len(_COLUMNS) * index for index in range(len(results)))]
+    last = len(_COLUMNS) * len(results)
+    names = [Shown(_with_units(result), look="header") for result in results]
+    page.line([Shown("Forecast", look="header left"), *names], starts, last)
+    statistics = [{row[0].value: row[2:] for row in _statistics(result)} for result in results]
+    _write_rows(page, "Statistic", statistics)
+    _write_rows(page, "Percentile", [_below_statistics(result) for result in results])
+
+
+def _with_units(result: ForecastResult) -> str:
+    units = result.definition.units
+    return f"{result.definition.name} ({units})" if units else result.definition.name
+
+
+def _write_rows(page: Page, head: str, found: Sequence[dict[_Value, list[Shown]]]) -> None:
+    """Write a row for each label, with the cells of each forecast; blank ones where a forecast has no such row."""
+    heads = [Shown(each, look="header") for each in _ENDS * len(found)]
+    page.line([Shown(head, look="header left"), *heads])
+    for label in dict.fromkeys(label for rows in found for label in rows):
+        page.line([Shown(label), *(cell for rows in found for cell in rows.get(label, _NOTHING))])
+
+
+def _below_statistics(result: ForecastResult) -> dict[_Value, list[Shown]]:
+    """The percentiles, the central range and what lies above the threshold, under labels that all forecasts share."""
+    definition, above = result.definition, result.statistics.probability_above
+    rows: dict[_Value, list[Shown]] = {row[0].value: row[1:] for row in _percentiles(result)}
+    low, high = (_with_interval(each, result.statistics.mean) for each in result.statistics.central)
+    rows["Central range, share"] = [Shown(definition.central, "0.######%"), *_NOTHING[1:]]
+    rows |= {"Central range from": low, "Central range to": high}
+    if above is not None:
+        rows["Threshold"] = [cells.exact(definition.threshold), *_NOTHING[1:]]
+        rows["Above threshold"] = [*cells.share(above), *cells.interval(above, percent=True)]
+    return rows
 
 
 def write_forecast(page: Page, result: ForecastResult) -> None:
@@ -47,7 +93,7 @@ def write_forecast(page: Page, result: ForecastResult) -> None:
     top = page.row
     page.table(["Statistic", "Units", *_ENDS], _statistics(result))
     bottom, page.row = page.row, top
-    page.table(["Percentile", *_ENDS], _percentiles(result), _RIGHT)
+    page.table(["Percentile", *_ENDS], [*_percentiles(result), *_range_and_threshold(result)], _RIGHT)
     page.row = max(bottom, page.row)
 
 
@@ -76,11 +122,17 @@ def _statistics(result: ForecastResult) -> list[list[Shown]]:
 
 
 def _percentiles(result: ForecastResult) -> list[list[Shown]]:
+    found = result.statistics
+    return [
+        [Shown(f"{percentile:g} %"), *_with_interval(each, found.mean)]
+        for percentile, each in found.percentiles.items()
+    ]
+
+
+def _range_and_threshold(result: ForecastResult) -> list[list[Shown]]:
     found, definition = result.statistics, result.definition
-    labels = [Shown(f"{percentile:g} %") for percentile in found.percentiles]
-    labels += [Shown(f"{percent(definition.central)} range {end}", look="name") for end in ("from", "to")]
-    estimates = (*found.percentiles.values(), *found.central)
-    rows = [[label, *_with_interval(each, found.mean)] for label, each in zip(labels, estimates, strict=True)]
+    labels = [Shown(f"{percent(definition.central)} range {end}", look="name") for end in ("from", "to")]
+    rows = [[label, *_with_interval(each, found.mean)] for label, each in zip(labels, found.central, strict=True)]
     if found.probability_above is not None:
         above = found.probability_above
         shown = [*cells.share(above), *cells.interval(above, percent=True)]

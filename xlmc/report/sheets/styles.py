@@ -55,9 +55,10 @@ COLOURS: Final = ("#2F6DA8", "#D1662B", "#4D8B4A", "#8659A5", "#B5912B", "#3B9C9
 
 AXIS: Final[dict[str, Any]] = {"color": "#8994A1", "width": 0.75}
 
-FONT: Final[dict[str, Any]] = {"size": 9, "color": INK}
+FONT: Final[dict[str, Any]] = {"size": 11, "color": INK}
+"""Of the texts in charts: as large as those in cells, so that they can be read on paper."""
 
-SIZE: Final = (560, 360)
+SIZE: Final = (560, 380)
 """The size of a chart in pixels."""
 
 _MOST_STEPS = 10
@@ -73,7 +74,7 @@ _CELL: dict[str, Any] = {"valign": "vcenter", "border": 1, "border_color": GRID}
 
 _TEXT: dict[str, Any] = _CELL | {"align": "left", "indent": 1}
 
-_NUMBER: dict[str, Any] = _CELL | {"align": "right"}
+_NUMBER: dict[str, Any] = _CELL | {"align": "right", "shrink": True}
 
 _SECOND: dict[str, Any] = {"bg_color": "#EEF4FA"}
 
@@ -105,7 +106,7 @@ _LOOKS: dict[str, dict[str, Any]] = {
     "second error": _NUMBER | _SECOND | {"font_color": _GREY},
     "moved": _NUMBER | {"bg_color": "#FCE4B6", "bold": True},
     "trial": _NUMBER | {"font_color": _GREY},
-    "caption": {"text_wrap": True, "valign": "top", "font_size": 10, "font_color": INK},
+    "caption": {"text_wrap": True, "valign": "top", "font_color": INK},
     "alarm": {"bold": True, "font_color": "#9C0006"},
     "paragraph": _PARAGRAPH,
     "remark": _PARAGRAPH | {"font_color": _GREY, "italic": True},

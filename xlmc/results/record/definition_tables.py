@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations
@@ -21,6 +20,7 @@ from xlmc.results.statements.in_words import (
 )
 from xlmc.run.correlating import CHANGED, drawn_correlation
 from xlmc.statistics import Estimate, rank_correlation
+from xlmc.statistics.estimate import finite
 
 if TYPE_CHECKING:
     from xlmc.definitions.definitions import Filter
@@ -37,7 +37,6 @@ __all__ = [
     "filter_section",
     "forecast_filter_section",
     "forecast_section",
-    "plain",
 ]
 
 
@@ -118,11 +117,6 @@ _CORRELATION = (
 )
 
 
-def plain(value: float | None) -> float | None:
-    """The number, or None where there is none: a record holds no NaN."""
-    return value if value is not None and math.isfinite(value) else None
-
-
 def forecast_section(simulation: Simulation) -> Section:
     """Every forecast with its main results at full precision, for a repeat to be compared with."""
     results = simulation.results.values()
@@ -136,7 +130,7 @@ def forecast_section(simulation: Simulation) -> Section:
 
 def _certainty_cells(result: ForecastResult) -> tuple[Value, ...]:
     low, high = result.definition.asked or (None, None)
-    return plain(low), plain(high), None if result.certainty is None else plain(result.certainty.value)
+    return finite(low), finite(high), None if result.certainty is None else finite(result.certainty.value)
 
 
 def _forecast_row(result: ForecastResult) -> tuple[Value, ...]:
@@ -149,7 +143,7 @@ def _forecast_row(result: ForecastResult) -> tuple[Value, ...]:
         definition.central,
         definition.threshold,
         statistics.trials,
-        *(plain(estimate.value) for estimate in estimates),
+        *(finite(estimate.value) for estimate in estimates),
         notes_text(definition.notes),
     )
 
@@ -199,7 +193,7 @@ def evidence_section(simulation: Simulation) -> Section:
         judged = found.get(each.name)
         told: tuple[Value, ...] = (None, None, "not used")
         if judged is not None:
-            told = plain(judged.alone.value), plain(judged.chance), judged.verdict.value
+            told = finite(judged.alone.value), finite(judged.chance), judged.verdict.value
         said = (each.name, str(each.cell), evidence_text(each), each.source)
         rows.append((*said, *told, notes_text(each.notes)))
     return Section("evidence", "Evidence", table=RecordTable(_EVIDENCE, tuple(rows)))
@@ -241,8 +235,8 @@ def correlation_section(simulation: Simulation) -> Section:
             met.second,
             met.asked,
             met.used,
-            None if met.accepted is None else plain(met.accepted.value),
-            None if met.accepted is None else plain(met.accepted.error),
+            None if met.accepted is None else finite(met.accepted.value),
+            None if met.accepted is None else finite(met.accepted.error),
             None if met.row is None else str(met.row),
         )
         for met in correlations_met(simulation)

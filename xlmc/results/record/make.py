@@ -24,7 +24,6 @@ from xlmc.results.record.definition_tables import (
     filter_section,
     forecast_filter_section,
     forecast_section,
-    plain,
 )
 from xlmc.results.record.errors_met import errors_met
 from xlmc.results.record.needed_cells import cell_section, needed_contents, structure_section
@@ -41,6 +40,7 @@ import platform
 from importlib.metadata import version
 
 from xlmc.evaluation.engines import ENGINES
+from xlmc.statistics.estimate import finite
 
 __all__ = ["LIBRARIES", "fingerprint", "make_record", "processor", "quoted_argument", "repeat_command", "versions"]
 
@@ -204,8 +204,8 @@ def _counts(simulation: Simulation) -> Section:
         Entry("trials", "Trials", simulation.trials),
         Entry("accepted", "Accepted", simulation.accepted),
         Entry("inputs_kept", "Accepted trials whose draws are kept", simulation.kept_inputs),
-        Entry("acceptance", "Share accepted", plain(simulation.acceptance.value)),
-        Entry("acceptance_error", "Its standard error", plain(simulation.acceptance.error)),
+        Entry("acceptance", "Share accepted", finite(simulation.acceptance.value)),
+        Entry("acceptance_error", "Its standard error", finite(simulation.acceptance.error)),
         *_weight_entries(simulation),
         Entry("error_trials", "Lost to errors", simulation.error_trials),
         Entry("undecided", "Error in a filter, and no filter FALSE", simulation.tally.by_error),
@@ -278,19 +278,19 @@ def _rare(found: RareAccount) -> Section:
         Entry("proposals", "Of them, drawn where accepted ones lie", found.proposals),
         Entry("proposals_accepted", "Drawn there and accepted by the filters", found.proposals_accepted),
         Entry("kept", "Kept, with equal weight", found.kept),
-        Entry("effective", "Effective sample size of the kept ones", plain(found.size)),
+        Entry("effective", "Effective sample size of the kept ones", finite(found.size)),
         Entry("fresh", "Drawn after enough were kept, for the probability", found.fresh),
-        Entry("acceptance", "Probability that a trial is accepted", plain(found.acceptance.value)),
-        Entry("acceptance_low", "Its 95 % interval (by its logarithm), from", plain(low)),
-        Entry("acceptance_high", "to", plain(high)),
-        Entry("acceptance_effective", "Effective sample size behind it", plain(found.effective)),
-        Entry("searched", "The same probability by splitting, for comparison", plain(found.searched)),
+        Entry("acceptance", "Probability that a trial is accepted", finite(found.acceptance.value)),
+        Entry("acceptance_low", "Its 95 % interval (by its logarithm), from", finite(low)),
+        Entry("acceptance_high", "to", finite(high)),
+        Entry("acceptance_effective", "Effective sample size behind it", finite(found.effective)),
+        Entry("searched", "The same probability by splitting, for comparison", finite(found.searched)),
         Entry("ways", "Ways (sets of branches) searched separately", found.ways),
-        Entry("explored", "Probability of parts that splitting missed", plain(found.explored)),
+        Entry("explored", "Probability of parts that splitting missed", finite(found.explored)),
         Entry("at_least", "The probability is only a lower limit", found.at_least),
         Entry("plain_accepted", "Plain trials before the search that were accepted", found.plain_accepted),
         Entry("checked", "Trials from widened assumptions after the search", found.checked),
-        Entry("missed", "Probability of parts met but not described", plain(found.missed)),
+        Entry("missed", "Probability of parts met but not described", finite(found.missed)),
         Entry("levels", "Levels of the splitting", found.levels),
         Entry("components", "Normal distributions in the mixture", found.components),
         Entry("directions", "Directions in which it was learned", found.directions),

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.statistics.estimate import finite
 from xlmc.studies.sensitivity.measures import PERCENTS, Bar
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def one_at_a_time(model: Model, assumptions: Sequence[str]) -> OneAtATime:
         ]
         bars.append(tuple(sorted(made, key=lambda bar: -bar.span)))
     return OneAtATime(
-        base=tuple(_number(each[0]) for each in answers),
+        base=tuple(finite(each[0]) for each in answers),
         bars=tuple(bars),
         medians=tuple(a.name for a in model.live if a.base is None),
     )
@@ -92,7 +93,7 @@ def _bar(assumption: str, units: str, base: float, inputs: Floats, answers: Floa
         units=units,
         base=base,
         inputs=tuple(inputs.tolist()),
-        answers=tuple(_number(answer) for answer in answers),
+        answers=tuple(finite(answer) for answer in answers),
         rejected=tuple(bool(each) for each in rejected),
         monotonic=bool((after >= before).all() or (after <= before).all()) if known else None,
     )
@@ -101,7 +102,3 @@ def _bar(assumption: str, units: str, base: float, inputs: Floats, answers: Floa
 def _fails(column: Column) -> NDArray[np.bool_]:
     fails = column.values == 0
     return np.asarray(fails if column.codes is None else fails | (column.codes > 0))
-
-
-def _number(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None

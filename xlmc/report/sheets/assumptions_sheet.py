@@ -43,6 +43,7 @@ _SHAPE = _NAMED + 2 + _STATISTICS
 WIDTHS = (32, 9.5, 12.5, 10.5, 7, *(8, 6.1) * (_STATISTICS // 2), 13.5)
 _LINES = 3
 _ROW = 15.0
+_GAP = 6.0
 _SIZE = (98, 62)
 """The size of a small chart in pixels: within the cells of three lines."""
 _DRAWN = 100
@@ -86,6 +87,7 @@ def write_assumptions(page: Page, book: Workbook, simulation: Simulation, curves
     name = simulation.model.workbook.name
     of = f" of {simulation.trials:,}" if simulation.rare is None else ""
     page.title("Assumptions", f"{name}: {simulation.accepted:,}{of} trials accepted")
+    page.sheet.set_row(page.row, _GAP)
     page.row = HEADER
     page.height = _ROW
     starts = [0, *range(_NAMED - 1, _NAMED - 1 + len(_HEADS) - 1)]

@@ -65,7 +65,7 @@ _HEADING: Final = 2
 _DRAWN: Final = 8
 """Bars on a chart of the sheet, where more would have no room for their names."""
 
-_FIRST_ROWS: Final = 11
+_FIRST_ROWS: Final = 10
 """Rows of the sheet that the first two charts of a forecast cover: a page has room for those of four forecasts."""
 
 _NAMES_WIDE, _BARS_WIDE, _TORNADO_WIDE = 0.43, 0.53, 0.4
@@ -180,7 +180,7 @@ def _write_details(
         moves = list(zip(move_charts(book, at, forecast), move_captions(forecast), strict=True))
     for drawn, width in ((influences[:1], _BARS_WIDE), (moves[:1], _TORNADO_WIDE)):
         for chart, _ in drawn:
-            chart.set_plotarea({"layout": {"x": _NAMES_WIDE, "y": 0.13, "width": width, "height": 0.62}})
+            chart.set_plotarea({"layout": {"x": _NAMES_WIDE, "y": 0.13, "width": width, "height": 0.6}})
     charts = [*influences[:1], *moves[:1], *influences[1:], *moves[1:]]
     bottom, page.row = page.row, top
     place_rows(page, charts[2:])

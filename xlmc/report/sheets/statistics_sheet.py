@@ -19,13 +19,15 @@ __all__ = ["WIDTHS", "write_forecast", "write_statistics"]
 
 _Value: TypeAlias = str | float | None
 
-_ACROSS: Final = 4
+_ACROSS: Final = 6
 """Forecasts side by side: as many as can be read on a page."""
 
-_COLUMNS = (8.5, 6.5, 8.5, 8.5)
+_COLUMNS = (8.3, 6.3, 8.3, 8.3)
 """Of a forecast."""
 
-WIDTHS = (25, *_COLUMNS * _ACROSS)
+WIDTHS = (23, *_COLUMNS * _ACROSS)
+
+_ROW = 15.0
 
 _ENDS = ["Value", "±", "95 % from", "to"]
 _NOTHING = [cells.BLANK] * len(_ENDS)
@@ -38,6 +40,7 @@ def write_statistics(page: Page, simulation: Simulation) -> None:
     """Write the sheet: forecasts side by side, their statistics and below these their percentiles."""
     name = simulation.model.workbook.name
     below = f"{name}: {simulation.accepted:,} accepted trials. From … to: the 95 % interval of each number"
+    page.height = _ROW
     page.title("Statistics of the accepted trials", below)
     results = list(simulation.results.values())
     last = len(_COLUMNS) * min(max(len(results), 1), _ACROSS)

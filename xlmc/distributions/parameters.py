@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -23,6 +24,7 @@ __all__ = [
     "Role",
     "above_zero",
     "at_most",
+    "range_text",
     "rising",
     "show",
 ]
@@ -111,6 +113,17 @@ class Fault:
 def show(value: float) -> str:
     """A number as a person would write it."""
     return format(value, ".12g")
+
+
+def range_text(low: float, high: float) -> str:
+    """A range as a person would say it; an end that is infinite is none.
+
+    >>> range_text(20, 80.5), range_text(-math.inf, 10), range_text(20, math.inf)
+    ('from 20 to 80.5', 'at most 10', 'at least 20')
+    """
+    if not math.isfinite(low):
+        return f"at most {show(high)}"
+    return f"from {show(low)} to {show(high)}" if math.isfinite(high) else f"at least {show(low)}"
 
 
 @dataclass(frozen=True, slots=True)

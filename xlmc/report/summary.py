@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from xlmc.distributions.parameters import range_text
 from xlmc.evaluation.engine import UNDECIDED_RESULT
 from xlmc.results.statements import reach_text
 from xlmc.results.statements.in_words import discards_of, limits_text
@@ -127,15 +128,9 @@ def _line(row: SummaryRow, heading: str) -> dict[str, str]:
         "Base case": "" if row.base is None else f"{row.base:.6g}",
         "Threshold": threshold,
         "Above threshold": "" if row.above is None else share_text(row.above),
-        "Certainty of": "" if row.asked is None else _ends_text(*row.asked),
+        "Certainty of": "" if row.asked is None else range_text(*row.asked),
         "Certainty": "" if row.certainty is None else share_text(row.certainty),
     }
-
-
-def _ends_text(low: float, high: float) -> str:
-    if low == -math.inf:
-        return f"≤ {high:g}"
-    return f"≥ {low:g}" if high == math.inf else f"{low:g} to {high:g}"
 
 
 def range_heading(rows: Sequence[SummaryRow]) -> str:

@@ -56,9 +56,9 @@ def test_the_threshold_has_a_sentence_of_its_own(threshold, text):
 @pytest.mark.parametrize(
     ("asked", "text", "words"),
     [
-        ((20.0, 80.5), "P(20 ≤ speed ≤ 80.5 mph) = 60.5 % ± 0.2 %", "from 20 to 80.5 mph"),
-        ((85.8, math.inf), "P(speed ≥ 85.8 mph) = 14.20 % ± 0.11 %", "at least 85.8 mph"),
-        ((-math.inf, 10.0), "P(speed ≤ 10 mph) = 10.00 % ± 0.09 %", "at most 10 mph"),
+        ((20.0, 80.5), "P(speed from 20 to 80.5 mph) = 60.5 % ± 0.2 %", "from 20 to 80.5 mph"),
+        ((85.8, math.inf), "P(speed at least 85.8 mph) = 14.20 % ± 0.11 %", "at least 85.8 mph"),
+        ((-math.inf, 10.0), "P(speed at most 10 mph) = 10.00 % ± 0.09 %", "at most 10 mph"),
     ],
 )
 def test_the_range_that_was_asked_for_has_a_sentence_and_a_certainty(asked, text, words):

@@ -43,7 +43,7 @@ from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.identity import Claims
 from xlmc.definitions.tables.table_rows import number_in, static_value
 from xlmc.distributions import FAMILIES
-from xlmc.distributions.parameters import show
+from xlmc.distributions.parameters import range_text, show
 from xlmc.distributions.spelling import name_key
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.formula import formula_text, ir
@@ -353,7 +353,7 @@ class _Dialogs:
         ends = [end for end in certainty if math.isfinite(end) and abs(end) < _BEYOND]
         if not ends:
             return None, None
-        said = f"the certainty of {name!r} was last shown for {_range(low, high)}"
+        said = f"the certainty of {name!r} was last shown for values {range_text(low, high)}"
         if len(ends) == 1:
             self._findings.notice(f"{said}: its end is taken as the threshold", cell)
             return ends[0], None
@@ -483,12 +483,6 @@ _WORDS: Final = {StoredAssumption: "assumption", StoredForecast: "forecast", Sto
 _PLAIN: Final = ("SheetPreferences",)
 _BEYOND: Final = 1e307
 _CURE_OF_CORRELATION: Final = "Write it into the table xlmc_correlations, or correct it in Crystal Ball"
-
-
-def _range(low: float, high: float) -> str:
-    if not math.isfinite(low):
-        return f"values up to {show(high)}"
-    return f"values from {show(low)}" + (f" to {show(high)}" if math.isfinite(high) else " up")
 
 
 def _free_name(name: str, cell: Cell, claims: Claims, findings: Findings) -> str:

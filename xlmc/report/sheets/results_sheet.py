@@ -22,12 +22,14 @@ __all__ = ["LAST", "WIDTHS", "base_sentences", "opening_sentences", "range_sente
 
 WIDTHS = (30, 9, *[9.5] * 10)
 LAST = 11
+_ROW = 15.75
 
 
 def write_results(page: Page, simulation: Simulation) -> None:
     """Write the sheet."""
     book = simulation.model.workbook.name
     settings = simulation.settings
+    page.height = _ROW
     page.title("Results of the simulation", f"{book}, seed {settings.seed}, {simulation.evaluated:,} trials")
     for sentence in opening_sentences(simulation):
         page.wide(sentence, "warning", LAST)

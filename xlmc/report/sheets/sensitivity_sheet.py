@@ -192,8 +192,7 @@ def _brief(forecast: ForecastSensitivity) -> list[str] | None:
     """The captions of its first two charts, which the top of the sheet explains; None where they are of one kind."""
     if not (forecast.influences and forecast.bars):
         return None
-    tornado = f"Tornado: {forecast.forecast} about its base case{_base_text(forecast)}."
-    return [f"Variance explained: {forecast.forecast}.", tornado]
+    return ["Variance explained.", f"Tornado about the base case{_base_text(forecast)}."]
 
 
 def _base_text(found: ForecastSensitivity) -> str:

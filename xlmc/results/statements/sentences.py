@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from xlmc.distributions.parameters import range_text
 from xlmc.results.statements.significant_digits import RoundedRange, percent_text, rounded_range
 from xlmc.statistics import Estimate, probability_above, probability_between
 
@@ -65,7 +66,7 @@ def _of(result: ForecastResult) -> list[Statement]:
         event = f"{name} > {definition.threshold:g}{units}"
         told.append(Statement(name, "threshold", f"{_probability_text(event, above)}{part}"))
     if definition.asked is not None and result.certainty is not None:
-        event = _asked_text(name, *definition.asked, units)
+        event = f"{name} {range_text(*definition.asked)}{units}"
         told.append(Statement(name, "certainty", f"{_probability_text(event, result.certainty)}{part}"))
     return told
 
@@ -74,13 +75,6 @@ def _probability_text(event: str, share: Estimate) -> str:
     """`P(Speed > 35 mph) = 1.6 % ± 0.3 %`."""
     joined = ":" if share.value in (0.0, 1.0) else " ="
     return f"P({event}){joined} {percent_text(share)}"
-
-
-def _asked_text(name: str, low: float, high: float, units: str) -> str:
-    """`120 ≤ Speed ≤ 150 mph`."""
-    below = "" if low == -math.inf else f"{low:g} ≤ "
-    above = "" if high == math.inf else f" ≤ {high:g}"
-    return f"{below}{name}{above}{units}" if above else f"{name} ≥ {low:g}{units}"
 
 
 def _part_text(result: ForecastResult) -> str:
@@ -154,11 +148,6 @@ def certainties(result: ForecastResult) -> list[Certainty]:
         found.append(Certainty("at most", -math.inf, threshold, f"at most {threshold:g}{units}", at_most))
         found.append(Certainty("over", threshold, math.inf, f"above {threshold:g}{units}", above))
     if definition.asked is not None and result.certainty is not None:
-        found.append(Certainty("asked", *definition.asked, _asked_words(*definition.asked, units), result.certainty))
+        words = f"{range_text(*definition.asked)}{units}"
+        found.append(Certainty("asked", *definition.asked, words, result.certainty))
     return found
-
-
-def _asked_words(low: float, high: float, units: str) -> str:
-    if low == -math.inf:
-        return f"at most {high:g}{units}"
-    return f"at least {low:g}{units}" if high == math.inf else f"from {low:g} to {high:g}{units}"

@@ -31,8 +31,8 @@ _POINTS = 0.75
 """In a pixel."""
 _LANDSCAPE, _UPRIGHT = (748.0, 547.0), (568.0, 727.0)
 """Width and height of a letter page within the margins, in points."""
-_SMALLEST = 0.585
-"""The least scale: letters of 11 points are then 6.4 points high."""
+_SMALLEST = 0.565
+"""The least scale: letters of 11 points are then 6.2 points high."""
 _LETTERS = 1.12
 """Letters of running text in one unit of column width, which is the width of a digit."""
 _ROOMY = ("Twelve chars",) * 9

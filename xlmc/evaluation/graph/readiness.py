@@ -13,7 +13,7 @@ from collections import deque
 from collections.abc import Collection, Mapping, Sequence, Set
 from typing import Final
 
-__all__ = ["FEW", "order_by_need"]
+__all__ = ["FEW", "most_waiting", "order_by_need"]
 
 FEW: Final = 8
 """The few of a formula's nodes: on sheets that step through time any number from 4 to 32 does."""
@@ -36,11 +36,11 @@ def order_by_need(
         enough: an order in which no more values wait is good enough.
         few: a node is computed early if it is one of at most so many that are then still to be computed.
     """
-    waiting = _most_waiting(nodes, reads, keep)
+    waiting = most_waiting(nodes, reads, keep)
     if waiting <= enough:
         return nodes
     early = _as_early_as_possible(nodes, reads, few)
-    return early if _most_waiting(early, reads, keep) < waiting else nodes
+    return early if most_waiting(early, reads, keep) < waiting else nodes
 
 
 def _as_early_as_possible(nodes: Sequence[int], reads: Reads, few: int) -> list[int]:
@@ -79,7 +79,7 @@ def _missing(node: int, own: Set[int], done: Set[int], reads: Reads, few: int) -
     return list(found)
 
 
-def _most_waiting(order: Sequence[int], reads: Reads, keep: Collection[int]) -> int:
+def most_waiting(order: Sequence[int], reads: Reads, keep: Collection[int]) -> int:
     """The most values of these nodes that wait at a time to be read."""
     last = {used: node for node in order for used in reads[node]} | dict.fromkeys(keep, -1)
     ends = dict.fromkeys(order, 0)

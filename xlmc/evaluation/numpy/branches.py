@@ -9,7 +9,8 @@ other.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from copy import copy
 from typing import Any, Final
 
 import numpy as np
@@ -51,6 +52,18 @@ class Placement:
                 self._inner[trials.parent].append(trials)
                 self._branches[trials.select].append(trials)
         self.branched = frozenset(self._branches)
+
+    def reading_less(self, reads: Mapping[int, tuple[int, ...]], results: Iterable[int]) -> Placement:
+        """The same where nodes read others than they did, without those that no node and no result needs then."""
+        less = copy(self)
+        less.reads, needed = {**self.reads, **reads}, set(results)
+        for node in sorted(less.reads, reverse=True):
+            if node in needed:
+                needed.update(less.reads[node])
+        less._members = defaultdict(list)
+        for trials, members in self._members.items():
+            less._members[trials] = [node for node in members if node in needed]
+        return less
 
     def members(self, trials: TrialSet) -> list[int]:
         """The nodes of a set itself, in order."""

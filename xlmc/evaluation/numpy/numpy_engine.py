@@ -18,9 +18,10 @@ from xlmc.errors import FormulaError
 from xlmc.evaluation.engine import Column, Evaluator, Target, column_of
 from xlmc.evaluation.graph.dag import Dag, constants
 from xlmc.evaluation.graph.nodes import Input
-from xlmc.evaluation.graph.readiness import order_by_need
+from xlmc.evaluation.graph.readiness import most_waiting, order_by_need
 from xlmc.evaluation.graph.trial_sets import ALL_TRIALS, TrialSet
 from xlmc.evaluation.numpy.branches import SURVIVORS, Placement, branch_step
+from xlmc.evaluation.numpy.looked_up import LookedUp, find_looked_up
 from xlmc.evaluation.numpy.sequence import Buffers, Steps
 from xlmc.evaluation.numpy.steps import Frame, LeaveFastPath, Step, plain_constant, reads
 from xlmc.evaluation.passes.bounds import NodeBounds
@@ -39,6 +40,11 @@ _LARGEST_BLOCK: Final = 1 << 15
 _SMALLEST_BLOCK: Final = 1 << 8
 _MOST_BYTES: Final = 1 << 25
 """The most bytes of all buffers: what the caches of today's processors hold."""
+
+_MOST_WAITING: Final = _MOST_BYTES // (8 * _LARGEST_BLOCK)
+_FEW_WAITING: Final = _MOST_WAITING - _MOST_WAITING // 4
+"""Values that wait at a time in a largest block: as many as there is room for, and as many as there surely is room for,
+whatever else needs a buffer meanwhile."""
 
 
 class NumpyProgram:
@@ -69,6 +75,9 @@ class NumpyProgram:
         self._dag, self._filters, self._forecasts, self._bounds = dag, filters, forecasts, bounds
         # Where no filter can reject a trial, nothing needs to be picked from the survivors.
         self._placement = Placement(dag, filters, forecasts) if filters else Placement(dag, forecasts, ())
+        self._looked_up: dict[int, LookedUp] = {}
+        self._orders: dict[TrialSet, Sequence[int]] = {}
+        self._look_up_functions()
         self._template: list[Any] = [None] * len(dag.nodes)
         for node, value in constants(dag):
             self._template[node] = plain_constant(value)
@@ -149,12 +158,10 @@ class NumpyProgram:
 
     def _steps(self, trials: TrialSet, keep: set[int], free_at_end: Sequence[int]) -> list[Step]:
         """The steps of one set of trials; the values of `keep` are read after them."""
-        nodes, branched = self._dag.nodes, self._placement.branched
-        members = [node for node in self._placement.members(trials) if type(nodes[node]) is not Input]
-        read = self._placement.reads | {node: self._reads(node) for node in members if node in branched}
-        computed = order_by_need(members, read, keep, _MOST_BYTES // (8 * _LARGEST_BLOCK))
+        branched = self._placement.branched
+        computed, read = self._in_order(trials, keep)
         last = {needed: node for node in computed for needed in read[node]} | dict.fromkeys(keep, -1)
-        steps = Steps(self._dag, self._buffers, computed, self._bounds)
+        steps = Steps(self._dag, self._buffers, computed, self._bounds, self._looked_up)
         for node in computed:
             done = [needed for needed in read[node] if last[needed] == node]
             if node in branched:
@@ -163,6 +170,38 @@ class NumpyProgram:
                 steps.add(node, read[node], done)
         self._buffers.free(node for node in free_at_end if node not in self._carried)
         return steps.finish()
+
+    def _in_order(self, trials: TrialSet, keep: set[int]) -> tuple[Sequence[int], dict[int, tuple[int, ...]]]:
+        """The nodes of a set that are computed, in order, and what each node reads."""
+        nodes, branched = self._dag.nodes, self._placement.branched
+        members = [node for node in self._placement.members(trials) if type(nodes[node]) is not Input]
+        read = self._placement.reads | {node: self._reads(node) for node in members if node in branched}
+        if trials not in self._orders:
+            self._orders[trials] = order_by_need(members, read, keep, _MOST_WAITING)
+        left = set(members)
+        return [node for node in self._orders[trials] if node in left], read
+
+    def _look_up_functions(self) -> None:
+        """Look up what are functions of a number of a table, where blocks are of the largest size either way."""
+        sets = [self._placement.members(trials) for trials in (ALL_TRIALS, SURVIVORS)]
+        found = find_looked_up(self._dag, sets)
+        if not found:
+            return
+        before, results = self._placement, [*self._filters, *self._forecasts]
+        if self._waiting() <= _FEW_WAITING:
+            self._placement = before.reading_less({node: (each.position,) for node, each in found.items()}, results)
+            if self._waiting() <= _FEW_WAITING:
+                self._looked_up = found
+            else:
+                self._placement = before
+
+    def _waiting(self) -> int:
+        """How many values wait at a time, at most."""
+        carried = self._placement.externals(SURVIVORS, self._forecasts)
+        waiting = len(carried)
+        for trials, keep in ((ALL_TRIALS, {*self._filters, *carried}), (SURVIVORS, set(self._forecasts))):
+            waiting += most_waiting(*self._in_order(trials, keep), keep)
+        return waiting
 
     def _reads(self, node: int) -> tuple[int, ...]:
         """What an `IF` needs, its branches included."""

@@ -6,7 +6,7 @@ A line of the table costs little to make and to run; what does not fit into a li
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Select, uses
 from xlmc.evaluation.graph.number_lookups import key_of, lookup_of
+from xlmc.evaluation.numpy.looked_up import LookedUp, aligned_array, sines_with_cosines
 from xlmc.evaluation.numpy.steps import Frame, LeaveFastPath, Step, is_elementwise_ufunc, make_step
 from xlmc.evaluation.passes.bounds import NodeBounds
 from xlmc.functions import Kind
@@ -25,9 +26,6 @@ from xlmc.functions.registry import Elementwise
 from xlmc.functions.values import Value
 
 __all__ = ["Buffers", "Steps"]
-
-_CACHE_LINE: Final = 64
-"""Bytes of a line of the processor's caches."""
 
 _Line = tuple[Elementwise | Callable[..., Any] | None, int, int, int, int, Any]
 """(ufunc, node, first, second, buffer, guard): the ufunc of `values[first]` and `values[second]` (-1 for none) goes to
@@ -98,14 +96,9 @@ class Buffers:
 
     def allocate(self, block: int) -> list[NDArray[Any]]:
         """The arrays, `(block,)` each, on cache lines of their own."""
-        return [_array(block, np.dtype(np.bool_ if kind is Kind.LOGICAL else np.float64)) for kind in self._types]
-
-
-def _array(block: int, dtype: np.dtype[Any]) -> NDArray[Any]:
-    size = block * dtype.itemsize
-    raw = np.empty(size + _CACHE_LINE, np.uint8)
-    start = -raw.ctypes.data % _CACHE_LINE
-    return raw[start : start + size].view(dtype)
+        return [
+            aligned_array(block, np.dtype(np.bool_ if kind is Kind.LOGICAL else np.float64)) for kind in self._types
+        ]
 
 
 class Steps:
@@ -116,16 +109,24 @@ class Steps:
         buffers: to take from.
         nodes: the nodes to come.
         bounds: of the nodes: a guard that they answer is not asked.
+        looked_up: the nodes that are picked from tables.
     """
 
-    def __init__(self, dag: Dag, buffers: Buffers, nodes: Iterable[int], bounds: NodeBounds) -> None:
+    def __init__(
+        self,
+        dag: Dag,
+        buffers: Buffers,
+        nodes: Iterable[int],
+        bounds: NodeBounds,
+        looked_up: Mapping[int, LookedUp],
+    ) -> None:
         self._made: list[Step] = []
         self._dag, self._buffers = dag, buffers
         self._lines: list[_Line] = []
         self._loose: list[int] = []
-        self._pairs = _sines_with_cosines(dag, nodes)
+        self._pairs = sines_with_cosines(dag, [node for node in nodes if node not in looked_up])
         self._paired: set[int] = set()
-        self._bounds = bounds
+        self._bounds, self._looked_up = bounds, looked_up
 
     def add(self, node_id: int, read: Sequence[int], done: list[int]) -> None:
         """Add the step of a node.
@@ -141,7 +142,13 @@ class Steps:
                 self._add_pair(*self._pairs[node_id])
             self._free(done)
             return
-        if (
+        if node_id in self._looked_up:
+            pick, position = self._looked_up[node_id]
+            buffer = self._buffers.exchange(done, node_id, self._loose)
+            if buffer is not None:
+                self._lines.append((pick, node_id, position, -1, buffer, None))
+                return
+        elif (
             type(node) is Apply
             and node.function.fast_arity == len(node.arguments)
             and (types[node.arguments[0]] is types[node.arguments[-1]] is Kind.NUMBER)
@@ -256,17 +263,6 @@ class Steps:
         if self._lines:
             self._made.append(_run(self._lines))
             self._lines = []
-
-
-def _sines_with_cosines(dag: Dag, nodes: Iterable[int]) -> dict[int, tuple[int, int]]:
-    """The sines and cosines of angles of which both are wanted: node_id -> (sine, cosine)."""
-    found: dict[str, dict[int, int]] = {"SIN": {}, "COS": {}}
-    for node_id in nodes:
-        node = dag.nodes[node_id]
-        if type(node) is Apply and node.function.name in found and dag.types[node.arguments[0]] is Kind.NUMBER:
-            found[node.function.name][node.arguments[0]] = node_id
-    both = [(found["SIN"][angle], found["COS"][angle]) for angle in found["SIN"].keys() & found["COS"].keys()]
-    return {node_id: pair for pair in both for node_id in pair}
 
 
 def _pair(angle: int, guard: Callable[..., bool] | None, nodes: tuple[int, int], buffers: tuple[int, int, int]) -> Step:

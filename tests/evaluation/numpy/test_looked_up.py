@@ -1,0 +1,139 @@
+"""What is looked up has the bits of what is computed, and errs where that does."""
+
+from __future__ import annotations
+
+import random
+
+import numpy as np
+import pytest
+
+from xlmc.evaluation.graph.nodes import Apply
+from xlmc.evaluation.graph.trial_sets import ALL_TRIALS
+from xlmc.evaluation.numpy import numpy_engine
+from xlmc.functions.math import trigonometry
+
+TRIALS = 3_000
+GIVEN = {"a": {"cell": "A1", "low": 0, "high": 10}, "b": {"cell": "A2", "low": -1, "high": 3}}
+TABLE = {f"{column}{row}": number for row in range(1, 10) for column, number in (
+    ("K", row - 1.0),
+    ("L", 10.0 - row),
+    ("M", (row**2) / 3 - 7.1),
+    ("N", row * 0.37),
+    ("O", [-0.5, 3.0, 0.0, 0.25, 1.0, 9.0, -2.0, 0.5, 0.125][row - 1]),
+    ("P", 10.0 ** (40 * (row - 5))),
+)}  # fmt: skip
+CELLS = {"A1": 1.0, "A2": 1.0, **TABLE}
+LOOKUPS = (
+    "VLOOKUP({k},$K$1:$P$9,{c},TRUE)",
+    "INDEX({v},MATCH({k},$K$1:$K$9,1))",
+    "INDEX({v},MATCH({k},$L$1:$L$9,-1))",
+    "LOOKUP({k},$K$1:$K$9,{v})",
+    "VLOOKUP(ROUND({k},0),$K$1:$P$9,{c},FALSE)",
+    "INDEX({v},MATCH({k},{{0;1;1.5;4;5;5.1;6;7;8}},1))",
+)
+OUTER = (
+    *("SIN({x})", "COS({x})", "ATAN({x}/100)", "EXP({x})", "LN({x})", "SQRT({x})", "TAN({x})", "{x}^1.7", "2^{x}"),
+    *(
+        "COS(ATAN({x}/100))",
+        "SIN(ATAN({x}/100))",
+        "LN(COS({x}))",
+        "ATAN(1/{x})",
+        "EXP(-{x}*{x}/2)",
+        "{x}^-2",
+        "ASIN({x})",
+    ),
+    *("1/(1+EXP({x}))", "SINH({x})", "LOG10({x}+8)", "EXP({x})*A2", "ATAN({x}+A2)", "EXP(({x}-1)*0.5+2)", "1-EXP({x})"),
+)
+AROUND = (
+    *("{y}", "{y}+{z}", "IF(A2>0.5,{y},{z})", "IFERROR({y},A2)", "SUM({y},{z},1)", "IF(A1>5,{y},0)*SIN({z})"),
+    *("IF(A1>9,1/(A2-0.4),{y})", "MAX({y},{z})", "{y}-{y}*A2", "IF({y}>{z},1,2)"),
+)
+
+
+def some_formula(of):
+    def looked_up():
+        column = of.choice("KLMNOP")
+        key = of.choice(("A1", "A1*0.5", "ABS(A2)*3", "A1-0.5" if of.random() < 0.2 else "A1/2"))
+        of_table = of.choice(LOOKUPS).format(k=key, c="KLMNOP".index(column) + 1, v=f"${column}$1:${column}$9")
+        return of.choice(OUTER).format(x=of_table)
+
+    return "=" + of.choice(AROUND).format(y=looked_up(), z=looked_up())
+
+
+def some_book(book, number):
+    of = random.Random(number)
+    cells = CELLS | {f"B{row}": some_formula(of) for row in range(1, 7)}
+    cells |= {"C1": f"={of.choice(('B1', 'B2', 'A1'))}<{of.choice((0.5, 3, 9))}", "C2": "=A1>11"}
+    filters = of.choice(({}, {}, {"f": "C1"}, {"f": "C1", "g": {"cell": "B3", "at_least": 0}}, {"none": "C2"}))
+    return book(cells, GIVEN, {f"f{row}": f"B{row}" for row in range(1, 7)}, filters)
+
+
+def told(run):
+    columns = {**run.inputs, **run.forecasts}
+    arrays = [run.trial_index.tobytes(), *(values.tobytes() for values in columns.values())]
+    return arrays, run.faults, run.tally.rejected.tolist(), run.error_trials, run.block
+
+
+@pytest.fixture(params=[True, False])
+def tangents(request, monkeypatch):
+    """Whether sines and cosines of one angle are computed by tangents, as where these are fast."""
+    monkeypatch.setattr(trigonometry, "BY_TANGENTS", request.param)
+
+
+@pytest.mark.parametrize("number", range(24))
+def test_the_bits_of_random_books_are_the_same(book, monkeypatch, tangents, number):
+    found, trials = told(some_book(book, number).simulate(TRIALS, 5)), (1, 2_049, TRIALS)
+    few = [told(some_book(book, number).simulate(each, 5)) for each in trials]
+    with monkeypatch.context() as computing:
+        computing.setattr(numpy_engine, "find_looked_up", lambda *_: {})
+        assert found == told(some_book(book, number).simulate(TRIALS, 5))
+        assert few == [told(some_book(book, number).simulate(each, 5)) for each in trials]
+
+
+def looked_up(model):
+    program = model.program("numpy")
+    return [model.lowering.dag.nodes[node].function.name for node in sorted(program._looked_up)], program
+
+
+def test_sine_and_cosine_of_an_angle_of_the_table_are_looked_up(book, tangents):
+    cells = CELLS | {"B1": "=VLOOKUP(A1,$K$1:$P$9,3)/100", "B2": "=ATAN(B1)", "B3": "=COS(B2)*A2+SIN(B2)"}
+    model = book(cells, GIVEN, {"x": "B3"})
+    names, program = looked_up(model)
+    assert sorted(names) == ["ATAN", "COS", "SIN"]
+    nodes, placement = model.lowering.dag.nodes, program._placement
+    computed = {nodes[node].function.name for node in placement.members(ALL_TRIALS) if isinstance(nodes[node], Apply)}
+    assert {"a lookup", "COS", "SIN"} <= computed
+    assert not computed & {"ATAN", "/", "the cell found"}
+
+
+@pytest.mark.parametrize(
+    ("formula", "why"),
+    [
+        ("=LN(VLOOKUP(A1,$K$1:$P$9,5))", "a row gives an error"),
+        ("=VLOOKUP(A1,$K$1:$P$9,6)^3", "a row gives a number too small"),
+        ("=SQRT(VLOOKUP(A1,$K$1:$P$9,4))", "a root takes no longer than a pick"),
+        ("=EXP(VLOOKUP(A1,$K$1:$P$9,4)*A2)", "another number varies"),
+        ("=LN(2+COS(VLOOKUP(A1,$K$1:$P$9,4)))", "whether it is one of a pair decides the bits of a cosine"),
+    ],
+)
+def test_what_is_computed_in_every_trial(book, formula, why):
+    names, _ = looked_up(book(CELLS | {"B1": formula}, GIVEN, {"x": "B1"}))
+    assert set(names) <= {"COS"}, why
+
+
+def test_a_row_that_errs_errs_in_its_trials_alone(book):
+    model = book(CELLS | {"B1": "=LN(VLOOKUP(A1,$K$1:$P$9,5))"}, GIVEN, {"x": "B1"})
+    run = model.simulate(TRIALS, 5)
+    row = np.minimum(run.inputs["a"].astype(int), 8)
+    numbers = np.array([TABLE[f"O{each + 1}"] for each in range(9)])[row]
+    np.testing.assert_array_equal(np.isnan(run.forecasts["x"]), numbers <= 0)
+
+
+def test_blocks_are_as_large_as_they_were(book):
+    """Where more values wait than a largest block has room for, nothing is looked up: a block would be another one."""
+    many = {f"B{row}": f"=EXP(VLOOKUP(A1,$K$1:$P$9,3)/{row}+A2)*A2" for row in range(1, 200)}
+    cells = CELLS | many | {"C1": "=EXP(VLOOKUP(A1,$K$1:$P$9,3))+A2"}
+    forecasts = {f"f{row}": f"B{row}" for row in range(1, 200)} | {"x": "C1"}
+    names, program = looked_up(book(cells, GIVEN, forecasts))
+    assert names == []
+    assert program.largest_block < 1 << 15

@@ -69,7 +69,6 @@ LISTS = {
     ("evaluation/llvm/costs.py", "_SAVED_BY"): "any other function of numbers saves the usual time in a loop",
     ("evaluation/llvm/operations.py", "_ROWS"): "any other function is computed by NumPy",
     ("evaluation/llvm/sets.py", "_ROWS"): "any other function is computed by NumPy",
-    ("evaluation/numpy/sequence.py", "_sines_with_cosines"): "any other function is computed by itself",
     ("evaluation/passes/bounds.py", "_OF_ONE"): "of any other function no bounds are known but those of its row",
     ("evaluation/passes/derivatives/conditions.py", "multiples"): "any other function is differentiated by differences",
     ("evaluation/passes/derivatives/conditions.py", "steps"): "any other function is differentiated by differences",

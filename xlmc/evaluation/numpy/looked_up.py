@@ -28,7 +28,8 @@ __all__ = ["LookedUp", "aligned_array", "find_looked_up", "sines_with_cosines"]
 _QUICK: Final = (np.add, np.subtract, np.multiply, np.divide, np.negative, np.absolute, np.sqrt)
 """These take no longer than a pick."""
 
-_SINE, _COSINE = "SIN", "COS"
+_SINE: Final = "SIN"
+_COSINE: Final = "COS"
 
 _LONGEST: Final = 8
 """Functions of functions up to which a number of a table is looked for."""

@@ -7,7 +7,8 @@ import pytest
 from scipy import stats
 from scipy.integrate import quad
 
-from xlmc.sampling.copulas import Clayton, Frank, Gumbel, Reflected, StudentTCopula
+from xlmc.distributions.empirical import Empirical
+from xlmc.sampling.copulas import Clayton, Frank, Gumbel, Reflected, SameTrials, StudentTCopula
 
 N = 100_000
 FEW = 5_000
@@ -128,3 +129,18 @@ def test_a_trial_depends_on_its_own_uniforms_alone():
         part = np.ascontiguousarray(u[:, 300:400])
         made(3).join(part)
         np.testing.assert_array_equal(part, whole[:, 300:400])
+
+
+def test_values_that_stand_together_are_drawn_together():
+    """Quantiles of the empirical distributions at these uniforms are the values of one trial; some are equal."""
+    values = np.array([[3.0, 1.0, 2.0, 2.0, 5.0], [7.0, 7.0, 6.0, 9.0, 8.0], [1.0, 2.0, 3.0, 4.0, 5.0]])
+    u = np.random.default_rng(1).random((3, 5_000))
+    u[0, :2] = 0.0, 1 - 2.0**-53
+    first = u[0].copy()
+    SameTrials(values).join(u)
+    assert np.abs(u[0] - first).max() <= 0.5 / 5
+    drawn = np.stack([Empirical().built(row[:, None]).ppf(at) for row, at in zip(values, u, strict=True)])
+    found, counts = np.unique(drawn, axis=1, return_counts=True)
+    assert sorted(map(tuple, found.T.tolist())) == sorted(map(tuple, values.T.tolist()))
+    assert counts == pytest.approx(1_000, abs=5 * (5_000 * 0.2 * 0.8) ** 0.5)
+    assert SameTrials(values[[0, 0]]).pair(0, 1) == pytest.approx(1.0)

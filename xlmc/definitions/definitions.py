@@ -6,6 +6,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
+import numpy as np
+from numpy.typing import NDArray
+
 from xlmc.address import Area, Cell, InFormula
 from xlmc.definitions.evidence import Evidence
 from xlmc.definitions.scenarios import Scenario
@@ -217,12 +220,13 @@ class Copula:
     """How assumptions are joined beside rank correlations.
 
     Attributes:
-        kind: `Gaussian`, `t`, `Clayton`, `Gumbel` or `Frank`.
+        kind: `Gaussian`, `t`, `Clayton`, `Gumbel` or `Frank`; where there are trials, what these are of.
         names: of the assumptions, in order.
         row: the cell that names its kind.
         parameter: theta, or the degrees of freedom of t; None for Gaussian.
         matrix: of Gaussian and t, the correlations of the underlying variables, `(k, k)`; empty for others.
         turned: which assumptions are turned over, as those of ClaytonR are.
+        trials: `(k, m)` values that stand together, one of which the assumptions take in each trial.
     """
 
     kind: str
@@ -231,6 +235,7 @@ class Copula:
     parameter: float | None = None
     matrix: tuple[tuple[float, ...], ...] = ()
     turned: tuple[bool, ...] = ()
+    trials: NDArray[np.float64] | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from xlmc.definitions.definitions import Copula, Correlation
 from xlmc.distributions.whole_numbers import WholeNumbers
 from xlmc.errors import Notice
 from xlmc.sampling.copula import GaussianCopula
-from xlmc.sampling.copulas import Clayton, Frank, Gumbel, Joining, Reflected, StudentTCopula
+from xlmc.sampling.copulas import Clayton, Frank, Gumbel, Joining, Reflected, SameTrials, StudentTCopula
 from xlmc.sampling.draws import CorrelatedGroup, Draw
 
 __all__ = [
@@ -73,6 +73,8 @@ def copula_groups(copulas: Sequence[Copula], drawn: Collection[str]) -> list[Cor
 
 
 def _joining(copula: Copula, kept: Sequence[int]) -> Joining:
+    if copula.trials is not None:
+        return SameTrials(copula.trials[list(kept)])
     if copula.kind in ("Gaussian", "t"):
         matrix = np.array(copula.matrix)[np.ix_(kept, kept)]
         if copula.parameter is None:
@@ -138,7 +140,7 @@ def tie_notices(
             message = (
                 f"{' and '.join(map(repr, vary))} may take few values, and the parameters vary from trial to trial: "
                 f"equal draws share ranks, so the rank correlation of {row.first!r} and {row.second!r} may be nearer "
-                f"to 0 than the {row.number:g} that was asked for; Assumptions shows what the accepted trials have"
+                f"to 0 than the {show(row.number)} that was asked for; Assumptions shows what the accepted trials have"
             )
             yield Notice(message, row.row)
 
@@ -150,9 +152,9 @@ def _takes_few(draw: Draw) -> bool:
 def _out_of_reach(row: Correlation, wanted: float, drawn: float) -> Notice:
     used = "that" if abs(drawn - wanted) < CHANGED else f"{drawn:.3g}, for the other correlations leave no more"
     message = (
-        f"{row.first!r} and {row.second!r} cannot have the rank correlation {row.number:g}: equal draws share ranks, "
-        f"and with the few values that one of them takes, {wanted:.3g} is the {'most' if row.number > 0 else 'least'} "
-        f"that any two can have; they are drawn with {used}"
+        f"{row.first!r} and {row.second!r} cannot have the rank correlation {show(row.number)}: equal draws share "
+        f"ranks, and with the few values that one of them takes, {wanted:.3g} is the "
+        f"{'most' if row.number > 0 else 'least'} that any two can have; they are drawn with {used}"
     )
     return Notice(message, row.row)
 

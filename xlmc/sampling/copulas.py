@@ -1,4 +1,4 @@
-"""Copulas other than the Gaussian one: Student's t, Clayton, Gumbel and Frank, with their reflections.
+"""Copulas other than the Gaussian one: Student's t, Clayton, Gumbel and Frank, with their reflections; that of trials.
 
 As many independent uniforms go in as come out.
 
@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 from xlmc.distributions.split_mix import GOLDEN, mixed
 from xlmc.sampling.copula import nearest_correlation
 
-__all__ = ["Archimedean", "Clayton", "Frank", "Gumbel", "Joining", "Reflected", "StudentTCopula"]
+__all__ = ["Archimedean", "Clayton", "Frank", "Gumbel", "Joining", "Reflected", "SameTrials", "StudentTCopula"]
 
 Floats = NDArray[np.float64]
 
@@ -132,6 +132,30 @@ def _t_quantile(u: Floats, degrees: float) -> Floats:
     from xlmc.distributions.students_t import StudentsT
 
     return StudentsT().ppf(u, 0.0, 1.0, degrees)
+
+
+class SameTrials(_Joined):
+    """Values that stand together, each trial's as likely as the others: their empirical copula.
+
+    Its uniforms are the middles of the steps of the empirical distributions of these values.
+
+    Args:
+        values: `(k, m)`, of m trials.
+    """
+
+    def __init__(self, values: Floats) -> None:
+        self.size = len(values)
+        rising = values[:, np.argsort(values[0], kind="stable")]
+        self._ranks = np.argsort(np.argsort(rising, axis=1, kind="stable"), axis=1, kind="stable")
+
+    def join(self, u: Floats) -> None:
+        """The first says which trial is taken."""
+        m = self._ranks.shape[1]
+        taken = np.minimum((u[0] * m).astype(np.intp), m - 1)
+        u[:] = (self._ranks[:, taken] + 0.5) / m
+
+    def pair(self, i: int, j: int) -> float:
+        return float(np.corrcoef(self._ranks[i], self._ranks[j])[0, 1])
 
 
 class Archimedean(_Joined):

@@ -208,3 +208,24 @@ def test_a_workbook_that_has_changed_meanwhile_is_left_alone(xlmc, data, book, m
     assert outcome.code == 2
     assert "the workbook has changed since it was read" in outcome.err
     assert openpyxl.load_workbook(book)["Inputs"]["A9"].value == "another note"
+
+
+@pytest.mark.parametrize("distribution", ["Normal", "Uniform"])
+def test_values_far_from_0_are_written_as_they_are(xlmc, book, tmp_path, distribution):
+    """Coordinates in meters: six digits would leave a mean beside all values, or a range of width 0."""
+    values = 1_234_567.0 + np.random.default_rng(1).normal(0.0, 0.05, 40).round(4)
+    made = openpyxl.Workbook()
+    for value in values.tolist():
+        made.active.append([value])
+    made.save(tmp_path / "far.xlsx")
+    source = f"{tmp_path / 'far.xlsx'}!A1:A40"
+    outcome = xlmc("fit", source, "--name", "East", "--distribution", distribution, "--into", book)
+    assert outcome.code == 0, outcome.err
+    _, base, _, low, high, mean, std_dev, *_ = (cell.value for cell in openpyxl.load_workbook(book)["Inputs"][4])
+    assert base == pytest.approx(np.median(values), abs=1e-3)
+    if distribution == "Uniform":
+        assert (low, high) == pytest.approx((values.min(), values.max()), abs=1e-4)
+        assert outcome.out.count(f"{low!r}") >= 2  # in the ranking, and in the row to paste
+    else:
+        assert mean == pytest.approx(values.mean(), abs=1e-4)
+        assert std_dev == pytest.approx(values.std(), rel=1e-4)

@@ -283,14 +283,15 @@ _MEANING = (
 
 def _parameters(fitted: Fitted) -> str:
     from xlmc.statistics import format_estimate
+    from xlmc.studies.fitting import parameter_texts
 
-    parts = []
+    parts, texts = [], parameter_texts(fitted)
     for heading, value in fitted.parameters.items():
         error = fitted.errors[heading]
         if heading in fitted.fixed:
             parts.append(f"{heading} {value:g} (not estimated)")
         elif error is None or not math.isfinite(error):
-            parts.append(f"{heading} {value:.6g}")
+            parts.append(f"{heading} {texts[heading]}")
         else:
             parts.append(f"{heading} {format_estimate(value, error)}")
     return ", ".join(parts)

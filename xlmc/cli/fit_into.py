@@ -42,6 +42,7 @@ def prepare(path: Path, name: str, fitted: Fitted, base: float, source: str) -> 
         WorkbookError: the file cannot be read, a program has it open, or a cell of the row holds a formula.
     """
     from xlmc.definitions.tables.new_row import row_edit
+    from xlmc.studies.fitting import parameter_texts, rounded_value
     from xlmc.workbook.reader import read_workbook
     from xlmc.workbook.target import refuse_into_old_workbook
     from xlmc.workbook.writer import package_bytes, refuse_if_open
@@ -49,7 +50,8 @@ def prepare(path: Path, name: str, fitted: Fitted, base: float, source: str) -> 
     refuse_if_open(path)
     workbook = read_workbook(path)
     refuse_into_old_workbook(path)
-    row = row_edit(workbook, name, fitted.name, _six_digits(fitted.parameters), float(f"{base:.6g}"), source)
+    parameters = {heading: float(text) for heading, text in parameter_texts(fitted).items()}
+    row = row_edit(workbook, name, fitted.name, parameters, rounded_value(fitted, base), source)
     data = package_bytes(_parts(workbook, row))
     _refuse_new_problems(workbook, read_workbook(data, path.name))
     return Edited(path, row, data, workbook.sha256)
@@ -66,11 +68,6 @@ def write(edited: Edited) -> None:
     from xlmc.workbook.writer import write_workbook
 
     write_workbook(edited.path, edited.data, lambda: refuse_into_source(edited.path, edited.sha256, "Fit again"))
-
-
-def _six_digits(parameters: Mapping[str, float]) -> dict[str, float]:
-    """The parameters rounded as in the row to paste: six digits are more than a fit ever determines."""
-    return {heading: float(f"{value:.6g}") for heading, value in parameters.items()}
 
 
 def _parts(workbook: Workbook, row: RowEdit) -> dict[str, bytes]:

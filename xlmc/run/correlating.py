@@ -8,6 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from xlmc.definitions.definitions import Copula, Correlation
+from xlmc.distributions.parameters import show
 from xlmc.distributions.whole_numbers import WholeNumbers
 from xlmc.errors import Notice
 from xlmc.sampling.copula import GaussianCopula

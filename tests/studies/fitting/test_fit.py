@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -9,7 +11,7 @@ from scipy import stats
 from xlmc.distributions import FAMILIES
 from xlmc.distributions.spelling import plain
 from xlmc.errors import SimulationError
-from xlmc.studies.fitting import CRITERIA, KINDS, fit, share_at_most
+from xlmc.studies.fitting import CRITERIA, KINDS, fit, parameter_texts, rounded_value, row_to_paste, share_at_most
 from xlmc.studies.fitting.fit import anderson_darling, cautions, kolmogorov_smirnov, kolmogorov_smirnov_of_counts
 
 N = 4000
@@ -214,3 +216,32 @@ def test_shares_at_most_rise_from_0_to_1_beyond_the_support_too(name):
         shares = share_at_most(fitted, at)
         assert np.all((shares >= 0.0) & (shares <= 1.0)), fitted.name
         assert np.all(np.diff(shares) >= -1e-12), fitted.name
+
+
+FAR_FROM_0 = {
+    "coordinates": 1_234_567.0 + np.random.default_rng(6).normal(0.0, 0.05, 40).round(4),
+    "times of one day": 45_321.5 + np.random.default_rng(7).uniform(0.0, 0.01, 40).round(6),
+    "large counts": 3.0e7 + np.random.default_rng(8).poisson(9, 40),
+}
+
+
+@pytest.mark.parametrize("name", FAR_FROM_0)
+def test_rounded_parameters_give_the_same_distribution_far_from_0(name):
+    values = np.sort(FAR_FROM_0[name])
+    found = fit(values, kind="continuous", errors=False)
+    assert len(found.fits) > 3
+    for fitted in found.fits:
+        texts = parameter_texts(fitted)
+        read = {heading: float(text) for heading, text in texts.items()}
+        shares = share_at_most(replace(fitted, parameters=read), values)
+        assert shares == pytest.approx(share_at_most(fitted, values), abs=2e-4), (fitted.name, texts)
+    middle = float(np.median(values))
+    assert rounded_value(found.fits[0], middle) == pytest.approx(middle, abs=1e-3 * (values[-1] - values[0]))
+
+
+def test_parameters_and_the_base_value_have_six_digits_where_these_are_enough():
+    fitted = next(each for each in fit(DATA["negative"], errors=False).fits if each.name == "Normal")
+    mean = float(np.mean(DATA["negative"]))
+    assert parameter_texts(fitted)["Mean"] == f"{mean:.6g}"
+    assert row_to_paste(fitted, "x", "")["Mean"] == f"{mean:.6g}"
+    assert rounded_value(fitted, -5.123456789) == -5.12346

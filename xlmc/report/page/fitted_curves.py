@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from xlmc.columns import picked, release
 from xlmc.errors import SimulationError
 from xlmc.report.histogram import Histogram
-from xlmc.studies.fitting import FEW, Fitted, fit, share_at_most
+from xlmc.studies.fitting import FEW, Fitted, fit, parameter_texts, share_at_most
 
 __all__ = ["FittedCurve", "fitted_curves"]
 
@@ -25,6 +25,9 @@ _PARTS: Final = 8
 """Points of a curve for each bar."""
 
 _DIGITS: Final = 8
+
+_SEEN: Final = 0.01
+"""Difference between two curves, as shares, that can be seen."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,5 +77,5 @@ def fitted_curves(x: Floats, bins: Histogram) -> list[FittedCurve]:
 
 
 def _curve(fitted: Fitted, at: Floats, parts: int) -> FittedCurve:
-    said = ", ".join(f"{heading} {value:.4g}" for heading, value in fitted.parameters.items())
+    said = ", ".join(f"{heading} {text}" for heading, text in parameter_texts(fitted, least=4, same=_SEEN).items())
     return FittedCurve(fitted.name, said, fitted.ks, parts, np.round(share_at_most(fitted, at), _DIGITS))

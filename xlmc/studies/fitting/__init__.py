@@ -3,6 +3,31 @@
 from __future__ import annotations
 
 from xlmc.studies.fitting.candidate import Unfit
-from xlmc.studies.fitting.fit import CRITERIA, FEW, KINDS, Fitted, Fitting, cautions, fit, row_to_paste, share_at_most
+from xlmc.studies.fitting.fit import (
+    CRITERIA,
+    FEW,
+    KINDS,
+    Fitted,
+    Fitting,
+    cautions,
+    fit,
+    parameter_texts,
+    rounded_value,
+    row_to_paste,
+    share_at_most,
+)
 
-__all__ = ["CRITERIA", "FEW", "KINDS", "Fitted", "Fitting", "Unfit", "cautions", "fit", "row_to_paste", "share_at_most"]
+__all__ = [
+    "CRITERIA",
+    "FEW",
+    "KINDS",
+    "Fitted",
+    "Fitting",
+    "Unfit",
+    "cautions",
+    "fit",
+    "parameter_texts",
+    "rounded_value",
+    "row_to_paste",
+    "share_at_most",
+]

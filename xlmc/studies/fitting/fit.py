@@ -7,7 +7,7 @@ hold for a distribution that was known beforehand, and are far too large for one
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -31,6 +31,8 @@ __all__ = [
     "fit",
     "kolmogorov_smirnov",
     "kolmogorov_smirnov_of_counts",
+    "parameter_texts",
+    "rounded_value",
     "row_to_paste",
     "share_at_most",
 ]
@@ -53,7 +55,14 @@ FEW, _ENOUGH = 15, 30
 _CLOSE = 2.0
 """Families whose AIC differ by less are about equally likely (K. P. Burnham and D. R. Anderson, 2002)."""
 
-_DIGITS = 6
+_LEAST_DIGITS, _MOST_DIGITS = 6, 17
+"""Of a parameter: mostly more than a fit determines; and all that a double has."""
+
+_SAME = 1e-4
+"""How far rounding may move the share that lies below a number: less than any fit determines."""
+
+_LOOKED_AT = np.array([0.001, 0.01, 0.1, 0.25, 0.5, 0.75, 0.9, 0.99, 0.999])
+"""Shares at whose quantiles a distribution is compared with what rounding makes of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,17 +268,46 @@ def _join_names(names: list[str]) -> str:
 
 def share_at_most(fitted: Fitted, x: ArrayLike) -> Floats:
     """The share that a fitted family has at most at each of `(n,)` numbers, those outside its support included."""
-    family = FAMILIES[fitted.name]
-    named = {
+    return FAMILIES[fitted.name].cdf(np.asarray(x, dtype=float), **_by_key(fitted))
+
+
+def _by_key(fitted: Fitted) -> dict[str, float]:
+    return {
         spec.key: fitted.parameters[heading]
-        for spec in family.parameters
+        for spec in FAMILIES[fitted.name].parameters
         for heading in spec.headings
         if heading in fitted.parameters
     }
-    return family.cdf(np.asarray(x, dtype=float), **named)
+
+
+def parameter_texts(fitted: Fitted, least: int = _LEAST_DIGITS, same: float = _SAME) -> dict[str, str]:
+    """Heading -> its parameter, to as few digits as leave the distribution what it is.
+
+    A mean of 1234567 beside a standard deviation of 0.05, or two ends that differ in the eighth digit, need many.
+
+    Args:
+        fitted: the distribution.
+        least: digits that a parameter has at least.
+        same: how far rounding may move the share that lies below a number.
+    """
+    family, named = FAMILIES[fitted.name], _by_key(fitted)
+    at = family.ppf(_LOOKED_AT, *family.bind((), named))
+    own = share_at_most(fitted, at)
+    for digits in range(least, _MOST_DIGITS):
+        texts = {heading: f"{value:.{digits}g}" for heading, value in fitted.parameters.items()}
+        rounded = replace(fitted, parameters={heading: float(text) for heading, text in texts.items()})
+        if (np.abs(share_at_most(rounded, at) - own) <= same).all():  # no numbers where it is no distribution any more
+            return texts
+    return {heading: repr(value) for heading, value in fitted.parameters.items()}
+
+
+def rounded_value(fitted: Fitted, value: float) -> float:
+    """A number among the values, to as many digits as tell it from its neighbours; see `parameter_texts`."""
+    own = share_at_most(fitted, value)
+    rounded = (float(f"{value:.{digits}g}") for digits in range(_LEAST_DIGITS, _MOST_DIGITS))
+    return next((each for each in rounded if abs(share_at_most(fitted, each) - own) <= _SAME), value)
 
 
 def row_to_paste(fitted: Fitted, name: str, source: str) -> dict[str, str]:
-    """Heading -> what stands under it; parameters to six digits, more than a fit ever determines."""
-    parameters = {heading: f"{value:.{_DIGITS}g}" for heading, value in fitted.parameters.items()}
-    return {"Name": name, "Distribution": fitted.name, **parameters, "Source": source}
+    """Heading -> what stands under it."""
+    return {"Name": name, "Distribution": fitted.name, **parameter_texts(fitted), "Source": source}

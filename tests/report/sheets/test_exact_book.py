@@ -144,3 +144,16 @@ def test_a_number_is_read_back_as_the_same_number(number, styled):
         book.add_worksheet().write_number(0, 0, number, book.add_format({"bold": True}) if styled else None)
     written = book.parts["xl/worksheets/sheet1.xml"].partition(b"<v>")[2].partition(b"</v>")[0]
     assert float(written) == float(number)
+
+
+def test_a_chart_of_a_wide_sheet_looks_at_its_own_columns():
+    book = ExactBook()
+    sheet = book.add_worksheet()
+    for column in range(300):
+        sheet.write_number(1, column, column)
+    sheet.write_numbers(0, 4, [0.5, 1.5], book.add_format())
+    found = sheet._with_runs(0, 3, 1, 5)
+    assert {row: {column: cell.number for column, cell in cells.items()} for row, cells in found.items()} == {
+        0: {4: 0.5},
+        1: {3: 3, 4: 1.5, 5: 5},
+    }

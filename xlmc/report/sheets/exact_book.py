@@ -155,15 +155,16 @@ class ExactSheet(Worksheet):  # type: ignore[misc]  # the library has no types
             self.table = whole
 
     def _with_runs(self, top: int, left: int, bottom: int, right: int) -> dict[int, dict[int, Any]]:
-        """The cells of these rows by row and column, those of runs only in these columns."""
+        """The cells of these rows and columns; of sheets that are wide, charts look at few."""
         found: dict[int, dict[int, Any]] = {}
         for run in chain.from_iterable(self._in_column.get(column, ()) for column in range(left, right + 1)):
             start, end = max(top, run.row), min(bottom + 1, run.end)
             for row, number in enumerate(run.cells(start, end) if start < end else (), start):
                 found.setdefault(row, {})[run.column] = CellNumberTuple(number, run.style)
         for row in range(top, bottom + 1):
-            if row in self.table:
-                found[row] = found.get(row, {}) | self.table[row]
+            if (cells := self.table.get(row)) is not None:
+                own = {column: cells[column] for column in range(left, right + 1) if column in cells}
+                found[row] = found.get(row, {}) | own
         return found
 
     def _write_cell(self, row: int, col: int, cell: Any) -> None:

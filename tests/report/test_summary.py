@@ -14,6 +14,7 @@ from xlmc.report.summary import (
     summarise,
     summary_text,
 )
+from xlmc.results.statements import statements
 from xlmc.statistics import Estimate, format_estimate, proportion
 
 
@@ -130,3 +131,28 @@ def test_a_forecast_that_is_no_number_at_the_base_case_has_none(make):
 def test_without_a_base_value_there_is_no_base_case(make):
     run = make.simulate({"A1": None, "B1": "=A1"}, [make.uniform("a", "A1", 0.0, 1.0)], [make.forecast("x", "B1")])
     assert base_case(run) is None
+
+
+def test_numbers_far_from_0_keep_the_digits_that_tell_them_apart(make):
+    """Thresholds, the base case, ranges without an error and constants: a date with a time, a coordinate."""
+    run = make.simulate(
+        {"A1": 45321.75, "B1": "=A1+0", "C1": "=1234567.8"},
+        [make.uniform("a", "A1", 45321.75, 45321.76, base=45321.75)],
+        [
+            make.forecast("x", "B1", central=0.9999999, threshold=45321.755, asked=(45321.7512, 45321.7588)),
+            make.forecast("c", "C1"),
+        ],
+    )
+    headings, (time, constant) = summary_text(summarise(run))
+    found = dict(zip(headings, time, strict=True))
+    assert found["Threshold"] == "45321.755"
+    assert found["Certainty of"] == "45321.7512 to 45321.7588"
+    assert found["Base case"] == "45321.75"
+    low, high = (float(end.split(" ")[0]) for end in found["Central range"].split(" to "))
+    assert (low, high) == pytest.approx((45321.75, 45321.76), abs=2e-5)
+    assert found["Range"] == "99.99999 %"
+    assert dict(zip(headings, constant, strict=True))["Mean"] == "1234567.8 ± 0"
+    said = [each.text for each in statements(run)]
+    assert any("P(x > 45321.755)" in each for each in said)
+    assert any("45321.7512 ≤ x ≤ 45321.7588" in each for each in said)
+    assert any(each.startswith("c: 1,234,567.8 in all") for each in said)

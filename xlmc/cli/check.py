@@ -116,6 +116,7 @@ def _error_lines(model: Model, errors: BaseErrors) -> Iterator[str]:
 
 def _show_definitions(definitions: Definitions, model: Model | None) -> None:
     from xlmc.cli.printing import table
+    from xlmc.distributions.parameters import show
     from xlmc.report.summary import percent
     from xlmc.results.statements.in_words import distribution_text, evidence_text, limits_text
 
@@ -144,7 +145,7 @@ def _show_definitions(definitions: Definitions, model: Model | None) -> None:
         table("Checks", ("Name", "Cell", "Because"), [(c.name, str(c.cell), c.because) for c in definitions.checks])
     correlations = (model.definitions if model else definitions).correlations
     if correlations:
-        asked = [f"{c.value:g}" if isinstance(c.value, float) else str(c.value) for c in correlations]
+        asked = [show(c.value) if isinstance(c.value, float) else str(c.value) for c in correlations]
         pairs = [(c.first, c.second, a, _drawn_with(model, c)) for c, a in zip(correlations, asked, strict=True)]
         table("Rank correlations", ("First", "Second", "Asked for", "Drawn with"), pairs, right=(2, 3))
     scenario_table(definitions)

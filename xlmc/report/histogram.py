@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.columns import parts, release
-from xlmc.report.summary import SummaryRow, estimate_text, percent, summarise
+from xlmc.report.summary import SummaryRow, central_text, estimate_text, percent, summarise
 from xlmc.statistics.sample import Sample, Values
 
 if TYPE_CHECKING:
@@ -248,8 +248,7 @@ class Figure:
         units = f" {row.units}" if row.units else ""
         text = (
             f"Figure {self.number}. {self.name}: mean {estimate_text(row.mean)}{units}; the central "
-            f"{percent(row.share)} of {row.trials:,} accepted trials lie from {estimate_text(row.low)} to "
-            f"{estimate_text(row.high)}{units}."
+            f"{percent(row.share)} of {row.trials:,} accepted trials lie from {central_text(row)}{units}."
         )
         if bins.counted < row.trials:
             text += f" Trials are weighted: the chart shows {bins.counted:,} trials of equal weight in their place."

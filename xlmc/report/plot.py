@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.distributions.parameters import show
 from xlmc.errors import SimulationError
 from xlmc.report.histogram import Figure as Drawn
 from xlmc.report.histogram import figures_of
 from xlmc.report.sheets.styles import DARK, GRID, INK, LIGHT
-from xlmc.report.summary import estimate_text, percent
+from xlmc.report.summary import central_text, estimate_text, percent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -67,7 +68,7 @@ def _title(simulation: Simulation) -> str:
 def _draw_histogram(axes: Axes, each: Drawn) -> None:
     bins, answer = each.bins, each.answer
     edges = np.append(bins.edges, bins.upper_edges[-1])
-    inside = f"central {percent(answer.share)}: {estimate_text(answer.low)} to {estimate_text(answer.high)}"
+    inside = f"central {percent(answer.share)}: {central_text(answer)}"
     axes.stairs(bins.inside + bins.outside, edges, fill=True, color=LIGHT, label="other accepted trials")
     axes.stairs(bins.inside, edges, fill=True, color=DARK, label=inside)
     most = max(1.0, float((bins.inside + bins.outside).max()))  # 0 where all trials lie outside, below and above
@@ -93,7 +94,7 @@ def _draw_cumulative(axes: Axes, each: Drawn, simulation: Simulation) -> None:
     axes.hlines([tail, 100.0 - tail], *_ends(each), color=INK, linewidth=0.7, linestyle=":")
     if answer.threshold is not None:
         threshold = float(_near(each, np.array(answer.threshold)))
-        axes.axvline(threshold, color="#9C0006", linewidth=1.0, label=f"threshold {answer.threshold:g}")
+        axes.axvline(threshold, color="#9C0006", linewidth=1.0, label=f"threshold {show(answer.threshold)}")
         axes.legend(loc="upper left", fontsize=8, frameon=False)
     axes.set_ylim(0, 100)
     axes.set_ylabel("Trials not above, %")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from xlmc.distributions.parameters import range_text
+from xlmc.distributions.parameters import range_text, show
 from xlmc.evaluation.engine import UNDECIDED_RESULT
 from xlmc.results.statements import reach_text
 from xlmc.results.statements.in_words import discards_of, limits_text
@@ -28,6 +28,8 @@ __all__ = [
     "Said",
     "SummaryRow",
     "base_case",
+    "base_text",
+    "central_text",
     "estimate_text",
     "percent",
     "question",
@@ -46,6 +48,9 @@ ERROR_SENTENCE = (
 """What no table of results may be without."""
 
 MIXED = "Central range"
+
+_OF_ERROR = 0.1
+"""How much of the error of a mean a number beside it may lose by rounding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,20 +122,40 @@ def summary_text(rows: Sequence[SummaryRow]) -> tuple[list[str], list[list[str]]
 
 
 def _line(row: SummaryRow, heading: str) -> dict[str, str]:
-    threshold = "" if row.threshold is None else f"{row.threshold:g}"
+    threshold = "" if row.threshold is None else show(row.threshold)
     return {
         "Forecast": row.name,
         "Units": row.units,
         "Mean": estimate_text(row.mean),
         "SD": estimate_text(row.standard_deviation),
-        heading: "" if math.isnan(row.low.value) else f"{estimate_text(row.low)} to {estimate_text(row.high)}",
+        heading: "" if math.isnan(row.low.value) else central_text(row),
         "Range": "" if heading != MIXED else percent(row.share),
-        "Base case": "" if row.base is None else f"{row.base:.6g}",
+        "Base case": base_text(row),
         "Threshold": threshold,
         "Above threshold": "" if row.above is None else share_text(row.above),
         "Certainty of": "" if row.asked is None else range_text(*row.asked),
         "Certainty": "" if row.certainty is None else share_text(row.certainty),
     }
+
+
+def base_text(row: SummaryRow) -> str:
+    """A forecast at the base case; empty where there is none."""
+    return "" if row.base is None else _beside_mean(row.base, row.mean)
+
+
+def central_text(row: SummaryRow) -> str:
+    """`172.53 ± 0.70 to 243.16 ± 0.97`; ends without an error have the digits of the mean."""
+    ends = (
+        _beside_mean(end.value, row.mean) if end.error is None else estimate_text(end) for end in (row.low, row.high)
+    )
+    return " to ".join(ends)
+
+
+def _beside_mean(value: float, mean: Estimate) -> str:
+    """A number without an error to six digits, or to more where it stands beside a mean that is known better."""
+    allowed = math.inf if mean.error is None else _OF_ERROR * mean.error
+    texts = (f"{value:.{digits}g}" for digits in range(6, 12))
+    return next((text for text in texts if abs(float(text) - value) <= allowed), show(value))
 
 
 def range_heading(rows: Sequence[SummaryRow]) -> str:
@@ -141,7 +166,7 @@ def range_heading(rows: Sequence[SummaryRow]) -> str:
 
 def percent(share: float) -> str:
     """`0.51 -> 51 %`."""
-    return f"{100.0 * share:.6g} %"
+    return f"{show(100.0 * share)} %"
 
 
 def estimate_text(estimate: Estimate) -> str:

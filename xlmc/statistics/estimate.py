@@ -16,6 +16,8 @@ LENGTHENED = 0.15
 """Intervals are longer by this share of the skewness, because a sample shows too little of it."""
 
 MOST_DIGITS = 15  # all that a double holds for certain
+_EXACT_DIGITS = range(6, 13)  # of a value whose error is 0
+_NOISE = 1e-9  # share of such a value that may come from rounding in formulas
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +132,10 @@ def supported_digits(estimate: Estimate) -> int | None:
 
 
 def format_estimate(value: float, error: float | None) -> str:
-    """Write the error to two significant digits and the value to the same decimal; six digits without an error.
+    """Write the error to two significant digits and the value to the same decimal.
+
+    A value whose error is not known has six digits; one whose error is 0, as a constant's, has more where it needs
+    them.
 
     >>> format_estimate(17.02134, 0.00231)
     '17.0213 ± 0.0023'
@@ -138,11 +143,13 @@ def format_estimate(value: float, error: float | None) -> str:
     '48210 ± 870'
     >>> format_estimate(17.02134, None)
     '17.0213'
+    >>> format_estimate(1234567.8, 0.0), format_estimate(0.1 + 0.2, 0.0)
+    ('1234567.8 ± 0', '0.3 ± 0')
     """
     if error is None or not math.isfinite(value):
         return f"{value:.6g}"
     if error == 0.0:
-        return f"{value:.6g} ± 0"
+        return f"{_exact_text(value)} ± 0"
     size = two_digit_exponent(max(abs(value), error))
     if not -4 <= size < MOST_DIGITS:
         scaled = format_estimate(value / 10.0**size, error / 10.0**size)
@@ -151,6 +158,12 @@ def format_estimate(value: float, error: float | None) -> str:
     if decimals + size >= MOST_DIGITS:  # an error below the last bit of the value
         return f"{value:.{MOST_DIGITS}g} ± {error:.1e}"
     return f"{_write_rounded(value, decimals)} ± {_write_rounded(error, decimals)}"
+
+
+def _exact_text(value: float) -> str:
+    """The fewest digits, six or more, that say what the value is, up to rounding in formulas."""
+    texts = [f"{value:.{digits}g}" for digits in _EXACT_DIGITS]
+    return next((text for text in texts if abs(float(text) - value) <= _NOISE * abs(value)), texts[-1])
 
 
 def two_digit_exponent(number: float) -> int:

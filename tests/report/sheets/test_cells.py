@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.report.sheets.cells import paired_format, share_format, spread_format
+from xlmc.report.sheets.cells import estimate, paired_format, share_format, spread_format
 from xlmc.statistics import Estimate, format_estimate, proportion
 
 PAIRED = [
@@ -58,3 +58,17 @@ def test_formats_of_shares(estimate, expected):
 )
 def test_formats_of_single_trials_follow_their_spread(spread, expected):
     assert spread_format(spread) == expected
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "expected"),
+    [
+        (1234567.7995, 0.00035, ("#,##0", "#,##0.00000")),
+        (45321.755034, 0.00002, ("#,##0.00", "0.0E+00")),
+        (6760.846, 0.0023, ("#,##0.000", "#,##0.000")),
+        (48211.3, 870.0, ("#,##0", "#,##0")),
+    ],
+)
+def test_an_error_is_never_shown_as_0(value, error, expected):
+    """A large value leaves no room for the decimals of a small error beside it."""
+    assert tuple(cell.format for cell in estimate(Estimate(value, error))) == expected

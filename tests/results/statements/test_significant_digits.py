@@ -67,7 +67,7 @@ def test_ends_have_one_number_of_decimals_and_constants_no_noise():
     found = rounded_range(sample, statistics.central_interval(sample), 0.51)
     assert re.fullmatch(r"22\.\d", found.low_text)
     assert re.fullmatch(r"2[34]\.\d", found.high_text)
-    for value, text in ((3.0, "3"), (177919.6712, "177,920"), (0.1 + 0.2, "0.3")):
+    for value, text in ((3.0, "3"), (177919.6712, "177,919.6712"), (0.1 + 0.2, "0.3")):
         constant = Sample.of([value] * 50)
         found = rounded_range(constant, statistics.central_interval(constant), 0.51)
         assert (found.low, found.low_text, found.high_text, found.share.value) == (value, text, text, 1.0)

@@ -9,6 +9,7 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.distributions.parameters import show
 from xlmc.report.document.parts import Drawing
 from xlmc.report.filter_effect import Shapes
 from xlmc.report.histogram import Figure
@@ -74,7 +75,7 @@ def forecast_drawing(figure: Figure, result: ForecastResult, width: float) -> Dr
     if answer.threshold is not None and first <= answer.threshold <= last:
         x = across(answer.threshold)
         found += [line_to(x, top, x, bottom, _THRESHOLD, 1.0, dashed=True)]
-        found.append(text_at(x + 3, top + 8, f"threshold {answer.threshold:g}", anchor="start", fill=_THRESHOLD))
+        found.append(text_at(x + 3, top + 8, f"threshold {show(answer.threshold)}", anchor="start", fill=_THRESHOLD))
     mean = across(_near(answer.mean.value, first, last))
     found += [line_to(mean, top, mean, bottom, INK, 1.0)]
     found += [line_to(left, bottom, right, bottom, INK)]

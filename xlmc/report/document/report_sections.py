@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
+from xlmc.distributions.parameters import show
 from xlmc.report.document.drawings import before_and_after, forecast_drawing, influence_drawing
 from xlmc.report.document.equations import equations_of
 from xlmc.report.document.glossary import GLOSSARY, WORDS_OF_EVIDENCE, WORDS_OF_SCENARIOS
@@ -22,6 +23,8 @@ from xlmc.report.sheets.scenarios_sheet import scenario_sentences, scenario_warn
 from xlmc.report.summary import (
     ERROR_SENTENCE,
     SummaryRow,
+    base_text,
+    central_text,
     estimate_text,
     percent,
     question,
@@ -125,11 +128,11 @@ def _answers(material: Material, rows: Sequence[SummaryRow]) -> Table:
     lines = []
     for row in rows:
         line = [row.name, row.units, *map(estimate_text, (row.mean, row.standard_deviation, row.low, row.high))]
-        line.append("" if row.base is None else f"{row.base:.6g}")
+        line.append(base_text(row))
         if mixed:
             line.append(percent(row.share))
         if thresholds:
-            line.append("" if row.threshold is None else f"{row.threshold:g}")
+            line.append("" if row.threshold is None else show(row.threshold))
             line.append("" if row.above is None else share_text(row.above))
         lines.append(line)
     caption = "The answers, from the accepted trials; each number with its standard error."
@@ -157,7 +160,7 @@ def _forecasts(material: Material) -> Iterator[Block]:
         caption = (
             f"{figure.name}. Above, the accepted trials per {bins.width:g}{units}; below, the share of them that "
             f"is not above each value. Dark: the central {percent(row.share)} of {row.trials:,} accepted trials, from "
-            f"{estimate_text(row.low)} to {estimate_text(row.high)}{units}. Vertical line: the mean, "
+            f"{central_text(row)}{units}. Vertical line: the mean, "
             f"{estimate_text(row.mean)}{units}."
         )
         if bins.counted < row.trials:
@@ -300,7 +303,7 @@ def _assumptions(material: Material) -> Iterator[Block]:
             (
                 pair.first,
                 pair.second,
-                _NONE if pair.asked is None else f"{pair.asked:g}",
+                _NONE if pair.asked is None else show(pair.asked),
                 _NONE if pair.used is None else f"{pair.used:.6g}",
                 _NONE if pair.accepted is None else estimate_text(pair.accepted),
             )

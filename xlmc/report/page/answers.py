@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from xlmc.distributions.parameters import show
 from xlmc.report.page.element import EMPTY, Html, element
 from xlmc.report.page.flow import estimate_html, number, share_html
 from xlmc.report.sheets.results_sheet import base_sentences, opening_sentences, range_sentences
-from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, percent, question, range_heading, summarise
+from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, base_text, percent, question, range_heading, summarise
 from xlmc.results.statements import MEANING, statements
 from xlmc.results.statements.in_words import sampling_sentence
 from xlmc.run.stopping.stopped import ALL_TRIALS
@@ -78,11 +79,11 @@ def _head(text: str, numbers: bool) -> Html:
 
 def _line(row: SummaryRow, mixed: bool, thresholds: bool) -> Html:
     cells = [estimate_html(each) for each in (row.mean, row.standard_deviation, row.low, row.high)]
-    cells.append(EMPTY if row.base is None else number(row.base, f"{row.base:.6g}"))
+    cells.append(EMPTY if row.base is None else number(row.base, base_text(row)))
     if mixed:
         cells.append(element("span", percent(row.share)))
     if thresholds:
-        cells.append(EMPTY if row.threshold is None else number(row.threshold, f"{row.threshold:g}"))
+        cells.append(EMPTY if row.threshold is None else number(row.threshold, show(row.threshold)))
         cells.append(EMPTY if row.above is None else share_html(row.above))
     found = (element("td", cell, class_="number") for cell in cells)
     return element("tr", element("th", row.name, scope="row"), element("td", row.units), *found)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from xlmc.distributions.parameters import show
 from xlmc.distributions.spelling import name_key
 from xlmc.report.page.element import EMPTY, Html, element, join
 from xlmc.report.page.flow import estimate_html, share_html
@@ -87,8 +88,9 @@ def _numbers(first: SummaryRow, second: SummaryRow) -> Iterator[tuple[str, Estim
     if first.share == second.share:
         yield f"Central {percent(first.share)} from", first.low, second.low, False
         yield "to", first.high, second.high, False
-    if first.above is not None and second.above is not None and first.threshold == second.threshold:
-        yield f"Above {first.threshold:g}", first.above, second.above, True
+    threshold = first.threshold if first.threshold == second.threshold else None
+    if threshold is not None and first.above is not None and second.above is not None:
+        yield f"Above {show(threshold)}", first.above, second.above, True
 
 
 def _difference(first: Estimate, second: Estimate) -> Estimate:

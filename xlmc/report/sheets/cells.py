@@ -86,7 +86,7 @@ def estimate(
 ) -> list[Shown]:
     """Two cells: the value, and its standard error in the same digits; without an error, in those of `like`."""
     digits = paired_format(like if found.error is None and like is not None else found)
-    return [Shown(found.value, digits, look), _error(found.error, digits, error_look)]
+    return [Shown(found.value, digits, look), _error(found.error, _error_format(found, digits), error_look)]
 
 
 def share(found: Estimate) -> list[Shown]:
@@ -111,6 +111,14 @@ def paired_format(estimate: Estimate) -> str:
     if estimate.error == 0.0:
         return "General"
     return _format(estimate.value, _paired_decimals(estimate))
+
+
+def _error_format(found: Estimate, digits: str) -> str:
+    """The format of the error beside a value; digits of its own where those of so large a value show nothing of it."""
+    decimals = _paired_decimals(found)
+    if found.error is None or decimals is None or "E" in digits:
+        return digits
+    return digits if len(digits.partition(".")[2]) >= decimals - 1 else _format(found.error, decimals)
 
 
 def share_format(estimate: Estimate) -> str:

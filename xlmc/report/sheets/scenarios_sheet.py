@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Final
 
+from xlmc.distributions.parameters import show
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import BLANK, Shown
 from xlmc.report.summary import percent
@@ -116,8 +117,8 @@ def range_heads(states: Sequence[ForecastAnswer]) -> list[str]:
 
 def above_head(states: Sequence[ForecastAnswer]) -> str:
     """The heading of its probability above a threshold; empty where no state has one."""
-    thresholds = {each.forecast.threshold for each in states} - {None}
-    return "" if not thresholds else f"Above {thresholds.pop():g}" if len(thresholds) == 1 else "Above threshold"
+    thresholds = {each.forecast.threshold for each in states if each.forecast.threshold is not None}
+    return "" if not thresholds else f"Above {show(thresholds.pop())}" if len(thresholds) == 1 else "Above threshold"
 
 
 def _different_wishes(found: Sequence[ScenarioAnswers]) -> Iterator[str]:
@@ -125,9 +126,7 @@ def _different_wishes(found: Sequence[ScenarioAnswers]) -> Iterator[str]:
     for index, own in enumerate(found[0].forecasts):
         name, states = own.forecast.name, [(each.name, each.forecasts[index].forecast) for each in found]
         if len({each.threshold for _, each in states}) > 1:
-            said = [
-                f"{state!r} {'none' if each.threshold is None else f'{each.threshold:g}'}" for state, each in states
-            ]
+            said = [f"{state!r} {'none' if each.threshold is None else show(each.threshold)}" for state, each in states]
             yield f"Thresholds of {name!r}: {', '.join(said)}."
         if len({each.central for _, each in states}) > 1:
             said = [f"{state!r} {percent(each.central)}" for state, each in states]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from xlmc.distributions.parameters import show
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
 from xlmc.report.summary import ERROR_SENTENCE, percent
@@ -136,10 +137,10 @@ def _range_and_threshold(result: ForecastResult) -> list[list[Shown]]:
     found, definition = result.statistics, result.definition
     labels = [Shown(f"{percent(definition.central)} range {end}", look="name") for end in ("from", "to")]
     rows = [[label, *_with_interval(each, found.mean)] for label, each in zip(labels, found.central, strict=True)]
-    if found.probability_above is not None:
-        above = found.probability_above
+    above = found.probability_above
+    if definition.threshold is not None and above is not None:
         shown = [*cells.share(above), *cells.interval(above, percent=True)]
-        rows.append([Shown(f"Above {definition.threshold:g}", look="name"), *shown])
+        rows.append([Shown(f"Above {show(definition.threshold)}", look="name"), *shown])
     return rows
 
 

@@ -11,6 +11,7 @@ from xlmc.definitions.definitions import CUTOFFS, Assumption, DataRange, Filter,
 from xlmc.definitions.evidence import ERRORS, SIZES, Evidence, Within
 from xlmc.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Scenario, Tabulated, Typed
 from xlmc.definitions.tables.table_rows import as_text
+from xlmc.distributions.parameters import show
 from xlmc.sampling.sampling_methods import GENERATOR, METHODS
 from xlmc.statistics import Estimate, proportion
 from xlmc.statistics.sample import MOST_GROUPS
@@ -152,7 +153,7 @@ def _change_text(change: Change) -> str:
             ends = [("from", low), ("to", high)] if None not in (low, high) else [("at least", low), ("at most", high)]
             return " ".join([name, *(f"{word} {_plain_number(end)}" for word, end in ends if end is not None)])
         case Band(name, low, high):
-            return f"{name} from P{low:g} to P{high:g}"
+            return f"{name} from P{show(low)} to P{show(high)}"
         case Numbers(name, values) | Limits(name, values):
             words = (
                 f"{key.replace('_', ' ')} {_plain_number(value)}" for key, value in values.items() if value is not None

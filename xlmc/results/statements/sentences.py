@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from xlmc.distributions.parameters import range_text
+from xlmc.distributions.parameters import range_text, show
 from xlmc.results.statements.significant_digits import RoundedRange, percent_text, rounded_range
 from xlmc.statistics import Estimate, probability_above, probability_between
 
@@ -63,7 +63,7 @@ def _of(result: ForecastResult) -> list[Statement]:
     told = [Statement(name, "range", f"{name}: {_range_text(found, units, result.statistics.trials)}{part}")]
     above = result.statistics.probability_above
     if definition.threshold is not None and above is not None:
-        event = f"{name} > {definition.threshold:g}{units}"
+        event = f"{name} > {show(definition.threshold)}{units}"
         told.append(Statement(name, "threshold", f"{_probability_text(event, above)}{part}"))
     if definition.asked is not None and result.certainty is not None:
         event = f"{name} {range_text(*definition.asked)}{units}"
@@ -145,8 +145,8 @@ def certainties(result: ForecastResult) -> list[Certainty]:
     threshold, above = definition.threshold, result.statistics.probability_above
     if threshold is not None and above is not None and sample.n:
         at_most = probability_between(sample, -math.inf, threshold)
-        found.append(Certainty("at most", -math.inf, threshold, f"at most {threshold:g}{units}", at_most))
-        found.append(Certainty("over", threshold, math.inf, f"above {threshold:g}{units}", above))
+        found.append(Certainty("at most", -math.inf, threshold, f"at most {show(threshold)}{units}", at_most))
+        found.append(Certainty("over", threshold, math.inf, f"above {show(threshold)}{units}", above))
     if definition.asked is not None and result.certainty is not None:
         words = f"{range_text(*definition.asked)}{units}"
         found.append(Certainty("asked", *definition.asked, words, result.certainty))

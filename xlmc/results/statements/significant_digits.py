@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
 __all__ = ["RoundedRange", "percent_text", "reach_text", "rounded_range", "rounded_value"]
 
-_DIGITS = 6
-"""Significant digits of a number without an error."""
+_DIGITS, _SINGLE_DIGITS = 6, 12
+"""Significant digits of a number without an error; and of one that is the same in all trials."""
 
 _WIDEST = 17
 """Digits before or after the point beyond which a number is written with a power of ten, and not rounded."""
@@ -49,7 +49,7 @@ def rounded_range(sample: Sample, ends: tuple[Estimate, Estimate], nominal: floa
         return None
     decimals = _common_decimals(*ends)
     if low == high:
-        text = _text(_round(low, decimals, ROUND_HALF_EVEN))
+        text = _text(_round(low, decimals, ROUND_HALF_EVEN, _SINGLE_DIGITS))
         return RoundedRange(low, high, text, text, probability_between(sample, low, high))
     best: RoundedRange | None = None
     for down, up in ((False, False), (False, True), (True, False), (True, True)):
@@ -127,9 +127,9 @@ def _size(value: float) -> int:
     return Decimal(repr(value)).adjusted() if value else 0
 
 
-def _round(value: float, decimals: int | None, rounding: str) -> Decimal:
+def _round(value: float, decimals: int | None, rounding: str, significant: int = _DIGITS) -> Decimal:
     exact, size = Decimal(repr(value)), _size(value)
-    digits = _DIGITS - 1 - size if decimals is None else decimals
+    digits = significant - 1 - size if decimals is None else decimals
     if max(abs(digits), abs(size)) > _WIDEST:
         return exact
     found = exact.quantize(Decimal(1).scaleb(-digits), rounding)

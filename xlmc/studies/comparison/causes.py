@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.definitions.definitions import Assumption, Filter
+from xlmc.distributions.parameters import show
 from xlmc.distributions.spelling import name_key
 from xlmc.results.statements.in_words import distribution_text
 from xlmc.run.model import Model
@@ -113,7 +114,8 @@ def _unlike(first: Assumption, second: Assumption) -> Unlike:
 
 
 def _words(assumption: Assumption) -> str:
-    what = f"held at {assumption.base:g}" if assumption.frozen else distribution_text(assumption)
+    base = assumption.base if assumption.frozen else None
+    what = distribution_text(assumption) if base is None else f"held at {show(base)}"
     return f"{what} {assumption.units}".rstrip()
 
 

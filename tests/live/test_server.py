@@ -173,7 +173,7 @@ def test_a_workbook_that_is_dropped_is_opened(running, tmp_path):
         ask |= {"body": sent, "Content_Length": str(len(sent))}
         status, _, body = server.ask(f"/drop?name={name}", **ask)
         assert status == 400
-        assert "no Excel workbook" in json.loads(body)["trouble"]
+        assert "not an Excel workbook" in json.loads(body)["trouble"]
 
 
 def test_a_folder_shows_its_workbooks_and_no_link_leads_out(running, tmp_path):

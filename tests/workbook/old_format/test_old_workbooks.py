@@ -94,7 +94,7 @@ REFUSED = {
     "a drawing cut short": (plain_book({"S": record(0xEC, drawing(SHAPES)[4:400])}), "drawing of the sheet 'S'"),
     "a property too long": (plain_book({"S": drawing([long_property(b"")])}), "longer than its table"),
     "too deep": (plain_book({"S": drawing([nested(40)])}), "nested too deeply"),
-    "no workbook": (plain_book({"S": b""}).replace(b"W\0o\0r\0k", b"W\0o\0r\0d"), "no workbook"),
+    "no workbook": (plain_book({"S": b""}).replace(b"W\0o\0r\0k", b"W\0o\0r\0d"), "not a workbook"),
     "cut short": (plain_book({"S": b""})[:3000], "damaged"),
 }  # fmt: skip
 

@@ -160,3 +160,13 @@ def test_a_book_with_mistakes_is_not_loaded(tmp_path, monkeypatch):
     with pytest.raises(DefinitionError) as caught:
         load(tmp_path / "book.xlsx")
     assert str(caught.value) == "S!B2: Low is blank.\nS!A3: Name is blank."
+
+
+def test_forecasts_that_do_not_vary_are_named_together(book):
+    """Four of them; of more, how many."""
+    cells = {"A1": 1, "B1": "=A1+1", "C1": 5} | {f"D{row}": f"=C1*{row}" for row in range(1, 7)}
+    forecasts = {"moves": "B1"} | {f"f{row}": f"D{row}" for row in range(1, 7)}
+    (notice,) = book(cells, {"a": {"cell": "A1", "low": 0, "high": 2}}, forecasts).notices
+    assert notice.message == (
+        "the forecasts 'f1', 'f2', 'f3', 'f4' and 2 more do not vary: no assumption with a range reaches them"
+    )

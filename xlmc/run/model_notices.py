@@ -11,6 +11,7 @@ from xlmc.definitions.definitions import Assumption, Forecast
 from xlmc.errors import Notice
 from xlmc.formula import Graph
 from xlmc.run.needed import Needed
+from xlmc.run.stopping.stopped import list_of
 
 __all__ = ["example_notices", "heavy_notices", "still_notices"]
 
@@ -60,10 +61,15 @@ def still_notices(needed: Needed, moving: Set[Cell], forecasts: Sequence[Forecas
         if needed.live and not moving:
             why = "the range of every assumption that is drawn has a single value"
         return [Notice(f"nothing varies: {why}, so every trial gives the base case again", still[0].cell)]
-    return [
-        Notice(f"the forecast {forecast.name!r} does not vary: no assumption with a range reaches it", forecast.cell)
-        for forecast in still
-    ]
+    if len(still) < 2:
+        return [
+            Notice(f"the forecast {each.name!r} does not vary: no assumption with a range reaches it", each.cell)
+            for each in still
+        ]
+    names = [repr(each.name) for each in still[:_MOST_NAMED]]
+    more = [f"{len(still) - _MOST_NAMED} more"] if len(still) > _MOST_NAMED else []
+    message = f"the forecasts {list_of([*names, *more])} do not vary: no assumption with a range reaches them"
+    return [Notice(message, still[0].cell)]
 
 
 def _reached(graph: Graph, moving: Set[Cell]) -> set[Cell]:

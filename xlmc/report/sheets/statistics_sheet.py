@@ -83,12 +83,18 @@ def _below_statistics(result: ForecastResult) -> dict[_Value, list[Shown]]:
     definition, above = result.definition, result.statistics.probability_above
     rows: dict[_Value, list[Shown]] = {row[0].value: row[1:] for row in _percentiles(result)}
     low, high = (_with_interval(each, result.statistics.mean) for each in result.statistics.central)
-    rows["Central range, share"] = [Shown(definition.central, "0.######%"), *_NOTHING[1:]]
+    rows["Central range, share"] = [Shown(definition.central, _percent_format(definition.central)), *_NOTHING[1:]]
     rows |= {"Central range from": low, "Central range to": high}
     if above is not None:
         rows["Threshold"] = [cells.exact(definition.threshold), *_NOTHING[1:]]
         rows["Above threshold"] = [*cells.share(above), *cells.interval(above, percent=True)]
     return rows
+
+
+def _percent_format(share: float) -> str:
+    """Percent with the decimals that the share has: `0%` for 0.51, `0.000%` for 0.99999."""
+    decimals = f"{100.0 * share:.10f}".rstrip("0").partition(".")[2]
+    return f"0{'.' * bool(decimals)}{'0' * len(decimals)}%"
 
 
 def write_forecast(page: Page, result: ForecastResult) -> None:

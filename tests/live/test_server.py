@@ -21,6 +21,7 @@ from xlmc.live.kept_scenarios import Keeper
 from xlmc.live.library import Library, Sample
 from xlmc.live.protocol import MOST_BYTES
 from xlmc.live.server import SCRIPTS, STYLES, bound_socket
+from xlmc.workbook.writer import TakenError
 
 ELSEWHERE = "http://evil.example"
 
@@ -196,7 +197,7 @@ def test_a_folder_shows_its_workbooks_and_no_link_leads_out(running, tmp_path):
         pass
 
 
-def test_a_template_is_copied_and_never_over_a_file(tmp_path):
+def test_a_template_is_copied_and_never_over_a_file(tmp_path, monkeypatch):
     sample = Sample("skid", "?", TEMPLATES["skid"])
     library = Library(Keeper(tmp_path / "state"), folder=tmp_path, samples=[sample])
     (tmp_path / "skid.xlsx").write_text("mine", encoding="utf-8")
@@ -207,6 +208,11 @@ def test_a_template_is_copied_and_never_over_a_file(tmp_path):
     assert (tmp_path / "skid.xlsx").read_text(encoding="utf-8") == "mine"
     with pytest.raises(XlmcError):
         library.copy_template("nothing")
+    path.write_bytes(b"a person's")
+    monkeypatch.setattr("xlmc.live.library.unused_path", lambda _: path)  # as if the file had come just after the look
+    with pytest.raises(TakenError, match="exists already"):
+        library.copy_template(row["key"])
+    assert path.read_bytes() == b"a person's"
 
 
 def test_two_windows_show_one_state_and_a_new_one_gets_it(open_book):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 
 import pytest
@@ -64,6 +65,7 @@ def test_a_sharp_reading_in_the_middle_is_not_strained_though_it_keeps_hardly_a_
     found = judged(sharp=("C1", 0, within(0.001)))
     assert found.items[0].alone.value < 0.002
     assert found.items[0].chance > 0.95
+    assert re.fullmatch("9[5-9] %|100 %", found.items[0].chance_text)
     assert found.verdict is Verdict.INDEPENDENT
 
 
@@ -93,6 +95,7 @@ def test_a_chance_that_no_trial_shows_is_told_as_a_bound(judged):
     found = judged(trials=100, item=("C1", 5.5, bell(0.1)))
     assert (found.trials, found.verdict) == (800, Verdict.STRAINED)
     assert found.items[0].chance < 1e-30
+    assert found.items[0].chance_text == "below 0.96 %"
     assert found.sentence == "'item' is strained: given the model, a reading so far out has a chance below 0.96 %"
 
 

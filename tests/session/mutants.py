@@ -182,10 +182,12 @@ def killer(mutant: Mutant) -> str | None:
         shutil.copytree(ROOT / "xlmc", Path(folder, "xlmc"), ignore=shutil.ignore_patterns("__pycache__"))
         Path(folder, "templates").symlink_to(ROOT / "templates")  # which the package looks for beside itself
         changed = Path(folder, path.relative_to(ROOT))
-        changed.write_text(changed.read_text("utf-8").replace(mutant.before, mutant.after), "utf-8")
+        whole = changed.read_text("utf-8")
+        changed.write_text(whole.replace(mutant.before, mutant.after), "utf-8")
         found = next((found for tests in mutant.tests if (found := _first_failure(f"tests/{tests}", folder))), None)
-    if found and _first_failure(found, str(ROOT)) == found:
-        raise SystemExit(f"{found} fails without a defect, too: mend it first")
+        changed.write_text(whole, "utf-8")
+        if found and _first_failure(found, folder) == found:
+            raise SystemExit(f"{found} fails without a defect, too: mend it first")
     return found
 
 

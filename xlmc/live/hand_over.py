@@ -24,8 +24,8 @@ from xlmc.run.simulate import simulate
 from xlmc.run.simulation import ChangedFrom
 from xlmc.studies.scenario_workbook import EditedWorkbook, edited_workbook, write_edited
 from xlmc.workbook.reader import read_workbook
-from xlmc.workbook.target import copy_ending, free_target, refuse_into_source, unused_path
-from xlmc.workbook.writer import TakenError, write_workbook
+from xlmc.workbook.target import copy_ending, free_target, refuse_existing, refuse_into_source, unused_path
+from xlmc.workbook.writer import write_workbook
 
 if TYPE_CHECKING:
     from xlmc.run.model import Model
@@ -152,14 +152,9 @@ def write_changes(state: AtRest, book: Path, *, into: bool) -> str:
         return f"Written: {path}. {_told(edited)}"
     refuse_into_source(book, edited.sha256, "wait until it was read again")
     kept = unused_path(book.with_name(f"{book.stem}-before{book.suffix}"))
-    write_workbook(kept, state.own.workbook.data, lambda: _refuse_taken(kept))
+    write_workbook(kept, state.own.workbook.data, lambda: refuse_existing(kept))
     write_edited(edited, book, overwrite=True)
     return f"Typed into {book.name}. {_told(edited)} The workbook as it was: {kept.name}"
-
-
-def _refuse_taken(path: Path) -> None:
-    if path.exists():
-        raise TakenError("the file exists already", where=path, hint="try again")
 
 
 def _told(edited: EditedWorkbook) -> str:

@@ -18,7 +18,7 @@ from xlmc.errors import WorkbookError, XlmcError
 from xlmc.live.kept_scenarios import Keeper
 from xlmc.workbook.package import is_old_workbook
 from xlmc.workbook.printable import printable
-from xlmc.workbook.target import unused_path
+from xlmc.workbook.target import refuse_existing, unused_path
 from xlmc.workbook.writer import write_workbook
 
 __all__ = ["Library", "Sample"]
@@ -112,7 +112,7 @@ class Library:
         if sample is None:
             raise WorkbookError("there is no such template")
         target = unused_path((self.folder or Path.cwd()) / sample.path.name)
-        write_workbook(target, sample.path.read_bytes(), lambda: None)
+        write_workbook(target, sample.path.read_bytes(), lambda: refuse_existing(target))
         return self._add(target)
 
     def take(self, name: str, data: bytes) -> str:

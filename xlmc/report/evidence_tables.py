@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
@@ -16,7 +15,6 @@ __all__ = [
     "ITEM_HEADS",
     "MEANING",
     "MOVES_MEANING",
-    "chance_text",
     "item_rows",
     "move_rows",
     "trials_sentence",
@@ -53,15 +51,6 @@ def trials_sentence(found: Agreement) -> str:
     return f"Judged by {found.trials:,} trials of the same seed, of which {found.past:,} pass all other filters."
 
 
-def chance_text(chance: float) -> str:
-    """`37 %`, `0.13 %`; `below 0.0001 %`."""
-    if math.isnan(chance):
-        return _NONE
-    if chance < 1e-6:
-        return "below 0.0001 %"
-    return f"{100.0 * chance:.0f} %" if chance >= 0.1 else f"{100.0 * chance:.2g} %"
-
-
 def _share(item: ItemAgreement, given: bool) -> str:
     return share_text(item.given_others if given else item.alone) or _NONE
 
@@ -76,7 +65,7 @@ def item_rows(found: Agreement) -> list[tuple[str, ...]]:
             _share(each, given=False),
             _share(each, given=True) if several else _NONE,
             (estimate_text(each.ratio) or _NONE) if several else _NONE,
-            chance_text(each.chance),
+            each.chance_text or _NONE,
             _NONE if each.best_z is None else f"{each.best_z:.2g}",
             each.verdict.value,
         )

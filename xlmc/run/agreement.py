@@ -110,6 +110,15 @@ class ItemAgreement:
     def name(self) -> str:
         return self.evidence.name
 
+    @property
+    def chance_text(self) -> str:
+        """`37 %`; `below 0.22 %` where hardly a trial lies so far out, so that trials cannot tell; empty if unknown."""
+        if math.isnan(self.chance):
+            return ""
+        if self.chance * self.effective / 2.0 >= 1.0:
+            return f"{100.0 * self.chance:.0f} %" if self.chance >= 0.1 else f"{100.0 * self.chance:.2g} %"
+        return f"below {200.0 * _interval(self.chance / 2.0, self.effective)[1]:.2g} %"
+
 
 @dataclass(frozen=True, slots=True)
 class Pressed:
@@ -453,7 +462,7 @@ def _sentence(found: Agreement) -> str:
             least = min(strained, key=lambda each: each.chance)
             return (
                 f"{list_of(by[Verdict.STRAINED])} {_are(by[Verdict.STRAINED])} strained: given {others}, a reading so "
-                f"far out has a chance {_chance_words(least)}"
+                f"far out has a chance {'' if least.chance_text.startswith('below') else 'of '}{least.chance_text}"
             )
         case Verdict.TOO_FEW:
             return (
@@ -467,13 +476,6 @@ def _sentence(found: Agreement) -> str:
     if len(found.items) == 1:
         return f"{found.items[0].name!r} agrees with the model; there is no other item to compare it with"
     return "the items agree with the model and neither corroborate nor contradict each other"
-
-
-def _chance_words(item: ItemAgreement) -> str:
-    """`of 0.7 %`; `below 0.22 %` where hardly a trial lies so far out: how much smaller it is, trials cannot tell."""
-    if item.chance * item.effective / 2.0 >= 1.0:
-        return f"of {item.chance * 100.0:.2g} %"
-    return f"below {200.0 * _interval(item.chance / 2.0, item.effective)[1]:.2g} %"
 
 
 def _together(found: Agreement) -> str:

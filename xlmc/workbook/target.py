@@ -20,6 +20,7 @@ __all__ = [
     "copy_ending",
     "free_target",
     "is_same_file",
+    "refuse_existing",
     "refuse_into_old_workbook",
     "refuse_into_source",
     "refuse_same_file",
@@ -109,6 +110,16 @@ def free_target(path: Path, book: str, *, after: Path | None = None) -> tuple[Pa
 def unused_path(path: Path) -> Path:
     """The path, or the first of `…-2`, `…-3`, … where nothing is."""
     return next(each for each in _numbered(path) if not (each.exists() or each.is_symlink()))
+
+
+def refuse_existing(path: Path) -> None:
+    """Refuse to replace a file that was made since an unused path was looked for.
+
+    Raises:
+        TakenError: there is one.
+    """
+    if path.exists():
+        raise TakenError("the file exists already", where=path, hint="Try again")
 
 
 def copy_ending(source: Path) -> str:

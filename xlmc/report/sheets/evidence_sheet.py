@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from xlmc.report.evidence_tables import ITEM_HEADS, MEANING, MOVES_MEANING, chance_text, trials_sentence
+from xlmc.report.evidence_tables import ITEM_HEADS, MEANING, MOVES_MEANING, trials_sentence
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
 from xlmc.results.statements.in_words import evidence_text
@@ -66,7 +66,7 @@ def _item(item: ItemAgreement, several: bool) -> list[Shown]:
         *cells.share(item.alone),
         *(cells.share(item.given_others) if several else nothing),
         *(cells.estimate(item.ratio) if several else nothing),
-        Shown(chance_text(item.chance)),
+        Shown(item.chance_text or cells.NONE),
         Shown(cells.NONE) if item.best_z is None else Shown(item.best_z, "0.00"),
         Shown(item.verdict.value, look="warning" if item.verdict in _BAD else "text"),
     ]

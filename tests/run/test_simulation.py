@@ -94,10 +94,11 @@ def test_errors_above_a_thousandth_are(book, level, warned):
 
 
 def test_no_accepted_trial_is_a_warning(book):
-    run = book(CELLS, GIVEN, {"x": "B1"}, {"f": {"cell": "B1", "above": 5}}).simulate(100)
+    run = book(CELLS, GIVEN, {"x": "B1"}, {"f": {"cell": "B1", "above": 5}, "g": "A1"}).simulate(100)
     assert run.accepted == 0
     assert run.warnings == [
-        "no trial was accepted: the filters contradict the assumptions, or accept fewer than 0.037 of the trials"
+        "no trial was accepted: the filters contradict the assumptions, or accept fewer than 0.037 of the trials. "
+        "'f' rejects all trials by itself"
     ]
     assert run["x"].values.size == 0
     assert run.frame().empty

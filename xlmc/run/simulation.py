@@ -25,7 +25,7 @@ from xlmc.run.directions import direction_notices
 from xlmc.run.forecast_result import ForecastResult, Replicates, tail_notices
 from xlmc.run.result_cells import RunFacts, ShownResults, shown_results
 from xlmc.run.stopping import Stopped
-from xlmc.run.stopping.stopped import ALL_TRIALS
+from xlmc.run.stopping.stopped import ALL_TRIALS, list_of
 from xlmc.run.weighing import Weighting, weighting_of
 from xlmc.sampling.sampling_methods import METHODS
 from xlmc.sampling.sampling_plan import SamplingPlan
@@ -255,7 +255,7 @@ class Simulation:
         if self.accepted == 0 and self.stopped.by != "search":
             most = self.acceptance.interval
             fewer = "" if most is None else f", or accept fewer than {most[1]:.2g} of the trials"
-            found.append(f"no trial was accepted: the filters contradict the assumptions{fewer}")
+            found.append(f"no trial was accepted: the filters contradict the assumptions{fewer}{self._by_itself}")
         if not self.stopped.reached and not self.stopped.interrupted:
             found.append(self.stopped.sentence)
         if self.error_trials > ERROR_SHARE * self.trials:
@@ -267,6 +267,16 @@ class Simulation:
         rare = () if self.rare is None else self.rare.warnings
         missing = [self.shown_results.warning] if self.shown_results.warning else []
         return [*self.refused, *failing, *found, *self._sparse(), *self._lost_digits, *rare, *missing]
+
+    @property
+    def _by_itself(self) -> str:
+        """Which filters reject all trials, in words after others; or that none does by itself."""
+        counts = zip(self.model.filters, self.tally.rejected, strict=True)
+        names = [repr(each.name) for each, rejected in counts if rejected >= self.trials]
+        if names:
+            rejects, itself = ("rejects", "itself") if len(names) == 1 else ("reject", "themselves")
+            return f". {list_of(names)} {rejects} all trials by {itself}"
+        return ". No filter rejects all trials by itself"
 
     @property
     def refused(self) -> list[str]:

@@ -214,7 +214,7 @@ def test_a_long_run_is_told_of_the_engine_jit(xlmc, book, monkeypatch, trials, o
 @pytest.mark.parametrize(
     ("method", "words"),
     [
-        ("mc", "Monte Carlo: independent trials; errors come from the trials"),
+        ("mc", "Monte Carlo: independent trials; errors come from the spread of the trials"),
         ("lhs", "Latin hypercube: 16 independent replicates of 2,500 trials; errors come from the differences between"),
         ("lhs500", "Latin hypercube in blocks of 500: 80 independent replicates of 500 trials; errors come from"),
         ("sobol", "scrambled Sobol: 20 independent replicates of 2,048 trials, whole ones, for the 40,000 trials"),

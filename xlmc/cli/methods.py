@@ -10,7 +10,6 @@ import click
 from xlmc.cli.options import WholeNumber
 from xlmc.cli.study_output import estimate_json
 from xlmc.cli.terminal import paragraph, say, say_json
-from xlmc.statistics.estimate import finite
 
 if TYPE_CHECKING:
     from xlmc.studies.methods import Curve, Rung, Study
@@ -125,6 +124,7 @@ def _show(found: Study) -> None:
 
 def study_json(found: Study) -> dict[str, Any]:
     """Everything that was measured, as JSON holds it."""
+    from xlmc.statistics.estimate import finite
     from xlmc.studies.methods import STATISTICS, recommendation
     from xlmc.studies.methods.need import choice
 
@@ -164,6 +164,7 @@ def study_json(found: Study) -> dict[str, Any]:
 
 def _curve(found: Study, curve: Curve) -> dict[str, Any]:
     from xlmc.report.methods.methods_tables import cannot
+    from xlmc.statistics.estimate import finite
     from xlmc.studies.methods import STATISTICS, need
     from xlmc.studies.methods.need import shortfall
 
@@ -192,6 +193,7 @@ def _curve(found: Study, curve: Curve) -> dict[str, Any]:
 
 
 def _rung(found: Study, rung: Rung, drawn: bool) -> dict[str, Any]:
+    from xlmc.statistics.estimate import finite
     from xlmc.studies.methods import STATISTICS
 
     return {

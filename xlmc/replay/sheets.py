@@ -36,6 +36,8 @@ _COMPARED_ELSEWHERE: Final = re.compile(
 )
 """Keys of the Record that say something of the file or of the machine; `xlmc.replay.changes` compares them."""
 
+_MACHINE: Final = re.compile(r"(software|processor)\b")
+
 _ONLY_FIRST: Final = re.compile(r"Only the first ([\d,]+) of [\d,]+ accepted trials stand here\.")
 _BLANK: Final = CellContent()
 _RowColumn = tuple[int, int]
@@ -132,9 +134,13 @@ class _Pair:
 
     def differences(self) -> Iterator[CellDifference]:
         """The cells that show something else, from the top down."""
-        for at in sorted(self.expected.cells.keys() | self.sheet.cells.keys()):
+        last, lower = self._machine
+        below = {(row - lower, column) for row, column in self.sheet.cells if row > last + lower}
+        above = {at for at in self.sheet.cells if at[0] <= min(last, last + lower)}
+        for at in sorted(self.expected.cells.keys() | above | below):
             if self._is_compared(at) and not self._same(at):
-                yield CellDifference(Cell(self.sheet.name, *at), self._says(at), self._expected(at).value)
+                where = Cell(self.sheet.name, *self._in_file(at))
+                yield CellDifference(where, self._says(at), self._expected(at).value)
 
     def left_out(self) -> Iterator[str]:
         """The rows in which a person has typed a range of their own."""
@@ -162,6 +168,28 @@ class _Pair:
         content = self._content(at)
         shows_formula = content.formula is not None and (content.value is None or self._expected(at).formula is None)
         return f"={content.formula.text}" if shows_formula and content.formula is not None else content.value
+
+    @cached_property
+    def _machine(self) -> tuple[int, int]:
+        """The last row on the Record that tells of software and processor, and how many rows lower it is in the file.
+
+        Another machine may have more to tell, or less, and what stands below moves with it. Both are 0 elsewhere.
+        """
+        if self.expected.name != _RECORD:
+            return 0, 0
+        ends = [
+            max(
+                (row for (row, column), held in sheet.cells.items() if column == 1 and _MACHINE.match(str(held.value))),
+                default=0,
+            )
+            for sheet in (self.expected, self.sheet)
+        ]
+        return ends[0], ends[1] - ends[0]
+
+    def _in_file(self, at: _RowColumn) -> _RowColumn:
+        """Where in the file stands what the run writes there."""
+        last, lower = self._machine
+        return (at[0] + lower, at[1]) if at[0] > last else at
 
     @cached_property
     def _keys(self) -> dict[int, str]:
@@ -215,7 +243,7 @@ class _Pair:
         return _count_formulas(self.built, self.expected, found, self._own_rows) if self._own_rows else {}
 
     def _content(self, at: _RowColumn) -> CellContent:
-        return self.sheet.cells.get(at, _BLANK)
+        return self.sheet.cells.get(self._in_file(at), _BLANK)
 
 
 def _bare(formula: str) -> str:

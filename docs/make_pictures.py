@@ -34,7 +34,7 @@ _POINTS = 72
 _MARGIN = 3
 """In points, above and beside what is cut out."""
 
-_HEADER = 36
+_HEADER = 24
 """In points: what stands higher belongs to the page, not to the sheet."""
 
 _COLOURS = 200
@@ -76,21 +76,19 @@ CUTS: Mapping[str, Cut] = {
     "scene": Cut(RESULTS, "Plan view of the base case", "X, ft", below=18),
     "inputs-red": Cut(CONTRADICTION, "Intersection collision of a Chevrolet", "Chevrolet departure angle"),
     "checks-red": Cut(CONTRADICTION, "9 Physics checks", "All checks hold"),
-    "results-wanted": Cut(RESULTS, "Forecasts", "The Nissan was moving forward", page="What a run collects"),
+    "results-wanted": Cut(RESULTS, "Forecasts", "The Nissan was moving forward", page="What a run reports"),
     "results": Cut(RESULTS, "Results of the simulation", "Lost to errors"),
     "rejected": Cut(RESULTS, "Filters: a trial is accepted", "82"),
     "charts": Cut(RESULTS, "Forecast charts of the accepted trials", "from 22.021"),
     "curves": Cut(RESULTS, "Overlay of forecasts in mph", "Figure 5", below=10),
-    "statistics": Cut(RESULTS, "Chevrolet delta-V", "51 % range to", page="Statistics of the accepted trials"),
+    "statistics": Cut(RESULTS, "Chevrolet delta-V", "Central range to", page="Statistics of the accepted trials"),
     "certainty": Cut(RESULTS, "Certainty", "above 6.1 mph"),
-    "own-range": Cut(RESULTS, "Certainty of a range of your own", "ends belong to the range", below=76),
+    "own-range": Cut(RESULTS, "Certainty of a range of your own", "ends belong to the range", below=90),
     "scatter": Cut(RESULTS, "Chevrolet delta-V and Nissan delta-V", "Scatter chart 2", below=14),
-    "assumptions": Cut(RESULTS, "Assumptions", "Table 1. Breadth", page="What this shows"),
-    "sensitivity": Cut(RESULTS, "Sensitivity: what the answers depend on", "correlation.", below=10),
-    "filter-limits": Cut(
-        RESULTS, "Filter limits: how the answers move", "change. Other filters and limits stay.", below=10
-    ),
-    "record": Cut(RESULTS, "Record of the run", "Lost to errors"),
+    "assumptions": Cut(RESULTS, "Assumptions", "Table 1. Breadth", page="What this shows", below=1),
+    "sensitivity": Cut(RESULTS, "Sensitivity: what the answers depend on", "Nissan delta-V (mph)", below=-14),
+    "filter-limits": Cut(RESULTS, "Filter limits: how the answers move", "shares of trials accepted", below=142),
+    "record": Cut(RESULTS, "Record of the run", "Lost to errors", below=0),
 }
 """Picture -> where it is cut from."""
 

@@ -81,7 +81,7 @@ CUTS: Mapping[str, Cut] = {
     "rejected": Cut(RESULTS, "Filters: a trial is accepted", "82"),
     "charts": Cut(RESULTS, "Forecast charts of the accepted trials", "from 22.021"),
     "curves": Cut(RESULTS, "Overlay of forecasts in mph", "Figure 5", below=10),
-    "statistics": Cut(RESULTS, "Chevrolet delta-V", "Central range to", page="Statistics of the accepted trials"),
+    "statistics": Cut(RESULTS, "Chevrolet delta-V", "25 %", page="Statistics of the accepted trials"),
     "certainty": Cut(RESULTS, "Certainty", "above 6.1 mph"),
     "own-range": Cut(RESULTS, "Certainty of a range of your own", "ends belong to the range", below=90),
     "scatter": Cut(RESULTS, "Chevrolet delta-V and Nissan delta-V", "Scatter chart 2", below=14),

@@ -64,6 +64,26 @@ def test_a_link_keeps_pointing_at_its_file(tmp_path):
     assert (tmp_path / "real.xlsx").read_bytes() == b"new"
 
 
+def test_the_system_says_which_folder_two_dots_mean(tmp_path):
+    (tmp_path / "here").mkdir()
+    (tmp_path / "there" / "inner").mkdir(parents=True)
+    (tmp_path / "here" / "link").symlink_to(tmp_path / "there" / "inner")
+    (tmp_path / "here" / "book.xlsx").write_bytes(b"old")
+    behind_link = tmp_path / "here" / "link" / ".." / "book.xlsx"
+    write_workbook(behind_link, b"new")
+    assert behind_link.read_bytes() == b"new"
+    assert (tmp_path / "here" / "book.xlsx").read_bytes() == b"old"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows takes `missing\\..` out of a path before it looks")
+@pytest.mark.parametrize("write", [check_folder, lambda path: write_workbook(path, b"new")])
+def test_a_folder_that_does_not_exist_has_no_folder_above_it(tmp_path, write):
+    (tmp_path / "book.xlsx").write_bytes(b"old")
+    with pytest.raises(WorkbookError, match="there is no folder"):
+        write(tmp_path / "missing" / ".." / "book.xlsx")
+    assert (tmp_path / "book.xlsx").read_bytes() == b"old"
+
+
 @pytest.mark.parametrize(
     ("code", "message"),
     [

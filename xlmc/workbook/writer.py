@@ -151,11 +151,13 @@ def _meant(path: str | os.PathLike[str]) -> Path:
     """The file that a path names: what a link points to.
 
     Only links are followed: on Windows following a whole path turns a drive's letter into the server it stands for.
+    What `..` means is left to the system, which says too whether the file is the workbook itself: behind a link to a
+    folder it is another folder than the text says, and behind a folder that does not exist it is none.
 
     Raises:
         TakenError: the link points to nothing.
     """
-    given = Path(os.path.abspath(path))
+    given = Path(path).absolute()
     if not given.is_symlink():
         return Path(openable(given))
     target = Path(os.path.realpath(given))

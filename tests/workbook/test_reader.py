@@ -128,6 +128,45 @@ def test_an_endless_file(monkeypatch):
         read_workbook("/dev/zero")
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs a named pipe")
+def test_a_pipe_is_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "pipe.xlsx")
+    with pytest.raises(WorkbookError, match="this is a pipe, not a file"):
+        read_workbook(tmp_path / "pipe.xlsx")
+
+
+PLAIN = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet.main+xml"
+WITH_MACROS = "application/vnd.ms-excel.sheet.macroEnabled.main+xml"
+TEMPLATE = "application/vnd.openxmlformats-officedocument.spreadsheetml.template.main+xml"
+TEMPLATE_WITH_MACROS = "application/vnd.ms-excel.template.macroEnabled.main+xml"
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "meant"),
+    [
+        ("book.xlsx", PLAIN, None),
+        ("book.XLSM", WITH_MACROS, None),
+        ("book.xltx", TEMPLATE, None),
+        ("book.xltm", TEMPLATE_WITH_MACROS, None),
+        ("book.zip", PLAIN, None),
+        ("book.xlsx", "application/xml", None),
+        ("book.xlsx", WITH_MACROS, ".xlsm"),
+        ("book.XLSM", PLAIN, ".xlsx"),
+        ("book.xltm", TEMPLATE, ".xltx"),
+        ("book.xlsm", TEMPLATE_WITH_MACROS, ".xltm"),
+    ],
+)
+def test_an_ending_with_which_excel_does_not_open_the_file(name, kind, meant, book_parts, zipped):
+    types = (
+        '<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
+        f'<Override PartName="/xl/Workbook.xml" ContentType="{kind}"/></Types>'
+    )
+    read = read_workbook(zipped(book_parts(more={"[Content_Types].xml": types})), name=name)
+    assert [notice.message.partition("; ")[2] for notice in read.notices if "by its content" in notice.message] == (
+        [] if meant is None else [f"rename it to end in {meant}"]
+    )
+
+
 def test_complaints_name_the_file(tmp_path):
     path = tmp_path / "notes.xlsx"
     path.write_text("not a workbook", encoding="utf-8")

@@ -6,7 +6,8 @@ import pytest
 
 from xlmc.workbook.package import read_parts
 from xlmc.workbook.seal import blank_seal, read_seal, seal_file, sealed_parts, sealed_text
-from xlmc.workbook.writer import package_bytes
+from xlmc.workbook.target import Target
+from xlmc.workbook.writer import TakenError, package_bytes
 
 SHEET = "xl/worksheets/sheet1.xml"
 NAMESPACE = b"http://schemas.openxmlformats.org/package/2006/content-types"
@@ -24,6 +25,16 @@ def written(path, parts):
 def test_a_package_is_known_again(tmp_path, name):
     seal = read_seal(written(tmp_path / "out.xlsx", sealed_parts(PARTS, SHEET, name)))
     assert (seal.book, seal.whole) == (name, True)
+
+
+@pytest.mark.parametrize("ending", [".xlsx", ".xlsm", ".xltx", ".xltm", ".XLTM"])
+def test_a_workbook_of_any_kind_is_known_again(tmp_path, ending):
+    path = written(tmp_path / f"out{ending}", sealed_parts(PARTS, SHEET, "case.xlsx"))
+    assert read_seal(path).whole
+    Target(path, "case.xlsx").check()
+    path.with_name(f"~$out{ending}").touch()
+    with pytest.raises(TakenError, match="Excel holds the workbook open"):
+        Target(path, "case.xlsx").check()
 
 
 def test_a_package_packed_anew_is_still_whole(tmp_path):

@@ -53,9 +53,10 @@ def report(
     from xlmc.api import open_run
     from xlmc.cli.printing import notices, warnings
     from xlmc.cli.simulate import show_run
+    from xlmc.workbook.package import WORKBOOKS
     from xlmc.workbook.target import copy_ending
 
-    if run.suffix.casefold() in (".xlsx", ".xlsm"):
+    if run.suffix.casefold() in WORKBOOKS:
         if output or html or json_path or extract or not reports.paths:
             raise click.UsageError(
                 "Of a result workbook, --pdf and --docx alone are written; the rest needs a saved run."

@@ -25,13 +25,13 @@ from xlmc.workbook.injection.book_edit import (
     sheet_list,
     without_sheets,
 )
-from xlmc.workbook.injection.content_types import CONTENT_TYPES, Roles, add_types, drop_types, roles, types_of
+from xlmc.workbook.injection.content_types import Roles, add_types, drop_types, roles, types_of
 from xlmc.workbook.injection.formula_values import without_formula_values
 from xlmc.workbook.injection.part_numbers import free_names, free_part_names, free_tables, reached
 from xlmc.workbook.injection.result_sheet import BuiltBook, BuiltSheet, Carrier, Renames, read_built, relative_target
 from xlmc.workbook.injection.splice import MAIN, OFFICE_RELATIONSHIPS, Element, SplicedXml, as_utf8, parse_spans
 from xlmc.workbook.injection.styles_merge import StyleMap, merge_styles, same_styles
-from xlmc.workbook.package import Relationship, hash_parts, relationships, rels_part
+from xlmc.workbook.package import CONTENT_TYPES, Relationship, hash_parts, relationships, rels_part
 from xlmc.workbook.safe_xml import tree
 
 __all__ = ["inject", "marked_names", "original_hash", "remove_result_sheets", "result_sheets"]

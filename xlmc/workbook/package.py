@@ -21,11 +21,14 @@ from xlmc.errors import WorkbookError
 from xlmc.workbook.safe_xml import REPAIR, tree
 
 __all__ = [
+    "CONTENT_TYPES",
     "LIMITS",
     "SAVE_AS",
     "SMALLER",
+    "WORKBOOKS",
     "Limits",
     "Relationship",
+    "content_type",
     "hash_parts",
     "is_old_workbook",
     "read_parts",
@@ -35,6 +38,11 @@ __all__ = [
 
 SAVE_AS = "Open it in Excel and save it as an Excel Workbook (.xlsx)"
 SMALLER = "Remove from it what the model does not need"
+
+CONTENT_TYPES = "[Content_Types].xml"
+
+WORKBOOKS = (".xlsx", ".xlsm", ".xltx", ".xltm")
+"""Endings of workbooks that are packages: plain ones, with macros, and their templates."""
 
 _OLE = bytes.fromhex("D0CF11E0A1B11AE1")
 _ZIP = b"PK"
@@ -115,6 +123,21 @@ def relationships(parts: Mapping[str, bytes], part: str = "") -> dict[str, Relat
         return {}
     elements = tree(parts[rels], rels).findall("{*}Relationship")
     return {element.get("Id", ""): _relationship(stored, part, element.attrib) for element in elements}
+
+
+def content_type(parts: Mapping[str, bytes], part: str) -> str:
+    """The content type that the package gives to one part by its name; empty where it gives none.
+
+    Raises:
+        WorkbookError: the part that holds the content types is not XML.
+    """
+    if CONTENT_TYPES not in parts:
+        return ""
+    named = tree(parts[CONTENT_TYPES], CONTENT_TYPES).findall("{*}Override")
+    found = (
+        each.get("ContentType", "") for each in named if each.get("PartName", "").casefold() == f"/{part}".casefold()
+    )
+    return next(found, "")
 
 
 def rels_part(part: str) -> str:

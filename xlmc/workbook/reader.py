@@ -6,14 +6,14 @@ import hashlib
 import posixpath
 import re
 from collections.abc import Iterator, Mapping
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Final
 
 from xlmc.address import column_number
 from xlmc.errors import Notice, WorkbookError
 from xlmc.workbook.lazy_sheets import LazySheets, naming_file
 from xlmc.workbook.old_format.mark import old_workbook_notices
-from xlmc.workbook.package import LIMITS, SMALLER, is_old_workbook, read_parts, relationships
+from xlmc.workbook.package import LIMITS, SMALLER, WORKBOOKS, content_type, is_old_workbook, read_parts, relationships
 from xlmc.workbook.printable import label
 from xlmc.workbook.safe_xml import REPAIR, decode, is_true, tree, whole_number
 from xlmc.workbook.sheet import CellContext, convert
@@ -76,6 +76,8 @@ def _parts(data: bytes) -> dict[str, bytes]:
 
 def _file_bytes(path: Path) -> bytes:
     try:
+        if path.is_fifo():  # nothing may ever be written to it
+            raise WorkbookError("this is a pipe, not a file", where=path, hint="Copy the workbook to a file")
         with path.open("rb") as file:
             data = file.read(LIMITS.total + 1)
     except (OSError, ValueError) as error:
@@ -109,8 +111,32 @@ def _workbook_notices(parts: Mapping[str, bytes], structure: Structure, name: st
     for stray in structure.strays:
         yield Notice(stray.message, name)
     yield from (Notice(message, name) for message in old_workbook_notices(parts))
-    for message in (*_on_calculation(structure.calculation), *_on_links(parts, structure), *_on_signature(parts)):
+    for message in (
+        *_on_ending(parts, structure, name),
+        *_on_calculation(structure.calculation),
+        *_on_links(parts, structure),
+        *_on_signature(parts),
+    ):
         yield Notice(message, name)
+
+
+_ENDING_OF: Final = {
+    "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet.main+xml": ".xlsx",
+    "application/vnd.ms-excel.sheet.macroEnabled.main+xml": ".xlsm",
+    "application/vnd.openxmlformats-officedocument.spreadsheetml.template.main+xml": ".xltx",
+    "application/vnd.ms-excel.template.macroEnabled.main+xml": ".xltm",
+}
+"""Content type of the workbook part -> the one ending with which Excel opens the file."""
+
+
+def _on_ending(parts: Mapping[str, bytes], structure: Structure, name: str) -> Iterator[str]:
+    ending = PurePath(name).suffix.casefold()
+    meant = _ENDING_OF.get(content_type(parts, structure.part))
+    if ending in WORKBOOKS and meant not in (None, ending):
+        yield (
+            f"the name ends in {ending}, but the file is a {meant} by its content: Excel opens neither it nor a copy "
+            f"with results in it; rename it to end in {meant}"
+        )
 
 
 def _on_calculation(settings: Mapping[str, str]) -> Iterator[str]:

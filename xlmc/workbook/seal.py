@@ -22,10 +22,10 @@ from urllib.parse import quote, unquote
 
 from xlmc.errors import WorkbookError
 from xlmc.workbook.injection.book_edit import add_pointers
-from xlmc.workbook.injection.content_types import CONTENT_TYPES, add_types
+from xlmc.workbook.injection.content_types import add_types
 from xlmc.workbook.injection.part_numbers import free_part_names
 from xlmc.workbook.injection.result_sheet import relative_target
-from xlmc.workbook.package import read_parts, rels_part
+from xlmc.workbook.package import CONTENT_TYPES, WORKBOOKS, read_parts, rels_part
 
 __all__ = ["ENDINGS", "Seal", "blank_seal", "read_seal", "seal_file", "sealed_parts", "sealed_text"]
 
@@ -64,7 +64,7 @@ def read_seal(path: Path) -> Seal | None:
         OSError: the file cannot be read.
     """
     ending = path.suffix.casefold()
-    if ending in (".xlsx", ".xlsm"):
+    if ending in WORKBOOKS:
         return _seal_of_package(path)
     return _seal_at_end(path, ending) if ending in ENDINGS else None
 

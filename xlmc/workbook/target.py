@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from xlmc.errors import WorkbookError
-from xlmc.workbook.package import is_old_workbook
+from xlmc.workbook.package import WORKBOOKS, is_old_workbook
 from xlmc.workbook.printable import label
 from xlmc.workbook.seal import ENDINGS, read_seal
 from xlmc.workbook.writer import TakenError, check_folder, refuse_if_open
@@ -28,7 +28,7 @@ __all__ = [
     "unused_path",
 ]
 
-_SEALED = (".xlsx", ".xlsm", *ENDINGS)
+_SEALED = (*WORKBOOKS, *ENDINGS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,7 @@ class Target:
             WorkbookError: there is no folder, or the folder may not be written to.
         """
         check_folder(self.path)
-        if self.path.suffix.casefold() in (".xlsx", ".xlsm"):
+        if self.path.suffix.casefold() in WORKBOOKS:
             refuse_if_open(self.path)
         reason = None if self.overwrite else self.foreign
         if reason is not None:

@@ -10,12 +10,10 @@ from dataclasses import dataclass
 
 from xlmc.errors import WorkbookError
 from xlmc.workbook.injection.splice import Element, SplicedXml, render
-from xlmc.workbook.package import relationships, rels_part
+from xlmc.workbook.package import CONTENT_TYPES, relationships, rels_part
 from xlmc.workbook.safe_xml import REPAIR
 
-__all__ = ["CONTENT_TYPES", "Roles", "add_types", "drop_types", "roles", "types_of"]
-
-CONTENT_TYPES = "[Content_Types].xml"
+__all__ = ["Roles", "add_types", "drop_types", "roles", "types_of"]
 
 
 @dataclass(frozen=True, slots=True)

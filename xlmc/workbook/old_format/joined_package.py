@@ -14,7 +14,7 @@ from typing import Final, TypeGuard
 
 from xlmc.address import Cell
 from xlmc.errors import ErrorCode, WorkbookError
-from xlmc.workbook.injection.content_types import CONTENT_TYPES, add_types
+from xlmc.workbook.injection.content_types import add_types
 from xlmc.workbook.injection.formula_values import with_values
 from xlmc.workbook.injection.splice import OFFICE_RELATIONSHIPS, SplicedXml, render
 from xlmc.workbook.lazy_sheets import LazySheets
@@ -22,7 +22,7 @@ from xlmc.workbook.old_format.libreoffice import converted_to_xlsx
 from xlmc.workbook.old_format.mark import with_mark
 from xlmc.workbook.old_format.old_stream import IN_CRYSTAL_BALL, OldSheet, Position, read_old_workbook
 from xlmc.workbook.old_format.shape_texts import ShapeText
-from xlmc.workbook.package import read_parts, relationships, rels_part
+from xlmc.workbook.package import CONTENT_TYPES, read_parts, relationships, rels_part
 from xlmc.workbook.structure import SheetEntry, read_structure
 from xlmc.workbook.workbook import CellContent, CellValue
 

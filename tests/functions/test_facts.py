@@ -17,7 +17,7 @@ from xlmc.evaluation.graph.expressions import WRITTEN_OUT
 from xlmc.evaluation.graph.lambdas import LAMBDAS
 from xlmc.evaluation.graph.reference_functions import REFERENCE_FUNCTIONS
 from xlmc.evaluation.graph.running_totals import FOLDS
-from xlmc.evaluation.passes.bounds import _OF_ONE
+from xlmc.evaluation.passes.bounds import _OF_ONE, _OF_SETS
 from xlmc.evaluation.passes.derivatives.rules import RULES
 from xlmc.evaluation.passes.exact import EXACT
 from xlmc.formula.callables import _CHOOSING
@@ -69,6 +69,7 @@ LISTS = {
     ("evaluation/llvm/costs.py", "_SAVED_BY"): "any other function of numbers saves the usual time in a loop",
     ("evaluation/llvm/operations.py", "_ROWS"): "any other function is computed by NumPy",
     ("evaluation/llvm/sets.py", "_ROWS"): "any other function is computed by NumPy",
+    ("evaluation/passes/bounds.py", "_OF_SETS"): "of any other set no bounds are known",
     ("evaluation/passes/bounds.py", "_OF_ONE"): "of any other function no bounds are known but those of its row",
     ("evaluation/passes/derivatives/conditions.py", "multiples"): "any other function is differentiated by differences",
     ("evaluation/passes/derivatives/conditions.py", "steps"): "any other function is differentiated by differences",
@@ -166,7 +167,7 @@ def test_every_name_in_them_is_that_of_a_function(lists):
     assert unknown == set()
 
 
-@pytest.mark.parametrize("table", [EXACT, RULES, _OF_ONE], ids=["exact", "derivatives", "bounds"])
+@pytest.mark.parametrize("table", [EXACT, RULES, _OF_ONE, _OF_SETS], ids=["exact", "derivatives", "one", "sets"])
 def test_tables_of_nodes_have_the_names_of_rows(table):
     """An alias would never be looked up."""
     assert set(table) - set(ROWS) - MADE == set()

@@ -192,6 +192,37 @@ def test_what_never_cancels_is_kept(a, b, c, d, adds, seed):
     assert settled(total, x).tolist() == total.tolist() == copy_sum(total, x, out=x).tolist()
 
 
+@given(LIMITS, LIMITS, LIMITS, LIMITS, st.booleans(), st.integers(0, 2**32))
+def test_what_bounds_tell_of_either_number_changes_no_sum(a, b, c, d, adds, seed):
+    """Sums of numbers within bounds, half of which cancel all but the last bits."""
+    first, second = sorted((a, b)), sorted((c, d))
+    rng = np.random.default_rng(seed)
+    x, y = (rng.uniform(*ends, 20).clip(*ends) for ends in (first, second))
+    opposite = -x if adds else x
+    y = np.where(rng.random(20) < 0.5, (opposite * (1 + rng.integers(-8, 9, 20) * 2.0**-52)).clip(*second), y)
+    total = x + y if adds else x - y
+    for known in ((tuple(first), tuple(second)), (None, tuple(second)), (tuple(first), None)):
+        assert SnapToZero.of(*known)(total, x).tolist() == settled(total, x).tolist()
+    assert SnapToZero.of(None, (-math.inf, 1.0)).largest is None
+
+
+def test_numbers_that_are_near_each_other_in_some_trials_only():
+    """Whether any are near decides how all are compared."""
+    x = np.array([1.0, 2.0, 3.0, 0.1 + 0.2, 5.0])
+    for y in (np.array([2.0, 1.0, 4.0, 0.3, 5.0]), np.array([2.0, 1.0, 4.0, 0.4, 4.0])):
+        for symbol, relation in RELATIONS.items():
+            wanted = [relation(rounded(a), rounded(b)) for a, b in zip(x, y, strict=True)]
+            assert COMPARISONS[symbol](x, y).tolist() == wanted
+            assert COMPARISONS[symbol](x, y, out=np.empty(5, bool)).tolist() == wanted
+
+
+def test_infinite_numbers_that_vary_are_compared_as_they_are():
+    x, y = np.array([math.inf, -math.inf, 1.0, math.nan]), np.array([math.inf, math.inf, -math.inf, 1.0])
+    with np.errstate(all="ignore"):
+        found = {symbol: COMPARISONS[symbol](x, y).tolist() for symbol in RELATIONS}
+        assert found == {symbol: relation(x, y).tolist() for symbol, relation in RELATIONS.items()}
+
+
 @pytest.mark.parametrize(
     ("result", "first", "second", "never"),
     [
@@ -203,6 +234,8 @@ def test_what_never_cancels_is_kept(a, b, c, d, adds, seed):
         ((-3.0, -1.0), (1.0, 2.0), None, True),
         ((0.0, 3.0), (4.0, 5.0), None, False),
         ((1e-12, 3.0), (4.0, 5.0), None, False),
+        ((0.0, math.inf), (0.0, math.inf), (0.0, 2.0), True),
+        ((2.0, math.inf), (4.0, math.inf), (-2.0, 2.0), False),
     ],
 )
 def test_bounds_tell_what_never_cancels(result, first, second, never):

@@ -120,10 +120,11 @@ class Comparison:
             return _compare_with_constant(self.symbol, x, equal_range(_only(y)), out)
         if np.size(x) == 1:
             return _compare_with_constant(EXCHANGED[self.symbol], y, equal_range(_only(x)), out)
+        apart, limit = _subtract(x, y), NEAR * _size(x) + TINIEST
+        if np.count_nonzero(apart > limit) + np.count_nonzero(apart < -limit) == apart.size:
+            return np.asarray(self.plain(apart, 0.0, out=out))
         found: Bools = self.plain(x, y, out=out)
-        equal = _find_equal(x, y)
-        if equal is not None:
-            found[equal] = self.symbol in ("=", "<=", ">=")
+        found[_find_equal(x, y, np.abs(apart, out=apart) <= limit)] = self.symbol in ("=", "<=", ">=")
         return found
 
 
@@ -151,27 +152,21 @@ def _compare_with_constant(symbol: str, x: Any, equal: tuple[float, float], out:
             return np.asarray(np.logical_or(found, np.greater(x, most), out=found))
 
 
-def _find_equal(x: Floats, y: Floats) -> tuple[NDArray[np.intp], ...] | None:
-    """Return the indices of numbers that differ but are equal at 15 digits; None if there are none."""
-    largest = _size(x)
-    distances = _distances(x, y)
-    near = distances <= NEAR * largest + TINIEST
-    if not near.any():
-        return None
+def _find_equal(x: Floats, y: Floats, near: Bools) -> tuple[NDArray[np.intp], ...]:
+    """Return the indices of numbers that differ but are equal at 15 digits, all of them among those that are near."""
     x, y = np.broadcast_arrays(x, y)
     indices = np.nonzero(near & (x != y))
     pairs = zip(x[indices].tolist(), y[indices].tolist(), strict=True)
     alike = np.array([abs(a - b) <= NEAR * abs(a) + TINIEST and _are_equal(a, b) for a, b in pairs], bool)
-    return tuple(index[alike] for index in indices) if alike.any() else None
+    return tuple(index[alike] for index in indices)
 
 
-def _distances(x: Floats, y: Floats) -> Floats:
-    """Return |x - y|, in memory that the next call writes to again."""
-    if x.shape == y.shape:
-        (work,) = work_arrays(x.size, 1)
-        work = work.reshape(x.shape)
-        return np.abs(np.subtract(x, y, out=work), out=work)
-    return np.abs(x - y)
+def _subtract(x: Floats, y: Floats) -> Floats:
+    """Return x - y, in memory that the next call writes to again."""
+    if x.shape != y.shape:
+        return np.asarray(x - y)
+    (work,) = work_arrays(x.size, 1)
+    return np.subtract(x, y, out=work.reshape(x.shape))
 
 
 COMPARISONS: Final[Mapping[str, Comparison]] = {
@@ -206,6 +201,16 @@ class SnapToZero:
 
     largest: float | None = None
     nin: ClassVar[int] = 2
+
+    @classmethod
+    def of(cls, first: tuple[float, float] | None, second: tuple[float, float] | None) -> SnapToZero:
+        """The one for sums of numbers, or differences, that have these bounds; None where there are none.
+
+        Where all but the last bits cancel, the first number is less than twice the second.
+        """
+        sizes = [factor * max(map(abs, ends)) for factor, ends in ((1.0, first), (2.0, second)) if ends is not None]
+        largest = min(sizes, default=math.inf)
+        return cls(largest if largest < math.inf else None)
 
     def __call__(self, result: Any, first: Any, out: Floats | None = None) -> Floats:
         """Return 0 where the sum is only the last bits of the first number, else the sum."""

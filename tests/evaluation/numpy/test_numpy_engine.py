@@ -255,6 +255,16 @@ def test_an_input_in_one_branch_only(run):
     assert outcome.forecasts == [[0.0, 0.25]]
 
 
+@pytest.mark.parametrize("limit", [0.0, 1.03, 1.5, 9.0])
+@pytest.mark.parametrize("formula", ["IF(A1>{0},A2,-A3)", "IF(A1>{0},A2,0)", "IF(A1>{0},1E300,A2)", "IF(A1>{0},2,-3)"])
+def test_a_choice_in_all_trials_in_some_and_in_none(run, harmless, formula, limit):
+    outcome = run({"C1": "=" + formula.format(limit)}, harmless, ["C1"])
+    assert not outcome.careful
+    parts = {"A2": harmless["A2"], "-A3": -harmless["A3"]}
+    yes, no = (parts.get(part, part) for part in formula[:-1].split(",")[1:])
+    assert outcome.forecasts == [np.where(harmless["A1"] > limit, *(np.asarray(p, float) for p in (yes, no))).tolist()]
+
+
 @pytest.mark.parametrize(
     ("formula", "expected"),
     [

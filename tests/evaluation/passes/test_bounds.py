@@ -14,7 +14,8 @@ from xlmc.functions.families import REGISTRY
 from xlmc.functions.values import constant
 
 OPERATIONS = {"+": np.add, "-": np.subtract, "*": np.multiply, "/": np.divide}
-OF_ONE = {"u-": np.negative, "SIN": np.sin, "COS": np.cos, "SQRT": np.sqrt, "ABS": np.abs}
+OF_ONE = {"u-": np.negative, "SIN": np.sin, "COS": np.cos, "SQRT": np.sqrt, "ABS": np.abs, "EXP": np.exp}
+OF_TWO = {**OPERATIONS, "MAX": np.maximum, "MIN": np.minimum}
 LIMITS = st.floats(-1e6, 1e6)
 
 
@@ -27,12 +28,12 @@ def models(draw):
     nodes = [dag.input("a"), dag.input("b"), dag.constant(constant(number))]
     values = [rng.uniform(low, high, 50).clip(low, high) for low, high in ends] + [np.full(50, number)]
     for _ in range(draw(st.integers(1, 6))):
-        name = draw(st.sampled_from([*OPERATIONS, *OF_ONE]))
+        name = draw(st.sampled_from([*OF_TWO, *OF_ONE]))
         used = rng.integers(len(nodes), size=1 if name in OF_ONE else 2).tolist()
         node = dag.add(Apply(REGISTRY[name], tuple(nodes[part] for part in used)))
         if node not in nodes and node == len(dag.nodes) - 1:
             with np.errstate(all="ignore"):
-                values.append((OPERATIONS | OF_ONE)[name](*(values[part] for part in used)))
+                values.append((OF_TWO | OF_ONE)[name](*(values[part] for part in used)))
             nodes.append(node)
     return dag, dict(zip(("a", "b"), map(tuple, ends), strict=True)), dict(zip(nodes, values, strict=True))
 
@@ -46,7 +47,7 @@ def test_values_lie_between_the_bounds(model):
         found = known.of(node)
         if node in values and found is not None:
             low, high = found
-            reach = max(reach, abs(low), abs(high), 1e6)
+            reach = max(reach, 1e6, *(abs(end) for end in found if math.isfinite(end)))
             computed = values[node][np.isfinite(values[node])]  # no root of less than 0
             assert (low - 1e-13 * reach <= computed).all()
             assert (computed <= high + 1e-13 * reach).all()
@@ -74,9 +75,21 @@ def test_what_is_known(dag):
         of("SQRT", b): (0.0, 4.0),
         of("SIN", a): (-1.0, 1.0),
         of("COS", free): (-1.0, 1.0),
+        of("ABS", free): (0.0, math.inf),
+        of("EXP", free): (0.0, math.inf),
+        of("SQRT", free): (0.0, math.inf),
+        of("MAX", a, two): (2.0, 3.0),
+        of("MAX", free, two): (2.0, math.inf),
+        of("MIN", b, free): (-math.inf, 4.0),
+        of("MIN", a, b): (-1.0, 3.0),
+        of("+", b, of("EXP", free)): (1.0, math.inf),
+        of("-", b, of("EXP", free)): (-math.inf, 4.0),
+        of("*", b, of("EXP", free)): (0.0, math.inf),
+        of("/", two, of("MAX", free, two)): (0.0, 1.0),
+        of("*", dag.constant(constant(0.0)), free): (0.0, 0.0),
         dag.add(Select(of("<", a, b), a, two)): (-1.0, 3.0),
     }
-    unknown = [free, of("/", two, a), of("+", a, free), of("*", dag.constant(constant(0.0)), free), of("SQRT", free)]
+    unknown = [free, of("/", two, a), of("+", a, free), of("*", of("ABS", free), of("SIN", a))]
     known = NodeBounds(dag, {"a": (-1.0, 3.0), "b": (1.0, 4.0)})
     assert {node: known.of(node) for node in reversed(wanted)} == dict(reversed(wanted.items()))
     assert [known.of(node) for node in unknown] == [None] * len(unknown)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from xlmc.evaluation.numpy.looked_up import LookedUp, aligned_array, sines_with_
 from xlmc.evaluation.numpy.steps import Frame, LeaveFastPath, Step, is_elementwise_ufunc, make_step
 from xlmc.evaluation.passes.bounds import NodeBounds
 from xlmc.functions import Kind
+from xlmc.functions.budget import work_arrays
 from xlmc.functions.fifteen_digits import SNAP_TO_ZERO, SnapToZero, copy_sum, never_cancels
 from xlmc.functions.lookup.search_and_pick import Search
 from xlmc.functions.math.trigonometry import Within, sine_and_cosine
@@ -250,14 +251,13 @@ class Steps:
     def _last_sum(self, node: Apply) -> Callable[..., object]:
         """The function for the last sum of a formula; one that keeps every sum where bounds show that none is dust."""
         total, first = node.arguments
-        added = self._dag.nodes[total]
-        second = self._bounds.of(added.arguments[1]) if type(added) is Apply and added.function.name == "+" else None
-        of_total, of_first = self._bounds.of(total), self._bounds.of(first)
-        if of_first is None:
-            return SnapToZero()
-        if of_total is not None and never_cancels(of_total, of_first, second):
+        added, of = self._dag.nodes[total], self._bounds.of
+        operator = added.function.name if type(added) is Apply else ""
+        second = of(uses(added)[1]) if operator in ("+", "-") else None
+        of_total, of_first, plus = of(total), of(first), second if operator == "+" else None
+        if of_total is not None and of_first is not None and never_cancels(of_total, of_first, plus):
             return copy_sum
-        return SnapToZero(max(abs(of_first[0]), abs(of_first[1])))
+        return SnapToZero.of(of_first, second)
 
     def _close_table(self) -> None:
         if self._lines:
@@ -288,20 +288,21 @@ def _drop_values(nodes: list[int]) -> Step:
     return step
 
 
-_RARE: Final = 16
-"""If a choice falls the same way in all but one of this many trials, the processor predicts it."""
-
-
 def _choose(condition: Any, yes: Any, no: Any, out: NDArray[Any]) -> NDArray[Any]:
-    """Fill `out` with `yes` where the condition holds, else with `no`."""
-    n = out.size
-    chosen = np.count_nonzero(condition) if np.ndim(condition) else n // 2
-    if n < _RARE * chosen and n < _RARE * (n - chosen):
-        np.copyto(out, np.where(condition, yes, no))
+    """Fill `out`, which must not be `no`, with `yes` where the condition holds, else with `no`.
+
+    The bits of both are put together, for the processor predicts no branch that falls now this way, now that way.
+    """
+    chosen = np.count_nonzero(condition)
+    if chosen in (0, out.size):
+        np.copyto(out, yes if chosen else no)
         return out
-    np.copyto(out, no)
-    if chosen:
-        np.copyto(out, yes, where=condition)
+    (work,) = work_arrays(out.size, 1)
+    mask, bits, other = (numbers.view(np.int64) for numbers in (work, out, np.asarray(no)))
+    np.copyto(mask, np.negative(np.asarray(condition).view(np.int8)))  # all bits of a trial are 1, or all are 0
+    np.bitwise_xor(np.asarray(yes).view(np.int64), other, out=bits)
+    np.bitwise_and(bits, mask, out=bits)
+    np.bitwise_xor(bits, other, out=bits)
     return out
 
 

@@ -1,4 +1,4 @@
-"""Bounds of the values of nodes, as far as sums, products and choices tell."""
+"""Bounds of the values of nodes, as far as sums, products, choices and a few functions tell."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from xlmc.functions.values import NUMBER
 __all__ = ["Bounds", "NodeBounds"]
 
 Bounds = tuple[float, float]
-"""The least and the largest number, but for the rounding of the operations that led to them."""
+"""The least and the largest number, but for the rounding of the operations that led to them; one may be infinite."""
 
 _ANY: Final[Bounds] = (-math.inf, math.inf)
 
 
 class NodeBounds:
-    """The finite bounds of the nodes of a graph. They are worked out when somebody asks, in the order of the nodes.
+    """The bounds of the nodes of a graph. They are worked out when somebody asks, in the order of the nodes.
 
     Args:
         dag: of the nodes; it may grow.
@@ -37,7 +37,7 @@ class NodeBounds:
             return _of_constant(self._dag, node)
         while len(self._found) <= node:
             low, high = self._next()
-            self._found.append((low, high) if math.isfinite(low) and math.isfinite(high) else _ANY)
+            self._found.append((low, high) if low < math.inf and high > -math.inf else _ANY)  # not of overflows, NaNs
         return None if self._found[node] == _ANY else self._found[node]
 
     def _next(self) -> Bounds:
@@ -52,6 +52,9 @@ class NodeBounds:
                 return _combine(function.name, found[first], found[second])
             case Apply(function, (result, _)) if function.name == SNAP_TO_ZERO.name:
                 return found[result]
+            case Apply(function, arguments) if function.name in _OF_SETS:
+                lows, highs = zip(*(found[argument] for argument in arguments), strict=True)
+                return _OF_SETS[function.name](lows), _OF_SETS[function.name](highs)
             case Apply(function) if function.facts.result_range is not None:
                 return function.facts.result_range
             case Apply(function, (only,)) if function.name in _OF_ONE:
@@ -63,8 +66,12 @@ _OF_ONE: Final[Mapping[str, Callable[[float, float], Bounds]]] = {
     "u-": lambda low, high: (-high, -low),
     "SQRT": lambda low, high: (0.0, max(1.0, high)),  # wide, as the root of a number near 0 makes its rounding large
     "ABS": lambda low, high: (max(low, -high, 0.0), max(-low, high)),
+    "EXP": lambda _low, _high: (0.0, math.inf),
 }
 """Function of one number -> its bounds, from those of the number."""
+
+_OF_SETS: Final[Mapping[str, Callable[[Iterable[float]], float]]] = {"MAX": max, "MIN": min}
+"""Function of many numbers -> what its bounds are of theirs. An argument of which nothing is known may be a range."""
 
 
 def _of_constant(dag: Dag, node_id: int) -> Bounds | None:
@@ -84,7 +91,12 @@ def _combine(operator: str, left: Bounds, right: Bounds) -> Bounds:
     if operator == "/":
         away = right[0] > 0.0 or right[1] < 0.0
         return _combine("*", left, _around((1.0 / right[0], 1.0 / right[1]))) if away else _ANY
-    return _around([a * b for a in left for b in right])
+    return _around([_multiply(a, b) for a in left for b in right])
+
+
+def _multiply(a: float, b: float) -> float:
+    """The product of two bounds: that of 0 and any number is 0."""
+    return 0.0 if a == 0.0 or b == 0.0 else a * b
 
 
 def _around(numbers: Iterable[float]) -> Bounds:

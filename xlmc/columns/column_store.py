@@ -26,6 +26,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.columns.cache_lines import CACHE_LINE
 from xlmc.errors import SimulationError
 
 __all__ = [
@@ -272,10 +273,6 @@ _RESERVED: Final = 1.5
 
 Array = NDArray[Any]
 
-
-_LINE: Final = 64
-"""Bytes of a line of the processor's cache."""
-
 _LARGE: Final = 1 << 22
 """Bytes of an array from which on NumPy asks the system for large pages: many small ones take ten times as long."""
 
@@ -365,8 +362,8 @@ class ColumnStore:
         expected = self._expected.get(key)
         alike = [other for other, rows in self._expected.items() if rows == expected and not self._arrays[other].size]
         # An odd number of lines of the cache: else the same rows of all columns would have the same place in it.
-        lines = max(-(-size * self._types[other].itemsize // _LINE) for other in (key, *alike)) | 1
-        memory = np.empty((len({key, *alike}), lines * _LINE), np.uint8)
+        lines = max(-(-size * self._types[other].itemsize // CACHE_LINE) for other in (key, *alike)) | 1
+        memory = np.empty((len({key, *alike}), lines * CACHE_LINE), np.uint8)
         for other, row in zip(dict.fromkeys((key, *alike)), memory, strict=True):
             self._arrays[other] = row.view(self._types[other])[:size]
 

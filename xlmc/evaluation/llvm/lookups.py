@@ -21,7 +21,7 @@ from xlmc.functions import Kind
 from xlmc.functions.lookup.search_and_pick import Pick, Search
 from xlmc.functions.values import Floats
 
-__all__ = ["lookup_rule"]
+__all__ = ["emit_lookup", "lookup_rule", "rule_of_lookup"]
 
 _MOST: Final = 4096
 """The most numbers that a module holds; longer columns are searched outside of the loop."""
@@ -39,11 +39,18 @@ def lookup_rule(dag: Dag, node: Apply) -> LoopRule | None:
     numbers = lookup.rising if isinstance(lookup, Search) else lookup.numbers
     if numbers.size > _MOST:
         return None
-    return LoopRule((Operand(key_of(node), Kind.NUMBER),), _emit(lookup), absorbs=(0,), makes=False)
+    return rule_of_lookup(key_of(node), emit_lookup(lookup))
+
+
+def rule_of_lookup(key: int, emit: Emit) -> LoopRule:
+    """The rule of a search for the value of a node, or of a pick at the position that it gives."""
+    return LoopRule((Operand(key, Kind.NUMBER),), emit, absorbs=(0,), makes=False)
 
 
 @lru_cache(_KEPT)
-def _emit(lookup: Search | Pick) -> Emit:
+def emit_lookup(lookup: Search | Pick) -> Emit:
+    """How the loop searches, or picks."""
+
     def emit(body: Emitter, parts: Sequence[Any]) -> Any:
         if isinstance(lookup, Search):
             return _search(body, lookup, parts[0])

@@ -1,15 +1,14 @@
 """The nodes that are computed on one set of trials: on all of them, or on the survivors of the filters.
 
-They are divided into stages: loops, and between them what the loops cannot compute.
+They are computed stage by stage: by loops, and between them what the loops cannot compute.
 """
 
 from __future__ import annotations
 
 import ctypes
-from collections import Counter, defaultdict
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain
 from typing import Any, Final
 
 import numpy as np
@@ -18,12 +17,11 @@ from numpy.typing import NDArray
 from xlmc.evaluation.engine import Column, column_of
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select, evaluate_node, in_own_memory
-from xlmc.evaluation.graph.readiness import order_by_need
 from xlmc.evaluation.llvm.loop import SIDE_BY_SIDE, Load, compile_loop
-from xlmc.evaluation.llvm.loop_rules import PLAIN, LoopRule, Operand
+from xlmc.evaluation.llvm.loop_rules import PLAIN, Operand
 from xlmc.evaluation.llvm.machine import Machine, NativeLoop
-from xlmc.evaluation.llvm.memory import Memory, Slot, assign_slots
-from xlmc.evaluation.llvm.shapes import Shape, cut, shape_of
+from xlmc.evaluation.llvm.memory import Memory
+from xlmc.evaluation.llvm.stages import LoopPlan, Stages
 from xlmc.evaluation.numpy.steps import Frame, LeaveFastPath, make_step, plain_constant
 from xlmc.functions import Kind
 from xlmc.functions.denormals import Underflow
@@ -31,9 +29,6 @@ from xlmc.functions.operators import ALL_BITS
 from xlmc.functions.values import Floats, Value
 
 __all__ = ["Loop", "Phase", "Trials"]
-
-_LONGEST: Final = 250
-"""The most nodes of one loop; the time to compile grows faster than the loop."""
 
 _MOST_FAILURES: Final = 8
 """Blocks in which a node outside of loops could not be computed with plain numbers; then that is not tried any more."""
@@ -136,69 +131,34 @@ class Loop:
     numbers: Floats
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Plan:
-    """A loop to be compiled: the rules of its nodes in order, the arrays it reads, and the nodes it writes."""
-
-    rules: Mapping[int, LoopRule]
-    loads: tuple[Load, ...]
-    stores: tuple[int, ...]
-
-    def shape(self, dag: Dag) -> Shape:
-        loads = [(load.operand, (load.operand.kind, load.stored, load.picked, load.fallible)) for load in self.loads]
-        return shape_of(dag, self.rules, loads, self.stores)
-
-
 class Phase:
-    """Computes the nodes of `nodes`.
+    """Computes the nodes of stages.
 
     Args:
-        needed: the nodes that one's computation needs.
-        keep: the nodes whose values are wanted afterwards.
-        early: the nodes that were computed before, on a wider set of trials; None where this is the first phase.
-        may_err: the inputs whose draws may be errors.
+        stages: the nodes.
+        machine: compiles the loops.
 
     Attributes:
         slots: the memory of each node that a loop leaves behind.
-        waiting: how many arrays and values wait at a time, of loops and of what is computed outside of them.
     """
 
-    def __init__(
-        self,
-        dag: Dag,
-        machine: Machine,
-        rules: Mapping[int, LoopRule],
-        needed: Callable[[int], Sequence[int]],
-        nodes: Sequence[int],
-        keep: Iterable[int],
-        early: frozenset[int] | None,
-        may_err: frozenset[str],
-    ) -> None:
-        self._dag, self._machine, self._rules, self._needed, self._may_err = dag, machine, rules, needed, may_err
-        self._early = early
-        computed = [node for node in nodes if not isinstance(dag.nodes[node], Input)]
-        parts = _in_order(_stages(dag, computed, rules, needed), self._read_from_outside)
-        read = [self._read_from_outside(stage) for stage in parts]
-        wanted = set(keep).union(*read)
-        plans = [
-            self._plan(stage, found, wanted) if stage.loop else None for stage, found in zip(parts, read, strict=True)
-        ]
-        made = self._make_loops([plan for plan in plans if plan is not None])
+    def __init__(self, stages: Stages, machine: Machine) -> None:
+        self._stages, self._dag, self._machine, self._may_err = stages, stages.dag, machine, stages.may_err
+        made = self._make_loops([*stages.loop_plans()])
         self._steps: list[Loop | tuple[int, ...]] = [
-            stage.nodes if plan is None else next(made) for stage, plan in zip(parts, plans, strict=True)
+            stage.nodes if stage.stores is None else next(made) for stage in stages.in_order
         ]
-        kept, late = frozenset(keep), early is not None
-        self._last_read = _last_reads(parts, read, kept)
+        self._last_read = stages.last_reads()
         outside = [() if isinstance(step, Loop) else step for step in self._steps]
-        self._plain = {node: make_step(dag, node, 0) for nodes in outside for node in nodes if self._is_plain(node)}
-
-        def assigned(written: Sequence[Sequence[int]]) -> dict[int, Slot]:
-            return assign_slots(dag, list(zip(read, written, strict=True)), kept, late=late)
-
-        by_loops = [step.stores if isinstance(step, Loop) else () for step in self._steps]
-        plain = [tuple(node for node in nodes if node in self._plain) for nodes in outside]
-        self.slots = assigned([first or second for first, second in zip(by_loops, plain, strict=True)])
-        self.waiting = sum(len(set(assigned(written).values())) for written in (by_loops, outside))
+        self._plain = {
+            node: make_step(self._dag, node, 0) for nodes in outside for node in nodes if self._is_plain(node)
+        }
+        self.slots = stages.slots(
+            [
+                step.stores if isinstance(step, Loop) else tuple(node for node in step if node in self._plain)
+                for step in self._steps
+            ]
+        )
 
     def _is_plain(self, node_id: int) -> bool:
         """Whether a node outside of loops is a number made of numbers and truth values, but of no fallible draw."""
@@ -209,21 +169,7 @@ class Phase:
         fallible = any(isinstance(each, Input) and each.name in self._may_err for each in given)
         return not fallible and all(dag.types[a] in PLAIN and dag.sizes[a] is None for a in node.arguments)
 
-    def _read_from_outside(self, stage: _LoopStage) -> set[int]:
-        return set(chain.from_iterable(map(self._needed, stage.nodes))).difference(stage.nodes)
-
-    def _plan(self, stage: _LoopStage, read: set[int], wanted: set[int]) -> _Plan:
-        rules = {node: self._rules[node] for node in stage.nodes}
-        loads: dict[Operand, Load] = {}
-        for rule in rules.values():
-            for part in (*rule.operands, *rule.beside):
-                if isinstance(part, Operand) and part.node in read:
-                    load = self._load(part)
-                    if load is not None:
-                        loads[load.operand] = load
-        return _Plan(rules, tuple(loads.values()), tuple(node for node in stage.nodes if node in wanted))
-
-    def _make_loops(self, plans: Sequence[_Plan]) -> Iterator[Loop]:
+    def _make_loops(self, plans: Sequence[LoopPlan]) -> Iterator[Loop]:
         if len(plans) < _FEWEST:
             for plan in plans:
                 shape = plan.shape(self._dag)
@@ -246,24 +192,10 @@ class Phase:
         node = self._dag.nodes[node_id]
         return isinstance(node, Apply) and node.function in _LIMITS
 
-    def _compile(self, plan: _Plan, numbers: Mapping[tuple[int, int], int], once: bool = False) -> NativeLoop:
+    def _compile(self, plan: LoopPlan, numbers: Mapping[tuple[int, int], int], once: bool = False) -> NativeLoop:
         """The code of a loop; the code of one that runs once beside many alike is soon made, and a little slower."""
         side_by_side = 1 if once else SIDE_BY_SIDE
         return compile_loop(self._dag, self._machine, plan.rules, plan.loads, plan.stores, numbers, side_by_side)
-
-    def _load(self, part: Operand) -> Load | None:
-        """How a node from outside is read; None for a constant."""
-        node = self._dag.nodes[part.node]
-        if isinstance(node, Constant):
-            return None
-        is_input = isinstance(node, Input)
-        picked = self._early is not None and (is_input or part.node in self._early)
-        if isinstance(node, Input):
-            return Load(Operand(part.node, Kind.NUMBER), Kind.NUMBER, picked, node.name in self._may_err)
-        if part.node in self._rules:
-            own = self._dag.types[part.node]
-            return Load(Operand(part.node, own), own, picked, False)  # it was checked when it was written
-        return Load(part, Kind.NUMBER, picked, True)
 
     @property
     def loops(self) -> tuple[Loop, ...] | None:
@@ -302,7 +234,7 @@ class Phase:
             node = self._dag.nodes[node_id]
             assert isinstance(node, Apply | Select | IfErrorNode | Range)
             with np.errstate(all="ignore"):
-                known = {used: trials.value(used) for used in self._needed(node_id)}
+                known = {used: trials.value(used) for used in self._stages.needed(node_id)}
                 trials.values[node_id] = in_own_memory(evaluate_node(node, known), known.values())
 
     def _run_plain(self, node_id: int, trials: Trials, memory: Memory) -> bool:
@@ -313,7 +245,7 @@ class Phase:
         if memory.failures[node_id] > _MOST_FAILURES:
             return False
         known: dict[int, Any] = {}
-        for used in self._needed(node_id):
+        for used in self._stages.needed(node_id):
             found = trials.plain(used)
             if found is None:
                 return False
@@ -329,53 +261,3 @@ class Phase:
         # Loops read doubles there, one a trial.
         trials.arrays[node_id] = np.ascontiguousarray(np.broadcast_to(known[node_id], (trials.n,)), np.float64)
         return True
-
-
-@dataclass(frozen=True, slots=True)
-class _LoopStage:
-    """Nodes that are computed together, in order; `loop` says how."""
-
-    nodes: tuple[int, ...]
-    loop: bool
-
-
-def _stages(
-    dag: Dag, nodes: Sequence[int], rules: Mapping[int, LoopRule], needed: Callable[[int], Sequence[int]]
-) -> list[_LoopStage]:
-    """The nodes of `nodes`, in order, as stages in order; those without a rule stand outside of loops."""
-    levels: dict[int, int] = {}
-    for node in nodes:
-        in_loop = node in rules
-        levels[node] = 0 if in_loop else 1  # loops stand on even levels
-        for used in needed(node):
-            if used in levels:
-                after = levels[used] + ((used in rules) != in_loop)
-                levels[node] = max(levels[node], after)
-    grouped: defaultdict[int, list[int]] = defaultdict(list)
-    for node in nodes:
-        grouped[levels[node]].append(node)
-    stages = []
-    for level in sorted(grouped):
-        loop = level % 2 == 0
-        parts = cut(dag, grouped[level], rules, _LONGEST) if loop else [[node] for node in grouped[level]]
-        stages += [_LoopStage(tuple(part), loop) for part in parts]
-    return stages
-
-
-def _last_reads(
-    stages: Sequence[_LoopStage], read: Sequence[Iterable[int]], keep: Collection[int]
-) -> dict[int, list[int]]:
-    """The stage after which nothing reads them -> nodes that are computed outside of loops."""
-    outside = {node for stage in stages if not stage.loop for node in stage.nodes} - set(keep)
-    last = {node: at for at, nodes in enumerate(read) for node in outside.intersection(nodes)}
-    found: dict[int, list[int]] = {}
-    for node, at in last.items():
-        found.setdefault(at, []).append(node)
-    return found
-
-
-def _in_order(stages: Sequence[_LoopStage], read: Callable[[_LoopStage], Iterable[int]]) -> list[_LoopStage]:
-    """The stages so that few wait at a time to be read; one may need as many others as it has nodes."""
-    made = {node: at for at, stage in enumerate(stages) for node in stage.nodes}
-    needs = {at: sorted({made[node] for node in read(stage) if node in made}) for at, stage in enumerate(stages)}
-    return [stages[at] for at in order_by_need(range(len(stages)), needs, (), _FEWEST, few=2 * _LONGEST)]

@@ -20,8 +20,10 @@ from xlmc.evaluation.llvm.costs import loops_pay
 from xlmc.evaluation.llvm.loop_rules import LoopRule, reads
 from xlmc.evaluation.llvm.machine import machine
 from xlmc.evaluation.llvm.memory import Memory
+from xlmc.evaluation.llvm.native_tables import rules_of_looked_up
 from xlmc.evaluation.llvm.operations import loop_rule_of
 from xlmc.evaluation.llvm.phase import Phase, Trials
+from xlmc.evaluation.llvm.stages import Stages
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.evaluation.tracking import TrackingEvaluator, array_bytes, fitting_block
 from xlmc.functions.values import Floats
@@ -56,6 +58,70 @@ def fastest_program(
     return NumpyProgram.of(lowering, filters, forecasts, may_err)
 
 
+class _Division:
+    """The nodes of a program in stages: those of all trials, and those of the survivors alone.
+
+    Args:
+        lowering: of the nodes.
+        rules: of the nodes that loops can compute.
+        filters, forecasts: nodes.
+        may_err: the inputs whose draws may be errors.
+        like: a division whose order of nodes is good enough, and which needs all nodes of this one.
+
+    Attributes:
+        nodes: all that are computed, in order.
+        array_bytes: what arrays and texts take in a trial.
+        largest_block: see `JitProgram`.
+    """
+
+    def __init__(
+        self,
+        lowering: Lowering,
+        rules: Mapping[int, LoopRule],
+        filters: Sequence[int],
+        forecasts: Sequence[int],
+        may_err: frozenset[str],
+        like: _Division | None = None,
+    ) -> None:
+        dag = lowering.dag
+        needs: dict[int, tuple[int, ...]] = {}
+
+        def needed(node: int) -> tuple[int, ...]:
+            if node not in needs:
+                needs[node] = reads(dag, node, rules.get(node))
+            return needs[node]
+
+        def in_order(nodes: Collection[int], keep: Collection[int]) -> Sequence[int]:
+            """The nodes so that loops, which take them in order, leave few values to each other."""
+            if like is not None:
+                own = set(nodes)
+                return [node for node in like.nodes if node in own]
+            nodes = list(nodes)
+            return order_by_need(nodes, {node: needed(node) for node in nodes}, keep, _FEW_BETWEEN_LOOPS)
+
+        # Where no filter can reject a trial, nothing needs to be picked from the survivors.
+        first = dag.upstream(filters or forecasts, needed)
+        early = frozenset(first)
+        further = dag.upstream(forecasts, needed) if filters else []
+        late = [node for node in further if node not in early]
+        carried = {used for node in late for used in needed(node)} | set(forecasts)
+        keep, wanted = {*filters, *(carried & early)}, set(forecasts)
+        self.nodes = [*in_order(first, keep), *in_order(late, wanted)]
+        self.first = Stages(dag, rules, needed, self.nodes[: len(first)], keep, None, may_err)
+        self.late = Stages(dag, rules, needed, self.nodes[len(first) :], wanted, early, may_err)
+        self.array_bytes: int = like.array_bytes if like else array_bytes(lowering, filters, forecasts, needed)
+        self.largest_block = self._largest_block(len(_inputs(dag, self.nodes)) + len(forecasts))
+
+    def _largest_block(self, columns: int) -> int:
+        """The largest block whose arrays fit into the memory, draws and forecasts among them: so many columns."""
+        arrays = self.first.waiting + self.late.waiting
+        memory = _MOST_MEMORY if self.first.only_loops and self.late.only_loops else _MOST_IN_CACHES
+        block = _LARGEST_BLOCK
+        while block > _SMALLEST_BLOCK and (block * 8 * arrays > memory or block * 8 * columns > _MOST_IN_COLUMNS):
+            block //= 2
+        return fitting_block(block, self.array_bytes, 8 * arrays)
+
+
 class JitProgram:
     """The graph of nodes, compiled for this machine.
 
@@ -80,35 +146,15 @@ class JitProgram:
         self.filter_nodes = [lowering.target(target) for target in filters]
         self.forecast_nodes = [lowering.target(target) for target in forecasts]
         rules = _rules(self.dag) if rules is None else rules
-        needs: dict[int, tuple[int, ...]] = {}
-
-        def needed(node: int) -> tuple[int, ...]:
-            if node not in needs:
-                needs[node] = reads(self.dag, node, rules.get(node))
-            return needs[node]
-
-        # Where no filter can reject a trial, nothing needs to be picked from the survivors.
-        first = self.dag.upstream(self.filter_nodes or self.forecast_nodes, needed)
-        early = frozenset(first)
-        further = self.dag.upstream(self.forecast_nodes, needed) if self.filter_nodes else []
-        late = [node for node in further if node not in early]
-        carried = {used for node in late for used in needed(node)} | set(self.forecast_nodes)
-        keep = {*self.filter_nodes, *(carried & early)}
-        self.first = Phase(self.dag, machine(), rules, needed, _in_order(first, needed, keep), keep, None, may_err)
-        wanted = set(self.forecast_nodes)
-        self.late = Phase(self.dag, machine(), rules, needed, _in_order(late, needed, wanted), wanted, early, may_err)
-        self.inputs = _inputs(self.dag, [*first, *late])
-        self.slots = self.first.slots | self.late.slots
-        arrays = self.first.waiting + self.late.waiting
-        self.largest_block = _LARGEST_BLOCK
-        memory = _MOST_MEMORY if self.first.loops is not None and self.late.loops is not None else _MOST_IN_CACHES
-        while self.largest_block > _SMALLEST_BLOCK and self.largest_block * 8 * arrays > memory:
-            self.largest_block //= 2
-        columns = len(self.inputs) + len(self.forecast_nodes)
-        while self.largest_block > _SMALLEST_BLOCK and self.largest_block * 8 * columns > _MOST_IN_COLUMNS:
-            self.largest_block //= 2
-        in_arrays = array_bytes(lowering, self.filter_nodes, self.forecast_nodes, needed)
-        self.largest_block = fitting_block(self.largest_block, in_arrays, 8 * arrays)
+        made_of = self.filter_nodes, self.forecast_nodes, may_err
+        division = _Division(lowering, rules, *made_of)
+        self.largest_block = division.largest_block
+        looked_up = rules_of_looked_up(self.dag, division.nodes, rules, machine())
+        if looked_up:
+            less = _Division(lowering, {**rules, **looked_up}, *made_of, like=division)
+            division = less if less.largest_block >= self.largest_block else division
+        self.first, self.late = Phase(division.first, machine()), Phase(division.late, machine())
+        self.slots, self.inputs = self.first.slots | self.late.slots, _inputs(self.dag, division.nodes)
 
     @cached_property
     def careful_inputs(self) -> dict[int, str]:
@@ -118,11 +164,6 @@ class JitProgram:
     def evaluator(self, block: int) -> Evaluator:
         """See `Program`."""
         return _JitEvaluator(self, block)
-
-
-def _in_order(nodes: list[int], needed: Callable[[int], Sequence[int]], keep: Collection[int]) -> Sequence[int]:
-    """The nodes so that loops, which take them in order, leave few values to each other."""
-    return order_by_need(nodes, {node: needed(node) for node in nodes}, keep, _FEW_BETWEEN_LOOPS)
 
 
 def _inputs(dag: Dag, nodes: Sequence[int]) -> dict[int, str]:

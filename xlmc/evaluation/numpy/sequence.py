@@ -12,10 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.columns.cache_lines import aligned_array
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Select, uses
 from xlmc.evaluation.graph.number_lookups import key_of, lookup_of
-from xlmc.evaluation.numpy.looked_up import LookedUp, aligned_array, sines_with_cosines
+from xlmc.evaluation.numpy.looked_up import LookedUp
+from xlmc.evaluation.numpy.sine_pairs import sines_with_cosines
 from xlmc.evaluation.numpy.steps import Frame, LeaveFastPath, Step, is_elementwise_ufunc, make_step
 from xlmc.evaluation.passes.bounds import NodeBounds
 from xlmc.functions import Kind

@@ -21,11 +21,11 @@ from tables import placed
 import xlmc
 from xlmc.cli.methods import study_json
 from xlmc.report.methods import methods_tables, save_methods
-from xlmc.studies.methods import STATISTICS, Rung, Study, recommendation, study
-from xlmc.studies.methods.curve import rung_of
+from xlmc.studies.methods import STATISTICS, Runs, Study, recommendation, study
+from xlmc.studies.methods.curve import runs_of
 from xlmc.studies.methods.sampled import MONTE_CARLO
 
-__all__ = ["PAGE", "filled", "theory_rows", "theory_rungs", "write"]
+__all__ = ["PAGE", "filled", "theory_rows", "theory_runs", "write"]
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
@@ -41,10 +41,10 @@ THEORY_TRIALS, THEORY_RUNS = (8_192, 32_768, 131_072), 200
 _SEED = 5_000_000
 
 
-def theory_rungs(model: xlmc.Model, found: Study) -> list[Rung]:
+def theory_runs(model: xlmc.Model, found: Study) -> list[Runs]:
     """Many runs by Monte Carlo of a few lengths, which theory is held against."""
     return [
-        rung_of(
+        runs_of(
             trials,
             [MONTE_CARLO.run(model, trials, _SEED + trials + run) for run in range(THEORY_RUNS)],
             found.reference,
@@ -53,34 +53,34 @@ def theory_rungs(model: xlmc.Model, found: Study) -> list[Rung]:
     ]
 
 
-def theory_rows(found: Study, rungs: Sequence[Rung]) -> list[tuple[str, ...]]:
+def theory_rows(found: Study, lengths: Sequence[Runs]) -> list[tuple[str, ...]]:
     """Monte Carlo's errors over those that theory says, one row a run length and forecast, ± their standard errors."""
     return [
-        (f"{rung.budget:,}", forecast.name, *(_ratio(found, rung, forecast.name, each) for each in STATISTICS))
-        for rung in rungs
+        (f"{runs.budget:,}", forecast.name, *(_ratio(found, runs, forecast.name, each) for each in STATISTICS))
+        for runs in lengths
         for forecast in found.model.forecasts
     ]
 
 
-def _ratio(found: Study, rung: Rung, forecast: str, statistic: str) -> str:
-    error = rung.errors[forecast, statistic]
-    theory = found.reference.theory(forecast, statistic, rung.budget)
+def _ratio(found: Study, runs: Runs, forecast: str, statistic: str) -> str:
+    error = runs.errors[forecast, statistic]
+    theory = found.reference.theory(forecast, statistic, runs.budget)
     return f"{error.value / theory:.2f} ± {error.error / theory:.2f}"
 
 
-def filled(page: str, found: Study, rungs: Sequence[Rung]) -> str:
+def filled(page: str, found: Study, lengths: Sequence[Runs]) -> str:
     """The page with its tables and words made anew."""
     made = {
         "reference": methods_tables.reference_table(found),
         "bounds": methods_tables.bounds_table(found),
         "errors": methods_tables.error_table(found),
         "forecasts": methods_tables.forecast_table(found),
-        "lengths": methods_tables.rung_table(found),
+        "lengths": methods_tables.length_table(found),
     }
     for name, table in made.items():
         page = placed(page, name, f"*{table.title}*\n\n{_markdown(table.headings, table.rows, table.right)}")
     headings = ("Trials", "Forecast", *STATISTICS.values())
-    page = placed(page, "theory", _markdown(headings, theory_rows(found, rungs), 2))
+    page = placed(page, "theory", _markdown(headings, theory_rows(found, lengths), 2))
     words = "\n\n".join(f"> {said}" if said else "" for said in recommendation(found))
     return placed(page, "words", words.replace("\n\n>", "\n>\n>"))
 
@@ -109,16 +109,16 @@ def main(given: Sequence[str] | None = None) -> None:
         replicates=asked.replicates,
         told=lambda what: print(what, file=sys.stderr, flush=True),
     )
-    write(found, theory_rungs(model, found))
+    write(found, theory_runs(model, found))
 
 
-def write(found: Study, rungs: Sequence[Rung]) -> None:
+def write(found: Study, lengths: Sequence[Runs]) -> None:
     """The record, the page and the picture, and whether theory holds."""
     record: dict[str, Any] = {"machine": describe(), "found": study_json(found)}
     RESULTS.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    PAGE.write_text(filled(PAGE.read_text(encoding="utf-8"), found, rungs), encoding="utf-8")
+    PAGE.write_text(filled(PAGE.read_text(encoding="utf-8"), found, lengths), encoding="utf-8")
     save_methods(found, PICTURE, overwrite=True)
-    ratios = [float(cell.partition(" ")[0]) for row in theory_rows(found, rungs) for cell in row[2:]]
+    ratios = [float(cell.partition(" ")[0]) for row in theory_rows(found, lengths) for cell in row[2:]]
     print(
         f"Monte Carlo's errors are {min(ratios):.2f} to {max(ratios):.2f} of theory's, {np.median(ratios):.2f} mostly"
     )

@@ -12,7 +12,7 @@ from xlmc.cli.study_output import estimate_json
 from xlmc.cli.terminal import paragraph, say, say_json
 
 if TYPE_CHECKING:
-    from xlmc.studies.methods import Curve, Rung, Study
+    from xlmc.studies.methods import Curve, Runs, Study
 
 __all__ = ["methods", "study_json"]
 
@@ -181,7 +181,7 @@ def _curve(found: Study, curve: Curve) -> dict[str, Any]:
         "bounds_at": [
             {"forecast": name, "end": end, "assumptions": dict(point)} for (name, end), point in curve.ends.items()
         ],
-        "runs": [_rung(found, rung, drawn) for rung in curve.rungs],
+        "runs": [_of_length(found, runs, drawn) for runs in curve.lengths],
         "slopes": {
             each: {"trials": finite(curve.slope(each, "budget")), "seconds": finite(curve.slope(each, "seconds"))}
             for each in STATISTICS
@@ -192,25 +192,25 @@ def _curve(found: Study, curve: Curve) -> dict[str, Any]:
     }
 
 
-def _rung(found: Study, rung: Rung, drawn: bool) -> dict[str, Any]:
+def _of_length(found: Study, runs: Runs, drawn: bool) -> dict[str, Any]:
     from xlmc.statistics.estimate import finite
     from xlmc.studies.methods import STATISTICS
 
     return {
-        "trials": rung.budget if drawn else None,
-        "seconds": finite(rung.seconds),
-        "seconds_median": finite(rung.usual),
-        "seconds_measured": rung.measured,
-        "evaluations": rung.evaluations,
-        "effective": rung.effective,
-        "failed": rung.failed,
-        "acceptance_error": None if rung.acceptance is None else finite(rung.acceptance.value),
+        "trials": runs.budget if drawn else None,
+        "seconds": finite(runs.seconds),
+        "seconds_median": finite(runs.usual),
+        "seconds_measured": runs.measured,
+        "evaluations": runs.evaluations,
+        "effective": runs.effective,
+        "failed": runs.failed,
+        "acceptance_error": None if runs.acceptance is None else finite(runs.acceptance.value),
         "errors": {
             forecast.name: {
                 each: {
-                    "rms": finite(rung.errors[forecast.name, each].value),
-                    "error": finite(rung.errors[forecast.name, each].error),
-                    "bias": finite(rung.errors[forecast.name, each].bias),
+                    "rms": finite(runs.errors[forecast.name, each].value),
+                    "error": finite(runs.errors[forecast.name, each].error),
+                    "bias": finite(runs.errors[forecast.name, each].bias),
                 }
                 for each in STATISTICS
             }

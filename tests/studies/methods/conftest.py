@@ -32,7 +32,7 @@ def timed(small):
 
     def clocked(curve):
         each = SECONDS[curve.method.key]
-        return replace(curve, rungs=tuple(replace(rung, seconds=each * rung.budget) for rung in curve.rungs))
+        return replace(curve, lengths=tuple(replace(runs, seconds=each * runs.budget) for runs in curve.lengths))
 
     return replace(small, curves=tuple(map(clocked, small.curves)), engines=tuple(map(clocked, small.engines)))
 

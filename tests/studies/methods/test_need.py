@@ -18,12 +18,12 @@ CONSISTENT = ("mc", "lhs", "sobol", "grid")
 
 
 def with_errors(curve, change):
-    """The curve with other errors: `change` takes the place of a rung and its error."""
-    rungs = tuple(
-        replace(rung, errors={kind: change(place, each) for kind, each in rung.errors.items()})
-        for place, rung in enumerate(curve.rungs)
+    """The curve with other errors: `change` takes the place of a runs and its error."""
+    lengths = tuple(
+        replace(runs, errors={kind: change(place, each) for kind, each in runs.errors.items()})
+        for place, runs in enumerate(curve.lengths)
     )
-    return replace(curve, rungs=rungs)
+    return replace(curve, lengths=lengths)
 
 
 def curve_of(found, key):
@@ -66,7 +66,7 @@ def test_a_floor_is_found_where_there_is_one_and_left_open_where_runs_are_few(sm
         generator = np.random.default_rng(3)
 
         def changed(place, _):
-            spread = theory / curve.rungs[place].budget ** 0.5
+            spread = theory / curve.lengths[place].budget ** 0.5
             return rms_of(mean_error + spread * generator.standard_normal(runs))
 
         return law(small, with_errors(curve, changed), kind)
@@ -83,7 +83,7 @@ def test_the_parts_of_a_miss_are_measured(small):
     """Without filters the mean is 8.897 mph, with them 4.742 (2·10⁹ trials made independently of this project)."""
     first = curve_of(small, "taylor-1")
     found = replace(
-        shortfall(small, first), statistic="mean", error=first.rungs[0].errors["Nissan impact speed", "mean"].bias
+        shortfall(small, first), statistic="mean", error=first.lengths[0].errors["Nissan impact speed", "mean"].bias
     )
     parts = parts_of(small, found)
     assert parts.filters == pytest.approx(8.897 - 4.742, abs=0.06)
@@ -129,11 +129,11 @@ def test_an_answer_that_the_reference_cannot_judge_is_left_open(small):
 
 
 def test_times_never_fall_as_runs_grow(small):
-    rungs = [
-        replace(rung, seconds=seconds) for rung, seconds in zip(small.curves[0].rungs, (3.0, 1.0, 2.0), strict=True)
+    lengths = [
+        replace(runs, seconds=seconds) for runs, seconds in zip(small.curves[0].lengths, (3.0, 1.0, 2.0), strict=True)
     ]
-    assert [rung.seconds for rung in in_order(rungs)] == [1.0, 1.0, 2.0]
-    curve = replace(small.curves[0], rungs=in_order(rungs))
+    assert [runs.seconds for runs in in_order(lengths)] == [1.0, 1.0, 2.0]
+    curve = replace(small.curves[0], lengths=in_order(lengths))
     times = [seconds_of(curve, trials) for trials in (100, 512, 1_000, 2_048, 5_000, 8_192, 20_000)]
     assert times == sorted(times)
 

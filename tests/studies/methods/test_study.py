@@ -9,7 +9,7 @@ from xlmc.errors import SimulationError
 from xlmc.report.methods import methods_tables
 from xlmc.studies.methods import STATISTICS, recommendation, study
 from xlmc.studies.methods.converged_reference import reference_of
-from xlmc.studies.methods.curve import rms_of, rung_of, slope_of
+from xlmc.studies.methods.curve import rms_of, runs_of, slope_of
 from xlmc.studies.methods.need import need, reach_of, shortfall
 from xlmc.studies.methods.optimised import in_step
 from xlmc.studies.methods.sampled import MONTE_CARLO
@@ -34,14 +34,14 @@ def test_sampling_errors_are_what_theory_says(case_study):
     """200 runs know a root mean square to 5 %, the reference the density at a quantile to 4; 20 % is far more."""
     reference = reference_of(case_study, 1 << 23, "mc", "jit", 3)
     results = [MONTE_CARLO.run(case_study, TRIALS, 1_000 + seed) for seed in range(REPLICATES)]
-    rung = rung_of(TRIALS, results, reference)
+    runs = runs_of(TRIALS, results, reference)
     for forecast in case_study.forecasts:
         for statistic in STATISTICS:
             theory = reference.theory(forecast.name, statistic, TRIALS)
             own = getattr(reference.errors[forecast.name], statistic)
-            assert rung.errors[forecast.name, statistic].value == pytest.approx(np.hypot(theory, own), rel=0.2)
+            assert runs.errors[forecast.name, statistic].value == pytest.approx(np.hypot(theory, own), rel=0.2)
     share = reference.acceptance.value
-    assert rung.acceptance.value == pytest.approx((share * (1 - share) / TRIALS) ** 0.5, rel=0.2)
+    assert runs.acceptance.value == pytest.approx((share * (1 - share) / TRIALS) ** 0.5, rel=0.2)
 
 
 def test_theory_is_that_of_the_independent_reference(case_study):
@@ -58,29 +58,29 @@ def test_every_method_is_there(small):
     assert keys[10:] == ["mc/jit", "mc/formulas"]
     assert small.absent == {}
     assert small.ladder == (512, 2_048, 8_192)
-    assert [rung.settled for rung in small.curves[0].rungs] == [False, True, True]
+    assert [runs.settled for runs in small.curves[0].lengths] == [False, True, True]
 
 
 def test_what_every_method_tells(small):
     for curve in small.every:
-        assert curve.rungs[-1].seconds > 0.0
-        assert curve.rungs[-1].evaluations >= 1
+        assert curve.lengths[-1].seconds > 0.0
+        assert curve.lengths[-1].evaluations >= 1
         if curve.method.errors != "once":
-            assert all(np.isfinite(curve.rungs[-1].shares[each]) for each in STATISTICS)
-            assert curve.rungs[-1].acceptance is not None
+            assert all(np.isfinite(curve.lengths[-1].shares[each]) for each in STATISTICS)
+            assert curve.lengths[-1].acceptance is not None
     grid = next(curve for curve in small.curves if curve.method.key == "grid")
-    assert grid.rungs[-1].effective > 0
+    assert grid.lengths[-1].effective > 0
 
 
 def test_an_engine_has_the_errors_of_its_trials(small):
     plain = next(curve for curve in small.curves if curve.method.key == "mc")
     for engine in small.engines:
         for statistic in STATISTICS:
-            expected = plain.rungs[-1].shares[statistic]
-            assert engine.rungs[-1].shares[statistic] == pytest.approx(expected, rel=1e-3)
+            expected = plain.lengths[-1].shares[statistic]
+            assert engine.lengths[-1].shares[statistic] == pytest.approx(expected, rel=1e-3)
     slow = small.engines[-1]
-    assert not slow.rungs[-1].measured
-    assert slow.rungs[-1].seconds == pytest.approx(4 * slow.rungs[-2].seconds)
+    assert not slow.lengths[-1].measured
+    assert slow.lengths[-1].seconds == pytest.approx(4 * slow.lengths[-2].seconds)
 
 
 def test_what_cannot_be_seen_is_said(small):
@@ -113,7 +113,7 @@ def test_need_follows_the_square_root(small):
     assert found.statistic in STATISTICS
     assert found.trials > small.ladder[-1]
     assert found.seconds > 0.0
-    value, low, high = reach_of(small, plain, plain.rungs[-1], (found.forecast, found.statistic))
+    value, low, high = reach_of(small, plain, plain.lengths[-1], (found.forecast, found.statistic))
     assert 1.0 < low < value < high
 
 
@@ -125,7 +125,7 @@ def test_without_filters_the_differential_method_may_do(straight):
     first = next(curve for curve in found.once if curve.method.key == "taylor-1")
     assert shortfall(found, first).times < 1.0
     sobol, plain = (next(c for c in found.curves if c.method.key == key) for key in ("sobol", "mc"))
-    assert sobol.rungs[-1].shares["mean"] < 0.2 * plain.rungs[-1].shares["mean"]
+    assert sobol.lengths[-1].shares["mean"] < 0.2 * plain.lengths[-1].shares["mean"]
 
 
 def test_nothing_is_said_of_filters_where_there_are_none(straight):
@@ -153,7 +153,7 @@ def test_ends_that_are_never_off_need_no_more_trials(book):
         replicates=2,
     )
     plain = next(curve for curve in found.curves if curve.method is MONTE_CARLO)
-    assert plain.rungs[-1].errors["f", "low"].value == 0.0
+    assert plain.lengths[-1].errors["f", "low"].value == 0.0
     assert np.isfinite(need(found, plain).trials)
     assert not any("however many trials" in said for said in recommendation(found))
 
@@ -240,8 +240,8 @@ def test_a_mean_that_does_not_converge_is_asked_of_no_method(book):
     assert "more trials help no method" in said[2]
     plain = next(curve for curve in found.curves if curve.method is MONTE_CARLO)
     assert need(found, plain).statistic in ("low", "high")
-    assert np.isnan(plain.rungs[-1].shares["mean"])  # its error is no share of anything, and no slope is drawn of it
-    assert plain.rungs[-1].shares["low"] < 1.0
+    assert np.isnan(plain.lengths[-1].shares["mean"])  # its error is no share of anything, and no slope is drawn of it
+    assert plain.lengths[-1].shares["low"] < 1.0
 
 
 def test_no_forecast(book):

@@ -243,8 +243,8 @@ def _has(curve: Curve, column: int) -> bool:
     """Whether there is an error above zero to draw."""
     index = column - FIRST_ERROR
     if index == len(STATISTICS):
-        return any(rung.acceptance is not None and rung.acceptance.value > 0.0 for rung in curve.rungs)
-    return any(rung.shares[[*STATISTICS][index]] > 0.0 for rung in curve.rungs)
+        return any(runs.acceptance is not None and runs.acceptance.value > 0.0 for runs in curve.lengths)
+    return any(runs.shares[[*STATISTICS][index]] > 0.0 for runs in curve.lengths)
 
 
 def _finish(chart: ChartScatter, size: tuple[int, int]) -> ChartScatter:

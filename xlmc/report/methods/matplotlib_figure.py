@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 
 from xlmc.report.methods.speed_chart import HOW_TO_READ, Line, Picture, Work, column_of, guides_of, picture_of, spread
-from xlmc.studies.methods import STATISTICS, Curve, Rung, Study
+from xlmc.studies.methods import STATISTICS, Curve, Runs, Study
 from xlmc.studies.methods.curve import Rms
 
 if TYPE_CHECKING:
@@ -167,19 +167,19 @@ def _labels(axis: Axes, picture: Picture) -> None:
         )  # fmt: skip
 
 
-def _numbers(study: Study) -> dict[str, Callable[[Rung], tuple[float, float, float]]]:
+def _numbers(study: Study) -> dict[str, Callable[[Runs], tuple[float, float, float]]]:
     """Title -> the error of a run length in % and its interval; of the accepted share in % of it."""
 
-    def of(statistic: str) -> Callable[[Rung], tuple[float, float, float]]:
-        return lambda rung: _with_interval(
-            100.0 * rung.shares[statistic],
-            [rung.errors[name, statistic] for name in study.varying if study.converges(name, statistic)],
+    def of(statistic: str) -> Callable[[Runs], tuple[float, float, float]]:
+        return lambda runs: _with_interval(
+            100.0 * runs.shares[statistic],
+            [runs.errors[name, statistic] for name in study.varying if study.converges(name, statistic)],
         )
 
-    def accepted(rung: Rung) -> tuple[float, float, float]:
-        if rung.acceptance is None:
+    def accepted(runs: Runs) -> tuple[float, float, float]:
+        if runs.acceptance is None:
             return (math.nan,) * 3
-        return _with_interval(100.0 * rung.acceptance.value / study.reference.acceptance.value, [rung.acceptance])
+        return _with_interval(100.0 * runs.acceptance.value / study.reference.acceptance.value, [runs.acceptance])
 
     return {**{name: of(each) for each, name in STATISTICS.items()}, "Accepted share, % of it": accepted}
 
@@ -193,11 +193,11 @@ def _with_interval(value: float, errors: list[Rms]) -> tuple[float, float, float
     return value, value * float(low), value * float(high)
 
 
-def _small(axis: Axes, study: Study, title: str, get: Callable[[Rung], tuple[float, float, float]]) -> None:
+def _small(axis: Axes, study: Study, title: str, get: Callable[[Runs], tuple[float, float, float]]) -> None:
     axis.set(xscale="log", yscale="log")
     drawn = False
     for curve in study.every:
-        if curve.answers and all(rung.measured for rung in curve.rungs):
+        if curve.answers and all(runs.measured for runs in curve.lengths):
             drawn |= _small_line(axis, study, curve, get)
     axis.set_title(title, loc="left", fontsize=9.5, color=_INK)
     axis.set_xlabel("trials", fontsize=8)
@@ -210,9 +210,9 @@ def _small(axis: Axes, study: Study, title: str, get: Callable[[Rung], tuple[flo
         _say(axis, "every trial is accepted" if study.reference.acceptance.value == 1.0 else "nothing to show")
 
 
-def _small_line(axis: Axes, study: Study, curve: Curve, get: Callable[[Rung], tuple[float, float, float]]) -> bool:
+def _small_line(axis: Axes, study: Study, curve: Curve, get: Callable[[Runs], tuple[float, float, float]]) -> bool:
     style = STYLES.get(curve.method.key, OTHER)
-    found = [(float(rung.budget), *get(rung)) for rung in curve.rungs]
+    found = [(float(runs.budget), *get(runs)) for runs in curve.lengths]
     known = [each for each in found if np.isfinite(each[1]) and each[1] > 0.0]
     if not known:
         return False

@@ -51,7 +51,7 @@ def page(study: Study) -> str:
     words = "".join(f'<p class="said">{_text(each)}</p>\n' for each in recommendation(study))
     shown = (
         methods_tables.error_table(study), methods_tables.bounds_table(study), methods_tables.reference_table(study),
-        methods_tables.forecast_table(study), methods_tables.rung_table(study),
+        methods_tables.forecast_table(study), methods_tables.length_table(study),
     )  # fmt: skip
     how = "".join(f'<p class="said">{escape(each)}</p>\n' for each in HOW_TO_READ) if study.varying else ""
     figures = "".join(

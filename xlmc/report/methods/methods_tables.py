@@ -11,7 +11,7 @@ import numpy as np
 from xlmc.report.summary import estimate_text
 from xlmc.sampling.sampling_methods import METHODS
 from xlmc.statistics import Estimate, format_estimate
-from xlmc.studies.methods import STATISTICS, Curve, Method, Rung, Study, need
+from xlmc.studies.methods import STATISTICS, Curve, Method, Runs, Study, need
 from xlmc.studies.methods.answer import seconds_text, trials_text
 from xlmc.studies.methods.need import shortfall
 
@@ -25,9 +25,9 @@ __all__ = [
     "error_table",
     "floor_of",
     "forecast_table",
+    "length_table",
     "near_text",
     "reference_table",
-    "rung_table",
 ]
 
 _NONE = "–"
@@ -86,15 +86,15 @@ def error_table(study: Study) -> Table:
 
 
 def _cells(study: Study, curve: Curve) -> Iterator[str]:
-    rung = curve.rungs[-1]
+    runs = curve.lengths[-1]
     drawn = curve not in study.once
-    yield f"{rung.budget:,}" if drawn else _NONE
-    yield ("" if rung.measured else "≈ ") + seconds_text(rung.seconds)
-    yield f"{rung.evaluations:,.0f}"
+    yield f"{runs.budget:,}" if drawn else _NONE
+    yield ("" if runs.measured else "≈ ") + seconds_text(runs.seconds)
+    yield f"{runs.evaluations:,.0f}"
     for statistic in STATISTICS:
-        yield _share_text(rung.shares[statistic], 0.0 if drawn else floor_of(study, statistic))
-    yield _NONE if rung.acceptance is None else percent_text(rung.acceptance.value / study.reference.acceptance.value)
-    yield _NONE if rung.effective is None else f"{rung.effective:,.0f}"
+        yield _share_text(runs.shares[statistic], 0.0 if drawn else floor_of(study, statistic))
+    yield _NONE if runs.acceptance is None else percent_text(runs.acceptance.value / study.reference.acceptance.value)
+    yield _NONE if runs.effective is None else f"{runs.effective:,.0f}"
     yield slope_text(curve.slope("mean", "budget"))
     yield _need_text(study, curve) if drawn else near_text(study, curve)
 
@@ -115,32 +115,32 @@ def _need_text(study: Study, curve: Curve) -> str:
     return f"{trials_text(found.trials)} trials, {seconds_text(found.seconds)}"
 
 
-def rung_table(study: Study) -> Table:
+def length_table(study: Study) -> Table:
     """Every run length of every method."""
     work = ("Method", "Trials", "Runs", "Time", "Evaluations")
     headings = (*work, *STATISTICS.values(), "Accepted", "Effective", "Failed")
     rows = []
     for curve in study.every:
         floors = {each: floor_of(study, each) if curve in study.once else 0.0 for each in STATISTICS}
-        for rung in curve.rungs if curve.answers else ():
+        for runs in curve.lengths if curve.answers else ():
             known = study.reference.acceptance.value
             rows.append((
                 curve.method.name,
-                _NONE if curve in study.once else f"{rung.budget:,}",
-                f"{_runs(rung):,}",
-                ("" if rung.measured else "≈ ") + seconds_text(rung.seconds),
-                f"{rung.evaluations:,.0f}",
-                *(_share_text(rung.shares[each], floors[each]) for each in STATISTICS),
-                _NONE if rung.acceptance is None else percent_text(rung.acceptance.value / known),
-                _NONE if rung.effective is None else f"{rung.effective:,.0f}",
-                f"{rung.failed:,}" if rung.failed else _NONE,
+                _NONE if curve in study.once else f"{runs.budget:,}",
+                f"{_runs(runs):,}",
+                ("" if runs.measured else "≈ ") + seconds_text(runs.seconds),
+                f"{runs.evaluations:,.0f}",
+                *(_share_text(runs.shares[each], floors[each]) for each in STATISTICS),
+                _NONE if runs.acceptance is None else percent_text(runs.acceptance.value / known),
+                _NONE if runs.effective is None else f"{runs.effective:,.0f}",
+                f"{runs.failed:,}" if runs.failed else _NONE,
             ))  # fmt: skip
     title = "Errors in % of each forecast's 5–95 % range, root mean square over runs and forecasts"
     return Table(title, headings, tuple(rows))
 
 
-def _runs(rung: Rung) -> int:
-    return max(each.n for each in rung.errors.values()) + rung.failed
+def _runs(runs: Runs) -> int:
+    return max(each.n for each in runs.errors.values()) + runs.failed
 
 
 def forecast_table(study: Study) -> Table:
@@ -152,7 +152,7 @@ def forecast_table(study: Study) -> Table:
         rows.append((forecast.name, forecast.units, f"Theory, {trials:,} independent trials", *theory))
         for curve in study.every:
             if curve.answers:
-                found = (curve.rungs[-1].errors[forecast.name, each] for each in STATISTICS)
+                found = (curve.lengths[-1].errors[forecast.name, each] for each in STATISTICS)
                 cells = (format_of(each.value, each.error) for each in found)
                 rows.append((forecast.name, forecast.units, curve.method.name, *cells))
     headings = ("Forecast", "Units", "Method", *STATISTICS.values())
@@ -168,9 +168,9 @@ def bounds_table(study: Study) -> Table:
         found = [curve.ranges.get(forecast.name, (np.nan, np.nan)) for curve in curves]
         central = _ends(answer.low, answer.high)
         rows.append((forecast.name, forecast.units, *(_ends(*each) for each in found), central))
-    last = [curve.rungs[-1] for curve in curves]
-    rows.append(("Evaluations", "", *(f"{rung.evaluations:,.0f}" for rung in last), ""))
-    rows.append(("Time", "", *(seconds_text(rung.seconds) for rung in last), ""))
+    last = [curve.lengths[-1] for curve in curves]
+    rows.append(("Evaluations", "", *(f"{runs.evaluations:,.0f}" for runs in last), ""))
+    rows.append(("Time", "", *(seconds_text(runs.seconds) for runs in last), ""))
     headings = ("Forecast", "Units", *(curve.method.name for curve in curves), "Reference, central range")
     return Table("Bounds: what is possible", headings, tuple(rows), 2)
 

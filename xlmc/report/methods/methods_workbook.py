@@ -13,7 +13,7 @@ from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.page import Page
 from xlmc.report.sheets.styles import CREATED, Styles
-from xlmc.studies.methods import STATISTICS, Curve, Rung, Study, recommendation
+from xlmc.studies.methods import STATISTICS, Curve, Runs, Study, recommendation
 
 __all__ = ["book"]
 
@@ -92,7 +92,7 @@ def _texts(page: Page, table: methods_tables.Table) -> None:
 
 
 def _write_runs(page: Page, study: Study) -> list[tuple[Curve, int, int]]:
-    """Write the rungs; gives each curve's first and last row."""
+    """Write a row for the runs of each length; gives each curve's first and last row."""
     page.title(
         "Every run length", "Root mean square errors over the runs and the forecasts; the charts are drawn from here"
     )
@@ -103,30 +103,30 @@ def _write_runs(page: Page, study: Study) -> list[tuple[Curve, int, int]]:
         if not curve.answers:
             continue
         first = page.row
-        for rung in curve.rungs:
-            page.line(_rung_cells(study, curve, rung))
+        for runs in curve.lengths:
+            page.line(_length_cells(study, curve, runs))
         curve_rows.append((curve, first, page.row - 1))
     page.line([Shown("The reference's own error", look="label"), *[cells.BLANK] * 4, *_floor(study)])
     page.set_up_printing(study.model.workbook.name)
     return curve_rows
 
 
-def _rung_cells(study: Study, curve: Curve, rung: Rung) -> list[Shown]:
+def _length_cells(study: Study, curve: Curve, runs: Runs) -> list[Shown]:
     drawn = curve not in study.once
     known = study.reference.acceptance.value
-    accepted = None if rung.acceptance is None else 100.0 * rung.acceptance.value / known
+    accepted = None if runs.acceptance is None else 100.0 * runs.acceptance.value / known
     return [
         Shown(curve.method.name, look="name"),
-        cells.count(rung.budget) if drawn else cells.BLANK,
-        cells.count(max(each.n for each in rung.errors.values())),
-        _number(rung.seconds),
-        cells.exact(rung.evaluations, "#,##0"),
-        *(_number(100.0 * rung.shares[each]) for each in STATISTICS),
+        cells.count(runs.budget) if drawn else cells.BLANK,
+        cells.count(max(each.n for each in runs.errors.values())),
+        _number(runs.seconds),
+        cells.exact(runs.evaluations, "#,##0"),
+        *(_number(100.0 * runs.shares[each]) for each in STATISTICS),
         _number(accepted),
-        _number(rung.usual),
-        cells.exact(rung.effective, "#,##0"),
-        cells.count(rung.failed),
-        Shown("yes" if rung.measured else "by rate"),
+        _number(runs.usual),
+        cells.exact(runs.effective, "#,##0"),
+        cells.count(runs.failed),
+        Shown("yes" if runs.measured else "by rate"),
     ]
 
 

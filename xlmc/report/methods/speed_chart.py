@@ -182,7 +182,7 @@ def picture_of(study: Study, work: Work) -> Picture | None:
     for curve in study.every:
         if not curve.answers:
             continue
-        if not all(rung.measured for rung in curve.rungs):
+        if not all(runs.measured for runs in curve.lengths):
             absent.append(f"{curve.method.name} is not drawn: {_needs(study, curve, found, finer)}.")
             continue
         line = _line(study, curve, work, scale, found, finer)
@@ -230,9 +230,9 @@ def _line(study: Study, curve: Curve, work: Work, scale: float, found: Choice, f
     once = curve in study.once
     kind = _kind(study, curve, found)
     points = []
-    for rung in curve.rungs:
-        y, low, high = (scale * each for each in reach_of(study, curve, rung, kind))
-        x = float(getattr(rung, work))
+    for runs in curve.lengths:
+        y, low, high = (scale * each for each in reach_of(study, curve, runs, kind))
+        x = float(getattr(runs, work))
         if np.isfinite(y) and y > 0.0 and np.isfinite(x) and x > 0.0:
             points.append(Point(x, y, low, high))
     ahead = () if once or not points else _ahead(study, curve, work, scale, kind, found.needs[curve])
@@ -254,7 +254,7 @@ def _ahead(
     """
     tolerance = study.tolerance(kind[0])
     rule = law(study, curve, kind)
-    budget = float(curve.rungs[-1].budget)
+    budget = float(curve.lengths[-1].budget)
     most = rule.trials(tolerance / FINER)
     if not wanted.usable or not np.isfinite(most) or most <= budget:
         return ()
@@ -265,8 +265,8 @@ def _ahead(
 def _work_of(curve: Curve, work: Work, trials: float) -> float:
     if work == "seconds":
         return seconds_of(curve, trials)
-    across = np.array([float(rung.budget) for rung in curve.rungs])
-    spent = np.array([rung.evaluations for rung in curve.rungs])
+    across = np.array([float(runs.budget) for runs in curve.lengths])
+    spent = np.array([runs.evaluations for runs in curve.lengths])
     if trials <= across[-1]:
         return float(np.interp(trials, across, spent))
     each = float((spent[-1] - spent[-2]) / (across[-1] - across[-2])) if across.size > 1 else 1.0

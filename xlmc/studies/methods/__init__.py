@@ -9,7 +9,7 @@ from __future__ import annotations
 from xlmc.studies.methods.answer import STATISTICS, Answer, Method, MethodResult
 from xlmc.studies.methods.converged_reference import Reference
 from xlmc.studies.methods.corners import Corners
-from xlmc.studies.methods.curve import Curve, Rms, Rung
+from xlmc.studies.methods.curve import Curve, Rms, Runs
 from xlmc.studies.methods.differential import FirstOrder, SecondOrder, WorstCase
 from xlmc.studies.methods.importance_grid import ImportanceGrid
 from xlmc.studies.methods.need import Need, need
@@ -34,7 +34,7 @@ __all__ = [
     "Optimised",
     "Reference",
     "Rms",
-    "Rung",
+    "Runs",
     "Sampled",
     "SecondOrder",
     "Study",

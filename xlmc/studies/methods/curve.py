@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from xlmc.studies.methods.answer import STATISTICS, Method, MethodResult
 from xlmc.studies.methods.converged_reference import Reference
 
-__all__ = ["NORMAL_95", "Curve", "Rms", "Rung", "in_order", "rms_of", "rung_of", "slope_of"]
+__all__ = ["NORMAL_95", "Curve", "Rms", "Runs", "in_order", "rms_of", "runs_of", "slope_of"]
 
 NORMAL_95: Final = 1.959964
 """95 of 100 runs lie within so many root mean square errors."""
@@ -111,7 +111,7 @@ def slope_of(x: Sequence[float], y: Sequence[float], weights: Sequence[float] | 
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Rung:
+class Runs:
     """The runs of one length.
 
     Attributes:
@@ -145,11 +145,11 @@ class Rung:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Curve:
-    """A method's rungs, the shortest runs first; a single one where it has no budget to spend.
+    """A method's runs, by length, the shortest first; of one length where it has no budget to spend.
 
     Attributes:
         method: whose.
-        rungs: of it.
+        lengths: its runs.
         setup: seconds of its first run beyond those of the next, in which things are compiled or imported.
         remarks: of its last run.
         ranges: forecast -> the bounds it gives, for methods that give bounds.
@@ -159,7 +159,7 @@ class Curve:
     """
 
     method: Method
-    rungs: tuple[Rung, ...]
+    lengths: tuple[Runs, ...]
     setup: float
     remarks: tuple[str, ...]
     ranges: Mapping[str, tuple[float, float]]
@@ -169,37 +169,37 @@ class Curve:
     @property
     def answers(self) -> bool:
         """Whether it gives mean, standard deviation and range, and not only bounds."""
-        return any(np.isfinite(value) for value in self.rungs[-1].shares.values())
+        return any(np.isfinite(value) for value in self.lengths[-1].shares.values())
 
     @property
-    def settled(self) -> tuple[Rung, ...]:
-        """The rungs that errors are extrapolated from; the longest where too few trials are accepted even there."""
-        return tuple(rung for rung in self.rungs if rung.settled) or self.rungs[-1:]
+    def settled(self) -> tuple[Runs, ...]:
+        """The runs that errors are extrapolated from; the longest where too few trials are accepted even there."""
+        return tuple(runs for runs in self.lengths if runs.settled) or self.lengths[-1:]
 
     def slope(self, statistic: str, against: str = "seconds") -> float:
         """The slope of the error, in logarithms, against `seconds`, `evaluations` or `budget`; NaN where these hardly
         differ.
         """
-        across = [float(getattr(rung, against)) for rung in self.settled]
-        weights = [max(max(error.n for error in rung.errors.values()) - 1.0, 1.0) for rung in self.settled]
-        return slope_of(across, [rung.shares[statistic] for rung in self.settled], weights)
+        across = [float(getattr(runs, against)) for runs in self.settled]
+        weights = [max(max(error.n for error in runs.errors.values()) - 1.0, 1.0) for runs in self.settled]
+        return slope_of(across, [runs.shares[statistic] for runs in self.settled], weights)
 
 
-def in_order(rungs: Sequence[Rung]) -> tuple[Rung, ...]:
-    """The rungs with times that never fall as runs grow longer.
+def in_order(lengths: Sequence[Runs]) -> tuple[Runs, ...]:
+    """The runs with times that never fall as they grow longer.
 
     A longer run does all that a shorter one does. Where its fastest took less time, every shorter run was held up by
     something else that the machine did, and would take no longer than it.
     """
-    found: list[Rung] = []
+    found: list[Runs] = []
     least = np.inf
-    for rung in reversed(rungs):
-        least = min(least, float(np.nan_to_num(rung.seconds, nan=np.inf)))
-        found.append(replace(rung, seconds=least if np.isfinite(least) else np.nan))
+    for runs in reversed(lengths):
+        least = min(least, float(np.nan_to_num(runs.seconds, nan=np.inf)))
+        found.append(replace(runs, seconds=least if np.isfinite(least) else np.nan))
     return tuple(reversed(found))
 
 
-def rung_of(budget: int, results: Sequence[MethodResult], reference: Reference) -> Rung:
+def runs_of(budget: int, results: Sequence[MethodResult], reference: Reference) -> Runs:
     """What runs of one length are off by."""
     errors = {
         (name, statistic): rms_of(
@@ -213,7 +213,7 @@ def rung_of(budget: int, results: Sequence[MethodResult], reference: Reference) 
     effective = [result.effective for result in results if result.effective is not None]
     lost = sum(all(np.isnan(answer.mean) for answer in result.answers.values()) for result in results)
     timed = [result.seconds for result in results if np.isfinite(result.seconds)]
-    return Rung(
+    return Runs(
         budget=budget,
         seconds=min(timed, default=np.nan),
         usual=median(timed) if timed else np.nan,

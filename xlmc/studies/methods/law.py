@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.studies.methods.answer import STATISTICS
-from xlmc.studies.methods.curve import NORMAL_95, Curve, Rms, Rung, slope_of
+from xlmc.studies.methods.curve import NORMAL_95, Curve, Rms, Runs, slope_of
 from xlmc.studies.methods.study import Study
 
 __all__ = ["Law", "law"]
@@ -83,54 +83,54 @@ def _comparisons(study: Study) -> int:
 def law(study: Study, curve: Curve, kind: Kind) -> Law:
     """The law of one number of a method that draws."""
     theory = study.reference.theory(*kind, 1)
-    rungs = curve.settled
+    lengths = curve.settled
     match curve.method.errors:
         case "independent":
-            return _law_of_independent(rungs, kind, theory)
+            return _law_of_independent(lengths, kind, theory)
         case "floor":
-            return _law_with_floor(study, rungs, kind, theory)
+            return _law_with_floor(study, lengths, kind, theory)
         case "weighted":
-            return _fit_law(rungs[-_WINDOW:], kind, may_be_steeper=False)
+            return _fit_law(lengths[-_WINDOW:], kind, may_be_steeper=False)
         case _:
-            return _law_near_tolerance(rungs, kind, study.tolerance(kind[0]))
+            return _law_near_tolerance(lengths, kind, study.tolerance(kind[0]))
 
 
-def _law_of_independent(rungs: Sequence[Rung], kind: Kind, theory: float) -> Law:
+def _law_of_independent(lengths: Sequence[Runs], kind: Kind, theory: float) -> Law:
     """The law of theory, unless the runs contradict it: a quantile may lie where there is hardly any density."""
     from scipy.special import chdtr, chdtrc
 
     if not theory > 0.0:
-        return _fit_law(rungs, kind, may_be_steeper=False)
-    ratios = [(each.n - 1, each.spread * rung.budget**0.5 / theory) for rung, each in _known_errors(rungs, kind)]
+        return _fit_law(lengths, kind, may_be_steeper=False)
+    ratios = [(each.n - 1, each.spread * runs.budget**0.5 / theory) for runs, each in _known_errors(lengths, kind)]
     free = sum(n for n, _ in ratios)
     squares = sum(n * ratio**2 for n, ratio in ratios)
     constant = theory
     if free and min(chdtr(free, squares), chdtrc(free, squares)) < _HARDLY:
         constant = theory * float(np.sqrt(squares / free))
-    return Law(constant, _HALF, rungs[0].budget)
+    return Law(constant, _HALF, lengths[0].budget)
 
 
-def _law_near_tolerance(rungs: Sequence[Rung], kind: Kind, tolerance: float) -> Law:
+def _law_near_tolerance(lengths: Sequence[Runs], kind: Kind, tolerance: float) -> Law:
     """The line through the run lengths nearest to where the error falls to the tolerance, the longest first."""
-    exact = _exact_from(rungs, kind)
+    exact = _exact_from(lengths, kind)
     if exact is not None:
         return Law(0.0, _HALF, exact)
-    for start in range(max(len(rungs) - _WINDOW, 0), -1, -1):
-        found = _fit_law(rungs[start : start + _WINDOW], kind, may_be_steeper=True)
+    for start in range(max(len(lengths) - _WINDOW, 0), -1, -1):
+        found = _fit_law(lengths[start : start + _WINDOW], kind, may_be_steeper=True)
         if np.isnan(found.constant) or found.trials(tolerance) > found.least:
             break
     return found
 
 
-def _fit_law(rungs: Sequence[Rung], kind: Kind, *, may_be_steeper: bool) -> Law:
-    exact = _exact_from(rungs, kind)
+def _fit_law(lengths: Sequence[Runs], kind: Kind, *, may_be_steeper: bool) -> Law:
+    exact = _exact_from(lengths, kind)
     if exact is not None:
         return Law(0.0, _HALF, exact)
-    known = [(rung, each) for rung, each in _known_errors(rungs, kind) if each.value > 0.0]
-    least = float(rungs[0].budget)
+    known = [(runs, each) for runs, each in _known_errors(lengths, kind) if each.value > 0.0]
+    least = float(lengths[0].budget)
     if not known:
         return Law(np.nan, _HALF, least)
-    budgets = np.array([float(rung.budget) for rung, _ in known])
+    budgets = np.array([float(runs.budget) for runs, _ in known])
     values = np.array([each.value for _, each in known])
     weights = np.array([2.0 * (each.n - 1) for _, each in known])
     slope = _slope(budgets, values, weights) if may_be_steeper else _HALF
@@ -148,16 +148,16 @@ def _slope(budgets: Floats, values: Floats, weights: Floats) -> float:
     return max(found, _STEEPEST) if found < _HALF - _CLEARLY * error else _HALF
 
 
-def _law_with_floor(study: Study, rungs: Sequence[Rung], kind: Kind, theory: float) -> Law:
+def _law_with_floor(study: Study, lengths: Sequence[Runs], kind: Kind, theory: float) -> Law:
     """Theory's errors of independent trials, on a floor: a mean error, and one that varies with the seed.
 
     Only the lengths that could show a floor at the tolerance are looked at; where no run was so long, the longest.
     """
     from scipy.special import chdtri, stdtrit
 
-    known = _known_errors(rungs, kind)
+    known = _known_errors(lengths, kind)
     if not known:
-        return Law(np.nan, _HALF, rungs[0].budget)
+        return Law(np.nan, _HALF, lengths[0].budget)
     tolerance = study.tolerance(kind[0])
     constant = theory if theory > 0.0 else 0.0
     able = [pair for pair in known if NORMAL_95 * constant * pair[0].budget ** _HALF <= tolerance]
@@ -165,7 +165,7 @@ def _law_with_floor(study: Study, rungs: Sequence[Rung], kind: Kind, theory: flo
     rare = (1.0 - CONFIDENCE) / _comparisons(study) / 4.0  # mean and spread, each from both sides
     free = sum(each.n - 1 for _, each in near)
     variance = sum((each.n - 1) * each.spread**2 for _, each in near) / free
-    noise = sum((each.n - 1) * constant**2 / rung.budget for rung, each in near) / free
+    noise = sum((each.n - 1) * constant**2 / runs.budget for runs, each in near) / free
     extra = [float(np.sqrt(max(variance * free / chdtri(free, p) - noise, 0.0))) for p in (rare, 1.0 - rare)]
     last = near[-1][1]
     own = float(np.nan_to_num(getattr(study.reference.errors[kind[0]], kind[1])))
@@ -173,7 +173,7 @@ def _law_with_floor(study: Study, rungs: Sequence[Rung], kind: Kind, theory: flo
     low = float(np.hypot(max(abs(last.bias) - chance, 0.0), NORMAL_95 * extra[0]))
     high = float(np.hypot(abs(last.bias) + chance, NORMAL_95 * extra[1]))
     return Law(
-        constant, _HALF, rungs[0].budget, min(max(_likely_floor(last, own, variance, noise), low), high), low, high
+        constant, _HALF, lengths[0].budget, min(max(_likely_floor(last, own, variance, noise), low), high), low, high
     )
 
 
@@ -183,16 +183,16 @@ def _likely_floor(last: Rms, own: float, variance: float, noise: float) -> float
     return float(np.sqrt(bias + NORMAL_95**2 * max(variance - noise, 0.0)))
 
 
-def _known_errors(rungs: Sequence[Rung], kind: Kind) -> list[tuple[Rung, Rms]]:
+def _known_errors(lengths: Sequence[Runs], kind: Kind) -> list[tuple[Runs, Rms]]:
     """The run lengths with two numbers or more."""
-    return [(rung, each) for rung in rungs if (each := rung.errors[kind]).n >= 2]
+    return [(runs, each) for runs in lengths if (each := runs.errors[kind]).n >= 2]
 
 
-def _exact_from(rungs: Sequence[Rung], kind: Kind) -> float | None:
+def _exact_from(lengths: Sequence[Runs], kind: Kind) -> float | None:
     """Trials from which on no run was off at all, as those of whole numbers; None where the longest ones are."""
     found = None
-    for rung in reversed(rungs):
-        if rung.errors[kind].value != 0.0:
+    for runs in reversed(lengths):
+        if runs.errors[kind].value != 0.0:
             break
-        found = float(rung.budget)
+        found = float(runs.budget)
     return found

@@ -12,7 +12,7 @@ from typing import Final, Literal
 import numpy as np
 
 from xlmc.studies.methods.answer import STATISTICS
-from xlmc.studies.methods.curve import NORMAL_95, Curve, Rung
+from xlmc.studies.methods.curve import NORMAL_95, Curve, Runs
 from xlmc.studies.methods.law import CONFIDENCE, law
 from xlmc.studies.methods.sampled import MONTE_CARLO
 from xlmc.studies.methods.study import Study
@@ -89,7 +89,7 @@ def _asked_kinds(study: Study) -> list[tuple[str, str]]:
 
 def need(study: Study, curve: Curve) -> Need:
     """What a method that draws needs, for 95 of 100 runs to keep the accuracy in every number of every forecast."""
-    longest = float(curve.rungs[-1].budget)
+    longest = float(curve.lengths[-1].budget)
     worst = Need(0.0, 0.0, "", "mean", 0.0)
     for kind in _asked_kinds(study):
         tolerance = study.tolerance(kind[0])
@@ -134,7 +134,7 @@ def _shortfalls(study: Study, curve: Curve) -> Iterator[Shortfall]:
     chances = max(len(kinds) * len([each for each in study.once if each.answers]), 1)
     wide = float(-ndtri((1.0 - CONFIDENCE) / 2.0 / chances))
     for kind in kinds:
-        error = curve.rungs[-1].errors[kind]
+        error = curve.lengths[-1].errors[kind]
         tolerance = study.tolerance(kind[0])
         if not np.isfinite(error.value):
             yield Shortfall(*kind, np.nan, error.error, np.inf, "no")
@@ -144,12 +144,12 @@ def _shortfalls(study: Study, curve: Curve) -> Iterator[Shortfall]:
         yield Shortfall(*kind, error.bias, error.error, error.value / tolerance, reaches)
 
 
-def reach_of(study: Study, curve: Curve, rung: Rung, kind: tuple[str, str]) -> tuple[float, float, float]:
+def reach_of(study: Study, curve: Curve, runs: Runs, kind: tuple[str, str]) -> tuple[float, float, float]:
     """What 95 of 100 runs of one length keep within in one number, and the 95 % bounds of that, over the tolerance.
 
     Of an answer that was given once: its error, and the bounds that the reference's error leaves.
     """
-    error, tolerance = rung.errors[kind], study.tolerance(kind[0])
+    error, tolerance = runs.errors[kind], study.tolerance(kind[0])
     wide = (1.0 if curve in study.once else NORMAL_95) / tolerance
     low, high = error.interval
     return wide * error.value, wide * low, wide * high
@@ -161,11 +161,11 @@ def seconds_of(curve: Curve, trials: float) -> float:
     A trial is taken to cost at least a quarter of the longest run's average: runs that are shorter than a block of
     trials all take the same time, and do not show what a trial costs.
     """
-    timed = [rung for rung in curve.rungs if np.isfinite(rung.seconds)]
+    timed = [runs for runs in curve.lengths if np.isfinite(runs.seconds)]
     if not timed or not np.isfinite(trials):
         return np.inf
-    budgets = np.array([float(rung.budget) for rung in timed])
-    seconds = np.array([rung.seconds for rung in timed])
+    budgets = np.array([float(runs.budget) for runs in timed])
+    seconds = np.array([runs.seconds for runs in timed])
     if trials <= budgets[-1]:
         return float(np.interp(trials, budgets, seconds))
     each = float(seconds[-1] / budgets[-1])

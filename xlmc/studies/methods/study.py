@@ -22,7 +22,7 @@ from xlmc.studies.methods.converged_reference import (
     unfiltered_of,
 )
 from xlmc.studies.methods.corners import Corners
-from xlmc.studies.methods.curve import Curve, Rung, in_order, rung_of
+from xlmc.studies.methods.curve import Curve, Runs, in_order, runs_of
 from xlmc.studies.methods.differential import FirstOrder, SecondOrder, WorstCase
 from xlmc.studies.methods.importance_grid import ImportanceGrid
 from xlmc.studies.methods.optimised import Optimised, widen_bounds
@@ -255,10 +255,10 @@ class _Measuring:
                 continue
             again = method.run(self._model, self._ladder[-1], self._seed) if first.seconds < _PATIENCE else first
             result = replace(again, seconds=min(first.seconds, again.seconds))
-            rung = rung_of(result.evaluations, [result], self._reference)
+            runs = runs_of(result.evaluations, [result], self._reference)
             ranges = {name: (a.least, a.most) for name, a in result.answers.items() if np.isfinite(a.least)}
             setup = max(0.0, first.seconds - again.seconds)
-            found.append(Curve(method, (rung,), setup, result.remarks, ranges, ends=result.ends))
+            found.append(Curve(method, (runs,), setup, result.remarks, ranges, ends=result.ends))
         return tuple(found)
 
     def widen(self, curve: Curve) -> Curve:
@@ -325,9 +325,9 @@ class _Measuring:
     def _curve(
         self, method: Method, first: MethodResult | None, results: Mapping[tuple[str, int], list[MethodResult]]
     ) -> Curve:
-        rungs = in_order([rung_of(budget, results[method.key, budget], self._reference) for budget in self._ladder])
+        lengths = in_order([runs_of(budget, results[method.key, budget], self._reference) for budget in self._ladder])
         remarks = results[method.key, self._ladder[-1]][-1].remarks
-        return Curve(method, rungs, _setup(first, rungs[0]), remarks, {})
+        return Curve(method, lengths, _setup(first, lengths[0]), remarks, {})
 
     def _engine_curve(
         self,
@@ -337,11 +337,11 @@ class _Measuring:
         plain: Curve,
     ) -> Curve:
         """The errors of the trials, which are those of `plain`, with the seconds of an engine."""
-        rungs = []
-        for rung in plain.rungs:
-            timed = [result.seconds for result in results[engine.key, rung.budget]]
-            rungs.append(replace(rung, seconds=min(timed), usual=median(timed)))
-        ordered = in_order(rungs)
+        lengths = []
+        for runs in plain.lengths:
+            timed = [result.seconds for result in results[engine.key, runs.budget]]
+            lengths.append(replace(runs, seconds=min(timed), usual=median(timed)))
+        ordered = in_order(lengths)
         apart = max(
             self._apart(results[engine.key, budget], results[MONTE_CARLO.key, budget]) for budget in self._ladder
         )
@@ -356,11 +356,11 @@ class _Measuring:
             return ()
         again = engine.run(self._model, _FEW, self._seed).seconds
         each = again / _FEW
-        rungs = tuple(
-            replace(r, seconds=each * r.budget, usual=each * r.budget, measured=False) for r in numpy.rungs
+        lengths = tuple(
+            replace(r, seconds=each * r.budget, usual=each * r.budget, measured=False) for r in numpy.lengths
         )  # fmt: skip
         said = f"the same trials as {numpy.method.name}; time worked out from {_FEW} of them"
-        return (Curve(engine, rungs, max(0.0, first.seconds - again), (said,), {}),)
+        return (Curve(engine, lengths, max(0.0, first.seconds - again), (said,), {}),)
 
     def _try(self, method: Method, budget: int) -> MethodResult | None:
         """A method's first run; None, and why, where it cannot be used."""
@@ -382,6 +382,6 @@ class _Measuring:
         return max((each for each in apart if np.isfinite(each)), default=0.0)
 
 
-def _setup(first: MethodResult | None, rung: Rung) -> float:
+def _setup(first: MethodResult | None, runs: Runs) -> float:
     """Seconds of a first run beyond those of the next ones."""
-    return 0.0 if first is None else float(np.nan_to_num(max(0.0, first.seconds - rung.seconds)))
+    return 0.0 if first is None else float(np.nan_to_num(max(0.0, first.seconds - runs.seconds)))

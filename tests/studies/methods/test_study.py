@@ -216,6 +216,18 @@ def test_too_few_accepted(book):
         study(model, reference_trials=2_048, trials=1_024, replicates=2)
 
 
+def test_a_forecast_whose_errors_cannot_be_squared(book):
+    model = book({"A1": 1e-200, "B1": "=1/A1"}, {"x": {"cell": "A1", "low": 1e-200, "high": 1e-190}}, {"y": "B1"})
+    with pytest.raises(SimulationError, match=r"'y' is beyond 1E150 in some trials"):
+        study(model, reference_trials=1 << 14, trials=1 << 10, replicates=2)
+
+
+def test_exact_numbers_of_the_reference_are_shown_exactly(book):
+    model = book({"A1": 1.5, "B1": "=A1*0+2.25"}, {"x": {"cell": "A1", "low": 1, "high": 2}}, {"y": "B1"})
+    found = study(model, reference_trials=1 << 14, trials=1 << 10, replicates=2)
+    assert methods_tables.reference_table(found).rows == (("y", "", "2.25 ± 0", "0 ± 0", "2.25 ± 0", "2.25 ± 0"),)
+
+
 def test_a_method_that_cannot_be_used_is_named(book):
     model = book(
         {"A1": 1.0, "B1": "=SIN(50*A1)"},

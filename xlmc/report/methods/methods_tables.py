@@ -61,7 +61,9 @@ def reference_table(study: Study) -> Table:
     rows = []
     for forecast in study.model.forecasts:
         answer, error = found.answers[forecast.name], found.errors[forecast.name]
-        numbers = (format_of(getattr(answer, each), getattr(error, each)) for each in STATISTICS)
+        pairs = ((getattr(answer, each), getattr(error, each)) for each in STATISTICS)
+        # Without an error the number is exact, and two digits of it would be another number.
+        numbers = (format_estimate(value, 0.0) if err == 0.0 else format_of(value, err) for value, err in pairs)
         rows.append((forecast.name, forecast.units, *numbers))
     how = METHODS[found.sampling].name
     title = (

@@ -28,6 +28,8 @@ _LEAST: Final = 1 << 14
 _MOST_ACCEPTED: Final = 1 << 22
 """Sorting more trials than these costs more than they add."""
 
+_LARGEST: Final = 1e150
+
 _UNFILTERED: Final = 1 << 20
 
 _PROBE: Final = 65_536
@@ -107,7 +109,7 @@ def reference_of(model: Model, trials: int, sampling: str, engine: str, seed: in
     """Run the reference.
 
     Raises:
-        SimulationError: fewer than 100 trials are accepted.
+        SimulationError: fewer than 100 trials are accepted, or a forecast is too large for its errors to be squared.
     """
     started = time.perf_counter()
     run = simulate(model, trials=trials, seed=seed, sampling=sampling, engine=engine, keep_inputs=_WATCHED)
@@ -118,6 +120,10 @@ def reference_of(model: Model, trials: int, sampling: str, engine: str, seed: in
         raise SimulationError(
             message, hint="give more reference trials, or see whether the filters contradict the inputs"
         )
+    for forecast in model.forecasts:
+        if np.max(np.abs(run[forecast.name].sample.x), initial=0.0) > _LARGEST:
+            message = f"the forecast {forecast.name!r} is beyond 1E150 in some trials: its errors cannot be squared"
+            raise SimulationError(message, where=forecast.cell, hint="give it in larger units")
     numbers = {f.name: _numbers(run, f) for f in model.forecasts}
     return Reference(
         trials=run.trials,

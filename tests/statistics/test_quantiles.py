@@ -228,6 +228,24 @@ def test_the_replicate_error_is_that_of_the_share_below(weighted):
     assert estimate.interval[0] < plain.value < estimate.interval[1]
 
 
+@pytest.mark.parametrize("weights", [None, np.ones(160)])
+@pytest.mark.parametrize("step", [1, -1])
+def test_equal_trials_are_in_no_order(weights, step):
+    """Each replicate has three zeros among ten trials: what lies a little within them, or beyond, is known."""
+    x, replicate = np.tile([0.0] * 3 + [1.0] * 7, 16)[::step], np.repeat(np.arange(16), 10)
+    for percent, value in ((10.0, 0.0), (24.5, 0.0), (40.0, 1.0), (75.5, 1.0), (90.0, 1.0)):
+        found = percentile(x, percent, weights, replicate)
+        assert (found.value, found.error, found.interval) == (value, 0.0, (value, value))
+
+
+def test_replicates_of_independent_equal_trials_have_the_error_of_the_trials():
+    x = np.random.default_rng(5).binomial(4, 0.3, 64_000) * 1.0
+    for percent in (20.0, 24.1, 50.0, 65.2, 91.6, 95.0):
+        alone, grouped = percentile(x, percent), percentile(x, percent, replicate=np.arange(64_000) % 64)
+        assert grouped.value == alone.value
+        assert grouped.error == pytest.approx(alone.error, abs=0.15)
+
+
 def test_replicates_that_all_agree_still_leave_an_error():
     x, ids = np.tile(np.arange(100.0), 5), np.repeat(np.arange(5), 100)
     estimate = median(x + 1e-3 * ids, None, ids)

@@ -80,6 +80,27 @@ def test_more_rows_are_compiled_no_longer(lower, compiled):
     assert many[1] < 1.1 * few[1]
 
 
+@pytest.mark.parametrize(
+    ("loops", "alone"), [([(250, 1)] * 3, 2), ([(90, 1), *[(90, 50)] * 50], 1), ([(90, 1), *[(90, 200)] * 200], 0)]
+)
+def test_code_that_serves_one_loop_among_many_alike_is_soon_made(loops, alone):
+    assert phases._side_by_side_alone(loops) == alone
+
+
+def test_trials_one_after_another_give_the_same_bits(lower, compiled, monkeypatch):
+    n = 777
+    draws = {"A1": np.random.default_rng(1).uniform(0.5, 0.9, n), "A2": np.random.default_rng(2).uniform(50, 70, n)}
+    found = []
+    for rare in (1, 10**9):
+        monkeypatch.setattr(phases, "_RARE", rare)
+        _, program = programs(lower, 120, (20, 21, 90))
+        evaluator = program.evaluator(n)
+        evaluator.filters(draws, n)
+        found.append([column.as_floats().tobytes() for column in evaluator.forecasts(np.arange(n))])
+    assert {side_by_side for *_, side_by_side in compiled} == {0, 1, 2}
+    assert found[0] == found[1]
+
+
 def test_a_small_model_has_its_constants_in_its_code(lower, compiled):
     programs(lower, 9)
     *_, program = programs(lower, 9)

@@ -36,6 +36,9 @@ _MOST_FAILURES: Final = 8
 _FEWEST: Final = 4
 """Stages of which some may be of one shape; the constants of fewer are part of the code, but for limits of filters."""
 
+_RARE: Final = 128
+"""One trial after another takes a loop up to eight times as long: of so many nodes, one may be computed so."""
+
 _LIMITS: Final = tuple(ALL_BITS[relation] for relation in (">=", "<=", ">", "<"))
 
 
@@ -180,11 +183,12 @@ class Phase:
             return
         shapes = [plan.shape(self._dag) for plan in plans]
         uses = Counter(shape.key for shape in shapes)
-        repeats = max(uses.values()) >= _FEWEST
+        alone = _side_by_side_alone([(len(plan.rules), uses[s.key]) for plan, s in zip(plans, shapes, strict=True)])
         compiled: dict[tuple[object, ...], NativeLoop] = {}
         for plan, shape in zip(plans, shapes, strict=True):
             if shape.key not in compiled:
-                compiled[shape.key] = self._compile(plan, shape.slots, once=repeats and uses[shape.key] == 1)
+                side_by_side = alone if uses[shape.key] == 1 else SIDE_BY_SIDE
+                compiled[shape.key] = self._compile(plan, shape.slots, side_by_side)
             yield Loop(compiled[shape.key], plan.loads, plan.stores, np.array(shape.numbers))
 
     def _is_limit(self, node_id: int) -> bool:
@@ -192,9 +196,10 @@ class Phase:
         node = self._dag.nodes[node_id]
         return isinstance(node, Apply) and node.function in _LIMITS
 
-    def _compile(self, plan: LoopPlan, numbers: Mapping[tuple[int, int], int], once: bool = False) -> NativeLoop:
-        """The code of a loop; the code of one that runs once beside many alike is soon made, and a little slower."""
-        side_by_side = 1 if once else SIDE_BY_SIDE
+    def _compile(
+        self, plan: LoopPlan, numbers: Mapping[tuple[int, int], int], side_by_side: int = SIDE_BY_SIDE
+    ) -> NativeLoop:
+        """The code of a loop."""
         return compile_loop(self._dag, self._machine, plan.rules, plan.loads, plan.stores, numbers, side_by_side)
 
     @property
@@ -261,3 +266,17 @@ class Phase:
         # Loops read doubles there, one a trial.
         trials.arrays[node_id] = np.ascontiguousarray(np.broadcast_to(known[node_id], (trials.n,)), np.float64)
         return True
+
+
+def _side_by_side_alone(loops: Sequence[tuple[int, int]]) -> int:
+    """How many vectors of trials a loop computes at once if its code serves no other.
+
+    Beside many alike such code should be made soon rather than run fast, above all where little of the time goes there.
+
+    Args:
+        loops: the nodes of each, and how many loops have its code.
+    """
+    if max(uses for _, uses in loops) < _FEWEST:
+        return SIDE_BY_SIDE
+    alone = sum(nodes for nodes, uses in loops if uses == 1)
+    return 0 if _RARE * alone <= sum(nodes for nodes, _ in loops) else 1

@@ -22,6 +22,9 @@ __all__ = ["Shape", "cut", "shape_of"]
 _FEWEST: Final = 4
 """Periods that are worth looking for."""
 
+_ROWS: Final = 100
+"""The most nodes of a part that has several rows: a longer part takes longer to compile, and runs no faster."""
+
 _TRIED: Final = 3
 """The most frequent gaps between nodes that are alike: one of them is the period, where there is one."""
 
@@ -89,7 +92,7 @@ def cut(dag: Dag, nodes: Sequence[int], rules: Mapping[int, LoopRule], longest: 
     start, period, end = _repetition(dag, nodes, rules, longest)
     if not period:
         return _portions(nodes, longest)
-    size = max(1, longest // period) * period
+    size = max(1, _ROWS // period) * period
     rows = [nodes[at : min(at + size, end)] for at in range(start, end, size)]
     return [
         *_portions(nodes[:start], longest),

@@ -202,8 +202,8 @@ def test_what_bounds_tell_of_either_number_changes_no_sum(a, b, c, d, adds, seed
     y = np.where(rng.random(20) < 0.5, (opposite * (1 + rng.integers(-8, 9, 20) * 2.0**-52)).clip(*second), y)
     total = x + y if adds else x - y
     for known in ((tuple(first), tuple(second)), (None, tuple(second)), (tuple(first), None)):
-        assert SnapToZero.of(*known)(total, x).tolist() == settled(total, x).tolist()
-    assert SnapToZero.of(None, (-math.inf, 1.0)).largest is None
+        assert SnapToZero.within(*known)(total, x).tolist() == settled(total, x).tolist()
+    assert SnapToZero.within(None, (-math.inf, 1.0)).largest is None
 
 
 def test_numbers_that_are_near_each_other_in_some_trials_only():
@@ -214,6 +214,8 @@ def test_numbers_that_are_near_each_other_in_some_trials_only():
             wanted = [relation(rounded(a), rounded(b)) for a, b in zip(x, y, strict=True)]
             assert COMPARISONS[symbol](x, y).tolist() == wanted
             assert COMPARISONS[symbol](x, y, out=np.empty(5, bool)).tolist() == wanted
+            for bounds in ((None, (0.0, 5.0)), ((1.0, math.inf), (1.0, 5.0)), ((0.0, 5.0), None)):
+                assert COMPARISONS[symbol].within(*bounds)(x, y).tolist() == wanted
 
 
 def test_infinite_numbers_that_vary_are_compared_as_they_are():

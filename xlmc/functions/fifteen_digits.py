@@ -24,7 +24,7 @@ from __future__ import annotations
 import math
 import struct
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, ClassVar, Final
 
@@ -50,6 +50,9 @@ __all__ = [
     "equal_range",
     "never_cancels",
 ]
+
+Bounds = tuple[float, float]
+"""The least and the largest number; one may be infinite."""
 
 NEAR: Final = 1.01e-14
 """Two numbers that are equal at 15 digits differ by at most this share of either."""
@@ -108,11 +111,22 @@ def _last_equal(number: float, way: int) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Compares two arrays at 15 digits, and is called like a ufunc."""
+    """Compares two arrays at 15 digits, and is called like a ufunc.
+
+    Args:
+        symbol: of the comparison.
+        plain: the comparison of all bits.
+        largest: the size that one of the numbers never exceeds (rounding apart), if that is known beforehand.
+    """
 
     symbol: str
     plain: np.ufunc
-    nin: int = 2
+    largest: float | None = None
+    nin: ClassVar[int] = 2
+
+    def within(self, first: Bounds | None, second: Bounds | None) -> Comparison:
+        """The same of numbers that have these bounds; None where there are none."""
+        return replace(self, largest=_least_size(first, second))
 
     def __call__(self, x: Any, y: Any, out: Bools | None = None) -> Bools:
         """Compare numbers whose shapes broadcast."""
@@ -120,12 +134,24 @@ class Comparison:
             return _compare_with_constant(self.symbol, x, equal_range(_only(y)), out)
         if np.size(x) == 1:
             return _compare_with_constant(EXCHANGED[self.symbol], y, equal_range(_only(x)), out)
-        apart, limit = _subtract(x, y), NEAR * _size(x) + TINIEST
-        if np.count_nonzero(apart > limit) + np.count_nonzero(apart < -limit) == apart.size:
-            return np.asarray(self.plain(apart, 0.0, out=out))
+        limit = NEAR * (_size(x) if self.largest is None else 2.0 * self.largest) + TINIEST
+        apart = _subtract(x, y)
+        above = np.greater(apart, limit, out=out)
+        if np.count_nonzero(above) + np.count_nonzero(apart < -limit) == apart.size:
+            return _from_above(self.symbol, above)
         found: Bools = self.plain(x, y, out=out)
         found[_find_equal(x, y, np.abs(apart, out=apart) <= limit)] = self.symbol in ("=", "<=", ">=")
         return found
+
+
+def _from_above(symbol: str, above: Bools) -> Bools:
+    """Fill `above`, which says where x > y, with the comparison of numbers that differ everywhere."""
+    match symbol:
+        case "<" | "<=":
+            np.logical_not(above, out=above)
+        case "=" | "<>":
+            above.fill(symbol == "<>")
+    return above
 
 
 def _only(number: Any) -> float:
@@ -203,14 +229,13 @@ class SnapToZero:
     nin: ClassVar[int] = 2
 
     @classmethod
-    def of(cls, first: tuple[float, float] | None, second: tuple[float, float] | None) -> SnapToZero:
+    def within(cls, first: Bounds | None, second: Bounds | None) -> SnapToZero:
         """The one for sums of numbers, or differences, that have these bounds; None where there are none.
 
         Where all but the last bits cancel, the first number is less than twice the second.
         """
-        sizes = [factor * max(map(abs, ends)) for factor, ends in ((1.0, first), (2.0, second)) if ends is not None]
-        largest = min(sizes, default=math.inf)
-        return cls(largest if largest < math.inf else None)
+        least = _least_size(first, second)
+        return cls(None if least is None else 2.0 * least)
 
     def __call__(self, result: Any, first: Any, out: Floats | None = None) -> Floats:
         """Return 0 where the sum is only the last bits of the first number, else the sum."""
@@ -229,7 +254,14 @@ class SnapToZero:
 
 
 def _size(x: Floats) -> float:
-    return max(-float(x.min(initial=0.0)), float(x.max(initial=0.0)))
+    least, most = np.minimum.reduce(x, axis=None, initial=0.0), np.maximum.reduce(x, axis=None, initial=0.0)
+    return max(-float(least), float(most))
+
+
+def _least_size(*bounds: Bounds | None) -> float | None:
+    """The least size that one of some numbers never exceeds, by the bounds that are known."""
+    least = min((max(map(abs, ends)) for ends in bounds if ends is not None), default=math.inf)
+    return least if least < math.inf else None
 
 
 def _is_far_from_0(result: Floats, limit: float) -> bool:
@@ -252,7 +284,7 @@ def copy_sum(result: Floats, first: Floats, out: Floats) -> Floats:
     return out
 
 
-def never_cancels(result: tuple[float, float], first: tuple[float, float], second: tuple[float, float] | None) -> bool:
+def never_cancels(result: Bounds, first: Bounds, second: Bounds | None) -> bool:
     """Return whether the bounds show that no sum is only the last bits of its first number.
 
     Args:

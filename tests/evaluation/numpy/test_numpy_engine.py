@@ -255,6 +255,31 @@ def test_an_input_in_one_branch_only(run):
     assert outcome.forecasts == [[0.0, 0.25]]
 
 
+@pytest.mark.parametrize("order", [1, 0, -1])
+@pytest.mark.parametrize(
+    ("formulas", "forecasts"),
+    [
+        (["INDEX(F1:F9,{m})", "INDEX(G1:G9,{m})*2"], ["C1", "C2"]),
+        (["INDEX(F1:F9,{m})", "{m}"], ["C1", "C2"]),
+        (["INDEX(F1:F9,{m})+{m}", "SIN(INDEX(G1:G9,{m}))"], ["C1", "C2"]),
+        (["SIN(INDEX(G1:G9,{m}))+EXP(INDEX(F1:F9,{m}))"], ["C1"]),
+        (["IF(A2>1.5,1/INDEX(F1:F9,{m}),INDEX(G1:G9,{m}))", "INDEX(F1:F9,{m})"], ["C1", "C2"]),
+        (["{m}", "INDEX(F1:F9,C1)", "IF(A2>1.5,1/C1,C2)"], ["C3", "C2"]),
+    ],
+)
+@pytest.mark.parametrize("filters", [(), ("D1",)])
+def test_a_position_that_picks_read_and_others(run, order, formulas, forecasts, filters):
+    """Where nothing but picks reads it, it is kept as an index."""
+    keys = [1.0 + row / 9 for row in range(9)]
+    cells = {f"E{row}": key for row, key in enumerate(keys if order >= 0 else keys[::-1], start=1)}
+    cells |= {f"{column}{row}": row * factor for column, factor in (("F", 0.3), ("G", 7.0)) for row in range(1, 10)}
+    cells |= {f"C{row}": "=" + text.format(m=f"MATCH(A1,E1:E9,{order})") for row, text in enumerate(formulas, start=1)}
+    cells |= {"D1": f"=INDEX(G1:G9,MATCH(A1,E1:E9,{order}))>20"}
+    random = np.random.default_rng(1)
+    draws = {"A1": random.choice(keys, 64), "A2": random.uniform(1, 2, 64)}
+    assert not run(cells, draws, forecasts, filters).careful
+
+
 @pytest.mark.parametrize("limit", [0.0, 1.03, 1.5, 9.0])
 @pytest.mark.parametrize("formula", ["IF(A1>{0},A2,-A3)", "IF(A1>{0},A2,0)", "IF(A1>{0},1E300,A2)", "IF(A1>{0},2,-3)"])
 def test_a_choice_in_all_trials_in_some_and_in_none(run, harmless, formula, limit):

@@ -45,6 +45,9 @@ def test_a_search_finds_what_match_finds(numbers, order, data):
     if found.size:
         assert search(found).tolist() == expected.numbers[~missing].tolist()
         assert search(found, out=found.copy()).tolist() == expected.numbers[~missing].tolist()
+        own = found.copy()
+        for indices in (search.indices(found), search.indices(found, out=found.copy()), search.indices(own, out=own)):
+            assert (indices + 1).tolist() == expected.numbers[~missing].tolist()
 
 
 def test_numbers_that_are_not_in_order_are_not_searched():
@@ -73,6 +76,7 @@ def test_a_pick_gives_what_index_gives(numbers, data):
     positions = np.array(data.draw(st.lists(st.integers(1, len(numbers)), min_size=1)), float)
     expected = REGISTRY["INDEX"]([column(numbers), of_trials(positions)])
     assert Pick.of(np.array(numbers))(positions, out=positions.copy()).tolist() == expected.numbers.tolist()
+    assert Pick.of(np.array(numbers)).at(positions.astype(np.int64) - 1).tolist() == expected.numbers.tolist()
     assert CELL_AT([column(numbers), of_trials(positions)]).numbers.tolist() == expected.numbers.tolist()
 
 

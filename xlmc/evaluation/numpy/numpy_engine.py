@@ -22,7 +22,7 @@ from xlmc.evaluation.graph.readiness import most_waiting, order_by_need
 from xlmc.evaluation.graph.trial_sets import ALL_TRIALS, TrialSet
 from xlmc.evaluation.numpy.branches import SURVIVORS, Placement, branch_step
 from xlmc.evaluation.numpy.looked_up import LookedUp, find_looked_up
-from xlmc.evaluation.numpy.sequence import Buffers, Steps
+from xlmc.evaluation.numpy.sequence import Buffers, Steps, find_indices
 from xlmc.evaluation.numpy.steps import Frame, LeaveFastPath, Step, plain_constant, reads
 from xlmc.evaluation.passes.bounds import NodeBounds
 from xlmc.evaluation.tracking import TrackingEvaluator, array_bytes, fitting_block
@@ -161,7 +161,8 @@ class NumpyProgram:
         branched = self._placement.branched
         computed, read = self._in_order(trials, keep)
         last = {needed: node for node in computed for needed in read[node]} | dict.fromkeys(keep, -1)
-        steps = Steps(self._dag, self._buffers, computed, self._bounds, self._looked_up)
+        indices = find_indices(self._dag, computed, read, keep, self._looked_up)
+        steps = Steps(self._dag, self._buffers, computed, self._bounds, self._looked_up, indices)
         for node in computed:
             done = [needed for needed in read[node] if last[needed] == node]
             if node in branched:

@@ -6,7 +6,7 @@ A line of the table costs little to make and to run; what does not fit into a li
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence, Set
 from typing import Any
 
 import numpy as np
@@ -22,13 +22,13 @@ from xlmc.evaluation.numpy.steps import Frame, LeaveFastPath, Step, is_elementwi
 from xlmc.evaluation.passes.bounds import NodeBounds
 from xlmc.functions import Kind
 from xlmc.functions.budget import work_arrays
-from xlmc.functions.fifteen_digits import SNAP_TO_ZERO, SnapToZero, copy_sum, never_cancels
-from xlmc.functions.lookup.search_and_pick import Search
+from xlmc.functions.fifteen_digits import SNAP_TO_ZERO, Comparison, SnapToZero, copy_sum, never_cancels
+from xlmc.functions.lookup.search_and_pick import Pick, Search
 from xlmc.functions.math.trigonometry import Within, sine_and_cosine
 from xlmc.functions.registry import Elementwise
 from xlmc.functions.values import Value
 
-__all__ = ["Buffers", "Steps"]
+__all__ = ["Buffers", "Steps", "find_indices"]
 
 _Line = tuple[Elementwise | Callable[..., Any] | None, int, int, int, int, Any]
 """(ufunc, node, first, second, buffer, guard): the ufunc of `values[first]` and `values[second]` (-1 for none) goes to
@@ -104,6 +104,30 @@ class Buffers:
         ]
 
 
+def find_indices(
+    dag: Dag,
+    nodes: Sequence[int],
+    read: Mapping[int, Sequence[int]],
+    keep: Collection[int],
+    looked_up: Mapping[int, LookedUp],
+) -> set[int]:
+    """The positions of lookups that nothing but picks reads: they need not be numbers of their own.
+
+    Args:
+        dag: of the nodes.
+        nodes: the nodes to be computed.
+        read: what each reads.
+        keep: what is read after them.
+        looked_up: the nodes that are picked from tables.
+    """
+    lookups = {node: lookup_of(dag, of) for node in nodes if type(of := dag.nodes[node]) is Apply}
+    found = {node for node, lookup in lookups.items() if type(lookup) is Search}.difference(keep)
+    for node in nodes if found else ():
+        if node not in looked_up and type(lookups.get(node)) is not Pick:
+            found.difference_update(read[node])
+    return found
+
+
 class Steps:
     """Collects the steps of nodes in order, with the buffers that they write to.
 
@@ -113,6 +137,7 @@ class Steps:
         nodes: the nodes to come.
         bounds: of the nodes: a guard that they answer is not asked.
         looked_up: the nodes that are picked from tables.
+        indices: the positions that are kept as `Search.indices`.
     """
 
     def __init__(
@@ -122,6 +147,7 @@ class Steps:
         nodes: Iterable[int],
         bounds: NodeBounds,
         looked_up: Mapping[int, LookedUp],
+        indices: Set[int],
     ) -> None:
         self._made: list[Step] = []
         self._dag, self._buffers = dag, buffers
@@ -129,7 +155,7 @@ class Steps:
         self._loose: list[int] = []
         self._pairs = sines_with_cosines(dag, [node for node in nodes if node not in looked_up])
         self._paired: set[int] = set()
-        self._bounds, self._looked_up = bounds, looked_up
+        self._bounds, self._looked_up, self._indices = bounds, looked_up, indices
 
     def add(self, node_id: int, read: Sequence[int], done: list[int]) -> None:
         """Add the step of a node.
@@ -146,10 +172,7 @@ class Steps:
             self._free(done)
             return
         if node_id in self._looked_up:
-            pick, position = self._looked_up[node_id]
-            buffer = self._buffers.exchange(done, node_id, self._loose)
-            if buffer is not None:
-                self._lines.append((pick, node_id, position, -1, buffer, None))
+            if self._add_lookup(node_id, *self._looked_up[node_id], done):
                 return
         elif (
             type(node) is Apply
@@ -162,14 +185,10 @@ class Steps:
             buffer = self._buffers.exchange(done, node_id, self._loose)  # it may write over what it reads
             if buffer is not None:
                 second = used[1] if len(used) == 2 else -1
-                ufunc = self._last_sum(node) if function.name == SNAP_TO_ZERO.name else function.ufunc
-                self._lines.append((ufunc, node_id, used[0], second, buffer, self._guard(node_id)))
+                self._lines.append((self._function(node), node_id, used[0], second, buffer, self._guard(node_id)))
                 return
         elif type(node) is Apply and (lookup := lookup_of(self._dag, node)) is not None:
-            buffer = self._buffers.exchange(done, node_id, self._loose)
-            if buffer is not None:
-                guard = lookup.finds if isinstance(lookup, Search) else None
-                self._lines.append((lookup, node_id, key_of(node), -1, buffer, guard))
+            if self._add_lookup(node_id, lookup, key_of(node), done):
                 return
         elif is_elementwise_ufunc(self._dag, node_id):
             self._free(done)
@@ -227,6 +246,22 @@ class Steps:
         self._lines += [(ufunc, node_id, node_id, cell, buffer, None) for cell in read[2:]]
         return True
 
+    def _add_lookup(self, node_id: int, lookup: Search | Pick, of: int, done: list[int]) -> bool:
+        """Add a search of the key `of`, or a pick at the position `of`; False where there is no buffer for it."""
+        if isinstance(lookup, Pick) and of in self._indices:
+            buffer = self._buffers.take(node_id)
+            self._free(done)
+        else:
+            buffer = self._buffers.exchange(done, node_id, self._loose)
+        if buffer is None:
+            return False
+        if isinstance(lookup, Search):
+            search = lookup.indices if node_id in self._indices else lookup
+            self._lines.append((search, node_id, of, -1, buffer, lookup.finds))
+        else:
+            self._lines.append((lookup.at if of in self._indices else lookup, node_id, of, -1, buffer, None))
+        return True
+
     def _add_pair(self, sine: int, cosine: int) -> None:
         """Add the sine and the cosine of one angle as one step."""
         (angle,) = uses(self._dag.nodes[sine])
@@ -250,6 +285,15 @@ class Steps:
         known = self._bounds.of(node.arguments[0])
         return None if known is not None and guard.surely(*known) else guard
 
+    def _function(self, node: Apply) -> Elementwise | Callable[..., object] | None:
+        """What computes a function of plain numbers, where their bounds are known as fast as these allow."""
+        function = node.function
+        if function.name == SNAP_TO_ZERO.name:
+            return self._last_sum(node)
+        if isinstance(function.ufunc, Comparison):
+            return function.ufunc.within(*map(self._bounds.of, node.arguments))
+        return function.ufunc
+
     def _last_sum(self, node: Apply) -> Callable[..., object]:
         """The function for the last sum of a formula; one that keeps every sum where bounds show that none is dust."""
         total, first = node.arguments
@@ -259,7 +303,7 @@ class Steps:
         of_total, of_first, plus = of(total), of(first), second if operator == "+" else None
         if of_total is not None and of_first is not None and never_cancels(of_total, of_first, plus):
             return copy_sum
-        return SnapToZero.of(of_first, second)
+        return SnapToZero.within(of_first, second)
 
     def _close_table(self) -> None:
         if self._lines:
@@ -300,9 +344,13 @@ def _choose(condition: Any, yes: Any, no: Any, out: NDArray[Any]) -> NDArray[Any
         np.copyto(out, yes if chosen else no)
         return out
     (work,) = work_arrays(out.size, 1)
-    mask, bits, other = (numbers.view(np.int64) for numbers in (work, out, np.asarray(no)))
+    mask, bits = work.view(np.int64), out.view(np.int64)
     np.copyto(mask, np.negative(np.asarray(condition).view(np.int8)))  # all bits of a trial are 1, or all are 0
-    np.bitwise_xor(np.asarray(yes).view(np.int64), other, out=bits)
+    chosen_bits, other = (np.asarray(numbers).view(np.int64) for numbers in (yes, no))
+    if other.ndim == 0 and other == 0:
+        np.bitwise_and(chosen_bits, mask, out=bits)
+        return out
+    np.bitwise_xor(chosen_bits, other, out=bits)
     np.bitwise_and(bits, mask, out=bits)
     np.bitwise_xor(bits, other, out=bits)
     return out

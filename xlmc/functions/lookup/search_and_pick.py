@@ -95,16 +95,25 @@ class Search:
 
     def __call__(self, keys: Floats, out: Floats | None = None) -> Floats:
         """The positions, `(n,)`, of keys that all have one."""
-        out = np.empty(np.shape(keys)) if out is None else out
+        return np.add(self.indices(keys), 1.0, out=out)
+
+    def indices(self, keys: Floats, out: Floats | None = None) -> NDArray[np.int64]:
+        """The same counted from 0, as whole numbers for `Pick.at`, `(n,)`, in the memory of `out` where it is given."""
+        found = np.empty(keys.shape, np.int64) if out is None else out.view(np.int64)
         if self.divides:
-            np.minimum(keys if self.sign > 0 else -keys, self.rising[-2], out=out)
-            out -= self.rising[0]
-            out /= self.step
-            np.floor(out, out=out)
-            out += 1.0
+            np.copyto(found, self._steps(keys), casting="unsafe")
         else:
-            np.copyto(out, self._positions(keys))
-        return out
+            np.subtract(self._positions(keys), 1, out=found)
+        return found
+
+    def _steps(self, keys: Floats) -> Floats:
+        """How many steps lie between the first number and each key, in memory that the next call writes to again."""
+        (steps,) = work_arrays(keys.size, 1)
+        np.minimum(keys if self.sign > 0 else -keys, self.rising[-2], out=steps)
+        if self.rising[0]:
+            steps -= self.rising[0]
+        steps /= self.step
+        return steps
 
     def _positions(self, keys: Floats) -> NDArray[np.intp]:
         if self.positions is not None:
@@ -158,4 +167,9 @@ class Pick:
         indices = work.view(np.int64).reshape(positions.shape)
         np.copyto(indices, positions, casting="unsafe")
         found: Floats = self.numbers.take(indices, out=out, mode="clip")
+        return found
+
+    def at(self, indices: NDArray[np.int64], out: Floats | None = None) -> Floats:
+        """The numbers at `Search.indices`, `(n,)`; `out` must not be the memory of these."""
+        found: Floats = self.numbers[1:].take(indices, out=out, mode="clip")
         return found

@@ -66,6 +66,35 @@ def test_a_spill_of_drawn_values(book):
     assert found["rows"].tolist() == [3.0, 3.0]
 
 
+@pytest.mark.parametrize("dynamic", [True, False])
+@pytest.mark.parametrize(
+    "formula",
+    [
+        "SUM(OFFSET(H1,0,0,3,1))",
+        "SUM(OFFSET(H1,1,0,2,1))+H1",
+        'INDIRECT("H2")+INDIRECT("H3")+H1',
+        "SUM(H1:INDEX(H1:H9,3))",
+    ],
+)
+def test_references_into_the_cells_that_an_array_formula_fills(book, formula, dynamic):
+    filled = spilling("A1:A3*2", (1, 8, 3, 8), 2.0, 4.0, 6.0, dynamic=dynamic)
+    cells = {**CELLS, **filled, "J1": f"={formula}", "J2": '=CELL("contents",H3)'}
+    inputs = {name: {"cell": name.upper(), "low": 0, "high": 9} for name in ("a1", "a2", "a3")}
+    model = book(cells, inputs, {"sum": "J1", "third": "J2"})
+    found = model.function({"a1": [1.0, 5.0], "a2": [2.0, 3.0], "a3": [4.0, 0.5]})
+    assert found["sum"].tolist() == [14.0, 17.0]
+    assert found["third"].tolist() == [8.0, 1.0]
+
+
+@pytest.mark.parametrize("saved", [(2.0, 4.0, 6.0), (0.0, 0.0, 0.0)])
+def test_every_cell_of_a_spill_varies(book, saved):
+    cells = {**CELLS, **spilling("A1:A3*A1", (1, 8, 3, 8), *saved), "J1": "=SUM(H1#)", "J2": "=INDEX(H1#,3)"}
+    model = book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"sum": "J1", "third": "J2"})
+    found = model.function({"a": [1.0, 5.0]})
+    assert found["sum"].tolist() == [6.0, 50.0]
+    assert found["third"].tolist() == [3.0, 15.0]
+
+
 def test_a_spill_whose_size_varies_is_what_each_trial_gives(book):
     cells = {**CELLS, **spilling("_xlfn._xlws.FILTER(A1:A3,A1:A3>1)", (1, 8, 2, 8), 2.0, 3.0), "J1": "=SUM(H1#)"}
     model = book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"sum": "J1"})

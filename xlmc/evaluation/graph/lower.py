@@ -23,6 +23,7 @@ from xlmc.evaluation.graph.nodes import Apply, Constant, Input
 from xlmc.evaluation.graph.running_totals import RunningTotals
 from xlmc.formula import Filled, Graph, Resolver, build_graph, ir
 from xlmc.formula.callables import gives_function
+from xlmc.formula.graph import Spills
 from xlmc.functions import Function, Kind
 from xlmc.functions.facts import Facts
 from xlmc.functions.logical import zero_if_blank
@@ -105,6 +106,7 @@ class Lowering(ExpressionLowering):
         self.more: dict[Cell, set[Cell]] = {}
         self.led_to: dict[Cell, set[Cell]] = {}
         self._led: set[Cell] = set()
+        self._spills = Spills(graph.workbook)
         self._computed: dict[Cell, int] = {}
         self._arrays: dict[Cell, int] = {}
         self._cells: dict[Cell, int] = {cell: dag.input(name) for cell, name in inputs.items()}
@@ -176,7 +178,9 @@ class Lowering(ExpressionLowering):
             self._led.add(cell)
         if cell in self.inputs:
             return cell not in self.graph.reached
-        return cell not in self._cells and self.graph.workbook.content(cell).formula is not None
+        if cell in self._cells:
+            return False
+        return self.graph.workbook.content(cell).formula is not None or self._spills.anchor(cell) is not None
 
     @cached_property
     def resolver(self) -> Resolver:

@@ -226,11 +226,13 @@ class Dag:
 
     def upstream(self, targets: Sequence[int], reads: Callable[[int], Sequence[int]] | None = None) -> list[int]:
         """The varying nodes that the targets need, in order; `reads` says what a node needs, if not all it uses."""
-        needed = {node for node in targets if not isinstance(self.nodes[node], Constant)}
+        needed = set(targets)
         for node in range(max(needed, default=-1), -1, -1):
             if node in needed:
-                read = uses(self.nodes[node]) if reads is None else reads(node)
-                needed.update(p for p in read if not isinstance(self.nodes[p], Constant))
+                if isinstance(self.nodes[node], Constant):
+                    needed.remove(node)
+                else:
+                    needed.update(uses(self.nodes[node]) if reads is None else reads(node))
         return sorted(needed)
 
 

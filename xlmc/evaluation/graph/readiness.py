@@ -10,7 +10,7 @@ the better of the two orders.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Collection, Mapping, Sequence, Set
+from collections.abc import Collection, Container, Iterable, Mapping, Sequence
 from typing import Final
 
 __all__ = ["FEW", "most_waiting", "order_by_need"]
@@ -45,51 +45,47 @@ def order_by_need(
 
 def _as_early_as_possible(nodes: Sequence[int], reads: Reads, few: int) -> list[int]:
     own = set(nodes)
+    needs = {node: [used for used in reads[node] if used in own] for node in nodes}
     readers: dict[int, list[int]] = {node: [] for node in nodes}
     for node in nodes:
-        for used in own.intersection(reads[node]):
+        for used in set(needs[node]):
             readers[used].append(node)
-    found: dict[int, None] = {}
+    done: dict[int, None] = {}
     for first in nodes:
         waiting = deque([first])
         while waiting:
-            for node in _missing(waiting.popleft(), own, found.keys(), reads, few):
-                found[node] = None
+            wanted = waiting.popleft()
+            for node in () if wanted in done else _missing(wanted, needs, done, few):
+                done[node] = None
                 if len(readers[node]) <= _MANY:
                     waiting.extend(readers[node])
-    return list(found)
+    return list(done)
 
 
-def _missing(node: int, own: Set[int], done: Set[int], reads: Reads, few: int) -> list[int]:
-    """The nodes to compute for a node, itself the last; none where it is done, or where they are more than a few."""
-    if node in done:
-        return []
+def _missing(node: int, needs: Reads, done: Container[int], few: int) -> Iterable[int]:
+    """The nodes to compute for a node, itself the last; none where they are more than a few."""
     found: dict[int, None] = {}
-    open_ = [(node, iter(reads[node]))]
+    open_ = [(node, iter(needs[node]))]
     while open_:
         at, rest = open_[-1]
-        used = next((used for used in rest if used in own and used not in done and used not in found), None)
-        if used is not None:
-            open_.append((used, iter(reads[used])))
-            if len(open_) + len(found) > few:
-                return []
+        for used in rest:
+            if used not in done and used not in found:
+                open_.append((used, iter(needs[used])))
+                break
         else:
             open_.pop()
             found[at] = None
-    return list(found)
+        if len(open_) + len(found) > few:
+            return ()
+    return found
 
 
-def most_waiting(order: Sequence[int], reads: Reads, keep: Collection[int]) -> int:
+def most_waiting(order: Sequence[int], reads: Reads, keep: Iterable[int]) -> int:
     """The most values of these nodes that wait at a time to be read."""
-    last = {used: node for node in order for used in reads[node]} | dict.fromkeys(keep, -1)
-    ends = dict.fromkeys(order, 0)
-    for node in order:
-        reader = last.get(node, node)
-        if reader in ends:
-            ends[reader] += 1
-    waiting = most = 0
-    for node in order:
-        waiting += 1
-        most = max(most, waiting)
-        waiting -= ends[node]
+    own = set(order)
+    waiting, most = own.intersection(keep), 0
+    for node in reversed(order):  # what waits before a node is what waits after it, and what it reads
+        waiting.discard(node)
+        waiting.update(own.intersection(reads[node]))
+        most = max(most, len(waiting) + 1)
     return most

@@ -147,6 +147,8 @@ def _groups(
     dag: Dag, nodes: Sequence[int], rules: Mapping[int, LoopRule], needed: Callable[[int], Sequence[int]]
 ) -> list[tuple[int, ...]]:
     """The nodes, in order, in groups in order; those without a rule stand alone."""
+    if nodes and all(node in rules for node in nodes):
+        return [tuple(part) for part in cut(dag, nodes, rules, _LONGEST)]
     levels: dict[int, int] = {}
     for node in nodes:
         in_loop = node in rules

@@ -28,7 +28,7 @@ _MOST: Final = 4096
 
 _KEPT: Final = 64
 
-_LONG: Final = ir.IntType(64)
+_INDEX: Final = ir.IntType(32)
 
 
 def lookup_rule(dag: Dag, node: Apply) -> LoopRule | None:
@@ -54,7 +54,7 @@ def emit_lookup(lookup: Search | Pick) -> Emit:
     def emit(body: Emitter, parts: Sequence[Any]) -> Any:
         if isinstance(lookup, Search):
             return _search(body, lookup, parts[0])
-        return _Column(body, lookup.numbers).at(body.builder.fptosi(parts[0], _LONG))
+        return _Column(body, lookup.numbers).at(body.builder.fptosi(parts[0], _INDEX))
 
     return emit
 
@@ -75,7 +75,7 @@ class _Column:
 
     def at(self, index: Any) -> Any:
         """The double at an index."""
-        return self._builder.load(self._builder.gep(self._held, [_LONG(0), index]))
+        return self._builder.load(self._builder.gep(self._held, [_INDEX(0), index]))
 
 
 def _search(body: Emitter, search: Search, key: Any) -> Any:
@@ -99,13 +99,13 @@ def _by_division(body: Emitter, search: Search, key: Any) -> Any:
     first, last = float(search.rising[0]), float(search.rising[-2])
     inside = body.intrinsic("llvm.minnum", body.intrinsic("llvm.maxnum", key, body.number(first)), body.number(last))
     if search.divides:
-        whole = builder.fptosi(builder.fdiv(builder.fsub(inside, body.number(first)), body.number(search.step)), _LONG)
-        return builder.add(whole, _LONG(1))
+        whole = builder.fptosi(builder.fdiv(builder.fsub(inside, body.number(first)), body.number(search.step)), _INDEX)
+        return builder.add(whole, _INDEX(1))
     steps = builder.fmul(builder.fsub(inside, body.number(first)), body.number(1.0 / search.step))
-    guess = builder.fptosi(steps, _LONG)
-    below = builder.zext(builder.fcmp_ordered("<", inside, rising.at(guess)), _LONG)
-    found = builder.add(builder.sub(guess, below), _LONG(1))
-    beyond = builder.zext(builder.fcmp_ordered(">=", inside, rising.at(found)), _LONG)
+    guess = builder.fptosi(steps, _INDEX)
+    below = builder.zext(builder.fcmp_ordered("<", inside, rising.at(guess)), _INDEX)
+    found = builder.add(builder.sub(guess, below), _INDEX(1))
+    beyond = builder.zext(builder.fcmp_ordered(">=", inside, rising.at(found)), _INDEX)
     return builder.add(found, beyond)
 
 
@@ -113,11 +113,11 @@ def _by_halves(body: Emitter, search: Search, key: Any, relation: str) -> Any:
     """How many numbers stand in that relation to the key, which those at the front do."""
     builder, size = body.builder, search.rising.size - 1
     rising = _Column(body, search.rising)
-    found, half = _LONG(0), 1 << (size.bit_length() - 1)
+    found, half = _INDEX(0), 1 << (size.bit_length() - 1)
     while half:
-        reach = builder.add(found, _LONG(half))
-        inside = builder.icmp_signed("<=", reach, _LONG(size))
-        index = builder.select(inside, builder.sub(reach, _LONG(1)), _LONG(size))
+        reach = builder.add(found, _INDEX(half))
+        inside = builder.icmp_signed("<=", reach, _INDEX(size))
+        index = builder.select(inside, builder.sub(reach, _INDEX(1)), _INDEX(size))
         holds = builder.fcmp_ordered(relation, rising.at(index), key)
         found = builder.select(holds, reach, found)
         half //= 2

@@ -40,7 +40,9 @@ FORMULAS = {
     "MAX": "MAX(A{r},first)",
     "SINH": "SINH(A{r})",
     "QUOTIENT": "QUOTIENT(A{r},0.3)",
+    "MOD": "MOD(A{r},0.3)",
     "INT": "INT(A{r}*10)",
+    "ROUND": "ROUND(A{r},2)",
     "MEDIAN": "MEDIAN(A{r},A1,A2)",
     "ISEVEN": "IF(ISEVEN(A{r}),1,2)",
 }

@@ -22,8 +22,9 @@ CHOSEN = [
     (["A1"], JitProgram),
     (["2"], JitProgram),
     (["A1^A2"], JitProgram),  # nothing stands between loops
-    (["A1^A2", "ROUND(A1,1)", "A1+A2"], NumpyProgram),
-    ([f"ROUND(A1,{k})" for k in range(20)] + PLAIN, NumpyProgram),
+    (["A1^A2", "ROUND(A1,A2)", "A1+A2"], NumpyProgram),
+    ([f"ROUND(A1,A2+{k})" for k in range(20)] + PLAIN, NumpyProgram),
+    ([f"ROUND(A1,{k})" for k in range(20)], JitProgram),
 ]
 
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from hashlib import sha256
 from typing import Any, Final
 
 from llvmlite import ir
@@ -16,10 +15,10 @@ from llvmlite import ir
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply
 from xlmc.evaluation.graph.number_lookups import key_of, lookup_of
+from xlmc.evaluation.llvm.constant_column import ConstantColumn
 from xlmc.evaluation.llvm.loop_rules import Emit, Emitter, LoopRule, Operand
 from xlmc.functions import Kind
 from xlmc.functions.lookup.search_and_pick import Pick, Search
-from xlmc.functions.values import Floats
 
 __all__ = ["emit_lookup", "lookup_rule", "rule_of_lookup"]
 
@@ -54,28 +53,9 @@ def emit_lookup(lookup: Search | Pick) -> Emit:
     def emit(body: Emitter, parts: Sequence[Any]) -> Any:
         if isinstance(lookup, Search):
             return _search(body, lookup, parts[0])
-        return _Column(body, lookup.numbers).at(body.builder.fptosi(parts[0], _INDEX))
+        return ConstantColumn(body, lookup.numbers).at(body.builder.fptosi(parts[0], _INDEX))
 
     return emit
-
-
-class _Column:
-    """Constant doubles, kept once in a module."""
-
-    def __init__(self, body: Emitter, numbers: Floats) -> None:
-        self._builder = body.builder
-        type_ = ir.ArrayType(body.real, numbers.size)
-        name = f"column.{sha256(numbers.tobytes()).hexdigest()[:32]}"
-        known = body.builder.module.globals
-        if name not in known:
-            held = ir.GlobalVariable(body.builder.module, type_, name)
-            held.linkage, held.global_constant = "internal", True
-            held.initializer = ir.Constant(type_, [ir.Constant(body.real, float(number)) for number in numbers])
-        self._held = known[name]
-
-    def at(self, index: Any) -> Any:
-        """The double at an index."""
-        return self._builder.load(self._builder.gep(self._held, [_INDEX(0), index]))
 
 
 def _search(body: Emitter, search: Search, key: Any) -> Any:
@@ -89,13 +69,13 @@ def _search(body: Emitter, search: Search, key: Any) -> Any:
     if search.positions is None:
         body.flag(builder.fcmp_unordered("<", key, body.number(float(search.rising[0]))))
         return builder.sitofp(found, body.real)
-    body.flag(builder.fcmp_unordered("!=", key, _Column(body, search.rising).at(found)))
-    return _Column(body, search.positions.astype(float)).at(found)
+    body.flag(builder.fcmp_unordered("!=", key, ConstantColumn(body, search.rising).at(found)))
+    return ConstantColumn(body, search.positions.astype(float)).at(found)
 
 
 def _by_division(body: Emitter, search: Search, key: Any) -> Any:
     """How many numbers are not above the key: by its distance from the first, corrected by one where that may miss."""
-    builder, rising = body.builder, _Column(body, search.rising)
+    builder, rising = body.builder, ConstantColumn(body, search.rising)
     first, last = float(search.rising[0]), float(search.rising[-2])
     inside = body.intrinsic("llvm.minnum", body.intrinsic("llvm.maxnum", key, body.number(first)), body.number(last))
     if search.divides:
@@ -112,7 +92,7 @@ def _by_division(body: Emitter, search: Search, key: Any) -> Any:
 def _by_halves(body: Emitter, search: Search, key: Any, relation: str) -> Any:
     """How many numbers stand in that relation to the key, which those at the front do."""
     builder, size = body.builder, search.rising.size - 1
-    rising = _Column(body, search.rising)
+    rising = ConstantColumn(body, search.rising)
     found, half = _INDEX(0), 1 << (size.bit_length() - 1)
     while half:
         reach = builder.add(found, _INDEX(half))

@@ -17,8 +17,17 @@ from llvmlite import ir
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Node, Select
 from xlmc.evaluation.llvm.lookups import lookup_rule
-from xlmc.evaluation.llvm.loop_arithmetic import arccosine, arcsine, arctangent, arctangent_of_two
+from xlmc.evaluation.llvm.loop_arithmetic import Arithmetic, arccosine, arcsine, arctangent, arctangent_of_two
 from xlmc.evaluation.llvm.loop_powers import common_logarithm, exponential, logarithm, power
+from xlmc.evaluation.llvm.loop_rounding import (
+    MOST_DIGITS,
+    ROUNDED,
+    down_to_whole,
+    is_even,
+    nearest_multiple,
+    round_to,
+    whole_quotient,
+)
 from xlmc.evaluation.llvm.loop_rules import PLAIN, Emit, Emitter, Literal, LoopRule, Operand, first_operand, literal
 from xlmc.evaluation.llvm.sets import over_cells
 from xlmc.functions import Kind
@@ -37,6 +46,9 @@ _ALL: Final = range(255)
 
 _FEW: Final = 63
 """Cells that the loop reads at once, though there are nodes that take them one by one."""
+
+_NO_FRACTION: Final = 2.0**52
+_TINY_DIVISOR: Final = 1e-290
 
 _LARGEST_ANGLE: Final = 2.0**27
 """Excel refuses the sine of a larger angle: the trial is computed again."""
@@ -96,6 +108,8 @@ def _operation(dag: Dag, node: Apply) -> LoopRule | None:
         return _compare(dag, node, node.function.ufunc.symbol)
     if node.function.name == "LOG":
         return _logarithm(dag, node)
+    if node.function.name in ROUNDED:
+        return _rounding(dag, node)
     row = _power(dag, node) if node.function.name == "^" else _ROWS.get(node.function.name)
     if row is None or len(node.arguments) != len(node.function.parameters):
         return None
@@ -164,9 +178,20 @@ def _cosecant(body: Emitter, parts: Sequence[Any]) -> Any:
 
 
 def _remainder(body: Emitter, parts: Sequence[Any]) -> Any:
-    """The exact remainder with the sign of the divisor, also of a zero; NaN by zero."""
-    builder, zero, divisor = body.builder, body.number(0.0), parts[1]
-    rest = builder.frem(*parts)
+    """The exact remainder with the sign of the divisor, also of a zero; NaN by zero.
+
+    Rounded, the quotient is never below a whole number that it reaches, and at most one step above those that it does
+    not. So the rest by its whole part is exact, and has the other sign where that is one too large. Quotients that hold
+    no fraction, and divisors whose rests may be too small, are left to the careful path.
+    """
+    (x, divisor), builder, zero = parts, body.builder, body.number(0.0)
+    size = body.intrinsic("llvm.fabs", divisor)
+    steps = body.intrinsic("llvm.trunc", builder.fdiv(x, divisor))
+    body.flag(builder.fcmp_ordered(">=", body.intrinsic("llvm.fabs", steps), body.number(_NO_FRACTION)))
+    body.flag(builder.fcmp_ordered("<", size, body.number(_TINY_DIVISOR)))
+    rest = body.of_doubles(Arithmetic.less_product, x, steps, divisor)
+    too_far = builder.fcmp_ordered("<", builder.fmul(_sign(body, [rest]), x), zero)
+    rest = builder.select(too_far, builder.fadd(rest, body.intrinsic("llvm.copysign", size, x)), rest)
     apart = builder.xor(builder.fcmp_ordered("<", rest, zero), builder.fcmp_ordered("<", divisor, zero))
     moved = builder.select(apart, builder.fadd(rest, divisor), rest)
     none = body.intrinsic("llvm.copysign", zero, divisor)
@@ -301,6 +326,16 @@ def _logarithm(dag: Dag, node: Apply) -> LoopRule | None:
     return LoopRule((number,), row.emit, row.absorbs, row.makes)
 
 
+def _rounding(dag: Dag, node: Apply) -> LoopRule | None:
+    """The rule of a rounding to digits that are known; others are left to NumPy."""
+    number, *given = (Operand(argument, Kind.NUMBER) for argument in node.arguments)
+    known = literal(dag, given[0]) if given else Literal(0.0)
+    digits = None if known is None else float(known.value)
+    if digits is None or not abs(digits) < MOST_DIGITS + 1:
+        return None
+    return LoopRule((number,), round_to(node.function.name, int(digits)), absorbs=(0,), makes=digits < 0)
+
+
 def _above_zero(function: Callable[..., Any]) -> _Row:
     """A function of numbers above 0; Excel refuses others: the trial is computed again."""
 
@@ -330,6 +365,11 @@ _ROWS: Final[Mapping[str, _Row]] = {
     "SQRT": _Row(_root),
     "MOD": _Row(_remainder, (1,)),
     "SIGN": _Row(_sign, _ALL, makes=False),
+    "INT": _Row(down_to_whole, (0,), makes=False),
+    "MROUND": _Row(nearest_multiple),
+    "QUOTIENT": _Row(whole_quotient, (1,)),
+    "ISEVEN": _Row(is_even, _ALL),
+    "ISODD": _Row(lambda body, parts: body.builder.not_(is_even(body, parts)), _ALL),
     "SIN": _Row(_sine, makes=False),
     "COS": _Row(_cosine, makes=False),
     "TAN": _Row(_tangent),

@@ -18,22 +18,25 @@ from xlmc.functions.facts import Facts
 from xlmc.functions.registry import Number, Ranges, excel
 from xlmc.functions.values import DIV0, NUM, Bools, Floats
 
-__all__ = ["TENS"]
+__all__ = ["DECADES", "FIFTEEN_DIGITS", "HALF_OF_15TH_DIGIT", "LAST_BIT", "NO_FRACTION", "TENS"]
 
 _ONE_CELL: Final = Number(ranges=Ranges.ONE_CELL)
 TENS: Final = np.array([float(f"1e{n}") for n in range(309)])
 """The powers of ten that a double holds, from 1 on."""
 
-_DECADES: Final = np.array([float(f"1e{n}") for n in range(-290, 309)])
-_HALF_OF_15TH_DIGIT: Final = np.array([0.0, *(float(f"5e{n - 15}") for n in range(-290, 309))])
+DECADES: Final = np.array([float(f"1e{n}") for n in range(-290, 309)])
+"""Where numbers get one digit more; below the first, half a unit of the 15th digit counts as 0."""
+HALF_OF_15TH_DIGIT: Final = np.array([0.0, *(float(f"5e{n - 15}") for n in range(-290, 309))])
+"""Half a unit of the 15th digit of numbers below the first decade, and from each decade on."""
 
 _SHOWN: Final = Context(prec=15, rounding=ROUND_HALF_UP)
-_LAST_BIT: Final = 2.3e-16
+LAST_BIT: Final = 2.3e-16
 """A share of a double: more than its last bit, less than half a unit of its 15th digit."""
 
-_FIFTEEN_DIGITS: Final = 1e14
+FIFTEEN_DIGITS: Final = 1e14
+"""Fewer steps than these are more than the 15th digit."""
 _HALF: Final = np.asarray(0.5)
-_NO_FRACTION: Final = 2.0**52
+NO_FRACTION: Final = 2.0**52
 """From here on all doubles are whole numbers: there is nothing to round."""
 
 
@@ -53,10 +56,10 @@ class _Grid:
         whole = np.clip(np.trunc(digits), -308, 308).astype(np.intp)
         self._up, self._down = TENS[np.maximum(whole, 0)], TENS[np.maximum(-whole, 0)]
         self._size, self._digits = size, whole
-        seen = _HALF_OF_15TH_DIGIT[np.searchsorted(_DECADES, size, side="right")]
+        seen = HALF_OF_15TH_DIGIT[np.searchsorted(DECADES, size, side="right")]
         self._tolerance = np.minimum(seen, self.multiple(_HALF))
         steps = size * self._up / self._down
-        self.coarse, self.fine = steps < _FIFTEEN_DIGITS, steps >= _NO_FRACTION
+        self.coarse, self.fine = steps < FIFTEEN_DIGITS, steps >= NO_FRACTION
         self.n = np.floor(steps)
         self.n = np.where(self.reaches(self.n + 1), self.n + 1, self.n)
 
@@ -76,7 +79,7 @@ class _Grid:
 
     def _correct(self, answer: Bools, gap: Floats, n: Floats, *, above: bool) -> Bools:
         """Correct the answer of doubles by decimals where the gap to the n-th multiple nearly equals the tolerance."""
-        near = np.abs(gap - self._tolerance) < _LAST_BIT * self._size
+        near = np.abs(gap - self._tolerance) < LAST_BIT * self._size
         if not near.any():
             return np.asarray(answer)
         near = near & (self._tolerance < self.multiple(_HALF))

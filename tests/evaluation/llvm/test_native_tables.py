@@ -27,7 +27,7 @@ def computing(patch):
     patch.setattr(programs, "rules_of_looked_up", lambda *_: {})
 
 
-@pytest.mark.parametrize("number", range(24))
+@pytest.mark.parametrize("number", range(12))
 def test_the_bits_of_random_books_are_the_same(book, monkeypatch, processor, number):
     found = told(some_book(book, number).simulate(TRIALS, 5, engine="jit"))
     with monkeypatch.context() as patch:

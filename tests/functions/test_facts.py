@@ -67,6 +67,7 @@ LISTS = {
     ("evaluation/graph/whole_columns.py", "_look_up"): "any other lookup searches as MATCH does, or is refused",
     ("evaluation/graph/whole_columns.py", "_reach"): "any other lookup searches in both directions alike",
     ("evaluation/llvm/costs.py", "_SAVED_BY"): "any other function of numbers saves the usual time in a loop",
+    ("evaluation/llvm/loop_rounding.py", "_FURTHER"): "any other function is computed by NumPy",
     ("evaluation/llvm/operations.py", "_ROWS"): "any other function is computed by NumPy",
     ("evaluation/llvm/sets.py", "_ROWS"): "any other function is computed by NumPy",
     ("evaluation/passes/bounds.py", "_OF_SETS"): "of any other set no bounds are known",
@@ -174,11 +175,12 @@ def test_tables_of_nodes_have_the_names_of_rows(table):
 
 
 def test_tables_of_native_code_have_the_names_of_rows():
-    operations, sets = (
+    operations, sets, rounding = (
         pytest.importorskip("xlmc.evaluation.llvm.operations"),
         pytest.importorskip("xlmc.evaluation.llvm.sets"),
+        pytest.importorskip("xlmc.evaluation.llvm.loop_rounding"),
     )
-    assert {*operations._ROWS, *sets._ROWS} - set(ROWS) - MADE == set()
+    assert {*operations._ROWS, *sets._ROWS, *rounding.ROUNDED} - set(ROWS) - MADE == set()
     assert all(ROWS[name].takes_sets for name in sets._ROWS)
 
 

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import openpyxl
 import pytest
-from fewer_sheets import CHARTS, SENSITIVITY, keep_few_trials, leave_out
+from fewer_sheets import CHARTS, SENSITIVITY, keep_few_trials, leave_out, leave_out_shapes
 
 import xlmc
 from xlmc.report.sheets import book as result_sheets
@@ -12,13 +12,14 @@ _WHOLE = result_sheets.SHEETS
 
 @pytest.fixture(scope="module", autouse=True)
 def _short_books():
-    """Charts, the sheets on sensitivity and many trials take longest to write and to read; no test here looks at them.
+    """What takes longest to write and to read, and no test here looks at: charts, shapes, sensitivity, many trials.
 
     `tests/cli/test_replay.py` has whole books.
     """
     with pytest.MonkeyPatch.context() as patch:
         leave_out(patch, *CHARTS, *SENSITIVITY)
         keep_few_trials(patch)
+        leave_out_shapes(patch)
         yield
 
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 import re
 import shutil
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import openpyxl
@@ -66,9 +67,15 @@ RUNS = {
 }
 
 
-@pytest.mark.parametrize("asked", RUNS.values(), ids=RUNS)
-def test_every_kind_of_run_is_repeated_to_the_last_bit(model, tmp_path, asked):
-    run = model.simulate(**asked)
+@pytest.fixture(scope="module")
+def run_of(model):
+    """Name among `RUNS` -> the run, which is made once."""
+    return cache(lambda kind: model.simulate(**RUNS[kind]))
+
+
+@pytest.mark.parametrize("kind", RUNS)
+def test_every_kind_of_run_is_repeated_to_the_last_bit(run_of, tmp_path, kind):
+    run = run_of(kind)
     run.save(tmp_path / "r.xlsx")
     run.keep(tmp_path / "r.xlmcrun")
     for path in (tmp_path / "r.xlsx", tmp_path / "r.xlmcrun"):
@@ -78,15 +85,10 @@ def test_every_kind_of_run_is_repeated_to_the_last_bit(model, tmp_path, asked):
 
 
 @pytest.mark.parametrize(
-    ("asked", "key"),
-    [
-        ({"until_accepted": 100}, "until_accepted"),
-        ({"precision": "20%", "precision_of": "p50"}, "precision"),
-        ({"until_accepted": 300, "rare": "always"}, "until_accepted"),
-    ],
+    ("kind", "key"), [("until accepted", "until_accepted"), ("precision", "precision"), ("rare", "until_accepted")]
 )
-def test_a_record_without_the_goal_that_was_reached_is_refused(model, tmp_path, asked, key):
-    model.simulate(**asked).save(tmp_path / "r.xlsx")
+def test_a_record_without_the_goal_that_was_reached_is_refused(run_of, tmp_path, kind, key):
+    run_of(kind).save(tmp_path / "r.xlsx")
     book = openpyxl.load_workbook(tmp_path / "r.xlsx")
     row = next(row for row in book["Record"].iter_rows() if row[0].value == f"settings.{key}")
     row[2].value = None
@@ -108,8 +110,8 @@ def test_a_record_without_the_goal_that_was_not_reached_is_refused(model, tmp_pa
         replay(tmp_path / "r.xlsx")
 
 
-def test_nothing_was_accepted_in_the_run_that_should_have_accepted_nothing(model):
-    assert model.simulate(**RUNS["nothing accepted"]).accepted == 0
+def test_nothing_was_accepted_in_the_run_that_should_have_accepted_nothing(run_of):
+    assert run_of("nothing accepted").accepted == 0
 
 
 def test_an_interrupted_run_is_repeated(model, tmp_path):

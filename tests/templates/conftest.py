@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 import zipfile
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -61,11 +62,18 @@ def book_path():
 
 
 @pytest.fixture(scope="session")
-def shown(book_path, described):
+def opened():
+    """`opened(path)`: the workbook, to look at and not to change; with `data_only=True`, its values."""
+    return cache(openpyxl.load_workbook)
+
+
+@pytest.fixture(scope="session")
+def shown(book_path, opened):
     """`shown(name)`: symbol -> the value that the committed workbook shows."""
 
+    @cache
     def read(name):
-        book = openpyxl.load_workbook(book_path[name], data_only=True)
+        book = opened(book_path[name], data_only=True)
         places = {symbol: next(iter(named.destinations)) for symbol, named in book.defined_names.items()}
         return {symbol: book[sheet][place].value for symbol, (sheet, place) in places.items()}
 

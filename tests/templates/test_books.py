@@ -3,9 +3,7 @@ from __future__ import annotations
 import math
 import re
 import zipfile
-from functools import cache
 
-import openpyxl
 import pytest
 from committed_books import BOOKS, TEMPLATES
 
@@ -53,12 +51,6 @@ MORE = {"xlmc_forecasts": ["Only if"], "xlmc_filters": ["Only for"]}
 """Where a filter is about one forecast."""
 
 
-@cache
-def opened(path, *, data_only=False):
-    """The workbook, to look at and not to change."""
-    return openpyxl.load_workbook(path, data_only=data_only)
-
-
 def formula_cells(book):
     return {
         (sheet.title, cell.coordinate): cell.value
@@ -76,7 +68,7 @@ def rows(book, table):
 
 
 @pytest.mark.parametrize("name", BOOKS)
-def test_cached_values_are_what_libreoffice_computes(name, book_path, recalculated):
+def test_cached_values_are_what_libreoffice_computes(name, book_path, recalculated, opened):
     cached = opened(book_path[name], data_only=True)
     computed = opened(recalculated[name], data_only=True)
     cells = formula_cells(opened(book_path[name]))
@@ -90,7 +82,7 @@ def test_cached_values_are_what_libreoffice_computes(name, book_path, recalculat
 
 
 @pytest.mark.parametrize("name", BOOKS)
-def test_tables_stand_where_they_belong(name, book_path, described, subtests):
+def test_tables_stand_where_they_belong(name, book_path, described, subtests, opened):
     book = opened(book_path[name])
     one_forecast = any(row.only_for for row in described[name].filters)
     for table, (sheet, headers) in TABLES.items():
@@ -102,7 +94,7 @@ def test_tables_stand_where_they_belong(name, book_path, described, subtests):
 
 
 @pytest.mark.parametrize("name", BOOKS)
-def test_every_quantity_is_a_named_cell(name, book_path, described):
+def test_every_quantity_is_a_named_cell(name, book_path, described, opened):
     book = opened(book_path[name])
     template = described[name]
     symbols = {quantity.symbol for quantity in (*template.inputs, *template.equations)}
@@ -121,7 +113,7 @@ def test_every_quantity_is_a_named_cell(name, book_path, described):
 
 
 @pytest.mark.parametrize("name", BOOKS)
-def test_forecasts_and_filters_point_at_their_cells(name, book_path, described):
+def test_forecasts_and_filters_point_at_their_cells(name, book_path, described, opened):
     book, template = opened(book_path[name]), described[name]
     for table, described_rows in (("xlmc_forecasts", template.forecasts), ("xlmc_filters", template.filters)):
         for row, wanted in zip(rows(book, table), described_rows, strict=True):
@@ -132,7 +124,7 @@ def test_forecasts_and_filters_point_at_their_cells(name, book_path, described):
             assert row["Cell"].value == f"=Model!{place.replace('$', '')}"
 
 
-def test_the_case_study_says_what_the_paper_says(book_path):
+def test_the_case_study_says_what_the_paper_says(book_path, opened):
     book = opened(book_path["intersection"])
     assumptions = rows(book, "xlmc_assumptions")
     assert len(assumptions) == 17
@@ -155,7 +147,7 @@ def test_the_case_study_says_what_the_paper_says(book_path):
 
 
 @pytest.mark.parametrize("name", BOOKS)
-def test_assumption_cells_are_green_and_forecast_cells_blue(name, book_path, described):
+def test_assumption_cells_are_green_and_forecast_cells_blue(name, book_path, described, opened):
     book = opened(book_path[name])
     colours = {}
     for kind, symbols in (
@@ -177,7 +169,7 @@ def test_xlmc_agrees_with_libreoffice_in_every_cell(name, recalculated):
 
 
 @pytest.mark.parametrize("name", BOOKS)
-def test_formulas_are_guarded_and_inputs_are_open(name, book_path, described):
+def test_formulas_are_guarded_and_inputs_are_open(name, book_path, described, opened):
     """A formula is locked, or Excel asks before it is typed over; no input is locked; there is no password."""
     book = opened(book_path[name])
     asked = {

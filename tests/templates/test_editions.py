@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -30,6 +32,7 @@ CONVERSION = {
     ("ft·lb", "J"): POUND_FORCE * 0.3048,
     ("lb·ft·s²", "kg·m²"): POUND_FORCE * 0.3048,
 }
+VEHICLE = re.compile("«.*?»")
 DEFINITIONS = ("ft_per_mile", "in_per_ft")
 
 
@@ -63,8 +66,9 @@ def pairs(name):
 
 
 @pytest.mark.parametrize("name", TEMPLATES)
-def test_units_of_the_editions_are_counterparts(name):
+def test_labels_of_the_editions_name_the_same_vehicles_and_units_are_counterparts(name):
     for imperial, si in pairs(name):
+        assert VEHICLE.findall(imperial.name) == VEHICLE.findall(si.name)
         assert imperial.unit == si.unit or (imperial.unit, si.unit) in CONVERSION, imperial.symbol
 
 

@@ -58,6 +58,7 @@ RUNS = {
     "until accepted": {"until_accepted": 100},
     "until accepted, and not reached": {"until_accepted": 10_000, "trials": 1000},
     "precision": {"precision": "20%", "precision_of": "p50", "forecasts": "area"},
+    "precision of all": {"precision": "20%", "precision_of": "p50"},
     "time": {"precision": 1e-9, "time_limit": 0.001},
     "jit": {"engine": "jit", "trials": 35_000},
     "slow reference": {"engine": "formulas", "trials": 40},
@@ -85,7 +86,8 @@ def test_every_kind_of_run_is_repeated_to_the_last_bit(run_of, tmp_path, kind):
 
 
 @pytest.mark.parametrize(
-    ("kind", "key"), [("until accepted", "until_accepted"), ("precision", "precision"), ("rare", "until_accepted")]
+    ("kind", "key"),
+    [("until accepted", "until_accepted"), ("precision of all", "precision"), ("rare", "until_accepted")],
 )
 def test_a_record_without_the_goal_that_was_reached_is_refused(run_of, tmp_path, kind, key):
     run_of(kind).save(tmp_path / "r.xlsx")

@@ -73,10 +73,10 @@ def test_the_bar_of_tails_can_be_missed(tails):
 @pytest.mark.parametrize("method", ["mc", "lhs", "sobol"])
 def test_many_runs_at_once_have_the_numbers_of_each_alone(tails, method):
     """`measure` compares the first run with xlmc's own functions, and ends with an error where they differ."""
-    found = tails.measure(method, 1_000, range(40, 43))
-    assert found.shape == (len(tails.PROBLEMS), 3, 6, 4)
+    found = tails.measure(method, 1_000, range(40, 42))
+    assert found.shape == (len(tails.PROBLEMS), 2, 6, 4)
     for cell in tails.cells(method, 1_000, found):
-        assert cell.runs == 3
+        assert cell.runs == 2
 
 
 def test_the_bar_can_be_missed(coverage):
@@ -86,18 +86,18 @@ def test_the_bar_can_be_missed(coverage):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_some_of_the_runs_again(coverage, method):
-    """200 runs with other seeds: 95 % ± 4 binomial standard errors, which 98.5 % is within, so from below only."""
+    """100 runs with other seeds: 95 % ± 4 binomial standard errors, which 100 % is within, so from below only."""
     for name in ("speed, 33 % kept", "speed, 3 % kept"):
-        cell = coverage.measure(name, method, 200, first=50_000)
-        assert min(cell.hits) > 200 * (0.95 - 4 * math.sqrt(0.95 * 0.05 / 200))
+        cell = coverage.measure(name, method, 100, first=50_000)
+        assert min(cell.hits) > 100 * (0.95 - 4 * math.sqrt(0.95 * 0.05 / 100))
 
 
 @pytest.mark.parametrize("name", ["sum of normals, 16 % kept", "speed", "speed, 33 % kept", "speed, 3 % kept"])
 def test_the_truths_are_true(coverage, name):
-    """Beside a Monte Carlo run of 4 million trials, or 100,000 accepted ones: within 4.5 of its errors."""
+    """Beside a Monte Carlo run of a million trials, or 25,000 accepted ones: within 4.5 of its errors."""
     problem = coverage.PROBLEMS[name]
-    sample = coverage.one_run(problem, coverage.SamplingPlan.of("mc", 4_000_000), 77)
-    assert sample.n > 100_000
+    sample = coverage.one_run(problem, coverage.SamplingPlan.of("mc", 1_000_000), 77)
+    assert sample.n > 25_000
     for estimate, truth in zip(coverage.estimates(sample), problem.truth(), strict=True):
         assert abs(estimate.value - truth) < 4.5 * estimate.error
 
@@ -112,11 +112,11 @@ def test_the_committed_gains_meet_the_bar(sobol):
 
 
 def test_gains_of_known_variances(sobol):
-    """A variance ratio of 4 from 2,000 seeds is known to 4.5 %: four of those."""
+    """A variance ratio of 4 from 1,000 seeds is known to 6.3 %: four of those."""
     rng = np.random.default_rng(1)
-    ratios, intervals = sobol.gains(2 * rng.normal(size=(2_000, 2)), rng.normal(size=(2_000, 2)))
-    assert ratios == pytest.approx([4.0] * 3, rel=0.18)
-    assert all(low < ratio < high < 1.2 * ratio for ratio, (low, high) in zip(ratios, intervals, strict=True))
+    ratios, intervals = sobol.gains(2 * rng.normal(size=(1_000, 2)), rng.normal(size=(1_000, 2)))
+    assert ratios == pytest.approx([4.0] * 3, rel=0.25)
+    assert all(low < ratio < high < 1.3 * ratio for ratio, (low, high) in zip(ratios, intervals, strict=True))
 
 
 def test_unfiltered_sobol_means_of_the_case_study_hardly_vary(sobol):

@@ -45,7 +45,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize("name", FAMILIES)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=24, deadline=None)
 @given(data=st.data())
 def test_what_is_not_refused_gives_finite_draws(name, data):
     family = _family(name, data)

@@ -221,12 +221,15 @@ OF_RANGES += ["COUNT(B1:B2,C1:C2)", "IF(A1>0.5,COUNT(B1:B2),SUMPRODUCT(B1:B2,C1:
 
 @OURS
 def test_errors_in_cells_of_ranges_are_the_same(differences, engine):
-    """Also where the cell does not count: a count without it, or a logical value, which a function outside gave."""
+    """Also where the cell does not count: a count without it, or a logical value, which a function outside gave.
+
+    Each formula is asked for alone, with every other kind of cell, and with all the others.
+    """
     draws = {"A1": [0.2, 1.0, 2.0, 3.0]}
-    for cell in CELLS_THAT_MAY_ERR:
+    for first, cell in enumerate(CELLS_THAT_MAY_ERR):
         cells = {"B1": "=A1", "B2": f"={cell}", "C1": "=A1*2", "C2": "=A1+1"}
         cells |= {f"D{row}": f"={formula}" for row, formula in enumerate(OF_RANGES, 1)}
-        for row in range(1, len(OF_RANGES) + 1):
+        for row in range(1 + first % 2, len(OF_RANGES) + 1, 2):
             agree(differences(engine, cells, draws, [f"D{row}"], []))
         agree(differences(engine, cells, draws, [f"D{row}" for row in range(1, len(OF_RANGES) + 1)], []))
 

@@ -89,7 +89,7 @@ def _bits(item: object) -> object:
 
 @pytest.mark.parametrize("name", PLAUSIBLE)
 @given(data=st.data())
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=15, deadline=None)
 def test_trials_together_are_the_trials_alone(name, data):
     n, k = data.draw(st.integers(2, 4)), data.draw(st.integers(1, 4))
     arguments = []

@@ -92,7 +92,7 @@ def _same(name: str, found: object, expected: object) -> bool:
 
 @pytest.mark.parametrize("name", [name for name in ROWS if not ROWS[name].volatile])
 @given(seed=seeds)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=15, deadline=None)
 def test_trials_together_are_the_trials_alone(name, seed):
     function, random = ROWS[name], Random(seed)
     n = random.randint(2, 5)

@@ -7,7 +7,7 @@ from collections import Counter
 import pytest
 
 SEED = 20261122
-INPUTS = {"zip": 120, "formulas": 60, "tables": 200, "runs": 48, "blocks": 150, "old": 150}
+INPUTS = {"zip": 50, "formulas": 40, "tables": 80, "runs": 24, "blocks": 60, "old": 60}
 RAN = {"zip": 0.2, "formulas": 0.4, "tables": 0.2, "runs": 0.1, "blocks": 0.5, "old": 0.2}
 
 

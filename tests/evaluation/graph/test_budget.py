@@ -37,8 +37,8 @@ RUNS = {
     "REDUCE that doubles a text": {"Z1": '=IFERROR(LEN(REDUCE(A1&"a",SEQUENCE(60),LAMBDA(p,q,p&p))),A1)'},
     "a text joined of 1,360": {"Z1": "=LEN(" + "&".join(["A1"] * 1360) + ")"},
     "a number that doubles in each of 5,000 cells": down("A", 2, 5000, "=A{p}+A{p}") | {"Z1": "=IFERROR(A5000,A1)"},
-    "20,000 sums of one column": down("B", 1, 2000, "=A$1*{r}")
-    | down("C", 1, 20000, "=SUM(B:B)")
+    "10,000 sums of one column": down("B", 1, 2000, "=A$1*{r}")
+    | down("C", 1, 10000, "=SUM(B:B)")
     | {"Z1": "=SUM(C:C)"},
     "running sums": down("B", 1, 5000, "=A$1*{r}") | down("C", 1, 5000, "=SUM($B$1:$B{r})") | {"Z1": "=SUM(C:C)"},
     "a column with a cell far down": {"B1": 1.0, "B262144": 2.0, "Z1": "=SUM(B1:B262144)+A1"},
@@ -172,7 +172,7 @@ def test_a_range_that_is_folded_cell_by_cell_takes_no_array(lower, program):
     assert program(lowering, targets, [], frozenset()).largest_block >= 1 << 15
 
 
-@pytest.mark.parametrize(("cells", "block"), [(1, 64), (3_000, 64)])
+@pytest.mark.parametrize(("cells", "block"), [(1, 64), (600, 64)])
 def test_single_numbers_take_no_room_of_arrays(lower, cells, block):
     numbers = {f"B{row}": f"=A1+{row}" for row in range(1, cells + 1)}
     total = f"=SUM(SEQUENCE(100000,1,A1))+SUM(B1:B{cells})"

@@ -54,7 +54,7 @@ def test_filled_down_each_function_gives_what_it_gives_alone(run, name, range_):
     formulas = {f"C{r}": f"={name}({range_.format(r=r)})" for r in range(15, 31)}
     draws = {"A1": [0.3, 1.7, 2.0]}
     together = run(column | formulas, draws, list(formulas)).forecasts
-    for at in (0, 1, 6, 8, 15):
+    for at in (0, 8, 15):
         cell = [*formulas][at]
         assert run(column | {cell: formulas[cell]}, draws, [cell]).forecasts == [together[at]]
 
@@ -70,8 +70,9 @@ def filled(name, range_, rows):
     return cells | {f"D{r}": f"={name}({range_.format(r=r, n=rows)})" for r in range(1, rows + 1)}
 
 
-@pytest.mark.parametrize("range_", RUNNING)
-@pytest.mark.parametrize("name", FOLDED)
+@pytest.mark.parametrize(
+    ("name", "range_"), [(name, range_) for at, name in enumerate(FOLDED) for range_ in RUNNING[at % 2 :: 2]]
+)
 def test_a_row_more_is_a_few_cells_more_to_read(lower, name, range_):
     def read(rows):
         wanted = [f"D{row}" for row in range(1, rows + 1)]

@@ -10,7 +10,9 @@ pytest.importorskip("llvmlite")
 
 import xlmc
 from xlmc.evaluation.engine import Room
+from xlmc.evaluation.llvm.program import JitProgram
 from xlmc.run.blocks import Task
+from xlmc.run.forecast_filters import FilteringProgram
 from xlmc.run.scheduling.run_spec import model_runner
 
 BLOCK = 4096
@@ -108,13 +110,18 @@ def test_trials_behind_those_that_count_are_not_counted(book):
     assert few.trial_index.tolist() == more.trial_index[: few.accepted].tolist()
 
 
-@pytest.mark.parametrize("path", BOOKS.values(), ids=BOOKS)
-def test_examples_and_templates_in_whole_blocks(path):
+EQUATIONS = {name: path for name, path in BOOKS.items() if not name.endswith("-si")}
+"""An edition in other units has the equations of its template."""
+
+
+@pytest.mark.parametrize("path", EQUATIONS.values(), ids=EQUATIONS)
+def test_examples_and_templates_are_computed_in_loops_and_in_whole_blocks(path):
     """Some of their filters wait until they are needed: until then they are always true."""
     model = xlmc.load(path)
+    program = model.program("jit")
+    assert isinstance(program._program if isinstance(program, FilteringProgram) else program, JitProgram)
     if model.forecast_filters:
         pytest.skip("trials are discarded of one forecast alone: such a book has no whole blocks")
-    program = model.program("jit")
     if program.first.loops is None or program.late.loops is None:
         pytest.skip("a function that has no native form stands between loops: such a book has no whole blocks")
     assert list(map(bits, ran(model, True))) == list(map(bits, ran(model, False)))

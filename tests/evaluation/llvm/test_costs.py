@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import pytest
-from committed_books import BOOKS
 
 pytest.importorskip("llvmlite")
 
-import xlmc
 from xlmc.evaluation.engines import ENGINES
 from xlmc.evaluation.llvm.program import JitProgram
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
-from xlmc.run.forecast_filters import FilteringProgram
 
 PLAIN = [f"A1*A2+SQRT(A1+{k})" for k in range(1, 21)]
 CHOSEN = [
@@ -33,12 +30,6 @@ def test_a_book_has_the_program_that_the_table_says(lower, formulas, expected):
     cells = {f"C{row}": f"={formula}" for row, formula in enumerate(formulas, 1)}
     lowering, targets = lower(cells, ["A1", "A2"], [*cells])
     assert type(ENGINES["jit"].load()(lowering, targets[:1], targets[1:], frozenset())) is expected
-
-
-@pytest.mark.parametrize("path", BOOKS.values(), ids=BOOKS)
-def test_examples_and_templates_are_computed_in_loops(path):
-    program = xlmc.load(path).program("jit")
-    assert isinstance(program._program if isinstance(program, FilteringProgram) else program, JitProgram)
 
 
 def test_a_run_that_loops_would_slow_down_has_the_bits_of_numpy(book):

@@ -48,13 +48,13 @@ def closest():
 
 GENERATOR = np.random.default_rng(3)
 ANGLES = {
-    "dense": np.linspace(-7, 7, 3001),
+    "dense": np.linspace(-7, 7, 1001),
     "degrees": np.radians(np.arange(-720, 721)),
     "quarters": np.arange(-40, 41) * (np.pi / 4),
     "near multiples": near_multiples(),
     "closest": closest(),
-    "any size": np.exp(GENERATOR.uniform(np.log(1e-12), np.log(LIMIT), 2000)) * GENERATOR.choice([-1, 1], 2000),
-    "large": GENERATOR.uniform(LIMIT / 2, LIMIT, 1000),
+    "any size": np.exp(GENERATOR.uniform(np.log(1e-12), np.log(LIMIT), 700)) * GENERATOR.choice([-1, 1], 700),
+    "large": GENERATOR.uniform(LIMIT / 2, LIMIT, 300),
     "tiny": np.array(
         [0.0, 5e-324, 1e-310, 2.2e-308, 1e-300, 1e-200, 1e-20, 1e-8, -1e-8, -5e-324, np.nextafter(LIMIT, 0)]
     ),
@@ -101,8 +101,8 @@ STEPS = np.array([7, 11, 19, 39]) / 16
 
 SIZES = np.concatenate(
     [
-        np.linspace(0, 5, 1501),
-        np.exp(ARC_GENERATOR.uniform(-45, 45, 1500)),
+        np.linspace(0, 5, 501),
+        np.exp(ARC_GENERATOR.uniform(-45, 45, 500)),
         STEPS,
         np.nextafter(STEPS, 0),
         np.nextafter(STEPS, 9),
@@ -111,9 +111,9 @@ SIZES = np.concatenate(
 )
 TO_ONE = np.concatenate(
     [
-        np.linspace(0, 1, 2001),
-        1 - np.exp(ARC_GENERATOR.uniform(-36, 0, 1000)),
-        np.exp(ARC_GENERATOR.uniform(-700, 0, 1000)),
+        np.linspace(0, 1, 701),
+        1 - np.exp(ARC_GENERATOR.uniform(-36, 0, 400)),
+        np.exp(ARC_GENERATOR.uniform(-700, 0, 400)),
     ]
 )
 
@@ -136,7 +136,7 @@ def test_arctangents(compiled, distance):
 def points():
     """In every direction, near the axes and the diagonals too."""
     x, y = (ARC_GENERATOR.permutation(np.concatenate([SIZES, -SIZES, np.ones(100), -np.ones(100)])) for _ in range(2))
-    near = np.exp(ARC_GENERATOR.uniform(-3, 3, 3000)) * ARC_GENERATOR.choice([-1, 1], 3000)
+    near = np.exp(ARC_GENERATOR.uniform(-3, 3, 1000)) * ARC_GENERATOR.choice([-1, 1], 1000)
     x, y = np.concatenate([x, near, near, near]), np.concatenate([y, near, -near[::-1], np.nextafter(near, 0)])
     apart = (tiny_to_zero(x) != 0) | (tiny_to_zero(y) != 0)
     return x[apart], y[apart]

@@ -9,7 +9,7 @@ import pytest
 pytest.importorskip("llvmlite")
 
 GENERATOR = np.random.default_rng(11)
-N = 1500
+N = 500
 LEAST, MOST = -708.3964185322640, 709.782712893384
 """Between these an exponential is a number of Excel's."""
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import cycle
+
 import numpy as np
 import pytest
 from table_books import CELLS, GIVEN, TABLE, TRIALS, some_book, told
@@ -18,14 +20,16 @@ def tangents(request, monkeypatch):
     monkeypatch.setattr(trigonometry, "BY_TANGENTS", request.param)
 
 
-@pytest.mark.parametrize("number", range(24))
+def runs(model):
+    return [told(model.simulate(trials, 5)) for trials in (1, 2_049, TRIALS)]
+
+
+@pytest.mark.parametrize(("number", "tangents"), [*zip(range(24), cycle([True, False]))], indirect=["tangents"])
 def test_the_bits_of_random_books_are_the_same(book, monkeypatch, tangents, number):
-    found, trials = told(some_book(book, number).simulate(TRIALS, 5)), (1, 2_049, TRIALS)
-    few = [told(some_book(book, number).simulate(each, 5)) for each in trials]
+    found = runs(some_book(book, number))
     with monkeypatch.context() as computing:
         computing.setattr(numpy_engine, "find_looked_up", lambda *_: {})
-        assert found == told(some_book(book, number).simulate(TRIALS, 5))
-        assert few == [told(some_book(book, number).simulate(each, 5)) for each in trials]
+        assert found == runs(some_book(book, number))
 
 
 def looked_up(model):

@@ -10,8 +10,8 @@ from scipy.integrate import quad
 from xlmc.distributions.empirical import Empirical
 from xlmc.sampling.copulas import Clayton, Frank, Gumbel, Reflected, SameTrials, StudentTCopula
 
-N = 100_000
-FEW = 5_000
+N = 50_000
+FEW = 3_000
 
 
 def debye(theta):
@@ -78,9 +78,9 @@ def test_tail_dependence():
         (Reflected(Clayton(2, 2.0), (True, True)), True, 2**-0.5),
         (Reflected(Gumbel(2, 2.0), (True, True)), False, 2 - 2**0.5),
     ):
-        u = joined(copula, 2, n=1_000_000)
+        u = joined(copula, 2, n=500_000)
         both = np.mean((u > 1 - q).all(axis=0) if upper else (u <= q).all(axis=0)) / q
-        assert abs(both - limit) < 4 * np.sqrt(limit * (1 - limit) / (1_000_000 * q)) + 0.005
+        assert abs(both - limit) < 4 * np.sqrt(limit * (1 - limit) / (500_000 * q)) + 0.005
     degrees, r = 3.0, 0.5
     limit = 2 * stats.t.cdf(-np.sqrt((degrees + 1) * (1 - r) / (1 + r)), degrees + 1)
     u = joined(StudentTCopula(t_matrix(2, r), degrees), 2)

@@ -14,7 +14,7 @@ from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.statistics.estimate import LENGTHENED, t_quantile, t_range
 from xlmc.statistics.pulls import trial_skewness
 
-RUNS = 400
+RUNS = 250
 NOISE = 3 * math.sqrt(0.95 * 0.05 / RUNS)
 
 FORECASTS = {

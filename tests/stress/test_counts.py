@@ -11,7 +11,7 @@ import pytest
 from xlmc.statistics import mode
 
 FAMILIES = ["Yes-No", "Poisson", "Geometric", "Binomial"]
-RUNS = 60
+RUNS = 50
 
 
 @pytest.mark.parametrize("trials", [10, 200])

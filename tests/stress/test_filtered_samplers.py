@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-RUNS = 150
+RUNS = 100
 METHOD = pytest.mark.parametrize("method", ["mc", "lhs", "sobol"])
 
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-RUNS = 300
+RUNS = 200
 NOISE = 4 * math.sqrt(0.95 * 0.05 / RUNS)
 
 
@@ -76,14 +76,14 @@ def model(book):
 
 
 def test_whole_runs_until_so_many_are_accepted(model):
-    """150 runs: neither the share nor the mean is moved by more than 4 standard errors."""
-    runs = [model.simulate(seed=seed, until_accepted=50, keep_inputs=0) for seed in range(150)]
+    """100 runs: neither the share nor the mean is moved by more than 4 standard errors."""
+    runs = [model.simulate(seed=seed, until_accepted=50, keep_inputs=0) for seed in range(100)]
     shares = np.array([run.acceptance.value for run in runs])
     means = np.array([run["x"].mean.value for run in runs])
-    assert shares.mean() == pytest.approx(0.1, abs=4 * shares.std(ddof=1) / math.sqrt(150))
-    assert means.mean() == pytest.approx(10.5, abs=4 * means.std(ddof=1) / math.sqrt(150))
+    assert shares.mean() == pytest.approx(0.1, abs=4 * shares.std(ddof=1) / math.sqrt(100))
+    assert means.mean() == pytest.approx(10.5, abs=4 * means.std(ddof=1) / math.sqrt(100))
     held = sum(run.acceptance.interval[0] <= 0.1 <= run.acceptance.interval[1] for run in runs)
-    assert held / 150 > 0.95 - 4 * math.sqrt(0.95 * 0.05 / 150)
+    assert held / 100 > 0.95 - 4 * math.sqrt(0.95 * 0.05 / 100)
 
 
 def test_whole_runs_until_the_mean_is_known(model, monkeypatch):

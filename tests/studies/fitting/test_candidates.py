@@ -92,7 +92,7 @@ def test_as_high_as_scipys_own_fit(name):
     ["Normal", "Uniform", "Lognormal", "Exponential", "Gamma", "Weibull", "Maximum Extreme", "Pareto", "Poisson"],
 )
 def test_standard_errors_are_the_scatter_of_estimates(name):
-    """400 samples of 200: the scatter is known to 3.5 %, the mean standard error better; four times that is allowed."""
+    """400 samples of 200 know the scatter to 3.5 %, 100 the mean standard error better: 15 % is four times that."""
     _, oracle = SAME[name]
     candidate, random = CANDIDATES[name], np.random.default_rng(13)
     free = [place for place, heading in enumerate(candidate.headings) if heading not in candidate.fixed]
@@ -101,6 +101,8 @@ def test_standard_errors_are_the_scatter_of_estimates(name):
         x = np.sort(oracle.rvs(200, random_state=random).astype(float))
         found = candidate.estimate(x)
         estimates.append(found)
+        if len(errors) == 100:
+            continue
         if candidate.errors is None:
             errors.append(standard_errors(lambda p, x=x: candidate.log_likelihood(x, p), found, free))
         else:

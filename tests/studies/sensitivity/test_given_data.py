@@ -86,10 +86,10 @@ def test_shares_have_no_bias(r):
 
 
 def test_noise_stays_below_the_floor_as_often_as_it_says():
-    """Of 1,000 tables with 5 assumptions without influence 5 % exceed a floor; 83 is the binomial's 1 − 10⁻⁵ point."""
+    """Of 400 tables with 5 assumptions without influence 5 % exceed a floor; 41 is the binomial's 1 − 10⁻⁵ point."""
     rng = np.random.default_rng(13)
     beyond = np.zeros(2)
-    for _ in range(1000):
+    for _ in range(400):
         y = rng.exponential(size=300)
         other, units, above = Ranked.of(y), Units.of(300), np.zeros(2, bool)
         for _ in range(5):
@@ -97,8 +97,8 @@ def test_noise_stays_below_the_floor_as_often_as_it_says():
             above[0] |= explained_share(x, y, units).value > explained_floor(x, 5)
             above[1] |= dependence(x, other, units).value > dependence_floor(x, 5)
         beyond += above
-    assert (beyond < 83).all()
-    assert (beyond > 20).all()  # and the floor is not so high that nothing reaches it
+    assert (beyond <= 41).all()
+    assert (beyond >= 4).all()  # and the floor is not so high that nothing reaches it
 
 
 def test_what_only_widens_the_forecast_is_seen_by_dependence_alone():

@@ -23,7 +23,7 @@ from xlmc.errors import XlmcError
 from xlmc.evaluation.engines import ENGINES
 from xlmc.workbook.workbook import CellContent, Formula
 
-TRIALS = 100_000
+TRIALS = 25_000
 
 
 def saved(cells, path):

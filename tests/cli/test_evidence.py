@@ -169,13 +169,13 @@ def test_the_way_evidence_is_used_is_an_option(xlmc, book, tmp_path):
     path, found = book(EDR), tmp_path / "book.json"
     accepted = {}
     for way in ("rejection", "weights", "auto"):
-        outcome = xlmc("simulate", path, "-n", 20_000, "--evidence", way, "--json", found, "--overwrite")
+        outcome = xlmc("simulate", path, "-n", 4_000, "--evidence", way, "--json", found, "--overwrite")
         assert outcome.code == 0, outcome.err
         data = json.loads(found.read_text(encoding="utf-8"))
         accepted[way] = data["accepted"] if "accepted" in data else data["record"]["counts"]["accepted"]
         assert (data["weights"] is not None) == (way == "weights")
         assert xlmc("replay", tmp_path / "book-results.xlsx").code == 0
-    assert accepted["weights"] == 20_000 > accepted["rejection"] == accepted["auto"]
+    assert accepted["weights"] == 4_000 > accepted["rejection"] == accepted["auto"]
     refused = xlmc("simulate", path, "--evidence", "both")
     assert (refused.code, "'both' is not one of auto, rejection, weights" in refused.err) == (2, True)
 

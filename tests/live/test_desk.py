@@ -118,6 +118,7 @@ def test_results_are_written_beside_the_workbook_and_changes_into_it(running, bo
 
 
 def test_studies_are_asked_of_the_state_that_is_shown(running, book):
+    edited(book, book, {}, {"Trials": 5_000})
     server = running(book=book)
     with server.window(server.library.only) as window:
         name, number = first_number(window.next("state"))

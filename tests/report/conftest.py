@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import openpyxl
 import pytest
+from fewer_sheets import CHARTS, SENSITIVITY, leave_out
 from packed_sheets import packed_sheets
 
 from xlmc.address import parse_address
@@ -62,6 +63,18 @@ def opened():
 
     def read(simulation, **options):
         return openpyxl.load_workbook(io.BytesIO(packed_sheets(simulation, **options)))
+
+    return read
+
+
+@pytest.fixture(scope="session")
+def opened_short(opened):
+    """As `opened`, without the charts and the sheets on sensitivity, which take longest."""
+
+    def read(simulation, **options):
+        with pytest.MonkeyPatch.context() as patch:
+            leave_out(patch, *CHARTS, *SENSITIVITY)
+            return opened(simulation, **options)
 
     return read
 

@@ -68,8 +68,8 @@ def test_own_ranges_count_the_trials_on_the_sheet(run, sheets):
         assert "Trials!$" in formula[4]
 
 
-def test_nothing_is_offered_without_trials_to_count(run, none_accepted, opened):
-    for book in (opened(run, rows=0), opened(none_accepted)):
+def test_nothing_is_offered_without_trials_to_count(run, none_accepted, opened_short):
+    for book in (opened_short(run, rows=0), opened_short(none_accepted)):
         assert "Certainty of a range of your own" not in [cell.value for cell in book["Certainty"]["A"]]
 
 

@@ -27,8 +27,8 @@ def test_a_trial_can_be_keyed_in_again(run, book):
 
 
 @pytest.mark.parametrize(("rows", "shown"), [(7, 7), (0, 0), (-1, 0), (10**9, None)])
-def test_rows_are_capped_and_the_sheet_says_so(run, opened, rows, shown):
-    sheet = opened(run, rows=rows)["Trials"]
+def test_rows_are_capped_and_the_sheet_says_so(run, opened_short, rows, shown):
+    sheet = opened_short(run, rows=rows)["Trials"]
     expected = run.accepted if shown is None else shown
     assert sheet.max_row == FIRST - 1 + expected
     if shown is None:
@@ -38,10 +38,10 @@ def test_rows_are_capped_and_the_sheet_says_so(run, opened, rows, shown):
         assert sheet["A3"].font.color.rgb == "FF9C0006"
 
 
-def test_a_book_of_many_columns_shows_fewer_trials_unless_asked(run, opened, monkeypatch):
+def test_a_book_of_many_columns_shows_fewer_trials_unless_asked(run, opened_short, monkeypatch):
     monkeypatch.setattr(trials_sheet, "NUMBERS", 4 * 50 + 3)
-    assert opened(run)["Trials"].max_row == FIRST - 1 + 50
-    assert opened(run, rows=60)["Trials"].max_row == FIRST - 1 + 60
+    assert opened_short(run)["Trials"].max_row == FIRST - 1 + 50
+    assert opened_short(run, rows=60)["Trials"].max_row == FIRST - 1 + 60
 
 
 def test_the_header_is_frozen_repeated_and_filters(run, book):
@@ -51,22 +51,22 @@ def test_the_header_is_frozen_repeated_and_filters(run, book):
     assert sheet.auto_filter.ref == f"A{HEADER + 1}:E{HEADER + 1 + run.accepted}"
 
 
-def test_a_forecast_that_is_no_number_says_so(make, opened):
+def test_a_forecast_that_is_no_number_says_so(make, opened_short):
     run = make.simulate(
         {"A1": 0.5, "B1": "=SQRT(A1-0.5)"},
         [make.uniform("a", "A1", 0.0, 1.0, base=0.5)],
         [make.forecast("root", "B1")],
         trials=50,
     )
-    shown = [row[2] for row in opened(run)["Trials"].iter_rows(min_row=FIRST, values_only=True)]
+    shown = [row[2] for row in opened_short(run)["Trials"].iter_rows(min_row=FIRST, values_only=True)]
     assert shown.count("–") == run.faults["root"]["#NUM!"] > 0
 
 
-def test_an_assumption_and_a_forecast_may_share_a_name(make, opened):
+def test_an_assumption_and_a_forecast_may_share_a_name(make, opened_short):
     run = make.simulate(
         {"A1": 0.5, "B1": "=A1"}, [make.uniform("v", "A1", 0.0, 1.0, base=0.5)], [make.forecast("v", "B1")], trials=5
     )
-    assert [cell.value for cell in opened(run)["Trials"][HEADER + 1]] == ["Trial", "v", "v"]
+    assert [cell.value for cell in opened_short(run)["Trials"][HEADER + 1]] == ["Trial", "v", "v"]
 
 
 @pytest.mark.parametrize("name", ["Bins", "Curves"])

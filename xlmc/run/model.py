@@ -85,6 +85,7 @@ def lower_needed(workbook: Workbook, definitions: Definitions) -> tuple[Needed, 
         return Lowering(found[-1].graph, inputs, held)
 
     lowering = lower_until_complete(lower)
+    lowering.refuse_cells_beyond()
     needed = found[-1]
     if lowering.led_to:
         named = {a.name: a for a in definitions.assumptions}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from xlmc.address import Area
-from xlmc.errors import ErrorCode
+from xlmc.errors import ErrorCode, FormulaError
 from xlmc.studies.verify import verify
 from xlmc.workbook.workbook import CellContent, Formula
 
@@ -105,3 +105,48 @@ def test_a_spill_whose_size_varies_is_what_each_trial_gives(book):
 def test_cells_of_a_spill_of_a_drawn_size_show_0_for_empty_ones(run, formula):
     cells = spilling(formula, (1, 8, 1, 8), None) | {"Z1": "=SUM(LEN(H1#))", "Z2": '=SUM(--(H1#=""))'}
     assert run(cells, {"A1": [1.0, 2.0, 3.0]}, ["Z1", "Z2"]).forecasts == [[1.0, 2.0, 3.0], [0.0, 0.0, 0.0]]
+
+
+GROWING = "_xlfn._xlws.FILTER(A1:A3,A1:A3>1)"
+"""Two cells when it was saved, three where A1 is above 1."""
+
+
+@pytest.mark.parametrize("formula", ["SUM(H1:H3)", "COUNT(H:H)", "H2+H3", "SUM(Above)"])
+def test_cells_that_a_spill_may_fill_beyond_the_saved_ones_are_refused(book, formula):
+    cells = {**CELLS, **spilling(GROWING, (1, 8, 2, 8), 2.0, 3.0), "J1": f"={formula}"}
+    with pytest.raises(FormulaError, match=r"S!J1: the formula names cells .* S!H1 may fill, .* by H1#"):
+        book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"sum": "J1"}, names={"Above": "S!$H$2:$H$4"})
+
+
+@pytest.mark.parametrize("formula", ["SUM(H1:H2)", "SUM(H1:H2,H5:H9)", "SUM(G1:G9)", "SUM(I1:I9)", "SUM(H1#)"])
+def test_other_cells_about_a_spill_are_not(book, formula):
+    cells = {**CELLS, **spilling(GROWING, (1, 8, 2, 8), 2.0, 3.0), "H4": "end", "J1": f"={formula}"}
+    book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"sum": "J1"})
+
+
+def test_a_spill_for_which_the_file_saves_too_few_cells(book):
+    """As a program writes it that does not calculate."""
+    cells = {**CELLS, **spilling("A1:A3*2", (1, 8, 1, 8), 0.0), "J1": "=SUM(H1:H3)"}
+    with pytest.raises(FormulaError, match="beyond the H1:H1 that it filled"):
+        book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"sum": "J1"})
+
+
+def test_what_a_smaller_spill_does_not_fill_is_blank(book):
+    """Neither is its only cell repeated, nor are the others #N/A, as in an array formula of fixed size."""
+    filled = spilling("_xlfn._xlws.FILTER(A1:A3,A1:A3>2.5)", (1, 8, 2, 8), 5.0, 3.0)
+    cells = {**CELLS, **filled, "J1": "=SUM(H1:H2)", "J2": "=COUNT(H1:H2)", "J3": "=ISBLANK(H2)+0", "J4": "=H2"}
+    forecasts = {"sum": "J1", "count": "J2", "blank": "J3", "second": "J4"}
+    found = book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, forecasts).function({"a": [5.0, 1.0]})
+    assert {name: values.tolist() for name, values in found.items()} == {
+        "sum": [8.0, 3.0],
+        "count": [2.0, 1.0],
+        "blank": [0.0, 1.0],
+        "second": [3.0, 0.0],
+    }
+
+
+def test_a_spill_that_is_an_error_fills_its_own_cell_alone(book):
+    filled = spilling("_xlfn._xlws.FILTER(A1:A3,A1:A3>2.5)/(A1>2)", (1, 8, 2, 8), 5.0, 3.0)
+    cells = {**CELLS, **filled, "J1": "=COUNTA(H1:H2)", "J2": "=COUNT(H1:H2)"}
+    found = book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"a": "J1", "n": "J2"}).function({"a": [5.0, 1.0]})
+    assert (found["a"].tolist(), found["n"].tolist()) == ([2.0, 1.0], [2.0, 0.0])

@@ -32,6 +32,7 @@ __all__ = [
     "either",
     "element",
     "grid",
+    "pick",
     "share_out",
     "size_of",
     "sizes_differ",
@@ -69,7 +70,7 @@ def element(dag: Dag, node_id: int, row: int, column: int) -> int:
     if isinstance(node, Range):
         return node.rows[row][column]
     if isinstance(node, Constant):
-        return dag.constant(_pick(node.value, row, column))
+        return dag.constant(pick(node.value, row, column))
     chosen = _parts_of(dag, node_id)
     if chosen is not None:
         return dag.add(Select(chosen[0], *(element(dag, part, row, column) for part in chosen[1:])))
@@ -78,10 +79,10 @@ def element(dag: Dag, node_id: int, row: int, column: int) -> int:
 
 @cache
 def _picker(row: int, column: int) -> Function:
-    return Function(f"cell {row},{column}", (Cells,), partial(_pick, row=row, column=column), Kind.ANY)
+    return Function(f"cell {row},{column}", (Cells,), partial(pick, row=row, column=column), Kind.ANY)
 
 
-def _pick(value: Value, row: int, column: int) -> Value:
+def pick(value: Value, row: int, column: int) -> Value:
     """(n, r, c) -> (n,); does what `element` does, where the size is known only during the run."""
     if value.numbers.ndim == 1:
         return value
@@ -117,7 +118,7 @@ def _pick_beside(value: Value, row: int, column: int) -> Value:
     at = (0 if rows == 1 else row), (0 if columns == 1 else column)
     if (rows > 1 and columns > 1) or not (0 <= at[0] < rows and 0 <= at[1] < columns):
         return constant(ErrorCode.VALUE)
-    return _pick(value, *at)
+    return pick(value, *at)
 
 
 def grid(dag: Dag, rows: int, columns: int, at: Callable[[int, int], int]) -> int:

@@ -15,12 +15,13 @@ from xlmc.evaluation.engine import Target
 from xlmc.evaluation.graph import lambdas
 from xlmc.evaluation.graph.arrays import element
 from xlmc.evaluation.graph.computed_references import NotYetNeeded
-from xlmc.evaluation.graph.dag import Dag
+from xlmc.evaluation.graph.dag import MANY, Dag
 from xlmc.evaluation.graph.expressions import ExpressionLowering
 from xlmc.evaluation.graph.fill_down import FillDownCache
 from xlmc.evaluation.graph.lowering import Scope
 from xlmc.evaluation.graph.nodes import Apply, Constant, Input
 from xlmc.evaluation.graph.running_totals import RunningTotals
+from xlmc.evaluation.graph.spilled_cells import refuse_cells_beyond, spilled_cell
 from xlmc.formula import Filled, Graph, Resolver, build_graph, ir
 from xlmc.formula.callables import gives_function
 from xlmc.formula.graph import Spills
@@ -257,8 +258,20 @@ class Lowering(ExpressionLowering):
         assert isinstance(anchor, Cell)
         if anchor in self.saved:
             return self._hold_saved(cell, self.faults[anchor])
-        node = element(self.dag, self.array(anchor), cell.row - anchor.row, cell.column - anchor.column)
-        return self._show(node)
+        at = cell.row - anchor.row, cell.column - anchor.column
+        formula = self.graph.workbook.content(anchor).formula
+        if formula is None or not formula.dynamic:
+            return self._show(element(self.dag, self.array(anchor), *at))
+        node = spilled_cell(self.dag, self.array(anchor), *at)
+        return self._blank if node is None else node if self.dag.sizes[self.array(anchor)] == MANY else self._show(node)
+
+    def refuse_cells_beyond(self) -> None:
+        """Refuse formulas that name cells which a dynamic array may fill, and did not when Excel saved it.
+
+        Raises:
+            FormulaError: a formula names some.
+        """
+        refuse_cells_beyond(self.graph, self.dag, self._arrays)
 
     def _take_saved(self, cell: Cell, error: FormulaError) -> int:
         """Excel's own value stands in for what we cannot compute, as long as no assumption reaches it."""

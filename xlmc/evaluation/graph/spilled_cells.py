@@ -1,0 +1,102 @@
+"""The cells that a dynamic array fills: as many as it gives in a trial, and no others.
+
+An array formula that was entered with Ctrl-Shift-Enter fills all of its range: a single row, column or value repeats,
+and the rest is `#N/A`. What a dynamic array does not fill is blank. In the file stands how much it filled when Excel
+saved it. Where it may fill more, formulas that name the cells beyond would see blank ones; they are refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache, partial
+
+from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
+from xlmc.errors import FormulaError
+from xlmc.evaluation.graph.arrays import element, pick
+from xlmc.evaluation.graph.dag import MANY, Dag
+from xlmc.evaluation.graph.nodes import Apply
+from xlmc.formula import Graph
+from xlmc.formula.precedents import references
+from xlmc.functions import Function, Kind
+from xlmc.functions.logical import zero_if_blank
+from xlmc.functions.registry import Cells
+from xlmc.functions.values import Value, constant
+
+__all__ = ["refuse_cells_beyond", "spilled_cell"]
+
+
+def spilled_cell(dag: Dag, node: int, row: int, column: int) -> int | None:
+    """The node of what a dynamic array gives one cell, counted from 0 from its own; None where it never fills it."""
+    size = dag.sizes[node] or (1, 1)
+    if size == MANY:
+        return dag.add(Apply(_picker(row, column), (node,)))
+    return element(dag, node, row, column) if row < size[0] and column < size[1] else None
+
+
+@cache
+def _picker(row: int, column: int) -> Function:
+    return Function(f"spilled cell {row},{column}", (Cells,), partial(_pick, row=row, column=column), Kind.ANY)
+
+
+def _pick(value: Value, row: int, column: int) -> Value:
+    """(n, r, c) -> (n,); a cell that is filled with an empty value shows 0."""
+    rows, columns = value.shape[1:] or (1, 1)
+    return zero_if_blank(pick(value, row, column)) if row < rows and column < columns else constant(None)
+
+
+def refuse_cells_beyond(graph: Graph, dag: Dag, arrays: Mapping[Cell, int]) -> None:
+    """Refuse formulas that name cells which a dynamic array may fill, and did not when Excel saved it.
+
+    Args:
+        graph: the needed cells.
+        dag: of the nodes.
+        arrays: formula cell -> the node of all that its formula gives.
+
+    Raises:
+        FormulaError: a formula names some.
+    """
+    many = ((cell, size) for cell, node in arrays.items() if (size := dag.sizes[node]) is not None)
+    growing = [found for cell, size in many if (found := _growing(graph, cell, *size)) is not None]
+    if not growing:
+        return
+    for cell, tree in graph.formulas.items():
+        for named in references(tree):
+            for anchor, saved, possible in growing:
+                if cell != anchor and _names_more(named, saved, possible):
+                    filled = f"the {saved.a1} that it filled when the file was saved"
+                    message = f"the formula names cells that the dynamic array in {anchor} may fill, beyond {filled}"
+                    hint = f"name what it fills, whatever its size, by {anchor.a1}#"
+                    raise FormulaError(message, where=cell, hint=hint, text=graph.text(cell))
+
+
+def _growing(graph: Graph, cell: Cell, rows: int, columns: int) -> tuple[Cell, Area, Area] | None:
+    """The cell of a dynamic array that may fill more than the file says, what it filled, and what it may fill.
+
+    Where its size varies, it may fill the blank cells below, or right of a single row of several cells.
+    """
+    formula = graph.workbook.content(cell).formula
+    if formula is None or not formula.dynamic:
+        return None
+    saved = formula.array or Area(cell.sheet, cell.row, cell.column, cell.row, cell.column)
+    bottom, right = max(cell.row + rows - 1, saved.bottom), max(cell.column + columns - 1, saved.right)
+    if (rows, columns) == MANY:
+        bottom, right = saved.bottom, saved.right
+        sheet = graph.workbook.sheets[cell.sheet]
+        if saved.rows == 1 and saved.columns > 1:
+            right = min((c for r, c in sheet.cells if r == saved.top and c > right), default=MAX_COLUMN + 1) - 1
+        else:
+            beside = range(saved.left, saved.right + 1)
+            bottom = min((r for r, c in sheet.cells if r > bottom and c in beside), default=MAX_ROW + 1) - 1
+    possible = Area(cell.sheet, saved.top, saved.left, bottom, right)
+    return None if possible == saved.whole else (cell, saved, possible)
+
+
+def _names_more(named: Cell | Area, saved: Area, possible: Area) -> bool:
+    """Whether a reference names some of the cells that are possible, and not only those that were saved."""
+    area = (
+        named.whole if isinstance(named, Area) else Area(named.sheet, named.row, named.column, named.row, named.column)
+    )
+    top, left = max(area.top, possible.top), max(area.left, possible.left)
+    bottom, right = min(area.bottom, possible.bottom), min(area.right, possible.right)
+    meets = area.sheet == possible.sheet and top <= bottom and left <= right
+    return meets and (bottom > saved.bottom or right > saved.right)

@@ -57,7 +57,7 @@ Ctrl-Shift-Enter does not spill). Where its size varies, it is what the formula 
 
 Formulas may also name the cells that a dynamic array fills, `SUM(A1:A4)`; in a trial in which it fills fewer, the
 others are blank. In the file stands only how many it filled when it was saved. If it may fill more in some trials, a
-formula that names the blank cells below it (beside it, for a single row of several cells) is refused: write `A1#` there.
+formula that names the blank cells below it (beside it, for a single row of several cells) is refused: write `A1#`.
 """
 
 DIGITS = """## Excel's 15 digits

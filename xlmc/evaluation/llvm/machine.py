@@ -112,11 +112,14 @@ class Machine:
 
 
 def this_machine() -> Machine:
-    """The processor that runs this, with its widest vectors: by default LLVM uses half of AVX-512's."""
+    """The processor that runs this, with its widest vectors: by default LLVM uses half of AVX-512's.
+
+    With AVX2, LLVM would read tables number by number, and so compute the indices one by one, too, divisions and all.
+    """
     binding.initialize_native_target()
     binding.initialize_native_asmprinter()
     found = binding.get_host_cpu_features()
-    wide = ",-prefer-256-bit" if found.get("avx512f") else ""
+    wide = ",-prefer-256-bit" if found.get("avx512f") else ",+fast-gather" if found.get("avx2") else ""
     return Machine(binding.get_host_cpu_name(), found.flatten() + wide)
 
 

@@ -22,7 +22,7 @@ __all__ = ["Shape", "cut", "shape_of"]
 _FEWEST: Final = 4
 """Periods that are worth looking for."""
 
-_ROWS: Final = 100
+_ROWS: Final = 150
 """The most nodes of a part that has several rows: a longer part takes longer to compile, and runs no faster."""
 
 _TRIED: Final = 3

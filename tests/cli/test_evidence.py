@@ -47,7 +47,7 @@ def words(path):
     return " ".join(str(cell.value) for row in sheet for cell in row if cell.value is not None)
 
 
-def test_evidence_that_agrees_is_shown_everywhere_with_what_it_moves(xlmc, book, tmp_path):
+def test_evidence_that_agrees_is_shown_everywhere_with_what_it_moves(xlmc, short_books, book, tmp_path):
     page, found, report, kept = (tmp_path / f"book{ending}" for ending in (".html", ".json", ".docx", ".xlmcrun"))
     outputs = ("--html", page, "--json", found, "--docx", report, "--save-run", kept)
     outcome = xlmc("simulate", book(EDR, VIDEO, OFF), "-n", 20_000, *outputs)
@@ -85,7 +85,7 @@ def test_evidence_that_agrees_is_shown_everywhere_with_what_it_moves(xlmc, book,
         assert "identical" in xlmc("replay", repeated).out
 
 
-def test_evidence_that_contradicts_stands_first_and_is_no_success(xlmc, book, tmp_path):
+def test_evidence_that_contradicts_stands_first_and_is_no_success(xlmc, short_books, book, tmp_path):
     outcome = xlmc("simulate", book(EDR, FAR), "-n", 20_000, "--until-accepted", 100, "--rare", "never", "-n", 40_000)
     assert outcome.code == 1
     first = " ".join(outcome.out.partition("accepted trials")[0].split())
@@ -98,7 +98,7 @@ def test_evidence_that_contradicts_stands_first_and_is_no_success(xlmc, book, tm
     )
 
 
-def test_a_book_whose_evidence_is_off_has_no_sheet_of_it_and_check_lists_its_rows(xlmc, book, tmp_path):
+def test_a_book_whose_evidence_is_off_has_no_sheet_of_it_and_check_lists_its_rows(xlmc, short_books, book, tmp_path):
     path = book(OFF)
     assert xlmc("simulate", path, "-n", 2_000).code == 0
     assert "Evidence results" not in openpyxl.load_workbook(tmp_path / "book-results.xlsx").sheetnames
@@ -112,7 +112,7 @@ def test_methods_that_draw_no_trials_say_that_they_cannot_use_a_normal_error(xlm
     assert "cannot use evidence with a normal or lognormal error: 'EDR'" in outcome.err
 
 
-def test_a_weighted_run_that_keeps_no_trial_is_told_and_written(xlmc, book, tmp_path):
+def test_a_weighted_run_that_keeps_no_trial_is_told_and_written(xlmc, short_books, book, tmp_path):
     path = book([*EDR[:2], 900, *EDR[3:]])
     made = openpyxl.load_workbook(path)
     settings = made.create_sheet("How")
@@ -164,7 +164,7 @@ def test_a_weighted_run_says_so_everywhere_and_leaves_out_what_cannot_weight(xlm
         assert "identical" in xlmc("replay", repeated).out
 
 
-def test_the_way_evidence_is_used_is_an_option(xlmc, book, tmp_path):
+def test_the_way_evidence_is_used_is_an_option(xlmc, short_books, book, tmp_path):
     """Before the book's setting, which is none here; a run that was asked for weights says so and repeats."""
     path, found = book(EDR), tmp_path / "book.json"
     accepted = {}
@@ -180,7 +180,7 @@ def test_the_way_evidence_is_used_is_an_option(xlmc, book, tmp_path):
     assert (refused.code, "'both' is not one of auto, rejection, weights" in refused.err) == (2, True)
 
 
-def test_the_weights_of_trials_have_a_heading_of_their_own(xlmc, book, tmp_path):
+def test_the_weights_of_trials_have_a_heading_of_their_own(xlmc, short_books, book, tmp_path):
     """An assumption may be called Weight, as vehicles have one."""
     path = book([*EDR[:2], 6.5, *EDR[3:]])
     made = openpyxl.load_workbook(path)

@@ -12,6 +12,8 @@ from openpyxl.worksheet.table import Table
 
 from xlmc.report.json_document import SCHEMA
 
+pytestmark = pytest.mark.usefixtures("short_books")
+
 ROWS = [
     ["Name", "Note", "width", "root", "Rate", "area Threshold"],
     ["narrow", "measured", "1.5 to 2"],

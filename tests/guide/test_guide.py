@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import openpyxl
 import pytest
+from fewer_sheets import keep_few_trials, leave_out_drawings, leave_out_shapes
 
 import xlmc
 from xlmc.cli import main
@@ -77,6 +78,15 @@ def typed(monkeypatch, capsys, tmp_path):
     return run
 
 
+@pytest.fixture
+def short_books(monkeypatch):
+    """All sheets, with few trials and without what is drawn on them, which no line of the guide shows."""
+    keep_few_trials(monkeypatch)
+    leave_out_shapes(monkeypatch)
+    leave_out_drawings(monkeypatch)
+
+
+@pytest.mark.usefixtures("short_books")
 def test_the_guide_leads_from_an_empty_folder_to_the_result(typed, fill, variant, tmp_path):
     printed = ""
     for after, kind, text in BLOCKS:

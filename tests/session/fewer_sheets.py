@@ -7,8 +7,18 @@ import pytest
 from xlmc.replay import sheets as repeated_sheets
 from xlmc.report.page import payload
 from xlmc.report.sheets import assumptions_sheet, book, save
+from xlmc.report.sheets.exact_book import ExactSheet
 
-__all__ = ["CHARTS", "FEW", "SENSITIVITY", "keep_few_trials", "leave_out", "leave_out_fits", "leave_out_shapes"]
+__all__ = [
+    "CHARTS",
+    "FEW",
+    "SENSITIVITY",
+    "keep_few_trials",
+    "leave_out",
+    "leave_out_drawings",
+    "leave_out_fits",
+    "leave_out_shapes",
+]
 
 CHARTS = ("Charts", "Pairs")
 FEW = 40
@@ -19,6 +29,11 @@ SENSITIVITY = ("Sensitivity", "Filter limits")
 def leave_out(patch: pytest.MonkeyPatch, *names: str) -> None:
     """Have result workbooks written without the sheets of these names, as long as the patch lasts."""
     patch.setattr(book, "SHEETS", tuple(sheet for sheet in book.SHEETS if sheet.name not in names))
+
+
+def leave_out_drawings(patch: pytest.MonkeyPatch) -> None:
+    """Have all sheets written, but no chart drawn on them, as long as the patch lasts."""
+    patch.setattr(ExactSheet, "insert_chart", lambda *_: None)
 
 
 def leave_out_fits(patch: pytest.MonkeyPatch) -> None:

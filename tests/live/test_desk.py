@@ -6,6 +6,7 @@ import os
 import shutil
 
 import pytest
+from fewer_sheets import CHARTS, SENSITIVITY, leave_out, leave_out_fits
 from live_books import SIMPLE, change, edited
 
 import xlmc
@@ -93,7 +94,9 @@ def test_what_is_changed_outlives_the_window(running, book):
         assert window.heard_last("state")["changes"] == state["offered"]
 
 
-def test_results_are_written_beside_the_workbook_and_changes_into_it(running, book):
+def test_results_are_written_beside_the_workbook_and_changes_into_it(running, book, monkeypatch):
+    leave_out(monkeypatch, *CHARTS, *SENSITIVITY)
+    leave_out_fits(monkeypatch)
     server = running(book=book)
     with server.window(server.library.only) as window:
         name, number = first_number(window.next("state"))

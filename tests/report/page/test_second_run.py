@@ -68,6 +68,6 @@ def test_a_run_beside_itself_differs_in_nothing(runs, page_of):
     assert "Of the" not in section.text
 
 
-def test_without_a_second_run_the_page_has_no_such_section(runs, page_of):
+def test_without_a_second_run_the_page_has_no_such_section(runs, page_of, text_of):
     assert page_of(runs[0]).all("section", id="second") == []
-    assert page_text(runs[0], beside=runs[1]) == page_text(runs[0], beside=runs[1])
+    assert page_text(runs[0], beside=runs[1]) == text_of(runs[0], beside=runs[1])

@@ -118,6 +118,13 @@ def test_cells_that_a_spill_may_fill_beyond_the_saved_ones_are_refused(book, for
         book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"sum": "J1"}, names={"Above": "S!$H$2:$H$4"})
 
 
+@pytest.mark.parametrize("formula", ["SUM(OFFSET(H1,0,0,4,1))", 'AVERAGE(INDIRECT("H1:H3"))'])
+def test_so_are_those_that_offset_and_indirect_read(book, formula):
+    cells = {**CELLS, **spilling(GROWING, (1, 8, 2, 8), 2.0, 3.0), "J1": f"={formula}"}
+    with pytest.raises(FormulaError, match=r"S!H1: this dynamic array may fill more than the H1:H2 .* H1:H[34] by "):
+        book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"sum": "J1"})
+
+
 @pytest.mark.parametrize("formula", ["SUM(H1:H2)", "SUM(H1:H2,H5:H9)", "SUM(G1:G9)", "SUM(I1:I9)", "SUM(H1#)"])
 def test_other_cells_about_a_spill_are_not(book, formula):
     cells = {**CELLS, **spilling(GROWING, (1, 8, 2, 8), 2.0, 3.0), "H4": "end", "J1": f"={formula}"}

@@ -271,7 +271,7 @@ class Lowering(ExpressionLowering):
         Raises:
             FormulaError: a formula names some.
         """
-        refuse_cells_beyond(self.graph, self.dag, self._arrays)
+        refuse_cells_beyond(self.graph, self.dag, self._arrays, self._ranges)
 
     def _take_saved(self, cell: Cell, error: FormulaError) -> int:
         """Excel's own value stands in for what we cannot compute, as long as no assumption reaches it."""

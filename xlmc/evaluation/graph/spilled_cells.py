@@ -7,7 +7,7 @@ saved it. Where it may fill more, formulas that name the cells beyond would see 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache, partial
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
@@ -44,13 +44,14 @@ def _pick(value: Value, row: int, column: int) -> Value:
     return zero_if_blank(pick(value, row, column)) if row < rows and column < columns else constant(None)
 
 
-def refuse_cells_beyond(graph: Graph, dag: Dag, arrays: Mapping[Cell, int]) -> None:
+def refuse_cells_beyond(graph: Graph, dag: Dag, arrays: Mapping[Cell, int], ranges: Iterable[Area]) -> None:
     """Refuse formulas that name cells which a dynamic array may fill, and did not when Excel saved it.
 
     Args:
         graph: the needed cells.
         dag: of the nodes.
         arrays: formula cell -> the node of all that its formula gives.
+        ranges: those that formulas read, also by OFFSET and INDIRECT.
 
     Raises:
         FormulaError: a formula names some.
@@ -67,6 +68,17 @@ def refuse_cells_beyond(graph: Graph, dag: Dag, arrays: Mapping[Cell, int]) -> N
                     message = f"the formula names cells that the dynamic array in {anchor} may fill, beyond {filled}"
                     hint = f"name what it fills, whatever its size, by {anchor.a1}#"
                     raise FormulaError(message, where=cell, hint=hint, text=graph.text(cell))
+
+    for area in ranges:
+        for anchor, saved, possible in growing:
+            if _names_more(area, saved, possible):
+                message = f"this dynamic array may fill more than the {saved.a1} that it filled when the file was saved"
+                raise FormulaError(
+                    f"{message}, and a formula reads {area.a1} by OFFSET or INDIRECT",
+                    where=anchor,
+                    hint=f"read there what it fills, whatever its size, by {anchor.a1}#",
+                    text=graph.text(anchor),
+                )
 
 
 def _growing(graph: Graph, cell: Cell, rows: int, columns: int) -> tuple[Cell, Area, Area] | None:

@@ -160,7 +160,7 @@ def _groups(kept: NDArray[np.int64]) -> Floats:
     return np.asarray((kept > 0).sum(axis=1).astype(float))
 
 
-def _error_of_share(found: NDArray[np.int64], totals: NDArray[np.int64], n: Floats) -> Floats:
+def _error_of_share(found: NDArray[np.int64] | Floats, totals: NDArray[np.int64], n: Floats) -> Floats:
     apart = (found - (found.sum(axis=1) / n)[:, None] * totals) / n[:, None]
     groups = _groups(totals)
     error = np.sqrt((apart**2).sum(axis=1) * groups / (groups - 1.0))
@@ -188,7 +188,7 @@ def percentile(x: Floats, ascending: Floats, kept: Bools, p: float, replicates: 
     n, nothing = kept.sum(axis=1).astype(float), np.zeros(len(x), bool)
     equal = n
     if replicates:
-        found, totals = _each(_first(x, ascending, kept, p), replicates), _each(kept, replicates)
+        found, totals = _below(x, ascending, kept, p, replicates), _each(kept, replicates)
         error = _error_of_share(found, totals, n)
         widening = stdtrit(_groups(totals) - 1.0, 0.975) / Z
         equal = p * (1.0 - p) / error**2 / widening**2
@@ -199,15 +199,13 @@ def percentile(x: Floats, ascending: Floats, kept: Bools, p: float, replicates: 
     return Numbers(_quantile(ascending, n, np.full(len(x), p)), low, high, nothing)
 
 
-def _first(x: Floats, ascending: Floats, kept: Bools, p: float) -> Bools:
-    """Which trials stand at p or below, ties in the order of the trials."""
+def _below(x: Floats, ascending: Floats, kept: Bools, p: float, replicates: int) -> Floats:
+    """(runs, replicates) how many trials of each stand at p or below; those that tie there, by one share in all."""
     count = np.array([_standing(int(n), p) for n in kept.sum(axis=1)])
     end = np.take_along_axis(ascending, count[:, None] - 1, axis=1)
     below, ties = kept & (x < end), kept & (x == end)
-    needed = count - below.sum(axis=1)
-    if np.array_equal(needed, ties.sum(axis=1)):
-        return np.asarray(below | ties)
-    return np.asarray(below | (ties & (np.cumsum(ties, axis=1, dtype=np.int32) <= needed[:, None])))
+    shares = (count - below.sum(axis=1)) / ties.sum(axis=1)
+    return np.asarray(_each(below, replicates) + shares[:, None] * _each(ties, replicates))
 
 
 @cache

@@ -11,6 +11,7 @@ from xlmc.workbook.workbook import DefinedName, LinkedBook, Table, Workbook
 
 __all__ = [
     "COPY",
+    "as_area",
     "cells_of",
     "combine",
     "is_far",
@@ -114,7 +115,7 @@ def combine(operator: str, left: ir.Expression, right: ir.Expression) -> ir.Expr
             return ir.Binary(operator, left, right)  # OFFSET(…):B9 is known only when its arguments are
         name = "range (:)" if operator == ":" else "intersection (a blank)"
         raise FormulaError(f"the {name} operator needs references on both sides", hint="is an operator missing?")
-    a, b = _as_area(left).whole, _as_area(right).whole
+    a, b = as_area(left).whole, as_area(right).whole
     if a.sheet != b.sheet:
         return ir.ErrorLiteral(ErrorCode.VALUE)
     if operator == ":":
@@ -124,7 +125,8 @@ def combine(operator: str, left: ir.Expression, right: ir.Expression) -> ir.Expr
     return cells_of(a.sheet, top, start, bottom, end) if top <= bottom and start <= end else _NULL
 
 
-def _as_area(reference: Cell | Area) -> Area:
+def as_area(reference: Cell | Area) -> Area:
+    """The reference as an area, of one cell if it is one."""
     if isinstance(reference, Area):
         return reference
     return Area(reference.sheet, reference.row, reference.column, reference.row, reference.column)

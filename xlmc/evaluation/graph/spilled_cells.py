@@ -16,6 +16,7 @@ from xlmc.evaluation.graph.arrays import element, pick
 from xlmc.evaluation.graph.dag import MANY, Dag
 from xlmc.evaluation.graph.nodes import Apply
 from xlmc.formula import Graph
+from xlmc.formula.areas import as_area, combine
 from xlmc.formula.precedents import references
 from xlmc.functions import Function, Kind
 from xlmc.functions.logical import zero_if_blank
@@ -89,7 +90,7 @@ def _growing(graph: Graph, cell: Cell, rows: int, columns: int) -> tuple[Cell, A
     formula = graph.workbook.content(cell).formula
     if formula is None or not formula.dynamic:
         return None
-    saved = formula.array or Area(cell.sheet, cell.row, cell.column, cell.row, cell.column)
+    saved = formula.array or as_area(cell)
     bottom, right = max(cell.row + rows - 1, saved.bottom), max(cell.column + columns - 1, saved.right)
     if (rows, columns) == MANY:
         bottom, right = saved.bottom, saved.right
@@ -105,10 +106,8 @@ def _growing(graph: Graph, cell: Cell, rows: int, columns: int) -> tuple[Cell, A
 
 def _names_more(named: Cell | Area, saved: Area, possible: Area) -> bool:
     """Whether a reference names some of the cells that are possible, and not only those that were saved."""
-    area = (
-        named.whole if isinstance(named, Area) else Area(named.sheet, named.row, named.column, named.row, named.column)
-    )
-    top, left = max(area.top, possible.top), max(area.left, possible.left)
-    bottom, right = min(area.bottom, possible.bottom), min(area.right, possible.right)
-    meets = area.sheet == possible.sheet and top <= bottom and left <= right
-    return meets and (bottom > saved.bottom or right > saved.right)
+    common = combine(" ", named, possible)
+    if not isinstance(common, Cell | Area):
+        return False
+    area = as_area(common)
+    return area.bottom > saved.bottom or area.right > saved.right

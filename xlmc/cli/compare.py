@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.options import WholeNumber, engine_option, jobs_option
+from xlmc.cli.options import WholeNumber, chance_option, engine_option, jobs_option, tolerance_option
 from xlmc.cli.study_output import show, study_options
 from xlmc.cli.terminal import say, say_json
 
@@ -27,18 +27,8 @@ UNDECIDED = 1
 @click.command()
 @click.argument("first", type=click.Path(path_type=Path))
 @click.argument("second", type=click.Path(path_type=Path))
-@click.option(
-    "--tolerance",
-    multiple=True,
-    help="The largest difference that counts as none: 0.5, '0.5 mph', '10 %' of the SD, 'Name=0.5 mph'; may be given"
-    " several times.  [default: 10 %]",
-)
-@click.option(
-    "--chance",
-    type=float,
-    help="The largest difference that counts as none, in percentage points, of the probability of being above a"
-    " forecast's threshold.  [default: a tenth of it or of the probability below, at least 0.1]",
-)
+@tolerance_option
+@chance_option
 @click.option("--pair", multiple=True, help="'A=B': forecast A of the first book is forecast B of the second.")
 @click.option(
     "--feed",

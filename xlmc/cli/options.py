@@ -15,11 +15,13 @@ from xlmc.sampling.sampling_methods import METHODS
 __all__ = [
     "OneOf",
     "WholeNumber",
+    "chance_option",
     "engine_option",
     "evidence_option",
     "jobs_option",
     "sampling_option",
     "stopping_options",
+    "tolerance_option",
 ]
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -101,6 +103,20 @@ evidence_option = click.option(
 )
 
 engine_option = click.option("--engine", type=OneOf(*ENGINES), help=f"{_ENGINES}.  [default: the book's, else numpy]")
+
+tolerance_option = click.option(
+    "--tolerance",
+    multiple=True,
+    help="The largest difference that counts as none: 0.5, '0.5 mph', '10 %' of the SD, 'Name=0.5 mph'; may be given"
+    " several times.  [default: 10 %]",
+)
+
+chance_option = click.option(
+    "--chance",
+    type=float,
+    help="The largest difference that counts as none, in percentage points, of the probability of being above a"
+    " forecast's threshold.  [default: a tenth of it or of the probability below, at least 0.1]",
+)
 
 
 def _goal_option(option: Option) -> Callable[[F], F]:

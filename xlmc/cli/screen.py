@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.options import WholeNumber, engine_option, jobs_option
+from xlmc.cli.options import WholeNumber, chance_option, engine_option, jobs_option, tolerance_option
 from xlmc.cli.study_output import show, study_options
 from xlmc.cli.terminal import say, say_json
 
@@ -24,18 +24,8 @@ NOT_TO_BE_USED = 1
 
 @click.command()
 @click.argument("book", type=click.Path(path_type=Path))
-@click.option(
-    "--tolerance",
-    multiple=True,
-    help="The largest difference that counts as none: 0.5, '0.5 mph', '10 %' of the SD, 'Name=0.5 mph'; may be given"
-    " several times.  [default: 10 %]",
-)
-@click.option(
-    "--chance",
-    type=float,
-    help="The largest difference that counts as none, in percentage points, of the probability of being above a"
-    " forecast's threshold.  [default: a tenth of it or of the probability below, at least 0.1]",
-)
+@tolerance_option
+@chance_option
 @click.option(
     "--acceptance",
     type=click.FloatRange(0, min_open=True),

@@ -18,7 +18,7 @@ from xlmc.formula.substitute import substitute, unfold
 from xlmc.run.model import Model
 from xlmc.workbook.workbook import DefinedName, Formula, Workbook
 
-__all__ = ["Trees", "factors", "replace_part", "terms"]
+__all__ = ["Trees", "factors", "parts_of", "replace_part", "terms"]
 
 _OF_EXCEL = "_xlnm."
 """What the names begin with that Excel gives: of areas to print, of filters."""
@@ -109,21 +109,7 @@ class Trees:
 
     def parts(self, cell: Cell) -> Iterator[ir.Expression]:
         """The parts of a cell's formula, outer ones first, but for those inside LAMBDA."""
-        open_ = [self.formula(cell)]
-        while open_:
-            tree = open_.pop()
-            if isinstance(tree, Cell | Area):
-                continue
-            yield tree
-            match tree:
-                case ir.Unary(_, operand):
-                    open_.append(operand)
-                case ir.Binary(_, left, right):
-                    open_ += [right, left]
-                case ir.Call(_, arguments):
-                    open_ += reversed(arguments)
-                case _:
-                    pass
+        return (part for part in parts_of(self.formula(cell)) if not isinstance(part, Cell | Area))
 
     def open_references(self, tree: ir.Expression) -> ir.Expression:
         """A part of a formula with the formulas of cells instead of references to them, one step back."""
@@ -198,6 +184,23 @@ def _as_typed(text: str) -> dict[str, str]:
         if "$" in typed:
             found.setdefault(typed.replace("$", "").upper(), typed.upper())
     return found
+
+
+def parts_of(tree: ir.Expression) -> Iterator[ir.Expression]:
+    """The parts of a formula, itself first, in the order in which they are written; not those inside LAMBDA and LET."""
+    open_ = [tree]
+    while open_:
+        one = open_.pop()
+        yield one
+        match one:
+            case ir.Unary(_, operand):
+                open_.append(operand)
+            case ir.Binary(_, left, right):
+                open_ += [right, left]
+            case ir.Call(_, arguments):
+                open_ += reversed(arguments)
+            case _:
+                pass
 
 
 def replace_part(tree: ir.Expression, part: ir.Expression, other: ir.Expression) -> ir.Expression:

@@ -24,7 +24,7 @@ from typing import Final
 
 from xlmc.address import Area
 from xlmc.formula import ir
-from xlmc.studies.stability.formula_trees import terms
+from xlmc.studies.stability.formula_trees import parts_of, terms
 from xlmc.studies.stability.momentum import times
 from xlmc.studies.stability.polynomials import ONE, Polynomial, Polynomials
 from xlmc.studies.stability.rarer_forms import (
@@ -219,22 +219,7 @@ def _of_root(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]
 
 def _areas(tree: Tree) -> list[Area]:
     """The ranges in a formula, each once."""
-    found: list[Area] = []
-    open_ = [tree]
-    while open_:
-        match open_.pop():
-            case Area() as area:
-                if area not in found:
-                    found.append(area)
-            case ir.Unary(_, operand):
-                open_.append(operand)
-            case ir.Binary(_, left, right):
-                open_ += [right, left]
-            case ir.Call(_, arguments):
-                open_ += reversed(arguments)
-            case _:
-                pass
-    return found
+    return list(dict.fromkeys(part for part in parts_of(tree) if isinstance(part, Area)))
 
 
 def _of_variance(part: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:

@@ -18,7 +18,7 @@ from xlmc.address import Cell
 from xlmc.evaluation.passes.random_rounding import RandomRounding, closure, evaluate, numbers_of
 from xlmc.formula import ir
 from xlmc.studies.stability.case import Case, Floats
-from xlmc.studies.stability.formula_trees import factors, replace_part
+from xlmc.studies.stability.formula_trees import factors, parts_of, replace_part
 from xlmc.studies.stability.polynomials import Polynomial, Polynomials
 from xlmc.studies.stability.rewriting import same
 from xlmc.studies.stability.stable_forms import Form, forms
@@ -95,21 +95,10 @@ def _choose(form: Form, above: ir.Expression, old: ir.Expression) -> ir.Expressi
 
 def _product(tree: ir.Expression, part: ir.Expression) -> ir.Expression | None:
     """The outermost product in a formula of which a part is a factor."""
-    open_ = [tree]
-    while open_:
-        one = open_.pop()
+    for one in parts_of(tree):
         above, below = factors(one)
         if len(above) + len(below) > 1 and any(each is part for each in above):
             return one
-        match one:
-            case ir.Unary(_, operand):
-                open_.append(operand)
-            case ir.Binary(_, left, right):
-                open_ += [right, left]
-            case ir.Call(_, arguments):
-                open_ += reversed(arguments)
-            case _:
-                pass
     return None
 
 

@@ -60,8 +60,8 @@ def _assumption(name, given, workbook):
 
 def _filter(name, given):
     given = {"cell": given} if isinstance(given, str) else dict(given)
-    cell = parse_address(given.pop("cell"), "S")
-    return Filter(name, cell, cell, **{key: _parameter(value) for key, value in given.items()})
+    cell, of = parse_address(given.pop("cell"), "S"), given.pop("only_for", ())
+    return Filter(name, cell, cell, only_for=of, **{key: _parameter(value) for key, value in given.items()})
 
 
 def _evidence(name, given):
@@ -74,12 +74,14 @@ def _evidence(name, given):
 def _definitions(workbook, assumptions, forecasts, filters, correlations, evidence=MappingProxyType({})):
     places = {name: parse_address(address, "S") for name, address in forecasts.items()}
     items = tuple(_evidence(name, given) for name, given in evidence.items())
+    made = [_filter(name, given) for name, given in filters.items()]
     return Definitions(
         tuple(_assumption(name, given, workbook) for name, given in assumptions.items()),
         tuple(Forecast(name, cell, cell) for name, cell in places.items()),
-        (*(_filter(name, given) for name, given in filters.items()), *map(as_filter, items)),
+        (*(each for each in made if not each.only_for), *map(as_filter, items)),
         tuple(Correlation(*pair, value, parse_address("A1", "Correlations")) for pair, value in correlations.items()),
         evidence=items,
+        forecast_filters=tuple(each for each in made if each.only_for),
     )
 
 
@@ -113,8 +115,8 @@ def book():
 
     An assumption is `{"cell": "A1", "low": 0, "high": 1}`, with `distribution`, `frozen` and cutoffs if need be; a
     parameter that is an address is a dynamic one. A forecast is an address. A filter is an address, or
-    `{"cell": "A1", "below": 1}`. A correlation is `{("a", "b"): 0.5}`. Evidence is `{"cell": "A1", "reading": 1,
-    "error": "normal", "std_dev": 0.5}`.
+    `{"cell": "A1", "below": 1}`, with the names of forecasts as `only_for` if it is a filter of these alone. A
+    correlation is `{("a", "b"): 0.5}`. Evidence is `{"cell": "A1", "reading": 1, "error": "normal", "std_dev": 0.5}`.
     """
 
     def make(cells, assumptions=None, forecasts=None, filters=None, correlations=None, evidence=None, **of_workbook):

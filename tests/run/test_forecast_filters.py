@@ -7,6 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from xlmc.address import parse_address
 from xlmc.api import Model
@@ -68,6 +70,40 @@ def test_engines_blocks_and_threads_do_not_matter(model, run):
         assert again.discards == run.discards
         for name, values in run.forecasts.items():
             np.testing.assert_array_equal(again.forecasts[name], values)
+
+
+LIMITS = st.dictionaries(st.sampled_from(("at_least", "at_most", "above", "below")), st.floats(0, 9), max_size=2)
+FILTERS = st.fixed_dictionaries(
+    {
+        "cell": st.sampled_from(("A1", "B1", "B2", "B1", "B2", "C2", "C3")),
+        "only_for": st.lists(st.sampled_from([*FORECASTS]), unique=True, max_size=3).map(tuple),
+        "limits": LIMITS,
+    }
+)
+
+
+@settings(max_examples=12)
+@given(st.lists(FILTERS, min_size=1, max_size=5))
+def test_engines_discard_the_same_trials(book, filters):
+    """In native blocks of many trials, step by step with NumPy, and of trials in which a filter's cell is an error."""
+    cells = CELLS | {"B3": "=IF(A1<0.3,A1,B2)", "C3": "=1/MAX(0.9995-A1,0)"}
+    named = {f"f{i}": {k: v for k, v in f.items() if k != "limits"} | f["limits"] for i, f in enumerate(filters)}
+    model = book(cells, INPUTS, FORECASTS, named)
+    runs = [model.simulate(TRIALS, engine=engine) for engine in ("numpy", "jit")]
+    told = [(r.discards, r.faults, r.accepted, r.error_trials, r.tally.rejected.tolist()) for r in runs]
+    assert told[0] == told[1]
+    for name, values in runs[0].forecasts.items():
+        assert values.tobytes() == runs[1].forecasts[name].tobytes(), name
+
+
+def test_sixty_filters_of_a_forecast_are_counted_each(book):
+    own = {f"f{i}": {"cell": "A1", "at_least": (i + 1) / 80, "only_for": ("ten",)} for i in range(60)}
+    model = book(CELLS, INPUTS, FORECASTS, own)
+    for engine in ("numpy", "jit"):
+        run = model.simulate(TRIALS, engine=engine)
+        u = model.sampler(run.settings.seed, TRIALS).draw(0)["u"]
+        first, _ = np.histogram(u, np.arange(61) / 80)
+        assert run.discards["ten"] == Counter({f"f{i}": int(count) for i, count in enumerate(first)})
 
 
 def test_without_such_filters_nothing_changes(book, model, run):

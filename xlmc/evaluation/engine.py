@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Protocol, runtime_checkable
@@ -88,6 +89,8 @@ class KeptBlock:
         forecasts: one a forecast, `(m,)`.
         together: `(f, f)` trials that both of two filters reject.
         only: `(f,)` trials that one filter alone rejects.
+        discards: per forecast, number of one of its own filters -> accepted trials that this discards; empty where no
+            forecast has filters of its own.
     """
 
     accepted: NDArray[np.int64]
@@ -95,6 +98,7 @@ class KeptBlock:
     forecasts: list[Floats]
     together: NDArray[np.int64]
     only: NDArray[np.int64]
+    discards: Sequence[Counter[int]] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,7 +108,7 @@ class Room:
     Attributes:
         accepted: for the accepted trials, int64.
         draws: assumption -> doubles; empty where no draws are kept.
-        forecasts: doubles, one a forecast.
+        forecasts: doubles, one for each of the first forecasts, or for all.
     """
 
     accepted: NDArray[np.int64]

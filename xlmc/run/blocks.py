@@ -248,7 +248,7 @@ def _block_of(kept: KeptBlock, prior: dict[str, Floats] | None, trials: int) -> 
     faults: list[Counter[str]] = [Counter() for _ in kept.forecasts]
     errors: list[Counter[str]] = [Counter() for _ in kept.only]
     tally = FilterTally(np.diagonal(kept.together).copy(), kept.only, kept.together, errors, 0)
-    return Block(trials, kept.accepted, kept.draws, kept.forecasts, faults, tally, Counter(), 0, prior)
+    return Block(trials, kept.accepted, kept.draws, kept.forecasts, faults, tally, Counter(), 0, prior, kept.discards)
 
 
 def _any(masks: Sequence[Bools], n: int) -> Bools:

@@ -7,25 +7,35 @@ of its forecast, so that whoever evaluates forecasts sees it as a trial without 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.definitions.definitions import Filter, Forecast
-from xlmc.evaluation.engine import DISCARDED_FIRST, UNDECIDED_RESULT, Column, Evaluator, Program, Target
+from xlmc.evaluation.engine import (
+    DISCARDED_FIRST,
+    UNDECIDED_RESULT,
+    BlockRunner,
+    Column,
+    Evaluator,
+    KeptBlock,
+    Program,
+    Room,
+    RunsWholeBlocks,
+    Target,
+)
 from xlmc.run.needed import filter_condition
 
 if TYPE_CHECKING:
-    from xlmc.functions.values import Codes
+    from xlmc.functions.values import Bools
+    from xlmc.sampling.draws import Linear
 
 __all__ = ["FilteringEvaluator", "FilteringProgram", "conditions_of", "discards_by_name", "filters_by_forecast"]
 
 Floats = NDArray[np.float64]
-
-_LAST: Final = 255
 
 
 def filters_by_forecast(forecasts: Sequence[Forecast], filters: Sequence[Filter]) -> tuple[tuple[int, ...], ...]:
@@ -82,10 +92,37 @@ class FilteringEvaluator:
             for column, own in zip(columns, self.own, strict=False)
         ]
 
+    def block_runner(self, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None) -> BlockRunner | None:
+        """See `RunsWholeBlocks`."""
+        evaluator = self.evaluator
+        run = evaluator.block_runner(draw, linear) if isinstance(evaluator, RunsWholeBlocks) else None
+        return None if run is None else _FilteringRunner(run, self.own)
+
+
+@dataclass(frozen=True, slots=True)
+class _FilteringRunner:
+    """A `BlockRunner` of forecasts and, behind them, the conditions of filters of some forecasts only."""
+
+    run: BlockRunner
+    own: tuple[tuple[int, ...], ...]
+
+    def __call__(self, start: int, trials: int, inputs: bool, room: Callable[[], Room] | None) -> KeptBlock | None:
+        """See `BlockRunner`."""
+        kept = self.run(start, trials, inputs, room)
+        if kept is None:
+            return None
+        forecasts, conditions = kept.forecasts[: len(self.own)], kept.forecasts[len(self.own) :]
+        fails = [condition == 0 for condition in conditions]
+        found = [
+            _discard(column, [fails[index] for index in own]) for column, own in zip(forecasts, self.own, strict=True)
+        ]
+        return replace(kept, forecasts=[column for column, _ in found], discards=[counts for _, counts in found])
+
 
 def _discarding(column: Column, conditions: Sequence[Column]) -> Column:
     """The column with a code where a condition is false, that of the first such condition, or is an error."""
-    codes: Codes = np.zeros(column.values.shape, np.uint8) if column.codes is None else column.codes.copy()
+    kind = np.min_scalar_type(DISCARDED_FIRST + len(conditions))
+    codes = np.zeros(column.values.shape, kind) if column.codes is None else column.codes.astype(kind)
     for condition in conditions:
         if condition.codes is not None:
             codes[(codes == 0) & (condition.codes > 0)] = UNDECIDED_RESULT
@@ -93,8 +130,20 @@ def _discarding(column: Column, conditions: Sequence[Column]) -> Column:
         false = condition.values == 0
         if condition.codes is not None:
             false = false & (condition.codes == 0)
-        codes[false] = min(DISCARDED_FIRST + number, _LAST)
+        codes[false] = DISCARDED_FIRST + number
     return Column(column.values, codes)
+
+
+def _discard(column: Floats, fails: Sequence[Bools]) -> tuple[Floats, Counter[int]]:
+    """The column with NaN where a condition is false; number of a condition -> trials in which it is the first such."""
+    counts: Counter[int] = Counter()
+    if not fails:
+        return column, counts
+    discarded = np.zeros(column.shape, np.bool_)
+    for number, false in enumerate(fails):
+        counts[number] = int(np.count_nonzero(false & ~discarded))
+        discarded |= false
+    return np.where(discarded, np.nan, column), +counts
 
 
 def discards_by_name(

@@ -9,7 +9,7 @@ from __future__ import annotations
 import ctypes
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 from math import gcd
 from typing import TYPE_CHECKING, Any, Final
@@ -164,7 +164,8 @@ class NativeBlockRunner:
             self._words[self._gathers] += len(self._names)
         into = self._room
         if room is not None and not self._parts.rejecting and trials == self._trials.size:
-            into = room()
+            given = room()
+            into = replace(given, forecasts=[*given.forecasts, *self._room.forecasts[len(given.forecasts) :]])
             targets = list(self._targets(into))
             addresses = np.array([_address_of(array) for _, array in targets], np.uint64)
             self._words[np.array([at for at, _ in targets], np.intp)] = addresses

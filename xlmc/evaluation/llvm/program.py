@@ -13,7 +13,7 @@ from xlmc.errors import FormulaError
 from xlmc.evaluation.engine import BlockRunner, Column, Evaluator, Target
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.lower import Lowering
-from xlmc.evaluation.graph.nodes import Input
+from xlmc.evaluation.graph.nodes import Input, Select
 from xlmc.evaluation.graph.readiness import order_by_need
 from xlmc.evaluation.llvm.block_runner import NativeBlockRunner, block_parts
 from xlmc.evaluation.llvm.costs import loops_pay
@@ -26,7 +26,8 @@ from xlmc.evaluation.llvm.phase import Phase, Trials
 from xlmc.evaluation.llvm.stages import Stages
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.evaluation.tracking import TrackingEvaluator, array_bytes, fitting_block
-from xlmc.functions.values import Floats
+from xlmc.functions import Kind
+from xlmc.functions.values import Floats, constant
 
 if TYPE_CHECKING:
     from xlmc.evaluation.engine import Program
@@ -50,8 +51,9 @@ def fastest_program(
     lowering: Lowering, filters: Sequence[Target], forecasts: Sequence[Target], may_err: frozenset[str]
 ) -> Program:
     """The program of loops, or that of the engine `numpy` where loops do not pay."""
-    targets = [lowering.target(target) for target in (*filters, *forecasts)]
-    rules, dag = _rules(lowering.dag), lowering.dag
+    dag = lowering.dag
+    targets = [*map(lowering.target, filters), *(_as_number(dag, lowering.target(target)) for target in forecasts)]
+    rules = _rules(dag)
     nodes = dag.upstream(targets, lambda node: reads(dag, node, rules.get(node)))
     if loops_pay(dag, nodes, rules):
         return JitProgram(lowering, filters, forecasts, may_err, rules)
@@ -144,7 +146,7 @@ class JitProgram:
     ) -> None:
         self.dag, self.may_err = lowering.dag, may_err
         self.filter_nodes = [lowering.target(target) for target in filters]
-        self.forecast_nodes = [lowering.target(target) for target in forecasts]
+        self.forecast_nodes = [_as_number(lowering.dag, lowering.target(target)) for target in forecasts]
         rules = _rules(self.dag) if rules is None else rules
         made_of = self.filter_nodes, self.forecast_nodes, may_err
         division = _Division(lowering, rules, *made_of)
@@ -164,6 +166,13 @@ class JitProgram:
     def evaluator(self, block: int) -> Evaluator:
         """See `Program`."""
         return _JitEvaluator(self, block)
+
+
+def _as_number(dag: Dag, node: int) -> int:
+    """A forecast's node, or one that gives 1 and 0 instead of truth values: loops write forecasts as numbers."""
+    if dag.types[node] is not Kind.LOGICAL or dag.sizes[node] is not None:
+        return node
+    return dag.add(Select(node, dag.constant(constant(1.0)), dag.constant(constant(0.0))))
 
 
 def _inputs(dag: Dag, nodes: Sequence[int]) -> dict[int, str]:

@@ -212,9 +212,7 @@ def _side_by_side(columns: Sequence[Column]) -> Column:
     return Column(np.concatenate([column.values for column in columns]), codes)
 
 
-def array_bytes(
-    lowering: Lowering, filters: Sequence[int], forecasts: Sequence[int], reads: Callable[[int], Sequence[int]]
-) -> int:
+def array_bytes(lowering: Lowering, filters: Sequence[int], forecasts: Sequence[int], nodes: Iterable[int]) -> int:
     """The most bytes that arrays and texts take at a time in one trial, measured with the inputs at their base values.
 
     It is 0, unmeasured, for a model without texts or wide arrays that vary.
@@ -223,10 +221,10 @@ def array_bytes(
         lowering: of the model.
         filters: nodes.
         forecasts: nodes.
-        reads: what the engine reads to compute a node: a range of which it takes the cells is no array.
+        nodes: that the engine computes: a range of which it takes the cells is not among them.
     """
     dag = lowering.dag
-    if not any(_may_be_wide(dag, node) for node in dag.upstream([*filters, *forecasts], reads)):
+    if not any(_may_be_wide(dag, node) for node in nodes):
         return 0
     base = {name: lowering.graph.workbook.content(cell).value for cell, name in lowering.inputs.items()}
     inputs = {name: np.full(1, float(x) if isinstance(x, int | float) else 1.0) for name, x in base.items()}

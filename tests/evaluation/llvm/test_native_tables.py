@@ -113,17 +113,3 @@ def test_a_row_that_errs_errs_in_its_trials_alone(book, formula, is_error):
     row = np.minimum(run.inputs["a"].astype(int), 8)
     wrong = np.array([is_error(TABLE[f"O{each + 1}"]) for each in range(9)])[row]
     np.testing.assert_array_equal(np.isnan(run.forecasts["x"]), wrong)
-
-
-def test_nothing_is_looked_up_where_blocks_would_be_smaller(book, monkeypatch):
-    """The number found in the table, its position, the condition and the function wait: one more than without."""
-    cells = CELLS | {"B1": "=VLOOKUP(A1,$K$1:$P$9,4)", "B2": "=EXP(B1)", "B3": "=B1>1"}
-
-    def names():
-        model = book(cells, GIVEN, {"x": "B1", "y": "B2"}, {"f": "B3"})
-        program = model.program("jit")
-        return functions(model, program.late), program.largest_block
-
-    assert names() == (["picked"], 1 << 20)
-    monkeypatch.setattr(programs, "_MOST_MEMORY", 3 * 8 << 20)
-    assert names() == (["EXP"], 1 << 20)

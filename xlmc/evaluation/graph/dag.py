@@ -226,14 +226,12 @@ class Dag:
 
     def upstream(self, targets: Sequence[int], reads: Callable[[int], Sequence[int]] | None = None) -> list[int]:
         """The varying nodes that the targets need, in order; `reads` says what a node needs, if not all it uses."""
-        needed = set(targets)
+        needed, found = set(targets), []
         for node in range(max(needed, default=-1), -1, -1):
-            if node in needed:
-                if isinstance(self.nodes[node], Constant):
-                    needed.remove(node)
-                else:
-                    needed.update(uses(self.nodes[node]) if reads is None else reads(node))
-        return sorted(needed)
+            if node in needed and not isinstance(self.nodes[node], Constant):
+                found.append(node)
+                needed.update(uses(self.nodes[node]) if reads is None else reads(node))
+        return found[::-1]
 
 
 def _of_nodes(

@@ -239,7 +239,7 @@ class Phase:
             node = self._dag.nodes[node_id]
             assert isinstance(node, Apply | Select | IfErrorNode | Range)
             with np.errstate(all="ignore"):
-                known = {used: trials.value(used) for used in self._stages.needed(node_id)}
+                known = {used: trials.value(used) for used in self._stages.reads[node_id]}
                 trials.values[node_id] = in_own_memory(evaluate_node(node, known), known.values())
 
     def _run_plain(self, node_id: int, trials: Trials, memory: Memory) -> bool:
@@ -250,7 +250,7 @@ class Phase:
         if memory.failures[node_id] > _MOST_FAILURES:
             return False
         known: dict[int, Any] = {}
-        for used in self._stages.needed(node_id):
+        for used in self._stages.reads[node_id]:
             found = trials.plain(used)
             if found is None:
                 return False

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,11 +53,45 @@ def fastest_program(
     """The program of loops, or that of the engine `numpy` where loops do not pay."""
     dag = lowering.dag
     targets = [*map(lowering.target, filters), *(_as_number(dag, lowering.target(target)) for target in forecasts)]
-    rules = _rules(dag)
-    nodes = dag.upstream(targets, lambda node: reads(dag, node, rules.get(node)))
-    if loops_pay(dag, nodes, rules):
-        return JitProgram(lowering, filters, forecasts, may_err, rules)
+    needed = _Needed.of(dag, targets)
+    if loops_pay(dag, needed.nodes, needed.rules):
+        return JitProgram(lowering, filters, forecasts, may_err, needed)
     return NumpyProgram.of(lowering, filters, forecasts, may_err)
+
+
+class _Needed(NamedTuple):
+    """The nodes that targets need where loops compute what they can.
+
+    Attributes:
+        nodes: themselves, each after those that it reads.
+        rules: of those that loops compute.
+        reads: what each reads.
+    """
+
+    nodes: list[int]
+    rules: dict[int, LoopRule]
+    reads: dict[int, tuple[int, ...]]
+
+    @classmethod
+    def of(cls, dag: Dag, targets: Sequence[int]) -> _Needed:
+        """Those of these targets."""
+        rules: dict[int, LoopRule] = {}
+        found: dict[int, tuple[int, ...]] = {}
+
+        def read(node: int) -> tuple[int, ...]:
+            rule = loop_rule_of(dag, node)
+            if rule is not None:
+                rules[node] = rule
+            found[node] = reads(dag, node, rule)
+            return found[node]
+
+        return cls(dag.upstream(targets, read), rules, found)
+
+    def looking_up(self, dag: Dag) -> _Needed:
+        """The same where functions of numbers of tables are looked up; some of the nodes may not be needed any more."""
+        looked_up = rules_of_looked_up(dag, self.nodes, self.rules, machine())
+        changed = {node: reads(dag, node, rule) for node, rule in looked_up.items()}
+        return _Needed(self.nodes, self.rules | looked_up, self.reads | changed)
 
 
 class _Division:
@@ -65,54 +99,40 @@ class _Division:
 
     Args:
         lowering: of the nodes.
-        rules: of the nodes that loops can compute.
+        needed: of the filters and forecasts.
         filters, forecasts: nodes.
         may_err: the inputs whose draws may be errors.
-        like: a division whose order of nodes is good enough, and which needs all nodes of this one.
 
     Attributes:
-        nodes: all that are computed, in order.
-        array_bytes: what arrays and texts take in a trial.
+        inputs: the names of the inputs, by their nodes.
         largest_block: see `JitProgram`.
     """
 
     def __init__(
         self,
         lowering: Lowering,
-        rules: Mapping[int, LoopRule],
+        needed: _Needed,
         filters: Sequence[int],
         forecasts: Sequence[int],
         may_err: frozenset[str],
-        like: _Division | None = None,
     ) -> None:
-        dag = lowering.dag
-        needs: dict[int, tuple[int, ...]] = {}
-
-        def needed(node: int) -> tuple[int, ...]:
-            if node not in needs:
-                needs[node] = reads(dag, node, rules.get(node))
-            return needs[node]
-
-        def in_order(nodes: Collection[int], keep: Collection[int]) -> Sequence[int]:
-            """The nodes so that loops, which take them in order, leave few values to each other."""
-            if like is not None:
-                own = set(nodes)
-                return [node for node in like.nodes if node in own]
-            nodes = list(nodes)
-            return order_by_need(nodes, {node: needed(node) for node in nodes}, keep, _FEW_BETWEEN_LOOPS)
-
+        dag, read = lowering.dag, needed.reads
         # Where no filter can reject a trial, nothing needs to be picked from the survivors.
-        first = dag.upstream(filters or forecasts, needed)
+        first = dag.upstream(filters or forecasts, read.__getitem__)
         early = frozenset(first)
-        further = dag.upstream(forecasts, needed) if filters else []
+        further = dag.upstream(forecasts, read.__getitem__) if filters else []
         late = [node for node in further if node not in early]
-        carried = {used for node in late for used in needed(node)} | set(forecasts)
+        carried = {used for node in late for used in read[node]} | set(forecasts)
         keep, wanted = {*filters, *(carried & early)}, set(forecasts)
-        self.nodes = [*in_order(first, keep), *in_order(late, wanted)]
-        self.first = Stages(dag, rules, needed, self.nodes[: len(first)], keep, None, may_err)
-        self.late = Stages(dag, rules, needed, self.nodes[len(first) :], wanted, early, may_err)
-        self.array_bytes: int = like.array_bytes if like else array_bytes(lowering, filters, forecasts, needed)
-        self.largest_block = self._largest_block(len(_inputs(dag, self.nodes)) + len(forecasts))
+        # Loops take the nodes in order: so that they leave few values to each other.
+        ordered = (
+            order_by_need(nodes, read, kept, _FEW_BETWEEN_LOOPS) for nodes, kept in ((first, keep), (late, wanted))
+        )
+        self.first = Stages(dag, needed.rules, read, next(ordered), keep, None, may_err)
+        self.late = Stages(dag, needed.rules, read, next(ordered), wanted, early, may_err)
+        self.inputs = _inputs(dag, [*first, *late])
+        self._array_bytes = array_bytes(lowering, filters, forecasts, needed.nodes)
+        self.largest_block = self._largest_block(len(self.inputs) + len(forecasts))
 
     def _largest_block(self, columns: int) -> int:
         """The largest block whose arrays fit into the memory, draws and forecasts among them: so many columns."""
@@ -121,7 +141,7 @@ class _Division:
         block = _LARGEST_BLOCK
         while block > _SMALLEST_BLOCK and (block * 8 * arrays > memory or block * 8 * columns > _MOST_IN_COLUMNS):
             block //= 2
-        return fitting_block(block, self.array_bytes, 8 * arrays)
+        return fitting_block(block, self._array_bytes, 8 * arrays)
 
 
 class JitProgram:
@@ -129,7 +149,7 @@ class JitProgram:
 
     Args:
         may_err: the inputs whose draws may be errors (NaNs).
-        rules: what loops can compute; found where it is not given.
+        needed: of the filters and forecasts; found where it is not given.
 
     Attributes:
         largest_block: the largest block, a power of two, whose arrays take no more than 256 MB; 32 MB where functions
@@ -142,21 +162,16 @@ class JitProgram:
         filters: Sequence[Target],
         forecasts: Sequence[Target],
         may_err: frozenset[str],
-        rules: Mapping[int, LoopRule] | None = None,
+        needed: _Needed | None = None,
     ) -> None:
         self.dag, self.may_err = lowering.dag, may_err
         self.filter_nodes = [lowering.target(target) for target in filters]
         self.forecast_nodes = [_as_number(lowering.dag, lowering.target(target)) for target in forecasts]
-        rules = _rules(self.dag) if rules is None else rules
-        made_of = self.filter_nodes, self.forecast_nodes, may_err
-        division = _Division(lowering, rules, *made_of)
-        self.largest_block = division.largest_block
-        looked_up = rules_of_looked_up(self.dag, division.nodes, rules, machine())
-        if looked_up:
-            less = _Division(lowering, {**rules, **looked_up}, *made_of, like=division)
-            division = less if less.largest_block >= self.largest_block else division
+        needed = needed or _Needed.of(self.dag, [*self.filter_nodes, *self.forecast_nodes])
+        division = _Division(lowering, needed.looking_up(self.dag), self.filter_nodes, self.forecast_nodes, may_err)
+        self.largest_block, self.inputs = division.largest_block, division.inputs
         self.first, self.late = Phase(division.first, machine()), Phase(division.late, machine())
-        self.slots, self.inputs = self.first.slots | self.late.slots, _inputs(self.dag, division.nodes)
+        self.slots = self.first.slots | self.late.slots
 
     @cached_property
     def careful_inputs(self) -> dict[int, str]:
@@ -178,11 +193,6 @@ def _as_number(dag: Dag, node: int) -> int:
 def _inputs(dag: Dag, nodes: Sequence[int]) -> dict[int, str]:
     """The names of the inputs among the nodes."""
     return {node_id: node.name for node_id in nodes if isinstance(node := dag.nodes[node_id], Input)}
-
-
-def _rules(dag: Dag) -> dict[int, LoopRule]:
-    found = ((node, loop_rule_of(dag, node)) for node in range(len(dag.nodes)))
-    return {node: rule for node, rule in found if rule is not None}
 
 
 class _JitEvaluator:

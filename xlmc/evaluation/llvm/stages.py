@@ -1,12 +1,12 @@
 """How nodes that are computed on one set of trials are divided: into loops, and between them what loops cannot compute.
 
-Nothing is compiled yet: two divisions of the same nodes can be compared.
+Nothing is compiled yet.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from typing import Final
@@ -63,13 +63,14 @@ class Stages:
     Args:
         dag: of the nodes.
         rules: of the nodes that loops can compute.
-        needed: the nodes that one's computation needs.
+        reads: what each reads.
         nodes: to be computed, in order.
         keep: the nodes whose values are wanted afterwards.
         early: the nodes that were computed before, on a wider set of trials; None where there are none.
         may_err: the inputs whose draws may be errors.
 
     Attributes:
+        reads: what each node reads.
         waiting: how many arrays and values wait at a time, of loops and of what is computed outside of them.
     """
 
@@ -77,16 +78,16 @@ class Stages:
         self,
         dag: Dag,
         rules: Mapping[int, LoopRule],
-        needed: Callable[[int], Sequence[int]],
+        reads: Mapping[int, Sequence[int]],
         nodes: Sequence[int],
         keep: Iterable[int],
         early: frozenset[int] | None,
         may_err: frozenset[str],
     ) -> None:
-        self.dag, self.needed, self.may_err, self.kept = dag, needed, may_err, frozenset(keep)
+        self.dag, self.reads, self.may_err, self.kept = dag, reads, may_err, frozenset(keep)
         self._rules, self._early = rules, early
         computed = [node for node in nodes if not isinstance(dag.nodes[node], Input)]
-        groups = _in_order([(group, self._read_by(group)) for group in _groups(dag, computed, rules, needed)])
+        groups = _in_order([(group, self._read_by(group)) for group in _groups(dag, computed, rules, reads)])
         wanted = self.kept.union(*(read for _, read in groups))
         self.in_order = [
             Stage(group, read, tuple(node for node in group if node in wanted) if group[0] in rules else None)
@@ -116,7 +117,7 @@ class Stages:
         return found
 
     def _read_by(self, group: Sequence[int]) -> frozenset[int]:
-        return frozenset(chain.from_iterable(map(self.needed, group))).difference(group)
+        return frozenset(chain.from_iterable(map(self.reads.__getitem__, group))).difference(group)
 
     def loop_plans(self) -> Iterator[LoopPlan]:
         """The loops of the stages that are loops."""
@@ -144,7 +145,7 @@ class Stages:
 
 
 def _groups(
-    dag: Dag, nodes: Sequence[int], rules: Mapping[int, LoopRule], needed: Callable[[int], Sequence[int]]
+    dag: Dag, nodes: Sequence[int], rules: Mapping[int, LoopRule], reads: Mapping[int, Sequence[int]]
 ) -> list[tuple[int, ...]]:
     """The nodes, in order, in groups in order; those without a rule stand alone."""
     if nodes and all(node in rules for node in nodes):
@@ -153,7 +154,7 @@ def _groups(
     for node in nodes:
         in_loop = node in rules
         levels[node] = 0 if in_loop else 1  # loops stand on even levels
-        for used in needed(node):
+        for used in reads[node]:
             if used in levels:
                 after = levels[used] + ((used in rules) != in_loop)
                 levels[node] = max(levels[node], after)

@@ -107,9 +107,8 @@ class NumpyProgram:
         """The program of targets."""
         first, late = ([lowering.target(target) for target in targets] for targets in (filters, forecasts))
         known = bounds or NodeBounds(lowering.dag, {})
-        return cls(
-            lowering.dag, first, late, may_err, known, array_bytes(lowering, first, late, partial(reads, lowering.dag))
-        )
+        computed = lowering.dag.upstream([*first, *late], partial(reads, lowering.dag))
+        return cls(lowering.dag, first, late, may_err, known, array_bytes(lowering, first, late, computed))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return NumpyProgram, self._made_of

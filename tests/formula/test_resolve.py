@@ -11,6 +11,9 @@ NAMES = {
     "Rate": "S!$C$3",
     "Data!Rate": "Data!$D$4",
     "Nested": "Rate*2",
+    "Data!Own": "Rate*3",
+    "Data!Twice": "_xlfn.LAMBDA(_xlpm.x,3*_xlpm.x)",
+    "Called": "Twice(1)",
     "Deep": "Nested+S!$A$1",
     "Left": "S!XFD1",
     "Above": "S!A1048576",
@@ -96,7 +99,11 @@ def test_what_a_formula_names(see, text):
     [
         ("Rate", "Data!A1", "Data!D4"),  # a sheet's own name comes first
         ("S!Rate", "Data!A1", "S!C3"),
-        ("Nested", "Data!A1", "(* Data!D4 2)"),
+        ("Nested", "Data!A1", "(* S!C3 2)"),  # but not in a name of the whole workbook
+        ("Own", "Data!A1", "(* Data!D4 3)"),
+        ("Data!Own", "S!A1", "(* Data!D4 3)"),
+        ("Twice(1)", "Data!A1", "[λ(x (* 3 x))](1)"),
+        ("Called", "Data!A1", "[λ(x (* 2 x))](1)"),
         ("A1", "Data!A9", "Data!A1"),
         ("Left", "S!A1", "S!XFD1"),  # in names, relative references go around the edge
         ("Here", "Data!C7", "Data!C7"),

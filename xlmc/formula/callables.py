@@ -25,12 +25,12 @@ def function_named_by(name: str) -> str | None:
     return None if found is None else found["name"].upper()
 
 
-def stands_for_function(workbook: Workbook, name: str, sheet: str) -> bool:
-    """Whether a defined name, as a sheet sees it, stands for a LAMBDA or another function."""
+def stands_for_function(workbook: Workbook, name: str, sheet: str | None) -> bool:
+    """Whether a defined name, as a sheet or the whole workbook sees it, stands for a LAMBDA or another function."""
     return _defined(workbook, name, sheet, frozenset()) is not None
 
 
-def calls_function(workbook: Workbook, name: str, sheet: str) -> bool:
+def calls_function(workbook: Workbook, name: str, sheet: str | None) -> bool:
     """Whether a call by that name calls what a defined name stands for.
 
     Excel's own functions go first: `Sum(2)` is SUM, whatever `Sum` is defined as. A file marks those that came after
@@ -77,7 +77,7 @@ def _last(tree: ir.Expression, bound: _Bound, depth: int) -> ir.Lambda | ir.Func
             return None
 
 
-def _defined(workbook: Workbook, name: str, sheet: str, seen: frozenset[str]) -> ir.Expression | None:
+def _defined(workbook: Workbook, name: str, sheet: str | None, seen: frozenset[str]) -> ir.Expression | None:
     """The LAMBDA, as written, that a defined name stands for."""
     found = workbook.defined_name(name, sheet)
     if found is None or name.casefold() in seen:
@@ -86,11 +86,12 @@ def _defined(workbook: Workbook, name: str, sheet: str, seen: frozenset[str]) ->
         tree = parse(found.text)
     except FormulaError:
         return None
-    return _written(workbook, tree, sheet, {}, seen | {name.casefold()})
+    seen_as = sheet if found.sheet is not None else None
+    return _written(workbook, tree, seen_as, {}, seen | {name.casefold()})
 
 
 def _written(
-    workbook: Workbook, tree: ir.Expression, sheet: str, bound: _Bound, seen: frozenset[str]
+    workbook: Workbook, tree: ir.Expression, sheet: str | None, bound: _Bound, seen: frozenset[str]
 ) -> ir.Expression | None:
     """The LAMBDA that a tree as written gives; a function that is named stands for itself."""
 

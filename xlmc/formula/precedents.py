@@ -102,12 +102,16 @@ def _in_text(text: str, host: Cell, shift: tuple[int, int], workbook: Workbook, 
             left, right = sorted(min(column_number(letters.upper()), MAX_COLUMN) for letters in found.groups()[2:])
             yield Area(sheet, 1, left, MAX_ROW, right)
     for word in dict.fromkeys(_WORD.findall(text)):
-        table, name = workbook.table_named(word), workbook.defined_name(word, host.sheet)
+        table = workbook.table_named(word)
         if table is not None:
             yield table.area
-        if name is not None and word.casefold() not in open_names:
+        if word.casefold() in open_names:
+            continue
+        meant = workbook.defined_name(word, host.sheet), workbook.defined_name(word)  # names in names mean the latter
+        for name in dict.fromkeys(meant):
             own = (host.row - 1, host.column - 1)  # relative references in a name are as seen from A1
-            yield from _in_text(name.text, host, own, workbook, open_names | {word.casefold()})
+            if name is not None:
+                yield from _in_text(name.text, host, own, workbook, open_names | {word.casefold()})
 
 
 def _sheet(found: re.Match[str], host: Cell, workbook: Workbook) -> str | None:

@@ -73,6 +73,7 @@ class Resolver:
         self._open_names: list[str] = []
         self._recursive: set[str] = set()
         self._linked: str | None = None  # the workbook whose name is open
+        self._in_global = False  # the text at hand is that of a name of the whole workbook
         self._variables: frozenset[str] = frozenset()
         self._depth = self._parts = 0
 
@@ -185,7 +186,7 @@ class Resolver:
         """What a call calls that is no function of Excel: a variable, or a defined name that stands for a LAMBDA."""
         if name.casefold() in self._variables:
             return ir.Variable(_bare(name))
-        if not calls_function(self.workbook, name, host.sheet):
+        if not calls_function(self.workbook, name, self._seen_by(host)):
             return None
         return self._name(ir.Name(name), host)
 
@@ -273,7 +274,7 @@ class Resolver:
         if book is not None:
             return self._linked_name(book, tree)
         scope = host.sheet if tree.sheet is None else self._sheet(tree.sheet, host)
-        found = self.workbook.defined_name(tree.name, scope)
+        found = self.workbook.defined_name(tree.name, self._seen_by(host) if tree.sheet is None else scope)
         if found is None and (not self._strict or self._is_saved_as_unknown(host)):
             return ir.ErrorLiteral(ErrorCode.NAME, tree.name)
         if found is None:
@@ -284,14 +285,22 @@ class Resolver:
             return self._again(found.name, key, scope)
         self._open_names.append(key)
         outer, self._variables = self._variables, frozenset()
+        around, self._in_global = self._in_global, found.sheet is None
         try:  # a name's relative references are written as seen from A1
             resolved = self._resolve(parse(found.text), Cell(scope, host.row, host.column), (1, 1))
         finally:
             self._open_names.pop()
-            self._variables = outer
+            self._variables, self._in_global = outer, around
             calls_itself = key in self._recursive
             self._recursive.discard(key)
         return ir.Let(((key, resolved),), ir.Variable(key), recursive=True) if calls_itself else resolved
+
+    def _seen_by(self, host: Cell) -> str | None:
+        """The sheet whose own names go first: none in a name of the whole workbook, which names other such names.
+
+        Excel binds the names in a name when it is written, and files qualify those that belong to a sheet.
+        """
+        return None if self._in_global else host.sheet
 
     def _is_saved_as_unknown(self, host: Cell) -> bool:
         """Whether Excel did not know a name either: the cell whose own formula has it holds `#NAME?`."""

@@ -36,7 +36,9 @@ Arguments = tuple[ir.Expression, ...]
 _NOT_ONE_CELL: Final = ir.ErrorLiteral(ErrorCode.VALUE)
 _CHOOSING: Final = ("IF", "CHOOSE")
 
-_R1C1: Final = re.compile(r"(?:(?P<sheet>.+)!)?R(?P<r>\[-?\d+\]|\d+)?C(?P<c>\[-?\d+\]|\d+)?", re.IGNORECASE)
+_STEP: Final = r"\[-?[0-9]{1,7}\]|[0-9]{1,7}"
+_R1C1: Final = re.compile(rf"(?P<row>R(?P<r>{_STEP})?)?(?P<column>C(?P<c>{_STEP})?)?", re.IGNORECASE)
+"""Matches a cell as Excel's other style writes it, `R2C[-1]`, a whole row, `R2`, or a whole column."""
 
 
 class NotYetNeeded(Exception):  # noqa: N818 - it asks for more; nothing is wrong
@@ -208,7 +210,7 @@ def _indirect(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> lis
     texts, errors = known.to_texts()
     _stop_at_error(errors)
     a1 = len(arguments) < 2 or _is_true(lowering, arguments[1], scope)
-    tree = _read(lowering, str(texts[0])) if a1 else _read_r1c1(str(texts[0]), scope.cell)
+    tree = _read(lowering, str(texts[0])) if a1 else _read_r1c1(lowering, str(texts[0]), scope.cell)
     found = None if tree is None else _resolve(lowering, tree, scope)
     if found is None:
         raise NoReference
@@ -240,12 +242,34 @@ def _resolve(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[
         return None
 
 
-def _read_r1c1(text: str, host: Cell) -> ir.Expression | None:
-    found = _R1C1.fullmatch(text.strip())
-    if found is None:
+def _read_r1c1(lowering: TreeLowering, text: str, host: Cell) -> ir.Expression | None:
+    """The reference `R1C1`, `Data!R[1]C:R3C` or `C2`; names and tables are written as in the usual style."""
+    sheet, _, place = text.strip().rpartition("!")
+    texts = place.split(":")
+    first, last = (_r1c1_corner(end, host) for end in (texts[0], texts[-1]))
+    if (
+        first
+        and last
+        and len(texts) < 3
+        and (first.row is None, first.column is None)
+        == (
+            last.row is None,
+            last.column is None,
+        )
+    ):
+        unquoted = sheet[1:-1].replace("''", "'") if sheet.startswith("'") and sheet.endswith("'") else sheet
+        return ir.Reference(first, last, sheet=unquoted or None)
+    tree = _read(lowering, text)
+    return tree if isinstance(tree, ir.Name | ir.TableReference) else None
+
+
+def _r1c1_corner(text: str, host: Cell) -> ir.Corner | None:
+    found = _R1C1.fullmatch(text)
+    if found is None or not text:
         return None
-    row, column = _step(found["r"], host.row), _step(found["c"], host.column)
-    return ir.Reference(ir.Corner(row, column, True, True), sheet=found["sheet"] and found["sheet"].strip("'"))
+    row = _step(found["r"], host.row) if found["row"] else None
+    column = _step(found["c"], host.column) if found["column"] else None
+    return ir.Corner(row, column, True, True)
 
 
 def _step(text: str | None, base: int) -> int:

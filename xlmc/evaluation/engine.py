@@ -89,6 +89,7 @@ class KeptBlock:
         forecasts: one a forecast, `(m,)`.
         together: `(f, f)` trials that both of two filters reject.
         only: `(f,)` trials that one filter alone rejects.
+        drawn: assumption -> its draws in the whole block; None where native code made them.
         discards: per forecast, number of one of its own filters -> accepted trials that this discards; empty where no
             forecast has filters of its own.
     """
@@ -98,6 +99,7 @@ class KeptBlock:
     forecasts: list[Floats]
     together: NDArray[np.int64]
     only: NDArray[np.int64]
+    drawn: Mapping[str, Floats] | None = None
     discards: Sequence[Counter[int]] = ()
 
 
@@ -134,10 +136,13 @@ class BlockRunner(Protocol):
 class RunsWholeBlocks(Protocol):
     """An evaluator that can also run a block at once, with less memory, fewer calls and fewer locks."""
 
-    def block_runner(self, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None) -> BlockRunner | None:
+    def block_runner(
+        self, names: Sequence[str], draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None
+    ) -> BlockRunner | None:
         """What runs a block at once and gives the same numbers; None where the model does not allow it.
 
         Args:
+            names: the assumptions that are drawn.
             draw: makes the draws of a block from its first trial on, `(block,)` each.
             linear: another way to make them, if each is an offset plus a factor times a uniform; None if not.
         """

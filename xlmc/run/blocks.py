@@ -142,6 +142,10 @@ class Drawing(Protocol):
     """What draws the trials of blocks: a `Sampler`, or what takes its place."""
 
     @property
+    def names(self) -> Sequence[str]:
+        """See `Sampler`."""
+
+    @property
     def linear(self) -> Linear | None:
         """See `Sampler`."""
 
@@ -166,7 +170,7 @@ class ModelRunner:
         self._width, self._fallible = forecasts, fallible
         self._run_whole: BlockRunner | None = None
         if isinstance(evaluator, RunsWholeBlocks) and not fallible:
-            self._run_whole = evaluator.block_runner(sampler.draw, sampler.linear)
+            self._run_whole = evaluator.block_runner(sampler.names, sampler.draw, sampler.linear)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return ModelRunner, self._made_of
@@ -187,7 +191,7 @@ class ModelRunner:
         start, trials = task.start, task.trials
         whole = None if self._run_whole is None else self._run_whole(start, trials, task.inputs, room)
         if whole is not None:
-            return _block_of(whole, self._prior(None, whole.draws, whole.accepted.size, task), task.trials)
+            return _block_of(whole, self._prior(whole.drawn, whole.draws, whole.accepted.size, task), task.trials)
         draws = self._sampler.draw(start)
         columns = self._evaluator.filters(draws, self.block)
         invalid = {name: np.isnan(draws[name]) for name in sorted(self._fallible)}

@@ -92,10 +92,12 @@ class FilteringEvaluator:
             for column, own in zip(columns, self.own, strict=False)
         ]
 
-    def block_runner(self, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None) -> BlockRunner | None:
+    def block_runner(
+        self, names: Sequence[str], draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None
+    ) -> BlockRunner | None:
         """See `RunsWholeBlocks`."""
         evaluator = self.evaluator
-        run = evaluator.block_runner(draw, linear) if isinstance(evaluator, RunsWholeBlocks) else None
+        run = evaluator.block_runner(names, draw, linear) if isinstance(evaluator, RunsWholeBlocks) else None
         return None if run is None else _FilteringRunner(run, self.own)
 
 

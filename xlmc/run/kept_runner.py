@@ -144,6 +144,11 @@ class _Draws:
         else:
             self._whole = None
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """See `Sampler`."""
+        return tuple(draw.name for draw in self._draws)
+
     def draw(self, start: int) -> dict[str, Floats]:
         """See `Sampler`."""
         if self._whole is not None:

@@ -185,7 +185,6 @@ class CorrelatedGroup:
 class Linear:
     """Draws that are offset + factor·uniform, all of them, in the order of their stages."""
 
-    names: tuple[str, ...]
     streams: tuple[Stream, ...]
     maps: tuple[tuple[float, float], ...]
 
@@ -262,6 +261,11 @@ class Sampler:
         return self._row_of
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """The assumptions, in the order of their stages."""
+        return tuple(draw.name for stage in self._stages for draw in stage.draws)
+
+    @property
     def linear(self) -> Linear | None:
         """All draws as offset + factor·uniform of independent trials; None where any is more."""
         draws = [draw for stage in self._stages for draw in stage.draws]
@@ -269,7 +273,7 @@ class Sampler:
         if self._groups or None in maps or len(self.streams) < len(draws):
             return None
         streams = tuple(self.streams[self._row_of[draw.name]] for draw in draws)
-        return Linear(tuple(draw.name for draw in draws), streams, tuple(found for found in maps if found is not None))
+        return Linear(streams, tuple(found for found in maps if found is not None))
 
     def draw(self, start: int) -> dict[str, Floats]:
         """The draws of trials `start` to `start + block - 1`, `(block,)` each; NaN for an error."""

@@ -62,10 +62,16 @@ def ran(model, whole, blocks=range(5, 8), *, inputs=True, draws_given=False):
     runner = model_runner(model, model.program("jit"), "jit", 7, BLOCK)
     assert runner._run_whole is not None
     if draws_given:
-        runner._run_whole = runner._evaluator.block_runner(runner._sampler.draw, None)
+        take_draws(runner)
     if not whole:
         runner._run_whole = None
     return [runner.run(Task(block * BLOCK, BLOCK, False, inputs)) for block in blocks]
+
+
+def take_draws(runner):
+    """Let the sampler make the draws, as if they were more than an offset plus a factor times a uniform."""
+    sampler = runner._sampler
+    runner._run_whole = runner._evaluator.block_runner(sampler.names, sampler.draw, None)
 
 
 def native(runner):
@@ -100,7 +106,7 @@ def test_the_first_trials_of_a_block_are_those_of_the_block(book, name, draws_gi
     runners = {whole: model_runner(model, model.program("jit"), "jit", 7, BLOCK) for whole in (True, False)}
     runners[False]._run_whole = None
     if draws_given:
-        runners[True]._run_whole = runners[True]._evaluator.block_runner(runners[True]._sampler.draw, None)
+        take_draws(runners[True])
     for trials in (1, 63, 2047, 2048, 2049, 4095, BLOCK):
         for block, inputs in ((0, True), (3, False)):
             task = Task(block * BLOCK, trials, block == 0, inputs)

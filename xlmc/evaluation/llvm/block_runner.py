@@ -116,17 +116,20 @@ class NativeBlockRunner:
     """A `BlockRunner`, for one thread.
 
     Args:
-        draw, linear: see `RunsWholeBlocks`; with `linear` the draws are made in the same call, a chunk at a time.
+        names, draw, linear: see `RunsWholeBlocks`; with `linear` a call makes the draws, too, a chunk at a time.
         block: trials, a multiple of 64.
     """
 
     def __init__(
-        self, parts: BlockParts, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None, block: int
+        self,
+        parts: BlockParts,
+        names: Sequence[str],
+        draw: Callable[[int], Mapping[str, Floats]],
+        linear: Linear | None,
+        block: int,
     ) -> None:
-        self._parts, self._draw = parts, draw
+        self._parts, self._draw, self._names = parts, draw, tuple(names)
         self._runs = self._careful = 0
-        drawn = {} if linear is not None else draw(0)
-        self._names = tuple(drawn) if linear is None else linear.names
         self._chunk = gcd(_trials_in_chunk(len(self._names) + len(set(parts.slots.values()))), block)
         rows = np.empty((len(self._names), self._chunk + 8))[:, : self._chunk]  # apart, for the cache's sake
         self._fill = None if linear is None else filler(linear.streams, linear.maps, rows)
@@ -154,6 +157,7 @@ class NativeBlockRunner:
             return None
         self._runs += 1
         self._words[:] = self._table
+        drawn: Mapping[str, Floats] | None = None
         if self._fill is not None:
             self._fill.go_to(start)
         else:
@@ -174,7 +178,7 @@ class NativeBlockRunner:
             self._careful += 1
             self._wrong.fill(0)
             return None
-        return self._result(start, inputs, into, *found)
+        return self._result(start, inputs, into, drawn, *found)
 
     def _run_chunks(self, trials: int) -> tuple[int, Counts, Counts] | None:
         """How many of the first trials are kept; of the filters that may reject, what pairs do, and each alone.
@@ -213,7 +217,16 @@ class NativeBlockRunner:
         yield from ((at, room.forecasts[number]) for at, number in self._forecast_targets)
         yield from ((self._draw_targets[name], array) for name, array in room.draws.items())
 
-    def _result(self, start: int, inputs: bool, room: Room, m: int, pairs: Counts, alone: Counts) -> KeptBlock:
+    def _result(
+        self,
+        start: int,
+        inputs: bool,
+        room: Room,
+        drawn: Mapping[str, Floats] | None,
+        m: int,
+        pairs: Counts,
+        alone: Counts,
+    ) -> KeptBlock:
         parts = self._parts
         f, rejecting = len(parts.filters), list(parts.rejecting)
         together, only = np.zeros((f, f), np.int64), np.zeros(f, np.int64)
@@ -230,6 +243,7 @@ class NativeBlockRunner:
             ],
             together,
             only,
+            drawn,
         )
 
     def _write_table(self) -> None:

@@ -212,13 +212,15 @@ class _JitEvaluator:
                 trials.arrays[node] = np.ascontiguousarray(inputs[name])
         return trials
 
-    def block_runner(self, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None) -> BlockRunner | None:
+    def block_runner(
+        self, names: Sequence[str], draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None
+    ) -> BlockRunner | None:
         """See `RunsWholeBlocks`."""
         program = self._program
         parts = block_parts(
             program.dag, program.first, program.late, program.filter_nodes, program.forecast_nodes, self._block
         )
-        return None if parts is None else NativeBlockRunner(parts, draw, linear, self._block)
+        return None if parts is None else NativeBlockRunner(parts, names, draw, linear, self._block)
 
     def filters(self, inputs: Mapping[str, Floats], n: int) -> list[Column]:
         """See `Evaluator`."""

@@ -249,6 +249,28 @@ def test_files_that_appear_during_the_run_are_spared_and_no_result_is_lost(xlmc,
         assert f"in {stem}-2.{ending}" in outcome.out or "The page is a-2.html" in outcome.out
 
 
+def test_an_output_that_becomes_the_book_during_the_run_spares_it(xlmc, book, tmp_path, monkeypatch):
+    before = book.read_bytes()
+    during_the_run(monkeypatch, lambda: (tmp_path / "a.json").symlink_to(book))
+    outcome = xlmc("simulate", book, "--json", "a.json", "--overwrite")
+    assert book.read_bytes() == before
+    assert (tmp_path / "a-2.json").stat().st_size > 100
+    assert "a.json: this is the file that is read; it stays as it is" in outcome.err
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows keeps the current folder")
+def test_an_answer_is_told_though_the_current_folder_is_gone(xlmc, book, tmp_path, monkeypatch):
+    started_in = tmp_path / "gone"
+    started_in.mkdir()
+    monkeypatch.chdir(started_in)
+    during_the_run(monkeypatch, started_in.rmdir)
+    outcome = xlmc("simulate", book, "-o", "a.xlsx", "--json", tmp_path / "a.json", "--quiet")
+    assert outcome.code == 2
+    assert "a.xlsx: the folder in which xlmc was started is not there any more" in outcome.err
+    assert "51 % range" in outcome.out
+    assert (tmp_path / "a.json").stat().st_size > 100
+
+
 @pytest.mark.parametrize("change", [be_held_open, lambda path: path.write_bytes(path.read_bytes() + b"\0")])
 def test_a_book_that_is_opened_or_changed_during_a_run_in_place_keeps_its_state(
     xlmc, book, tmp_path, monkeypatch, change

@@ -6,6 +6,9 @@ import openpyxl
 import pytest
 from openpyxl.worksheet.table import Table
 
+from xlmc.errors import WorkbookError
+from xlmc.report import study_report
+
 
 @pytest.fixture
 def book(tmp_path):
@@ -85,3 +88,21 @@ def test_what_cannot_be_written_is_refused_before_anything_is_run(xlmc, command,
     assert theirs.read_text(encoding="utf-8") == "mine"
     assert xlmc(*command, "--html", theirs, "--overwrite").code == 0
     assert book.read_bytes() == before
+
+
+def test_a_full_disk_costs_neither_the_answer_nor_the_other_files(xlmc, book, tmp_path, monkeypatch):
+    write = study_report.write_workbook
+
+    def fill(path, *arguments):
+        if path.suffix == ".xlsx":
+            raise WorkbookError("the disk is full", where=path)
+        write(path, *arguments)
+
+    monkeypatch.setattr(study_report, "write_workbook", fill)
+    sheet, page = tmp_path / "found.xlsx", tmp_path / "found.html"
+    outcome = xlmc("verify", book, "--all", "-o", sheet, "--html", page)
+    assert outcome.code == 2
+    assert outcome.err == f"xlmc: {sheet}: the disk is full.\n"
+    assert "formula cell" in outcome.out
+    assert outcome.out.endswith(f"Written: {page}\n")
+    assert page.stat().st_size > 100

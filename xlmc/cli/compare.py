@@ -12,7 +12,8 @@ import click
 
 from xlmc.cli.options import WholeNumber, chance_option, engine_option, jobs_option, tolerance_option
 from xlmc.cli.study_output import show, study_options
-from xlmc.cli.terminal import say, say_json
+from xlmc.cli.terminal import say_json
+from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
     from xlmc.report.study_report import Block, StudyReport
@@ -91,17 +92,17 @@ def compare(
             told=told,
         )
     report = _report(found)
-    written = files.write(report, "Comparison")
+    written = write_files(files.writers(report, "Comparison"))
     if as_json:
         say_json(_as_json(found))
     else:
         show([report.below, *report.blocks])
-        for path in written:
-            say(f"Written: {path}")
+        written.tell()
     runs = list(zip(book_names(found), (found.first, found.second), strict=True))
     notices([replace(said, where=name) for name, run in runs for said in direction_notices(run.results.values())])
     doubts = [f"{name}: {warning}" for name, run in runs for warning in run.warnings]
     warnings(doubts, [f"{name}: {warning}" for name, run in runs for warning in run.refused])
+    written.check()
     if doubts or found.of(comparison.Verdict.UNDECIDED) or any(_contradict(each) for each in found.rivals):
         raise click.exceptions.Exit(UNDECIDED)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +13,7 @@ import click
 from xlmc.cli.options import OneOf
 from xlmc.cli.study_output import show, study_options
 from xlmc.cli.terminal import say, say_json
+from xlmc.cli.writing import NOT_WRITTEN, write_files, written_or_told
 
 if TYPE_CHECKING:
     from xlmc.report.study_curves import Curves
@@ -91,9 +93,8 @@ def fit(
     row = fitting.row_to_paste(chosen, name or "…", described)
     edited = None if into is None else fit_into.prepare(into, name, chosen, float(np.median(values)), described)
     report = _report(found, values, f"{book.name} {where}", blank, row)
-    written = files.write(report, "Fit")
-    if edited is not None:
-        fit_into.write(edited)
+    written = write_files(files.writers(report, "Fit"))
+    into = None if edited is None else written_or_told(edited.path, partial(fit_into.write, edited))
     if as_json:
         say_json(_as_json(found, f"{book} {where}", blank, row))
     else:
@@ -102,13 +103,15 @@ def fit(
         say(f"\n{chosen.name} as a row of xlmc_assumptions, to paste under these headings:\n")
         say("\t".join(row))
         say("\t".join(row.values()))
-        if edited is not None:
+        if edited is not None and into is not None:
             done = "a new row" if edited.row.is_new else "its row"
             say(f"Written: {chosen.name} for {label(name)}, {done} in {into}, {edited.row.where}")
-        for path in written:
-            say(f"Written: {path}")
+        written.tell()
     for caution in _cautions(found):
         say(f"warning: {caution}", err=True)
+    written.check()
+    if edited is not None and into is None:
+        raise click.exceptions.Exit(NOT_WRITTEN)
     if found.n < fitting.FEW:
         raise click.exceptions.Exit(TOO_FEW)
 

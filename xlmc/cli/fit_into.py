@@ -57,8 +57,8 @@ def prepare(path: Path, name: str, fitted: Fitted, base: float, source: str) -> 
     return Edited(path, row, data, workbook.sha256)
 
 
-def write(edited: Edited) -> None:
-    """Replace the file.
+def write(edited: Edited) -> Path:
+    """Replace the file, and give its path back.
 
     Raises:
         TakenError: it has changed since it was read, or a program has it open.
@@ -68,6 +68,7 @@ def write(edited: Edited) -> None:
     from xlmc.workbook.writer import write_workbook
 
     write_workbook(edited.path, edited.data, lambda: refuse_into_source(edited.path, edited.sha256, "Fit again"))
+    return edited.path
 
 
 def _parts(workbook: Workbook, row: RowEdit) -> dict[str, bytes]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,7 @@ import click
 from xlmc.cli.options import WholeNumber
 from xlmc.cli.study_output import estimate_json
 from xlmc.cli.terminal import paragraph, say, say_json
+from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
     from xlmc.studies.methods import Curve, Runs, Study
@@ -93,14 +95,13 @@ def methods(
         given = quick_settings(given)
     with step_line(quiet) as told:
         found = study(model, accuracy=accuracy, seed=seed, told=told, **given)
-    for path in output:
-        save_methods(found, path, overwrite=overwrite)
+    written = write_files((path, partial(save_methods, found, path, overwrite=overwrite)) for path in output)
     if as_json:
         say_json(study_json(found))
     else:
         _show(found)
-        for path in output:
-            say(f"Written: {path}")
+        written.tell()
+    written.check()
     if found.reference.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
 

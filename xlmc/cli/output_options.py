@@ -12,16 +12,17 @@ import click
 
 from xlmc.cli.options import OneOf
 from xlmc.cli.terminal import say
-from xlmc.errors import WorkbookError, XlmcError
+from xlmc.cli.writing import written_or_told
+from xlmc.errors import WorkbookError
 
 if TYPE_CHECKING:
     from xlmc.api import Simulation
     from xlmc.report.document import Wanted
     from xlmc.run.model import Model
 
-__all__ = ["NOT_WRITTEN", "Outputs", "Reports", "Wishes", "output_options", "results_beside"]
+__all__ = ["Outputs", "Reports", "Wishes", "output_options", "results_beside"]
 
-NOT_WRITTEN = 2
+_READ = "this is the file that is read"
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -242,14 +243,17 @@ class Outputs(NamedTuple):
 
     def _refuse_source(self) -> None:
         """Refuse an output that is the file which is read, by whatever name."""
+        for path in (self.book, *self._others):
+            if path is not None and self._is_read(path):
+                hint = "--in-place writes the result sheets into it" if path == self.book else None
+                raise WorkbookError(_READ, where=path, hint=hint or "Name another file")
+
+    def _is_read(self, path: Path) -> bool:
         from xlmc.workbook.target import is_same_file
 
-        for path in (self.book, *self._others):
-            if path is None or (self.in_place and path == self.book):
-                continue
-            if any(is_same_file(path, read) for read in (self.source, self.beside) if read is not None):
-                hint = "--in-place writes the result sheets into it" if path == self.book else None
-                raise WorkbookError("this is the file that is read", where=path, hint=hint or "Name another file")
+        if self.in_place and path == self.book:
+            return False
+        return any(is_same_file(path, read) for read in (self.source, self.beside) if read is not None)
 
     def _with_book(self) -> Outputs:
         from xlmc.workbook.target import Target, free_target
@@ -277,10 +281,8 @@ class Outputs(NamedTuple):
         """
         written, lines = True, []
         for path, said, write in self._files(run):
-            try:
-                found = self._write_beside(path, write)
-            except XlmcError as error:
-                say(f"xlmc: {error}", err=True)
+            found = written_or_told(path, partial(self._write_beside, path, write))
+            if found is None:
                 written = False
             else:
                 lines.append(f"{said} {found}")
@@ -295,6 +297,8 @@ class Outputs(NamedTuple):
         from xlmc.workbook.writer import TakenError
 
         try:
+            if self._is_read(path):  # it became so during the run
+                raise TakenError(_READ, where=path)
             write(path, overwrite=self.overwrite or (self.in_place and path == self.book))
         except TakenError as taken:
             beside = results_beside(path) if path == self.book and self.in_place else path

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.output_options import NOT_WRITTEN, Outputs, Reports, Wishes, output_options, results_beside
+from xlmc.cli.output_options import Outputs, Reports, Wishes, output_options, results_beside
 from xlmc.cli.terminal import say
+from xlmc.cli.writing import NOT_WRITTEN
 
 if TYPE_CHECKING:
     from xlmc.api import Simulation

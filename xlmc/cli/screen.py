@@ -11,7 +11,8 @@ import click
 
 from xlmc.cli.options import WholeNumber, chance_option, engine_option, jobs_option, tolerance_option
 from xlmc.cli.study_output import show, study_options
-from xlmc.cli.terminal import say, say_json
+from xlmc.cli.terminal import say_json
+from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
     from xlmc.report.study_report import Block, StudyReport, Table
@@ -104,14 +105,14 @@ def screen(
             told=told,
         )
     report = _report(found)
-    written = files.write(report, "Screening")
+    written = write_files(files.writers(report, "Screening"))
     if as_json:
         say_json(_as_json(found))
     else:
         show([f"{report.below.partition(':')[0]}: what it could do without", *report.blocks])
-        for path in written:
-            say(f"Written: {path}")
+        written.tell()
     warnings(found.run.warnings, found.run.refused)
+    written.check()
     if found.run.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
 

@@ -17,8 +17,9 @@ from xlmc.cli.options import (
     sampling_option,
     stopping_options,
 )
-from xlmc.cli.output_options import NOT_WRITTEN, Outputs, Reports, Wishes, output_options, results_beside
+from xlmc.cli.output_options import Outputs, Reports, Wishes, output_options, results_beside
 from xlmc.cli.terminal import paragraph, say
+from xlmc.cli.writing import NOT_WRITTEN
 
 if TYPE_CHECKING:
     from xlmc.api import Simulation

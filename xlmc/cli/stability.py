@@ -11,6 +11,7 @@ import click
 from xlmc.cli.options import WholeNumber, jobs_option
 from xlmc.cli.study_output import show, study_options
 from xlmc.cli.terminal import paragraph, say, say_json
+from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
     from xlmc.report.study_report import Block, StudyReport, Table
@@ -56,14 +57,14 @@ def stability(
     files.check()
     with step_line(quiet) as told:
         found = room.stability(model, trials=trials, seed=seed, jobs=jobs, told=told)
-    written = files.write(_report(found, all_cells), "Stability")
+    written = write_files(files.writers(_report(found, all_cells), "Stability"))
     if as_json:
         say_json(_as_json(found))
     else:
         _show(found, all_cells)
-        for path in written:
-            say(f"Written: {path}")
+        written.tell()
     warnings(found.run.warnings, found.run.refused)
+    written.check()
     if found.wrong or found.run.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
 

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.study_output import show, study_options
-from xlmc.cli.terminal import say, say_json
+from xlmc.cli.terminal import say_json
+from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
     from xlmc.report.study_report import Block
@@ -56,13 +57,13 @@ def verify(
     report = StudyReport(
         "Recomputed values beside those that Excel saved", f"{book.name}: {cells}", _blocks(found, _WRITTEN)
     )
-    written = files.write(report, "Verification")
+    written = write_files(files.writers(report, "Verification"))
     if as_json:
         say_json(_as_json(found))
     else:
         show(_blocks(found, _SHOWN))
-        for path in written:
-            say(f"Written: {path}")
+        written.tell()
+    written.check()
     if found.count(Status.DIFFERING):
         raise click.exceptions.Exit(DIFFERS)
 

@@ -5,8 +5,9 @@ The terminal, a page, a sheet and a document show the same content.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from html import escape
 from pathlib import Path
 from typing import Final
@@ -120,23 +121,25 @@ class Files:
     def _target(self, path: Path) -> Target:
         return Target(path, self._sources[0].name, self._overwrite)
 
-    def write(self, report: StudyReport, sheet: str) -> list[Path]:
-        """Write them; an untouched file of ours is replaced.
+    def writers(self, report: StudyReport, sheet: str) -> Iterator[tuple[Path, Callable[[], Path]]]:
+        """Each file with what writes it; an untouched file of ours is replaced.
 
-        Raises:
-            TakenError: a file is not ours to replace.
-            WorkbookError: it cannot be written.
+        What writes it raises `TakenError` where the file is not ours to replace, and `WorkbookError` where it cannot be
+        written.
         """
-        name = self._sources[0].name
         for path, ending in self._endings:
-            if ending in _DOCUMENTS:
-                content = _document(report, ending)
-            elif ending == ".html":
-                content = sealed_text(_page(report).encode(), ending, name)
-            else:
-                content = package_bytes(sealed_parts(_book(report, sheet), "xl/worksheets/sheet1.xml", name))
-            write_workbook(path, content, self._target(path).check)
-        return [path for path, _ in self._endings]
+            yield path, partial(self._write, report, sheet, path, ending)
+
+    def _write(self, report: StudyReport, sheet: str, path: Path, ending: str) -> Path:
+        name = self._sources[0].name
+        if ending in _DOCUMENTS:
+            content = _document(report, ending)
+        elif ending == ".html":
+            content = sealed_text(_page(report).encode(), ending, name)
+        else:
+            content = package_bytes(sealed_parts(_book(report, sheet), "xl/worksheets/sheet1.xml", name))
+        write_workbook(path, content, self._target(path).check)
+        return path
 
 
 def _document(report: StudyReport, ending: str) -> bytes:

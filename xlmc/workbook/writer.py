@@ -293,7 +293,11 @@ def _explain(error: OSError, path: str | os.PathLike[str]) -> WorkbookError:
     if _passing(error):
         return TakenError("another program holds the file", where=path, hint=_CLOSE)
     if isinstance(error, FileNotFoundError | NotADirectoryError):
-        folder = str(Path(path).absolute().parent)
+        try:
+            folder = str(Path(path).absolute().parent)
+        except FileNotFoundError:
+            hint = "Go to another folder, or name the file with its whole path"
+            return WorkbookError("the folder in which xlmc was started is not there any more", where=path, hint=hint)
         return WorkbookError(f"there is no folder {folder!r}", where=path, hint="Create it or name another")
     if error.errno in _FULL:
         return WorkbookError("the disk is full", where=path, hint="Free some space or name another folder")

@@ -1,0 +1,52 @@
+"""How commands write files after hours of work: one that cannot be written costs neither the answer nor the others."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import NamedTuple
+
+import click
+
+from xlmc.cli.terminal import say
+from xlmc.errors import XlmcError
+
+__all__ = ["NOT_WRITTEN", "Written", "write_files", "written_or_told"]
+
+NOT_WRITTEN = 2
+"""Exit code where a file could not be written."""
+
+
+class Written(NamedTuple):
+    """What came of writing files: the paths of those that were written, and whether all were."""
+
+    paths: list[Path]
+    complete: bool
+
+    def tell(self) -> None:
+        """Print where they are."""
+        for path in self.paths:
+            say(f"Written: {path}")
+
+    def check(self) -> None:
+        """End the command with its exit code where one is missing."""
+        if not self.complete:
+            raise click.exceptions.Exit(NOT_WRITTEN)
+
+
+def write_files(files: Iterable[tuple[Path, Callable[[], Path]]]) -> Written:
+    """Write one file after the other; of each that cannot be written, say so."""
+    found = [written_or_told(path, write) for path, write in files]
+    paths = [path for path in found if path is not None]
+    return Written(paths, len(paths) == len(found))
+
+
+def written_or_told(path: Path, write: Callable[[], Path]) -> Path | None:
+    """The path that was written to; None where nothing could be written, which is told."""
+    try:
+        return write()
+    except XlmcError as error:
+        say(f"xlmc: {error}", err=True)
+    except OSError as error:
+        say(f"xlmc: {path}: the file cannot be written ({error.strerror or error}).", err=True)
+    return None

@@ -31,7 +31,7 @@ def _content(value, row, column):
     return CellContent(value)
 
 
-def _workbook(cells, names=None, tables=(), sheets=()):
+def _workbook(cells, names=None, tables=(), sheets=(), **others):
     laid = {sheet: {} for sheet in ("S", *sheets)}
     for address, value in cells.items():
         cell = parse_address(address, "S")
@@ -42,6 +42,7 @@ def _workbook(cells, names=None, tables=(), sheets=()):
         {name: Sheet(name, f"xl/worksheets/{name}.xml", held) for name, held in laid.items()},
         tuple(DefinedName(name, text, sheet or None) for sheet, name, text in defined),
         tuple(tables),
+        **others,
     )
 
 

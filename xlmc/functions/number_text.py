@@ -4,13 +4,23 @@ from __future__ import annotations
 
 import math
 import re
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from decimal import ROUND_HALF_UP, Context, Decimal
 from typing import Final
 
 from xlmc.functions.dates.date_text import parse_moment
 from xlmc.functions.denormals import TINIEST
 
-__all__ = ["SPACES", "general_text", "parse_number", "parse_plain_number", "round_to_15_digits"]
+__all__ = [
+    "SPACES",
+    "dates_from_1904",
+    "general_text",
+    "parse_number",
+    "parse_plain_number",
+    "round_to_15_digits",
+]
 
 SPACES: Final = " \t\r\n"
 """Characters that may stand before and after a number; a no-break space may not."""
@@ -57,16 +67,37 @@ _NUMBER: Final = re.compile(
 _MARKS: Final = re.compile(r"[+-]?|\(\)")
 
 
-def parse_number(text: str, date1904: bool = False) -> float | None:
+class _Calendar(threading.local):
+    from_1904 = False
+
+
+_CALENDAR: Final = _Calendar()
+
+
+@contextmanager
+def dates_from_1904() -> Iterator[None]:
+    """Read texts that are dates as days from 1904 on, in this thread, where nothing else is said."""
+    before, _CALENDAR.from_1904 = _CALENDAR.from_1904, True
+    try:
+        yield
+    finally:
+        _CALENDAR.from_1904 = before
+
+
+def parse_number(text: str, date1904: bool | None = None) -> float | None:
     """Read the number that a text stands for in arithmetic; None if it is no number.
 
     `$1,234.50`, `(5)`, `12%`, `1E-3` and `1 1/2` are numbers, and so are dates and times.
+
+    Args:
+        text: what is read.
+        date1904: whether days count from 1904; by default they do within `dates_from_1904`, and nowhere else.
     """
     stripped = text.strip(SPACES)
     number = parse_plain_number(stripped)
     if number is not None:
         return number
-    moment = parse_moment(stripped, date1904)
+    moment = parse_moment(stripped, _CALENDAR.from_1904 if date1904 is None else date1904)
     return None if moment is None else moment.serial
 
 

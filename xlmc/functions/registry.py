@@ -27,8 +27,9 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from enum import Enum
+from functools import cache
 from importlib import import_module
 from math import prod
 from typing import Any, Final, Protocol
@@ -41,6 +42,7 @@ from xlmc.functions.arguments import first_error_in_row, with_errors
 from xlmc.functions.budget import ask_for_cells
 from xlmc.functions.facts import NOTHING, Facts
 from xlmc.functions.lookup.picked_cells import flatten_cells, join_cells
+from xlmc.functions.number_text import dates_from_1904
 from xlmc.functions.values import ERROR, LOGICAL, NUMBER, Bools, Codes, Value, from_objects
 
 __all__ = [
@@ -59,6 +61,7 @@ __all__ = [
     "Ranges",
     "Text",
     "excel",
+    "from_1904",
     "function_named",
     "row_of",
     "side_by_side",
@@ -277,6 +280,27 @@ class Function:
         kind = self.parameters[0].kind
         x, counts, errors = side_by_side(arguments, kind)
         return _as_value(self.body(x, counts), self.returns, errors if errors.any() else None)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _From1904(Function):
+    """A function that reads texts that are dates as days from 1904 on."""
+
+    row: Function = field(kw_only=True)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return from_1904, (self.row,)
+
+    def __call__(self, arguments: Sequence[Value]) -> Value:
+        with dates_from_1904():
+            return self.row(arguments)
+
+
+@cache
+def from_1904(row: Function) -> Function:
+    """Return the function as workbooks have it whose dates count from 1904; the same object each time."""
+    given = {each.name: getattr(row, each.name) for each in fields(row) if each.init}
+    return _From1904(**given, row=row)
 
 
 def _coerce(value: Value, kind: Kind) -> tuple[NDArray[Any], Codes]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import nullcontext
 from typing import Any, Final, NamedTuple, assert_never
 
 import numpy as np
@@ -14,7 +15,9 @@ from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Node, Range, Select, evaluate_node, uses
 from xlmc.functions import Function, Kind
 from xlmc.functions.budget import MOST_KEPT, TooLargeError
-from xlmc.functions.values import BLANK, ERROR, LOGICAL, NUMBER, TEXT, Value, constant
+from xlmc.functions.number_text import dates_from_1904, parse_number
+from xlmc.functions.registry import from_1904
+from xlmc.functions.values import BLANK, ERROR, LOGICAL, NUMBER, TEXT, Codes, Floats, Value, constant
 
 __all__ = ["MANY", "Dag", "Repeat", "constants"]
 
@@ -43,6 +46,9 @@ class Repeat(NamedTuple):
 class Dag:
     """Nodes in an order in which each comes after those it uses; a node is known by its index.
 
+    Args:
+        date1904: whether the workbook's dates count from 1904.
+
     Attributes:
         nodes: what each is.
         types: what each gives where it is no error; ANY where that is not known before the run, or is many cells.
@@ -54,7 +60,8 @@ class Dag:
         hosts, ends: the formula cells in the order in which they were lowered, and how many nodes there were then.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, date1904: bool = False) -> None:
+        self._date1904 = date1904
         self.nodes: list[Node] = []
         self.types: list[Kind] = []
         self.sizes: list[Size] = []
@@ -68,7 +75,8 @@ class Dag:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Another process gets only the nodes and their cells: it evaluates them and adds none."""
-        return _of_nodes, (self.nodes, self.types, self.sizes, self.folded, self.hosts, self.ends)
+        parts = self.nodes, self.types, self.sizes, self.folded, self.hosts, self.ends
+        return _of_nodes, (self._date1904, *parts)
 
     def host_ends(self, cell: Cell) -> None:
         """Note that all nodes made since the last such note were made for the formula of this cell."""
@@ -114,7 +122,7 @@ class Dag:
         Raises:
             ValueError: parts of many cells have sizes that do not go together.
         """
-        node_id = self._add(node)
+        node_id = self._add(self._from_1904(node) if self._date1904 and isinstance(node, Apply) else node)
         if self.recording is not None and not isinstance(self.nodes[node_id], Constant):
             self.recording.append(node_id)
         return node_id
@@ -156,6 +164,22 @@ class Dag:
                 self.origins[node_id] = node
             return node_id
         return self._register(node, node, self._type(node) if size is None else Kind.ANY, size)
+
+    def _from_1904(self, node: Apply) -> Apply:
+        """The call with texts that are dates as days from 1904 on: known ones now, others when they are computed."""
+        arguments = list(node.arguments)
+        for position, argument in enumerate(arguments):
+            known = self._single_constant(argument) if self.types[argument] is Kind.TEXT else None
+            if known is not None and node.function.parameter(position).kind is Kind.NUMBER:
+                number = parse_number(str(known.texts[0]), date1904=True) if known.texts is not None else None
+                arguments[position] = argument if number is None else self.constant(constant(number))
+        sure = all(self.types[argument] in (Kind.NUMBER, Kind.LOGICAL) for argument in arguments)
+        return Apply(node.function if sure else from_1904(node.function), tuple(arguments))
+
+    def to_numbers(self, value: Value) -> tuple[Floats, Codes]:
+        """What arithmetic reads of a value, by the workbook's calendar."""
+        with dates_from_1904() if self._date1904 else nullcontext():
+            return value.to_numbers()
 
     def _is_plain(self, node: Apply) -> bool:
         """Whether it makes one value of single ones, some of which vary, as nearly every node does."""
@@ -235,9 +259,15 @@ class Dag:
 
 
 def _of_nodes(
-    nodes: list[Node], types: list[Kind], sizes: list[Size], folded: dict[int, int], hosts: list[Cell], ends: list[int]
+    date1904: bool,
+    nodes: list[Node],
+    types: list[Kind],
+    sizes: list[Size],
+    folded: dict[int, int],
+    hosts: list[Cell],
+    ends: list[int],
 ) -> Dag:
-    dag = Dag()
+    dag = Dag(date1904=date1904)
     dag.nodes, dag.types, dag.sizes, dag.folded, dag.hosts, dag.ends = nodes, types, sizes, folded, hosts, ends
     return dag
 

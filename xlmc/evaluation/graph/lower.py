@@ -97,7 +97,7 @@ class Lowering(ExpressionLowering):
     def __init__(
         self, graph: Graph, inputs: Mapping[Cell, str], held: Mapping[Cell, float], *, audit: bool = False
     ) -> None:
-        dag = Dag()
+        dag = Dag(date1904=graph.workbook.date1904)
         trees = (placed for placed in graph.formulas.ordered.values() if not isinstance(placed, Filled))
         super().__init__(graph, dag, RunningTotals(dag, trees, self.cell), audit=audit)
         self.inputs, self.held = inputs, held

@@ -97,7 +97,7 @@ def literal(dag: Dag, operand: Operand) -> Literal | None:
         return None
     if operand.kind is Kind.NUMBER and dag.types[operand.node] is Kind.NUMBER:
         return Literal(float(node.value.numbers[0]))
-    values, errors = node.value.to_numbers() if operand.kind is Kind.NUMBER else node.value.to_logicals()
+    values, errors = dag.to_numbers(node.value) if operand.kind is Kind.NUMBER else node.value.to_logicals()
     if values.size != 1 or errors.any():
         return None
     return Literal(values.item())

@@ -74,7 +74,7 @@ class Trials:
 
     def _as_doubles(self, operand: Operand) -> Floats:
         value = self.values[operand.node]
-        numbers, errors = value.to_numbers() if operand.kind is Kind.NUMBER else value.to_logicals()
+        numbers, errors = self._dag.to_numbers(value) if operand.kind is Kind.NUMBER else value.to_logicals()
         doubles = np.where(errors > 0, np.nan, numbers)
         return np.ascontiguousarray(np.broadcast_to(doubles, (self.n,)), np.float64)
 

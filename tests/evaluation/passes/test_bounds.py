@@ -11,7 +11,8 @@ from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Select
 from xlmc.evaluation.passes.bounds import NodeBounds
 from xlmc.functions.families import REGISTRY
-from xlmc.functions.values import constant
+from xlmc.functions.lookup.search_and_pick import CELL_AT
+from xlmc.functions.values import NUMBER, TEXT, Value, constant
 
 OPERATIONS = {"+": np.add, "-": np.subtract, "*": np.multiply, "/": np.divide}
 OF_ONE = {"u-": np.negative, "SIN": np.sin, "COS": np.cos, "SQRT": np.sqrt, "ABS": np.abs, "EXP": np.exp}
@@ -77,6 +78,8 @@ def test_what_is_known(dag):
         of("COS", free): (-1.0, 1.0),
         of("ABS", free): (0.0, math.inf),
         of("EXP", free): (0.0, math.inf),
+        of("EXP", a): (0.0, 2.0 * math.exp(3.0)),
+        of("EXP", of("*", a, dag.constant(constant(300.0)))): (0.0, math.inf),
         of("SQRT", free): (0.0, math.inf),
         of("MAX", a, two): (2.0, 3.0),
         of("MAX", free, two): (2.0, math.inf),
@@ -93,6 +96,15 @@ def test_what_is_known(dag):
     known = NodeBounds(dag, {"a": (-1.0, 3.0), "b": (1.0, 4.0)})
     assert {node: known.of(node) for node in reversed(wanted)} == dict(reversed(wanted.items()))
     assert [known.of(node) for node in unknown] == [None] * len(unknown)
+
+
+def test_a_number_of_a_table_lies_between_the_smallest_and_the_largest(dag):
+    numbers, free = np.array([[[3.0], [-2.0], [7.0]]]), dag.input("free")
+    kinds = np.array([[[NUMBER], [TEXT], [NUMBER]]], np.uint8)
+    columns = [dag.constant(Value(numbers, np.full_like(kinds, NUMBER))), dag.constant(Value(numbers, kinds))]
+    cells = [dag.add(Apply(CELL_AT, (column, free))) for column in columns]
+    known = NodeBounds(dag, {"other": (0.0, 1.0)})
+    assert list(map(known.of, cells)) == [(-2.0, 7.0), None]
 
 
 def test_a_graph_may_grow(dag):

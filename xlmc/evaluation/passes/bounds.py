@@ -9,6 +9,7 @@ from typing import Final
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, Input, Select
 from xlmc.functions.fifteen_digits import SNAP_TO_ZERO
+from xlmc.functions.lookup.search_and_pick import CELL_AT
 from xlmc.functions.values import NUMBER
 
 __all__ = ["Bounds", "NodeBounds"]
@@ -52,6 +53,8 @@ class NodeBounds:
                 return _combine(function.name, found[first], found[second])
             case Apply(function, (result, _)) if function.name == SNAP_TO_ZERO.name:
                 return found[result]
+            case Apply(function, (cells, _)) if function.name == CELL_AT.name:
+                return found[cells]
             case Apply(function, arguments) if function.name in _OF_SETS:
                 lows, highs = zip(*(found[argument] for argument in arguments), strict=True)
                 return _OF_SETS[function.name](lows), _OF_SETS[function.name](highs)
@@ -66,7 +69,7 @@ _OF_ONE: Final[Mapping[str, Callable[[float, float], Bounds]]] = {
     "u-": lambda low, high: (-high, -low),
     "SQRT": lambda low, high: (0.0, max(1.0, high)),  # wide, as the root of a number near 0 makes its rounding large
     "ABS": lambda low, high: (max(low, -high, 0.0), max(-low, high)),
-    "EXP": lambda _low, _high: (0.0, math.inf),
+    "EXP": lambda _low, high: (0.0, 2.0 * math.exp(high) if high < 700.0 else math.inf),  # wide, as it widens errors
 }
 """Function of one number -> its bounds, from those of the number."""
 
@@ -75,12 +78,14 @@ _OF_SETS: Final[Mapping[str, Callable[[Iterable[float]], float]]] = {"MAX": max,
 
 
 def _of_constant(dag: Dag, node_id: int) -> Bounds | None:
-    """A constant number as its own lower and upper bound; None of any other node."""
+    """The least and the largest of constant numbers, those of a cell or of a range; None of any other node."""
     node = dag.nodes[node_id]
-    if isinstance(node, Constant) and dag.sizes[node_id] is None and int(node.value.kinds[0]) == NUMBER:
-        number = float(node.value.numbers[0])
-        return number, number
-    return None
+    if not isinstance(node, Constant):
+        return None
+    numbers, kinds = node.value.numbers, node.value.kinds
+    if dag.sizes[node_id] is None:
+        return (float(numbers[0]), float(numbers[0])) if int(kinds[0]) == NUMBER else None
+    return (float(numbers.min()), float(numbers.max())) if numbers.size and (kinds == NUMBER).all() else None
 
 
 def _combine(operator: str, left: Bounds, right: Bounds) -> Bounds:

@@ -90,7 +90,7 @@ class Search:
         """Whether every key, none of them infinite, has a position."""
         if self.positions is not None:
             return bool((self.rising.take(np.searchsorted(self.rising, keys)) == keys).all())
-        least = np.min(keys) if self.sign > 0 else -np.max(keys)
+        least = np.minimum.reduce(keys) if self.sign > 0 else -np.maximum.reduce(keys)
         return bool(least >= self.rising[0])
 
     def __call__(self, keys: Floats, out: Floats | None = None) -> Floats:

@@ -17,10 +17,10 @@ from typing import Any
 from llvmlite import ir
 
 from xlmc.evaluation.graph.dag import Dag
-from xlmc.evaluation.graph.nodes import Constant, Select
+from xlmc.evaluation.graph.nodes import Select
 from xlmc.evaluation.graph.trial_sets import ALL_TRIALS, DEEPEST_BRANCHES, TrialSet, common_set
 from xlmc.evaluation.llvm.loop_arithmetic import Arithmetic, intrinsic, sine_and_cosine
-from xlmc.evaluation.llvm.loop_rules import Literal, LoopRule, Operand, literal, reads
+from xlmc.evaluation.llvm.loop_rules import Literal, LoopRule, Operand, reads
 from xlmc.evaluation.llvm.machine import Machine
 from xlmc.functions import Kind
 from xlmc.functions.denormals import TINIEST
@@ -105,7 +105,7 @@ class Body:
         self._context = self._contexts.get(node, ALL_TRIALS)
         values, fallible = [], rule.makes
         for position, part in enumerate(rule.operands):
-            if isinstance(part, Operand) and not self._is_constant(part):
+            if isinstance(part, Operand):
                 if position in rule.absorbs or self._is_truth_of_number(part):
                     self._check(part)
                 else:
@@ -142,9 +142,6 @@ class Body:
         lost = self.builder.fcmp_unordered("uno", total, total)
         return lost if flag is None else self.builder.or_(lost, flag)
 
-    def _is_constant(self, part: Operand) -> bool:
-        return isinstance(self._dag.nodes[part.node], Constant)
-
     def _source(self, part: Operand) -> tuple[Operand, Loaded]:
         """The place of the operand's value, and the kind that it has there."""
         if part not in self._known:
@@ -152,10 +149,6 @@ class Body:
         return part, self._known[part]
 
     def _value(self, part: Operand | Literal) -> Any:
-        if isinstance(part, Operand) and self._is_constant(part):
-            known = literal(self._dag, part)
-            assert known is not None
-            part = known
         if isinstance(part, Literal):
             return self.truth(part.value) if isinstance(part.value, bool) else self.number(part.value)
         value = self._source(part)[1].value

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Sequence
-from dataclasses import dataclass
-from typing import Any, Final, Protocol
+from typing import Any, Final, NamedTuple, Protocol
 
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Constant, uses
 from xlmc.functions import Kind
 
-__all__ = ["PLAIN", "Emit", "Emitter", "Literal", "LoopRule", "Operand", "first_operand", "literal", "reads"]
+__all__ = ["PLAIN", "Emit", "Emitter", "Literal", "LoopRule", "Operand", "first_operand", "literal", "part_of", "reads"]
 
 PLAIN: Final = (Kind.NUMBER, Kind.LOGICAL)
 """What a value in the loop may be: a double or a truth value."""
@@ -53,24 +52,21 @@ Emit = Callable[[Emitter, Sequence[Any]], Any]
 """Takes the operands' values in the loop, gives the node's."""
 
 
-@dataclass(frozen=True, slots=True)
-class Operand:
-    """A node, and what it is taken as: NUMBER or LOGICAL."""
+class Operand(NamedTuple):
+    """A node that varies, and what it is taken as: NUMBER or LOGICAL."""
 
     node: int
     kind: Kind
 
 
-@dataclass(frozen=True, slots=True)
-class Literal:
+class Literal(NamedTuple):
     """A number or truth value known before the run."""
 
     value: float | bool
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class LoopRule:
-    """How the loop computes a node.
+class LoopRule(NamedTuple):
+    """How the loop computes a node. A tuple, like its operands, because nearly every node has one.
 
     Attributes:
         absorbs: the operands of which an infinity or NaN may leave no trace in the result.
@@ -88,6 +84,13 @@ class LoopRule:
 def first_operand(_: Emitter, parts: Sequence[Any]) -> Any:
     """Emits nothing: the value is that of the first operand."""
     return parts[0]
+
+
+def part_of(dag: Dag, node: int, kind: Kind) -> Operand | Literal | None:
+    """How a rule takes a node as a kind; None where it is many cells, or a constant that is not of that kind."""
+    if type(dag.nodes[node]) is Constant:
+        return literal(dag, Operand(node, kind))
+    return Operand(node, kind) if dag.sizes[node] is None else None
 
 
 def literal(dag: Dag, operand: Operand) -> Literal | None:

@@ -7,7 +7,7 @@ which two numbers that vary nearly agree are left to the careful path.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, Final
@@ -28,9 +28,19 @@ from xlmc.evaluation.llvm.loop_rounding import (
     round_to,
     whole_quotient,
 )
-from xlmc.evaluation.llvm.loop_rules import PLAIN, Emit, Emitter, Literal, LoopRule, Operand, first_operand, literal
+from xlmc.evaluation.llvm.loop_rules import (
+    PLAIN,
+    Emit,
+    Emitter,
+    Literal,
+    LoopRule,
+    Operand,
+    first_operand,
+    literal,
+    part_of,
+)
 from xlmc.evaluation.llvm.sets import over_cells
-from xlmc.functions import Kind
+from xlmc.functions import Function, Kind
 from xlmc.functions.denormals import TINIEST
 from xlmc.functions.fifteen_digits import EIGHT_UNITS, EXCHANGED, NEAR, SNAP_TO_ZERO, Comparison, equal_range
 
@@ -60,8 +70,7 @@ def loop_rule_of(dag: Dag, node: int) -> LoopRule | None:
     if dag.sizes[node] is not None or kind not in PLAIN:
         return None
     rule, folded = _rule(dag, dag.nodes[node], kind), dag.folded.get(node)
-    readable = rule is not None and all(_readable(dag, part) for part in rule.operands if isinstance(part, Operand))
-    if readable and rule is not None and (folded is None or len(rule.operands) <= _FEW):
+    if rule is not None and (folded is None or len(rule.operands) <= _FEW):
         return rule
     if folded is not None and not isinstance(dag.nodes[folded], Constant):  # a count is one only if no cell is an error
         return LoopRule((Operand(folded, Kind.NUMBER),), first_operand, makes=False)
@@ -73,23 +82,17 @@ def _rule(dag: Dag, node: Node, kind: Kind) -> LoopRule | None:
         case Apply():
             return _operation(dag, node) or lookup_rule(dag, node) or over_cells(dag, node)
         case Select(condition, yes, no):
-            operands = Operand(condition, Kind.LOGICAL), Operand(yes, kind), Operand(no, kind)
-            return LoopRule(operands, _choose, makes=False)
+            taken = (condition, Kind.LOGICAL), (yes, kind), (no, kind)
+            return _of_single_values(dag, taken, _Row(_choose, makes=False))
         case IfErrorNode(value) if dag.types[value] is kind:
             # Where the value may be an error the trial is computed again: the other value is never needed here.
-            return LoopRule((Operand(value, kind),), first_operand, makes=False)
+            return _of_single_values(dag, [(value, kind)], _Row(first_operand, makes=False))
         case _:
             return None
 
 
 def _choose(body: Emitter, parts: Sequence[Any]) -> Any:
     return body.builder.select(*parts)
-
-
-def _readable(dag: Dag, operand: Operand) -> bool:
-    if isinstance(dag.nodes[operand.node], Constant):
-        return literal(dag, operand) is not None
-    return dag.sizes[operand.node] is None
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,26 +105,39 @@ class _Row:
     kinds: Sequence[Kind] = (Kind.NUMBER,)
 
 
-def _operation(dag: Dag, node: Apply) -> LoopRule | None:
-    """The rule of a function of single values; None where there is none."""
-    if isinstance(node.function.ufunc, Comparison):
-        return _compare(dag, node, node.function.ufunc.symbol)
-    if node.function.name == "LOG":
-        return _logarithm(dag, node)
-    if node.function.name in ROUNDED:
-        return _rounding(dag, node)
-    row = _power(dag, node) if node.function.name == "^" else _ROWS.get(node.function.name)
-    if row is None or len(node.arguments) != len(node.function.parameters):
-        return None
+def _of_single_values(dag: Dag, taken: Iterable[tuple[int, Kind]], row: _Row) -> LoopRule | None:
+    """The rule of a function of nodes that are taken as these kinds; None where one cannot be."""
     operands = []
-    for position, node_id in enumerate(node.arguments):
-        kind = node.function.parameter(position).kind
+    for node, kind in taken:
         if kind is Kind.ANY:
-            kind = dag.types[node_id]
+            kind = dag.types[node]
             if kind not in row.kinds:
                 return None
-        operands.append(Operand(node_id, kind))
+        part = part_of(dag, node, kind)
+        if part is None:
+            return None
+        operands.append(part)
     return LoopRule(tuple(operands), row.emit, row.absorbs, row.makes)
+
+
+def _operation(dag: Dag, node: Apply) -> LoopRule | None:
+    """The rule of a function of single values; None where there is none."""
+    function, arguments = node
+    if isinstance(function.ufunc, Comparison):
+        return _compare(dag, node, function.ufunc.symbol)
+    row = _power(dag, node) if function.name == "^" else _ROWS.get(function.name)
+    if row is not None:
+        kinds = _kinds(function)
+        return _of_single_values(dag, zip(arguments, kinds, strict=True), row) if len(arguments) == len(kinds) else None
+    if function.name == "LOG":
+        return _logarithm(dag, node)
+    return _rounding(dag, node) if function.name in ROUNDED else None
+
+
+@cache
+def _kinds(function: Function) -> tuple[Kind, ...]:
+    """The kinds of the parameters of a function that has a row."""
+    return tuple([parameter.kind for parameter in function.parameters])
 
 
 def _instruction(name: str, *absorbs: int) -> _Row:
@@ -218,12 +234,13 @@ def _compare(dag: Dag, node: Apply, symbol: str) -> LoopRule | None:
     """How the loop compares two numbers."""
     if any(dag.types[node_id] is not Kind.NUMBER for node_id in node.arguments):
         return None
-    parts = [Operand(node_id, Kind.NUMBER) for node_id in node.arguments]
-    left, right = (literal(dag, part) for part in parts)
-    if left is None and right is None:
-        return LoopRule(tuple(parts), _of_two(symbol), _ALL)
-    varying, known, relation = (parts[0], right, symbol) if right is not None else (parts[1], left, EXCHANGED[symbol])
-    assert known is not None
+    left, right = (part_of(dag, node_id, Kind.NUMBER) for node_id in node.arguments)
+    if left is None or right is None:
+        return None
+    if isinstance(left, Operand) and isinstance(right, Operand):
+        return LoopRule((left, right), _of_two(symbol), _ALL)
+    varying, known, relation = (left, right, symbol) if isinstance(right, Literal) else (right, left, EXCHANGED[symbol])
+    assert isinstance(known, Literal)  # what is constant alone is no node of the loop
     least, most = equal_range(float(known.value))
     limits = {"<": [least], ">=": [least], "<=": [most], ">": [most]}.get(relation, [least, most])
     return LoopRule((varying, *map(Literal, limits)), _with_constant(relation), _ALL)
@@ -319,21 +336,21 @@ def _power_of_constant(positive: bool, whole: bool, odd: bool) -> Emit:
 
 def _logarithm(dag: Dag, node: Apply) -> LoopRule | None:
     """The rule of a logarithm to base 10; other bases are left to NumPy."""
-    number, *base = (Operand(argument, Kind.NUMBER) for argument in node.arguments)
-    if base and literal(dag, base[0]) != Literal(10.0):
+    number, *base = node.arguments
+    if base and literal(dag, Operand(base[0], Kind.NUMBER)) != Literal(10.0):
         return None
-    row = _ROWS["LOG10"]
-    return LoopRule((number,), row.emit, row.absorbs, row.makes)
+    return _of_single_values(dag, [(number, Kind.NUMBER)], _ROWS["LOG10"])
 
 
 def _rounding(dag: Dag, node: Apply) -> LoopRule | None:
     """The rule of a rounding to digits that are known; others are left to NumPy."""
-    number, *given = (Operand(argument, Kind.NUMBER) for argument in node.arguments)
-    known = literal(dag, given[0]) if given else Literal(0.0)
+    number, *given = node.arguments
+    known = literal(dag, Operand(given[0], Kind.NUMBER)) if given else Literal(0.0)
     digits = None if known is None else float(known.value)
     if digits is None or not abs(digits) < MOST_DIGITS + 1:
         return None
-    return LoopRule((number,), round_to(node.function.name, int(digits)), absorbs=(0,), makes=digits < 0)
+    row = _Row(round_to(node.function.name, int(digits)), absorbs=(0,), makes=digits < 0)
+    return _of_single_values(dag, [(number, Kind.NUMBER)], row)
 
 
 def _above_zero(function: Callable[..., Any]) -> _Row:

@@ -11,7 +11,7 @@ import numpy as np
 
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, Range
-from xlmc.evaluation.llvm.loop_rules import Emit, Emitter, Literal, LoopRule, Operand, first_operand
+from xlmc.evaluation.llvm.loop_rules import Emit, Emitter, Literal, LoopRule, Operand, first_operand, part_of
 from xlmc.functions import Kind
 from xlmc.functions.values import BLANK, LOGICAL, NUMBER, TEXT, Value
 
@@ -62,7 +62,10 @@ def _members(dag: Dag, node: Apply) -> _Members:
     for node_id in node.arguments:
         cells = _cells(dag, node_id)
         if cells is None:
-            members.counting.append(Operand(node_id, kind))
+            part = part_of(dag, node_id, kind)
+            if part is None:
+                raise _NotForTheLoopError
+            members.counting.append(part)
             continue
         for cell in cells:
             found = _counted(dag, cell, kind)

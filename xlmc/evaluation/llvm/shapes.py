@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.evaluation.graph.dag import Dag
-from xlmc.evaluation.graph.nodes import Constant, Select
-from xlmc.evaluation.llvm.loop_rules import Literal, LoopRule, Operand, literal
+from xlmc.evaluation.graph.nodes import Select
+from xlmc.evaluation.llvm.loop_rules import Literal, LoopRule, Operand
 
 __all__ = ["Shape", "cut", "shape_of"]
 
@@ -60,17 +60,15 @@ def shape_of(
     numbers: list[float] = []
 
     def part_of(node: int, position: int, part: Operand | Literal) -> object:
-        if isinstance(part, Operand) and not isinstance(dag.nodes[part.node], Constant):
+        if isinstance(part, Operand):
             if part.node in own:
                 return own[part.node], part.kind
             found = part if part in outside else Operand(part.node, dag.types[part.node])
             return "load", outside[found], part.kind
-        known = part if isinstance(part, Literal) else literal(dag, part)
-        assert known is not None
-        if isinstance(known.value, bool):
-            return "truth", known.value
+        if isinstance(part.value, bool):
+            return "truth", part.value
         slots[node, position] = len(numbers)
-        numbers.append(float(known.value))
+        numbers.append(float(part.value))
         return "number"
 
     key = [

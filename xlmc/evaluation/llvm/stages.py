@@ -12,7 +12,7 @@ from itertools import chain
 from typing import Final
 
 from xlmc.evaluation.graph.dag import Dag
-from xlmc.evaluation.graph.nodes import Constant, Input
+from xlmc.evaluation.graph.nodes import Input
 from xlmc.evaluation.graph.readiness import order_by_need
 from xlmc.evaluation.llvm.loop import Load
 from xlmc.evaluation.llvm.loop_rules import LoopRule, Operand
@@ -126,14 +126,12 @@ class Stages:
                 rules = {node: self._rules[node] for node in stage.nodes}
                 parts = (part for rule in rules.values() for part in (*rule.operands, *rule.beside))
                 read = (part for part in parts if isinstance(part, Operand) and part.node in stage.read)
-                loads = (load for part in read if (load := self._load(part)) is not None)
-                yield LoopPlan(rules, tuple({load.operand: load for load in loads}.values()), stage.stores)
+                loads = {load.operand: load for load in map(self._load, read)}
+                yield LoopPlan(rules, tuple(loads.values()), stage.stores)
 
-    def _load(self, part: Operand) -> Load | None:
-        """How a node from outside is read; None for a constant."""
+    def _load(self, part: Operand) -> Load:
+        """How a node from outside is read."""
         node = self.dag.nodes[part.node]
-        if isinstance(node, Constant):
-            return None
         is_input = isinstance(node, Input)
         picked = self._early is not None and (is_input or part.node in self._early)
         if isinstance(node, Input):

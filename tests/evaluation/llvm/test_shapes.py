@@ -3,6 +3,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+pytest.importorskip("llvmlite")
+
+from llvmlite import ir
+
+from xlmc.evaluation.llvm import loop as loops
 from xlmc.evaluation.llvm import phase as phases
 from xlmc.evaluation.llvm.program import JitProgram
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
@@ -43,6 +48,19 @@ def test_loops_of_one_shape_give_what_numpy_gives(lower, odd):
             found.append([column.as_floats().copy() for column in evaluator.forecasts(np.arange(n))])
         for careful, native in zip(*found, strict=True):
             np.testing.assert_allclose(native, careful, rtol=1e-13, err_msg=f"{n} trials")
+
+
+@pytest.mark.parametrize("odd", [(), (20, 21, 50)])
+def test_loops_of_one_shape_have_one_code(lower, compiled, odd):
+    _, program = programs(lower, 60, odd)
+    dag, machine = compiled[0][:2]
+    codes = {}
+    for plan in program.late._stages.loop_plans() if program.late.slots else program.first._stages.loop_plans():
+        module = ir.Module()
+        loops._inner(dag, module, machine, plan.rules, plan.loads, plan.stores, plan.slots, 2)
+        codes.setdefault(plan.shape, []).append(str(module))
+    assert max(map(len, codes.values())) > 3
+    assert all(len({*alike}) == 1 for alike in codes.values())
 
 
 def test_a_trial_that_errs_in_one_row_errs_alone(lower):

@@ -50,16 +50,20 @@ def _as_early_as_possible(nodes: Sequence[int], reads: Reads, few: int) -> list[
     for node in nodes:
         for used in set(needs[node]):
             readers[used].append(node)
-    done: dict[int, None] = {}
+    order: list[int] = []
+    done: set[int] = set()
     for first in nodes:
         waiting = deque([first])
         while waiting:
             wanted = waiting.popleft()
-            for node in () if wanted in done else _missing(wanted, needs, done, few):
-                done[node] = None
+            if wanted in done:
+                continue
+            for node in (wanted,) if done.issuperset(needs[wanted]) else _missing(wanted, needs, done, few):
+                order.append(node)
+                done.add(node)
                 if len(readers[node]) <= _MANY:
                     waiting.extend(readers[node])
-    return list(done)
+    return order
 
 
 def _missing(node: int, needs: Reads, done: Container[int], few: int) -> Iterable[int]:

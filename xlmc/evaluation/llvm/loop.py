@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from llvmlite import ir
 
@@ -25,8 +24,7 @@ _BYTE, _BIT, _LONG = ir.IntType(8), ir.IntType(1), ir.IntType(64)
 _DOUBLE = ir.DoubleType()
 
 
-@dataclass(frozen=True, slots=True)
-class Load:
+class Load(NamedTuple):
     """An array that a loop reads.
 
     Attributes:

@@ -9,7 +9,19 @@ from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Constant, uses
 from xlmc.functions import Kind
 
-__all__ = ["PLAIN", "Emit", "Emitter", "Literal", "LoopRule", "Operand", "first_operand", "literal", "part_of", "reads"]
+__all__ = [
+    "PLAIN",
+    "Emit",
+    "Emitter",
+    "Literal",
+    "LoopRule",
+    "Operand",
+    "first_operand",
+    "is_number",
+    "literal",
+    "part_of",
+    "reads",
+]
 
 PLAIN: Final = (Kind.NUMBER, Kind.LOGICAL)
 """What a value in the loop may be: a double or a truth value."""
@@ -79,6 +91,11 @@ class LoopRule(NamedTuple):
     absorbs: Container[int] = ()
     makes: bool = True
     beside: tuple[Operand, ...] = ()
+
+
+def is_number(part: Operand | Literal) -> bool:
+    """Whether it is a number that is known before the run; a truth value is none."""
+    return type(part) is Literal and type(part.value) is not bool
 
 
 def first_operand(_: Emitter, parts: Sequence[Any]) -> Any:

@@ -20,6 +20,7 @@ from xlmc.evaluation.llvm.lookups import emit_lookup, rule_of_lookup
 from xlmc.evaluation.llvm.loop import Load, compile_loop
 from xlmc.evaluation.llvm.loop_rules import Emit, LoopRule, Operand
 from xlmc.evaluation.llvm.machine import Machine, NativeLoop
+from xlmc.evaluation.llvm.shapes import Forms
 from xlmc.evaluation.llvm.stages import LoopPlan
 from xlmc.functions import Kind
 from xlmc.functions.lookup.search_and_pick import Pick
@@ -48,14 +49,14 @@ def rules_of_looked_up(
     alike: defaultdict[object, set[object]] = defaultdict(set)
     for chain in chains.values():
         alike[_functions(chain, rules)].add(chain.key)
-    compiled: dict[object, NativeLoop] = {}
+    forms, compiled = Forms(rules, dag.types), dict[object, NativeLoop]()
     known: dict[object, Emit | None] = {}
     found: dict[int, LoopRule] = {}
     for node, chain in chains.items():
         if len(alike[_functions(chain, rules)]) > _MOST_ALIKE:
             continue
         if chain.key not in known:
-            values = _at_every_row(dag, chain, rules, machine, compiled)
+            values = _at_every_row(dag, chain, rules, machine, forms, compiled)
             known[chain.key] = None if values is None else emit_lookup(Pick.of(values))
         emit = known[chain.key]
         if emit is not None:
@@ -72,6 +73,7 @@ def _at_every_row(
     chain: TableFunction,
     rules: Mapping[int, LoopRule],
     machine: Machine,
+    forms: Forms,
     compiled: dict[object, NativeLoop],
 ) -> Floats | None:
     """The last of the functions at every row of the table, `(rows,)`; None where a row is marked.
@@ -79,13 +81,12 @@ def _at_every_row(
     Loops that were compiled before are used again where they differ in constants alone.
     """
     load = Load(Operand(chain.cell, Kind.NUMBER), Kind.NUMBER, picked=False, fallible=True)
-    plan = LoopPlan({link: rules[link] for link in chain.links}, (load,), chain.links[-1:])
-    shape = plan.shape(dag)
-    if shape.key not in compiled:
-        compiled[shape.key] = compile_loop(dag, machine, plan.rules, plan.loads, plan.stores, shape.slots, 1)
+    plan = LoopPlan({link: rules[link] for link in chain.links}, (load,), chain.links[-1:], forms.of(chain.links))
+    if plan.shape not in compiled:
+        compiled[plan.shape] = compile_loop(dag, machine, plan.rules, plan.loads, plan.stores, plan.slots, 1)
     rows = chain.numbers.size
     numbers, values = np.ascontiguousarray(chain.numbers), np.empty(rows)
-    survivors, marks, constants = np.empty(0, np.int64), np.zeros(rows, np.uint8), np.array(shape.numbers)
+    survivors, marks, constants = np.empty(0, np.int64), np.zeros(rows, np.uint8), plan.numbers
     addresses = [array.ctypes.data for array in (numbers, values, survivors, marks, constants)]
-    marked = compiled[shape.key]((ctypes.c_void_p * len(addresses))(*addresses), rows)
+    marked = compiled[plan.shape]((ctypes.c_void_p * len(addresses))(*addresses), rows)
     return None if marked else values

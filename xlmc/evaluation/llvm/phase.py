@@ -175,21 +175,19 @@ class Phase:
     def _make_loops(self, plans: Sequence[LoopPlan]) -> Iterator[Loop]:
         if len(plans) < _FEWEST:
             for plan in plans:
-                shape = plan.shape(self._dag)
-                limits = [slot for slot in shape.slots if self._is_limit(slot[0])]
-                numbers = np.array([shape.numbers[shape.slots[slot]] for slot in limits])
+                limits = {slot: at for slot, at in plan.slots.items() if self._is_limit(slot[0])}
                 positions = {slot: at for at, slot in enumerate(limits)}
-                yield Loop(self._compile(plan, positions), plan.loads, plan.stores, numbers)
+                yield Loop(self._compile(plan, positions), plan.loads, plan.stores, plan.numbers[[*limits.values()]])
             return
-        shapes = [plan.shape(self._dag) for plan in plans]
-        uses = Counter(shape.key for shape in shapes)
-        alone = _side_by_side_alone([(len(plan.rules), uses[s.key]) for plan, s in zip(plans, shapes, strict=True)])
-        compiled: dict[tuple[object, ...], NativeLoop] = {}
+        known: dict[tuple[object, ...], int] = {}
+        shapes = [known.setdefault(plan.shape, len(known)) for plan in plans]
+        uses = Counter(shapes)
+        alone = _side_by_side_alone([(len(plan.rules), uses[shape]) for plan, shape in zip(plans, shapes, strict=True)])
+        compiled: dict[int, NativeLoop] = {}
         for plan, shape in zip(plans, shapes, strict=True):
-            if shape.key not in compiled:
-                side_by_side = alone if uses[shape.key] == 1 else SIDE_BY_SIDE
-                compiled[shape.key] = self._compile(plan, shape.slots, side_by_side)
-            yield Loop(compiled[shape.key], plan.loads, plan.stores, np.array(shape.numbers))
+            if shape not in compiled:
+                compiled[shape] = self._compile(plan, plan.slots, alone if uses[shape] == 1 else SIDE_BY_SIDE)
+            yield Loop(compiled[shape], plan.loads, plan.stores, plan.numbers)
 
     def _is_limit(self, node_id: int) -> bool:
         """Whether a node compares with a limit of a filter: one that is moved must not make other code."""

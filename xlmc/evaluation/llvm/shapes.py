@@ -8,16 +8,18 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.evaluation.graph.dag import Dag
-from xlmc.evaluation.graph.nodes import Select
-from xlmc.evaluation.llvm.loop_rules import Literal, LoopRule, Operand
+from xlmc.evaluation.llvm.loop_rules import LoopRule, Operand, is_number
+from xlmc.functions import Kind
 
-__all__ = ["Shape", "cut", "shape_of"]
+__all__ = ["LONGEST", "Forms", "cut"]
+
+LONGEST: Final = 250
+"""The most nodes of one loop; the time to compile grows faster than the loop."""
 
 _FEWEST: Final = 4
 """Periods that are worth looking for."""
@@ -29,102 +31,67 @@ _TRIED: Final = 3
 """The most frequent gaps between nodes that are alike: one of them is the period, where there is one."""
 
 
-class Shape(NamedTuple):
-    """What native code depends on, and what it does not.
+class Forms:
+    """Numbers nodes by what native code does for them.
 
-    Attributes:
-        key: equal for loops that the same code serves.
-        slots: (node, position of the operand) -> index of a number.
-        numbers: the constants, which the code reads from memory.
-    """
-
-    key: tuple[object, ...]
-    slots: Mapping[tuple[int, int], int]
-    numbers: tuple[float, ...]
-
-
-def shape_of(
-    dag: Dag, rules: Mapping[int, LoopRule], loads: Sequence[tuple[Operand, object]], stores: Sequence[int]
-) -> Shape:
-    """The shape of a loop.
+    Nodes have one number where it does the same but for constants, and reads what lies as many nodes back; or anything
+    that lies too far back to be in the same loop.
 
     Args:
-        dag: of its nodes.
-        rules: of its nodes, in order.
-        loads: what it reads, and all else that the code depends on of each.
-        stores: the nodes that it writes.
+        rules: of the nodes.
+        types: what each node gives.
     """
-    own = {node: at for at, node in enumerate(rules)}
-    outside = {operand: at for at, (operand, _) in enumerate(loads)}
-    slots: dict[tuple[int, int], int] = {}
-    numbers: list[float] = []
 
-    def part_of(node: int, position: int, part: Operand | Literal) -> object:
-        if isinstance(part, Operand):
-            if part.node in own:
-                return own[part.node], part.kind
-            found = part if part in outside else Operand(part.node, dag.types[part.node])
-            return "load", outside[found], part.kind
-        if isinstance(part.value, bool):
-            return "truth", part.value
-        slots[node, position] = len(numbers)
-        numbers.append(float(part.value))
-        return "number"
+    def __init__(self, rules: Mapping[int, LoopRule], types: Sequence[Kind]) -> None:
+        self._rules, self._types = rules, types
+        self._known: dict[object, int] = {}
 
-    key = [
-        (
-            *(rule.emit, rule.makes, rule.absorbs, isinstance(dag.nodes[node], Select), dag.types[node]),
-            tuple(part_of(node, position, part) for position, part in enumerate(rule.operands)),
-            tuple(part_of(node, -1, part) for part in rule.beside),
-        )
-        for node, rule in rules.items()
-    ]
-    written = tuple(own[node] for node in stores)
-    return Shape((tuple(key), tuple(attributes for _, attributes in loads), written), slots, tuple(numbers))
+    def of(self, nodes: Sequence[int]) -> tuple[int, ...]:
+        """The numbers of nodes that are computed in this order."""
+        at: dict[int, int] = {}
+        found: list[int] = []
+        for position, node in enumerate(nodes):
+            at[node] = position
+            rule = self._rules[node]
+            form: list[object] = [rule.emit, rule.makes, rule.absorbs, self._types[node], len(rule.operands)]
+            for part in (*rule.operands, *rule.beside):
+                if type(part) is Operand:
+                    distance = position - at.get(part.node, -LONGEST)
+                    form += part.kind, distance if distance < LONGEST else 0
+                else:
+                    form.append(None if is_number(part) else part)
+            found.append(self._known.setdefault(tuple(form), len(self._known)))
+        return tuple(found)
 
 
-def cut(dag: Dag, nodes: Sequence[int], rules: Mapping[int, LoopRule], longest: int) -> list[Sequence[int]]:
-    """The nodes in parts of at most `longest`; where they repeat themselves, the parts do, too."""
-    if len(nodes) <= longest:
-        return [nodes]
-    start, period, end = _repetition(dag, nodes, rules, longest)
+def cut(forms: Sequence[int]) -> list[slice]:
+    """Nodes of these forms in parts of at most LONGEST; where they repeat themselves, the parts do, too."""
+    if len(forms) <= LONGEST:
+        return [slice(0, len(forms))]
+    start, period, end = _repetition(np.array(forms))
     if not period:
-        return _portions(nodes, longest)
+        return _portions(0, len(forms))
     size = max(1, _ROWS // period) * period
-    rows = [nodes[at : min(at + size, end)] for at in range(start, end, size)]
-    return [
-        *_portions(nodes[:start], longest),
-        *(portion for row in rows for portion in _portions(row, longest)),
-        *_portions(nodes[end:], longest),
-    ]
+    rows = [(at, min(at + size, end)) for at in range(start, end, size)]
+    portions = [(0, start), *rows, (end, len(forms))]
+    return [portion for first, stop in portions for portion in _portions(first, stop)]
 
 
-def _portions(nodes: Sequence[int], longest: int) -> list[Sequence[int]]:
-    return [nodes[at : at + longest] for at in range(0, len(nodes), longest)]
+def _portions(first: int, stop: int) -> list[slice]:
+    return [slice(at, min(at + LONGEST, stop)) for at in range(first, stop, LONGEST)]
 
 
-def _repetition(dag: Dag, nodes: Sequence[int], rules: Mapping[int, LoopRule], longest: int) -> tuple[int, int, int]:
-    """The longest repetition of nodes: its first node, the length of a period, and the node after its last. The period
-    is 0 where they do not, or not often. What lies as far back as a part is long lies in another part.
+def _repetition(forms: NDArray[np.intp]) -> tuple[int, int, int]:
+    """The longest repetition of forms: its first node, the length of a period, and the node after its last. The period
+    is 0 where they do not repeat themselves, or not often.
     """
-    at = {node: position for position, node in enumerate(nodes)}
-    known: dict[object, int] = {}
-
-    def likeness(node: int) -> int:
-        distances = [
-            at[node] - at.get(part.node, -longest) for part in rules[node].operands if isinstance(part, Operand)
-        ]
-        near = tuple(distance if distance < longest else 0 for distance in distances)
-        return known.setdefault((rules[node].emit, dag.types[node], len(rules[node].operands), near), len(known))
-
-    alike = np.array([likeness(node) for node in nodes])
     last: dict[int, int] = {}
     gaps: Counter[int] = Counter()
-    for position, kind in enumerate(alike.tolist()):
-        gaps[position - last.get(kind, position)] += 1
-        last[kind] = position
+    for position, form in enumerate(forms.tolist()):
+        gaps[position - last.get(form, position)] += 1
+        last[form] = position
     del gaps[0]
-    runs = [(*_longest_run(alike, gap), gap) for gap, _ in gaps.most_common(_TRIED)]
+    runs = [(*_longest_run(forms, gap), gap) for gap, _ in gaps.most_common(_TRIED)]
     length, start, period = max(runs, default=(0, 0, 0))
     whole = length // period + 1 if period else 0
     return (start, period, start + whole * period) if whole >= _FEWEST else (0, 0, 0)

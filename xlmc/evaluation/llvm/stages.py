@@ -9,21 +9,21 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
-from typing import Final
+from typing import Final, NamedTuple
+
+import numpy as np
 
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Input
 from xlmc.evaluation.graph.readiness import order_by_need
 from xlmc.evaluation.llvm.loop import Load
-from xlmc.evaluation.llvm.loop_rules import LoopRule, Operand
+from xlmc.evaluation.llvm.loop_rules import Literal, LoopRule, Operand, is_number
 from xlmc.evaluation.llvm.memory import Slot, assign_slots
-from xlmc.evaluation.llvm.shapes import Shape, cut, shape_of
+from xlmc.evaluation.llvm.shapes import LONGEST, Forms, cut
 from xlmc.functions import Kind
+from xlmc.functions.values import Floats
 
 __all__ = ["LoopPlan", "Stage", "Stages"]
-
-_LONGEST: Final = 250
-"""The most nodes of one loop; the time to compile grows faster than the loop."""
 
 _ENOUGH: Final = 4
 """An order of stages in which no more values wait is good enough."""
@@ -31,16 +31,29 @@ _ENOUGH: Final = 4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LoopPlan:
-    """A loop to be compiled: the rules of its nodes in order, the arrays it reads, and the nodes it writes."""
+    """A loop to be compiled: the rules of its nodes in order, the arrays it reads, and the nodes it writes.
+
+    Attributes:
+        shape: equal for loops that the same code serves if it reads numbers from memory.
+    """
 
     rules: Mapping[int, LoopRule]
     loads: tuple[Load, ...]
     stores: tuple[int, ...]
+    shape: tuple[object, ...]
 
-    def shape(self, dag: Dag) -> Shape:
-        """What its code depends on."""
-        loads = [(load.operand, (load.operand.kind, load.stored, load.picked, load.fallible)) for load in self.loads]
-        return shape_of(dag, self.rules, loads, self.stores)
+    @property
+    def slots(self) -> dict[tuple[int, int], int]:
+        """(node, position of the operand) -> index of a number that the code may read from memory."""
+        operands = ((node, *found) for node, rule in self.rules.items() for found in enumerate(rule.operands))
+        numbers = ((node, position) for node, position, part in operands if is_number(part))
+        return {slot: at for at, slot in enumerate(numbers)}
+
+    @property
+    def numbers(self) -> Floats:
+        """These numbers."""
+        parts = [part for rule in self.rules.values() for part in rule.operands if type(part) is Literal]
+        return np.array([part.value for part in parts if is_number(part)], np.float64)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,11 +61,13 @@ class Stage:
     """Nodes that are computed together, in order.
 
     Attributes:
+        forms: of the nodes of a loop, see `Forms`.
         read: the nodes of other stages that they need.
         stores: the nodes of a loop that others need, or that are wanted afterwards; None where this is no loop.
     """
 
     nodes: tuple[int, ...]
+    forms: tuple[int, ...]
     read: frozenset[int]
     stores: tuple[int, ...] | None
 
@@ -87,11 +102,12 @@ class Stages:
         self.dag, self.reads, self.may_err, self.kept = dag, reads, may_err, frozenset(keep)
         self._rules, self._early = rules, early
         computed = [node for node in nodes if not isinstance(dag.nodes[node], Input)]
-        groups = _in_order([(group, self._read_by(group)) for group in _groups(dag, computed, rules, reads)])
-        wanted = self.kept.union(*(read for _, read in groups))
+        forms = Forms(rules, dag.types)
+        groups = [_Group(*group, self._read_by(group[0])) for group in _groups(computed, rules, reads, forms)]
+        wanted = self.kept.union(*(group.read for group in groups))
         self.in_order = [
-            Stage(group, read, tuple(node for node in group if node in wanted) if group[0] in rules else None)
-            for group, read in groups
+            Stage(*group, tuple(node for node in group.nodes if node in wanted) if group.forms else None)
+            for group in _in_order(groups)
         ]
         outside = [stage.nodes if stage.stores is None else () for stage in self.in_order]
         written = [stage.stores or () for stage in self.in_order]
@@ -125,9 +141,13 @@ class Stages:
             if stage.stores is not None:
                 rules = {node: self._rules[node] for node in stage.nodes}
                 parts = (part for rule in rules.values() for part in (*rule.operands, *rule.beside))
-                read = (part for part in parts if isinstance(part, Operand) and part.node in stage.read)
-                loads = {load.operand: load for load in map(self._load, read)}
-                yield LoopPlan(rules, tuple(loads.values()), stage.stores)
+                read = [self._load(part) for part in parts if type(part) is Operand and part.node in stage.read]
+                loads = tuple(dict.fromkeys(read))
+                at = {load: position for position, load in enumerate(loads)}
+                kinds = [(load.operand.kind, load.stored, load.picked, load.fallible) for load in loads]
+                written = [node in stage.stores for node in stage.nodes]
+                shape = stage.forms, tuple([at[load] for load in read]), tuple(kinds), tuple(written)
+                yield LoopPlan(rules, loads, stage.stores, shape)
 
     def _load(self, part: Operand) -> Load:
         """How a node from outside is read."""
@@ -143,11 +163,12 @@ class Stages:
 
 
 def _groups(
-    dag: Dag, nodes: Sequence[int], rules: Mapping[int, LoopRule], reads: Mapping[int, Sequence[int]]
-) -> list[tuple[int, ...]]:
-    """The nodes, in order, in groups in order; those without a rule stand alone."""
+    nodes: Sequence[int], rules: Mapping[int, LoopRule], reads: Mapping[int, Sequence[int]], forms: Forms
+) -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
+    """The nodes, in order, in groups in order, each with their forms; those without a rule stand alone, without one."""
     if nodes and all(node in rules for node in nodes):
-        return [tuple(part) for part in cut(dag, nodes, rules, _LONGEST)]
+        yield from _cut(nodes, forms)
+        return
     levels: dict[int, int] = {}
     for node in nodes:
         in_loop = node in rules
@@ -159,20 +180,28 @@ def _groups(
     grouped: defaultdict[int, list[int]] = defaultdict(list)
     for node in nodes:
         grouped[levels[node]].append(node)
-    groups: list[tuple[int, ...]] = []
     for level in sorted(grouped):
         loop = level % 2 == 0
-        parts = cut(dag, grouped[level], rules, _LONGEST) if loop else [[node] for node in grouped[level]]
-        groups += [tuple(part) for part in parts]
-    return groups
+        yield from _cut(grouped[level], forms) if loop else (((node,), ()) for node in grouped[level])
 
 
-Group = tuple[tuple[int, ...], frozenset[int]]
-"""Nodes, and those that they need from others."""
+def _cut(nodes: Sequence[int], forms: Forms) -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
+    """The nodes of loops, with their forms."""
+    found = forms.of(nodes)
+    for part in cut(found):
+        yield tuple(nodes[part]), found[part]
 
 
-def _in_order(groups: Sequence[Group]) -> list[Group]:
+class _Group(NamedTuple):
+    """See `Stage`."""
+
+    nodes: tuple[int, ...]
+    forms: tuple[int, ...]
+    read: frozenset[int]
+
+
+def _in_order(groups: Sequence[_Group]) -> list[_Group]:
     """The groups so that few wait at a time to be read; one may need as many others as it has nodes."""
-    made = {node: at for at, (group, _) in enumerate(groups) for node in group}
-    needs = {at: sorted({made[node] for node in read if node in made}) for at, (_, read) in enumerate(groups)}
-    return [groups[at] for at in order_by_need(range(len(groups)), needs, (), _ENOUGH, few=2 * _LONGEST)]
+    made = {node: at for at, group in enumerate(groups) for node in group.nodes}
+    needs = {at: sorted({made[node] for node in group.read if node in made}) for at, group in enumerate(groups)}
+    return [groups[at] for at in order_by_need(range(len(groups)), needs, (), _ENOUGH, few=2 * LONGEST)]

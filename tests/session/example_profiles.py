@@ -14,7 +14,7 @@ from types import SimpleNamespace
 
 import pytest
 from hypothesis import is_hypothesis_test, settings
-from hypothesis.internal import reflection
+from hypothesis.internal import entropy, reflection
 from hypothesis.internal.conjecture import providers
 
 FIXED, EXPLORE, SHARE, FACTOR = "fixed", "explore", 3, 10
@@ -39,6 +39,11 @@ def _read_sources_once() -> None:
     reflection.inspect = SimpleNamespace(**vars(inspect) | {"getsource": cache(inspect.getsource)})
 
 
+def _leave_the_generator_of_numpy() -> None:
+    """No generator of NumPy's is global here (ruff's NPY002): it is not seeded and put back for each example."""
+    entropy.NP_RANDOM = entropy.NP_RANDOM or object()
+
+
 @pytest.hookimpl(tryfirst=True)  # before hypothesis loads what its own options ask for
 def pytest_configure(config: pytest.Config) -> None:
     name = config.getoption("--hypothesis-profile") or os.environ.get(VARIABLE) or FIXED
@@ -46,6 +51,7 @@ def pytest_configure(config: pytest.Config) -> None:
         raise pytest.UsageError(f"there is no hypothesis profile {name!r}: choose {FIXED} or {EXPLORE}")
     settings.load_profile(name)
     _read_sources_once()
+    _leave_the_generator_of_numpy()
     if name == FIXED:
         _without_constants_of_modules()
 

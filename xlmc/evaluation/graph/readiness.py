@@ -90,6 +90,9 @@ def most_waiting(order: Sequence[int], reads: Reads, keep: Iterable[int]) -> int
     waiting, most = own.intersection(keep), 0
     for node in reversed(order):  # what waits before a node is what waits after it, and what it reads
         waiting.discard(node)
-        waiting.update(own.intersection(reads[node]))
-        most = max(most, len(waiting) + 1)
+        for used in reads[node]:
+            if used in own:
+                waiting.add(used)
+        if len(waiting) >= most:
+            most = len(waiting) + 1
     return most

@@ -56,7 +56,8 @@ def table_function_of(dag: Dag, node: int, last_only: Container[str] = ()) -> Ta
         node: any.
         last_only: the functions that no other one of a chain takes.
     """
-    at, links = node, list[int]()
+    at = node
+    links: list[int] = []
     while len(links) < _LONGEST:
         of = dag.nodes[at]
         if type(of) is not Apply:

@@ -127,4 +127,4 @@ def reads(dag: Dag, node: int, rule: LoopRule | None) -> tuple[int, ...]:
     """The nodes that a node's computation needs: by its rule, or all that it uses where it has no rule."""
     if rule is None:
         return uses(dag.nodes[node])
-    return tuple([part.node for part in (*rule.operands, *rule.beside) if isinstance(part, Operand)])
+    return tuple([part.node for part in (*rule.operands, *rule.beside) if type(part) is Operand])

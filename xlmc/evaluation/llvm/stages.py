@@ -145,7 +145,7 @@ class Stages:
                 loads = tuple(dict.fromkeys(read))
                 at = {load: position for position, load in enumerate(loads)}
                 kinds = [(load.operand.kind, load.stored, load.picked, load.fallible) for load in loads]
-                written = [node in stage.stores for node in stage.nodes]
+                written = map(frozenset(stage.stores).__contains__, stage.nodes)
                 shape = stage.forms, tuple([at[load] for load in read]), tuple(kinds), tuple(written)
                 yield LoopPlan(rules, loads, stage.stores, shape)
 

@@ -69,12 +69,12 @@ def _as_early_as_possible(nodes: Sequence[int], reads: Reads, few: int) -> list[
 def _missing(node: int, needs: Reads, done: Container[int], few: int) -> Iterable[int]:
     """The nodes to compute for a node, itself the last; none where they are more than a few."""
     found: dict[int, None] = {}
-    open_ = [(node, iter(needs[node]))]
+    open_ = [node]
     while open_:
-        at, rest = open_[-1]
-        for used in rest:
+        at = open_[-1]
+        for used in needs[at]:
             if used not in done and used not in found:
-                open_.append((used, iter(needs[used])))
+                open_.append(used)
                 break
         else:
             open_.pop()

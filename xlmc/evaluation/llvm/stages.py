@@ -1,6 +1,6 @@
 """How nodes that are computed on one set of trials are divided: into loops, and between them what loops cannot compute.
 
-Nothing is compiled yet.
+Nothing is compiled here.
 """
 
 from __future__ import annotations

@@ -111,7 +111,7 @@ GROWING = "_xlfn._xlws.FILTER(A1:A3,A1:A3>1)"
 """Two cells when it was saved, three where A1 is above 1."""
 
 
-@pytest.mark.parametrize("formula", ["SUM(H1:H3)", "COUNT(H:H)", "H2+H3", "SUM(Above)"])
+@pytest.mark.parametrize("formula", ["SUM(H1:H3)", "COUNT(H:H)", "H2+H3", "SUM(Above)", "A1+H3", "COUNTA(H3:H9)+A1"])
 def test_cells_that_a_spill_may_fill_beyond_the_saved_ones_are_refused(book, formula):
     cells = {**CELLS, **spilling(GROWING, (1, 8, 2, 8), 2.0, 3.0), "J1": f"={formula}"}
     with pytest.raises(FormulaError, match=r"S!J1: the formula names cells .* S!H1 may fill, .* by H1#"):
@@ -129,6 +129,13 @@ def test_so_are_those_that_offset_and_indirect_read(book, formula):
 def test_other_cells_about_a_spill_are_not(book, formula):
     cells = {**CELLS, **spilling(GROWING, (1, 8, 2, 8), 2.0, 3.0), "H4": "end", "J1": f"={formula}"}
     book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"sum": "J1"})
+
+
+def test_a_spill_that_nothing_needs_and_that_cannot_be_computed_is_told_of(book):
+    cells = {**CELLS, **spilling("_xlfn._xlws.FILTER(A1:A3,NOSUCH(A1))", (1, 8, 2, 8), 2.0, 3.0), "J1": "=A1+H3"}
+    (notice,) = book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"sum": "J1"}).notices
+    assert "H1" in str(notice.where)
+    assert "read them as the file holds them" in notice.message
 
 
 def test_a_spill_for_which_the_file_saves_too_few_cells(book):

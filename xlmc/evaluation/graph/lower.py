@@ -21,7 +21,7 @@ from xlmc.evaluation.graph.fill_down import FillDownCache
 from xlmc.evaluation.graph.lowering import Scope
 from xlmc.evaluation.graph.nodes import Apply, Constant, Input
 from xlmc.evaluation.graph.running_totals import RunningTotals
-from xlmc.evaluation.graph.spilled_cells import refuse_cells_beyond, spilled_cell
+from xlmc.evaluation.graph.spilled_cells import refuse_cells_beyond, spilled_cell, unneeded_arrays
 from xlmc.formula import Filled, Graph, Resolver, build_graph, ir
 from xlmc.formula.callables import gives_function
 from xlmc.formula.graph import Spills
@@ -272,6 +272,15 @@ class Lowering(ExpressionLowering):
             FormulaError: a formula names some.
         """
         refuse_cells_beyond(self.graph, self.dag, self._arrays, self._ranges)
+        sheets = dict.fromkeys(cell.sheet for cell in self._cells)
+        for array in unneeded_arrays(self.graph, sheets, self._ranges):
+            try:
+                apart = lower_cells(Resolver(self.graph.workbook, self.inputs), [array], self.inputs, self.held)
+            except FormulaError as error:
+                said = f"formulas that name cells beyond this dynamic array read them as the file holds them: {error}"
+                self.notices.append(Notice(said, array))
+            else:
+                refuse_cells_beyond(self.graph, apart.dag, apart._arrays, self._ranges)
 
     def _take_saved(self, cell: Cell, error: FormulaError) -> int:
         """Excel's own value stands in for what we cannot compute, as long as no assumption reaches it."""

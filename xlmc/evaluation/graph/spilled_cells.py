@@ -7,7 +7,7 @@ saved it. Where it may fill more, formulas that name the cells beyond would see 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache, partial
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
@@ -22,8 +22,9 @@ from xlmc.functions import Function, Kind
 from xlmc.functions.logical import zero_if_blank
 from xlmc.functions.registry import Cells
 from xlmc.functions.values import Value, constant
+from xlmc.workbook.workbook import Workbook
 
-__all__ = ["refuse_cells_beyond", "spilled_cell"]
+__all__ = ["refuse_cells_beyond", "spilled_cell", "unneeded_arrays"]
 
 
 def spilled_cell(dag: Dag, node: int, row: int, column: int) -> int | None:
@@ -58,7 +59,7 @@ def refuse_cells_beyond(graph: Graph, dag: Dag, arrays: Mapping[Cell, int], rang
         FormulaError: a formula names some.
     """
     many = ((cell, size) for cell, node in arrays.items() if (size := dag.sizes[node]) is not None)
-    growing = [found for cell, size in many if (found := _growing(graph, cell, *size)) is not None]
+    growing = [found for cell, size in many if (found := _growing(graph.workbook, cell, *size)) is not None]
     if not growing:
         return
     for cell, tree in graph.formulas.items():
@@ -82,19 +83,42 @@ def refuse_cells_beyond(graph: Graph, dag: Dag, arrays: Mapping[Cell, int], rang
                 )
 
 
-def _growing(graph: Graph, cell: Cell, rows: int, columns: int) -> tuple[Cell, Area, Area] | None:
+def unneeded_arrays(graph: Graph, sheets: Iterable[str], ranges: Iterable[Area]) -> list[Cell]:
+    """The dynamic arrays that no formula needs, but which formulas would see if they filled more than in the file.
+
+    Args:
+        graph: the needed cells.
+        sheets: those that formulas read.
+        ranges: those that formulas read, also by OFFSET and INDIRECT.
+    """
+    cells = [cell for sheet in sheets for cell in _unneeded_on(graph, sheet)]
+    growing = [found for cell in cells if (found := _growing(graph.workbook, cell, *MANY)) is not None]
+    if not growing:
+        return []
+    named = {*ranges, *(named for tree in graph.formulas.values() for named in references(tree))}
+    return [anchor for anchor, *areas in growing if any(_names_more(each, *areas) for each in named)]
+
+
+def _unneeded_on(graph: Graph, sheet: str) -> Iterator[Cell]:
+    found = graph.workbook.sheets.get(sheet)
+    for at, content in () if found is None else found.cells.items():
+        if content.formula is not None and content.formula.dynamic and Cell(sheet, *at) not in graph.formulas:
+            yield Cell(sheet, *at)
+
+
+def _growing(workbook: Workbook, cell: Cell, rows: int, columns: int) -> tuple[Cell, Area, Area] | None:
     """The cell of a dynamic array that may fill more than the file says, what it filled, and what it may fill.
 
     Where its size varies, it may fill the blank cells below, or right of a single row of several cells.
     """
-    formula = graph.workbook.content(cell).formula
+    formula = workbook.content(cell).formula
     if formula is None or not formula.dynamic:
         return None
     saved = formula.array or as_area(cell)
     bottom, right = max(cell.row + rows - 1, saved.bottom), max(cell.column + columns - 1, saved.right)
     if (rows, columns) == MANY:
         bottom, right = saved.bottom, saved.right
-        sheet = graph.workbook.sheets[cell.sheet]
+        sheet = workbook.sheets[cell.sheet]
         if saved.rows == 1 and saved.columns > 1:
             right = min((c for r, c in sheet.cells if r == saved.top and c > right), default=MAX_COLUMN + 1) - 1
         else:

@@ -4,6 +4,8 @@ import builtins
 import gc
 import os
 import signal
+import subprocess
+import sys
 
 import pytest
 from distributed import Client, LocalCluster
@@ -137,3 +139,19 @@ def test_without_dask(model, monkeypatch):
     with pytest.raises(SimulationError, match="Dask is not installed") as caught:
         model.simulate(1000, scheduler="local", workers=1)
     assert "xlmc[distributed]" in caught.value.hint
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="Windows blocks no signals")
+def test_ctrl_c_while_workers_start_reaches_this_process_alone_and_later():
+    asked = [sys.executable, "-SEc", "import signal; print(signal.SIGINT in signal.pthread_sigmask(0, ()))"]
+    said = []
+
+    def start():
+        with scheduling._interrupts_later():
+            signal.raise_signal(signal.SIGINT)
+            said.append(subprocess.run(asked, capture_output=True, text=True, check=True).stdout)
+
+    with pytest.raises(KeyboardInterrupt):
+        start()
+    assert said == ["True\n"]
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import hashlib
 import logging
+import signal
 from collections import deque
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from functools import lru_cache
 from itertools import islice
+from multiprocessing import resource_tracker
 from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Any
 
@@ -68,9 +70,12 @@ def _client(scheduler: str, workers: int | None) -> Iterator[Client]:
         hint = "pip install 'xlmc[distributed]', or leave out --scheduler"
         raise SimulationError("Dask is not installed", hint=hint) from error
     if scheduler == "local":
-        settings = {"threads_per_worker": 1, "dashboard_address": ":0", "silence_logs": logging.ERROR, "preload": _DEAF}
-        with LocalCluster(n_workers=workers, **settings) as cluster, Client(cluster, set_as_default=False) as client:
-            yield client
+        silent = {"silence_logs": logging.CRITICAL}  # what matters to a run comes as an exception
+        settings = {"threads_per_worker": 1, "dashboard_address": ":0", "preload": _DEAF, **silent}
+        with ExitStack() as ended:
+            with _interrupts_later():
+                cluster = ended.enter_context(LocalCluster(n_workers=workers, **settings))
+            yield ended.enter_context(Client(cluster, set_as_default=False))
         return
 
     class Closing(Client):  # type: ignore[misc]  # Dask tells mypy nothing of its types
@@ -92,6 +97,23 @@ def _client(scheduler: str, workers: int | None) -> Iterator[Client]:
         raise SimulationError(f"no scheduler answers: {error}", where=scheduler, hint=hint) from error
     with client:
         yield client
+
+
+@contextmanager
+def _interrupts_later() -> Iterator[None]:
+    """Start processes that Ctrl-C does not reach, for they inherit what is blocked; this process hears it afterwards.
+
+    Windows has no such thing: there a worker that is just starting hears Ctrl-C, too.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    resource_tracker.ensure_running()  # where it must be started first, Python would end the blocking
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _check_workers(client: Client, scheduler: str) -> None:

@@ -22,7 +22,6 @@ from xlmc.functions import Function, Kind
 from xlmc.functions.logical import zero_if_blank
 from xlmc.functions.registry import Cells
 from xlmc.functions.values import Value, constant
-from xlmc.workbook.workbook import Workbook
 
 __all__ = ["refuse_cells_beyond", "spilled_cell", "unneeded_arrays"]
 
@@ -59,7 +58,7 @@ def refuse_cells_beyond(graph: Graph, dag: Dag, arrays: Mapping[Cell, int], rang
         FormulaError: a formula names some.
     """
     many = ((cell, size) for cell, node in arrays.items() if (size := dag.sizes[node]) is not None)
-    growing = [found for cell, size in many if (found := _growing(graph.workbook, cell, *size)) is not None]
+    growing = [found for cell, size in many if (found := _growing(graph, cell, *size)) is not None]
     if not growing:
         return
     for cell, tree in graph.formulas.items():
@@ -92,7 +91,7 @@ def unneeded_arrays(graph: Graph, sheets: Iterable[str], ranges: Iterable[Area])
         ranges: those that formulas read, also by OFFSET and INDIRECT.
     """
     cells = [cell for sheet in sheets for cell in _unneeded_on(graph, sheet)]
-    growing = [found for cell in cells if (found := _growing(graph.workbook, cell, *MANY)) is not None]
+    growing = [found for cell in cells if (found := _growing(graph, cell, *MANY)) is not None]
     if not growing:
         return []
     named = {*ranges, *(named for tree in graph.formulas.values() for named in references(tree))}
@@ -106,19 +105,19 @@ def _unneeded_on(graph: Graph, sheet: str) -> Iterator[Cell]:
             yield Cell(sheet, *at)
 
 
-def _growing(workbook: Workbook, cell: Cell, rows: int, columns: int) -> tuple[Cell, Area, Area] | None:
+def _growing(graph: Graph, cell: Cell, rows: int, columns: int) -> tuple[Cell, Area, Area] | None:
     """The cell of a dynamic array that may fill more than the file says, what it filled, and what it may fill.
 
     Where its size varies, it may fill the blank cells below, or right of a single row of several cells.
     """
-    formula = workbook.content(cell).formula
+    formula = graph.workbook.content(cell).formula
     if formula is None or not formula.dynamic:
         return None
     saved = formula.array or as_area(cell)
     bottom, right = max(cell.row + rows - 1, saved.bottom), max(cell.column + columns - 1, saved.right)
     if (rows, columns) == MANY:
         bottom, right = saved.bottom, saved.right
-        sheet = workbook.sheets[cell.sheet]
+        sheet = graph.workbook.sheets[cell.sheet]
         if saved.rows == 1 and saved.columns > 1:
             right = min((c for r, c in sheet.cells if r == saved.top and c > right), default=MAX_COLUMN + 1) - 1
         else:

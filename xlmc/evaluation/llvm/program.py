@@ -124,12 +124,11 @@ class _Division:
         late = [node for node in further if node not in early]
         carried = {used for node in late for used in read[node]} | set(forecasts)
         keep, wanted = {*filters, *(carried & early)}, set(forecasts)
-        # Loops take the nodes in order: so that they leave few values to each other.
-        ordered = (
-            order_by_need(nodes, read, kept, _FEW_BETWEEN_LOOPS) for nodes, kept in ((first, keep), (late, wanted))
-        )
-        self.first = Stages(dag, needed.rules, read, next(ordered), keep, None, may_err)
-        self.late = Stages(dag, needed.rules, read, next(ordered), wanted, early, may_err)
+        # Loops take the nodes in order: in one in which they leave few values to each other.
+        in_order = order_by_need(first, read, keep, _FEW_BETWEEN_LOOPS)
+        self.first = Stages(dag, needed.rules, read, in_order, keep, None, may_err)
+        in_order = order_by_need(late, read, wanted, _FEW_BETWEEN_LOOPS)
+        self.late = Stages(dag, needed.rules, read, in_order, wanted, early, may_err)
         self.inputs = _inputs(dag, [*first, *late])
         self._array_bytes = array_bytes(lowering, filters, forecasts, needed.nodes)
         self.largest_block = self._largest_block(len(self.inputs) + len(forecasts))

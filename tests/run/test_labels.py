@@ -56,3 +56,41 @@ def test_a_book_without_anything_to_calculate_stays_itself(book):
     other = book("prices")
     assert calculate_labels(other) is other
     assert calculated_texts(other, [Cell("S", 2, 1), Cell("S", 3, 5)]) == {Cell("S", 2, 1): "Ford weight"}
+
+
+STALE = {
+    "A2": ('="Speed "&B1', "Speed 0"),
+    "B1": 8.0,
+    "B2": ("=B1*9", 0.0),  # the forecast itself
+    "C2": ("=B1/2", 0.0),
+    "D2": ("=B1*2", 16.0 * (1 + 1e-15)),  # the last bits are Excel's
+    "E2": ("=B1>5", False),
+    "F2": ("=NOSUCH(1)", 3.0),
+    "G2": ("=B1/0", 7.0),
+    "H2": ("=B1", 3.0),  # says which cell is meant
+}
+COLUMNS = ("Name", "Value", "Threshold", "Range %", "Frozen", "Certainty from", "Certainty to", "Cell")
+
+
+@pytest.mark.parametrize("stale", [True, False])
+def test_values_that_may_be_older_than_their_formulas_are_calculated_again(workbook, table, stale):
+    tables = [table("xlmc_forecasts", "A1:H2", *COLUMNS), table("xlmc_settings", "A4:B5", "Setting", "Value")]
+    before = workbook(STALE | {"A5": "Trials", "B5": ("=B1*1000", 0.0)}, tables=tables, may_be_stale=stale)
+    after = calculate_labels(before)
+    if not stale:
+        assert after is before
+        return
+    saved = {at: content.value for at, content in before.sheets["S"].cells.items()}
+    found = {at: content.value for at, content in after.sheets["S"].cells.items()}
+    changed = {(2, 1): "Speed 8", (2, 3): 4.0, (2, 5): True, (5, 2): 8000.0}
+    assert found == saved | changed
+    said = {
+        str(notice.where): notice.message.partition(", which is used: let Excel calculate")[0]
+        for notice in after.notices
+    }
+    assert said == {
+        "S!A2": "the file says 'Speed 0', but the formula gives 'Speed 8'",
+        "S!C2": "the file says 0, but the formula gives 4",
+        "S!E2": "the file says FALSE, but the formula gives TRUE",
+        "S!B5": "the file says 0, but the formula gives 8000",
+    }

@@ -248,3 +248,10 @@ def test_data_tables(book, book_parts, encoding):
 def test_every_reason_is_told(book):
     settings = '<calcPr fullPrecision="0" calcMode="manual" iterate="true"/>'
     assert len(book({"One": TABLE}, in_workbook=settings).notices) == 3
+
+
+@pytest.mark.parametrize(
+    ("settings", "stale"), [('calcMode="manual"', True), ('fullCalcOnLoad="1"', True), ('calcMode="auto"', False)]
+)
+def test_saved_values_may_be_stale_where_excel_did_not_calculate(book, settings, stale):
+    assert book({"One": ""}, in_workbook=f"<calcPr {settings}/>").may_be_stale is stale

@@ -1,64 +1,100 @@
-"""The texts of the definition tables that a formula makes, where the file does not say what they are.
+"""What formulas of the definition tables give, where the file does not say it, or says what may be older.
 
-A program that writes a workbook without calculating it, as openpyxl does, leaves the value of `=B4&" weight"` out.
-Excel fills it in when it opens the file; xlmc does here.
+A program that writes a workbook without calculating it leaves the value of `=B4&" weight"` out, as openpyxl does, or
+writes a 0, as XlsxWriter does. Excel fills it in when it opens the file, unless calculation is manual; xlmc does here.
 """
 
 from __future__ import annotations
 
+import math
 from collections import ChainMap
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import replace
 
 from xlmc.address import Cell
-from xlmc.errors import ErrorCode, FormulaError
-from xlmc.evaluation.graph.lower import Lowering, lower_cells
+from xlmc.definitions.tables.table_rows import as_text
+from xlmc.errors import ErrorCode, FormulaError, Notice
+from xlmc.evaluation.graph.lower import lower_cells
 from xlmc.formula import Resolver
-from xlmc.workbook.workbook import CellContent, Table, Workbook
+from xlmc.workbook.workbook import CellContent, CellValue, Table, Workbook
 
 __all__ = ["calculate_labels", "calculated_texts"]
 
 _TABLES = "xlmc"
-_POINTS = "cell"
-"""The column whose formula says which cell is meant, and not a text."""
+_POINTS = ("cell", "data")
+"""The columns whose formulas say which cells are meant, and hold no text."""
+_OF_VALUES = ("xlmc_settings", "xlmc_case")
+"""Tables in which the column Value holds what is said; in others it holds the cell that is meant."""
 
 
 def calculate_labels(workbook: Workbook) -> Workbook:
-    """The workbook with the texts of its tables `xlmc_…` calculated where the file has none; itself if it has all."""
-    tables = (table for table in workbook.tables if table.name.casefold().startswith(_TABLES))
-    missing = [cell for table in tables for cell in _body(table) if workbook.content(cell).is_uncalculated]
-    if not missing:
+    """The workbook with the texts of its tables `xlmc_…` calculated where the file has none; itself if it has all.
+
+    Where saved values may be older than the formulas, those of these tables are calculated again, whatever they are.
+    What differs from the saved value is told of.
+    """
+    tables = [table for table in workbook.tables if table.name.casefold().startswith(_TABLES)]
+    missing = [cell for table in tables for cell in _body(table, _POINTS) if workbook.content(cell).is_uncalculated]
+    found: dict[Cell, CellValue] = {**calculated_texts(workbook, missing)} if missing else {}
+    stale = _stale_values(workbook, tables) if workbook.may_be_stale else {}
+    if not (missing or stale):
         return workbook
     written: dict[str, dict[tuple[int, int], CellContent]] = {}
-    for cell, text in calculated_texts(workbook, missing).items():
+    for cell, value in {**found, **stale}.items():
         at = cell.row, cell.column
-        written.setdefault(cell.sheet, {})[at] = replace(workbook.sheets[cell.sheet].cells[at], value=text)
+        written.setdefault(cell.sheet, {})[at] = replace(workbook.sheets[cell.sheet].cells[at], value=value)
     sheets = ((name, workbook.sheets[name], cells) for name, cells in written.items())
     calculated = {name: replace(sheet, cells={**sheet.cells, **cells}) for name, sheet, cells in sheets}
+    notices = [_notice(cell, workbook.content(cell).value, value) for cell, value in stale.items()]
     # A ChainMap reads a sheet when it is looked up, and nobody writes to this one.
-    return replace(workbook, sheets=ChainMap(calculated, workbook.sheets))  # type: ignore[arg-type]
+    sheets_ = ChainMap(calculated, workbook.sheets)  # type: ignore[arg-type]
+    return replace(workbook, sheets=sheets_, notices=(*workbook.notices, *notices))
+
+
+def _stale_values(workbook: Workbook, tables: Iterable[Table]) -> dict[Cell, CellValue]:
+    """What formulas of the tables give that is not what the file says, but for those that are forecasts or filters."""
+    cells: list[Cell] = []
+    for table in tables:
+        skipped = _POINTS if table.name.casefold().startswith(_OF_VALUES) else (*_POINTS, "value")
+        held = ((cell, workbook.content(cell)) for cell in _body(table, skipped))
+        cells += [cell for cell, content in held if content.formula is not None and content.value is not None]
+    found = _calculated(workbook, cells) if cells else {}
+    return {cell: value for cell, value in found.items() if _differs(workbook.content(cell).value, value)}
+
+
+def _differs(saved: CellValue, found: CellValue) -> bool:
+    if isinstance(saved, float) and isinstance(found, float):
+        return not math.isclose(saved, found, rel_tol=1e-9, abs_tol=1e-300)
+    return type(saved) is not type(found) or saved != found
+
+
+def _notice(cell: Cell, saved: CellValue, found: CellValue) -> Notice:
+    shown = [repr(value) if isinstance(value, str) else as_text(value) for value in (saved, found)]
+    message = f"the file says {shown[0]}, but the formula gives {shown[1]}, which is used"
+    return Notice(f"{message}: let Excel calculate the workbook, and save it", cell)
 
 
 def calculated_texts(workbook: Workbook, cells: Collection[Cell]) -> dict[Cell, str]:
     """What the formulas of cells give where that is a text; a cell that cannot be calculated is left out."""
+    return {cell: value for cell, value in _calculated(workbook, cells).items() if isinstance(value, str)}
+
+
+def _calculated(workbook: Workbook, cells: Collection[Cell]) -> dict[Cell, CellValue]:
+    """What the formulas of cells give; a cell that gives an error or cannot be calculated is left out."""
     try:
         lowering = lower_cells(Resolver(workbook), [*cells], {}, {})
     except FormulaError:
         if len(cells) == 1:
             return {}
-        return {found: text for cell in cells for found, text in calculated_texts(workbook, [cell]).items()}
-    return {cell: text for cell in cells if (text := _text(lowering, cell)) is not None}
+        return {found: value for cell in cells for found, value in _calculated(workbook, [cell]).items()}
+    values = {cell: lowering.value(cell) for cell in cells if not lowering.is_saved(cell)}
+    held = {cell: value.objects().ravel()[0] for cell, value in values.items() if value is not None}
+    return {cell: value for cell, value in held.items() if not isinstance(value, ErrorCode)}
 
 
-def _body(table: Table) -> Iterator[Cell]:
-    """The cells of a table that may hold a text."""
+def _body(table: Table, skipped: Collection[str]) -> Iterator[Cell]:
+    """The cells of a table but for those of some columns."""
     area = table.body
     for column, heading in enumerate(table.columns, area.left):
-        if heading.strip().casefold() != _POINTS:
+        if heading.strip().casefold() not in skipped:
             yield from (Cell(area.sheet, row, column) for row in range(area.top, area.bottom + 1))
-
-
-def _text(lowering: Lowering, cell: Cell) -> str | None:
-    value = lowering.value(cell)
-    found = None if value is None else value.objects().ravel()[0]
-    return found if isinstance(found, str) and not isinstance(found, ErrorCode) else None

@@ -59,6 +59,7 @@ def _read(data: bytes, name: str, where: str) -> Workbook:
             data_tables=tuple(sheets.data_tables()),
             date1904=structure.date1904,
             macintosh=b"Macintosh" in parts.get("docProps/app.xml", b""),
+            may_be_stale=_may_be_stale(structure.calculation),
             notices=tuple(_workbook_notices(parts, structure, name)),
             parts=parts,
             sha256=hashlib.sha256(data).hexdigest(),
@@ -146,6 +147,10 @@ def _on_calculation(settings: Mapping[str, str]) -> Iterator[str]:
         yield "calculation is set to manual: the values Excel saved may be older than the formulas and inputs"
     if is_true(settings.get("iterate")):
         yield "iterative calculation is on: xlmc does not calculate circular references"
+
+
+def _may_be_stale(settings: Mapping[str, str]) -> bool:
+    return settings.get("calcMode") == "manual" or is_true(settings.get("fullCalcOnLoad"))
 
 
 def _on_links(parts: Mapping[str, bytes], structure: Structure) -> Iterator[str]:

@@ -166,6 +166,7 @@ class Workbook:
         data_tables: the what-if tables of all sheets.
         links: to other workbooks, as formulas write them (`[1]`), with the values that Excel stored.
         macintosh: last saved by Excel for the Macintosh, whose CHAR and CODE use its own character set.
+        may_be_stale: saved values may be older than the formulas: calculation is manual, or Excel has yet to do it.
         parts: every part of the zip package in its order, name -> bytes, as in the file.
         origin: the parts of the file that it was read from, where values have been typed since and it has no `parts`.
         sha256: of the file.
@@ -180,6 +181,7 @@ class Workbook:
     links: Mapping[str, LinkedBook] = field(default_factory=dict)
     date1904: bool = False
     macintosh: bool = False
+    may_be_stale: bool = False
     notices: tuple[Notice, ...] = ()
     parts: Mapping[str, bytes] = field(default_factory=dict, repr=False)
     origin: Mapping[str, bytes] = field(default_factory=dict, repr=False)

@@ -328,3 +328,13 @@ def test_a_strict_workbook_runs_and_says_why_it_cannot_be_converted(tmp_path):
     np.testing.assert_array_equal(model.simulate(100).forecasts["Total"], expected)
     with pytest.raises(WorkbookError, match="Strict Open XML"):
         convert(model, tmp_path / "new.xlsx")
+
+
+def test_the_workbook_itself_is_not_replaced_by_whatever_name(tmp_path):
+    path = written(tmp_path / "book.xlsx", BOOKS["one call"])
+    (tmp_path / "link.xlsx").symlink_to(path)
+    before, model = path.read_bytes(), load(path)
+    for name in ("book.xlsx", "link.xlsx"):
+        with pytest.raises(WorkbookError, match="this is the workbook itself"):
+            convert(model, tmp_path / name, overwrite=True)
+    assert path.read_bytes() == before

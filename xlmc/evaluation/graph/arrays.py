@@ -22,6 +22,7 @@ from xlmc.evaluation.graph.dag import MANY, Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, Range, Select
 from xlmc.functions import Function, Kind
 from xlmc.functions.facts import Facts
+from xlmc.functions.logical import choose
 from xlmc.functions.registry import Anything, Cells
 from xlmc.functions.values import ShapeVaries, Value, constant
 
@@ -202,6 +203,34 @@ def sizes_differ(dag: Dag, condition: int, yes: int, no: int) -> bool:
 def either(dag: Dag, condition: int, yes: int, no: int) -> int:
     """The node of such a choice."""
     return dag.add(Apply(_EITHER, (condition, yes, no)))
+
+
+_AS_RANGE: Final = Function("as a range", (Cells,), Value.as_range, Kind.ANY, facts=Facts(spills=True))
+
+
+def as_range(dag: Dag, node: int) -> int:
+    """The node of a single value as a range of one cell; of a range, the range."""
+    return dag.add(Range(((node,),)) if dag.sizes[node] is None else Apply(_AS_RANGE, (node,)))
+
+
+def _one_of_two(condition: Value, yes: Value, no: Value) -> Value:
+    """(n,) and two values of one size -> the cells of either; an empty cell stays empty."""
+    truth, errors = condition.to_logicals()
+    return choose(truth, yes, no, errors)
+
+
+_ONE_OF_TWO: Final = Function("one of two references", (Anything, Anything, Anything), _one_of_two, Kind.ANY)
+
+
+def either_reference(dag: Dag, condition: int, yes: int, no: int) -> int:
+    """The node of a choice between two ranges of one size, in which an empty cell stays empty; an IF makes it 0."""
+
+    def one(picked: tuple[int, ...]) -> int:
+        numbers = all(dag.types[node] is Kind.NUMBER for node in picked[1:])
+        return dag.add(Select(*picked) if numbers else Apply(_ONE_OF_TWO, picked))
+
+    cells = cell_by_cell(dag, (condition, yes, no), one)
+    return one((condition, yes, no)) if cells is None else cells
 
 
 def _parts_of(dag: Dag, node_id: int) -> tuple[int, int, int] | None:

@@ -2,7 +2,8 @@
 
 A condition that is known decides while the formula is lowered, and the other branches are never lowered. In a plain
 formula, conditions and computed branches take the cell of a range beside the formula, also within SUMPRODUCT and its
-like, as in Excel; a branch that is a range stays whole.
+like, as in Excel; a branch that is a range stays whole. Of references, a choice by one condition gives a reference:
+where a range is wanted, its empty cells, texts and logicals are those of a range (`lower_reference`).
 """
 
 from __future__ import annotations
@@ -10,14 +11,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.evaluation.graph.arrays import cell_by_cell, sizes_differ
+from xlmc.evaluation.graph.arrays import as_range, cell_by_cell, either_reference, sizes_differ
+from xlmc.evaluation.graph.computed_references import NoReference, areas_of
+from xlmc.evaluation.graph.dag import MANY
 from xlmc.evaluation.graph.lowering import Scope, TreeLowering
 from xlmc.evaluation.graph.nodes import IfErrorNode
 from xlmc.formula import ir
+from xlmc.functions import Kind
 from xlmc.functions.operators import ALL_BITS
 from xlmc.functions.values import ERROR
 
-__all__ = ["CHOICES"]
+__all__ = ["CHOICES", "lower_reference"]
 
 Arguments = tuple[ir.Expression, ...]
 
@@ -30,9 +34,61 @@ def _if(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
 def _choose_branch(lowering: TreeLowering, condition: int, branches: Arguments, scope: Scope) -> int:
     known = lowering.lookup_condition(condition)
     if known is not None:
-        return lowering.zero_if_blank(lowering.lower(branches[0 if known else 1], scope))
-    yes, no = (lowering.zero_if_blank(lowering.lower(branch, scope)) for branch in branches)
-    return lowering.select(condition, yes, no)
+        return _branch(lowering, branches[0 if known else 1], scope)
+    yes, no = (_branch(lowering, branch, scope) for branch in branches)
+    return _select(lowering, condition, yes, no, scope)
+
+
+def _branch(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> int:
+    """The node of a branch; an empty cell is 0, but where a range is wanted."""
+    node = lower_reference(lowering, tree, scope)
+    return node if lowering.dag.sizes[node] is not None else lowering.zero_if_blank(node)
+
+
+def lower_reference(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> int:
+    """The node of a tree; a reference to one cell is a range of one cell where a range is wanted.
+
+    Functions pass over empty cells, texts and logicals of ranges. A cell of which it is known that it holds a number
+    stays a single value, which is the same to them.
+    """
+    node = lowering.lower(tree, scope)
+    if not scope.whole or lowering.dag.sizes[node] not in (None, MANY) or lowering.dag.types[node] is Kind.NUMBER:
+        return node
+    return as_range(lowering.dag, node) if _is_reference(lowering, tree, scope) else node
+
+
+def _is_reference(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:
+    """Whether a tree refers to one cell, perhaps to another one in each trial."""
+    match tree:
+        case ir.Call("INDEX", (cells, *_)) | ir.Call("XLOOKUP", (_, _, cells)):
+            pass
+        case ir.Call("XLOOKUP", (_, _, cells, ir.Missing() | ir.Number(), *_)):
+            pass
+        case _:
+            cells = tree
+    try:
+        return areas_of(lowering, cells, scope) is not None
+    except NoReference:
+        return False
+
+
+def _select(lowering: TreeLowering, condition: int, yes: int, no: int, scope: Scope) -> int:
+    """The node of a choice; where a range is wanted, one of two ranges keeps its empty cells."""
+    sizes = lowering.dag.sizes
+    if not scope.whole or sizes[condition] is not None or sizes[yes] is sizes[no] is None:
+        return lowering.select(condition, yes, no)
+    if None in (sizes[yes], sizes[no]):
+        yes, no = (_beside_range(lowering, node, other) for node, other in ((yes, no), (no, yes)))
+    if sizes_differ(lowering.dag, condition, yes, no):
+        return lowering.select(condition, yes, no)
+    return either_reference(lowering.dag, condition, yes, no)
+
+
+def _beside_range(lowering: TreeLowering, node: int, other: int) -> int:
+    """A number as a range of one cell where the other branch is one, as functions make no difference."""
+    dag = lowering.dag
+    alone = dag.sizes[node] is None and dag.types[node] is Kind.NUMBER
+    return as_range(dag, node) if alone and dag.sizes[other] == (1, 1) else node
 
 
 def _ifs(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
@@ -42,17 +98,17 @@ def _ifs(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
     pairs = list(zip(arguments[::2], arguments[1::2], strict=True))
     for test, value in reversed(pairs):
         condition = lowering.lower(test, scope.plainly())
-        node = lowering.select(condition, lowering.zero_if_blank(lowering.lower(value, scope.branch())), node)
+        node = _select(lowering, condition, _branch(lowering, value, scope.branch()), node, scope.branch())
     return node
 
 
 def _switch(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
     subject, rest = lowering.lower(arguments[0], scope.plainly()), arguments[1:]
     last = rest[-1] if len(rest) % 2 else ir.ErrorLiteral(ErrorCode.NA)
-    node = lowering.zero_if_blank(lowering.lower(last, scope.branch()))
+    node = _branch(lowering, last, scope.branch())
     for match, result in reversed(list(zip(rest[: len(rest) // 2 * 2 : 2], rest[1::2], strict=True))):
         same = lowering.apply(ALL_BITS["="], (subject, lowering.lower(match, scope.plainly())))
-        node = lowering.select(same, lowering.zero_if_blank(lowering.lower(result, scope.branch())), node)
+        node = _select(lowering, same, _branch(lowering, result, scope.branch()), node, scope.branch())
     return node
 
 
@@ -63,11 +119,11 @@ def _choose(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
     if known is not None and known.plain:
         which = int(known.numbers[0])
         inside = 1 <= which < len(arguments)
-        return lowering.zero_if_blank(lowering.lower(arguments[which], scope)) if inside else _bad_index(lowering)
+        return _branch(lowering, arguments[which], scope) if inside else _bad_index(lowering)
     node = _bad_index(lowering)
     for number in range(len(arguments) - 1, 0, -1):
         is_it = lowering.apply(ALL_BITS["="], (index, lowering.number(float(number))))
-        node = lowering.select(is_it, lowering.zero_if_blank(lowering.lower(arguments[number], scope)), node)
+        node = _select(lowering, is_it, _branch(lowering, arguments[number], scope), node, scope)
     return node
 
 

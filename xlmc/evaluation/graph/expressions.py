@@ -11,7 +11,7 @@ from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.graph import lambdas, whole_columns
 from xlmc.evaluation.graph.arrays import element, grid, size_of
 from xlmc.evaluation.graph.called_functions import check_count, not_computed, unknown_to_excel, with_settings
-from xlmc.evaluation.graph.choices import CHOICES
+from xlmc.evaluation.graph.choices import CHOICES, lower_reference
 from xlmc.evaluation.graph.computed_references import NoReference, areas_of, of_one_cell
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.further_cells import refusal
@@ -212,7 +212,8 @@ class ExpressionLowering(TreeLowering):
         except NoReference as found:
             return [self.error(found.code)]
         if areas is None:
-            return [self.lower(tree, scope.wanted_whole() if isinstance(tree, _PASSING_ON) else scope)]
+            passing_on = isinstance(tree, _PASSING_ON)
+            return [lower_reference(self, tree, scope.wanted_whole()) if passing_on else self.lower(tree, scope)]
         return [self.range(area) for area in areas]
 
     def range(self, area: Area) -> int:

@@ -10,16 +10,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from xlmc.address import Area
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.graph.arrays import as_range, cell_by_cell, either_reference, sizes_differ
 from xlmc.evaluation.graph.computed_references import NoReference, areas_of
 from xlmc.evaluation.graph.dag import MANY
 from xlmc.evaluation.graph.lowering import Scope, TreeLowering
-from xlmc.evaluation.graph.nodes import IfErrorNode
+from xlmc.evaluation.graph.nodes import Constant, IfErrorNode, Range
 from xlmc.formula import ir
 from xlmc.functions import Kind
 from xlmc.functions.operators import ALL_BITS
-from xlmc.functions.values import ERROR
+from xlmc.functions.values import ERROR, NUMBER
 
 __all__ = ["CHOICES", "lower_reference"]
 
@@ -58,7 +59,7 @@ def lower_reference(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -
 
 
 def _is_reference(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:
-    """Whether a tree refers to one cell, perhaps to another one in each trial."""
+    """Whether a tree refers to one cell, perhaps to another one in each trial, that may hold no number."""
     match tree:
         case ir.Call("INDEX", (cells, *_)) | ir.Call("XLOOKUP", (_, _, cells)):
             pass
@@ -67,9 +68,24 @@ def _is_reference(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> 
         case _:
             cells = tree
     try:
-        return areas_of(lowering, cells, scope) is not None
+        areas = areas_of(lowering, cells, scope)
     except NoReference:
         return False
+    return areas is not None and not all(_holds_numbers(lowering, area) for area in areas)
+
+
+def _holds_numbers(lowering: TreeLowering, area: Area) -> bool:
+    """Whether it is known that all cells of an area hold numbers."""
+    if area.is_cut:
+        return False
+    dag, node = lowering.dag, lowering.range(area)
+    match dag.nodes[node]:
+        case Range(rows):
+            return all(dag.types[cell] is Kind.NUMBER for row in rows for cell in row)
+        case Constant(value):
+            return bool((value.kinds == NUMBER).all())
+        case _:
+            return False
 
 
 def _select(lowering: TreeLowering, condition: int, yes: int, no: int, scope: Scope) -> int:

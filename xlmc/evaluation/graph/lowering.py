@@ -197,7 +197,7 @@ class Scope:
 
     def wanted_whole(self) -> Scope:
         """The same scope, but with a range that is all of the tree wanted whole."""
-        return self if self.array or self.whole else replace(self, whole=True)
+        return self if self.whole else replace(self, whole=True)
 
     def branch(self) -> Scope:
         """The scope of a choice's branch: a range there is whole where the choice is wanted whole or cell by cell."""

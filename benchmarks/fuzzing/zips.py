@@ -23,6 +23,7 @@ from xlmc.api import Model
 from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.errors import XlmcError
 from xlmc.evaluation.engines import ENGINES
+from xlmc.run.labels import calculate_labels
 from xlmc.workbook.reader import read_workbook
 
 __all__ = ["make", "run"]
@@ -84,14 +85,15 @@ def run(given: Input, folder: Path) -> Reached:
             problems.append(error)
     if problems:
         raise problems[0]
-    definitions = read_definitions(workbook, ENGINES)
+    calculated = calculate_labels(workbook)
+    definitions = read_definitions(calculated, ENGINES)
     if "verify" in given.steps:
         from xlmc.studies.verify import verify
 
         verify(workbook, definitions)
     if definitions.problems:
         raise definitions.problems[0]
-    found = Model(workbook, definitions, path).simulate(TRIALS)
+    found = Model(calculated, definitions, path).simulate(TRIALS)
     examined(found, folder, given.steps)
     return Reached.RAN
 

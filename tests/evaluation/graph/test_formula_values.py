@@ -40,6 +40,7 @@ PLAIN = [
     ("SUM(A1:A3)", 6.0),
     ("SUM(A:A)", 6.0),
     ("SUM(S:Third!A1)", 1101.0),
+    ('SUM(INDIRECT("S:Third!A1"))', ErrorCode.REF),
     ("SUM((A1,B2:B3))", 51.0),
     ("SUM(A1:B2 B1:B3)", 30.0),
     ("A1:B2 C1", ErrorCode.NULL),

@@ -211,7 +211,8 @@ def _indirect(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> lis
     _stop_at_error(errors)
     a1 = len(arguments) < 2 or _is_true(lowering, arguments[1], scope)
     tree = _read(lowering, str(texts[0])) if a1 else _read_r1c1(lowering, str(texts[0]), scope.cell)
-    found = None if tree is None else _resolve(lowering, tree, scope)
+    over_sheets = isinstance(tree, ir.Reference) and tree.last_sheet is not None  # which Excel does not read from texts
+    found = None if tree is None or over_sheets else _resolve(lowering, tree, scope)
     if found is None:
         raise NoReference
     return [require(lowering, area) for area in found]

@@ -92,3 +92,23 @@ def test_many_choices_together_are_not_written_out(lower):
 def test_whether_a_varying_choice_is_a_reference_is_refused(lower, formula):
     with pytest.raises(FormulaError, match="varies"):
         lower(CELLS | {"A1": 0.0, "Z9": formula}, ["A1"], ["Z9"])
+
+
+# B1 is empty, C1 a text, and so on: a range has none of these as numbers, whichever trial it is chosen in
+CELLS_OF_REFERENCES = {"A1": 1.0, "C1": "10", "D1": 7.0, "B2": 6.0, "D2": "y"}
+
+
+@pytest.mark.parametrize(
+    ("formula", "answers"),
+    [
+        ("AVERAGE(IF(A1>1,B1:D1,B2:D2))", [6.0, 7.0, 7.0]),
+        ("COUNTA(CHOOSE(A1,B1:D1,B2:D2,B1))", [2.0, 2.0, 0.0]),
+        ("AVERAGE(IF(A1>1,B1,2),4)", [3.0, 4.0, 4.0]),
+        ("AVERAGE(IF(A1>1,B1),4)", [2.0, 4.0, 4.0]),
+        ("SUM(INDEX(B1:D1,A1),1)", [1.0, 1.0, 8.0]),
+        ("COUNT(XLOOKUP(A1,{1,2,3},B1:D1))", [0.0, 0.0, 1.0]),
+    ],
+)
+def test_a_reference_that_varies_has_the_empty_cells_and_texts_of_a_range(trials, formula, answers):
+    for found in trials(CELLS_OF_REFERENCES, formula, [1.0, 2.0, 3.0]).values():
+        assert found == answers

@@ -363,3 +363,9 @@ def test_rescues_of_many_cells_and_of_blanks(run, formula, expected):
     """`B3` is an error that only the third trial takes, and may hide in an array of its own size; `D1` on is empty."""
     cells = {"A3": "=A1", "A4": 2.0, "B1": 4.0, "B2": 2.0, "B3": ErrorCode.NA, "Z1": f"={formula}"}
     assert run(cells, {"A1": [1.0, 2.0, 3.0]}, ["Z1"]).forecasts == [expected]
+
+
+def test_a_count_that_branches_within_branches_need_is_a_number_for_each_trial(run):
+    cells = {"Z1": "=IF(A1>2,IF(A2>3,COUNT(A1:A3),COUNT(A1:A3)/A2),1/A3)"}
+    draws = {"A1": [3.0, 3.0, 1.0], "A2": [4.0, 2.0, 4.0], "A3": [4.0, 4.0, 4.0]}
+    assert list(run(cells, draws, ["Z1"]).forecasts[0]) == [3.0, 1.5, 0.25]

@@ -123,7 +123,7 @@ def is_elementwise_ufunc(dag: Dag, node_id: int) -> bool:
 
 def _apply(dag: Dag, node_id: int, function: Function, arguments: tuple[int, ...], buffer: int | None) -> Step:
     if node_id in dag.folded:
-        return _ufunc(np.positive, None, node_id, _readers(dag, (dag.folded[node_id],), Kind.NUMBER), buffer)
+        return _copy(node_id, _readers(dag, (dag.folded[node_id],), Kind.NUMBER)[0], buffer)
     node = Apply(function, arguments)
     if function.takes_sets:
         folded = _find_folded(dag, node)
@@ -204,6 +204,16 @@ def _ufunc(
         frame.values[node] = ufunc(*arguments, out=out)
         if frame.underflow.raised:
             frame.flush(node)
+
+    return step
+
+
+def _copy(node: int, read: Reader, buffer: int | None) -> Step:
+    """The step of a node for which another one stands, perhaps a constant: a number for each trial."""
+
+    def step(frame: Frame) -> None:
+        out = np.empty(frame.n) if buffer is None else frame.buffers[buffer]
+        frame.values[node] = np.positive(read(frame.values), out=out)
 
     return step
 

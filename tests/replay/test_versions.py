@@ -60,11 +60,21 @@ def test_rules_are_in_the_order_of_versions_and_none_is_of_the_future():
         ("functions that xlmc has no body for", "=FORECAST(A1,B1:B9,C1:C9)", False),
         ("a LAMBDA that is named like", "=Sum(A1)", True),
         ("a LAMBDA that is named like", "=SUM(A1)", False),
+        ("a text that is a date", '="2020-01-01"+A1', True),
+        ("a text that is a date", '=IF(A1>1,"no. 5",A1)', False),
+        ("all cells of a dynamic array", "=SUM(_xlfn.ANCHORARRAY(A1))", True),
     ],
 )
 def test_what_a_rule_concerns(said, formula, met):
     [rule] = [rule for rule in RULES if rule.said.startswith(said)]
     assert bool(rule.met.search(formula)) is met
+
+
+def test_every_version_before_this_one_has_its_commit():
+    changelog = (REPOSITORY / "CHANGELOG.md").read_text("utf-8")
+    newest, *earlier = re.findall(r"^## (\S+)$", changelog, re.MULTILINE)
+    assert newest == xlmc.__version__
+    assert sorted(earlier) == sorted(versions._COMMITS)
 
 
 @pytest.mark.parametrize("version", versions._COMMITS)

@@ -65,6 +65,11 @@ _REFUSED: Final = (
     *("FORECAST.ETS", "FORECAST.ETS.CONFINT", "FORECAST.ETS.SEASONALITY", "FORECAST.ETS.STAT"),
 )
 
+_DATE: Final = re.compile(r'=.*"[^"]*\d[^"]*[-/.: ][^"]*\d[^"]*"')
+_ARRAYS: Final = _calls("ANCHORARRAY", "FILTER", "UNIQUE", "SORT", "SORTBY", "SEQUENCE", "OFFSET", "INDIRECT", "CELL")
+_ROUNDED: Final = _calls(
+    *("INT", "ROUND", "ROUNDUP", "ROUNDDOWN", "TRUNC", "MROUND", "QUOTIENT", "MOD", "ISEVEN", "ISODD")
+)
 _ANY: Final = re.compile("=")
 
 RULES: Final = (
@@ -137,6 +142,37 @@ RULES: Final = (
         re.compile(r"\^|(?<![\w.])(?:EXP|LN|LOG|LOG10|POWER)\(", re.IGNORECASE),
     ),
     Rule("0.6.0", "the error of the standard error of a mean may differ in its last bit", _ANY),
+    Rule(
+        "0.8.0",
+        "running totals give the error of a later cell where the first cells overflow",
+        _calls("SUM", "PRODUCT", "AVERAGE"),
+    ),
+    Rule("0.9.0", "the engine jit leaves workbooks to numpy where native loops do not pay: last bits may differ", _ANY),
+    Rule(
+        "0.9.0",
+        "the engine jit sees the errors that logical values of ranges are in some trials",
+        _calls("SUM", "AVERAGE", "MIN", "MAX", "SUMPRODUCT", "COUNT"),
+    ),
+    Rule("0.9.0", "parameters whose formulas another program could not compute are calculated", _ANY),
+    Rule("0.10.0", "all cells of a dynamic array vary, also as A1#, OFFSET, INDIRECT and CELL see them", _ARRAYS),
+    Rule("0.10.0", "formulas that name cells which a dynamic array may fill, beyond those saved, are refused", _ARRAYS),
+    Rule("0.10.0", "errors of percentiles that many trials share are smaller with Latin hypercube and Sobol", _ANY),
+    Rule("0.10.0", "the engine jit rounds in its loops: the last bits of what stands beside it may differ", _ROUNDED),
+    Rule("0.11.0", "a name of the whole workbook that names another means that of the whole workbook", _ANY),
+    Rule("0.11.0", "a text that is a date is read by the calendar from 1904 where the workbook has it", _DATE),
+    Rule(
+        "0.11.0",
+        "INDIRECT in the style R1C1 reads ranges, whole rows and columns, names and tables",
+        _calls("INDIRECT"),
+    ),
+    Rule(
+        "0.11.0",
+        "ranges that a choice or a lookup leads to by a condition that varies keep their empty cells and texts",
+        _calls(*_CHOICES, "INDEX", "XLOOKUP"),
+    ),
+    Rule(
+        "0.11.0", "thresholds and settings that formulas give are calculated where their saved values may be old", _ANY
+    ),
 )
 """The rules in the order of versions."""
 
@@ -149,6 +185,10 @@ _COMMITS: Final = {
     "0.5.1": "e9825adc0d54324dd6ffee4b7e227855ceaf6810",
     "0.5.2": "a0233280c2c29797693a39af2d7ca65686378708",
     "0.6.0": "3477a27842cfa0f06441ec8cd6cc49c4c3cc7516",
+    "0.7.0": "b28ef100a6c0bd6147d30638e5c13c82e6c2de5b",
+    "0.8.0": "9b6e83b15a18eff6e7b69dda8483149c1a89598f",
+    "0.9.0": "adb41e5b90878c069eb919353532b23ca12c59e6",
+    "0.10.0": "ef020dc5a73b4a5fcd48b50ea00a1d8bf3d0a8cc",
 }
 """The last commit of each version before this one."""
 

@@ -67,9 +67,6 @@ _REFUSED: Final = (
 
 _DATE: Final = re.compile(r'=.*"[^"]*\d[^"]*[-/.: ][^"]*\d[^"]*"')
 _ARRAYS: Final = _calls("ANCHORARRAY", "FILTER", "UNIQUE", "SORT", "SORTBY", "SEQUENCE", "OFFSET", "INDIRECT", "CELL")
-_ROUNDED: Final = _calls(
-    *("INT", "ROUND", "ROUNDUP", "ROUNDDOWN", "TRUNC", "MROUND", "QUOTIENT", "MOD", "ISEVEN", "ISODD")
-)
 _ANY: Final = re.compile("=")
 
 RULES: Final = (
@@ -157,7 +154,11 @@ RULES: Final = (
     Rule("0.10.0", "all cells of a dynamic array vary, also as A1#, OFFSET, INDIRECT and CELL see them", _ARRAYS),
     Rule("0.10.0", "formulas that name cells which a dynamic array may fill, beyond those saved, are refused", _ARRAYS),
     Rule("0.10.0", "errors of percentiles that many trials share are smaller with Latin hypercube and Sobol", _ANY),
-    Rule("0.10.0", "the engine jit rounds in its loops: the last bits of what stands beside it may differ", _ROUNDED),
+    Rule(
+        "0.10.0",
+        "the engine jit rounds in its loops: the last bits of what stands beside it may differ",
+        _calls("INT", "ROUND", "ROUNDUP", "ROUNDDOWN", "TRUNC", "MROUND", "QUOTIENT", "MOD", "ISEVEN", "ISODD"),
+    ),
     Rule("0.11.0", "a name of the whole workbook that names another means that of the whole workbook", _ANY),
     Rule("0.11.0", "a text that is a date is read by the calendar from 1904 where the workbook has it", _DATE),
     Rule(

@@ -106,3 +106,18 @@ def test_a_full_disk_costs_neither_the_answer_nor_the_other_files(xlmc, book, tm
     assert "formula cell" in outcome.out
     assert outcome.out.endswith(f"Written: {page}\n")
     assert page.stat().st_size > 100
+
+
+def test_a_file_that_becomes_the_workbook_during_a_study_spares_it(xlmc, book, tmp_path, monkeypatch):
+    before, page = book.read_bytes(), tmp_path / "found.html"
+    made = study_report._page
+
+    def made_meanwhile(report):
+        page.symlink_to(book)
+        return made(report)
+
+    monkeypatch.setattr(study_report, "_page", made_meanwhile)
+    outcome = xlmc("verify", book, "--all", "--html", page, "--overwrite")
+    assert outcome.code == 2
+    assert outcome.err == f"xlmc: {page}: this is the workbook itself. Name another file.\n"
+    assert book.read_bytes() == before

@@ -110,22 +110,23 @@ class Files:
         refuse_same_file([path for path, _ in self._endings])
         for path, ending in self._endings:
             refuse_other_ending(path, ending)
-            if any(is_same_file(path, source) for source in self._sources):
-                raise WorkbookError("this is the workbook itself", where=path, hint="Name another file")
             if ending in _DOCUMENTS:
                 from xlmc.report.document import check_report_path
 
                 check_report_path(path)
-            self._target(path).check()
+            self._check_target(path)
 
-    def _target(self, path: Path) -> Target:
-        return Target(path, self._sources[0].name, self._overwrite)
+    def _check_target(self, path: Path) -> None:
+        """See that a file may be written; also just before it is, for it may have become a link since."""
+        if any(is_same_file(path, source) for source in self._sources):
+            raise WorkbookError("this is the workbook itself", where=path, hint="Name another file")
+        Target(path, self._sources[0].name, self._overwrite).check()
 
     def writers(self, report: StudyReport, sheet: str) -> Iterator[tuple[Path, Callable[[], Path]]]:
         """Each file with what writes it; an untouched file of ours is replaced.
 
         What writes it raises `TakenError` where the file is not ours to replace, and `WorkbookError` where it cannot be
-        written.
+        written or has become a workbook that is studied.
         """
         for path, ending in self._endings:
             yield path, partial(self._write, report, sheet, path, ending)
@@ -138,7 +139,7 @@ class Files:
             content = sealed_text(_page(report).encode(), ending, name)
         else:
             content = package_bytes(sealed_parts(_book(report, sheet), "xl/worksheets/sheet1.xml", name))
-        write_workbook(path, content, self._target(path).check)
+        write_workbook(path, content, lambda: self._check_target(path))
         return path
 
 

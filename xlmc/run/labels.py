@@ -46,9 +46,9 @@ def calculate_labels(workbook: Workbook) -> Workbook:
     sheets = ((name, workbook.sheets[name], cells) for name, cells in written.items())
     calculated = {name: replace(sheet, cells={**sheet.cells, **cells}) for name, sheet, cells in sheets}
     notices = [_notice(cell, workbook.content(cell).value, value) for cell, value in stale.items()]
-    # A ChainMap reads a sheet when it is looked up, and nobody writes to this one.
-    sheets_ = ChainMap(calculated, workbook.sheets)  # type: ignore[arg-type]
-    return replace(workbook, sheets=sheets_, notices=(*workbook.notices, *notices))
+    # A ChainMap reads a sheet when it is looked up, and nobody writes to this one: mypy wants a mapping to write to.
+    chained = ChainMap(calculated, workbook.sheets)  # type: ignore[arg-type]
+    return replace(workbook, sheets=chained, notices=(*workbook.notices, *notices))
 
 
 def _stale_values(workbook: Workbook, tables: Iterable[Table]) -> dict[Cell, CellValue]:

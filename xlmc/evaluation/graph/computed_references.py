@@ -246,22 +246,18 @@ def _resolve(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[
 def _read_r1c1(lowering: TreeLowering, text: str, host: Cell) -> ir.Expression | None:
     """The reference `R1C1`, `Data!R[1]C:R3C` or `C2`; names and tables are written as in the usual style."""
     sheet, _, place = text.strip().rpartition("!")
-    texts = place.split(":")
-    first, last = (_r1c1_corner(end, host) for end in (texts[0], texts[-1]))
-    if (
-        first
-        and last
-        and len(texts) < 3
-        and (first.row is None, first.column is None)
-        == (
-            last.row is None,
-            last.column is None,
-        )
-    ):
+    corners = [_r1c1_corner(end, host) for end in place.split(":")]
+    first, last = corners[0], corners[-1]
+    if first is not None and last is not None and len(corners) <= 2 and _go_together(first, last):
         unquoted = sheet[1:-1].replace("''", "'") if sheet.startswith("'") and sheet.endswith("'") else sheet
         return ir.Reference(first, last, sheet=unquoted or None)
     tree = _read(lowering, text)
     return tree if isinstance(tree, ir.Name | ir.TableReference) else None
+
+
+def _go_together(first: ir.Corner, last: ir.Corner) -> bool:
+    """Whether both are cells, both whole rows or both whole columns."""
+    return (first.row is None, first.column is None) == (last.row is None, last.column is None)
 
 
 def _r1c1_corner(text: str, host: Cell) -> ir.Corner | None:

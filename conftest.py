@@ -1,3 +1,11 @@
 """What every run of the tests has, of whichever folder: see `tests/session`."""
 
-pytest_plugins = ("cases", "costliest", "example_profiles", "not_tested", "process_costs", "tree_guard", "work_stealing")
+pytest_plugins = (
+    "cases",
+    "costliest",
+    "example_profiles",
+    "not_tested",
+    "process_costs",
+    "tree_guard",
+    "work_stealing",
+)

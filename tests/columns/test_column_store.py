@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.columns import ColumnStore, Folder, column_store, on_disk, release
 from xlmc.errors import SimulationError
@@ -50,7 +51,7 @@ def test_every_column_of_a_keeper_may_be_asked_for_twice():
     assert keeper.columns({"a": "x"})["a"].tolist() == keeper.columns({"b": "x"})["b"].tolist() == [1, 1, 1, 0]
 
 
-@pytest.mark.parametrize("expected", [{}, {"x": 4}, {"x": 1000}])
+@cases("expected", [{}, {"x": 4}, {"x": 1000}])
 def test_what_was_written_to_the_room_is_there(expected):
     keeper = ColumnStore(TYPES, expected)
     keeper.add("x", np.arange(3.0))

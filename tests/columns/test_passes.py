@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -10,13 +11,13 @@ from xlmc.columns import PART, ascending, numbers, on_disk, pairwise_sum, parts,
 SIZES = [0, 1, 7, 8, 129, PART - 1, PART, PART + 1, 2 * PART + 9, 300_001]
 
 
-@pytest.mark.parametrize("n", SIZES)
+@cases("n", SIZES)
 def test_a_sum_in_parts_is_numpys_to_the_bit(n):
     values = np.random.default_rng(n).lognormal(sigma=3.0, size=n)
     assert pairwise_sum(lambda here: values[here], n) == values.sum()
 
 
-@pytest.mark.parametrize("n", SIZES)
+@cases("n", SIZES)
 def test_parts_are_the_column(stored, n):
     values = np.arange(float(n))
     for column in (values, stored(values)):

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -9,7 +9,7 @@ from xlmc.definitions.cell_references import formula_at, is_address, split_sheet
 from xlmc.workbook.workbook import Formula
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "cell", "meant"),
     [
         ("Model!B1", Cell("Answers", 2, 2), "Model!B1"),
@@ -42,7 +42,7 @@ def test_a_relative_reference_keeps_its_distance(row, column, down, across):
     assert moved == Cell("S", row + down, column + across)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "expected"),
     [
         ("B7", True),
@@ -58,7 +58,7 @@ def test_is_address(text, expected):
     assert is_address(text) is expected
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "parts"),
     [("B7", (None, "B7")), (" S!B7 ", ("S", "B7")), ("'a!b'!B7", ("'a!b'", "B7")), ("!B7", ("", "B7"))],
 )

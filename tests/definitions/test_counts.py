@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.evaluation.engines import ENGINES
@@ -48,7 +49,7 @@ def read(make_book, blocks):
     return definitions
 
 
-@pytest.mark.parametrize("name", ROWS)
+@cases("name", ROWS)
 def test_a_row_of_each(read, name):
     found = read(name.casefold(), ROWS[name])
     assert found.problems == (), [str(problem) for problem in found.problems]
@@ -57,7 +58,7 @@ def test_a_row_of_each(read, name):
     assert sorted(found.assumptions[0].parameters.values()) == sorted(ROWS[name].values())
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "changes", "heading", "message"),
     [
         ("Binomial", {"Trials": 2.5}, "Trials", "Trials (2.5) must be a whole number"),

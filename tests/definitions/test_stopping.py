@@ -1,12 +1,13 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.definitions.stopping import NO_GOAL, AcceptedTrials, Precision, StableDigits, Stopping, stopping
 from xlmc.errors import SimulationError
 
 
-@pytest.mark.parametrize(
+@cases(
     ("given", "expected"),
     [
         ({}, NO_GOAL),
@@ -38,7 +39,7 @@ def test_what_is_asked_for(given, expected):
     assert found.asked == bool(given)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("given", "message"),
     [
         ({"until_accepted": 1}, "1 accepted trials were asked for"),

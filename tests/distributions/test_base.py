@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.distributions import FAMILIES
 from xlmc.distributions.base import SMALLEST_U, Family, Member
@@ -53,7 +54,7 @@ CASES = [pytest.param(example(name), GOOD[name], id=name) for name in FAMILIES i
 U = np.array([0.0, 2.0**-53, 0.25, 0.5, 0.75, 1 - 2.0**-53])
 
 
-@pytest.mark.parametrize(("family", "params"), CASES)
+@cases(("family", "params"), CASES)
 def test_numbers_arrays_and_keys_give_the_same(family, params):
     expected = family.ppf(U, *params)
     by_key = dict(zip(family.keys, params, strict=True))
@@ -64,7 +65,7 @@ def test_numbers_arrays_and_keys_give_the_same(family, params):
     assert family.ppf(0.5, *columns).shape == U.shape
 
 
-@pytest.mark.parametrize(("family", "params"), CASES)
+@cases(("family", "params"), CASES)
 def test_u_is_left_alone_unless_it_is_out(family, params):
     u = U.copy()
     expected = family.ppf(u, *params)
@@ -89,7 +90,7 @@ def test_a_member_gives_what_the_family_gives_and_checks_nothing(family, params,
     assert member.support() == ends
 
 
-@pytest.mark.parametrize(("family", "params"), CASES)
+@cases(("family", "params"), CASES)
 def test_draws_are_finite_rise_and_lie_in_the_support(family, params):
     x = family.ppf(U, *params)
     low, high = family.support(*params)
@@ -99,8 +100,8 @@ def test_draws_are_finite_rise_and_lie_in_the_support(family, params):
     assert x[-1] <= high
 
 
-@pytest.mark.parametrize(("family", "params"), CASES)
-@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, 1e200])
+@cases(("family", "params"), CASES)
+@cases("bad", [np.nan, np.inf, -np.inf, 1e200])
 def test_a_bad_parameter_spoils_its_own_trials_only(family, params, bad, clean):
     for place in range(len(params)):
         columns = [np.full(3, value) for value in params]
@@ -118,7 +119,7 @@ def test_a_bad_parameter_spoils_its_own_trials_only(family, params, bad, clean):
             np.testing.assert_array_equal(result, [expected, np.nan, expected])
 
 
-@pytest.mark.parametrize(("family", "params"), CASES)
+@cases(("family", "params"), CASES)
 def test_rules_agree_for_numbers_and_trials(family, params, clean):
     """Every order of the parameters: `check` is silent exactly where `valid` holds and `ppf` gives a number."""
     rng = np.random.default_rng(1)
@@ -129,7 +130,7 @@ def test_rules_agree_for_numbers_and_trials(family, params, clean):
     assert 0 < valid.sum() < len(trials)
 
 
-@pytest.mark.parametrize(("family", "params"), CASES)
+@cases(("family", "params"), CASES)
 def test_a_number_that_is_none(family, params):
     broken = (*params[:-1], float("nan"))
     spec = family.parameters[-1]
@@ -138,7 +139,7 @@ def test_a_number_that_is_none(family, params):
     assert np.isnan(family.ppf(0.5, *broken))
 
 
-@pytest.mark.parametrize(("family", "params"), CASES)
+@cases(("family", "params"), CASES)
 def test_wrong_parameters_are_a_type_error(family, params):
     with pytest.raises(TypeError, match=f"{family.name} takes {family.keys[0]}"):
         family.ppf(0.5, *params[:-1])

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.distributions import FAMILIES, Truncated
@@ -52,7 +53,7 @@ def test_the_upper_tail_keeps_its_digits():
     np.testing.assert_allclose(Truncated(BETA).ppf(u, 0.99, 1.0, 0.0, 1.0, 1.0, 20.0), expected, rtol=1e-14)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("params", "key", "message"),
     [
         ((3, 2, 1, 1), "low", "Low (3) is above High (2)"),

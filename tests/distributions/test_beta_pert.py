@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.distributions import FAMILIES, Truncated
@@ -40,7 +41,7 @@ def test_the_upper_tail_keeps_its_digits():
     np.testing.assert_allclose(Truncated(PERT).ppf(u, 0.9999, 1.0, 0.0, 0.0, 1.0), expected, rtol=1e-14)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("params", "key", "message"),
     [
         ((3, 2, 1), "low", "Low (3) is above High (1)"),

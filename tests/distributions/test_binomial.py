@@ -4,7 +4,7 @@ import math
 from fractions import Fraction
 
 import numpy as np
-import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
@@ -14,7 +14,7 @@ from xlmc.distributions.binomial import Binomial
 BINOMIAL = Binomial()
 
 
-@pytest.mark.parametrize("params", [(0.3, 20), (0.5, 1), (1e-6, 1000), (0.999, 400), (0.37, 1_000_000), (1e-7, 10**9)])
+@cases("params", [(0.3, 20), (0.5, 1), (1e-6, 1000), (0.999, 400), (0.37, 1_000_000), (1e-7, 10**9)])
 def test_against_scipy(params, counts_agree):
     probability, trials = params
     counts_agree(BINOMIAL, params, stats.binom(trials, probability))
@@ -38,7 +38,7 @@ def test_a_thousand_million_trials():
     np.testing.assert_allclose(x - 5e8, [-half_width, 0, half_width], atol=1)
 
 
-@pytest.mark.parametrize(("params", "always"), [((0.0, 5), 0), ((1.0, 5), 5), ((0.3, 0), 0)])
+@cases(("params", "always"), [((0.0, 5), 0), ((1.0, 5), 5), ((0.3, 0), 0)])
 def test_constants(params, always, clean):
     np.testing.assert_array_equal(BINOMIAL.ppf(np.array([0.0, 0.5, 1 - 2.0**-53]), *params), always)
     np.testing.assert_array_equal(BINOMIAL.isf(np.array([0.1, 0.9]), *params), always)
@@ -56,7 +56,7 @@ def test_the_quantile_is_the_first_that_reaches(p, n, k):
     assert x == 0 or BINOMIAL.cdf(x - 1, p, n) < u
 
 
-@pytest.mark.parametrize(
+@cases(
     ("params", "key", "message"),
     [
         ((-0.1, 5), "probability", "Probability (-0.1) must be from 0 to 1"),

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
@@ -207,7 +208,7 @@ def test_any_range_by_percentiles(name, given_keys, low, rise, fall):
     np.testing.assert_allclose(family.ppf(p, *found), x, rtol=0, atol=1e-8 * (rise + fall))
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "known", "points"),
     [
         ("Normal", {}, [(0.1, 3.0), (0.9, 3.0)]),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.distributions import FAMILIES, Truncated
@@ -94,7 +95,7 @@ def test_ranks_are_those_of_the_count_and_percentiles_those_of_the_sums():
         assert abs(share - p) < 5 * np.sqrt(p * (1 - p) * (1 / N + 1 / 65536))
 
 
-@pytest.mark.parametrize(
+@cases(
     ("family", "params", "key", "message"),
     [
         (CLAIMS, (-1.0, 1.0), "frequency rate", "Frequency: Rate (-1) must be above 0 and at most 1,000,000,000"),

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.distributions import FAMILIES, DataError, Truncated
@@ -52,7 +53,7 @@ def test_the_upper_tail_keeps_its_digits():
     np.testing.assert_allclose((3 - x) * 2.0**40, 1 - u, atol=2e-3)  # the grid of doubles below 3 is 2^-51
 
 
-@pytest.mark.parametrize(
+@cases(
     ("params", "key", "message"),
     [
         ((1, 3), "low", "Low (1) leaves no room below the first value (1)"),
@@ -67,7 +68,7 @@ def test_bad_parameters(params, key, message):
     assert fault.hint
 
 
-@pytest.mark.parametrize(
+@cases(
     ("data", "message", "row", "column"),
     [
         ([[1, 0.5], [1, 0.6]], "The value 1 is not above the one before it, 1", 1, 0),

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.distributions.custom_data import custom_pieces, rows_of, value_pieces, weighted_pieces
 from xlmc.distributions.parameters import DataError
@@ -33,7 +34,7 @@ FORMS = {
 }
 
 
-@pytest.mark.parametrize(("rows", "pieces"), FORMS.values(), ids=FORMS)
+@cases(("rows", "pieces"), FORMS.values(), ids=FORMS)
 def test_every_form(rows, pieces):
     found = custom_pieces(rows)
     for piece, expected in zip(found, pieces, strict=True):
@@ -48,7 +49,7 @@ CUMULATIVE = {
 }
 
 
-@pytest.mark.parametrize(("rows", "weights"), CUMULATIVE.values(), ids=CUMULATIVE)
+@cases(("rows", "weights"), CUMULATIVE.values(), ids=CUMULATIVE)
 def test_cumulative_weights(rows, weights):
     assert [piece.weight for piece in custom_pieces(rows, cumulative=True)] == weights
 

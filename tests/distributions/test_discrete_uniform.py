@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
@@ -11,7 +11,7 @@ from xlmc.distributions.discrete_uniform import DiscreteUniform
 DIE = DiscreteUniform()
 
 
-@pytest.mark.parametrize("params", [(1, 6), (-3, 3), (0, 1), (-1_000_000, 1_000_000), (0, 10**9)])
+@cases("params", [(1, 6), (-3, 3), (0, 1), (-1_000_000, 1_000_000), (0, 10**9)])
 def test_against_scipy(params, counts_agree):
     low, high = params
     counts_agree(DIE, params, stats.randint(low, high + 1))
@@ -30,7 +30,7 @@ def test_the_quantile_is_the_first_that_reaches(low, width, k):
     assert DIE.cdf(x - 1, low, low + width) < u
 
 
-@pytest.mark.parametrize(
+@cases(
     ("params", "key", "message"),
     [
         ((6, 1), "low", "Low (6) is above High (1)"),

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
@@ -67,7 +68,7 @@ def test_one_value_is_a_normal():
     np.testing.assert_allclose(EmpiricalSmoothed([5.0], 2.0).ppf(u), stats.norm(5, 2).ppf(u), rtol=1e-12)
 
 
-@pytest.mark.parametrize("data", [[1, 2, 3, 4, 5], RNG.normal(size=200), [0, 0, 0, 0, 9]])
+@cases("data", [[1, 2, 3, 4, 5], RNG.normal(size=200), [0, 0, 0, 0, 9]])
 def test_silvermans_rule(data):
     """0.9·min(s, IQR/1.34)·m^-0.2, where an interquartile range of 0 does not count."""
     spread = [np.std(data, ddof=1), stats.iqr(data) / 1.34]
@@ -97,7 +98,7 @@ def test_it_is_built_with_silvermans_bandwidth_or_the_given_one():
     assert EmpiricalSmoothed().built(COLUMN, bandwidth=0.5).bandwidth == 0.5
 
 
-@pytest.mark.parametrize(
+@cases(
     ("data", "options", "message"),
     [
         ([[2.0], [2.0]], {}, "The values are all equal"),

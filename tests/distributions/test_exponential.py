@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.distributions import FAMILIES, Truncated
@@ -8,7 +9,7 @@ from xlmc.distributions import FAMILIES, Truncated
 EXPONENTIAL = FAMILIES["Exponential"]
 
 
-@pytest.mark.parametrize("rate", [1.0, 0.05, 1e-6, 3e5])
+@cases("rate", [1.0, 0.05, 1e-6, 3e5])
 def test_against_scipy(rate, quantiles_agree, moments_agree, draws_fit):
     oracle = stats.expon(scale=1 / rate)
     quantiles_agree(EXPONENTIAL, (rate,), oracle)

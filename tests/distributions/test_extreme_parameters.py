@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -84,7 +85,7 @@ def _family(name, data):
         return None
 
 
-@pytest.mark.parametrize(("name", "params", "message"), REFUSED)
+@cases(("name", "params", "message"), REFUSED)
 def test_draws_that_would_be_no_numbers_are_refused_with_the_parameter(name, params, message):
     fault = FAMILIES[name].fault(*params)
     assert fault is not None
@@ -92,8 +93,8 @@ def test_draws_that_would_be_no_numbers_are_refused_with_the_parameter(name, par
     assert fault.key in FAMILIES[name].keys
 
 
-@pytest.mark.parametrize(("name", "params", "_"), REFUSED)
-def test_the_same_parameters_that_vary_by_trial_are_errors_of_the_trial(name, params, _):
+@cases("name, params", [(name, params) for name, params, _ in REFUSED])
+def test_the_same_parameters_that_vary_by_trial_are_errors_of_the_trial(name, params):
     columns = [np.full(U.shape, value) for value in params]
     draws = U.copy()
     keys = tuple(range(len(params)))
@@ -112,8 +113,8 @@ def test_cutoffs_at_both_ends_make_a_distribution_of_them():
     assert "cutoffs at both ends" in fault.hint
 
 
-@pytest.mark.parametrize("name", COUNTS)
-@pytest.mark.parametrize("end", [1e17, 1e300, 1.7e308, np.inf])
+@cases("name", COUNTS)
+@cases("end", [1e17, 1e300, 1.7e308, np.inf])
 def test_far_cutoffs_of_counts_change_no_draw(name, end):
     family, params = FAMILIES[name], COUNTS[name]
     inner = np.array([0.01, 0.25, 0.5, 0.75, 0.99])
@@ -121,21 +122,21 @@ def test_far_cutoffs_of_counts_change_no_draw(name, end):
     np.testing.assert_array_equal(Truncated(family).ppf(inner, -end, end, *params), family.ppf(inner, *params))
 
 
-@pytest.mark.parametrize("name", COUNTS)
-@pytest.mark.parametrize("cutoffs", [(1e17, np.inf), (1e300, 1.7e308), (-np.inf, -1e17), (-1.7e308, -1e300)])
+@cases("name", COUNTS)
+@cases("cutoffs", [(1e17, np.inf), (1e300, 1.7e308), (-np.inf, -1e17), (-1.7e308, -1e300)])
 def test_cutoffs_far_outside_of_counts_leave_nothing(name, cutoffs):
     fault = Truncated(FAMILIES[name]).fault(*cutoffs, *COUNTS[name])
     assert fault is not None
     assert "leaves nothing of the distribution" in fault.message
 
 
-@pytest.mark.parametrize("bandwidth", [5e-324, 1e-308, 1e-301, 1e-17, 1e151, 1.7e308])
+@cases("bandwidth", [5e-324, 1e-308, 1e-301, 1e-17, 1e151, 1.7e308])
 def test_a_bandwidth_that_smooths_nothing_or_everything_is_refused(bandwidth):
     with pytest.raises(DataError, match="Bandwidth"):
         FAMILIES["Empirical smoothed"].built(np.array([[1.0], [2.0], [4.0]]), bandwidth=bandwidth)
 
 
-@pytest.mark.parametrize("values", [[1.0, 1.0 + 2e-16], [1e150, -1e150], [5e-324, 1e-323, 0.0], [1e17, 1e17 + 16]])
+@cases("values", [[1.0, 1.0 + 2e-16], [1e150, -1e150], [5e-324, 1e-323, 0.0], [1e17, 1e17 + 16]])
 def test_measurements_at_the_ends_of_what_a_number_can_be_are_smoothed_or_refused(values):
     with np.errstate(all="raise", under="ignore"):
         try:
@@ -146,7 +147,7 @@ def test_measurements_at_the_ends_of_what_a_number_can_be_are_smoothed_or_refuse
         assert np.isfinite(family.cdf(values)).all()
 
 
-@pytest.mark.parametrize(("name", "params", "message"), REFUSED)
+@cases(("name", "params", "message"), REFUSED)
 def test_a_book_with_them_is_refused(book, name, params, message):
     given_ = {"cell": "A1", "distribution": name, **dict(zip(FAMILIES[name].keys, params, strict=True))}
     with pytest.raises(DefinitionError, match=re.escape(message)) as refused:

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.distributions import FAMILIES, Truncated
@@ -46,7 +47,7 @@ def test_the_upper_tail_keeps_its_digits():
     assert oracle.sf(80.0) < 1e-30
 
 
-@pytest.mark.parametrize(
+@cases(
     ("params", "key", "message"),
     [
         ((0, 0, 1), "scale", "Scale (0) must be above 0"),

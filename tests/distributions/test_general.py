@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.distributions import FAMILIES, DataError, Piecewise, Truncated
@@ -56,7 +57,7 @@ def test_the_upper_tail_keeps_its_digits():
     np.testing.assert_allclose(1.05 - x, 1e-6 * np.sqrt(1 - u), atol=1e-14)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("params", "key", "message"),
     [
         ((0.8, 1), "low", "Low (0.8) leaves no room below the first value (0.7)"),
@@ -70,7 +71,7 @@ def test_bad_parameters(params, key, message):
     assert fault.hint
 
 
-@pytest.mark.parametrize(
+@cases(
     ("data", "message", "row", "column"),
     [
         ([[2, 1], [1, 1]], "The value 1 is not above the one before it, 2", 1, 0),

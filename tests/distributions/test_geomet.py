@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.distributions.geometric import Geomet, Geometric
@@ -9,7 +9,7 @@ from xlmc.distributions.geometric import Geomet, Geometric
 GEOMET = Geomet()
 
 
-@pytest.mark.parametrize("probability", [0.25, 0.5, 0.9, 1e-3])
+@cases("probability", [0.25, 0.5, 0.9, 1e-3])
 def test_against_scipy(probability, counts_agree):
     counts_agree(GEOMET, (probability,), stats.geom(probability, loc=-1))
 

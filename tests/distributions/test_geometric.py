@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
@@ -11,7 +12,7 @@ from xlmc.distributions.geometric import Geometric
 GEOMETRIC = Geometric()
 
 
-@pytest.mark.parametrize("probability", [0.25, 0.5, 0.9999, 1e-3, 1e-6])
+@cases("probability", [0.25, 0.5, 0.9999, 1e-3, 1e-6])
 def test_against_scipy(probability, counts_agree):
     counts_agree(GEOMETRIC, (probability,), stats.geom(probability))
 
@@ -34,7 +35,7 @@ def test_the_quantile_is_the_first_that_reaches(p, k):
     assert GEOMETRIC.cdf(x - 1, p) < u
 
 
-@pytest.mark.parametrize(("probability", "shown"), [(0, "0"), (-1, "-1"), (25, "25")])
+@cases(("probability", "shown"), [(0, "0"), (-1, "-1"), (25, "25")])
 def test_bad_probabilities(probability, shown):
     fault = GEOMETRIC.fault(probability)
     assert (fault.key, fault.message) == ("probability", f"Probability ({shown}) must be above 0 and at most 1")

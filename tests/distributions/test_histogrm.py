@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.distributions import FAMILIES, DataError, Truncated
@@ -10,7 +11,7 @@ WEIGHTS = np.array([1.0, 4.0, 0.0, 2.0, 4.0])
 HISTOGRM = FAMILIES["Histogrm"].built(WEIGHTS[:, None])
 
 
-@pytest.mark.parametrize("params", [(0.0, 1.0), (-20.0, 80.0), (10.0, 11.0)])
+@cases("params", [(0.0, 1.0), (-20.0, 80.0), (10.0, 11.0)])
 def test_against_scipy(params, quantiles_agree, moments_agree, draws_fit):
     oracle = stats.rv_histogram((WEIGHTS, np.linspace(*params, 6)), density=False)
     quantiles_agree(HISTOGRM, params, oracle)
@@ -34,7 +35,7 @@ def test_low_must_be_below_high():
     assert fault.hint
 
 
-@pytest.mark.parametrize(
+@cases(
     ("weights", "message", "row"),
     [
         ([1, -1], "The weight -1 is below 0", 1),

@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
@@ -51,7 +52,7 @@ def test_half_of_a_thousand_million():
     np.testing.assert_allclose(x - 2.5e8, [-half_width, 0, half_width], atol=1)
 
 
-@pytest.mark.parametrize(("params", "always"), [((0, 5, 9), 0), ((9, 5, 9), 5), ((4, 9, 9), 4), ((1, 1, 1), 1)])
+@cases(("params", "always"), [((0, 5, 9), 0), ((9, 5, 9), 5), ((4, 9, 9), 4), ((1, 1, 1), 1)])
 def test_constants(params, always, clean):
     np.testing.assert_array_equal(HYPERGEOMETRIC.ppf(np.array([0.0, 0.5, 0.999]), *params), always)
     assert HYPERGEOMETRIC.variance(*params) == 0
@@ -68,7 +69,7 @@ def test_the_quantile_is_the_first_that_reaches(population, shares, k):
     assert x == low or HYPERGEOMETRIC.cdf(x - 1, *params) < u
 
 
-@pytest.mark.parametrize(
+@cases(
     ("params", "key", "message"),
     [
         ((-1, 5, 9), "success", "Success (-1) must be a whole number from 0 to 1,000,000,000"),

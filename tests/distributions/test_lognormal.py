@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.distributions import FAMILIES, Truncated
@@ -14,9 +15,7 @@ def oracle_of(location, mean, std_dev):
     return stats.lognorm(np.sqrt(variance), location, (mean - location) * np.exp(-variance / 2))
 
 
-@pytest.mark.parametrize(
-    "params", [(0.0, 1.0, 1.0), (0.0, 10.0, 3.0), (5.0, 5.5, 4.0), (-100.0, 3.0, 1e-2), (0.0, 1e-8, 2e-8)]
-)
+@cases("params", [(0.0, 1.0, 1.0), (0.0, 10.0, 3.0), (5.0, 5.5, 4.0), (-100.0, 3.0, 1e-2), (0.0, 1e-8, 2e-8)])
 def test_against_scipy(params, quantiles_agree, moments_agree, draws_fit):
     oracle = oracle_of(*params)
     quantiles_agree(LOGNORMAL, params, oracle)

@@ -4,7 +4,7 @@ import math
 from fractions import Fraction
 
 import numpy as np
-import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
@@ -15,7 +15,7 @@ from xlmc.distributions.negative_binomial import NegativeBinomial
 NEGATIVE_BINOMIAL = NegativeBinomial()
 
 
-@pytest.mark.parametrize("params", [(0.25, 3), (0.5, 1), (0.9, 50), (1e-4, 2), (0.3, 100_000)])
+@cases("params", [(0.25, 3), (0.5, 1), (0.9, 50), (1e-4, 2), (0.3, 100_000)])
 def test_against_scipy(params, counts_agree):
     probability, shape = params
     counts_agree(NEGATIVE_BINOMIAL, params, stats.nbinom(shape, probability, loc=shape))
@@ -45,7 +45,7 @@ def test_the_quantile_is_the_first_that_reaches(p, shape, k):
     assert NEGATIVE_BINOMIAL.cdf(x - 1, p, shape) < u
 
 
-@pytest.mark.parametrize(
+@cases(
     ("params", "key", "message"),
     [
         ((0, 3), "probability", "Probability (0) must be above 0 and at most 1"),

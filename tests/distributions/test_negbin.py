@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.distributions.negative_binomial import NegativeBinomial, Negbin
@@ -9,7 +9,7 @@ from xlmc.distributions.negative_binomial import NegativeBinomial, Negbin
 NEGBIN = Negbin()
 
 
-@pytest.mark.parametrize("params", [(0.25, 3), (0.9, 50), (0.01, 2)])
+@cases("params", [(0.25, 3), (0.9, 50), (0.01, 2)])
 def test_against_scipy(params, counts_agree):
     probability, shape = params
     counts_agree(NEGBIN, params, stats.nbinom(shape, probability))

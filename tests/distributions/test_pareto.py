@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.distributions import FAMILIES, Truncated
@@ -9,7 +10,7 @@ from xlmc.distributions import FAMILIES, Truncated
 PARETO = FAMILIES["Pareto"]
 
 
-@pytest.mark.parametrize("params", [(1.0, 3.0), (10.0, 2.5), (1e-6, 80.0), (5e4, 3.0)])
+@cases("params", [(1.0, 3.0), (10.0, 2.5), (1e-6, 80.0), (5e4, 3.0)])
 def test_against_scipy(params, quantiles_agree, moments_agree, draws_fit):
     location, shape = params
     oracle = stats.pareto(shape, scale=location)

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import integrate
@@ -90,7 +91,7 @@ def test_quantiles_of_values_are_exact_at_every_jump():
     np.testing.assert_array_equal(VALUES.ppf(np.array([0.0, 1 - 2.0**-53])), [1, 6])
 
 
-@pytest.mark.parametrize(
+@cases(
     ("lower", "upper", "values", "shares"),
     [
         (2, math.inf, [2, 6], [2 / 7, 5 / 7]),

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
@@ -11,7 +12,7 @@ from xlmc.distributions import FAMILIES, DataError, Piecewise, Truncated
 HEIGHTS = st.lists(st.floats(0, 10).map(lambda h: round(h, 3)), min_size=2, max_size=8).filter(lambda h: max(h) > 0)
 
 
-@pytest.mark.parametrize("peak", [0.25, 0.5, 0.9])
+@cases("peak", [0.25, 0.5, 0.9])
 def test_a_triangle(peak, quantiles_agree, moments_agree, draws_fit):
     hill = Piecewise.of_density([10, 10 + 4 * peak, 14], [0, 7, 0])
     oracle = stats.triang(peak, 10, 4)
@@ -83,9 +84,7 @@ def test_an_interval_of_height_0_is_never_drawn():
     assert not ((x > 1) & (x < 2)).any()
 
 
-@pytest.mark.parametrize(
-    ("values", "heights"), [([0, 1], [0, 0]), ([1, 0], [1, 1]), ([0, 1, 2], [1, -1, 1]), ([0, 0, 1], [1, 1, 1])]
-)
+@cases(("values", "heights"), [([0, 1], [0, 0]), ([1, 0], [1, 1]), ([0, 1, 2], [1, -1, 1]), ([0, 0, 1], [1, 1, 1])])
 def test_points_that_are_no_density(values, heights):
     with pytest.raises(DataError, match="The points are not a density") as caught:
         Piecewise.of_density(values, heights)

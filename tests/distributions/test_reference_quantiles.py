@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.distributions import FAMILIES
 
@@ -30,17 +31,17 @@ STUDENTS_T = {
 }
 
 
-@pytest.mark.parametrize(("shape", "expected"), GAMMA.items())
+@cases(("shape", "expected"), GAMMA.items())
 def test_gamma(shape, expected):
     np.testing.assert_allclose(FAMILIES["Gamma"].ppf(P, 0.0, 1.0, shape), expected, rtol=1e-11)
 
 
-@pytest.mark.parametrize(("shapes", "expected"), BETA.items())
+@cases(("shapes", "expected"), BETA.items())
 def test_beta(shapes, expected):
     np.testing.assert_allclose(FAMILIES["Beta"].ppf(P, 0.0, 1.0, *shapes), expected, rtol=1e-11)
 
 
-@pytest.mark.parametrize(("degrees", "expected"), STUDENTS_T.items())
+@cases(("degrees", "expected"), STUDENTS_T.items())
 def test_students_t(degrees, expected):
     np.testing.assert_allclose(FAMILIES["Student's t"].ppf(P, 0.0, 1.0, degrees), expected, rtol=1e-11)
 

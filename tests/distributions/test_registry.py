@@ -4,6 +4,7 @@ import sys
 from subprocess import run
 
 import pytest
+from cases import cases
 
 from xlmc.address import Cell
 from xlmc.distributions import FAMILIES, family_named
@@ -11,7 +12,7 @@ from xlmc.distributions.spelling import plain
 from xlmc.errors import DefinitionError
 
 
-@pytest.mark.parametrize(
+@cases(
     ("typed", "name"),
     [
         ("Uniform", "Uniform"),
@@ -54,7 +55,7 @@ def test_names_people_type(typed, name):
     assert family_named(typed) is FAMILIES[name]
 
 
-@pytest.mark.parametrize(
+@cases(
     ("typed", "hint"),
     [
         ("Unifrom", "Did you mean Uniform?"),

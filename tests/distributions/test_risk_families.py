@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.distributions import FAMILIES, Truncated
@@ -123,7 +124,7 @@ MOMENTS = [
 ]
 
 
-@pytest.mark.parametrize(("skewness", "kurtosis"), MOMENTS)
+@cases(("skewness", "kurtosis"), MOMENTS)
 def test_johnson_has_the_moments_asked_for(skewness, kurtosis):
     """By integration over the normal scores of u, by the trapezoidal rule."""
     johnson, params = FAMILIES["Johnson moments"], (10.0, 2.0, skewness, kurtosis)

@@ -1,11 +1,11 @@
 from __future__ import annotations
 
-import pytest
+from cases import cases
 
 from xlmc.distributions.spelling import did_you_mean, nearest, plain
 
 
-@pytest.mark.parametrize("text", ["Std dev", "std_dev", " STD-DEV ", "StdDev", "std \t dev"])
+@cases("text", ["Std dev", "std_dev", " STD-DEV ", "StdDev", "std \t dev"])
 def test_spellings_of_one_name(text):
     assert plain(text) == "stddev"
 
@@ -14,7 +14,7 @@ def test_different_names_stay_different():
     assert plain("Range %") != plain("Range")
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "found"),
     [("Triangel", "Triangular"), ("unifrom", "Uniform"), ("nomal", "Normal"), ("xyz", None), ("", None)],
 )

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.distributions import FAMILIES, Truncated
@@ -50,7 +51,7 @@ def test_far_values_raise_no_flag(clean):
     np.testing.assert_array_equal(STUDENTS_T.cdf(np.array([-1e300, 0.0, 1e300]), 0, 1e-100, 3), [0, 0.5, 1])
 
 
-@pytest.mark.parametrize(
+@cases(
     ("params", "key", "message"),
     [
         ((0, 0, 1), "scale", "Scale (0) must be above 0"),

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
@@ -16,7 +17,7 @@ SHAPES = [FRICTION, (0.0, 0.0, 1.0, 3.0), (0.0, 2.0, 3.0, 3.0), (-1.0, 2.0, 2.0,
 U = np.array([0.0, 1e-6, 0.01, 0.2, 0.5, 0.77, 0.99, 1 - 1e-6, 1 - 2.0**-53])
 
 
-@pytest.mark.parametrize("params", SHAPES)
+@cases("params", SHAPES)
 def test_against_scipy(params, quantiles_agree, moments_agree, draws_fit):
     low, first, last, high = params
     width = high - low
@@ -45,7 +46,7 @@ def test_round_trip(low, rise, flat, fall, k):
     assert TRAPEZOID.cdf(x, *params) == pytest.approx(u, abs=1e-9)
 
 
-@pytest.mark.parametrize("peak", [2.0, 3.5, 6.0])
+@cases("peak", [2.0, 3.5, 6.0])
 def test_without_a_flat_part_it_is_triangular(peak):
     triangular = Triangular()
     np.testing.assert_allclose(TRAPEZOID.ppf(U, 2, peak, peak, 6), triangular.ppf(U, 2, peak, 6), rtol=1e-14)
@@ -77,7 +78,7 @@ def test_very_narrow_shapes_keep_their_digits():
     np.testing.assert_allclose(TRAPEZOID.ppf(U, *narrow), TRAPEZOID.ppf(U, *FRICTION) * 1e-200, rtol=1e-13)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("params", "key", "message"),
     [
         ((12, 10.5, 11, 10), "low", "Low (12) is above High (10)"),

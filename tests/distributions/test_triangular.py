@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
@@ -12,7 +13,7 @@ TRIANGULAR = Triangular()
 SHAPES = [(0.0, 2.0, 4.0), (0.5, 0.7, 1.1), (-3.0, -3.0, 1.0), (-3.0, 1.0, 1.0), (1e5, 1e5 + 0.9, 1e5 + 1)]
 
 
-@pytest.mark.parametrize("params", SHAPES)
+@cases("params", SHAPES)
 def test_against_scipy(params, quantiles_agree, moments_agree, draws_fit):
     low, likeliest, high = params
     oracle = stats.triang((likeliest - low) / (high - low), low, high - low)
@@ -41,7 +42,7 @@ def test_three_equal_values_are_a_constant(clean):
     assert TRIANGULAR.check(0.1, 0.1, 0.1) is None
 
 
-@pytest.mark.parametrize(
+@cases(
     ("params", "key", "message"),
     [
         ((12, 11, 10), "low", "Low (12) is above High (10)"),

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
@@ -17,7 +18,7 @@ def told_by_percentiles(low, likeliest, high, below, above):
     return triangle, (triangle.ppf(below / 100), likeliest, triangle.ppf(above / 100), below, above)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("triangle", "percents"),
     [
         ((0.0, 1.0, 4.0), (10.0, 90.0)),
@@ -68,7 +69,7 @@ def test_the_upper_tail_keeps_its_digits():
     np.testing.assert_allclose(1 - Truncated(TRIGEN).ppf(u, 1 - 1e-6, 1.0, *params), expected, atol=1e-15)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("params", "key", "message"),
     [
         ((5, 2, 6, 10, 90), "bottom", "Bottom (5) is above Likeliest (2)"),

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
@@ -15,7 +16,7 @@ NORMAL = Truncated(FAMILIES["Normal"])
 UNIFORM = Truncated(FAMILIES["Uniform"])
 
 
-@pytest.mark.parametrize(
+@cases(
     ("lower", "upper"),
     [(-1.0, 2.0), (8.0, 9.0), (-9.0, -8.0), (8.0, INF), (-INF, -8.0), (30.0, 31.0), (-0.5, INF), (-INF, 0.5)],
 )
@@ -50,7 +51,7 @@ def test_round_trip_inside_the_cutoffs(name, params, lower, width, k):
     assert truncated.cdf(x, lower, lower + width, *params) == pytest.approx(u, abs=1e-9)
 
 
-@pytest.mark.parametrize(("lower", "upper"), [(-1.0, INF), (0.3, INF), (-INF, INF), (-INF, 1.0), (35.0, INF)])
+@cases(("lower", "upper"), [(-1.0, INF), (0.3, INF), (-INF, INF), (-INF, 1.0), (35.0, INF)])
 def test_extreme_draws_are_finite(lower, upper, clean):
     x = NORMAL.ppf(np.array([0.0, 2.0**-53, 1 - 2.0**-53]), lower, upper, 0.0, 1.0)
     assert np.isfinite(x).all()
@@ -74,7 +75,7 @@ def test_out_may_be_u():
     np.testing.assert_array_equal(u, expected)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("truncated", "cutoffs", "params", "key", "message"),
     [
         (NORMAL, (9.0, 8.0), (0, 1), "lower_cutoff", "Lower cutoff (9) is not below Upper cutoff (8)"),
@@ -101,6 +102,6 @@ def test_the_hint_tells_where_the_distribution_lies():
     assert NORMAL.fault(60.0, INF, 0, 1).hint.endswith("which lies around its mean")
 
 
-@pytest.mark.parametrize("cutoffs", [(3.0, 5.0), (-INF, 5.0), (3.0, INF), (0.0, 99.0)])
+@cases("cutoffs", [(3.0, 5.0), (-INF, 5.0), (3.0, INF), (0.0, 99.0)])
 def test_good_cutoffs(cutoffs):
     assert UNIFORM.check(*cutoffs, low=2, high=6) is None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from cases import cases
 
 from xlmc.distributions import FAMILIES, Truncated
 
@@ -47,8 +47,8 @@ NEAR = [
 U = np.array([0.0, 1e-6, 0.1, 0.5, 0.9, 1 - 1e-6])
 
 
-@pytest.mark.parametrize(("name", "params"), NEAR)
-@pytest.mark.parametrize(("below", "above"), [(0.2, 0.9), (0.6, 0.95), (1e-3, 0.3)])
+@cases(("name", "params"), NEAR)
+@cases(("below", "above"), [(0.2, 0.9), (0.6, 0.95), (1e-3, 0.3)])
 def test_between_two_quantiles(name, params, below, above):
     family = FAMILIES[name]
     lower, upper = family.ppf(np.array([below, above]), *params)
@@ -58,8 +58,8 @@ def test_between_two_quantiles(name, params, below, above):
     np.testing.assert_allclose(Truncated(family).ppf(U, lower, upper, *params), expected, rtol=0, atol=1e-9 * spread)
 
 
-@pytest.mark.parametrize(("name", "params"), FAR)
-@pytest.mark.parametrize("left", [1e-12, 1e-100])
+@cases(("name", "params"), FAR)
+@cases("left", [1e-12, 1e-100])
 def test_far_out_above(name, params, left):
     """Of the probability above the cutoff, the share 1 - u lies above the quantile of u."""
     family = FAMILIES[name]

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
@@ -12,7 +13,7 @@ UNIFORM = Uniform()
 RANGES = [(0.60, 0.95), (181.0, 191.0), (-28.6, -22.6), (-3.2, 3.2), (1e-12, 2e-12), (1e6, 1e6 + 1)]
 
 
-@pytest.mark.parametrize("params", RANGES)
+@cases("params", RANGES)
 def test_against_scipy(params, quantiles_agree, moments_agree, draws_fit):
     oracle = stats.uniform(params[0], params[1] - params[0])
     quantiles_agree(UNIFORM, params, oracle)

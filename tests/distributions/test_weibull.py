@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.distributions import FAMILIES, Truncated
@@ -9,9 +10,7 @@ from xlmc.distributions import FAMILIES, Truncated
 WEIBULL = FAMILIES["Weibull"]
 
 
-@pytest.mark.parametrize(
-    "params", [(0.0, 1.0, 1.0), (1.0, 2.0, 2.0), (-5.0, 0.1, 3.6), (0.0, 1.0, 0.5), (10.0, 1e4, 80.0)]
-)
+@cases("params", [(0.0, 1.0, 1.0), (1.0, 2.0, 2.0), (-5.0, 0.1, 3.6), (0.0, 1.0, 0.5), (10.0, 1e4, 80.0)])
 def test_against_scipy(params, quantiles_agree, moments_agree, draws_fit):
     location, scale, shape = params
     oracle = stats.weibull_min(shape, location, scale)
@@ -24,7 +23,7 @@ def test_shape_2_is_rayleigh(quantiles_agree):
     quantiles_agree(WEIBULL, (0.0, np.sqrt(2), 2.0), stats.rayleigh())
 
 
-@pytest.mark.parametrize(
+@cases(
     ("shape", "variance"),
     # Γ(1 + 2/k) − Γ(1 + 1/k)² with 60 digits, by mpmath
     [

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -35,8 +36,8 @@ def mass(family, params, k):
     return family.cdf(k, *params) - family.cdf(k - 1, *params)
 
 
-@pytest.mark.parametrize(("family", "params"), CASES)
-@pytest.mark.parametrize(("lower", "upper"), [(1, INF), (0.5, INF), (-INF, 4), (1, 4), (0.2, 4.9), (3, 9)])
+@cases(("family", "params"), CASES)
+@cases(("lower", "upper"), [(1, INF), (0.5, INF), (-INF, 4), (1, 4), (0.2, 4.9), (3, 9)])
 def test_truncation_keeps_both_cutoffs_and_renormalises(family, params, lower, upper):
     if family.name == "Yes-No" and lower == 3:
         return
@@ -54,7 +55,7 @@ def test_truncation_keeps_both_cutoffs_and_renormalises(family, params, lower, u
     assert (u >= expected[at - 1] - 1e-12).all()
 
 
-@pytest.mark.parametrize(("family", "params"), CASES)
+@cases(("family", "params"), CASES)
 def test_truncation_in_the_far_upper_tail(family, params):
     """Counted from above, the tail keeps its digits."""
     lower = float(family.isf(1e-12, *params))
@@ -64,7 +65,7 @@ def test_truncation_in_the_far_upper_tail(family, params):
     assert x[0] == lower
 
 
-@pytest.mark.parametrize(
+@cases(
     ("cutoffs", "key", "message"),
     [
         ((3.2, 3.8), "lower_cutoff", "Lower cutoff (3.2) leaves nothing of the distribution"),
@@ -88,7 +89,7 @@ def test_cutoffs_that_vary_by_trial():
     )
 
 
-@pytest.mark.parametrize(("family", "params"), CASES)
+@cases(("family", "params"), CASES)
 def test_zero_is_the_least_that_a_draw_may_be(family, params):
     np.testing.assert_array_equal(family.ppf(0.0, *params), family.ppf(2.0**-54, *params))
 

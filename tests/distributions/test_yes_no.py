@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.distributions.yes_no import YesNo
@@ -9,7 +10,7 @@ from xlmc.distributions.yes_no import YesNo
 YES_NO = YesNo()
 
 
-@pytest.mark.parametrize("probability", [0.25, 0.5, 0.999])
+@cases("probability", [0.25, 0.5, 0.999])
 def test_against_scipy(probability, counts_agree):
     counts_agree(YES_NO, (probability,), stats.bernoulli(probability))
 

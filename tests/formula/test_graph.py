@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.address import Cell, parse_address
 from xlmc.errors import FormulaError
@@ -77,7 +78,7 @@ def test_a_faulty_cell_that_is_needed(graph_of):
     assert caught.value.where == "S!D1"
 
 
-@pytest.mark.parametrize(
+@cases(
     ("cells", "circle"),
     [
         ({"A1": "=A1+1"}, "S!A1 → S!A1"),

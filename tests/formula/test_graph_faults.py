@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.address import Cell, parse_address
 from xlmc.errors import FormulaError
@@ -57,7 +58,7 @@ def test_without_faults_it_is_the_same_graph(tolerant, workbook):
     assert (graph.formulas, graph.needs, graph.varying) == (strict.formulas, strict.needs, strict.varying)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("cells", "circles"),
     [
         ({"A1": "=A1+1"}, {"A1": "S!A1 → S!A1"}),

@@ -1,12 +1,13 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.errors import FormulaError
 from xlmc.formula import ir, parse
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "first", "rest"),
     [
         ("A1", "A1", []),

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import pytest
+from cases import cases
 
 from xlmc.formula import ir
 from xlmc.formula.parse import parse, parse_cell
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "last"),
     [
         ("A1-B1", True),

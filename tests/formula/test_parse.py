@@ -3,6 +3,7 @@ from __future__ import annotations
 from collections.abc import Sized
 
 import pytest
+from cases import cases
 from formulas.errors import FormulaError as ForeignFormulaError
 from formulas.errors import TokenError
 from formulas.parser import Parser
@@ -202,12 +203,12 @@ FAULTS = {
 }
 
 
-@pytest.mark.parametrize("text", TREES)
+@cases("text", TREES)
 def test_a_formula_and_its_tree(parsed, text):
     assert parsed(text) == TREES[text]
 
 
-@pytest.mark.parametrize("text", FAULTS)
+@cases("text", FAULTS)
 def test_a_fault_is_marked_where_it_stands(text):
     with pytest.raises(FormulaError, match="cannot be read") as caught:
         parse(text)
@@ -333,7 +334,7 @@ class TestTheSeam:
         assert issubclass(_TreeBuilder, Sized)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "values", "expected"),
     [
         ("A1+B1*2", {"A1": 1.0, "B1": 3.0}, 7.0),
@@ -350,9 +351,7 @@ def test_what_formulas_compiles_itself(text, values, expected):
     assert (type(result), result) == (type(expected), expected)
 
 
-@pytest.mark.parametrize(
-    ("text", "values"), [("NOSUCH(A1)", {"A1": 1.0}), ("#SPILL!", {}), ("(A1,B1)", {"A1": 1.0, "B1": 2.0})]
-)
+@cases(("text", "values"), [("NOSUCH(A1)", {"A1": 1.0}), ("#SPILL!", {}), ("(A1,B1)", {"A1": 1.0, "B1": 2.0})])
 def test_what_formulas_cannot_compute(text, values):
     with pytest.raises(FormulaError, match="the engine `formulas` cannot compute this"):
         compile_with_formulas(text)(values)

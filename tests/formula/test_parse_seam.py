@@ -8,6 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
+from cases import cases
 from formulas.errors import FormulaError, ParenthesesError, TokenError
 from formulas.parser import Parser
 from formulas.tokens import Token
@@ -118,7 +119,7 @@ STREAMS = {
 }
 
 
-@pytest.mark.parametrize("text", STREAMS)
+@cases("text", STREAMS)
 def test_the_postfix_stream(text):
     assert " ".join(stream(text)) == STREAMS[text]
 
@@ -129,7 +130,7 @@ def test_the_builder_gets_the_match_and_is_measured_and_finished():
     assert isinstance(builder.stream, tuple)
 
 
-@pytest.mark.parametrize("text", ["(1", "F(1", "1)", "{1", "{1,2;3}", "{1}}"])
+@cases("text", ["(1", "F(1", "1)", "{1", "{1,2;3}", "{1}}"])
 def test_brackets_that_do_not_pair_are_mistakes(text):
     with pytest.raises(FormulaError):
         stream(text)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.errors import FormulaError
 from xlmc.formula import ir, parse
@@ -150,12 +151,12 @@ FAULTS = [
 ]
 
 
-@pytest.mark.parametrize("text", TREES)
+@cases("text", TREES)
 def test_a_formula_and_its_tree(parsed, text):
     assert parsed(text) == TREES[text]
 
 
-@pytest.mark.parametrize("marked", FAULTS)
+@cases("marked", FAULTS)
 def test_a_fault_is_marked_where_it_stands(marked):
     text = marked.replace("«", "").replace("»", "")
     with pytest.raises(FormulaError, match="cannot be read") as caught:

@@ -1,12 +1,13 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.formula.ir import TableReference
 from xlmc.formula.reference_text import parse_table_reference
 
 
-@pytest.mark.parametrize(
+@cases(
     ("inner", "items", "first", "last"),
     [
         ("", (), None, None),
@@ -34,7 +35,7 @@ def test_what_stands_in_the_brackets(inner, items, first, last):
     assert parse_table_reference("T", inner) == TableReference("T", items, first, last)
 
 
-@pytest.mark.parametrize(
+@cases(
     "inner",
     ["[a],[b]", "[a]b", "[a][b]", "[a]:", ":[a]", "[a]:[b]:[c]", "[a],[#All]", "[#All]:[a]", "[]", "@@[a]", "@[#All]"],
 )

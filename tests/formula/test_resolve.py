@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.address import Cell
 from xlmc.errors import FormulaError
@@ -89,12 +90,12 @@ PLAIN = {
 }
 
 
-@pytest.mark.parametrize("text", PLAIN)
+@cases("text", PLAIN)
 def test_what_a_formula_names(see, text):
     assert see(text) == PLAIN[text]
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "at", "expected"),
     [
         ("Rate", "Data!A1", "Data!D4"),  # a sheet's own name comes first
@@ -114,7 +115,7 @@ def test_what_it_means_elsewhere(see, text, at, expected):
     assert see(text, at=at) == expected
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "written_for", "at", "expected"),
     [
         ("A1", "S!B1", "S!B4", "S!A4"),
@@ -157,7 +158,7 @@ TABLE = {
 }
 
 
-@pytest.mark.parametrize("text", TABLE)
+@cases("text", TABLE)
 def test_tables(resolved, table, text):
     tables = [table("T", "S!A1:C5", "Low", "High", "Std dev", totals_rows=1)]
     if TABLE[text] is None:
@@ -167,7 +168,7 @@ def test_tables(resolved, table, text):
         assert resolved(text, at="S!E3", tables=tables) == TABLE[text]
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "at", "expected"),
     [
         ("[@Low]", "S!C3", "S!A3"),
@@ -188,7 +189,7 @@ def test_tables_and_where_the_formula_stands(resolved, table, text, at, expected
 LINKS = "copy the value into this workbook; links are not followed"
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "message", "hint"),
     [
         ("Dta!A1", "there is no sheet 'Dta'", "did you mean 'Data'?"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.address import Cell
 from xlmc.errors import FormulaError
@@ -26,7 +27,7 @@ def read(workbook):
     return places
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "expected"),
     [
         ("SUM(Jan:Dec!A1)", ["Jan!A1", "'It''s'!A1", "Dec!A1"]),  # in the order of the tabs, not of the calendar
@@ -58,7 +59,7 @@ def test_off_the_sheet_it_is_an_error_on_each(workbook):
     assert {first, *(part for _, part in rest)} == {ir.ErrorLiteral(4)}
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "message", "hint"),
     [
         ("SUM(Jan:Dez!A1)", "there is no sheet 'Dez'", "did you mean 'Dec'?"),

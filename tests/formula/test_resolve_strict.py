@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.address import Cell
 from xlmc.errors import FormulaError
@@ -43,7 +44,7 @@ def see(workbook, shown):
     return resolve
 
 
-@pytest.mark.parametrize("text", MISSING)
+@cases("text", MISSING)
 def test_a_name_that_is_not_there(see, text):
     assert see(text, strict=False) == MISSING[text]
     if text != "Gone(2)":
@@ -51,14 +52,14 @@ def test_a_name_that_is_not_there(see, text):
             see(text, strict=True)
 
 
-@pytest.mark.parametrize("strict", [True, False])
-@pytest.mark.parametrize("text", ANY_CASE)
+@cases("strict", [True, False])
+@cases("text", ANY_CASE)
 def test_what_is_there_is_the_same(see, text, strict):
     assert see(text, strict) == ANY_CASE[text]
 
 
-@pytest.mark.parametrize("strict", [True, False])
-@pytest.mark.parametrize(
+@cases("strict", [True, False])
+@cases(
     ("text", "message"),
     [
         ("1+", "the formula cannot be read"),

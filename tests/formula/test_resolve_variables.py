@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.address import Cell
 from xlmc.errors import FormulaError
@@ -101,12 +102,12 @@ def see(resolved):
     return lambda text, at="S!B2": resolved(text, at=at, names=NAMES, sheets=("Data",))
 
 
-@pytest.mark.parametrize("text", TREES)
+@cases("text", TREES)
 def test_what_the_names_mean(see, text):
     assert see(text) == TREES[text]
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "at", "expected"),
     [
         ("Twice(3)", "Data!A1", "[λ(v (+ v v))](3)"),  # a sheet's own name comes first
@@ -118,7 +119,7 @@ def test_what_they_mean_elsewhere(see, text, at, expected):
     assert see(text, at) == expected
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "message", "hint"),
     [
         ("LET(1)", "LET takes pairs of a name and a value, and then a calculation", None),
@@ -147,7 +148,7 @@ def test_what_may_not_be(resolved, text, message, hint):
     assert (caught.value.message, caught.value.hint, caught.value.where) == (message, hint, "S!B2")
 
 
-@pytest.mark.parametrize("broken", ["LET(v,1,v+nothing)", "LAMBDA(v,v+nothing)", "Broken", "-" * 199 + "nothing"])
+@cases("broken", ["LET(v,1,v+nothing)", "LAMBDA(v,v+nothing)", "Broken", "-" * 199 + "nothing"])
 def test_a_faulty_formula_leaves_nothing_behind(workbook, shown, broken):
     cell = Cell("S", 1, 2)
     resolver = Resolver(workbook({}, names={"v": "S!$Z$1", "Broken": "LET(w,1,w+nothing)", "Loop": "Broken"}))

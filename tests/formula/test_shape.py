@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -13,7 +13,7 @@ from xlmc.formula.shape import Shapes, shape_of, shown_formula
 from xlmc.workbook.workbook import CellContent, Formula
 
 
-@pytest.mark.parametrize(
+@cases(
     ("one", "at", "other", "there"),
     [
         ("A1+1", (1, 2), "A7+1", (7, 2)),
@@ -29,7 +29,7 @@ def test_filled_formulas_have_one_shape(one, at, other, there):
     assert shape_of(one, *at) == shape_of(other, *there)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("one", "at", "other", "there"),
     [
         ("A1+1", (1, 2), "A1+1", (2, 2)),
@@ -114,7 +114,7 @@ def test_what_a_column_is_filled_with_is_of_one_shape(pieces, others, row, other
         assert same == (shape_of(text, row, 3) == shape_of(other, other_row, 3))
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "shown"),
     [
         ("A1+1", "=A1+1"),
@@ -147,7 +147,7 @@ def test_braces_are_those_of_ctrl_shift_enter():
     assert shown_formula(Formula("B1:B3*2", 1, 1, area, dynamic=True), cell) == "=B1:B3*2"
 
 
-@pytest.mark.parametrize(
+@cases(
     ("formula", "text"),
     [
         (Formula("A1*2", 1, 2), "=A3*2"),

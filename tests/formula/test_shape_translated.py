@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from openpyxl.formula.translate import Translator
@@ -125,12 +126,12 @@ UNTOUCHED = [
 ]
 
 
-@pytest.mark.parametrize("text", UNTOUCHED)
+@cases("text", UNTOUCHED)
 def test_what_looks_like_a_cell_and_is_none(text):
     assert shape_of(text, 1, 1) == shape_of(text, 8, 9)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("one", "other"),
     [
         ("YAW1", "YAW2"),
@@ -151,7 +152,7 @@ def test_what_differs_by_more_than_a_row(one, other):
     assert shape_of(one, 1, 1) != shape_of(other, 2, 1)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("one", "other"),
     [
         ("Data!A1:Data!A3", "Data!A2:Data!A4"),

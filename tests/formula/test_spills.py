@@ -1,12 +1,12 @@
 from __future__ import annotations
 
-import pytest
+from cases import cases
 
 from xlmc.address import Cell, parse_address
 from xlmc.formula.graph import Spills
 
 
-@pytest.mark.parametrize(
+@cases(
     ("cell", "anchor"),
     [
         ("S!B1", None),  # the anchor holds the formula itself

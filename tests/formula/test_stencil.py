@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -29,8 +30,8 @@ def stencil(workbook):
 MOVES = ["A1+$B$2", "SUM(D4:F6)", "IF(E4>0,Data!E4,$A5)", "-E$4%", 'D5&"a"', "SUM($A$1:$B$2,D5)"]
 
 
-@pytest.mark.parametrize("text", MOVES)
-@pytest.mark.parametrize("host", [HOME, Cell("S", 9, 5), Cell("S", 5, 9), Cell("S", 7, 6)])
+@cases("text", MOVES)
+@cases("host", [HOME, Cell("S", 9, 5), Cell("S", 5, 9), Cell("S", 7, 6)])
 def test_it_is_the_tree_of_each_cell(stencil, workbook, text, host):
     found = stencil(text)
     alone = Resolver(workbook({"Z9": 1.0, "Data!Z9": 1.0})).formula(host, Formula(text, HOME.row, HOME.column))
@@ -50,7 +51,7 @@ def test_its_cells_are_what_the_tree_refers_to(stencil, text, down, right):
     assert list(dict.fromkeys(found.cells(host))) == list(dict.fromkeys(cells))
 
 
-@pytest.mark.parametrize(
+@cases(
     "text",
     ["Rate*2", "SUM(A:A)", "SUM(A$1:A5)", "ROW(A1)", "LET(x,A1,x)", "A1:B2 B1:C3", "SUM(A1:Z99)", "S:Data!A1"],
 )

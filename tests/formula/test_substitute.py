@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.address import Cell, InFormula, host_of
 from xlmc.formula import formula_text, ir, parse
@@ -28,7 +29,7 @@ REPLACED = {
 }
 
 
-@pytest.mark.parametrize("text", REPLACED)
+@cases("text", REPLACED)
 def test_every_part_is_found(resolved, text):
     def change(part):
         return ir.Number(7.0) if isinstance(part, ir.Call) and part.name == "X" else None

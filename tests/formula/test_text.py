@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.address import Cell
 from xlmc.formula import Resolver, formula_text, parse
@@ -29,12 +30,12 @@ def written(workbook):
     return write
 
 
-@pytest.mark.parametrize("text", TEXTS)
+@cases("text", TEXTS)
 def test_a_tree_as_a_formula(written, text):
     assert written(text) == TEXTS[text]
 
 
-@pytest.mark.parametrize("text", TEXTS)
+@cases("text", TEXTS)
 def test_it_reads_back_as_the_same_tree(written, text):
     again = written(text)
     assert written(again) == again

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -93,7 +94,7 @@ def whole(place):
     return str(place.whole if isinstance(place, Area) else place)
 
 
-@pytest.mark.parametrize("text", LEAVES + [template.replace("{}", "1.5") for template in templates])
+@cases("text", LEAVES + [template.replace("{}", "1.5") for template in templates])
 def test_each_kind_of_part(resolver, text):
     tree, again = round_trip(resolver, text)
     assert again == tree
@@ -115,7 +116,7 @@ def test_any_number_and_any_text(resolver, number, text):
     assert again == tree
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "expected"),
     [
         ("LET(p,A1,p*2)", "LET(_xlpm.p,'It''s'!A1,(_xlpm.p*2.0))"),

@@ -8,6 +8,7 @@ from fnmatch import fnmatchcase
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -70,13 +71,13 @@ def _named(items):
     return [(type(item), item) for item in items]
 
 
-@pytest.mark.parametrize(("criterion", "expected"), TABLE)
+@cases(("criterion", "expected"), TABLE)
 def test_table(criterion, expected):
     held = which_meet(constant(criterion), _range(CELLS))[0]
     assert _named([item for item, holds in zip(CELLS, held, strict=True) if holds]) == _named(expected)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("criterion", "expected"),
     [
         ("ab", ["abc", "ABC", "abd"]),
@@ -200,7 +201,7 @@ TABLE_OF_PATTERNS = [
 ]
 
 
-@pytest.mark.parametrize(("pattern", "text", "expected"), TABLE_OF_PATTERNS)
+@cases(("pattern", "text", "expected"), TABLE_OF_PATTERNS)
 def test_table_patterns(pattern, text, expected):
     assert pattern_of(pattern).fits(text) is expected
 
@@ -210,7 +211,7 @@ def test_a_pattern_that_only_begins_the_text():
     assert not pattern_of("b", begins=True).fits("abc")
 
 
-@pytest.mark.parametrize(("text", "expected"), [("a", False), ("a*", True), ("?", True), ("~", True)])
+@cases(("text", "expected"), [("a", False), ("a*", True), ("?", True), ("~", True)])
 def test_is_pattern(text, expected):
     assert is_pattern(text) is expected
 

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -39,7 +39,7 @@ def test_truth_values_stay():
     assert truth.tolist() == [True, False]
 
 
-@pytest.mark.parametrize("number", [5e-324, -1e-310, np.nextafter(TINIEST, 0)])
+@cases("number", [5e-324, -1e-310, np.nextafter(TINIEST, 0)])
 def test_a_cell_a_text_and_a_result_are_0(number):
     assert constant(float(number)).numbers.tolist() == [0.0]
     assert parse_number(repr(float(number))) == 0.0

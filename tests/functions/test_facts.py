@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from cases import cases
 
 from xlmc.evaluation.graph.called_functions import SPECIAL
 from xlmc.evaluation.graph.choices import CHOICES
@@ -168,7 +169,7 @@ def test_every_name_in_them_is_that_of_a_function(lists):
     assert unknown == set()
 
 
-@pytest.mark.parametrize("table", [EXACT, RULES, _OF_ONE, _OF_SETS], ids=["exact", "derivatives", "one", "sets"])
+@cases("table", [EXACT, RULES, _OF_ONE, _OF_SETS], ids=["exact", "derivatives", "one", "sets"])
 def test_tables_of_nodes_have_the_names_of_rows(table):
     """An alias would never be looked up."""
     assert set(table) - set(ROWS) - MADE == set()
@@ -184,7 +185,7 @@ def test_tables_of_native_code_have_the_names_of_rows():
     assert all(ROWS[name].takes_sets for name in sets._ROWS)
 
 
-@pytest.mark.parametrize("table", [FUNCTIONS, _OF_AREAS, FOLDS], ids=["preimage", "switches", "running totals"])
+@cases("table", [FUNCTIONS, _OF_AREAS, FOLDS], ids=["preimage", "switches", "running totals"])
 def test_tables_of_formulas_have_all_names_of_a_row(table):
     """A formula may call a function by any of them."""
     rows = {REGISTRY[name] for name in table}
@@ -214,7 +215,7 @@ FEW = {
 }
 
 
-@pytest.mark.parametrize(("names", "holds"), FEW.values(), ids=FEW)
+@cases(("names", "holds"), FEW.values(), ids=FEW)
 def test_facts_are_stated(names, holds):
     assert {name for name, row in ROWS.items() if holds(row.facts)} >= names
     assert not holds(Facts())

@@ -9,6 +9,7 @@ from decimal import ROUND_HALF_UP, Context
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -86,8 +87,8 @@ NEARBY = st.tuples(NUMBERS, st.integers(-120, 120)).map(lambda pair: (pair[0], n
 PAIRS = NEARBY.filter(lambda pair: math.isfinite(pair[1])) | st.tuples(NUMBERS, NUMBERS)
 
 
-@pytest.mark.parametrize("sign", [1, -1])
-@pytest.mark.parametrize("bits", STEPS)
+@cases("sign", [1, -1])
+@cases("bits", STEPS)
 def test_the_answer_changes_where_excels_does(bits, sign):
     before, last, first, after = (sign * double(int(bits, 16) + step) for step in (-1, 0, 1, 2))
     for equal in ((before, last), (first, after)):
@@ -141,7 +142,7 @@ def test_what_is_no_number_is_compared_as_it_is():
     assert COMPARISONS["="](infinite, math.inf).tolist() == [True, False, False]
 
 
-@pytest.mark.parametrize("symbol", RELATIONS)
+@cases("symbol", RELATIONS)
 def test_limits_in_tables_keep_all_bits(symbol):
     x, y = (from_objects(np.array([number], object)) for number in (0.1 * 3, 0.3))
     assert bool(ALL_BITS[symbol]([x, y]).numbers[0]) is RELATIONS[symbol](0.1 * 3, 0.3)
@@ -225,7 +226,7 @@ def test_infinite_numbers_that_vary_are_compared_as_they_are():
         assert found == {symbol: relation(x, y).tolist() for symbol, relation in RELATIONS.items()}
 
 
-@pytest.mark.parametrize(
+@cases(
     ("result", "first", "second", "never"),
     [
         ((1.0, 3.0), (0.0, 1.0), (1.0, 2.0), True),

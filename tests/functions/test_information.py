@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-import pytest
+from cases import cases
 
 from xlmc.errors import ErrorCode
 
@@ -34,6 +34,6 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_values(check, name, arguments, expected):
     check(name, arguments, expected)

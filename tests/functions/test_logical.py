@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from cases import cases
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.families import function_named
@@ -63,7 +63,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_table(check, name, arguments, expected):
     check(name, arguments, expected)
 
@@ -80,12 +80,12 @@ KINDS = {
 }
 
 
-@pytest.mark.parametrize("name", KINDS)
+@cases("name", KINDS)
 def test_what_a_value_is(evaluate, name):
     assert tuple(evaluate(name, item) for item in (0, False, "", None, DIV0, NA)) == KINDS[name]
 
 
-@pytest.mark.parametrize("name", KINDS)
+@cases("name", KINDS)
 def test_what_the_values_of_trials_are(name):
     trials = from_objects(np.array([0, False, "", None, DIV0, NA], object))
     assert tuple(function_named(name)([trials]).objects()) == KINDS[name]

@@ -3,7 +3,7 @@ from __future__ import annotations
 import math
 from decimal import Decimal
 
-import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -78,12 +78,12 @@ NO_NUMBERS = [
 ]
 
 
-@pytest.mark.parametrize(("text", "number"), NUMBERS)
+@cases(("text", "number"), NUMBERS)
 def test_texts_that_are_numbers(text, number):
     assert parse_number(text) == number
 
 
-@pytest.mark.parametrize("text", NO_NUMBERS)
+@cases("text", NO_NUMBERS)
 def test_texts_that_are_none(text):
     assert parse_number(text) is None
 
@@ -98,7 +98,7 @@ def test_any_text_is_a_finite_number_or_none(text):
     assert number is None or math.isfinite(number)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("number", "text"),
     [
         (1e19, "10000000000000000000"),
@@ -120,7 +120,7 @@ def test_numbers_take_twenty_characters_at_most(number, text):
     assert general_text(number) == text
 
 
-@pytest.mark.parametrize(
+@cases(
     ("number", "decimal"), [(0.1 + 0.2, "0.3"), (1.005, "1.005"), (123456789012345.67, "123456789012346"), (0.5, "0.5")]
 )
 def test_fifteen_digits_are_shown(number, decimal):

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.families import function_named
@@ -58,7 +59,7 @@ JOINED = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), ARITHMETIC + JOINED)
+@cases(("name", "arguments", "expected"), ARITHMETIC + JOINED)
 def test_table(check, name, arguments, expected):
     check(name, arguments, expected)
 
@@ -83,7 +84,7 @@ def test_order_of_everything(evaluate, symbol):
             assert evaluate(symbol, x, y) is RELATIONS[symbol](i, j), f"{x!r} {symbol} {y!r}"
 
 
-@pytest.mark.parametrize("symbol", RELATIONS)
+@cases("symbol", RELATIONS)
 def test_order_of_everything_over_trials(symbol):
     left = from_objects(np.array([x for x in RISING for _ in RISING], object))
     right = from_objects(np.array([y for _ in RISING for y in RISING], object))
@@ -92,7 +93,7 @@ def test_order_of_everything_over_trials(symbol):
     assert function_named(symbol)([left, right]).objects().tolist() == expected
 
 
-@pytest.mark.parametrize(
+@cases(
     ("x", "symbol", "y", "expected"),
     [
         ("abc", "=", "ABC", True),
@@ -134,7 +135,7 @@ def test_arithmetic_of_trials_with_a_range():
     assert function_named("+")([trials, cells]).objects().tolist() == expected
 
 
-@pytest.mark.parametrize(
+@cases(
     ("x", "y", "holds"),
     [([1.0, 2.0], [0.0, 1.0], True), ([0.0, 2.0], [1.0, 1.0], True), ([0.0, 2.0], [0.0, 1.0], False)],
 )

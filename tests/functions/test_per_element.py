@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from cases import cases
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.per_element import object_text, per_object
@@ -41,7 +41,7 @@ def test_the_docstring_is_the_functions():
     assert per_object(documented).__doc__ == "What it does."
 
 
-@pytest.mark.parametrize(
+@cases(
     ("item", "text"),
     [(None, ""), (True, "TRUE"), (False, "FALSE"), (1.5, "1.5"), ("a", "a"), (ErrorCode.DIV0, "#DIV/0!")],
 )

@@ -13,6 +13,7 @@ from random import Random
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -196,7 +197,7 @@ def test_every_function_is_documented_and_named_in_capitals():
     assert [name for name in names if not ROWS[name].body.__doc__] == []
 
 
-@pytest.mark.parametrize(
+@cases(
     ("alias", "name"),
     [("POWER", "^"), ("STDEV", "STDEV.S"), ("STDEVP", "STDEV.P"), ("VAR", "VAR.S"), ("VARP", "VAR.P")],
 )
@@ -213,7 +214,7 @@ def test_a_name_cannot_be_registered_twice():
         excel("SIN", Number)(np.sin)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "fewest", "most"),
     [("PI", 0, 0), ("SIN", 1, 1), ("LOG", 1, 2), ("IF", 2, 3), ("SUM", 1, 255), ("CEILING.MATH", 1, 3)],
 )

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.samples import at_each, mean_of, pairs_of, row_sums, sample_of
@@ -37,7 +38,7 @@ def test_only_numbers_in_a_range_count(value):
     assert sample.size.tolist() == [[2]]
 
 
-@pytest.mark.parametrize(("given", "number"), [(True, 1.0), ("12", 12.0), (None, 0.0)])
+@cases(("given", "number"), [(True, 1.0), ("12", 12.0), (None, 0.0)])
 def test_what_is_given_directly_is_coerced(given, number):
     sample = sample_of(constant(given))
     assert (sample.x.item(), sample.counts.item()) == (number, True)

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.families import function_named
@@ -37,12 +38,12 @@ REFUSES_LOGICALS = {
 }
 
 
-@pytest.mark.parametrize("name", REFUSES_LOGICALS)
+@cases("name", REFUSES_LOGICALS)
 def test_a_logical_is_no_number(check, name):
     check(name, (True, *REFUSES_LOGICALS[name]), VALUE)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("item", "number"),
     [(2.5, 2.5), (None, 0.0), ("1e3", 1000.0), ("x", VALUE), ("", VALUE), (True, VALUE), (NA, NA)],
 )
@@ -98,7 +99,7 @@ def row():
     del REGISTRY["TEST.TOOLPAK"]
 
 
-@pytest.mark.parametrize(
+@cases(
     ("arguments", "expected"),
     [
         ((1.9,), 111),

@@ -3,7 +3,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -32,7 +32,7 @@ def _of(*items: object) -> Value:
     return from_objects(np.array([*items, None], object)[:-1])
 
 
-@pytest.mark.parametrize(
+@cases(
     ("boxed", "code"),
     [
         (DIV0, ErrorCode.DIV0),
@@ -88,7 +88,7 @@ def test_objects_come_back(items, shape):
     assert [(type(item), item) for item in found] == [(type(item), item) for item in items]
 
 
-@pytest.mark.parametrize(
+@cases(
     ("item", "kind"),
     [(1, NUMBER), (np.float64(1), NUMBER), (True, LOGICAL), (np.True_, LOGICAL), ("", TEXT), (None, BLANK)],
 )
@@ -125,8 +125,8 @@ def _outcome(array: np.ndarray, errors: np.ndarray, i: int, n: int) -> object:
     return ErrorCode(code) if code else array[i]
 
 
-@pytest.mark.parametrize("others", [(), (1.0,), ("x", None, ErrorCode.REF)])
-@pytest.mark.parametrize(("item", "number", "logical", "text"), COERCIONS)
+@cases("others", [(), (1.0,), ("x", None, ErrorCode.REF)])
+@cases(("item", "number", "logical", "text"), COERCIONS)
 def test_coercions_whatever_stands_in_other_trials(item, number, logical, text, others):
     value = _of(item, *others)
     n = 1 + len(others)
@@ -135,7 +135,7 @@ def test_coercions_whatever_stands_in_other_trials(item, number, logical, text, 
     assert _outcome(*value.to_texts(), 0, n) == text
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "number"),
     [
         ("1", 1.0),
@@ -167,7 +167,7 @@ def test_texts_as_numbers(text, number):
     assert parse_number(text) == number
 
 
-@pytest.mark.parametrize(
+@cases(
     ("number", "text"),
     [
         (0.0, "0"),

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
@@ -104,7 +105,7 @@ def test_contradictions_give_way_to_the_nearest_correlations(target):
         assert stats.kstest(row, "uniform").statistic < 1.95 / np.sqrt(N)
 
 
-@pytest.mark.parametrize("name", TARGETS)
+@cases("name", TARGETS)
 def test_what_is_possible_is_not_changed(name):
     copula = GaussianCopula(TARGETS[name])
     assert not copula.repaired
@@ -114,7 +115,7 @@ def test_what_is_possible_is_not_changed(name):
 NEARLY_ONE = [1 - 1e-6, 1 - 1e-12, -1 + 1e-6, -1 + 1e-12]
 
 
-@pytest.mark.parametrize("value", [1.0, -1.0, *NEARLY_ONE])
+@cases("value", [1.0, -1.0, *NEARLY_ONE])
 def test_three_that_are_one(value):
     """One quantity under three names: singular, or nearly so, and still no contradiction."""
     target = matrix(3, r01=value, r02=value, r12=abs(value))
@@ -139,7 +140,7 @@ def test_any_matrix_gives_correlations_that_are_possible(k, seed):
     assert GaussianCopula(found).spearman == pytest.approx(found, abs=1e-6)
 
 
-@pytest.mark.parametrize("name", TARGETS)
+@cases("name", TARGETS)
 def test_a_uniform_of_0_is_joined_as_half_of_the_least_step(name):
     k = len(TARGETS[name])
     zero, least = uniforms(k, k + 1), uniforms(k, k + 1)
@@ -219,7 +220,7 @@ def test_the_parameter_gives_what_was_wanted(first, second):
     assert parameter(first, second, least - 0.01) == -1.0
 
 
-@pytest.mark.parametrize(("first", "second"), PAIRS)
+@cases(("first", "second"), PAIRS)
 def test_continuous_up_to_the_bounds(first, second):
     """The integral comes to Frechet's bounds as the parameter comes to 1."""
     assert spearman(first, second, 1 - 1e-9) == pytest.approx(bounds(first, second)[1], abs=2e-4)
@@ -258,7 +259,7 @@ def test_solved_parameters_that_contradict_each_other_are_repaired():
     assert found == pytest.approx(copula.spearman, abs=4 * 1.2 / math.sqrt(100_000))
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "parameters", "cuts"),
     [
         ("Yes-No", (0.1,), [0.9]),
@@ -272,7 +273,7 @@ def test_the_values_of_a_draw(name, parameters, cuts):
     assert Draw("x", family_named(name), parameters).ties().cuts == pytest.approx(cuts, abs=1e-12)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "parameters"),
     [("Normal", (1.0, 2.0)), ("Uniform", (0.0, 1.0)), ("Uniform", (2.0, 2.0)), ("Poisson", (1e7,)), ("Yes-No", ("p",))],
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 from scipy.integrate import quad
 
@@ -58,8 +59,8 @@ def test_margins_and_kendalls_tau(name):
         assert abs(made(size).spearman[0, 1] - rho) < 4 / np.sqrt(u.shape[1]) + 2e-3
 
 
-@pytest.mark.parametrize("name", ["Clayton", "Clayton strong", "Gumbel", "Gumbel strong", "Frank"])
-@pytest.mark.parametrize("q", [0.01, 0.1, 0.5, 0.9, 0.99])
+@cases("name", ["Clayton", "Clayton strong", "Gumbel", "Gumbel strong", "Frank"])
+@cases("q", [0.01, 0.1, 0.5, 0.9, 0.99])
 def test_both_below(name, q):
     """The share of trials with both, or all three, at most q is ψ(2φ(q)), or ψ(3φ(q)): the tails among them."""
     for size in (2, 3):

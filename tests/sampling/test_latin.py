@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
@@ -18,7 +19,7 @@ def drawn(strata, n, start=0, name="a", seed=SEED):
     return out
 
 
-@pytest.mark.parametrize("strata", [1, 2, 7, 500, 4096, 16_384])
+@cases("strata", [1, 2, 7, 500, 4096, 16_384])
 def test_every_interval_holds_one_draw_of_a_replicate(strata):
     u = drawn(strata, 3 * strata).reshape(3, strata)
     assert ((u >= 0) & (u < 1)).all()

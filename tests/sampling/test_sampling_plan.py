@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -26,7 +27,7 @@ def test_whole_replicates_sixteen_or_more(method, trials):
         assert plan.replicates < 2 * REPLICATES
 
 
-@pytest.mark.parametrize(
+@cases(
     ("method", "trials", "run", "size"),
     [
         ("mc", 200_000, 200_000, 0),
@@ -70,7 +71,7 @@ def test_more_trials_begin_with_the_same(method):
     assert np.array_equal(few, many)
 
 
-@pytest.mark.parametrize("method", METHODS)
+@cases("method", METHODS)
 def test_what_one_assumption_is_drawn_with_does_not_depend_on_those_after_it(method):
     plan, alone, among = SamplingPlan.of(method, 4_000), np.empty(1_000), np.empty(1_000)
     plan.margins(1, ["a"])[0].uniforms(500, alone)

@@ -3,7 +3,7 @@ from __future__ import annotations
 from itertools import pairwise, product
 
 import numpy as np
-import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
@@ -28,7 +28,7 @@ def unscrambled(dimension, bits):
     return found * 2.0**-PRECISION
 
 
-@pytest.mark.parametrize("bits", [1, 5, 12])
+@cases("bits", [1, 5, 12])
 def test_the_net_is_scipys(bits):
     theirs = stats.qmc.Sobol(40, scramble=False, bits=PRECISION).random_base2(bits)
     ours = np.array([unscrambled(dimension, bits) for dimension in range(40)]).T
@@ -42,7 +42,7 @@ def test_the_last_dimension_and_large_nets_are_scipys_too():
         assert np.array_equal(direction_numbers(dimension, 30) >> np.uint64(PRECISION - 30), theirs)
 
 
-@pytest.mark.parametrize("bits", [0, 1, 4, 13])
+@cases("bits", [0, 1, 4, 13])
 def test_every_dimension_is_stratified_in_every_replicate(bits):
     size = 2**bits
     for dimension in (0, 1, 5, 30):
@@ -50,7 +50,7 @@ def test_every_dimension_is_stratified_in_every_replicate(bits):
         assert np.array_equal(np.sort(np.floor(u * size), axis=1), np.broadcast_to(np.arange(size), (3, size)))
 
 
-@pytest.mark.parametrize("replicate", [0, 1, 7])
+@cases("replicate", [0, 1, 7])
 def test_scrambling_keeps_the_net(replicate):
     """The first two dimensions are a (0, m, 2)-net: every box of 2^-a x 2^-(m-a) holds one point. The first three are a
     (4, m, 3)-net at worst: every box of 16 times the volume of a point holds 16."""

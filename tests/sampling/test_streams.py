@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -57,7 +57,7 @@ def test_uniforms_are_uniform():
     assert distance < 1.95 / np.sqrt(u.size)  # Kolmogorov-Smirnov, one seed in a thousand
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "seed", "trial", "expected"),
     [
         ("a", 999, 0, [0.24939992449715154, 0.3398050979537476, 0.6023083705147441]),

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 
 import xlmc.statistics as xs
 
@@ -78,14 +79,14 @@ def estimates_of(description):
             yield from value.values()
 
 
-@pytest.mark.parametrize("columns", [([],), ([], []), ([], None, []), ([1.0, 2.0], [0.0, 0.0])])
+@cases("columns", [([],), ([], []), ([], None, []), ([1.0, 2.0], [0.0, 0.0])])
 def test_no_trials_are_no_error(columns):
     everything = list(estimates_of(xs.describe(*columns, threshold=1.0)))
     assert len(everything) == 12 + 21 + 2 + 1
     assert all(math.isnan(each.value) and each.error is each.interval is None and each.n == 0 for each in everything)
 
 
-@pytest.mark.parametrize(
+@cases(
     "columns",
     [
         ([1.0],),

@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
@@ -21,8 +22,8 @@ def test_is_frozen_and_slotted():
     assert not hasattr(estimate, "__dict__")
 
 
-@pytest.mark.parametrize("dof", [1, 2.5, 9, 199, 1e7])
-@pytest.mark.parametrize("confidence", [0.5, 0.95, 0.999])
+@cases("dof", [1, 2.5, 9, 199, 1e7])
+@cases("confidence", [0.5, 0.95, 0.999])
 def test_t_quantile_is_students(dof, confidence):
     assert t_quantile(dof, confidence) == pytest.approx(stats.t.ppf(0.5 + confidence / 2, dof), rel=1e-9)
 
@@ -31,7 +32,7 @@ def test_t_quantile_without_limit_of_freedom_is_normal():
     assert t_quantile(math.inf, 0.95) == pytest.approx(1.959963984540054, rel=1e-12)
 
 
-@pytest.mark.parametrize("confidence", [0.0, 1.0, 95])
+@cases("confidence", [0.0, 1.0, 95])
 def test_a_confidence_outside_0_and_1_is_refused(confidence):
     with pytest.raises(ValueError, match="between 0 and 1"):
         t_quantile(5, confidence)
@@ -42,9 +43,7 @@ def test_interval_is_value_and_t_errors_either_side():
     assert estimate.interval == pytest.approx((10 - 2 * 2.7764451, 10 + 2 * 2.7764451))
 
 
-@pytest.mark.parametrize(
-    ("value", "error", "dof"), [(1.0, 0.1, 0.5), (math.nan, 0.1, 9), (1.0, math.nan, 9), (math.inf, 1.0, 9)]
-)
+@cases(("value", "error", "dof"), [(1.0, 0.1, 0.5), (math.nan, 0.1, 9), (1.0, math.nan, 9), (math.inf, 1.0, 9)])
 def test_an_error_that_cannot_be_known_is_none(value, error, dof):
     estimate = with_error(value, error, dof, 0.95, 3)
     assert (estimate.error, estimate.interval, estimate.n) == (None, None, 3)
@@ -71,7 +70,7 @@ def test_importing_does_not_load_scipy():
 EXAMPLES = settings(max_examples=50, deadline=None)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("error", "decimals"),
     [(0.0023, 2), (0.005, 2), (0.0051, 1), (0.05, 1), (0.4, 0), (0.6, -1), (3.0, -1), (870.0, -4), (1e-9, 8)],
 )
@@ -92,7 +91,7 @@ def test_without_an_error_nothing_limits_the_digits(error):
     assert supported_digits(Estimate(17.0, error)) is None
 
 
-@pytest.mark.parametrize(
+@cases(
     ("value", "error", "text"),
     [
         (17.02134, 0.00231, "17.0213 ± 0.0023"),

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.report.sheets.styles import bounds
 from xlmc.statistics import describe
@@ -23,8 +24,8 @@ SAMPLES = {
 }
 
 
-@pytest.mark.parametrize("sample", SAMPLES.values(), ids=SAMPLES)
-@pytest.mark.parametrize("replicates", [None, np.arange(600) // 60], ids=["trials", "replicates"])
+@cases("sample", SAMPLES.values(), ids=SAMPLES)
+@cases("replicates", [None, np.arange(600) // 60], ids=["trials", "replicates"])
 def test_no_statistic_is_infinite_and_none_overflows(sample, replicates):
     found = describe(sample, replicate=replicates)
     names = ("mean", "median", "mode", "standard_deviation", "variance", "skewness", "kurtosis", "range_width")

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
@@ -13,7 +14,7 @@ from xlmc.statistics import mode
 EXAMPLES = settings(max_examples=50, deadline=None)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("values", "expected"),
     [
         ([5.0], 5.0),
@@ -29,7 +30,7 @@ EXAMPLES = settings(max_examples=50, deadline=None)
         ([3.0] * 20, 3.0),
     ],
 )
-@pytest.mark.parametrize("weight", [None, 0.4])
+@cases("weight", [None, 0.4])
 def test_small_samples_by_hand(values, expected, weight):
     weights = None if weight is None else np.full(len(values), weight)
     assert mode(values, weights).value == pytest.approx(expected)

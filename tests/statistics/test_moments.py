@@ -4,6 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.columns import PART
@@ -17,8 +18,8 @@ def exact_moments(values):
     return centre, *(sum((each - centre) ** k for each in x) / len(x) for k in (2, 3, 4))
 
 
-@pytest.mark.parametrize("offset", [0.0, 1e9, -1e12])
-@pytest.mark.parametrize("scale", [1.0, 1e-3])
+@cases("offset", [0.0, 1e9, -1e12])
+@cases("scale", [1.0, 1e-3])
 def test_a_large_offset_costs_no_digits(offset, scale):
     values = offset + scale * np.random.default_rng(1).standard_gamma(3.0, 301)
     centre, m2, m3, m4 = exact_moments(values)
@@ -28,7 +29,7 @@ def test_a_large_offset_costs_no_digits(offset, scale):
     assert kurtosis(values).value == pytest.approx(float(m4 / m2**2), rel=1e-12)
 
 
-@pytest.mark.parametrize("unit", [1e-160, 1e-300, 1e160, 1e300])
+@cases("unit", [1e-160, 1e-300, 1e160, 1e300])
 def test_units_may_be_tiny_or_huge(unit):
     values = np.random.default_rng(2).standard_normal(200)
     here, there = Sample.of(values).moments, Sample.of(values * unit).moments

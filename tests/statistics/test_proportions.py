@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
@@ -209,7 +210,7 @@ def waiting_times(successes, p):
 CASES = [(2, 0.5), (2, 0.05), (5, 0.3), (20, 0.0176), (50, 0.6)]
 
 
-@pytest.mark.parametrize(("successes", "p"), CASES)
+@cases(("successes", "p"), CASES)
 def test_it_is_unbiased_and_so_is_its_variance(successes, p):
     n, weights = waiting_times(successes, p)
     assert weights.sum() == pytest.approx(1.0, abs=1e-9)
@@ -225,8 +226,8 @@ def test_it_is_unbiased_and_so_is_its_variance(successes, p):
         assert estimated == pytest.approx(variance, rel=1e-6)
 
 
-@pytest.mark.parametrize(("successes", "p"), CASES)
-@pytest.mark.parametrize("confidence", [0.9, 0.95])
+@cases(("successes", "p"), CASES)
+@cases("confidence", [0.9, 0.95])
 def test_either_end_misses_in_no_more_than_a_tail(successes, p, confidence):
     n, weights = waiting_times(successes, p)
     common = weights > 1e-9
@@ -258,7 +259,7 @@ def test_seeded_replicates():
     assert abs(found.mean() - 0.02) < 4 * found.std() / np.sqrt(found.size)
 
 
-@pytest.mark.parametrize(("successes", "trials"), [(1, 5), (0, 5), (6, 5)])
+@cases(("successes", "trials"), [(1, 5), (0, 5), (6, 5)])
 def test_what_cannot_be(successes, trials):
     with pytest.raises(ValueError, match="successes, waited for in"):
         inverse_proportion(successes, trials)

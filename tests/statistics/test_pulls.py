@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 from scipy.special import ndtri
 
@@ -35,7 +36,7 @@ def holds(estimate, truth):
     return estimate.interval[0] <= truth <= estimate.interval[1]
 
 
-@pytest.mark.parametrize("skewness", [0.9, 0.3, 0.01, 1e-5, 1e-12, -0.3])
+@cases("skewness", [0.9, 0.3, 0.01, 1e-5, 1e-12, -0.3])
 def test_the_range_solves_halls_cubic_and_is_nowhere_shorter(skewness):
     low, high = t_range(15, 0.95, skewness)
     t, r = t_quantile(15, 0.95), skewness / 6

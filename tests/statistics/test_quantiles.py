@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy import stats
@@ -32,7 +33,7 @@ def test_the_value_is_excels_percentile_inc(x, percent):
     assert percentile(x, percent).value == pytest.approx(np.percentile(x, percent), rel=1e-12, abs=1e-9)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("percent", "expected"),
     [(0, 1), (25, 1.75), (30, 1.9), (50, 2.5), (100, 4)],
 )
@@ -126,7 +127,7 @@ def test_one_trial_is_every_percentile_and_bounds_none(weights):
     assert (median([7.0], weights).error, median([7.0], weights).interval) == (None, None)
 
 
-@pytest.mark.parametrize("percent", [-1, 100.1, math.nan])
+@cases("percent", [-1, 100.1, math.nan])
 def test_percents_outside_0_and_100_are_refused(percent):
     with pytest.raises(ValueError, match="between 0 and 100"):
         percentile([1.0, 2.0], percent)
@@ -138,7 +139,7 @@ def test_shares_outside_0_and_1_are_refused(share):
         central_interval([1.0, 2.0], share)
 
 
-@pytest.mark.parametrize(("n", "percent", "below"), [(100, 50, 40), (100, 24.5, 17), (57, 90, 46), (4000, 75.5, 2990)])
+@cases(("n", "percent", "below"), [(100, 50, 40), (100, 24.5, 17), (57, 90, 46), (4000, 75.5, 2990)])
 def test_where_binomial_and_ranks_agree_the_lower_end_is_that_trial(n, percent, below):
     """P(Bin(n, p) ≤ k) is the chance that trial k (from 0) lies above the quantile."""
     x = np.random.default_rng(n).normal(size=n)
@@ -148,7 +149,7 @@ def test_where_binomial_and_ranks_agree_the_lower_end_is_that_trial(n, percent, 
     assert estimate.interval[0] == pytest.approx(np.sort(x)[below], rel=1e-6)
 
 
-@pytest.mark.parametrize(("n", "percent", "above"), [(100, 50, 59), (57, 90, 55), (4000, 24.5, 1010)])
+@cases(("n", "percent", "above"), [(100, 50, 59), (57, 90, 55), (4000, 24.5, 1010)])
 def test_where_binomial_and_ranks_agree_the_upper_end_is_that_trial(n, percent, above):
     x = np.random.default_rng(n).normal(size=n)
     tail = stats.binom.sf(above, n, percent / 100)
@@ -157,8 +158,8 @@ def test_where_binomial_and_ranks_agree_the_upper_end_is_that_trial(n, percent, 
     assert estimate.interval[1] == pytest.approx(np.sort(x)[above], rel=1e-6)
 
 
-@pytest.mark.parametrize("n", [5, 20, 73, 200])
-@pytest.mark.parametrize("percent", [10, 24.5, 50, 90])
+@cases("n", [5, 20, 73, 200])
+@cases("percent", [10, 24.5, 50, 90])
 def test_the_ends_lie_between_the_conservative_ranks_and_the_ranks_inside_them(n, percent):
     """Interpolation never reaches beyond the classical interval of order statistics."""
     x, p = np.arange(float(n)), percent / 100
@@ -228,8 +229,8 @@ def test_the_replicate_error_is_that_of_the_share_below(weighted):
     assert estimate.interval[0] < plain.value < estimate.interval[1]
 
 
-@pytest.mark.parametrize("weights", [None, np.ones(160)])
-@pytest.mark.parametrize("step", [1, -1])
+@cases("weights", [None, np.ones(160)])
+@cases("step", [1, -1])
 def test_equal_trials_are_in_no_order(weights, step):
     """Each replicate has three zeros among ten trials: what lies a little within them, or beyond, is known."""
     x, replicate = np.tile([0.0] * 3 + [1.0] * 7, 16)[::step], np.repeat(np.arange(16), 10)
@@ -264,7 +265,7 @@ def test_replicates_do_not_bound_what_their_trials_do_not():
     assert (estimate.value, estimate.error, estimate.interval[1]) == (98.01, None, np.inf)
 
 
-@pytest.mark.parametrize("confidence", [0.0, 1.0, 95])
+@cases("confidence", [0.0, 1.0, 95])
 def test_a_confidence_outside_0_and_1_is_refused(confidence):
     with pytest.raises(ValueError, match="between 0 and 1"):
         median([1.0, 2.0], confidence=confidence)
@@ -280,7 +281,7 @@ def test_a_trial_without_weight_is_no_extreme():
     assert minimum([3.0, -1.0, 2.0], [1.0, 0.0, 1.0]) == Estimate(2.0, None, None, 2)
 
 
-@pytest.mark.parametrize("statistic", [minimum, maximum, range_width])
+@cases("statistic", [minimum, maximum, range_width])
 def test_no_trials_have_no_extremes(statistic):
     assert math.isnan(statistic([]).value)
     assert statistic([]).n == 0

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -11,7 +12,7 @@ from xlmc.statistics.sample import positions_of
 EXAMPLES = settings(max_examples=50, deadline=None)
 
 
-@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+@cases("bad", [np.nan, np.inf, -np.inf])
 def test_values_must_be_finite_even_without_weight(bad):
     with pytest.raises(ValueError, match="finite"):
         Sample.of([1.0, bad])
@@ -19,13 +20,13 @@ def test_values_must_be_finite_even_without_weight(bad):
         Sample.of([1.0, bad], weights=[1.0, 0.0])
 
 
-@pytest.mark.parametrize("weights", [[1.0, -1.0], [1.0, np.nan], [1.0, np.inf]])
+@cases("weights", [[1.0, -1.0], [1.0, np.nan], [1.0, np.inf]])
 def test_weights_must_be_finite_and_not_negative(weights):
     with pytest.raises(ValueError, match="weights must be finite"):
         Sample.of([1.0, 2.0], weights)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("arguments", "message"),
     [
         (([[1.0, 2.0]],), "one column"),

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy import stats
@@ -201,7 +202,7 @@ def test_the_replicate_error_of_a_mean_is_the_jackknifes():
     assert pooled - 1.5 * half < low <= pooled - half < pooled + half <= high < pooled + 1.5 * half
 
 
-@pytest.mark.parametrize("name", ["variance", "standard_deviation", "coefficient_of_variation", "skewness", "kurtosis"])
+@cases("name", ["variance", "standard_deviation", "coefficient_of_variation", "skewness", "kurtosis"])
 def test_replicate_errors_agree_with_an_explicit_jackknife(name):
     rng = np.random.default_rng(7)
     ids = np.repeat(np.arange(20), 500)

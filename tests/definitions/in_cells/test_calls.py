@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from cases import cases
 
 from xlmc.address import Cell, InFormula
 from xlmc.definitions.definitions_reader import read_definitions
@@ -221,7 +222,7 @@ def understood(workbook):
     return read
 
 
-@pytest.mark.parametrize("formula", DRAWS)
+@cases("formula", DRAWS)
 def test_what_is_drawn(understood, formula):
     family, parameters, *cutoffs = DRAWS[formula]
     found = understood(formula)
@@ -255,7 +256,7 @@ DATA = {
 }
 
 
-@pytest.mark.parametrize("formula", DATA)
+@cases("formula", DATA)
 def test_data(understood, formula):
     (drawn,) = understood(formula).assumptions
     assert drawn.data.rows == DATA[formula]
@@ -286,7 +287,7 @@ BASES = {
 }
 
 
-@pytest.mark.parametrize("formula", BASES)
+@cases("formula", BASES)
 def test_the_base_case_is_the_static_value_or_the_mean(understood, formula):
     drawn = understood(formula).assumptions[0]
     assert drawn.base == (BASES[formula] if BASES[formula] is None else pytest.approx(BASES[formula], rel=1e-12))
@@ -316,7 +317,7 @@ def test_one_name_for_two(workbook):
     assert "another assumption is called 'X'" in found.notices[0].message
 
 
-@pytest.mark.parametrize(
+@cases(
     ("setting", "family", "noticed"),
     [(None, "Lognormal", True), ("@RISK", "Lognormal", False), ("xlrisk", "Lognorm2", False)],
 )
@@ -363,7 +364,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("formula", REFUSED)
+@cases("formula", REFUSED)
 def test_what_is_refused_is_told_of_its_cell(understood, formula):
     error = understood(formula).rewritten[HERE]
     assert isinstance(error, FormulaError)
@@ -372,7 +373,7 @@ def test_what_is_refused_is_told_of_its_cell(understood, formula):
     assert error.hint
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "holds"),
     [
         ("A1+rand()", True),
@@ -437,7 +438,7 @@ def test_correlations(workbook):
     }
 
 
-@pytest.mark.parametrize(
+@cases(
     ("change", "message"),
     [
         ({"F2": None}, "The cell of a rank correlation is blank"),

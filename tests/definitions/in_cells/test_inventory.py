@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-import pytest
+from cases import cases
 
 from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.definitions.in_cells.stand_ins import REFUSED
@@ -138,7 +138,7 @@ def test_every_call_has_a_test():
     assert [call for call in CALLS if f"{call.upper()}(" not in text] == []
 
 
-@pytest.mark.parametrize("call", [*REFUSED, "RiskTSGARCH"])
+@cases("call", [*REFUSED, "RiskTSGARCH"])
 def test_what_is_refused_says_which_call_where_and_what_to_use(workbook, call):
     """In one line; RiskLibrary as a property of a draw, too."""
     found = read_definitions(workbook({"I9": f"={call}(A1)", "Z1": "=RiskOutput()+I9+RAND()"}), ENGINES)

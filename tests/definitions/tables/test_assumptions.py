@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode
@@ -78,7 +79,7 @@ MISTAKES = [
 ]
 
 
-@pytest.mark.parametrize(("changes", "where", "message", "hint"), MISTAKES)
+@cases(("changes", "where", "message", "hint"), MISTAKES)
 def test_mistakes(read, only_problem, changes, where, message, hint):
     if changes.keys() & {"Inputs!B1"}:
         changes = {**changes, **dict.fromkeys(["Inputs!A3", "Inputs!B3", "Inputs!C3", "Inputs!D3", "Inputs!E3"])}
@@ -162,7 +163,7 @@ NOTICES = [
 ]
 
 
-@pytest.mark.parametrize(("changes", "where", "message"), NOTICES)
+@cases(("changes", "where", "message"), NOTICES)
 def test_notices(read, changes, where, message):
     found = read(changes)
     assert found.problems == ()
@@ -170,7 +171,7 @@ def test_notices(read, changes, where, message):
     assert len(found.assumptions) == 5
 
 
-@pytest.mark.parametrize("word", [True, "yes", "TRUE", "Yes "])
+@cases("word", [True, "yes", "TRUE", "Yes "])
 def test_frozen(read, word):
     found = read({"Inputs!M3": word})
     assert found.problems == ()

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.address import Cell
 from xlmc.definitions.problems import Findings
@@ -32,7 +33,7 @@ def row_with(make_book, blocks):
     return row
 
 
-@pytest.mark.parametrize(
+@cases(
     ("reader", "value", "expected"),
     [
         (number, 12, 12.0),
@@ -76,7 +77,7 @@ def test_a_column_that_is_not_there_is_blank(row_with):
     assert logical(row, "Other") is False
 
 
-@pytest.mark.parametrize(
+@cases(
     ("reader", "value", "message", "hint"),
     [
         (number, "about 5", "Thing holds the text 'about 5', not a number", "Type a number"),

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.definitions.definitions import Correlation
 
@@ -17,7 +18,7 @@ MISTAKES = [
 ]
 
 
-@pytest.mark.parametrize(("changes", "where", "message", "hint"), MISTAKES)
+@cases(("changes", "where", "message", "hint"), MISTAKES)
 def test_mistakes(only_problem, changes, where, message, hint):
     only_problem(where, message, hint, changes)
 
@@ -33,7 +34,7 @@ def test_a_pair_may_stand_once_in_either_order(only_problem, blocks, pair):
     )
 
 
-@pytest.mark.parametrize("value", [-1, 0, 0.5, 1])
+@cases("value", [-1, 0, 0.5, 1])
 def test_names_are_given_as_defined(read, value):
     (found,) = read({"Answers!A21": " weight", "Answers!B21": "ANGLE", "Answers!C21": value}).correlations
     assert (found.first, found.second, found.value) == ("Weight", "Angle", value)

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.address import Area, Cell
 from xlmc.definitions.definitions_reader import read_definitions
@@ -60,7 +61,7 @@ WAYS = {
 }
 
 
-@pytest.mark.parametrize(("data", "area"), WAYS.values(), ids=WAYS)
+@cases(("data", "area"), WAYS.values(), ids=WAYS)
 def test_ways_to_name_the_data(read, data, area):
     assumption = only(read(["Custom", data], names=NAMES))
     assert assumption.distribution == "Custom"
@@ -180,7 +181,7 @@ MISTAKES = {
 }
 
 
-@pytest.mark.parametrize(("row", "changes", "where", "message", "hint"), MISTAKES.values(), ids=MISTAKES)
+@cases(("row", "changes", "where", "message", "hint"), MISTAKES.values(), ids=MISTAKES)
 def test_mistakes(read, row, changes, where, message, hint):
     problems = read(row, changes=changes, names=NAMES).problems
     assert problems[0].where == where, [str(problem) for problem in problems]

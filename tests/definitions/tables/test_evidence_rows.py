@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from cases import cases
 
 from xlmc.address import Cell
 from xlmc.definitions.evidence import Bell, Within
@@ -44,7 +44,7 @@ def test_each_error_has_its_law(read, blocks):
         assert (filter_.at_least, filter_.at_most) == limits, given
 
 
-@pytest.mark.parametrize("reading", [12.0, 0.2, 0.0, -0.2, -12.0])
+@cases("reading", [12.0, 0.2, 0.0, -0.2, -12.0])
 def test_the_limits_of_an_instrument_keep_what_lies_within_its_tolerance(reading):
     law, m = Within(reading, 0.1, 0.5), np.linspace(-20.0, 20.0, 4_001)
     kept = np.abs(reading - m) <= 0.1 * np.abs(m) + 0.5
@@ -76,7 +76,7 @@ MISTAKES = [
 ]
 
 
-@pytest.mark.parametrize(("row", "where", "message", "hint"), MISTAKES)
+@cases(("row", "where", "message", "hint"), MISTAKES)
 def test_mistakes(only_problem, blocks, row, where, message, hint):
     only_problem(where, message, hint, rows(blocks, row), TABLE)
 

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.address import Cell
 from xlmc.errors import ErrorCode
@@ -31,12 +32,12 @@ MISTAKES = [
 ]
 
 
-@pytest.mark.parametrize(("changes", "where", "message", "hint"), MISTAKES)
+@cases(("changes", "where", "message", "hint"), MISTAKES)
 def test_mistakes(only_problem, changes, where, message, hint):
     only_problem(where, message, hint, changes)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("changes", "limits"),
     [
         ({}, (0, None, None, 1)),
@@ -55,14 +56,14 @@ def test_limits(read, changes, limits):
     assert (first.at_least, first.at_most, first.above, first.below) == limits
 
 
-@pytest.mark.parametrize("cached", [True, False, 1.0, 0.0, 0.4, "ok", None, ErrorCode.DIV0])
+@cases("cached", [True, False, 1.0, 0.0, 0.4, "ok", None, ErrorCode.DIV0])
 def test_what_excel_saved_of_a_formula_says_nothing_of_the_filter(read, cached):
     found = read({"Model!B3": ("=B1>0", cached)})
     assert found.problems == found.notices == ()
     assert found.filters[1].at_least is found.filters[1].below is None
 
 
-@pytest.mark.parametrize(
+@cases(
     ("changes", "where", "message"),
     [
         ({"Answers!G11": None}, "Answers!G11", "The filter 'e' gives no evidence under Because"),
@@ -117,7 +118,7 @@ def test_a_value_column_is_the_cell_itself_and_a_copied_table_counts(read, rows)
     assert found.checks[0].cell == Cell("Answers", 41, 2)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("row", "where", "message", "hint"),
     [
         ([None, ("=Model!B3", True), "x"], "Answers!A41", "Name is blank", "Fill in Name"),

@@ -3,6 +3,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from cases import cases
 
 from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode
@@ -23,7 +24,7 @@ MISTAKES = [
 ]
 
 
-@pytest.mark.parametrize(("changes", "where", "message", "hint"), MISTAKES)
+@cases(("changes", "where", "message", "hint"), MISTAKES)
 def test_mistakes(only_problem, changes, where, message, hint):
     only_problem(where, message, hint, changes)
 
@@ -43,16 +44,14 @@ def test_two_rows_of_one_name_or_cell(only_problem, blocks, row, where, message)
     only_problem(where, message, "row", blocks("Answers!A3", [row]), tables={"xlmc_forecasts": "Answers!A1:E3"})
 
 
-@pytest.mark.parametrize(
-    ("typed", "share"), [(None, 0.51), (51, 0.51), (90, 0.9), (2.5, 0.025), (("=50+1", 51.0), 0.51)]
-)
+@cases(("typed", "share"), [(None, 0.51), (51, 0.51), (90, 0.9), (2.5, 0.025), (("=50+1", 51.0), 0.51)])
 def test_range(read, typed, share):
     found = read({"Answers!D2": typed})
     assert found.problems == found.notices == ()
     assert found.forecasts[0].central == share
 
 
-@pytest.mark.parametrize(("typed", "share", "said"), [(0.51, 0.51, "51"), (0.9, 0.9, "90"), (1, 0.01, "1")])
+@cases(("typed", "share", "said"), [(0.51, 0.51, "51"), (0.9, 0.9, "90"), (1, 0.01, "1")])
 def test_a_range_that_may_be_a_share(read, typed, share, said):
     found = read({"Answers!D2": typed})
     assert found.forecasts[0].central == share
@@ -72,7 +71,7 @@ def test_threshold_and_notes(read):
     assert found.forecasts[0].units == ""
 
 
-@pytest.mark.parametrize(
+@cases(
     ("low", "high", "asked"),
     [(35, 40.5, (35, 40.5)), (35, None, (35, math.inf)), (None, 35, (-math.inf, 35)), (None, None, None)],
 )

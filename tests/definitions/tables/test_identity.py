@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.address import Cell
 from xlmc.workbook.workbook import CellContent, Formula
@@ -25,7 +26,7 @@ NAMES = (
 )
 
 
-@pytest.mark.parametrize(
+@cases(
     ("written", "cell"),
     [
         ("=Model!B1", POINTED),
@@ -55,7 +56,7 @@ def test_a_formula_that_is_one_reference(read, written, cell):
     assert found.notices == ()
 
 
-@pytest.mark.parametrize(
+@cases(
     ("written", "cell"),
     [
         ("Model!B1", POINTED),
@@ -78,7 +79,7 @@ def test_a_text_that_is_one_reference_goes_stale(read, written, cell):
     assert str(notice.where) == AT
 
 
-@pytest.mark.parametrize(
+@cases(
     ("written", "message", "hint"),
     [
         ("d2", "'d2' names no sheet, and may be a cell or a name", "Write the formula =D2"),

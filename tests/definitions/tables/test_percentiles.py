@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.address import Cell
 from xlmc.definitions.tables.assumptions import is_percentile
@@ -28,7 +29,7 @@ def extra(found):
     return next(each for each in found.assumptions if each.name == "Extra")
 
 
-@pytest.mark.parametrize(
+@cases(
     ("heading", "expected"),
     [("P10", True), ("p90", True), ("P2.5", True), ("P 50", True), ("P", False), ("P10x", False), ("Price", False)],
 )
@@ -110,7 +111,7 @@ def test_mistakes(one, distribution, columns, where, message):
     assert problem.hint
 
 
-@pytest.mark.parametrize("name", ["Cumul", "General", "Histogrm"])
+@cases("name", ["Cumul", "General", "Histogrm"])
 def test_a_distribution_of_points_needs_its_data(one, name):
     problems = one(name, Low=1, High=5).problems
     assert problems[0].message.startswith(name)

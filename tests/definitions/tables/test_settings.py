@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.definitions.definitions import Settings
 from xlmc.definitions.stopping import LIMIT, AcceptedTrials, Precision, StableDigits, Stopping
@@ -48,17 +49,17 @@ MISTAKES = [
 ]
 
 
-@pytest.mark.parametrize(("setting", "value", "where", "message", "hint"), MISTAKES)
+@cases(("setting", "value", "where", "message", "hint"), MISTAKES)
 def test_mistakes(only_problem, setting, value, where, message, hint):
     only_problem(where, message, hint, {NAME: setting, VALUE: value})
 
 
-@pytest.mark.parametrize("seed", [-1, 1.5, 1e16, "-1", "1e16"])
+@cases("seed", [-1, 1.5, 1e16, "-1", "1e16"])
 def test_bad_seeds(only_problem, seed):
     only_problem("Answers!B32", "Seed must be a whole number from 0", "Correct", {"Answers!B32": seed})
 
 
-@pytest.mark.parametrize(
+@cases(
     ("setting", "value", "expected"),
     [
         ("Trials", 1, Settings(trials=1, seed=7)),
@@ -84,7 +85,7 @@ def test_settings(read, setting, value, expected):
     assert type(found.settings.trials) is type(found.settings.seed) is int
 
 
-@pytest.mark.parametrize("written", ["200000", "200,000", "200 000", "2e5", "200k", "0.2M", " 200000 "])
+@cases("written", ["200000", "200,000", "200 000", "2e5", "200k", "0.2M", " 200000 "])
 def test_whole_numbers_written_as_text_are_read_as_on_the_command_line(read, written):
     for setting in ("Trials", "Until accepted"):
         found = read({NAME: setting, VALUE: written})
@@ -111,7 +112,7 @@ def test_two_tables(only_problem, blocks):
     only_problem("Copy!A1", message, "came with a copied sheet", copy, tables={"xlmc_settings2": "Copy!A1:B2"})
 
 
-@pytest.mark.parametrize(
+@cases(
     ("rows", "trials", "expected"),
     [
         ([["Until accepted", 500]], LIMIT, Stopping(AcceptedTrials(500))),

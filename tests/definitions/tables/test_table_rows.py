@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-import pytest
+from cases import cases
 
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.reserved_tables import definition_tables
@@ -16,7 +16,7 @@ def names_of(book, tables, known=("Name", "Cell", "At least")):
     return [row.content("name").value for row in rows_of(book, found, ("Name",), known, findings)], findings
 
 
-@pytest.mark.parametrize(
+@cases(
     "name",
     ["xlmc_filters", "XLMC_Filters", "xlmc_filters3", "xlmc_filters_2", "xlmc_filters_chevy"],
 )
@@ -27,7 +27,7 @@ def test_names_that_are_read(make_book, blocks, name):
     assert findings.notices == findings.problems == []
 
 
-@pytest.mark.parametrize("name", ["Table1", "my_xlmc_filters_of_old", "xlmc", "filters"])
+@cases("name", ["Table1", "my_xlmc_filters_of_old", "xlmc", "filters"])
 def test_names_that_are_not_read(make_book, blocks, name):
     book = make_book(blocks("S!B2", [HEADINGS, ["a"]]), [(name, "S!B2:E3")])
     findings = Findings()
@@ -35,7 +35,7 @@ def test_names_that_are_not_read(make_book, blocks, name):
     assert findings.problems == []
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "meant"),
     [
         ("xlmc_filter", "xlmc_filters"),
@@ -60,7 +60,7 @@ def test_a_table_whose_name_is_misspelt_is_refused(make_book, blocks, name, mean
     assert problem.hint.startswith(f"Rename it {meant}")
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "told"),
     [
         ("xlmc_notes", "xlmc reads xlmc_assumptions, xlmc_forecasts"),
@@ -88,7 +88,7 @@ def test_a_row_with_an_uncalculated_formula_is_not_blank(make_book, blocks):
     assert len(names_of(book, "xlmc_filters")[0]) == 1
 
 
-@pytest.mark.parametrize("heading", ["at least", "AT LEAST", " At-Least ", "at_least", "AtLeast"])
+@cases("heading", ["at least", "AT LEAST", " At-Least ", "at_least", "AtLeast"])
 def test_any_spelling_of_a_heading(make_book, blocks, heading):
     book = make_book(blocks("S!B2", [HEADINGS, ["a", None, 5]]), [("xlmc_filters", "S!B2:E3")])
     findings = Findings()
@@ -108,7 +108,7 @@ def test_notes_are_the_columns_nobody_reads(make_book, blocks):
     assert row.notes(("Name",)) == {"Comment": "0.1", "Marked": "TRUE", "Error": "#N/A"}
 
 
-@pytest.mark.parametrize(
+@cases(
     ("value", "text"),
     [(None, ""), (True, "TRUE"), (12.0, "12"), (0.1, "0.1"), (" a ", "a"), (ErrorCode.DIV0, "#DIV/0!")],
 )
@@ -125,7 +125,7 @@ def test_two_headings_that_are_one(only_problem):
     )
 
 
-@pytest.mark.parametrize(
+@cases(
     ("changes", "where", "message", "hint"),
     [
         ({"Answers!A1": "Nmae"}, "Answers!A1", "xlmc_forecasts has no column Name", "Rename the column 'Nmae' to Name"),
@@ -142,7 +142,7 @@ def test_a_required_column_is_missing(read, changes, where, message, hint):
     assert hint in problems[0].hint
 
 
-@pytest.mark.parametrize(
+@cases(
     ("changes", "where", "written", "meant"),
     [
         ({"Answers!C10": "At leest"}, "Answers!C10", "At leest", "At least"),
@@ -158,7 +158,7 @@ def test_a_misspelt_heading_that_numbers_depend_on_is_refused(read, changes, whe
     assert problems[0].hint.startswith(f"Rename the column {meant}")
 
 
-@pytest.mark.parametrize(
+@cases(
     ("changes", "told"),
     [
         ({"Answers!E10": "Abov"}, "Answers!E10: The column 'Abov' is kept as a note only: did you mean Above?"),
@@ -173,7 +173,7 @@ def test_a_slip_in_another_heading_is_pointed_out(read, changes, told):
     assert [str(notice) for notice in found.notices if "note only" in notice.message] == [told]
 
 
-@pytest.mark.parametrize(
+@cases(
     ("below", "tables", "said"),
     [
         (["b", 1], [], True),  # typed below the table, where no program takes it in

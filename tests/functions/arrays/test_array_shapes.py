@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.families import function_named
@@ -72,7 +73,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_table(evaluate, name, arguments, expected):
     assert evaluate(name, *arguments) == expected
 
@@ -93,7 +94,7 @@ def test_what_does_not_decide_on_the_shape_may_differ_between_trials():
     assert found.tolist() == [[[0, 1], [2, 3], [4, 5], ["x", NA]], [[6, 7], [8, 9], [10, 11], ["x", NA]]]
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "arguments"),
     [
         ("SEQUENCE", (_numbers(1, 2),)),

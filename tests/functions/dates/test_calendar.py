@@ -4,6 +4,7 @@ from datetime import date, timedelta
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -21,7 +22,7 @@ DATES = [
 ]
 
 
-@pytest.mark.parametrize(("serial", "parts"), DATES)
+@cases(("serial", "parts"), DATES)
 def test_serials_and_dates(serial, parts):
     assert [int(part) for part in parts_of(serial)] == list(parts)
     assert serial_of(*parts) == serial
@@ -47,14 +48,12 @@ def test_months_and_days_run_over(year, month, day):
     assert serial_of(year, month, day) == (first + timedelta(days=day - 1) - date(1899, 12, 30)).days
 
 
-@pytest.mark.parametrize(
-    ("date_", "serial"), [((1900, 1, -5), -5), ((1900, 2, 30), 61), ((1900, 3, 0), 60), ((2020, 1.9, 1.9), 43831)]
-)
+@cases(("date_", "serial"), [((1900, 1, -5), -5), ((1900, 2, 30), 61), ((1900, 3, 0), 60), ((2020, 1.9, 1.9), 43831)])
 def test_dates_run_over_in_1900_too(date_, serial):
     assert serial_of(*date_) == serial
 
 
-@pytest.mark.parametrize("date_", [(10000, 1, 1), (1e300, 1, 1), (2020, -1e300, 1), (1899, 12, 30), (2020, 1, 1e12)])
+@cases("date_", [(10000, 1, 1), (1e300, 1, 1), (2020, -1e300, 1), (1899, 12, 30), (2020, 1, 1e12)])
 def test_what_is_outside_comes_out_outside(date_):
     assert not in_calendar(serial_of(*date_))
 
@@ -65,7 +64,7 @@ def test_weekdays_before_march_1900_are_one_off():
     assert weekday_of(0, True) == (date(1904, 1, 1).weekday() + 1) % 7
 
 
-@pytest.mark.parametrize(
+@cases(
     ("serial", "time"),
     [(0, (0, 0, 0)), (0.5, (12, 0, 0)), (43831.75, (18, 0, 0)), (0.1, (2, 24, 0)), (0.9999999, (0, 0, 0))],
 )

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -63,17 +64,17 @@ NO_DATES = [
 ]
 
 
-@pytest.mark.parametrize(("text", "serial"), DATES)
+@cases(("text", "serial"), DATES)
 def test_dates(text, serial):
     assert parse_date(text) == serial
 
 
-@pytest.mark.parametrize("text", NO_DATES)
+@cases("text", NO_DATES)
 def test_no_dates(text):
     assert parse_date(text) is None
 
 
-@pytest.mark.parametrize(("text", "serial"), [("1/1/1904", 0.0), ("1/15/2020", 42383.0), ("12/31/1903", None)])
+@cases(("text", "serial"), [("1/1/1904", 0.0), ("1/15/2020", 42383.0), ("12/31/1903", None)])
 def test_dates_of_the_1904_system(text, serial):
     assert parse_date(text, True) == serial
 
@@ -105,19 +106,17 @@ TIMES = [
 ]
 
 
-@pytest.mark.parametrize(("text", "days"), TIMES)
+@cases(("text", "days"), TIMES)
 def test_times(text, days):
     assert parse_time(text) == pytest.approx(days, rel=1e-15)
 
 
-@pytest.mark.parametrize(
-    "text", ["1:2AM", "13:00 AM", "12:60 PM", "13:60:60", "24:60", "1:2:3:4", "AM 1", "10.5 AM", ":30"]
-)
+@cases("text", ["1:2AM", "13:00 AM", "12:60 PM", "13:60:60", "24:60", "1:2:3:4", "AM 1", "10.5 AM", ":30"])
 def test_no_times(text):
     assert parse_time(text) is None
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "day", "time"),
     [
         ("07/05/1984 07:00 AM", 30868.0, 7 / 24),
@@ -133,6 +132,6 @@ def test_moments(text, day, time):
     assert moment.serial == (day or 0) + (time or 0)
 
 
-@pytest.mark.parametrize("text", ["12:00 2020-01-15x", "2020-01-15 25", "2020-01-15T12:00", "x 12:00"])
+@cases("text", ["12:00 2020-01-15x", "2020-01-15 25", "2020-01-15T12:00", "x 12:00"])
 def test_no_moments(text):
     assert parse_moment(text) is None

@@ -3,7 +3,7 @@ from __future__ import annotations
 from datetime import date, datetime, timedelta
 
 import numpy as np
-import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -87,7 +87,7 @@ VALUES = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), VALUES)
+@cases(("name", "arguments", "expected"), VALUES)
 def test_values(check, name, arguments, expected):
     check(name, arguments, expected)
 
@@ -100,7 +100,7 @@ def test_parts_make_the_date_again(evaluate, day):
     assert evaluate("DATE", *parts) == serial
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "arguments", "expected"),
     [
         ("DATE", (1904, 1, 1), 0),
@@ -167,7 +167,7 @@ VALUES_OF_TIMES = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), VALUES_OF_TIMES)
+@cases(("name", "arguments", "expected"), VALUES_OF_TIMES)
 def test_values_times(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-14)
 

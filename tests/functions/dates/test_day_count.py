@@ -4,7 +4,7 @@ import calendar
 from datetime import date, timedelta
 
 import numpy as np
-import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -55,7 +55,7 @@ YEARS = [
 ]
 
 
-@pytest.mark.parametrize(("arguments", "expected"), YEARS)
+@cases(("arguments", "expected"), YEARS)
 def test_parts_of_years(check, arguments, expected):
     check("YEARFRAC", arguments, expected, rel=1e-15)
 
@@ -105,7 +105,7 @@ def test_month_ends(serial):
     assert is_month_end(serial) == ((ZERO + timedelta(serial + 1)).day == 1)
 
 
-@pytest.mark.parametrize(("serial", "months", "expected"), [(0, 5, 152), (0, 1, 31), (31, 1, 60), (90, -1, 60)])
+@cases(("serial", "months", "expected"), [(0, 5, 152), (0, 1, 31), (31, 1, 60), (90, -1, 60)])
 def test_the_year_1900_as_excel_has_it(serial, months, expected):
     assert months_later(serial, months) == expected
 
@@ -148,7 +148,7 @@ VALUES = [
 ]
 
 
-@pytest.mark.parametrize(("start", "end", "unit", "expected"), VALUES)
+@cases(("start", "end", "unit", "expected"), VALUES)
 def test_values(check, start, end, unit, expected):
     check("DATEDIF", (start, end, unit), expected)
 

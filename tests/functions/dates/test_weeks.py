@@ -3,7 +3,7 @@ from __future__ import annotations
 from datetime import date, timedelta
 
 import numpy as np
-import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -40,14 +40,14 @@ OFF = [
 ]
 
 
-@pytest.mark.parametrize(("weekend", "off"), OFF)
+@cases(("weekend", "off"), OFF)
 def test_days_off(weekend, off):
     worked, errors = worked_days(from_objects(np.array([weekend], object)))
     assert [not day for day in worked[0]] == [mark == "1" for mark in off]
     assert errors.tolist() == [0]
 
 
-@pytest.mark.parametrize(
+@cases(
     ("weekend", "code"),
     [
         (0.0, ErrorCode.NUM),
@@ -94,7 +94,7 @@ VALUES = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), VALUES)
+@cases(("name", "arguments", "expected"), VALUES)
 def test_values(check, name, arguments, expected):
     check(name, arguments, expected)
 
@@ -120,7 +120,7 @@ def test_a_week_starts_where_its_kind_says(evaluate, day, kind):
     assert evaluate("WEEKNUM", serial, float(kind)) == 1 + new_weeks
 
 
-@pytest.mark.parametrize(("name", "expected"), [("WEEKDAY", 6), ("WEEKNUM", 1), ("ISOWEEKNUM", 53)])
+@cases(("name", "expected"), [("WEEKDAY", 6), ("WEEKNUM", 1), ("ISOWEEKNUM", 53)])
 def test_dates_count_from_1904_too(name, expected):
     """1 January 1904 was a Friday."""
     zero = np.array([0.0])
@@ -182,7 +182,7 @@ VALUES_OF_WORKDAYS = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), VALUES_OF_WORKDAYS)
+@cases(("name", "arguments", "expected"), VALUES_OF_WORKDAYS)
 def test_values_workdays(check, name, arguments, expected):
     check(name, arguments, expected)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -105,7 +106,7 @@ TABLE = [
 BASES = {"BIN": 2, "OCT": 8, "HEX": 16}
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_table(check, name, arguments, expected):
     check(name, arguments, expected)
 
@@ -166,7 +167,7 @@ TABLE_OF_BITS = [
 whole = st.integers(0, 2**48 - 1)
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE_OF_BITS)
+@cases(("name", "arguments", "expected"), TABLE_OF_BITS)
 def test_table_bits(check, name, arguments, expected):
     check(name, arguments, expected)
 

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -53,7 +54,7 @@ READ = [
 ]
 
 
-@pytest.mark.parametrize(("item", "expected"), READ)
+@cases(("item", "expected"), READ)
 def test_read(item, expected):
     assert read(item) == expected
 
@@ -85,7 +86,7 @@ WRITTEN = [
 ]
 
 
-@pytest.mark.parametrize(("number", "expected"), WRITTEN)
+@cases(("number", "expected"), WRITTEN)
 def test_write(number, expected):
     assert write(*number) == expected
 
@@ -104,7 +105,7 @@ def test_what_is_written_reads_as_itself_to_15_digits(x, y, suffix):
     assert write(number, suffix) == text
 
 
-@pytest.mark.parametrize(
+@cases(
     ("suffixes", "expected"),
     [(("i", "i"), "i"), (("", "j"), "j"), (("", ""), ""), (("i", "j"), VALUE), (("j", "", "i"), VALUE), ((), "")],
 )
@@ -205,17 +206,17 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_table(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-15)
 
 
-@pytest.mark.parametrize("name", ["IMCOT", "IMCSC", "IMCSCH"])
+@cases("name", ["IMCOT", "IMCSC", "IMCSCH"])
 def test_poles(check, name):
     check(name, (0,), NUM_OF_COMPLEX_FUNCTIONS)
 
 
-@pytest.mark.parametrize("name", ["IMSIN", "IMTAN", "IMSECH", "IMLN", "IMSQRT", "IMCONJUGATE"])
+@cases("name", ["IMSIN", "IMTAN", "IMSECH", "IMLN", "IMSQRT", "IMCONJUGATE"])
 def test_what_is_no_complex_number(check, name):
     check(name, ("4+3I",), NUM_OF_COMPLEX_FUNCTIONS)
     check(name, (False,), VALUE_OF_COMPLEX_FUNCTIONS)

@@ -3,6 +3,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -68,12 +69,12 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_table(check, name, arguments, expected):
     check(name, arguments, expected, rel=2e-15)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "arguments", "expected"),
     [("BESSELI", (1.5, 1), 0.981666428), ("BESSELK", (1.5, 1), 0.277387804), ("BESSELY", (2.5, 1), 0.145918138)],
 )

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -55,7 +56,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("arguments", "expected"), TABLE)
+@cases(("arguments", "expected"), TABLE)
 def test_table(check, arguments, expected):
     check("CONVERT", arguments, expected, rel=1e-14)
 
@@ -112,12 +113,12 @@ EXCEL = {  # as Excel's help and tables of its constants have them
 }
 
 
-@pytest.mark.parametrize("name", EXCEL)
+@cases("name", EXCEL)
 def test_scales(name):
     assert unit_named(name).scale == pytest.approx(EXCEL[name], rel=1e-14)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "group", "prefix"),
     [
         ("kg", "mass", 1e3),
@@ -149,14 +150,12 @@ def test_prefixes(name, group, prefix):
     assert (unit.group, unit.prefix) == (group, prefix)
 
 
-@pytest.mark.parametrize(
-    "name", ["", "xyz", "M", "Kg", "kft", "kim", "dasg", "kC", "kha", "kk", "kkm", "mM", "M2", "FT"]
-)
+@cases("name", ["", "xyz", "M", "Kg", "kft", "kim", "dasg", "kC", "kha", "kk", "kkm", "mM", "M2", "FT"])
 def test_what_is_no_unit(name):
     assert unit_named(name) is None
 
 
-@pytest.mark.parametrize(
+@cases(
     "names",
     ["cwt shweight", "uk_cwt lcwt hweight", "LTON uk_ton brton", "day d", "mn min", "at atm", "eV ev", "HPh hh", "W w"],
 )

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -70,7 +71,7 @@ EXACT = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), EXACT)
+@cases(("name", "arguments", "expected"), EXACT)
 def test_values(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-12)
 
@@ -169,7 +170,7 @@ VALUES = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), VALUES)
+@cases(("name", "arguments", "expected"), VALUES)
 def test_values_interest(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-12)
 

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -34,7 +35,7 @@ VALUES = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), VALUES)
+@cases(("name", "arguments", "expected"), VALUES)
 def test_values(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-11)
 
@@ -125,7 +126,7 @@ VALUES_OF_ODD_FIRST_BONDS = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), VALUES_OF_ODD_FIRST_BONDS)
+@cases(("name", "arguments", "expected"), VALUES_OF_ODD_FIRST_BONDS)
 def test_values_odd_first_bonds(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-11)
 
@@ -170,14 +171,14 @@ VALUES_OF_ODD_LAST_BONDS = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), VALUES_OF_ODD_LAST_BONDS)
+@cases(("name", "arguments", "expected"), VALUES_OF_ODD_LAST_BONDS)
 def test_values_odd_last_bonds(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-11)
 
 
-@pytest.mark.parametrize("basis", [0.0, 1.0, 2.0, 3.0, 4.0])
-@pytest.mark.parametrize("frequency", [1.0, 2.0, 4.0])
-@pytest.mark.parametrize("maturity", [40100.0, 40800.0])
+@cases("basis", [0.0, 1.0, 2.0, 3.0, 4.0])
+@cases("frequency", [1.0, 2.0, 4.0])
+@cases("maturity", [40100.0, 40800.0])
 def test_the_yield_is_found_again_odd_last_bonds(evaluate, basis, frequency, maturity):
     pr = evaluate("ODDLPRICE", 40050.0, maturity, 39900.0, 0.05, 0.07, 100.0, frequency, basis)
     found = evaluate("ODDLYIELD", 40050.0, maturity, 39900.0, 0.05, pr, 100.0, frequency, basis)

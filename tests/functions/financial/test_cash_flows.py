@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -45,7 +46,7 @@ VALUES = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), VALUES)
+@cases(("name", "arguments", "expected"), VALUES)
 def test_values(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-11)
 
@@ -97,7 +98,7 @@ VALUES_OF_DATED_CASH_FLOWS = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), VALUES_OF_DATED_CASH_FLOWS)
+@cases(("name", "arguments", "expected"), VALUES_OF_DATED_CASH_FLOWS)
 def test_values_dated_cash_flows(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-10)
 

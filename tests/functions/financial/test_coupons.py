@@ -4,6 +4,7 @@ from datetime import date
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -54,7 +55,7 @@ VALUES = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), VALUES)
+@cases(("name", "arguments", "expected"), VALUES)
 def test_values(check, name, arguments, expected):
     check(name, arguments, expected)
 
@@ -102,7 +103,7 @@ VALUES_OF_ACCRUED_INTEREST = [
 ]
 
 
-@pytest.mark.parametrize(("arguments", "expected"), VALUES_OF_ACCRUED_INTEREST)
+@cases(("arguments", "expected"), VALUES_OF_ACCRUED_INTEREST)
 def test_values_accrued_interest(check, arguments, expected):
     check("ACCRINT", arguments, expected, rel=1e-13)
 

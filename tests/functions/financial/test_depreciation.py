@@ -3,6 +3,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -59,7 +60,7 @@ VALUES = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), VALUES)
+@cases(("name", "arguments", "expected"), VALUES)
 def test_values(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-12)
 
@@ -148,7 +149,7 @@ VALUES_OF_FRENCH_DEPRECIATION = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), VALUES_OF_FRENCH_DEPRECIATION)
+@cases(("name", "arguments", "expected"), VALUES_OF_FRENCH_DEPRECIATION)
 def test_values_french_depreciation(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-12)
 

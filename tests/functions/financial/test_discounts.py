@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -37,12 +38,12 @@ VALUES = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), VALUES)
+@cases(("name", "arguments", "expected"), VALUES)
 def test_values(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-12)
 
 
-@pytest.mark.parametrize("basis", [0.0, 1.0, 2.0, 3.0, 4.0])
+@cases("basis", [0.0, 1.0, 2.0, 3.0, 4.0])
 def test_prices_and_rates_are_inverse(evaluate, basis):
     dates = 39500.0, 39800.0
     price = evaluate("PRICEDISC", *dates, 0.07, 100.0, basis)
@@ -70,7 +71,7 @@ VALUES_OF_TREASURY_BILLS = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), VALUES_OF_TREASURY_BILLS)
+@cases(("name", "arguments", "expected"), VALUES_OF_TREASURY_BILLS)
 def test_values_treasury_bills(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-12)
 

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.families import function_named
@@ -46,7 +47,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("arguments", "expected"), TABLE)
+@cases(("arguments", "expected"), TABLE)
 def test_table(evaluate, arguments, expected):
     found = evaluate("INDEX", *arguments)
     assert found == expected
@@ -120,7 +121,7 @@ TABLE_OF_REFERENCES = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE_OF_REFERENCES)
+@cases(("name", "arguments", "expected"), TABLE_OF_REFERENCES)
 def test_table_references(check, name, arguments, expected):
     check(name, arguments, expected)
 

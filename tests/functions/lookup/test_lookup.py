@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -111,7 +112,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_table(check, name, arguments, expected):
     check(name, arguments, expected)
 
@@ -245,7 +246,7 @@ TABLE_OF_XLOOKUP = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE_OF_XLOOKUP)
+@cases(("name", "arguments", "expected"), TABLE_OF_XLOOKUP)
 def test_table_xlookup(check, name, arguments, expected):
     check(name, arguments, expected)
 

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -85,9 +85,7 @@ WIDE = Value(np.zeros((1, 2, 2)), np.full((1, 1, 1), NUMBER, np.uint8))
 HALF_LOGICAL = Value(np.zeros((1, 2, 1)), np.array([NUMBER, LOGICAL], np.uint8).reshape(1, 2, 1))
 
 
-@pytest.mark.parametrize(
-    "value", [constant(1.0), VARYING, WIDE, HALF_LOGICAL], ids=["single", "varying", "wide", "logical"]
-)
+@cases("value", [constant(1.0), VARYING, WIDE, HALF_LOGICAL], ids=["single", "varying", "wide", "logical"])
 def test_only_a_constant_row_or_column_is_searched(value):
     assert numbers_of(value) is None
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -94,7 +94,7 @@ def test_as_plain_loops_have_it(trials, falling, same_list):
     assert found.tolist() == expected
 
 
-@pytest.mark.parametrize("size", [1, 2, 7, 100])
+@cases("size", [1, 2, 7, 100])
 def test_in_order_it_is_the_last_value_up_to_the_key(size):
     values = np.sort(np.random.default_rng(size).integers(0, size, size)) * 1.0
     wanted = np.arange(-1.0, size + 1, 0.5)

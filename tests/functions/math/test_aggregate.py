@@ -4,6 +4,7 @@ import statistics
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -116,7 +117,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_table(check, name, arguments, expected):
     check(name, arguments, expected, rel=3e-16)
 
@@ -125,7 +126,7 @@ def test_ranks_may_be_a_range(evaluate):
     assert evaluate("LARGE", [[1, 5, 3]], [[1, 3, 4]]) == [[5.0, 1.0, NUM]]
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "expected"),
     [("STDEV.S", 27.46391571984), ("STDEV.P", 26.05455814), ("VAR.S", 754.26666667), ("VAR.P", 678.84)],
 )

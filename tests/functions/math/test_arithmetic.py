@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.math.arithmetic import raise_to_power
@@ -91,28 +92,28 @@ ROUNDED = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), EXACT)
+@cases(("name", "arguments", "expected"), EXACT)
 def test_table(check, name, arguments, expected):
     check(name, arguments, expected)
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), ROUNDED)
+@cases(("name", "arguments", "expected"), ROUNDED)
 def test_table_of_rounded_results(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-15)
 
 
-@pytest.mark.parametrize("n", range(171))
+@cases("n", range(171))
 def test_every_factorial(check, n):
     check("FACT", (n,), float(math.factorial(n)))
 
 
-@pytest.mark.parametrize(("dividend", "divisor"), [(10, 0.1), (15 * (1.4 - 1), 6), ((1.2 - 1) / 0.2, 1)])
+@cases(("dividend", "divisor"), [(10, 0.1), (15 * (1.4 - 1), 6), ((1.2 - 1) / 0.2, 1)])
 def test_mod_takes_the_doubles_as_they_are(evaluate, dividend, divisor):
     """Excel since 2010 answers all but the whole divisor here, where a decimal remainder would be 0."""
     assert evaluate("MOD", dividend, divisor) == pytest.approx(divisor, rel=1e-14)
 
 
-@pytest.mark.parametrize("exponent", [2.0, 0.5, -1.0, 3.0])
+@cases("exponent", [2.0, 0.5, -1.0, 3.0])
 def test_the_same_to_the_bit_for_one_trial_and_for_many(exponent):
     base = np.random.default_rng(1).uniform(0.1, 3, 1000)
     exponents = np.where(np.arange(1000) == 0, 7.1, exponent)

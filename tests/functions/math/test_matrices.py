@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -51,12 +52,12 @@ EXACT = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), EXACT)
+@cases(("name", "arguments", "expected"), EXACT)
 def test_table(evaluate, name, arguments, expected):
     assert evaluate(name, *arguments) == expected
 
 
-@pytest.mark.parametrize("cells", NOT_NUMBERS)
+@cases("cells", NOT_NUMBERS)
 def test_every_cell_must_be_a_number(evaluate, cells):
     assert evaluate("MDETERM", cells) is VALUE
     assert evaluate("MINVERSE", cells) == [[VALUE, VALUE], [VALUE, VALUE]]
@@ -165,7 +166,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_table_paired_sums(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-15)
 

@@ -5,6 +5,7 @@ from decimal import ROUND_CEILING, ROUND_DOWN, ROUND_FLOOR, ROUND_HALF_UP, ROUND
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
@@ -146,17 +147,17 @@ MULTIPLES = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), DIGITS)
+@cases(("name", "arguments", "expected"), DIGITS)
 def test_table_of_digits(check, name, arguments, expected):
     check(name, arguments, expected)
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), MULTIPLES)
+@cases(("name", "arguments", "expected"), MULTIPLES)
 def test_table_of_multiples(check, name, arguments, expected):
     check(name, arguments, expected, rel=3e-16)  # n times the multiple is rounded once
 
 
-@pytest.mark.parametrize("name", ["ROUND", "ROUNDUP", "ROUNDDOWN", "TRUNC", "CEILING", "EVEN", "INT"])
+@cases("name", ["ROUND", "ROUNDUP", "ROUNDDOWN", "TRUNC", "CEILING", "EVEN", "INT"])
 def test_zero_has_no_sign(evaluate, name):
     arguments = (-0.0,) if name in ("EVEN", "INT") else (-0.0, 1.0)
     assert math.copysign(1, evaluate(name, *arguments)) == 1
@@ -245,7 +246,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_table(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-15)
 

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.families import function_named
@@ -59,7 +60,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_table(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-15)
 
@@ -73,7 +74,7 @@ def test_as_plain_functions(value):
     assert aggregate(14, 6, [value(WRONG), constant(1)]).numbers == 96
 
 
-@pytest.mark.parametrize(
+@cases(
     ("found", "nested", "filtered", "hidden"),
     [
         (subtotal_skips(9), True, True, False),

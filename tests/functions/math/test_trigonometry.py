@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.families import function_named
@@ -70,7 +71,7 @@ COERCED = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), CLOSED_FORMS + ERRORS + COERCED)
+@cases(("name", "arguments", "expected"), CLOSED_FORMS + ERRORS + COERCED)
 def test_table(check, name, arguments, expected):
     check(name, arguments, expected, rel=ULPS)
 
@@ -92,26 +93,26 @@ REFERENCE = {
 }
 
 
-@pytest.mark.parametrize("name", REFERENCE)
-@pytest.mark.parametrize("x", [-100.0, -2.5, -0.1, 1e-9, 0.3, 1.5707, 2.0, 30.0, 700.0])
+@cases("name", REFERENCE)
+@cases("x", [-100.0, -2.5, -0.1, 1e-9, 0.3, 1.5707, 2.0, 30.0, 700.0])
 def test_agrees_with_the_c_library(check, name, x):
     check(name, (x,), REFERENCE[name](x), rel=ULPS)
 
 
-@pytest.mark.parametrize("name", ["ASIN", "ACOS", "ATANH"])
-@pytest.mark.parametrize("x", [-0.99, -0.5, 1e-9, 0.1, 0.75])
+@cases("name", ["ASIN", "ACOS", "ATANH"])
+@cases("x", [-0.99, -0.5, 1e-9, 0.1, 0.75])
 def test_agrees_with_the_c_library_within_one(check, name, x):
     reference = {"ASIN": math.asin, "ACOS": math.acos, "ATANH": math.atanh}[name]
     check(name, (x,), reference(x), rel=ULPS)
 
 
-@pytest.mark.parametrize("name", ["SIN", "COS", "TAN", "SEC", "CSC", "COT"])
+@cases("name", ["SIN", "COS", "TAN", "SEC", "CSC", "COT"])
 def test_angles_just_below_the_limit_are_computed(check, name):
     x = float(np.nextafter(BIG, 0))
     check(name, (x,), REFERENCE[name](x), rel=ULPS)
 
 
-@pytest.mark.parametrize("name", ["SIN", "COS", "TAN"])
+@cases("name", ["SIN", "COS", "TAN"])
 def test_guard_turns_large_and_unknown_angles_away(name):
     guard = function_named(name).guard
     assert guard(np.array([-1e8, 1e8]))
@@ -159,7 +160,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_table_reciprocal_trigonometry(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-14)
 

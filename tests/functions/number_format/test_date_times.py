@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.functions.number_format import UnknownFormat, parse_format
 
@@ -61,24 +62,24 @@ DURATIONS = [
 ]
 
 
-@pytest.mark.parametrize(("code", "value", "text"), DATES + TIMES + DURATIONS)
+@cases(("code", "value", "text"), DATES + TIMES + DURATIONS)
 def test_dates_and_times(written, code, value, text):
     assert written(code, value) == text
 
 
-@pytest.mark.parametrize(
+@cases(
     ("value", "text"), [(0, "1904-01-01 Fri"), (1.5, "1904-01-02 Sat"), (-1, "-1904-01-02 Sat"), (2957004, "refused")]
 )
 def test_the_1904_system(written, value, text):
     assert written("yyyy-mm-dd ddd", value, True) == text
 
 
-@pytest.mark.parametrize("code", ["y 0", "h #", "[h] ?", "d .#", "mm%", "mm@", "0.0M", "AM/PM 0"])
+@cases("code", ["y 0", "h #", "[h] ?", "d .#", "mm%", "mm@", "0.0M", "AM/PM 0"])
 def test_dates_and_digits_do_not_mix(written, code):
     assert written(code, 1) == "refused"
 
 
-@pytest.mark.parametrize("code", ["[$-407]mmmm", "[$-fr-FR]dddd", "[DBNum1]0"])
+@cases("code", ["[$-407]mmmm", "[$-fr-FR]dddd", "[DBNum1]0"])
 def test_other_languages_are_not_known(code):
     with pytest.raises(UnknownFormat, match="known"):
         parse_format(code)

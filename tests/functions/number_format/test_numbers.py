@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-import pytest
+from cases import cases
 
 from xlmc.functions.number_format.numbers import approximate
 
@@ -69,17 +69,17 @@ EXPONENTS = [
 ]
 
 
-@pytest.mark.parametrize(("code", "value", "text"), DIGITS + THOUSANDS + PERCENTS + EXPONENTS)
+@cases(("code", "value", "text"), DIGITS + THOUSANDS + PERCENTS + EXPONENTS)
 def test_numbers(written, code, value, text):
     assert written(code, value) == text
 
 
-@pytest.mark.parametrize("code", ["0E+", "E+0", "0e0", "0 e 0"])
+@cases("code", ["0E+", "E+0", "0e0", "0 e 0"])
 def test_an_exponent_has_digits_on_both_sides(written, code):
     assert written(code, 1) == "refused"
 
 
-@pytest.mark.parametrize(
+@cases(
     ("x", "largest", "fraction"),
     [
         (0.3, 9, (2, 7)),
@@ -132,11 +132,11 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("code", "value", "text"), TABLE)
+@cases(("code", "value", "text"), TABLE)
 def test_numbers_fractions(written, code, value, text):
     assert written(code, value) == text
 
 
-@pytest.mark.parametrize("code", ["0/", "/0", "/"])
+@cases("code", ["0/", "/0", "/"])
 def test_a_fraction_has_two_sides(written, code):
     assert written(code, 1) == "refused"

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-import pytest
+from cases import cases
 
 from xlmc.functions.number_format.placeholders import general_in_cell
 
@@ -25,12 +25,12 @@ GENERAL = [
 ]
 
 
-@pytest.mark.parametrize(("value", "text"), GENERAL)
+@cases(("value", "text"), GENERAL)
 def test_general_in_eleven_characters(value, text):
     assert general_in_cell(value) == text
 
 
-@pytest.mark.parametrize(
+@cases(
     ("code", "value", "text"),
     [
         ("General", -12.5, "-12.5"),

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -54,7 +55,7 @@ CONDITIONS = [
 ]
 
 
-@pytest.mark.parametrize(("code", "value", "text"), BY_SIGN + CONDITIONS)
+@cases(("code", "value", "text"), BY_SIGN + CONDITIONS)
 def test_sections(written, code, value, text):
     assert written(code, value) == text
 
@@ -79,7 +80,7 @@ REFUSED = [
 ]
 
 
-@pytest.mark.parametrize("code", REFUSED)
+@cases("code", REFUSED)
 def test_what_is_no_format(code):
     with pytest.raises(FormatError):
         parse_format(code)

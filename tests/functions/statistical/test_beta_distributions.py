@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
@@ -28,7 +29,7 @@ HELP = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "printed"), HELP)
+@cases(("name", "arguments", "printed"), HELP)
 def test_examples_of_excels_help(shows, name, arguments, printed):
     shows(name, arguments, printed)
 
@@ -64,7 +65,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_table(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-13)
 
@@ -98,7 +99,7 @@ ERRORS = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), ERRORS)
+@cases(("name", "arguments", "expected"), ERRORS)
 def test_errors(check, name, arguments, expected):
     check(name, arguments, expected)
 
@@ -111,7 +112,7 @@ M, K = np.floor(np.exp(RNG.uniform(0, 13, (2, N))))
 RATIO, P = np.exp(RNG.uniform(-5, 5, N)), RNG.uniform(0, 1, N)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "arguments", "expected"),
     [
         ("BETA.DIST", (X, A, B, 1), lambda: stats.beta.cdf(X, A, B)),
@@ -149,7 +150,7 @@ HELP_OF_STUDENT_DISTRIBUTION = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "printed"), HELP_OF_STUDENT_DISTRIBUTION)
+@cases(("name", "arguments", "printed"), HELP_OF_STUDENT_DISTRIBUTION)
 def test_examples_of_excels_help_student_distribution(shows, name, arguments, printed):
     shows(name, arguments, printed)
 
@@ -184,7 +185,7 @@ TABLE_OF_STUDENT_DISTRIBUTION = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE_OF_STUDENT_DISTRIBUTION)
+@cases(("name", "arguments", "expected"), TABLE_OF_STUDENT_DISTRIBUTION)
 def test_table_student_distribution(check, name, arguments, expected):
     check(name, arguments, expected, rel=2e-13)
 
@@ -216,7 +217,7 @@ ERRORS_OF_STUDENT_DISTRIBUTION = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), ERRORS_OF_STUDENT_DISTRIBUTION)
+@cases(("name", "arguments", "expected"), ERRORS_OF_STUDENT_DISTRIBUTION)
 def test_errors_student_distribution(check, name, arguments, expected):
     check(name, arguments, expected)
 

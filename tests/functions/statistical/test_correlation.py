@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
@@ -27,7 +28,7 @@ HELP = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "printed"), HELP)
+@cases(("name", "arguments", "printed"), HELP)
 def test_examples_of_excels_help(shows, name, arguments, printed):
     shows(name, arguments, printed)
 
@@ -35,13 +36,13 @@ def test_examples_of_excels_help(shows, name, arguments, printed):
 PAIRED = ["CORREL", "RSQ", "SLOPE", "INTERCEPT", "STEYX", "COVARIANCE.P", "COVARIANCE.S"]
 
 
-@pytest.mark.parametrize("name", PAIRED)
+@cases("name", PAIRED)
 def test_only_pairs_of_numbers_count(evaluate, name):
     ys, xs = [[1, "2", 4, True, 5, None]], [[2, 50, 3, 60, 7, 70]]
     assert evaluate(name, ys, xs) == evaluate(name, [[1, 4, 5]], [[2, 3, 7]])
 
 
-@pytest.mark.parametrize("name", PAIRED)
+@cases("name", PAIRED)
 def test_errors(check, name):
     check(name, ([[1, 2]], [[1, 2, 3]]), NA)
     check(name, ([[1, DIV0]], [[NA, 2]]), DIV0)
@@ -72,7 +73,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_table(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-15)
 

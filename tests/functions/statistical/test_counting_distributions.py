@@ -6,6 +6,7 @@ from math import comb
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
@@ -33,7 +34,7 @@ HELP = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "printed"), HELP)
+@cases(("name", "arguments", "printed"), HELP)
 def test_examples_of_excels_help(shows, name, arguments, printed):
     shows(name, arguments, printed)
 
@@ -73,7 +74,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_table(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-13)
 
@@ -113,7 +114,7 @@ ERRORS = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), ERRORS)
+@cases(("name", "arguments", "expected"), ERRORS)
 def test_errors(check, name, arguments, expected):
     check(name, arguments, expected)
 
@@ -163,7 +164,7 @@ X = np.floor(np.maximum(MEAN + 4 * RNG.normal(0, 1, N) * np.sqrt(MEAN), 0))
 ALPHA = RNG.uniform(0, 1, N)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "arguments", "expected"),
     [
         ("POISSON.DIST", (X, MEAN, 1), lambda: stats.poisson.cdf(X, MEAN)),

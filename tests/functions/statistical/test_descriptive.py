@@ -4,6 +4,7 @@ import statistics
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
@@ -29,7 +30,7 @@ HELP = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "printed"), HELP)
+@cases(("name", "arguments", "printed"), HELP)
 def test_examples_of_excels_help(shows, name, arguments, printed):
     shows(name, arguments, printed)
 
@@ -74,7 +75,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_table(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-14)
 
@@ -135,7 +136,7 @@ HELP_OF_ANY_KIND = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "printed"), HELP_OF_ANY_KIND)
+@cases(("name", "arguments", "printed"), HELP_OF_ANY_KIND)
 def test_examples_of_excels_help_any_kind(shows, name, arguments, printed):
     shows(name, arguments, printed)
 
@@ -170,6 +171,6 @@ TABLE_OF_ANY_KIND = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE_OF_ANY_KIND)
+@cases(("name", "arguments", "expected"), TABLE_OF_ANY_KIND)
 def test_table_any_kind(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-15)

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.errors import ErrorCode
@@ -35,7 +35,7 @@ HELP = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "printed"), HELP)
+@cases(("name", "arguments", "printed"), HELP)
 def test_examples_of_excels_help(shows, name, arguments, printed):
     shows(name, arguments, printed)
 
@@ -73,7 +73,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_table(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-13)
 
@@ -113,7 +113,7 @@ ERRORS = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), ERRORS)
+@cases(("name", "arguments", "expected"), ERRORS)
 def test_errors(check, name, arguments, expected):
     check(name, arguments, expected)
 
@@ -127,7 +127,7 @@ CHI = FREEDOM * np.exp(3 * RNG.normal(0, 1, N) / np.sqrt(FREEDOM))
 P = RNG.uniform(0, 1, N)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "arguments", "expected", "rel"),
     [
         ("GAMMA.DIST", (2 * X, SHAPE, 2, 1), lambda: stats.gamma.cdf(X, SHAPE), 1e-12),

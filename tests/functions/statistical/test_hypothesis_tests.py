@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
@@ -26,7 +27,7 @@ HELP = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "printed"), HELP)
+@cases(("name", "arguments", "printed"), HELP)
 def test_examples_of_excels_help(shows, name, arguments, printed):
     shows(name, arguments, printed)
 
@@ -67,7 +68,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_table(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-12)
 

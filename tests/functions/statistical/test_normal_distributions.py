@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.errors import ErrorCode
@@ -34,7 +35,7 @@ HELP = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "printed"), HELP)
+@cases(("name", "arguments", "printed"), HELP)
 def test_examples_of_excels_help(shows, name, arguments, printed):
     shows(name, arguments, printed)
 
@@ -58,7 +59,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_table(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-13)
 
@@ -92,7 +93,7 @@ ERRORS = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), ERRORS)
+@cases(("name", "arguments", "expected"), ERRORS)
 def test_errors(check, name, arguments, expected):
     check(name, arguments, expected)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.functions.statistical.probabilities import (
     binomial_mass,
@@ -47,12 +48,12 @@ BINOMIAL = [
 ]
 
 
-@pytest.mark.parametrize(("arguments", "expected"), POISSON)
+@cases(("arguments", "expected"), POISSON)
 def test_poisson_mass(arguments, expected):
     assert poisson_mass(*map(np.array, arguments)) == pytest.approx(expected, rel=2e-13)
 
 
-@pytest.mark.parametrize(("arguments", "expected"), BINOMIAL)
+@cases(("arguments", "expected"), BINOMIAL)
 def test_binomial_mass(arguments, expected):
     x, y, p = map(np.array, arguments)
     assert binomial_mass(x, y, p, 1 - p) == pytest.approx(expected, rel=2e-14)
@@ -65,7 +66,7 @@ def test_binomial_mass_loses_no_digits_that_a_thousandth_part_of_the_numbers_has
     assert found == pytest.approx(3.1369369498624496792e-17, rel=5e-11)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("x", "expected"),
     [
         (1e-8, 8.2914020272061608566),
@@ -82,7 +83,7 @@ def test_stirling_error(x, expected):
     assert stirling_error(np.array(float(x))) == pytest.approx(expected, rel=1e-15, abs=2e-14)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("x", "mean", "expected"),
     [
         (1e8, 1e8 + 1, 4.9999999666666669167e-9),
@@ -108,7 +109,7 @@ def _never():
     raise AssertionError("it was asked for")
 
 
-@pytest.mark.parametrize(
+@cases(
     ("cumulative", "probability", "density", "expected"),
     [
         ([True, False], lambda: np.array([1.0, 2.0]), lambda: np.array([3.0, 4.0]), [1, 4]),
@@ -136,14 +137,14 @@ BELOW = [
 ]
 
 
-@pytest.mark.parametrize(("arguments", "expected"), BELOW)
+@cases(("arguments", "expected"), BELOW)
 def test_both_ends_keep_their_digits(arguments, expected):
     a, b, x = map(np.array, arguments)
     assert incomplete_beta(a, b, x, 1 - x) == pytest.approx(expected, rel=1e-13)
     assert incomplete_beta(b, a, 1 - x, x) == pytest.approx(1 - expected, rel=1e-13)
 
 
-@pytest.mark.parametrize(("arguments", "p"), BELOW)
+@cases(("arguments", "p"), BELOW)
 def test_the_inverse_gives_the_number_and_its_complement(arguments, p):
     a, b, x = map(np.array, arguments)
     assert inverse_beta(a, b, np.array(p))[0] == pytest.approx(x, rel=1e-12)

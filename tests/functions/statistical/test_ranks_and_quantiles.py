@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
@@ -96,7 +97,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), HELP + TABLE)
+@cases(("name", "arguments", "expected"), HELP + TABLE)
 def test_table(check, name, arguments, expected):
     check(name, arguments, expected, rel=4e-16)
 

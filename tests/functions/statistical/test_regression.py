@@ -4,6 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -112,7 +113,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_table(evaluate, name, arguments, expected):
     found = evaluate(name, *arguments)
     if isinstance(expected, ErrorCode):

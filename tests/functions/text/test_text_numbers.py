@@ -5,6 +5,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.functions.families import function_named
@@ -72,7 +73,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_values(check, name, arguments, expected):
     check(name, arguments, expected)
 
@@ -82,7 +83,7 @@ def test_trials_in_one_format():
     assert text.objects().tolist() == ["0.5", "12.3"]
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "arguments", "expected"),
     [("TEXT", (1.0, "yyyy-mm-dd"), "1904-01-02"), ("VALUE", ("1/2/1904",), 1.0), ("TEXT", ("1/2/1904", "0"), "1")],
 )

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -60,7 +60,7 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+@cases(("name", "arguments", "expected"), TABLE)
 def test_values(check, name, arguments, expected):
     check(name, arguments, expected)
 
@@ -117,7 +117,7 @@ TABLE_OF_TEXT_SEARCH = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE_OF_TEXT_SEARCH)
+@cases(("name", "arguments", "expected"), TABLE_OF_TEXT_SEARCH)
 def test_values_text_search(check, name, arguments, expected):
     check(name, arguments, expected)
 
@@ -128,7 +128,7 @@ def test_units_join_again(text):
     assert len(to_units(text)) == len(text.encode("utf-16-le")) // 2
 
 
-@pytest.mark.parametrize(("text", "shown"), [("\ud83d", "\ufffd"), ("a\ude00b", "a\ufffdb"), ("é", "é"), ("", "")])
+@cases(("text", "shown"), [("\ud83d", "\ufffd"), ("a\ude00b", "a\ufffdb"), ("é", "é"), ("", "")])
 def test_half_a_pair_is_unknown(text, shown):
     assert from_units(text) == shown
 

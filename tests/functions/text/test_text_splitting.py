@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.families import function_named
@@ -63,12 +64,12 @@ SPLITS = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arguments", "expected"), EDGES)
+@cases(("name", "arguments", "expected"), EDGES)
 def test_before_and_after(check, name, arguments, expected):
     check(name, arguments, expected)
 
 
-@pytest.mark.parametrize(("arguments", "expected"), SPLITS)
+@cases(("arguments", "expected"), SPLITS)
 def test_splits(evaluate, arguments, expected):
     assert evaluate("TEXTSPLIT", *arguments) == expected
 

@@ -10,6 +10,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -202,7 +203,7 @@ def test_one_bit_changes_it():
     assert fingerprint(_run([1], [[1.0]], [])) != fingerprint(_run([1], [[np.nextafter(1.0, 2.0)]], []))
 
 
-@pytest.mark.parametrize(("text", "expected"), QUOTED)
+@cases(("text", "expected"), QUOTED)
 def test_quoting(text, expected):
     assert quoted_argument(text) == expected
 

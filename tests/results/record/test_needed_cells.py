@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import openpyxl
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 from packed_sheets import packed_sheets
@@ -38,7 +39,7 @@ TEXTS = {
 }
 
 
-@pytest.mark.parametrize(("text", "expected"), TEXTS.items())
+@cases(("text", "expected"), TEXTS.items())
 def test_a_formula_filled_down_and_to_the_right(text, expected):
     assert text_at(text, 2, 1) == expected
     assert text_at(text, 0, 0) == text
@@ -59,7 +60,7 @@ def held(workbook, value=None, formula=None):
     return workbook({"B2": CellContent(value, formula)}), Cell("S", 2, 2)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("value", "expected"),
     [
         (None, ""),
@@ -77,7 +78,7 @@ def test_a_value_as_a_formula_writes_it(workbook, value, expected):
     assert content_text(*held(workbook, value)) == expected
 
 
-@pytest.mark.parametrize(
+@cases(
     ("formula", "expected"),
     [
         (Formula("A1*2", 2, 2), "=A1*2"),
@@ -135,7 +136,7 @@ def many(n):
     return {Cell("My sheet", row, 2): f"=B{row - 1}*{draw.random()}" for row in range(2, n + 2)}
 
 
-@pytest.mark.parametrize(("n", "listed"), [(0, True), (5, True), (MOST_ROWS, True), (MOST_ROWS + 1, False)])
+@cases(("n", "listed"), [(0, True), (5, True), (MOST_ROWS, True), (MOST_ROWS + 1, False)])
 def test_cells_are_listed_or_packed_and_read_back(n, listed):
     needed = many(n)
     section = cell_section(needed)
@@ -158,7 +159,7 @@ def test_packed_cells_come_through_a_worksheet(run, monkeypatch):
     assert recorded_cells(record) == needed_contents(run.model)
 
 
-@pytest.mark.parametrize(
+@cases(
     "changes",
     [{"packed_1": "!"}, {"packed_1": "AAAA"}, {"sha256": "0"}, {"count": 3}],
     ids=["no base64", "nothing packed", "another digest", "another count"],

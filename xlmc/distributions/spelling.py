@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from difflib import get_close_matches
+from functools import lru_cache
 
 __all__ = ["did_you_mean", "name_key", "nearest", "plain"]
 
@@ -23,6 +24,7 @@ def name_key(name: str) -> str:
     return name.strip().casefold()
 
 
+@lru_cache(maxsize=2048)
 def plain(text: str) -> str:
     """The spelling two names share when they differ only in case, blanks, underscores or hyphens.
 

@@ -175,7 +175,7 @@ def test_the_workbook_is_no_output(xlmc, data, book):
     before = book.read_bytes()
     outcome = xlmc("fit", f"{data}!A1:A40", "--name", "new", "--into", book, "-o", book, "--overwrite")
     assert outcome.code == 2
-    assert "this is the workbook itself" in outcome.err
+    assert "this is the file that is read" in outcome.err
     assert book.read_bytes() == before
 
 

@@ -79,7 +79,7 @@ def test_the_workbook_itself_is_no_output(xlmc, case_study, tmp_path):
     copy.write_bytes(case_study.read_bytes())
     outcome = xlmc("methods", copy, "-o", copy)
     assert outcome.code == 2
-    assert "this is the workbook itself" in outcome.err
+    assert "this is the file that is read" in outcome.err
     assert copy.read_bytes() == case_study.read_bytes()
 
 

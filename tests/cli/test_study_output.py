@@ -71,7 +71,7 @@ def test_documents_say_what_the_terminal_says(xlmc, command, tmp_path):
 def test_what_cannot_be_written_is_refused_before_anything_is_run(xlmc, command, book, tmp_path):
     before = book.read_bytes()
     for given, said in (
-        (["-o", book], "this is the workbook itself"),
+        (["-o", book], "this is the file that is read"),
         (["-o", tmp_path / "found.html"], "must end in .xlsx"),
         (["--html", tmp_path / "found.xlsx"], "must end in .html"),
         (["--html", tmp_path / "nowhere" / "found.html"], "nowhere"),
@@ -119,5 +119,5 @@ def test_a_file_that_becomes_the_workbook_during_a_study_spares_it(xlmc, book, t
     monkeypatch.setattr(study_report, "_page", made_meanwhile)
     outcome = xlmc("verify", book, "--all", "--html", page, "--overwrite")
     assert outcome.code == 2
-    assert outcome.err == f"xlmc: {page}: this is the workbook itself. Name another file.\n"
+    assert outcome.err == f"xlmc: {page}: this is the file that is read. Name another file.\n"
     assert book.read_bytes() == before

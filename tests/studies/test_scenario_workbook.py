@@ -150,7 +150,7 @@ def test_what_cannot_be_typed_is_refused(small, changes, error, message):
 
 def test_a_workbook_is_typed_into_only_on_request_and_while_nobody_else_has_it(small):
     path, edited = small.path, edited_workbook(small, rate(5.0))
-    with pytest.raises(WorkbookError, match="this is the workbook itself"):
+    with pytest.raises(WorkbookError, match="this is the file that is read"):
         write_edited(edited, path)
     lock = path.with_name(f"~${path.name}")
     lock.touch()

@@ -45,6 +45,15 @@ def test_what_others_wrote_is_replaced_only_when_asked_for(tmp_path, name, conte
     Target(path, "case.xlsx", overwrite=True).check()
 
 
+def test_a_file_that_is_read_is_spared_whatever_is_asked_for(tmp_path):
+    book, page = tmp_path / "book.xlsx", tmp_path / "page.html"
+    book.write_bytes(b"mine")
+    page.symlink_to(book)
+    for path in (book, page):
+        with pytest.raises(TakenError, match="this is the file that is read"):
+            Target(path, "", overwrite=True, read=[tmp_path / "none.xlsx", book]).check()
+
+
 def test_a_file_that_cannot_be_read_is_not_ours(tmp_path, monkeypatch):
     path = page(tmp_path / "a.html")
 

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Outputs", "Reports", "Wishes", "output_options", "results_beside"]
 
-_READ = "this is the file that is read"
-
 F = TypeVar("F", bound=Callable[..., Any])
 
 _PATH = click.Path(readable=False, path_type=Path)  # a file that may not be read is refused later, with a hint
@@ -199,9 +197,8 @@ class Outputs(NamedTuple):
         from xlmc.workbook.target import Target, refuse_same_file
 
         self._check_endings(like)
-        self._refuse_source()
         for path in self._others:
-            Target(path, self.name, self.overwrite).check()
+            Target(path, self.name, self.overwrite, read=self._read).check()
         found = self._with_book()
         refuse_same_file([path for path in (found.book, *self._others) if path is not None])
         return found
@@ -241,22 +238,13 @@ class Outputs(NamedTuple):
 
             check_extract_path(path)
 
-    def _refuse_source(self) -> None:
-        """Refuse an output that is the file which is read, by whatever name."""
-        for path in (self.book, *self._others):
-            if path is not None and self._is_read(path):
-                hint = "--in-place writes the result sheets into it" if path == self.book else None
-                raise WorkbookError(_READ, where=path, hint=hint or "Name another file")
-
-    def _is_read(self, path: Path) -> bool:
-        from xlmc.workbook.target import is_same_file
-
-        if self.in_place and path == self.book:
-            return False
-        return any(is_same_file(path, read) for read in (self.source, self.beside) if read is not None)
+    @property
+    def _read(self) -> list[Path]:
+        """The files that are read: no output may replace them."""
+        return [path for path in (self.source, self.beside) if path is not None]
 
     def _with_book(self) -> Outputs:
-        from xlmc.workbook.target import Target, free_target
+        from xlmc.workbook.target import Target, free_target, refuse_read
         from xlmc.workbook.writer import check_folder, refuse_if_open
 
         if self.book is None:
@@ -265,6 +253,7 @@ class Outputs(NamedTuple):
             check_folder(self.book)
             refuse_if_open(self.book)
             return self
+        refuse_read(self.book, self._read, "--in-place writes the result sheets into it")
         if self.named or self.overwrite:
             Target(self.book, self.name, self.overwrite).check()
             return self
@@ -293,12 +282,12 @@ class Outputs(NamedTuple):
         return written, lines
 
     def _write_beside(self, path: Path, write: _Write) -> Path:
-        from xlmc.workbook.target import free_target
+        from xlmc.workbook.target import free_target, refuse_read
         from xlmc.workbook.writer import TakenError
 
         try:
-            if self._is_read(path):  # it became so during the run
-                raise TakenError(_READ, where=path)
+            if not (self.in_place and path == self.book):
+                refuse_read(path, self._read)  # it may have become a link to one during the run
             write(path, overwrite=self.overwrite or (self.in_place and path == self.book))
         except TakenError as taken:
             beside = results_beside(path) if path == self.book and self.in_place else path

@@ -72,7 +72,7 @@ def extract(simulation: Simulation, path: Path, *, command: str | None = None, o
     """
     write = _writer(path)
     check_extract_path(path)
-    target = Target(path, simulation.model.workbook.name, overwrite)
+    target = Target(path, simulation.model.workbook.name, overwrite, read=[simulation.model.path])
     target.check()
     with whole_file(path, target.check) as file:
         write(simulation, file, command)

@@ -159,7 +159,7 @@ def save_json(simulation: Simulation, path: Path, *, command: str | None = None,
         WorkbookError: the file cannot be written, or does not end in `.json`.
     """
     check_json_path(path)
-    target = Target(path, simulation.model.workbook.name, overwrite)
+    target = Target(path, simulation.model.workbook.name, overwrite, read=[simulation.model.path])
     target.check()
     text = json.dumps(document(simulation, command=command), ensure_ascii=False, allow_nan=False, indent=2)
     write_workbook(path, sealed_text(text.removesuffix("\n}").encode(), ".json", target.book), target.check)

@@ -18,7 +18,7 @@ from xlmc.report.sheets.page import Page
 from xlmc.report.sheets.styles import CREATED, Styles
 from xlmc.report.study_curves import Curves, drawing_of, write_chart
 from xlmc.workbook.seal import sealed_parts, sealed_text
-from xlmc.workbook.target import Target, is_same_file, refuse_same_file
+from xlmc.workbook.target import Target, refuse_same_file
 from xlmc.workbook.writer import package_bytes, write_workbook
 
 __all__ = ["Block", "Files", "StudyReport", "Table", "column_widths", "refuse_other_ending"]
@@ -102,9 +102,8 @@ class Files:
         """See that every file can be written, before anything is run.
 
         Raises:
-            TakenError: a file is not ours to replace, or a program has it open.
-            WorkbookError: a file has the wrong ending, its folder is not there, it is a workbook that is studied, or it
-                is named twice.
+            TakenError: a file is not ours to replace, is a workbook that is studied, or a program has it open.
+            WorkbookError: a file has the wrong ending, its folder is not there, or it is named twice.
             SimulationError: a library is missing.
         """
         refuse_same_file([path for path, _ in self._endings])
@@ -114,19 +113,16 @@ class Files:
                 from xlmc.report.document import check_report_path
 
                 check_report_path(path)
-            self._check_target(path)
+            self._target(path).check()
 
-    def _check_target(self, path: Path) -> None:
-        """See that a file may be written; also just before it is, for it may have become a link since."""
-        if any(is_same_file(path, source) for source in self._sources):
-            raise WorkbookError("this is the workbook itself", where=path, hint="Name another file")
-        Target(path, self._sources[0].name, self._overwrite).check()
+    def _target(self, path: Path) -> Target:
+        return Target(path, self._sources[0].name, self._overwrite, read=self._sources)
 
     def writers(self, report: StudyReport, sheet: str) -> Iterator[tuple[Path, Callable[[], Path]]]:
         """Each file with what writes it; an untouched file of ours is replaced.
 
-        What writes it raises `TakenError` where the file is not ours to replace, and `WorkbookError` where it cannot be
-        written or has become a workbook that is studied.
+        What writes it raises `TakenError` where the file is not ours to replace or has become a workbook that is
+        studied, and `WorkbookError` where it cannot be written.
         """
         for path, ending in self._endings:
             yield path, partial(self._write, report, sheet, path, ending)
@@ -139,7 +135,7 @@ class Files:
             content = sealed_text(_page(report).encode(), ending, name)
         else:
             content = package_bytes(sealed_parts(_book(report, sheet), "xl/worksheets/sheet1.xml", name))
-        write_workbook(path, content, lambda: self._check_target(path))
+        write_workbook(path, content, self._target(path).check)
         return path
 
 

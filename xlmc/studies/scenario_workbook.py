@@ -28,9 +28,9 @@ from xlmc.workbook.injection.content_types import roles
 from xlmc.workbook.lazy_sheets import with_values
 from xlmc.workbook.package import is_old_workbook
 from xlmc.workbook.reader import read_workbook
-from xlmc.workbook.target import Target, copy_ending, is_same_file, refuse_into_source
+from xlmc.workbook.target import Target, copy_ending, is_same_file, refuse_into_source, refuse_read
 from xlmc.workbook.workbook import CellValue, Workbook
-from xlmc.workbook.writer import TakenError, package_bytes, write_workbook
+from xlmc.workbook.writer import package_bytes, write_workbook
 
 __all__ = ["EditedWorkbook", "edited_workbook", "write_edited"]
 
@@ -116,7 +116,7 @@ def write_edited(edited: EditedWorkbook, path: Path, *, overwrite: bool = False)
             return
         if not overwrite:
             hint = "Name another file, or type the scenario into the workbook with --in-place"
-            raise TakenError("this is the workbook itself", where=path, hint=hint)
+            refuse_read(path, [edited.path], hint)
         refuse_into_source(path, edited.sha256, "Try again")
 
     check()

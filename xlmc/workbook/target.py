@@ -23,6 +23,7 @@ __all__ = [
     "refuse_existing",
     "refuse_into_old_workbook",
     "refuse_into_source",
+    "refuse_read",
     "refuse_same_file",
     "same_name",
     "unused_path",
@@ -38,22 +39,25 @@ class Target:
     Attributes:
         path: where to.
         book: the name of the workbook whose results it is to hold; empty where it holds none.
-        overwrite: replace whatever file is there.
+        overwrite: replace whatever file is there, but for those that are read.
         untouched: contents that xlmc hands out, and may replace too, such as templates.
+        read: the files that are read, such as the workbook: none of them is ever replaced, by whatever name.
     """
 
     path: Path
     book: str
     overwrite: bool = False
     untouched: Iterable[Path] = field(default=())
+    read: Iterable[Path] = field(default=())
 
     def check(self) -> None:
         """Refuse what must not or cannot be written; nothing is touched. To be asked before a run, and when writing.
 
         Raises:
-            TakenError: the file is not ours to replace, or a program has it open.
+            TakenError: the file is not ours to replace, is one that is read, or a program has it open.
             WorkbookError: there is no folder, or the folder may not be written to.
         """
+        refuse_read(self.path, self.read)
         check_folder(self.path)
         if self.path.suffix.casefold() in WORKBOOKS:
             refuse_if_open(self.path)
@@ -110,6 +114,16 @@ def free_target(path: Path, book: str, *, after: Path | None = None) -> tuple[Pa
 def unused_path(path: Path) -> Path:
     """The path, or the first of `…-2`, `…-3`, … where nothing is."""
     return next(each for each in _numbered(path) if not (each.exists() or each.is_symlink()))
+
+
+def refuse_read(path: Path, read: Iterable[Path], hint: str = "Name another file") -> None:
+    """Refuse to replace a file that is read, also by a link to it.
+
+    Raises:
+        TakenError: it is one.
+    """
+    if any(is_same_file(path, each) for each in read):
+        raise TakenError("this is the file that is read", where=path, hint=hint)
 
 
 def refuse_existing(path: Path) -> None:

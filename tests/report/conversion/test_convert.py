@@ -335,6 +335,6 @@ def test_the_workbook_itself_is_not_replaced_by_whatever_name(tmp_path):
     (tmp_path / "link.xlsx").symlink_to(path)
     before, model = path.read_bytes(), load(path)
     for name in ("book.xlsx", "link.xlsx"):
-        with pytest.raises(WorkbookError, match="this is the workbook itself"):
+        with pytest.raises(WorkbookError, match="this is the file that is read"):
             convert(model, tmp_path / name, overwrite=True)
     assert path.read_bytes() == before

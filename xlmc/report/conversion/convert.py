@@ -26,9 +26,9 @@ from xlmc.run.simulation import Simulation
 from xlmc.workbook.inject import inject, remove_result_sheets
 from xlmc.workbook.reader import read_workbook
 from xlmc.workbook.structure import read_structure
-from xlmc.workbook.target import Target, is_same_file
+from xlmc.workbook.target import Target
 from xlmc.workbook.workbook import Workbook
-from xlmc.workbook.writer import TakenError, package_bytes, write_workbook
+from xlmc.workbook.writer import package_bytes, write_workbook
 
 __all__ = ["Converted", "convert"]
 
@@ -64,13 +64,8 @@ def convert(model: Model, path: Path, *, overwrite: bool = False) -> Converted:
         WorkbookError: there is nothing to convert, or the file cannot be written.
         DefinitionError: the new workbook would not be right.
     """
-
-    def check() -> None:
-        if is_same_file(path, model.path):
-            raise TakenError("this is the workbook itself", where=path, hint="Name another file")
-        Target(path, "", overwrite).check()
-
-    check()
+    target = Target(path, "", overwrite, read=[model.path])
+    target.check()
     workbook, definitions = model.workbook, model.definitions
     tables = tuple(new_tables(workbook, definitions))
     left = tuple(_left(workbook, definitions, tables))
@@ -85,7 +80,7 @@ def convert(model: Model, path: Path, *, overwrite: bool = False) -> Converted:
     )
     data = package_bytes(parts)
     _compare(model, build_model(read_workbook(data, path.name), path))
-    write_workbook(path, data, check)
+    write_workbook(path, data, target.check)
     return Converted(path, tables, left)
 
 

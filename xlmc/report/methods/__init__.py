@@ -11,7 +11,7 @@ from typing import Final
 from xlmc.errors import WorkbookError
 from xlmc.studies.methods import Study
 from xlmc.workbook.seal import sealed_parts, sealed_text
-from xlmc.workbook.target import Target, is_same_file, refuse_same_file
+from xlmc.workbook.target import Target, refuse_same_file
 from xlmc.workbook.writer import package_bytes, write_workbook
 
 __all__ = ["ENDINGS", "check_targets", "save_methods"]
@@ -25,9 +25,9 @@ def check_targets(paths: Sequence[Path], source: Path, *, overwrite: bool = Fals
     """See that every file can be written, before anything is measured.
 
     Raises:
-        TakenError: a file is not ours to replace, or a program has it open.
-        WorkbookError: an ending is unknown, a folder is not there, a file is the workbook itself or is named twice, or
-            there is nothing to draw with.
+        TakenError: a file is not ours to replace, is the workbook itself, or a program has it open.
+        WorkbookError: an ending is unknown, a folder is not there, a file is named twice, or there is nothing to draw
+            with.
         SimulationError: a library that writes documents is missing.
     """
     refuse_same_file(paths)
@@ -36,13 +36,11 @@ def check_targets(paths: Sequence[Path], source: Path, *, overwrite: bool = Fals
         if ending not in ENDINGS:
             message = f"a study of methods is not written as {ending or 'a file without ending'}"
             raise WorkbookError(message, where=path, hint="Name a file that ends in .png, .html, .xlsx, .pdf or .docx")
-        if is_same_file(path, source):
-            raise WorkbookError("this is the workbook itself", where=path, hint="Name another file")
         if ending in _DOCUMENTS:
             from xlmc.report.document import check_report_path
 
             check_report_path(path)
-        Target(path, source.name, overwrite).check()
+        Target(path, source.name, overwrite, read=[source]).check()
         if ending != ".xlsx" and find_spec("matplotlib") is None:
             hint = "Install it with `pip install 'xlmc[plots]'`, or ask for .xlsx"
             raise WorkbookError("drawing needs matplotlib, which is not installed", where=path, hint=hint)
@@ -56,7 +54,7 @@ def save_methods(study: Study, path: Path, *, overwrite: bool = False) -> Path:
         WorkbookError: it cannot be written.
     """
     check_targets([path], study.model.path, overwrite=overwrite)
-    target = Target(path, study.model.path.name, overwrite)
+    target = Target(path, study.model.path.name, overwrite, read=[study.model.path])
     write_workbook(path, _content_with_seal(study, path.suffix.casefold()), target.check)
     return path
 

@@ -109,7 +109,7 @@ def save_page(
         WorkbookError: the file has another ending, or cannot be written.
     """
     check_page_path(path)
-    target = Target(path, simulation.model.workbook.name, overwrite)
+    target = Target(path, simulation.model.workbook.name, overwrite, read=[simulation.model.path])
     target.check()
     # Half of a surrogate pair, which a damaged name can hold, has no UTF-8: the browser shows a reference's mark.
     text = page_text(simulation, beside=beside, command=command).encode("utf-8", "xmlcharrefreplace")

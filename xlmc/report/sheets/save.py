@@ -13,8 +13,8 @@ from xlmc.run.model import paused_collection
 from xlmc.run.result_cells import filled_sheets
 from xlmc.workbook.inject import inject, result_sheets
 from xlmc.workbook.seal import sealed_parts
-from xlmc.workbook.target import Target, copy_ending, is_same_file, refuse_into_source
-from xlmc.workbook.writer import TakenError, package_bytes, write_workbook
+from xlmc.workbook.target import Target, copy_ending, is_same_file, refuse_into_source, refuse_read
+from xlmc.workbook.writer import package_bytes, write_workbook
 
 if TYPE_CHECKING:
     from xlmc.run.simulation import Simulation
@@ -91,7 +91,7 @@ def _check(simulation: Simulation, path: Path, *, overwrite: bool) -> None:
         return
     if not overwrite:
         hint = "Name another file, or write the result sheets into it with --in-place (in Python: overwrite=True)"
-        raise TakenError("this is the workbook itself", where=path, hint=hint)
+        refuse_read(path, [simulation.model.path], hint)
     refuse_into_source(path, simulation.model.workbook.sha256, "Run again, or write to another file")
 
 

@@ -14,9 +14,9 @@ import xlmc.statistics as xs
 from xlmc.api import load
 from xlmc.cli import xlmc as command
 
-RUNS = 400
+RUNS = 250
 NOISE = 4 * math.sqrt(0.95 * 0.05 / RUNS)
-COUNTS = [0, 1, 2, 3, 10]
+COUNTS = [0, 1, 10]
 
 DEFINED_FROM = {
     # statistic: accepted trials from which it is a number, has an error, has an interval
@@ -113,7 +113,7 @@ def _write(path, below):
             sheet.add_table(row, column, row + len(rows), column + len(headings) - 1, options)
 
 
-@pytest.mark.parametrize("n", COUNTS)
+@pytest.mark.parametrize("n", [0, 1, 10])
 def test_the_command_writes_its_sheets_and_says_that_they_are_few(folder, n):
     target = folder / f"{n}-results.xlsx"
     done = CliRunner().invoke(

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+import openpyxl
 import pytest
-from fewer_sheets import CHARTS, SENSITIVITY, keep_few_trials, leave_out, leave_out_fits, leave_out_shapes
+from fewer_sheets import SHORT, keep_few_trials, keep_sheets, leave_out_fits, leave_out_shapes
+from openpyxl.worksheet.table import Table
 
 from xlmc.cli import main
 
@@ -38,20 +43,97 @@ def xlmc(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tm
 
 
 @pytest.fixture
+def on_a_screen(xlmc: Callable[..., Outcome], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Outcome]:
+    """A command with a terminal of 150 columns at stderr, and what that is sent as `err`."""
+    pty = pytest.importorskip("pty")
+
+    def run(*arguments: object, encoding: str = "utf-8") -> Outcome:
+        leader, follower = pty.openpty()
+        with ThreadPoolExecutor(1) as pool, monkeypatch.context() as patch:
+            shown = pool.submit(_all_of, leader)
+            with open(follower, "w", encoding=encoding) as screen:
+                patch.setenv("TERM", "xterm")
+                patch.setenv("COLUMNS", "150")
+                patch.setattr(sys, "stderr", screen)
+                outcome = xlmc(*arguments)
+            return replace(outcome, err=shown.result().decode(encoding))
+
+    return run
+
+
+def _all_of(leader: int) -> bytes:
+    """What a pseudo terminal is sent until its other end is closed."""
+    pieces = []
+    while True:
+        try:
+            pieces.append(os.read(leader, 65_536))
+        except OSError:  # how Linux says that the other end is closed
+            break
+        if not pieces[-1]:
+            break
+    os.close(leader)
+    return b"".join(pieces)
+
+
+PLAIN = {
+    "Inputs": [["Name", "Value", "Low", "High", "Units"], ["a", 0.5, 0, 1, "mph"], ["b", 0.25, 0, 2, "mph"]],
+    "Model": [["=Inputs!B2+Inputs!B3", "=A1*2"]],
+    "Wanted": [
+        ["Name", "Cell", "Units", "Threshold"],
+        ["Speed", "=Model!A1", "mph", 2.0],
+        [],
+        ["Name", "Cell", "Above", "Because"],
+        ["fast", "=Inputs!B2", 0.4, "seen"],
+        [],
+        ["Setting", "Value"],
+        ["Trials", 2000],
+        ["Seed", 7],
+    ],
+}
+"""Two assumptions, a forecast, and a filter that keeps six trials of ten; no cell is an error."""
+
+
+@pytest.fixture(scope="session")
+def plain_original(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    made = openpyxl.Workbook()
+    made.remove(made.active)
+    for name, rows in PLAIN.items():
+        sheet = made.create_sheet(name)
+        for row in rows:
+            sheet.append(row)
+    for name, sheet, area in (
+        ("xlmc_assumptions", "Inputs", "A1:E3"),
+        ("xlmc_forecasts", "Wanted", "A1:D2"),
+        ("xlmc_filters", "Wanted", "A4:D5"),
+        ("xlmc_settings", "Wanted", "A7:B9"),
+    ):
+        made[sheet].add_table(Table(displayName=name, ref=area))
+    path = tmp_path_factory.mktemp("plain") / "case.xlsx"
+    made.save(path)
+    return path
+
+
+@pytest.fixture
+def plain_book(plain_original: Path, tmp_path: Path) -> Path:
+    """`case.xlsx`, a copy of the book `PLAIN`: what is no matter of the model is tried with it in a third of the time."""
+    return Path(shutil.copy(plain_original, tmp_path / "case.xlsx"))
+
+
+@pytest.fixture
 def case_study() -> Path:
     return ROOT / "examples" / "intersection.xlsx"
 
 
 @pytest.fixture
 def whole_book() -> None:
-    """What a test takes that wants the charts and the sheets on sensitivity, too."""
+    """What a test takes that wants all the sheets."""
 
 
 @pytest.fixture
 def short_books(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Results without what takes longest, unless the test takes `whole_book`: charts, sensitivity, trials, fits…"""
+    """Results without what takes longest, unless the test takes `whole_book`: most sheets, trials, fits…"""
     if "whole_book" not in request.fixturenames:
-        leave_out(monkeypatch, *CHARTS, *SENSITIVITY)
+        keep_sheets(monkeypatch, *SHORT)
         keep_few_trials(monkeypatch)
         leave_out_fits(monkeypatch)
         leave_out_shapes(monkeypatch)

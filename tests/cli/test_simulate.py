@@ -23,7 +23,12 @@ EDITED = {
 
 
 @pytest.fixture
-def book(case_study, tmp_path):
+def book(plain_book):
+    return plain_book
+
+
+@pytest.fixture
+def case_book(case_study, tmp_path):
     return shutil.copy(case_study, tmp_path / "case.xlsx")
 
 
@@ -32,31 +37,29 @@ def parts(path):
         return {name: package.read(name) for name in package.namelist()}
 
 
-def test_prints_the_papers_table_and_writes_a_copy(xlmc, whole_book, book, tmp_path):
-    outcome = xlmc("simulate", book, "--trials", 20_000)
+def test_prints_the_papers_table_and_writes_a_copy(xlmc, case_book, tmp_path):
+    outcome = xlmc("simulate", case_book, "--trials", 20_000)
     assert outcome.code == 0
     for words in ("Chevrolet delta-V", "51 % range", "of 20,000 trials", "seed 999", "Restitution, tangential"):
         assert words in outcome.out
     assert "Results are in" in outcome.out.replace("\n", " ")
-    before, after = parts(book), parts(tmp_path / "case-results.xlsx")
+    before, after = parts(case_book), parts(tmp_path / "case-results.xlsx")
     assert {name for name, data in before.items() if after[name] != data} <= EDITED
 
 
 def test_the_command_line_wins_over_the_settings_table(xlmc, book):
     assert "Accepted" in (default := xlmc("simulate", book, "-n", 5_000)).out
     assert xlmc("simulate", book, "-n", 5_000, "--seed", 1).out != default.out
-    assert xlmc("simulate", book, "-n", 5_000, "--seed", 999).out == default.out
+    assert xlmc("simulate", book, "-n", 5_000, "--seed", 7).out == default.out
 
 
-def test_threads_change_nothing(xlmc, book):
-    assert xlmc("simulate", book, "-n", 30_000, "-j", 2).out == xlmc("simulate", book, "-n", 30_000).out
-
-
-@pytest.mark.parametrize("options", [("-j", 2, "--scheduler", "processes"), ("--scheduler", "local", "--workers", 1)])
 @pytest.mark.filterwarnings("ignore::ResourceWarning")  # Dask's, when it closes
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
-def test_who_runs_the_blocks_changes_nothing(xlmc, book, options):
-    assert xlmc("simulate", book, "-n", 50_000, *options).out == xlmc("simulate", book, "-n", 50_000).out
+def test_who_runs_the_blocks_changes_nothing(xlmc, book):
+    """They are four, as a block has 32,768 trials."""
+    alone = xlmc("simulate", book, "-n", 100_000).out
+    for options in (("-j", 2), ("-j", 2, "--scheduler", "processes"), ("--scheduler", "local", "--workers", 1)):
+        assert xlmc("simulate", book, "-n", 100_000, *options).out == alone
 
 
 @pytest.mark.parametrize(
@@ -106,12 +109,12 @@ def test_a_run_that_the_disk_cannot_hold_is_refused(xlmc, book, tmp_path, monkey
     assert results.read_bytes() == before
 
 
-def test_in_place_replaces_its_own_sheets_and_nothing_else(xlmc, whole_book, book):
-    before = parts(book)
-    assert xlmc("simulate", book, "-n", 20_000, "--in-place").code == 0
-    once = parts(book)
-    assert xlmc("simulate", book, "-n", 20_000, "--in-place").code == 0
-    twice = parts(book)
+def test_in_place_replaces_its_own_sheets_and_nothing_else(xlmc, whole_book, case_book):
+    before = parts(case_book)
+    assert xlmc("simulate", case_book, "-n", 5_000, "--in-place").code == 0
+    once = parts(case_book)
+    assert xlmc("simulate", case_book, "-n", 5_000, "--in-place").code == 0
+    twice = parts(case_book)
     changed = [name for name, data in once.items() if twice.get(name) != data]
     assert set(once) == set(twice)
     assert [b"SHA-256" in twice[name] for name in changed] == [True]  # the record: it names the file that was read
@@ -131,11 +134,7 @@ def test_refuses_a_workbook_that_excel_holds_open(xlmc, book, tmp_path):
 
 def test_no_accepted_trial_is_exit_code_1_and_still_written(xlmc, book, tmp_path):
     workbook = openpyxl.load_workbook(book)
-    sheet = workbook["Results wanted"]
-    filters = sheet.tables["xlmc_filters"].ref
-    headings = {cell.value: cell.column_letter for cell in sheet[filters][0]}
-    row = sheet[filters][-1][0].row
-    sheet[f"{headings['Above']}{row}"] = 1e6
+    workbook["Wanted"]["C5"] = 2
     workbook.save(book)
     outcome = xlmc("simulate", book, "-n", 5_000)
     assert outcome.code == 1
@@ -227,7 +226,7 @@ def test_the_sampling_method_is_said(xlmc, book, method, words):
 
 
 def test_too_few_accepted_trials_in_a_replicate_are_exit_code_1(xlmc, book):
-    outcome = xlmc("simulate", book, "-n", 5_000, "--sampling", "lhs")
+    outcome = xlmc("simulate", book, "-n", 200, "--sampling", "lhs")
     assert outcome.code == 1
     assert "trials were accepted in 16 replicates, fewer than 160" in " ".join(outcome.err.split())
 
@@ -238,7 +237,7 @@ def test_html_writes_the_page_beside_the_workbook(xlmc, book, tmp_path):
     assert "The page is page.html" in outcome.out
     page = (tmp_path / "page.html").read_text("utf-8")
     assert page.startswith("<!doctype html>")
-    assert "Chevrolet delta-V" in page
+    assert "Speed" in page
     assert (tmp_path / "case-results.xlsx").exists()
 
 
@@ -252,7 +251,7 @@ def test_a_page_that_cannot_be_written_is_refused_before_the_run(xlmc, book, tmp
     assert not (tmp_path / "case-results.xlsx").exists()
 
 
-def test_native_code_is_kept_unless_it_is_not_wanted(xlmc, case_study, tmp_path, monkeypatch):
+def test_native_code_is_kept_unless_it_is_not_wanted(xlmc, book, tmp_path, monkeypatch):
     pytest.importorskip("llvmlite")
     from xlmc.evaluation.llvm import kept_code
     from xlmc.evaluation.llvm.machine import machine
@@ -262,7 +261,7 @@ def test_native_code_is_kept_unless_it_is_not_wanted(xlmc, case_study, tmp_path,
         monkeypatch.setenv("XLMC_KEEP_CODE", "1")
         machine.cache_clear()
         assert (
-            xlmc(*option, "simulate", case_study, "-n", 2000, "--engine", "jit", "-o", "r.xlsx", "--overwrite").code
+            xlmc(*option, "simulate", book, "-n", 2000, "--engine", "jit", "-o", "r.xlsx", "--overwrite").code
             == 0
         )
         assert (tmp_path / "xlmc").exists() is there

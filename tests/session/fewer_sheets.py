@@ -13,7 +13,9 @@ __all__ = [
     "CHARTS",
     "FEW",
     "SENSITIVITY",
+    "SHORT",
     "keep_few_trials",
+    "keep_sheets",
     "leave_out",
     "leave_out_drawings",
     "leave_out_fits",
@@ -24,11 +26,18 @@ CHARTS = ("Charts", "Pairs")
 FEW = 40
 """Rows of a short sheet Trials."""
 SENSITIVITY = ("Sensitivity", "Filter limits")
+SHORT = ("Results", "Evidence results", "Scenarios", "Trials", "Record")
+"""Sheets of a short result workbook."""
 
 
 def leave_out(patch: pytest.MonkeyPatch, *names: str) -> None:
     """Have result workbooks written without the sheets of these names, as long as the patch lasts."""
     patch.setattr(book, "SHEETS", tuple(sheet for sheet in book.SHEETS if sheet.name not in names))
+
+
+def keep_sheets(patch: pytest.MonkeyPatch, *names: str) -> None:
+    """Have result workbooks written with the sheets of these names alone, as long as the patch lasts."""
+    patch.setattr(book, "SHEETS", tuple(sheet for sheet in book.SHEETS if sheet.name in names))
 
 
 def leave_out_drawings(patch: pytest.MonkeyPatch) -> None:

@@ -76,11 +76,17 @@ def _all_of(leader: int) -> bytes:
 
 
 PLAIN = {
-    "Inputs": [["Name", "Value", "Low", "High", "Units"], ["a", 0.5, 0, 1, "mph"], ["b", 0.25, 0, 2, "mph"]],
-    "Model": [["=Inputs!B2+Inputs!B3", "=A1*2"]],
+    "Inputs": [
+        ["Name", "Value", "Low", "High", "Units"],
+        ["a", 0.5, 0, 1, "mph"],
+        ["b", 0.25, 0, 2, "mph"],
+        ["c", 0.005, 0, 0.01, "mph"],
+    ],
+    "Model": [["=SUM(Inputs!B2:B4)", "=A1*2"]],
     "Wanted": [
         ["Name", "Cell", "Units", "Threshold"],
         ["Speed", "=Model!A1", "mph", 2.0],
+        ["Double", "=Model!B1", "mph", None],
         [],
         ["Name", "Cell", "Above", "Because"],
         ["fast", "=Inputs!B2", 0.4, "seen"],
@@ -90,7 +96,7 @@ PLAIN = {
         ["Seed", 7],
     ],
 }
-"""Two assumptions, a forecast, and a filter that keeps six trials of ten; no cell is an error."""
+"""One assumption matters little, the filter keeps six trials of ten, and no cell is an error."""
 
 
 @pytest.fixture(scope="session")
@@ -102,10 +108,10 @@ def plain_original(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for row in rows:
             sheet.append(row)
     for name, sheet, area in (
-        ("xlmc_assumptions", "Inputs", "A1:E3"),
-        ("xlmc_forecasts", "Wanted", "A1:D2"),
-        ("xlmc_filters", "Wanted", "A4:D5"),
-        ("xlmc_settings", "Wanted", "A7:B9"),
+        ("xlmc_assumptions", "Inputs", "A1:E4"),
+        ("xlmc_forecasts", "Wanted", "A1:D3"),
+        ("xlmc_filters", "Wanted", "A5:D6"),
+        ("xlmc_settings", "Wanted", "A8:B10"),
     ):
         made[sheet].add_table(Table(displayName=name, ref=area))
     path = tmp_path_factory.mktemp("plain") / "case.xlsx"
@@ -115,7 +121,7 @@ def plain_original(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def plain_book(plain_original: Path, tmp_path: Path) -> Path:
-    """`case.xlsx`, a copy of the book `PLAIN`: what is no matter of the model is tried with it in a third of the time."""
+    """`case.xlsx`, the book `PLAIN`: what does not depend on the model takes a third of the time with it."""
     return Path(shutil.copy(plain_original, tmp_path / "case.xlsx"))
 
 

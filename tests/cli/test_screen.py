@@ -28,10 +28,13 @@ def screened_once(kept, monkeypatch):
     monkeypatch.setattr(screening, "screen", once)
 
 
+GEOMETRY = "*impact centre*, Orientation of tangent"
+OF_THE_CASE_STUDY = "--tolerance", "0.4 mph", "--freeze", GEOMETRY, "-n", "100000"
+
+
 def test_the_case_study(xlmc, case_study):
     """The inertias are not needed; what impact centre and tangent cost stands in the table, alone and together."""
-    geometry = "*impact centre*, Orientation of tangent"
-    outcome = xlmc("screen", case_study, "--tolerance", "0.4 mph", "--freeze", geometry, "-n", "100000", "--json")
+    outcome = xlmc("screen", case_study, *OF_THE_CASE_STUDY, "--json")
     assert outcome.code == 0
     found = json.loads(outcome.out)
     held = set(found["held_together"]["names"])
@@ -47,8 +50,7 @@ def test_the_case_study(xlmc, case_study):
 
 
 def test_the_case_study_in_words(xlmc, case_study):
-    geometry = "*impact centre*, Orientation of tangent"
-    outcome = xlmc("screen", case_study, "--tolerance", "0.4 mph", "--freeze", geometry, "-n", "100000")
+    outcome = xlmc("screen", case_study, *OF_THE_CASE_STUDY)
     assert outcome.code == 0
     alone, _, rest = outcome.out.partition("Held at once, as asked")
     asked, _, text = rest.partition("Each filter left out")
@@ -62,18 +64,15 @@ def test_the_case_study_in_words(xlmc, case_study):
     assert "Formula cells that then do not vary: Model!D7, Model!D8" in text
 
 
-def test_what_is_printed(xlmc, case_study):
-    outcome = xlmc(
-        "screen", case_study, "--tolerance", "Nissan impact speed=1 mph", "--acceptance", "25", "-n", "30000"
-    )
+def test_what_is_printed(xlmc, plain_book):
+    outcome = xlmc("screen", plain_book, "--tolerance", "Speed=0.3 mph", "--acceptance", "75", "-n", "40")
     assert outcome.code == 0
     text = " ".join(outcome.out.split())
-    assert "Nissan impact speed 1 mph; acceptance 25 % of itself" in text
-    assert "Chevrolet delta-V" in text
-    assert "(a tenth of the SD)" in text
-    assert "Undecided at 30,000 trials, and therefore kept:" in text
-    assert "Of 42 formula cells that the book needs" in text
-    assert "runs of 30,000 trials, seed 999" in text
+    assert re.search(r"Speed 0.3 mph, and P\(> 2\) [\d.]+ points; Double [\d.]+ mph \(a tenth of the SD\);", text)
+    assert "; acceptance 75 % of itself" in text
+    assert "Undecided at 40 trials, and therefore kept: fast" in text
+    assert "Of 2 formula cells that the book needs" in text
+    assert "runs of 40 trials, seed 7" in text
 
 
 def test_a_pattern_that_fits_nothing(xlmc, case_study):
@@ -88,39 +87,32 @@ def test_a_tolerance_that_cannot_be_read(xlmc, case_study):
     assert "the tolerance 'small' cannot be read" in outcome.err
 
 
-def test_no_table_is_wider_than_80_columns_where_that_is_all_there_is(case_study, monkeypatch, capsys):
+def test_no_table_is_wider_than_80_columns_where_that_is_all_there_is(xlmc, case_study, monkeypatch):
     """No number is cut, and no table becomes a list."""
-    from xlmc.api import load
     from xlmc.cli import printing
-    from xlmc.cli.screen import _report
-    from xlmc.cli.study_output import show
-    from xlmc.studies.screening import screen
 
     monkeypatch.setattr(printing, "_PIPE_WIDTH", 80)
-    show(_report(screen(load(case_study), trials=5000)).blocks)
-    lines = capsys.readouterr().out.splitlines()
+    lines = xlmc("screen", case_study, *OF_THE_CASE_STUDY).out.splitlines()
     assert max(len(line) for line in lines if line.startswith(" ")) <= 80
     headings = [line for line in lines if "Held or left out" in line]
     assert len(headings) == 4
     assert all("Moves by" in line and "Tolerances" in line for line in headings)
 
 
-def test_an_answer_that_needs_no_better_input(xlmc, case_study):
-    """Judged by one forecast; the yaw inertias may lie anywhere in their ranges, the departure angles may not."""
-    asked = "--forecast", "Chevrolet delta-V", "--tolerance", "0.4 mph", "--acceptance", "30", "-n", "30000"
-    outcome = xlmc("screen", case_study, *asked, "--ends")
+def test_an_answer_that_needs_no_better_input(xlmc, plain_book):
+    """Judged by one forecast; `c` may lie anywhere in its range, `a` and `b` may not."""
+    asked = "--forecast", "Speed", "--tolerance", "0.05 mph", "--acceptance", "30", "-n", "10000"
+    outcome = xlmc("screen", plain_book, *asked, "--ends")
     assert outcome.code == 0
     text = " ".join(outcome.out.split())
-    assert "Judged by Chevrolet delta-V only." in text
-    assert "Nissan delta-V" not in text
-    free = text.partition("Not needed, wherever in their ranges they lie: ")[2].partition(". Held at either end")[0]
-    assert "Chevrolet yaw moment of inertia" in free
-    assert "departure angle" not in free
-    assert re.search(r"Chevrolet weight = 6666 +\d", outcome.out)  # 2.5 % of the way from 6661 to 6861
-    found = json.loads(xlmc("screen", case_study, *asked, "--ends", "--json").out)
-    assert {entry["name"] for entry in found["held_at_ends"] if entry["free"]} == set(free.split("; "))
-    assert found["forecasts_not_asked"] == ["Nissan delta-V", "Chevrolet impact speed", "Nissan impact speed"]
-    assert list(found["held_alone"][0]["forecasts"]) == ["Chevrolet delta-V"]
+    assert "Judged by Speed only." in text
+    assert "Double" not in text
+    assert "Not needed, wherever in its range it lies: c. Held at either end" in text
+    assert re.search(r"c = 0.00025\d* +\d", outcome.out)  # 2.5 % of the way from 0 to 0.01
+    found = json.loads(xlmc("screen", plain_book, *asked, "--ends", "--json").out)
+    assert {entry["name"] for entry in found["held_at_ends"] if entry["free"]} == {"c"}
+    assert found["forecasts_not_asked"] == ["Double"]
+    assert list(found["held_alone"][0]["forecasts"]) == ["Speed"]
 
 
 def test_a_forecast_that_is_not_there(xlmc, case_study):

@@ -116,9 +116,9 @@ simulate._Gathered.add = told
 from xlmc.cli import main
 main()
 """
+# Threads have no process of their own: tests/run/stopping/test_runs.py interrupts them.
 CREWS = [
     (),
-    ("-j", "2", "--scheduler", "threads"),
     ("-j", "2", "--scheduler", "processes"),
     ("--scheduler", "local", "--workers", "1"),
 ]

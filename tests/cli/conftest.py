@@ -77,10 +77,10 @@ def _all_of(leader: int) -> bytes:
 
 PLAIN = {
     "Inputs": [
-        ["Name", "Value", "Low", "High", "Units"],
-        ["a", 0.5, 0, 1, "mph"],
-        ["b", 0.25, 0, 2, "mph"],
-        ["c", 0.005, 0, 0.01, "mph"],
+        ["Name", "Value", "Low", "High", "Units", "Distribution"],
+        ["a", 0.5, 0, 1, "mph", "Uniform"],
+        ["b", 0.25, 0, 2, "mph", "Uniform"],
+        ["c", 0.005, 0, 0.01, "mph", "Uniform"],
     ],
     "Model": [["=SUM(Inputs!B2:B4)", "=A1*2"]],
     "Wanted": [
@@ -108,7 +108,7 @@ def plain_original(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for row in rows:
             sheet.append(row)
     for name, sheet, area in (
-        ("xlmc_assumptions", "Inputs", "A1:E4"),
+        ("xlmc_assumptions", "Inputs", "A1:F4"),
         ("xlmc_forecasts", "Wanted", "A1:D3"),
         ("xlmc_filters", "Wanted", "A5:D6"),
         ("xlmc_settings", "Wanted", "A8:B10"),

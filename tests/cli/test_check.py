@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import openpyxl
 import pytest
+from cases import cases
 
 pytestmark = pytest.mark.usefixtures("short_books")
 
@@ -17,48 +18,43 @@ def test_shows_what_was_understood(xlmc, case_study):
 
 
 @pytest.fixture
-def spoiled(case_study, tmp_path):
-    """The case study with one cell changed, as a person would."""
+def spoiled(plain_book):
+    """The plain book with some cells changed, as a person would."""
 
-    def change(sheet: str, cell: str, value: object):
-        book = openpyxl.load_workbook(case_study)
-        book[sheet][cell] = value
-        book.save(tmp_path / "spoiled.xlsx")
-        return tmp_path / "spoiled.xlsx"
+    def change(sheet: str, **cells: object):
+        book = openpyxl.load_workbook(plain_book)
+        for address, value in cells.items():
+            book[sheet][address] = value
+        book.save(plain_book.with_name("spoiled.xlsx"))
+        return plain_book.with_name("spoiled.xlsx")
 
     return change
 
 
-def test_lists_every_problem_with_its_cell(xlmc, case_study, tmp_path):
-    book = openpyxl.load_workbook(case_study)
-    sheet = book["Inputs"]
-    headings = {cell.value: cell.column_letter for row in sheet.iter_rows(max_row=8) for cell in row if cell.value}
-    sheet[f"{headings['Distribution']}7"] = "Unifrom"
-    sheet[f"{headings['Low']}8"] = 500
-    book.save(tmp_path / "spoiled.xlsx")
-    outcome = xlmc("check", tmp_path / "spoiled.xlsx")
+def test_lists_every_problem_with_its_cell(xlmc, spoiled):
+    outcome = xlmc("check", spoiled("Inputs", F2="Unifrom", C3=500))
     assert outcome.code == 2
-    assert f"Inputs!{headings['Distribution']}7" in outcome.err
+    assert "Inputs!F2" in outcome.err
     assert "Did you mean Uniform?" in outcome.err
-    assert f"Inputs!{headings['Low']}8" in outcome.err
+    assert "Inputs!C3" in outcome.err
     assert "2 problems found" in outcome.err
 
 
-@pytest.mark.parametrize(
+@cases(
     ("formula", "message"),
     [
-        ("=SQRTT(Inputs!D6)", "Did you mean SQRT?"),
-        ("=SQRT(Inputs!D6", "cannot be read"),
-        ("=Inptus!D6", "there is no sheet 'Inptus'"),
+        ("=SQRTT(Inputs!B2)", "Did you mean SQRT?"),
+        ("=SQRT(Inputs!B2", "cannot be read"),
+        ("=Inptus!B2", "there is no sheet 'Inptus'"),
         ("=weihgt_1", "there is no name 'weihgt_1'"),
-        ("=Model!D54*2", "in a circle: Model!D54"),
+        ("=Model!A1*2", "in a circle: Model!A1"),
         ("=SQRT(1,2)", "SQRT has 2 arguments; it takes 1"),
     ],
 )
 def test_a_formula_that_cannot_be_computed_is_named_with_its_cell(xlmc, spoiled, formula, message):
-    outcome = xlmc("check", spoiled("Model", "D54", formula))
+    outcome = xlmc("check", spoiled("Model", A1=formula))
     assert outcome.code == 2
-    assert "Model!D54" in outcome.err
+    assert "Model!A1" in outcome.err
     assert message in outcome.err
 
 
@@ -83,15 +79,9 @@ def test_a_workbook_without_tables_is_told_how_to_begin(xlmc, tmp_path):
     assert "xlmc_assumptions" in outcome.err
 
 
-def test_limits_that_are_computed_from_the_own_cell_are_shown_as_numbers(xlmc, case_study, tmp_path):
-    book = openpyxl.load_workbook(case_study)
-    sheet = book["Inputs"]
-    headings = {cell.value: cell.column_letter for row in sheet.iter_rows(max_row=8) for cell in row if cell.value}
-    value = f"{headings['Value']}7"
-    base = sheet[value].value
-    sheet[f"{headings['Low']}7"], sheet[f"{headings['High']}7"] = f"={value}*0.97", f"={value}*1.03"
-    book.save(tmp_path / "own.xlsx")
-    outcome = xlmc("check", tmp_path / "own.xlsx")
+def test_limits_that_are_computed_from_the_own_cell_are_shown_as_numbers(xlmc, spoiled):
+    base = 0.5
+    outcome = xlmc("check", spoiled("Inputs", C2="=B2*0.97", D2="=B2*1.03"))
     assert outcome.code == 0, outcome.err
     shown = f"Low {base * 0.97:g}, High {base * 1.03:g}"
     assert f"Uniform: {shown}" in outcome.out

@@ -6,6 +6,7 @@ import shutil
 import openpyxl
 import pandas
 import pytest
+from cases import cases
 from openpyxl.worksheet.table import Table
 
 import xlmc as package
@@ -117,7 +118,7 @@ def test_draws_that_were_not_saved_are_blank_and_said_to_be(xlmc, small_book, tm
     assert pandas.read_csv(tmp_path / "t.csv")["width"].notna().sum() == 10
 
 
-@pytest.mark.parametrize(
+@cases(
     ("options", "message"),
     [
         (("--json", "a.xlsx"), "JSON is written to a .json file. Name it 'a.json'"),
@@ -219,7 +220,7 @@ def test_the_report_of_a_result_workbook_is_that_of_its_run(xlmc, case_book, tmp
     assert not (tmp_path / "c.pdf").exists()
 
 
-@pytest.mark.parametrize("options", [(), ("--pdf", "a.pdf", "--json", "a.json"), ("-o", "b.xlsx")])
+@cases("options", [(), ("--pdf", "a.pdf", "--json", "a.json"), ("-o", "b.xlsx")])
 def test_of_a_result_workbook_reports_alone_are_written(xlmc, book, tmp_path, options):
     outcome = xlmc("report", book, *options)
     assert outcome.code == 2

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.evaluation.engines import ENGINES
 
@@ -26,34 +27,33 @@ def one_line(xlmc):
     return refused
 
 
-@pytest.mark.parametrize("typed", ["2,000", "2e3", "2k", "0.002M", "2_000", "2 000"])
-@pytest.mark.parametrize("option", ["-n", "--trials"])
-def test_trials_as_people_write_them(xlmc, case_study, monkeypatch, option, typed):
+@cases("option, typed", [("--trials", "2,000"), *(("-n", each) for each in ("2e3", "2k", "0.002M", "2_000", "2 000"))])
+def test_trials_as_people_write_them(xlmc, plain_book, monkeypatch, option, typed):
     monkeypatch.setattr("xlmc.api.Simulation.save", lambda *_, **__: None)
-    outcome = xlmc("simulate", case_study, "-o", "r.xlsx", option, typed)
+    outcome = xlmc("simulate", plain_book, "-o", "r.xlsx", option, typed)
     assert outcome.code == 0
     assert "of 2,000 trials" in outcome.out
 
 
-def test_other_counts_and_seeds_too(xlmc, case_study):
+def test_other_counts_and_seeds_too(xlmc, plain_book):
     options = ("--until-accepted", "1,000", "-n", "1e6", "--seed", "1e3", "--rare", "NEVER", "--engine", "NumPy")
-    outcome = xlmc("simulate", case_study, "-o", "r.xlsx", *options, "--sampling", "MC", "-j", "1")
+    outcome = xlmc("simulate", plain_book, "-o", "r.xlsx", *options, "--sampling", "MC", "-j", "1")
     assert outcome.code == 0
     assert "1,000 trials were accepted" in outcome.out
     assert "seed 1000" in outcome.out
 
 
-@pytest.mark.parametrize("typed", ["200.000", "many", "1.5", "", "2,00", "0,200", "1e-3", "1e400", "9" * 500, "nan"])
+@cases("typed", ["200.000", "many", "1.5", "", "2,00", "0,200", "1e-3", "1e400", "9" * 500, "nan"])
 def test_a_number_that_could_mean_two_or_none(one_line, typed):
     assert "not a whole number. Type it like 200000" in one_line("simulate", BOOK, "-n", typed)
 
 
-@pytest.mark.parametrize(("typed", "said"), [("0", "too small. Type 1 or more."), ("-5", "too small")])
+@cases(("typed", "said"), [("0", "too small. Type 1 or more."), ("-5", "too small")])
 def test_a_number_out_of_range(one_line, typed, said):
     assert said in one_line("simulate", BOOK, "-n", typed)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("arguments", "said"),
     [
         (("simulat", BOOK), "there is no command 'simulat'. Did you mean simulate?"),
@@ -84,10 +84,10 @@ def test_slips(one_line, arguments, said):
     assert said in one_line(*arguments)
 
 
-@pytest.mark.parametrize("units", ["SI", "Si", "si"])
+@cases("units", ["SI", "Si", "si"])
 def test_units_in_any_case(xlmc, tmp_path, units):
-    assert xlmc("new", "Skid", "case.xlsx", "--units", units).code == 0
-    assert (tmp_path / "case.xlsx").exists()
+    assert xlmc("new", "Skid", f"{units}.xlsx", "--units", units).code == 0
+    assert (tmp_path / f"{units}.xlsx").exists()
 
 
 def test_no_argument_at_all_is_answered_by_the_help(xlmc):
@@ -120,7 +120,7 @@ def test_the_list_of_commands_is_whole(xlmc):
     assert [line.split()[0] for line in text.partition("Commands:\n")[2].splitlines() if line[2] != " "] == COMMANDS
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@cases("command", COMMANDS)
 def test_help_is_understood_by_every_terminal(xlmc, command):
     """click writes it, which takes no heed of what the terminal's encoding lacks."""
     assert xlmc(command, "--help").out.isascii()

@@ -1,16 +1,20 @@
 """Our reader against openpyxl's on workbooks that Excel saved: every formula, every cached value."""
 
 import warnings
+from collections import defaultdict
 from datetime import date, time, timedelta
 from functools import lru_cache
 from pathlib import Path
+from typing import NamedTuple
 
 import openpyxl
 import pytest
+from cases import cases
 from openpyxl.formula.translate import Translator
 from openpyxl.reader import excel
 from openpyxl.utils.datetime import to_excel
 from openpyxl.utils.escape import unescape
+from openpyxl.worksheet._reader import WorkSheetParser, WorksheetReader
 from openpyxl.worksheet.formula import ArrayFormula, DataTableFormula
 
 from xlmc.address import column_letters
@@ -60,43 +64,64 @@ def _translator(text, row, column):
     return Translator(f"={text}", origin=f"{column_letters(column)}{row}")
 
 
-def filled(sheet):
-    """Place -> cell, for the cells that hold something; openpyxl's own iteration makes those that are not there."""
-    return {place: cell for place, cell in sheet._cells.items() if cell.value not in (None, "")}
+def filled(cells):
+    """Place -> cell, for the cells that hold something."""
+    return {place: cell for place, cell in cells.items() if cell.value not in (None, "")}
+
+
+class ReadCell(NamedTuple):
+    """A cell as openpyxl parses it."""
+
+    value: object
+    data_type: str
+
+
+def cached_cells(sheet, parsed):
+    """Place -> cell with the value that openpyxl would read with `data_only`."""
+    return sheet._cells | {(cell["row"], cell["column"]): ReadCell(cell["value"], cell["data_type"]) for cell in parsed}
 
 
 def loaded(path):
-    """Without charts and pictures, which take long to read."""
+    """The workbook with formulas, and what Excel cached for these by sheet, both in one reading.
+
+    It is without charts and pictures, which take long to read.
+    """
+    cached = defaultdict(list)
+    parse_cell, bind_cells = WorkSheetParser.parse_cell, WorksheetReader.bind_cells
+
+    def parse_twice(parser, element):
+        cell = parse_cell(parser, element)
+        if cell["data_type"] == "f":
+            parser.data_only, parser.col_counter = True, cell["column"] - 1
+            cached[id(parser)].append(parse_cell(parser, element))
+            parser.data_only = False
+        return cell
+
+    def bind(reader):
+        bind_cells(reader)
+        cached[reader.ws.title] = cached.pop(id(reader.parser), [])
+
     with pytest.MonkeyPatch.context() as patch, warnings.catch_warnings():
         patch.setattr(excel, "find_images", lambda package, path: ([], []))
+        patch.setattr(WorkSheetParser, "parse_cell", parse_twice)
+        patch.setattr(WorksheetReader, "bind_cells", bind)
         warnings.simplefilter("ignore")  # of extensions that openpyxl would lose on saving
-        return openpyxl.load_workbook(path), openpyxl.load_workbook(path, data_only=True)
+        return openpyxl.load_workbook(path), cached
 
 
-PORTIONS = 8
-"""Every eighth workbook is a test, so that processes share them."""
-
-
-@pytest.mark.parametrize("portion", range(PORTIONS))
-def test_formulas_and_values_as_openpyxl_reads_them(portion, subtests):
-    readable = [path for path in BOOKS if path.name not in UNREADABLE_BY_OPENPYXL]
-    for path in readable[portion::PORTIONS]:
-        with subtests.test(path.name):
-            _compare_with_openpyxl(path)
-
-
-def _compare_with_openpyxl(path):
+@cases("path", [path for path in BOOKS if path.name not in UNREADABLE_BY_OPENPYXL] or [None])
+def test_formulas_and_values_as_openpyxl_reads_them(path):
     book = read_workbook(path)
     formulas, values = loaded(path)
     assert list(book.sheets) == [sheet.title for sheet in formulas.worksheets]
     for sheet in formulas.worksheets:
         cells = book.sheets[sheet.title].cells
-        theirs, cached = filled(sheet), filled(values[sheet.title])
+        theirs, cached = filled(sheet._cells), filled(cached_cells(sheet, values[sheet.title]))
         found = {place: text for place, content in cells.items() if (text := written(content, place))}
         assert found == {place: formula_of(cell) for place, cell in theirs.items() if formula_of(cell)}
         # An empty text is now blank, now a text to openpyxl.
         found = {place: (type(c.value), c.value) for place, c in cells.items() if c.value not in (None, "")}
-        assert found == {place: value_of(cell, values.epoch) for place, cell in cached.items()}
+        assert found == {place: value_of(cell, formulas.epoch) for place, cell in cached.items()}
 
 
 @pytest.mark.parametrize("name", sorted(UNREADABLE_BY_OPENPYXL))

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.budget import ask_for_characters, ask_for_texts, bytes_of
-from xlmc.functions.denormals import tiny_to_zero
+from xlmc.functions.denormals import TINIEST, tiny_to_zero
 from xlmc.functions.number_text import general_text, parse_number
 
 __all__ = [
@@ -208,6 +208,11 @@ class Value:
         """Call the function with the number, kind and text of each element."""
         shape = self.shape
         out: Objects = np.empty(shape, object)
+        if out.size == 1:  # as nearly every constant
+            out.flat[0] = function(
+                self.numbers.item(), self.kinds.item(), "" if self.texts is None else self.texts.item()
+            )
+            return out
         ask_for_texts(out.size)
         numbers, kinds = (np.broadcast_to(part, shape).ravel().tolist() for part in (self.numbers, self.kinds))
         texts = [""] * out.size if self.texts is None else np.broadcast_to(self.texts, shape).ravel().tolist()
@@ -270,7 +275,8 @@ def _kind(item: object) -> int:
 def constant(item: object) -> Value:
     """Make a constant, `(1,)`, of a Python object."""
     if type(item) is float:  # as nearly every cell of a table
-        return Value(tiny_to_zero(np.array([item])), np.full(1, NUMBER, np.uint8))
+        number = 0.0 if 0.0 < abs(item) < TINIEST else item
+        return Value(np.array([number]), np.array([NUMBER], np.uint8))
     box = np.empty(1, object)
     box[0] = item
     return from_objects(box)

@@ -31,8 +31,9 @@ def computing(patch):
     patch.setattr(programs, "rules_of_looked_up", lambda *_: {})
 
 
-@pytest.mark.parametrize(("number", "processor"), [*zip(range(16), cycle(PROCESSORS))], indirect=["processor"])
+@pytest.mark.parametrize(("number", "processor"), [*zip(range(6), cycle(PROCESSORS))], indirect=["processor"])
 def test_the_bits_of_random_books_are_the_same(book, monkeypatch, processor, number):
+    """The first four of these books have every function and every lookup of `table_books`."""
     found = told(some_book(book, number).simulate(TRIALS, 5, engine="jit"))
     with monkeypatch.context() as patch:
         computing(patch)
@@ -74,7 +75,6 @@ def built(book, formula):
     [
         ("SIN(ATAN({x}/100))*A2+COS(ATAN({x}/100))", "as it is"),
         ("EXP(-{x}/2)*A2", "without fused multiplication"),
-        ("2^{x}+LN(1+{x})", "as it is"),
     ],
     indirect=["processor"],
 )

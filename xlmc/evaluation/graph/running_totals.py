@@ -215,12 +215,15 @@ class RunningTotals:
         return total
 
     def _numbers_of(self, argument: int) -> list[int]:
-        """The cells of a range, each of which is a number unless it is an error; none where another may be there."""
+        """The cells of a range, each of which is a number unless it is an error; none where another may be there.
+
+        None of a long constant either: each of its numbers would become a node.
+        """
         node = self._dag.nodes[argument]
         if isinstance(node, Range):
             cells = [cell for row in node.rows for cell in row]
             return cells if all(self._dag.types[cell] is Kind.NUMBER for cell in cells) else []
-        if not isinstance(node, Constant) or not (node.value.kinds == NUMBER).all():
+        if not isinstance(node, Constant) or node.value.numbers.size > _SHORT or (node.value.kinds != NUMBER).any():
             return []
         return [self._dag.constant(constant(number)) for number in node.value.numbers.ravel().tolist()]
 

@@ -47,6 +47,7 @@ class Plan:
 
     Attributes:
         rounds, seconds, limit: see `rates.measure`.
+        turns: see `scaling.measure`.
         ladder, seeds: see `accuracy.measure`.
         trials: of the runs for `memory`.
         variants: whether to look for the best chunk of those written by hand.
@@ -60,9 +61,10 @@ class Plan:
     trials: Sequence[int] = memory.TRIALS
     whole_rounds: int = whole_command.ROUNDS
     variants: bool = True
+    turns: int = scaling.TURNS
 
 
-QUICK = Plan(1, 0.05, 30.0, (2_000, 8_000), 3, (100_000, 400_000), 1, False)
+QUICK = Plan(1, 0.05, 30.0, (2_000, 8_000), 3, (100_000, 400_000), 1, False, 1)
 """Enough to see that everything runs; its figures mean nothing."""
 
 
@@ -140,7 +142,7 @@ def _rates(given: _Measured) -> dict[str, Any]:
 
 def _scaling(given: _Measured) -> dict[str, Any]:
     plan = given.plan
-    return scaling.measure(given.entries, CASE_STUDY, plan.rounds, 2 * plan.seconds, plan.limit, _say)
+    return scaling.measure(given.entries, CASE_STUDY, plan.rounds, plan.turns, 2 * plan.seconds, plan.limit, _say)
 
 
 def _accuracy(given: _Measured) -> dict[str, Any]:

@@ -14,7 +14,7 @@ import re
 import sys
 import zipfile
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -204,11 +204,11 @@ def _where(cell: Checked) -> str:
     return cell.book if cell.check is None else f"{cell.book} {cell.check.cell} {cell.check.formula}"
 
 
-def main() -> int:
+def main(given: Sequence[str] | None = None) -> int:
     """Print how a folder conforms; 1 where a cell differs."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, help="a folder of workbooks that Excel saved")
-    folder = parser.parse_args().folder
+    folder = parser.parse_args(given).folder
     if not folder.is_dir():
         parser.error(f"{folder} is no folder")
     found = check_folder(folder)

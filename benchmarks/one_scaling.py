@@ -20,9 +20,6 @@ from xlmc.run.scheduling.processes import idle_pool
 from xlmc.run.simulate import BLOCK
 
 ONE, TWO, ANEW, APART = "1", "2", "2 anew", "two programs"
-TURNS = 5
-"""Runs of each; other work on the machine only ever slows."""
-
 MOST_TRIALS = 30_000_000
 """Somewhat above, accepted trials go to files, which is another measurement."""
 
@@ -52,7 +49,7 @@ def main() -> None:
     if given["processes"]:
         ways[ANEW] = lambda: _anew(run, trials)
     seconds: dict[str, list[float]] = {way: [] for way in ways}
-    for _ in range(TURNS):
+    for _ in range(given["turns"]):
         for way, do in ways.items():
             start = perf_counter()
             do()

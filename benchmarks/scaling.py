@@ -16,18 +16,27 @@ from line_up import Entry
 from one_scaling import ANEW, APART, ONE
 from processes import answer_of
 
-__all__ = ["ANEW", "APART", "measure"]
+__all__ = ["ANEW", "APART", "TURNS", "measure"]
+
+TURNS = 5
+"""Runs of each way in a round; other work on the machine only ever slows."""
 
 ENGINES = {"xlmc/numpy": "processes", "xlmc/jit": "threads"}
 """Those measured, and by what they run long runs; `formulas` is the slow reference."""
 
 
 def measure(
-    entries: Sequence[Entry], path: Path, rounds: int, seconds: float, limit: float, say: Callable[[str], None]
+    entries: Sequence[Entry],
+    path: Path,
+    rounds: int,
+    turns: int,
+    seconds: float,
+    limit: float,
+    say: Callable[[str], None],
 ) -> dict[str, Any]:
     """Engine -> way -> rates, and `ratios`: way -> the median of its ratio to one job in the same round.
 
-    A run with one job takes about `seconds`.
+    A run with one job takes about `seconds`. In a round each way has so many `turns`, of which the fastest counts.
     """
     found: dict[str, Any] = {}
     for round_ in range(rounds):
@@ -36,6 +45,7 @@ def measure(
                 "path": str(path),
                 "engine": entry.name.removeprefix("xlmc/"),
                 "seconds": seconds,
+                "turns": turns,
                 "processes": ENGINES[entry.name] == "processes",
                 "other": False,
             }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache, cached_property
@@ -129,7 +130,8 @@ def _filtered() -> Problem:
 
     def moment(power: int, upto: float = np.inf) -> float:
         def density(z: float) -> float:
-            return float(np.exp(0.5 * power * z) * stats.norm.pdf(z) * ndtr(z - 0.5))
+            normal = math.exp(0.5 * z * (power - z)) / math.sqrt(2.0 * math.pi)
+            return normal * 0.5 * math.erfc((0.5 - z) / math.sqrt(2.0))
 
         return float(integrate.quad(density, -10.0, min(upto, 12.0), epsabs=1e-13, limit=400)[0])
 

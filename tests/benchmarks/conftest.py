@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from time import sleep
 
 import pytest
 
@@ -14,3 +15,27 @@ def hand_written():
     import hand_written
 
     return hand_written
+
+
+@pytest.fixture(scope="session")
+def library(tmp_path_factory):
+    """The hand-written C, built once."""
+    import hand_c
+
+    if hand_c.compiler() is None:
+        pytest.skip("no C compiler is installed (apt-get install gcc)")
+    return hand_c.build(tmp_path_factory.mktemp("hand"))
+
+
+@pytest.fixture(scope="module")
+def at_hand(request):
+    """`compare.main` builds no C of its own, if there is a compiler, and looks a moment only at what else runs."""
+    import hand_c
+    import machine
+
+    with pytest.MonkeyPatch.context() as patch:
+        if hand_c.compiler() is not None:
+            library = request.getfixturevalue("library")
+            patch.setattr(hand_c, "build", lambda _: library)
+        patch.setattr(machine, "sleep", lambda _: sleep(0.05))
+        yield

@@ -2,24 +2,38 @@ from __future__ import annotations
 
 import json
 
+import books
 import compare
 import figures
 import numpy as np
 import peers
 import pytest
+import rates
 import tables
 from accuracy import TRUTH, errors
+from contestants import formulas_model
 from line_up import line_up
 
-CONTESTANTS = ("xlmc/numpy", "hand/NumPy", "formulas")
+import xlmc
+
+CONTESTANTS = ("xlmc/numpy", "hand/NumPy")
+PEER = "formulas"
+"""One that answers given trials only; what it would measure takes seconds, so its record is written here."""
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory):
+def results(tmp_path_factory, at_hand):
     folder = tmp_path_factory.mktemp("results")
-    parts = "rates", "scaling", "accuracy"
-    given = ["--quick", "--books", "case-study", "--contestants", *CONTESTANTS, "--parts", *parts]
-    assert compare.main([*given, "--output", str(folder)]) == folder
+    given = ["--quick", "--books", "case-study", "--contestants", *CONTESTANTS, "--output", str(folder), "--parts"]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(compare, "draw", lambda _: None)
+        assert compare.main([*given, "rates", "scaling"]) == folder
+    path = folder / "rates.json"
+    measured = json.loads(path.read_text(encoding="utf-8"))
+    records = measured["found"]["case-study"]
+    records[PEER] = {**records["hand/NumPy"], "family": "peer", "rate": 50.0}
+    path.write_text(json.dumps(measured), encoding="utf-8")
+    compare.main([*given, "accuracy"])
     return folder
 
 
@@ -29,12 +43,28 @@ def found(results, part):
 
 def test_contestants_agree_on_the_case_study(results):
     records = found(results, "rates")["case-study"]
-    assert set(records) == set(CONTESTANTS)
+    assert set(records) == {*CONTESTANTS, PEER}
     for name, record in records.items():
         assert record["absent"] is None, name
         assert record["differs"] == [], name
         assert record["checked"] >= 1
         assert record["rate"] > 0
+
+
+@pytest.mark.parametrize("name", ["skid", "wide"])
+def test_the_package_formulas_gives_the_same_forecasts(name, tmp_path):
+    """In this process: one forecast, and several."""
+    path = tmp_path / f"{name}.xlsx"
+    if name == "skid":
+        books.write_skid(path)
+    else:
+        books.write_wide(path, 3, 2)
+    task = rates.task_of(name, path, 0)
+    assert len(task.check) == rates.CHECK
+    assert len(task.forecasts) == (1 if name == "skid" else 2)
+    given = {a.name: column for a, column in zip(xlmc.load(path).live, np.transpose(task.check), strict=True)}
+    truth = np.transpose(list(xlmc.load(path).function(given).values()))
+    assert rates.differing(task, formulas_model.prepare(task).answers(task.check), truth) == []
 
 
 def test_ratios_are_of_the_same_round(results):
@@ -46,9 +76,10 @@ def test_ratios_are_of_the_same_round(results):
 
 def test_accuracy_has_a_curve_for_everyone(results):
     curves = found(results, "accuracy")
-    assert set(curves) == set(CONTESTANTS)
-    assert curves["formulas"]["by rate"]
-    assert curves["formulas"]["errors"] == curves["xlmc/numpy"]["errors"]
+    assert set(curves) == {*CONTESTANTS, PEER}
+    assert [name for name, curve in curves.items() if curve["by rate"]] == [PEER]
+    assert curves[PEER]["errors"] == curves["xlmc/numpy"]["errors"]
+    assert curves[PEER]["seconds"] == [trials / 50 for trials in curves[PEER]["trials"]]
     for curve in curves.values():
         assert np.shape(curve["errors"]) == (len(curve["trials"]), 4)
 
@@ -80,10 +111,10 @@ def test_peers_agree_on_the_case_study(name, tmp_path):
     if name in peers.missing():
         pytest.skip(f"{name} is not installed: benchmarks/compare.py --install")
     label = {"ironcalc": "IronCalc"}.get(name, name)
-    books = "case-study", "skid"
-    given = ["--quick", "--parts", "rates", "--contestants", "xlmc/numpy", label, "--books", *books]
+    names = "case-study", "skid"
+    given = ["--quick", "--parts", "rates", "--contestants", "xlmc/numpy", label, "--books", *names]
     compare.main([*given, "--output", str(tmp_path)])
-    for book in books:
+    for book in names:
         record = found(tmp_path, "rates")[book][label]
         assert record["absent"] is None
         assert record["differs"] == []

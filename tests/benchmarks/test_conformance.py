@@ -72,6 +72,7 @@ def test_a_list_of_sizes_counts_a_refused_book(folder):
 def test_the_command_prints_both_figures_and_lists_the_rest(folder):
     done = subprocess.run([sys.executable, SCRIPT, folder], capture_output=True, text=True, check=False)
     assert done.returncode == 1
+    assert done.stderr == ""
     assert "8 cells: 5 matched (62.500%), 1 differing (12.500%), 2 unsupported (25.000%)" in done.stdout
     assert "5 shapes: 2 matched (40.000%)" in done.stdout
     assert "damaged, not counted: broken.xlsx" in done.stdout
@@ -79,11 +80,13 @@ def test_the_command_prints_both_figures_and_lists_the_rest(folder):
     assert "mixed.xlsx S!B2 =A2*2\n    Excel: 5.0\n    xlmc:  4.0" in done.stdout
 
 
-def test_a_folder_where_all_match_ends_well(folder):
+def test_a_folder_where_all_match_ends_well(folder, capsys):
+    from conformance import main
+
     (folder / "books" / "mixed.xlsx").unlink()
     (folder / "books" / "locked.xlsx").unlink()
-    done = subprocess.run([sys.executable, SCRIPT, folder], capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr) == (0, "")
-    missing = subprocess.run([sys.executable, SCRIPT, folder / "none"], capture_output=True, text=True, check=False)
-    assert missing.returncode == 2
-    assert "is no folder" in missing.stderr
+    assert main([str(folder)]) == 0
+    assert capsys.readouterr().err == ""
+    with pytest.raises(SystemExit, match="2"):
+        main([str(folder / "none")])
+    assert "is no folder" in capsys.readouterr().err

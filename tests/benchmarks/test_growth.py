@@ -12,21 +12,30 @@ import tables
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory):
+def results(tmp_path_factory, at_hand):
+    """One series by each of the engines: a point costs a process."""
     folder = tmp_path_factory.mktemp("growth")
     given = ["--quick", "--parts", "growth", "--books", "skid", "--output", str(folder)]
-    compare.main([*given, "--series", "forecasts", "--most", "1"])
-    compare.main([*given, "--series", "trials", "--most", "1000"])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(growth, "ENGINES", ("numpy",))
+        with patch.context() as apart:
+            apart.setattr(compare, "draw", lambda _: None)
+            compare.main([*given, "--series", "forecasts", "--most", "1"])
+        patch.setattr(growth, "ENGINES", ("jit",))
+        compare.main([*given, "--series", "trials", "--most", "1000"])
     return folder
 
 
 def test_a_series_that_is_not_measured_keeps_its_points(results):
     found = json.loads((results / "growth.json").read_text(encoding="utf-8"))["found"]
     assert list(found) == ["trials", "forecasts"]
+    assert list(found["forecasts"]) == ["numpy"]
     for points in found["forecasts"].values():
         assert [point["size"] for point in points] == [1]
         assert all(point[column] > 0 for point in points for column in growth.COLUMNS)
-    assert [point["size"] for points in found["trials"].values() for point in points] == [1000, 1000]
+    assert list(found["trials"]) == ["jit"]
+    assert [point["size"] for point in found["trials"]["jit"]] == [1000]
+    assert found["trials"]["jit"][0]["run"] > 0
     assert (results / "growth.png").read_bytes().startswith(b"\x89PNG")
 
 

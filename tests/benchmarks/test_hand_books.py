@@ -33,13 +33,6 @@ def marches(tmp_path_factory):
     return found
 
 
-@pytest.fixture(scope="module")
-def library(tmp_path_factory):
-    if hand_c.compiler() is None:
-        pytest.skip("no C compiler")
-    return hand_c.build(tmp_path_factory.mktemp("library"))
-
-
 @pytest.mark.parametrize("search", hand_written_march.SEARCHES)
 @pytest.mark.parametrize("cells", CELLS)
 def test_time_steps_in_numpy(marches, cells, search):

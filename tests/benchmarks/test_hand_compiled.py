@@ -16,13 +16,6 @@ ACCEPTANCE = 0.01756579
 
 
 @pytest.fixture(scope="module")
-def library(tmp_path_factory):
-    if hand_c.compiler() is None:
-        pytest.skip("no C compiler is installed (apt-get install gcc)")
-    return hand_c.build(tmp_path_factory.mktemp("hand"))
-
-
-@pytest.fixture(scope="module")
 def case_in_c(library):
     return hand_c.Hand(library, "case", hand_written.LOW, hand_written.HIGH, 4)
 

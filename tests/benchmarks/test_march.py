@@ -8,7 +8,7 @@ import pytest
 import xlmc
 from xlmc.distributions.spelling import name_key
 
-CELLS = 200
+CELLS = 40
 OF_THE_ANSWER = 3
 """Formula cells beside the steps: two of the row before the first step, and the forecast."""
 

@@ -1,13 +1,29 @@
 from __future__ import annotations
 
 import memory
+import pytest
 
 
-def test_long_runs_are_measured_in_processes_of_their_own():
-    counts = (50_000, 150_000)
-    found = memory.measure(counts, rounds=1)
-    assert tuple(run["trials"] for run in found["runs"]) == counts
-    for run in found["runs"]:
-        assert 0 < run["accepted"] < run["trials"]
-        assert 10_000_000 < run["before"] <= run["peak"]
-    assert found["cost"] > 0
+def test_a_run_is_measured_in_a_process_of_its_own():
+    run = memory._measured(50_000, 1, "numpy", 1)
+    assert run["trials"] == 50_000
+    assert 0 < run["accepted"] < run["trials"]
+    assert 10_000_000 < run["before"] <= run["peak"]
+    assert run["seconds"] > 0
+
+
+def test_ratios_are_of_the_longest_run_to_the_shortest(monkeypatch):
+    """Costs of the same round, of which the median counts."""
+    seconds = iter([1.0, 30.0, 2.0, 22.0, 4.0, 40.0])  # a short run and a long one, round by round
+    asked = []
+
+    def measured(trials, times, engine, jobs):
+        asked.append((trials, times, engine, jobs))
+        return {"trials": trials, "accepted": trials // 2, "seconds": next(seconds), "before": 100, "peak": 3 * trials}
+
+    monkeypatch.setattr(memory, "_measured", measured)
+    found = memory.measure((100, 1_000), "jit", 2, rounds=3)
+    assert asked == [(100, 10, "jit", 2), (1_000, 1, "jit", 2)] * 3
+    assert [run["seconds"] for run in found["runs"]] == [2.0, 30.0]
+    assert found["cost"] == pytest.approx(1.1)
+    assert found["memory"] == 10.0

@@ -16,7 +16,6 @@ from xlmc.run.rare.mixture import Mixture
 from xlmc.run.rare.proposal import Proposal, Shear
 from xlmc.run.rare.search import find
 
-RUNS = 2
 BENCHMARKS = Path(__file__).resolve().parents[3] / "benchmarks"
 
 
@@ -33,21 +32,18 @@ def problems(bench):
     return bench.PROBLEMS | {"corner": corner}
 
 
-@pytest.mark.parametrize("name", ["correlated", "two tails", "corner"])
+@pytest.mark.parametrize("name", ["two tails", "corner"])
 def test_intervals_hold_the_truth(bench, problems, name):
-    """2 runs of 6 intervals: fewer hits than 95 % coverage has once in 1,000 times, were all independent, fail."""
+    """6 intervals: fewer hits than 95 % coverage has once in 1,000 times, were all independent, fail."""
     problem = problems[name]
-    hits, evaluations = 0, []
-    for seed in range(RUNS):
-        found = bench.one_run(problem.distance, problem.dimensions, 5000 + seed, 1000)
-        points = found.equalised.points
-        assert np.all(problem.distance(points) == 0.0)
-        assert 0.97 * 1000 <= found.equalised.size <= 1000
-        hits += sum(bench.covered(bench.estimates(found, problem.forecast(points)), problem.truth))
-        evaluations.append(found.evaluations)
-    assert bdtr(hits, 6 * RUNS, 0.95) > 1e-3
+    found = bench.one_run(problem.distance, problem.dimensions, 5000, 1000)
+    points = found.equalised.points
+    assert np.all(problem.distance(points) == 0.0)
+    assert 0.97 * 1000 <= found.equalised.size <= 1000
+    hits = sum(bench.covered(bench.estimates(found, problem.forecast(points)), problem.truth))
+    assert bdtr(hits, 6, 0.95) > 1e-3
     if problem.truth[0] <= 1e-6:
-        assert max(evaluations) < 1000 / problem.truth[0] / 50
+        assert found.evaluations < 1000 / problem.truth[0] / 50
 
 
 def shifted(mean):
@@ -69,8 +65,7 @@ def test_a_trial_heavier_than_any_known_is_learnt_from(random):
 
 
 def test_the_same_streams_give_the_same_trials(bench):
-    problem = bench.PROBLEMS["two tails"]
-    first, second = (bench.one_run(problem.distance, 3, 77, 50) for _ in range(2))
+    first, second = (bench.one_run(lambda z: np.maximum(0.0, 3.0 - z[:, 0]), 1, 77, 50) for _ in range(2))
     assert first.equalised.points.tobytes() == second.equalised.points.tobytes()
     assert first.equalised.acceptance == second.equalised.acceptance
 
@@ -121,11 +116,12 @@ def test_learning_keeps_to_the_limit():
 
 def test_acceptance_is_more_than_nothing_where_few_trials_are_wanted():
     """Some 1.3 of 32,768 are accepted: as many draws again may have none, so there are more, a million at most."""
-    for seed in range(8):
+    for seed in range(2):
         random = np.random.default_rng((13, seed))
         found = equalise(
             lambda z: (z[:, 0] > 2.5) & (z[:, 0] < 2.5 + 6.4e-5), shifted(2.5), -2.7, -math.inf, 2, 10**8, random
         )
         assert len(found.points) == 2
+        assert found.proposals - found.fresh < found.fresh <= 1 << 20
         assert found.acceptance.value > 0.0
         assert found.acceptance.interval is not None

@@ -154,7 +154,8 @@ def test_the_answer_of_two_sheets_beside_another_filter_is_the_truth(book):
 
 def test_a_layer_that_cannot_be_solved_ends_with_a_warning(book):
     """Correlated assumptions are left alone; the search gives up long before the limit of trials."""
-    model = book({**CELLS, "B4": "=A1-A2^2/4"}, GIVEN, {"x": "A1"}, {"f": {"cell": "B4", **THIN}}, {("a", "b"): 0.5})
+    layer = {"at_least": -1e-4, "at_most": 1e-4}
+    model = book({**CELLS, "B4": "=A1-A2^2/4"}, GIVEN, {"x": "A1"}, {"f": {"cell": "B4", **layer}}, {("a", "b"): 0.5})
     run = model.simulate(1 << 25, seed=1, until_accepted=1_000_000, rare="always")
     assert "gave up" in run.warnings[0]
     assert run.rare is None

@@ -37,11 +37,11 @@ def test_a_bent_layer_is_followed(random):
 
 
 def test_directions_that_do_not_matter_are_left_alone(random):
-    points = random.normal(size=(8000, 40))
+    points = random.normal(size=(4000, 40))
     points[:, 7] = 4.0 + 0.2 * points[:, 7]
-    proposal = fit_proposal(points, np.ones(8000), random)
+    proposal = fit_proposal(points, np.ones(4000), random)
     assert proposal.directions <= 3
-    assert refit(proposal, points, np.ones(8000), random).basis is proposal.basis
+    assert refit(proposal, points, np.ones(4000), random).basis is proposal.basis
 
 
 def test_the_basis_turns_and_does_not_stretch(random):

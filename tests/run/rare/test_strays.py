@@ -61,12 +61,11 @@ def two_parts(z):
 def test_a_part_whose_scale_is_another_is_not_lost():
     """Splitting alone loses the second part with every seed."""
     truth = 1 - (1 - ndtr(-4.75)) ** 2
-    for seed in range(2):
-        random = [np.random.default_rng((21, seed, each)) for each in (0, 1)]
-        found = find(two_parts, lambda z: two_parts(z) == 0.0, 2, 1000, 10**8, *random)
-        points, acceptance = found.equalised.points, found.equalised.acceptance
-        assert abs(acceptance.value - truth) < 4.5 * acceptance.error < 0.1 * truth
-        assert abs(np.mean(points[:, 1] > 4.7) - 0.5) < 4.5 * np.sqrt(0.25 / 1000)
+    random = [np.random.default_rng((21, 0, each)) for each in (0, 1)]
+    found = find(two_parts, lambda z: two_parts(z) == 0.0, 2, 1000, 10**8, *random)
+    points, acceptance = found.equalised.points, found.equalised.acceptance
+    assert abs(acceptance.value - truth) < 4.5 * acceptance.error < 0.1 * truth
+    assert abs(np.mean(points[:, 1] > 4.7) - 0.5) < 4.5 * np.sqrt(0.25 / 1000)
 
 
 def test_a_single_plain_trial_is_evidence_enough(random, monkeypatch):

@@ -38,7 +38,7 @@ def children(monkeypatch):
     return started
 
 
-@pytest.mark.parametrize("jobs", [1, 2, 3])
+@pytest.mark.parametrize("jobs", [1, 3])
 def test_processes_change_no_bit(model, bits, children, jobs):
     run = model.simulate(950, jobs=jobs, scheduler="processes")
     assert bits(run) == bits(model.simulate(950))
@@ -63,9 +63,17 @@ def test_an_interruption_ends_the_processes(model, children):
     assert all(one.returncode is not None for one in children)
 
 
-def answers_of(portable, batches):
+@pytest.fixture(scope="module")
+def process():
+    """One for several tests, which is not among those that wait."""
+    one = WorkerProcess()
+    yield one
+    one.end()
+
+
+def answers_of(one, portable, batches):
     """What a process answers that is given these batches of tasks."""
-    answers, one = Answers(), WorkerProcess()
+    answers = Answers()
     one.begin(pickle.dumps(portable), answers)
     found = []
     for number in range(len(batches) + 1):
@@ -74,17 +82,16 @@ def answers_of(portable, batches):
         found += one.answered(answer)[1]
         if number < len(batches):
             one.ask(number, batches[number])
-    one.end()
     return found
 
 
 @pytest.mark.parametrize(("engine", "size"), [("numpy", 100), ("jit", 100), ("formulas", 10)])
-def test_blocks_of_another_process_are_the_same(model, engine, size):
+def test_blocks_of_another_process_are_the_same(model, process, engine, size):
     """Whether it is sent a runner or a run spec; of a run its share is left to chance, here it runs all blocks."""
     tasks = [Task(block * size, size, block < 3, block < 6) for block in range(10)]
     runner = model_runner(model, model.program(engine), engine, 1, size)
     portable = runner if engine == "numpy" else RunSpec.of(model, engine, 1, size)
-    found = answers_of(portable, [tasks[:3], tasks[3:4], tasks[4:]])
+    found = answers_of(process, portable, [tasks[:3], tasks[3:4], tasks[4:]])
     assert [pickle.dumps(block) for block in found] == [pickle.dumps(runner.run(task)) for task in tasks]
 
 
@@ -107,12 +114,6 @@ def rested(model):
     one.answered(answers.get()[1])
     idle_pool.give_back([one])
     return one
-
-
-def test_one_that_waits_is_taken_again(model):
-    one = rested(model)
-    assert idle_pool.take(1) == [one]
-    one.end()
 
 
 def test_one_that_died_while_it_waited_is_not(model, children):
@@ -167,14 +168,14 @@ def test_one_that_is_not_needed_is_ended_though_others_are(model, monkeypatch, c
     assert [one.poll() is None for one in children] == [False, True]
 
 
-def test_one_that_dies_as_its_run_begins_is_told(model, children):
+def test_one_that_waits_is_taken_again_and_told_of_if_it_dies_as_its_run_begins(model, children):
     one = rested(model)
     (again,) = idle_pool.take(1)
+    assert again is one
     children[-1].kill()
     children[-1].wait()
     answers = Answers()
     again.begin(b"", answers)
-    assert again is one
     with pytest.raises(SimulationError, match="ended before its time"):
         again.answered(answers.get(timeout=120)[1])
     again.end()
@@ -199,28 +200,14 @@ def test_a_process_that_cannot_be_started_is_told(model, monkeypatch):
     assert "--scheduler threads" in caught.value.hint
 
 
-def test_an_error_in_a_process_comes_after_the_blocks_before_it(model):
+def test_an_error_in_a_process_comes_after_the_blocks_before_it(model, process):
     runner = model_runner(model, model.program("numpy"), "numpy", 1, 100)
-    (block, error) = answers_of(runner, [[Task(0, 100, False), Task(100, "trials", False), Task(200, 100, False)]])
+    (block, error) = answers_of(
+        process, runner, [[Task(0, 100, False), Task(100, "trials", False), Task(200, 100, False)]]
+    )
     assert block.trials == 100
     assert isinstance(error, TypeError)
     assert "integers" in str(error)
-
-
-def test_a_script_needs_no_guard(tmp_path, case_study):
-    """What a process starts does not run the caller's main module again."""
-    script = tmp_path / "script.py"
-    script.write_text(
-        "import xlmc\n"
-        f"run = xlmc.load({str(case_study)!r}).simulate(70_000, jobs=2, scheduler='processes')\n"
-        "print('once', run.accepted)\n",
-        encoding="utf-8",
-    )
-    where = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-    found = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True, env=where)
-    assert found.stdout.startswith("once ")
-    assert found.stdout.count("once") == 1
-    assert found.stderr == ""
 
 
 KILLED = """

@@ -101,7 +101,7 @@ def test_what_does_not_vary_is_known(block, run_rule):
 
 def test_what_is_rare_is_waited_for(block, run_rule):
     """1 in 1,000 trials, in blocks of 500: at the first look, with 2,000, 13.5 % of the runs have seen none."""
-    for seed in range(100):
+    for seed in range(40):  # all have seen one with a chance of 0.3 %, were they to end there
         rng = np.random.default_rng((seed, 3))
         blocks = (block((rng.random(500) < 1e-3).astype(float)) for _ in range(40))
         assert run_rule(rule("50%", "mean"), blocks)[1][0].any()
@@ -146,15 +146,12 @@ def test_an_interval_without_an_end_is_wide():
 
 NORMAL_755 = math.sqrt(2) * erfinv(0.51)
 COVERAGE = [
-    ("standard_normal", "mean", 0.04, 0.0),
     ("exponential", "mean", 0.04, 1.0),
     ("lognormal", "mean", 0.08, math.exp(0.5)),
-    ("standard_normal", "sd", 0.03, 1.0),
     ("uniform", "sd", 0.006, math.sqrt(1 / 12)),
-    ("standard_normal", "p75.5", 0.06, NORMAL_755),
     ("lognormal", "p75.5", 0.12, math.exp(NORMAL_755)),
 ]
-REPLICATES = 800
+REPLICATES = 400
 STATISTICS = {
     "mean": statistics.mean,
     "sd": statistics.standard_deviation,
@@ -164,9 +161,9 @@ STATISTICS = {
 
 @pytest.mark.parametrize(("draw", "numbers", "tolerance", "true"), COVERAGE)
 def test_intervals_of_runs_that_ended_by_themselves_hold_the_truth(block, run_rule, draw, numbers, tolerance, true):
-    """Of 800 runs that end after some 2,000 to 6,000 numbers, at least 94 % but for chance.
+    """Of 400 runs that end after some 2,000 to 6,000 numbers, at least 94 % but for chance.
 
-    Were the coverage 94 %, one of the seven cases would fail by chance in 1 % of all seeds.
+    Were the coverage 94 %, one of the four cases would fail by chance in 1 % of all seeds.
     """
     held = lengths = 0
     for seed in range(REPLICATES):

@@ -10,6 +10,7 @@ from dataclasses import replace
 import click
 import numpy as np
 import pytest
+from distributed import LocalCluster
 
 from xlmc import statistics
 from xlmc.cli.simulate import simulate as command
@@ -82,7 +83,9 @@ def test_a_run_of_as_many_trials_has_the_same_trials(model, end):
 @pytest.mark.filterwarnings("ignore::ResourceWarning")  # Dask's, when it closes
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 def test_a_cluster_ends_at_the_same_trial(model):
-    run = model.simulate(until_accepted=700, scheduler="local", workers=1)
+    asked = {"n_workers": 2, "threads_per_worker": 1, "processes": False, "dashboard_address": ":0"}
+    with LocalCluster(**asked) as found:
+        run = model.simulate(until_accepted=700, scheduler=found.scheduler_address)
     assert bits(run) == bits(model.simulate(until_accepted=700))
 
 

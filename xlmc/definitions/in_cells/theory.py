@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -31,7 +32,7 @@ _GRID: Final = 1 << 20
 _MOST_VALUES: Final = 2_000_000
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Distribution:
     """A distribution whose numbers are known: its member of a family, or a piece of one, and what is added to it."""
 
@@ -77,7 +78,7 @@ class Distribution:
         return float(low) + self.shift, float(high) + self.shift
 
     def _expected(self, function: Callable[[Array], Array]) -> float:
-        values, weights = self._values()
+        values, weights = self._values
         with np.errstate(all="ignore"):
             return float(weights @ function(values))
 
@@ -89,8 +90,9 @@ class Distribution:
             and not isinstance(self.whole.family, WholeNumbers)
         )
 
+    @cached_property
     def _values(self) -> tuple[Array, Array]:
-        """Values that stand for the distribution before its shift, and the probability of each."""
+        """Values that stand for the distribution before its shift, and the probability of each: up to 2²⁰ quantiles."""
         from scipy.special import ndtr
 
         if isinstance(self.whole, Member) and isinstance(self.whole.family, WholeNumbers):

@@ -14,7 +14,9 @@ from xlmc.errors import SimulationError
 from xlmc.studies.fitting import CRITERIA, KINDS, fit, parameter_texts, rounded_value, row_to_paste, share_at_most
 from xlmc.studies.fitting.fit import anderson_darling, cautions, kolmogorov_smirnov, kolmogorov_smirnov_of_counts
 
-N = 4000
+N = 2000
+HARD_TO_TELL = ("Uniform", "Hyperbolic secant", "Inverse Gaussian")
+"""From others that are much like them: samples of these are twice as large."""
 TRUTHS = {
     "Normal": (stats.norm(5, 2), {"Mean": 5, "Std dev": 2}),
     "Uniform": (stats.uniform(2, 4), {"Low": 2, "High": 6}),
@@ -59,7 +61,8 @@ def test_every_family_is_tried():
 def test_a_large_sample_finds_its_family(name):
     """By BIC, which also tells a family from a wider one that contains it."""
     oracle, truth = TRUTHS[name]
-    found = fit(oracle.rvs(N, random_state=np.random.default_rng(999)), by="bic")
+    n = 2 * N if name in HARD_TO_TELL else N
+    found = fit(oracle.rvs(n, random_state=np.random.default_rng(999)), by="bic")
     best = found.fits[0]
     assert best.name == name, [each.name for each in found.fits[:3]]
     assert best.parameters.keys() == truth.keys()
@@ -92,14 +95,14 @@ def test_criteria_are_what_they_are_called():
 
 def test_whole_numbers_are_counts_unless_told_otherwise():
     x = [3, 5, 4, 2, 6, 3, 4, 7, 1, 0]
-    assert fit(x).kind == "counts"
-    assert fit(x, kind="continuous").kind == "continuous"
-    assert fit([*x, 2.5]).kind == "continuous"
-    assert fit([*x, -1]).kind == "continuous"
+    assert fit(x, errors=False).kind == "counts"
+    assert fit(x, kind="continuous", errors=False).kind == "continuous"
+    assert fit([*x, 2.5], errors=False).kind == "continuous"
+    assert fit([*x, -1], errors=False).kind == "continuous"
 
 
 def test_what_cannot_be_fitted_says_why():
-    unfit = fit([-1.5, 2, 3, 5]).unfit
+    unfit = fit([-1.5, 2, 3, 5], errors=False).unfit
     assert unfit["Lognormal"] == "it takes values above 0 only"
     assert unfit["Exponential"] == "it takes values from 0 up only"
     assert unfit["Beta"] == "it is fitted to values between 0 and 1 only"
@@ -136,14 +139,15 @@ def test_the_order_and_the_scale_of_the_values_do_not_matter():
 
 @pytest.mark.parametrize("n", [2, 5, 16])
 def test_small_samples_are_fitted_without_a_fault(n):
-    found = fit(np.random.default_rng(n).normal(0.75, 0.05, n))
+    """With the errors of the fewest."""
+    found = fit(np.random.default_rng(n).normal(0.75, 0.05, n), errors=n == 2)
     assert found.n == n
     assert len(found.fits) >= 5
     assert all(np.isfinite(each.aic) for each in found.fits)
 
 
 def test_ties_and_rounded_values_are_fitted_without_a_fault():
-    assert len(fit([0.7, 0.7, 0.7, 0.8, 0.8, 0.9]).fits) >= 8
+    assert len(fit([0.7, 0.7, 0.7, 0.8, 0.8, 0.9], errors=False).fits) >= 8
 
 
 def test_headings_are_those_of_the_families():
@@ -212,7 +216,7 @@ def test_shares_at_most_rise_from_0_to_1_beyond_the_support_too(name):
     values = np.sort(DATA[name])
     margin = 0.3 * (values[-1] - values[0])
     at = np.linspace(values[0] - margin, values[-1] + margin, 101)
-    for fitted in fit(values).fits:
+    for fitted in fit(values, errors=False).fits:
         shares = share_at_most(fitted, at)
         assert np.all((shares >= 0.0) & (shares <= 1.0)), fitted.name
         assert np.all(np.diff(shares) >= -1e-12), fitted.name

@@ -187,11 +187,11 @@ def _triangular_likeliest(x: Floats, low: float, high: float) -> tuple[float, fl
     """The best of the values as the corner, and the log-likelihood there."""
     n, width = x.size, high - low
     rise, fall = np.log((x - low) / width), np.log((high - x) / width)
-    before = np.concatenate([[0.0], np.cumsum(rise)[:-1]])
-    after = np.concatenate([np.cumsum(fall[::-1])[::-1][1:], [0.0]])
-    rank = np.arange(n)
-    totals = before - rank * rise + after - (n - 1 - rank) * fall
-    best = int(np.argmax(totals))
+    before, after, rank = np.zeros(n), np.zeros(n), np.arange(n)
+    rise[:-1].cumsum(out=before[1:])
+    fall[:0:-1].cumsum(out=after[-2::-1])
+    totals = before - rank * rise + after - rank[::-1] * fall
+    best = int(totals.argmax())
     return float(x[best]), float(totals[best] + n * np.log(2 / width))
 
 
@@ -204,9 +204,8 @@ def _triangular_ends(x: Floats, tolerance: float = 1e-8) -> tuple[float, float]:
 
     def log_likelihood(point: Floats) -> float:
         # Ends on a value, or far away, are as good as ends near there: a slope keeps the search from wandering.
-        return _triangular_likeliest(x, *ends_at(np.clip(point, _NEAREST, _FARTHEST)))[1] - float(
-            np.sum(np.abs(point - np.clip(point, _NEAREST, _FARTHEST)))
-        )
+        within = np.minimum(np.maximum(point, _NEAREST), _FARTHEST)
+        return _triangular_likeliest(x, *ends_at(within))[1] - float(np.abs(point - within).sum())
 
     return ends_at(np.clip(maximise(log_likelihood, [-2.5, -2.5], tolerance=tolerance), _NEAREST, _FARTHEST))
 

@@ -157,6 +157,7 @@ def test_the_trials_are_independent_whatever_the_book_says(weighted):
     assert compare(other, other, **SIZE).second.settings.sampling == "mc"
 
 
+TRIALS = 60_000
 INERTIAS = {"Chevrolet yaw moment of inertia", "Nissan yaw moment of inertia"}
 
 
@@ -167,11 +168,11 @@ def case(planar):
         "*impact centre*, Orientation of tangent",
         "*inertia*, *impact centre*, Orientation of tangent",
     ]
-    return screen(planar, "0.3 mph", sets=sets, trials=200_000)
+    return screen(planar, "0.3 mph", sets=sets, trials=TRIALS)
 
 
 def test_the_case_study_does_not_need_the_inertias(case):
-    """Held at midpoint they change nothing to two decimals: to what 200,000 trials can tell."""
+    """Held at midpoint they change nothing to two decimals: to what 60,000 trials can tell."""
     assert set(case.joint.names) >= INERTIAS
     assert set(case.sets[0].names) == INERTIAS
     assert case.sets[0].judgement.verdict is Verdict.WITHIN
@@ -190,8 +191,8 @@ def test_what_impact_centre_and_tangent_cost(case):
     for change, value in ((found.mean, 4.69), (found.standard_deviation, 1.86)):
         assert abs(change.second.value - value) < 0.005 + 4 * change.second.error
     change = found.standard_deviation.difference
-    assert change.value < -3 * change.error  # the book needs them for the spread of V2, but not by 0.3 mph
-    assert case.sets[2].judgement.verdict is Verdict.WITHIN
+    assert -0.3 + 3 * change.error < change.value < -3 * change.error  # the book needs them, but not by 0.3 mph
+    assert case.sets[2].judgement.verdict is not Verdict.BEYOND
 
 
 def test_what_the_case_study_needs(case):

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -18,8 +19,10 @@ def case_study():
 
 @pytest.fixture(scope="session")
 def small(case_study):
-    """Few and short runs of everything."""
-    return study(case_study, reference_trials=1 << 19, trials=1 << 13, replicates=2, seed=5)
+    """Few and short runs of everything; what takes half a second is not run again to see what it costs."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(import_module("xlmc.studies.methods.study"), "_PATIENCE", 0.5)
+        return study(case_study, reference_trials=1 << 19, trials=1 << 13, replicates=2, seed=5)
 
 
 SECONDS = {"mc": 5e-7, "lhs": 6e-7, "sobol": 7e-7, "grid": 2e-6, "surrogate": 2e-6, "mc/jit": 1e-7, "mc/formulas": 4e-3}

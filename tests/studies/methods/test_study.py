@@ -14,7 +14,7 @@ from xlmc.studies.methods.need import need, reach_of, shortfall
 from xlmc.studies.methods.optimised import in_step
 from xlmc.studies.methods.sampled import MONTE_CARLO
 
-REPLICATES, TRIALS = 200, 16_384
+REPLICATES, TRIALS = 100, 8_192
 
 
 @pytest.fixture
@@ -31,17 +31,17 @@ def straight(book):
 
 
 def test_sampling_errors_are_what_theory_says(case_study):
-    """200 runs know a root mean square to 5 %, the reference the density at a quantile to 6; 20 % is far more."""
-    reference = reference_of(case_study, 1 << 22, "mc", "jit", 3)
+    """100 runs know a root mean square to 7 %, the reference the density at a quantile to 8; 30 % is far more."""
+    reference = reference_of(case_study, 1 << 21, "mc", "jit", 3)
     results = [MONTE_CARLO.run(case_study, TRIALS, 1_000 + seed) for seed in range(REPLICATES)]
     runs = runs_of(TRIALS, results, reference)
     for forecast in case_study.forecasts:
         for statistic in STATISTICS:
             theory = reference.theory(forecast.name, statistic, TRIALS)
             own = getattr(reference.errors[forecast.name], statistic)
-            assert runs.errors[forecast.name, statistic].value == pytest.approx(np.hypot(theory, own), rel=0.2)
+            assert runs.errors[forecast.name, statistic].value == pytest.approx(np.hypot(theory, own), rel=0.3)
     share = reference.acceptance.value
-    assert runs.acceptance.value == pytest.approx((share * (1 - share) / TRIALS) ** 0.5, rel=0.2)
+    assert runs.acceptance.value == pytest.approx((share * (1 - share) / TRIALS) ** 0.5, rel=0.3)
 
 
 def test_theory_is_that_of_the_independent_reference(case_study):

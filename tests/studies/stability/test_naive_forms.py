@@ -121,7 +121,7 @@ def test_naive_forms_are_named_and_the_templates_are_not(template, given, forms,
     assert {name: one.kind for name, one in lost.items()} == forms
 
 
-@pytest.mark.parametrize("template", ["time-distance", "momentum-energy", "airborne", "edr-speed", "video-speed"])
+@pytest.mark.parametrize("template", ["edr-speed", "video-speed"])
 def test_the_templates_lose_no_digits_within_their_own_ranges(template):
     found = stability(xlmc.load(ROOT / "templates" / f"{template}.xlsx"), trials=4_000, seed=1)
     assert {one.level for one in found.findings} <= {Level.NOTE}

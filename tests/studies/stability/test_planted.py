@@ -81,8 +81,9 @@ def _moved(formula, column):
     return re.sub(r"\bA(\d)", rf"{column}\1", formula)
 
 
-@pytest.fixture(scope="module", params=[False, True], ids=["alone", "beside comparisons"])
-def found(book, request):
+@pytest.fixture(scope="module")
+def found(book):
+    """Beside comparisons that have nothing to do with them."""
     cells, ranges, forecasts, filters = {}, {}, {}, {}
     formulas = {name: (formula, given) for name, (formula, given, *_) in PLANTED.items()}
     formulas |= {formula: (f"={formula}", given) for formula, given in SOUND.items()}
@@ -92,10 +93,9 @@ def found(book, request):
         for row, (low, high) in enumerate(given, start=1):
             cells[f"{column}{row}"] = (low + high) / 2
             ranges[f"{column}{row} "] = {"cell": f"{column}{row}", "low": low, "high": high}
-        if request.param:
-            for row, other in enumerate(UNRELATED, start=10):
-                cells[f"{column}{row}"], forecasts[f"{column}{row} "] = f"={_moved(other, column)}", f"{column}{row}"
-            filters[f"{column} "] = {"cell": f"{column}1", "at_least": given[0][0] - 1}
+        for row, other in enumerate(UNRELATED, start=10):
+            cells[f"{column}{row}"], forecasts[f"{column}{row} "] = f"={_moved(other, column)}", f"{column}{row}"
+        filters[f"{column} "] = {"cell": f"{column}1", "at_least": given[0][0] - 1}
     return stability(book(cells, ranges, forecasts, filters), trials=4000, seed=5)
 
 

@@ -10,6 +10,8 @@ pytest.importorskip("llvmlite")
 
 import xlmc
 from xlmc.evaluation.engine import Room
+from xlmc.evaluation.llvm import phase
+from xlmc.evaluation.llvm.loop import compile_loop
 from xlmc.evaluation.llvm.program import JitProgram
 from xlmc.run.blocks import Task
 from xlmc.run.forecast_filters import FilteringProgram
@@ -88,21 +90,22 @@ def bits(block):
     return block.trials, counts, arrays, drawn, faults, [*filter(None, block.discards)]
 
 
-@pytest.mark.parametrize("inputs", [True, False])
-@pytest.mark.parametrize("draws_given", [True, False])
 @pytest.mark.parametrize("name", MODELS)
-def test_a_whole_block_is_the_block(book, name, draws_given, inputs):
+def test_a_whole_block_is_the_block(book, name):
+    """With draws that the native call makes and with given ones, with inputs kept and without, and cut anywhere."""
     model = book(CELLS, *MODELS[name])
-    whole = ran(model, True, inputs=inputs, draws_given=draws_given)
-    assert list(map(bits, whole)) == list(map(bits, ran(model, False, inputs=inputs)))
-    assert all(bool(block.draws) is inputs for block in whole)
+    for inputs in (True, False):
+        expected = list(map(bits, ran(model, False, inputs=inputs)))
+        for draws_given in (True, False):
+            whole = ran(model, True, inputs=inputs, draws_given=draws_given)
+            assert list(map(bits, whole)) == expected
+            assert all(bool(block.draws) is inputs for block in whole)
+    for draws_given in (True, False):
+        _check_first_trials(model, draws_given)
 
 
-@pytest.mark.parametrize("draws_given", [True, False])
-@pytest.mark.parametrize("name", MODELS)
-def test_the_first_trials_of_a_block_are_those_of_the_block(book, name, draws_given):
+def _check_first_trials(model, draws_given):
     """Chunks have 2048 trials: these end at the first one, within one, at an end of one, and just behind it."""
-    model = book(CELLS, *MODELS[name])
     runners = {whole: model_runner(model, model.program("jit"), "jit", 7, BLOCK) for whole in (True, False)}
     runners[False]._run_whole = None
     if draws_given:
@@ -133,8 +136,12 @@ EQUATIONS = {name: path for name, path in BOOKS.items() if not name.endswith("-s
 
 
 @pytest.mark.parametrize("path", EQUATIONS.values(), ids=EQUATIONS)
-def test_examples_and_templates_are_computed_in_loops_and_in_whole_blocks(path):
-    """Some of their filters wait until they are needed: until then they are always true."""
+def test_examples_and_templates_are_computed_in_loops_and_in_whole_blocks(path, monkeypatch):
+    """Some of their filters wait until they are needed: until then they are always true.
+
+    Loops that take one trial after another are compiled sooner, and are called in the same way.
+    """
+    monkeypatch.setattr(phase, "compile_loop", lambda *given: compile_loop(*given[:6], side_by_side=0))
     model = xlmc.load(path)
     program = model.program("jit")
     program = program._program if isinstance(program, FilteringProgram) else program

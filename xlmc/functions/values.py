@@ -139,7 +139,7 @@ class Value:
     @property
     def errors(self) -> Codes:
         """The error codes, 0 where there is none; they broadcast to the shape."""
-        return np.where(self.kinds >= ERROR, self.kinds - np.uint8(ERROR), np.uint8(0)).astype(np.uint8)
+        return np.maximum(self.kinds, np.uint8(ERROR)) - np.uint8(ERROR)
 
     @property
     def has_errors(self) -> bool:

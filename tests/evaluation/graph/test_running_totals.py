@@ -4,6 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -47,14 +48,16 @@ FOLDS = ["AVERAGE", "COUNT", "COUNTA", "MAX", "MIN", "PRODUCT", "MEDIAN", "STDEV
 CONTENTS = {"B1": "Heading", "B3": True, "B20": "x", "B22": "=1/(A1-2)", "B25": "=A1&1"}
 
 
-@pytest.mark.parametrize("range_", ["B$1:B{r}", "B{r}:B$40", "$A$1:B{r}", "OFFSET(B$1,0,0,{r},1)"])
-@pytest.mark.parametrize("name", FOLDS)
+FILLED = ["B$1:B{r}", "B{r}:B$40", "$A$1:B{r}", "OFFSET(B$1,0,0,{r},1)"]
+
+
+@cases("name, range_", [(name, range_) for at, name in enumerate(FOLDS) for range_ in FILLED[at % 2 :: 2]])
 def test_filled_down_each_function_gives_what_it_gives_alone(run, name, range_):
     column = {f"B{row}": f"=A$1*{row}/7" for row in range(1, 41) if row != 30} | CONTENTS
     formulas = {f"C{r}": f"={name}({range_.format(r=r)})" for r in range(15, 31)}
     draws = {"A1": [0.3, 1.7, 2.0]}
     together = run(column | formulas, draws, list(formulas)).forecasts
-    for at in (0, 8, 15):
+    for at in (3, 15):
         cell = [*formulas][at]
         assert run(column | {cell: formulas[cell]}, draws, [cell]).forecasts == [together[at]]
 
@@ -70,16 +73,14 @@ def filled(name, range_, rows):
     return cells | {f"D{r}": f"={name}({range_.format(r=r, n=rows)})" for r in range(1, rows + 1)}
 
 
-@pytest.mark.parametrize(
-    ("name", "range_"), [(name, range_) for at, name in enumerate(FOLDED) for range_ in RUNNING[at % 2 :: 2]]
-)
+@cases("name, range_", [(name, range_) for at, name in enumerate(FOLDED) for range_ in RUNNING[at % 2 :: 2]])
 def test_a_row_more_is_a_few_cells_more_to_read(lower, name, range_):
     def read(rows):
         wanted = [f"D{row}" for row in range(1, rows + 1)]
         nodes = lower(filled(name, range_, rows), ["A1"], wanted)[0].dag.nodes
         return sum(len(uses(node)) for node in nodes)
 
-    few, more, most = map(read, (90, 130, 170))
+    few, more, most = map(read, (66, 100, 134))
     assert most - more < 1.2 * (more - few)
 
 
@@ -99,7 +100,7 @@ def test_formulas_of_which_each_needs_the_one_below_are_linear(lower):
         cells |= {f"C{r}": f"=C{r + 1}+MAX(B$1:B{r})" for r in range(1, rows + 1)}
         return sum(len(uses(node)) for node in lower(cells, ["A1"], ["C1"])[0].dag.nodes)
 
-    few, more, most = map(read, (90, 130, 170))
+    few, more, most = map(read, (66, 100, 134))
     assert most - more < 1.2 * (more - few)
 
 
@@ -183,12 +184,12 @@ def test_upwards_it_is_so_too_where_no_digit_is_lost(run, held, name, range_, mi
 @pytest.mark.parametrize("name", ["SUM", "AVERAGE", "PRODUCT"])
 def test_upwards_no_more_differs_than_rounding(run, name):
     rng = np.random.default_rng(5)
-    rows = 300
+    rows = 200
     cells = {"A1": 0.0} | {f"B{r}": f"=A$1*{x}" for r, x in enumerate(rng.uniform(0.7, 1.3, rows).tolist(), 1)}
     formulas = {f"D{r}": f"={name}(B{r}:B${rows})" for r in range(1, rows + 1)}
     draws = {"A1": [0.9, 1.0, 1.1]}
-    together = run(cells | formulas, draws, [f"D{r}" for r in (1, 2, 150)]).forecasts
-    for at, found in zip((1, 2, 150), together, strict=True):
+    together = run(cells | formulas, draws, [f"D{r}" for r in (1, 2, 100)]).forecasts
+    for at, found in zip((1, 2, 100), together, strict=True):
         by_itself = np.array(alone(run, cells | formulas, draws, f"D{at}"))
         np.testing.assert_allclose(found, by_itself, rtol=2 * rows * 2.0**-53, atol=0)
 
@@ -224,9 +225,11 @@ def test_ranges_filled_right_over_one_row(run):
     assert got == [[25.0], [48.0], [58.0]]
 
 
-@pytest.mark.parametrize("name", ["SUM", "MIN", "MAX", "PRODUCT"])
-@pytest.mark.parametrize(
-    "contents", [{}, {"B3": "x", "B90": True}, {"B70": "=1/(A1-2)"}, {"B2": "=A1&1", "B5": "=-A1"}]
+LONG = [{}, {"B3": "x", "B90": True}, {"B70": "=1/(A1-2)"}, {"B2": "=A1&1", "B5": "=-A1"}]
+
+
+@cases(
+    "name, contents", [(name, held) for at, name in enumerate(("SUM", "MAX", "PRODUCT")) for held in LONG[at % 2 :: 2]]
 )
 def test_a_long_set_gives_what_its_cells_give(run, name, contents):
     """Two long ranges, one of them a cell longer, in formulas of their own; and the same cells in four parts."""

@@ -70,7 +70,7 @@ def converted(to, folder, *books):
 
 @pytest.fixture(scope="module")
 def case():
-    return xlmc.load(EXAMPLE).simulate(trials=20_000)
+    return xlmc.load(EXAMPLE).simulate(trials=50_000)
 
 
 @pytest.fixture(scope="module")

@@ -122,9 +122,7 @@ def shown(chromium, text_of, tmp_path):
     def show(simulation, **options):
         path = tmp_path / "page.html"
         path.write_text(text_of(simulation, **options), encoding="utf-8")
-        chromium.get("about:blank")
-        for log in ("browser", "performance"):
-            chromium.get_log(log)
+        chromium.get_log("browser")
         chromium.get(path.as_uri())
         return chromium
 

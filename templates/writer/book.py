@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from datetime import UTC, datetime
+from io import BytesIO
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from xlsxwriter.utility import xl_rowcol_to_cell
 from xlsxwriter.workbook import Workbook
@@ -21,6 +21,7 @@ from templates.writer.places import name_cells, places, reference
 from templates.writer.results_sheet import draw_results_wanted
 from templates.writer.scene_sheet import chart_size, draw_scene
 from templates.writer.styles import Styles
+from xlmc.workbook.reader import read_workbook
 
 __all__ = ["write_book"]
 
@@ -35,18 +36,17 @@ def write_book(template: Template, path: Path) -> None:
         KeyError: a forecast, filter or correlation names a symbol that there is not.
         FormulaError: a formula cannot be computed.
     """
-    with TemporaryDirectory() as folder:
-        draft = Path(folder) / path.name
-        _write(template, draft, {})
-        values = computed(draft)
+    draft = BytesIO()
+    _write(template, draft, {})
+    values = computed(read_workbook(draft.getvalue(), path.name))
     _write(template, path, values)
     if template.diagram is not None:
         fix_chart_sizes(path, *chart_size(template.diagram))
 
 
-def _write(template: Template, path: Path, values: Values) -> None:
+def _write(template: Template, target: Path | BytesIO, values: Values) -> None:
     at = places(template)
-    with Workbook(path) as workbook:
+    with Workbook(target, {"in_memory": isinstance(target, BytesIO)}) as workbook:
         workbook.set_properties(
             {
                 "title": template.title,

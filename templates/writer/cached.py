@@ -6,13 +6,12 @@ The tests compare them with LibreOffice, and the answers with numbers worked out
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 
 from xlmc.address import Cell
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.graph.lower import Lowering, lower_cells
 from xlmc.formula import Resolver
-from xlmc.workbook.reader import read_workbook
+from xlmc.workbook.workbook import Workbook
 
 __all__ = ["Shown", "Values", "computed"]
 
@@ -21,13 +20,12 @@ Values = Mapping[tuple[str, int, int], Shown]
 """(sheet, row, column), counted from 0 -> the value of its formula; an error as Excel shows it."""
 
 
-def computed(path: Path) -> Values:
+def computed(workbook: Workbook) -> Values:
     """The value of every formula cell of a workbook, from the numbers in its other cells.
 
     Raises:
         FormulaError: a formula cannot be computed.
     """
-    workbook = read_workbook(path)
     cells = [
         Cell(sheet.name, row, column)
         for sheet in workbook.sheets.values()

@@ -14,6 +14,7 @@ import pytest
 from committed_books import BOOKS
 from needed_programs import missing
 
+import xlmc
 from xlmc.address import parse_address
 from xlmc.evaluation.engine import Target
 from xlmc.evaluation.engines import ENGINES
@@ -25,7 +26,11 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT))
 
 _CACHED = re.compile(r"(<f>[^<]*</f>)<v>[^<]*</v>")
+_STYLE = re.compile(r'(<c r="[A-Z]+\d+") s="\d+"')
 _CHARTS = re.compile(r"<drawing r:id=[^>]*/>")
+_EACH_SHEET = "csv:Text - txt - csv (StarCalc):44,34,76,1,,0,true,true,false,false,false,-1"
+"""A file in UTF-8 for each sheet; texts are in quotes, numbers as shown: with 15 digits where they have no style."""
+_FIELD = re.compile(r'(?:"((?:[^"]|"")*)"|([^,\n]*))(,|\n|$)')
 
 
 def _script(path):
@@ -63,36 +68,50 @@ def book_path():
 
 @pytest.fixture(scope="session")
 def opened():
-    """`opened(path)`: the workbook, to look at and not to change; with `data_only=True`, its values."""
+    """`opened(path)`: the workbook as openpyxl reads it, to look at and not to change."""
     return cache(openpyxl.load_workbook)
 
 
 @pytest.fixture(scope="session")
-def shown(book_path, opened):
-    """`shown(name)`: symbol -> the value that the committed workbook shows."""
-
-    @cache
-    def read(name):
-        book = opened(book_path[name], data_only=True)
-        places = {symbol: next(iter(named.destinations)) for symbol, named in book.defined_names.items()}
-        return {symbol: book[sheet][place].value for symbol, (sheet, place) in places.items()}
-
-    return read
+def read(book_path):
+    """`read(name)`: a committed workbook as xlmc reads it, with the values that its cells show."""
+    return cache(lambda name: read_workbook(book_path[name]))
 
 
 @pytest.fixture(scope="session")
-def cells(book_path):
+def model_of(book_path):
+    """`model_of(name)`: the model of a committed workbook."""
+    return cache(lambda name: xlmc.load(book_path[name]))
+
+
+@pytest.fixture(scope="session")
+def run_of(model_of):
+    """`run_of(name)`: 20,000 trials of a committed workbook."""
+    return cache(lambda name: model_of(name).simulate(20_000))
+
+
+@pytest.fixture(scope="session")
+def shown(read):
+    """`shown(name)`: symbol -> the value that the committed workbook shows."""
+
+    @cache
+    def values(name):
+        book = read(name)
+        return {symbol: book.content(cell).value for symbol, cell in _named_cells(book).items()}
+
+    return values
+
+
+@pytest.fixture(scope="session")
+def cells(read):
     """`cells(name, inputs, wanted)`: a workbook as a function of any input cells, by symbol; NaN for an error.
 
     What is not given keeps the value of its cell. Inputs and results are `(n,)`, or numbers where n is 1.
     """
-    books = {}
 
     def compute(name, inputs, wanted):
-        if name not in books:
-            books[name] = read_workbook(book_path[name])
-        workbook = books[name]
-        at = {each.name: _named_cell(each) for each in workbook.names if not each.name.startswith("_xlnm")}
+        workbook = read(name)
+        at = _named_cells(workbook)
         live = {at[symbol]: symbol for symbol in inputs}
         resolver = Resolver(workbook, list(live))
         targets = [Target(at[symbol], at[symbol]) for symbol in wanted]
@@ -110,26 +129,51 @@ def cells(book_path):
     return compute
 
 
-def _named_cell(name):
-    sheet, _, place = name.text.removeprefix("=").rpartition("!")
-    return parse_address(place, sheet.strip("'"))
+def _named_cells(workbook):
+    """Name -> its cell."""
+    found = {}
+    for each in workbook.names:
+        if not each.name.startswith("_xlnm"):
+            sheet, _, place = each.text.removeprefix("=").rpartition("!")
+            found[each.name] = parse_address(place, sheet.strip("'"))
+    return found
 
 
 @pytest.fixture(scope="session")
 def recalculated(book_path, tmp_path_factory):
-    """Name -> the workbook as LibreOffice computes it from formulas alone: the cached values are removed first.
+    """`recalculated(name, sheet)`: (row, column) -> the value that LibreOffice computes from formulas alone.
 
-    So are the charts, which no cell depends on, and which it takes a tenth of the time to convert.
+    The cached values are removed first. So are the charts, which no cell depends on, and which it takes a tenth of the
+    time to convert.
     """
     if reason := missing("soffice"):
         pytest.skip(reason)
     folder = tmp_path_factory.mktemp("libreoffice")
     bare = [_without_cached_values(path, folder) for path in book_path.values()]
     profile = f"-env:UserInstallation={(folder / 'profile').as_uri()}"
-    target = ["--convert-to", "xlsx", "--outdir", str(folder / "out")]
+    target = ["--convert-to", _EACH_SHEET, "--outdir", str(folder / "out")]
     command = ["soffice", "--headless", profile, *target, *map(str, bare)]
     subprocess.run(command, check=True, capture_output=True, timeout=600)
-    return {name: folder / "out" / path.name for name, path in book_path.items()}
+    return lambda name, sheet: _values((folder / "out" / f"{name}-{sheet}.csv").read_text("utf-8"))
+
+
+def _values(text):
+    """(row, column) -> what a file of LibreOffice says, a text where it is in quotes."""
+    found, row, column = {}, 1, 1
+    for quoted, plain, end in _FIELD.findall(text):
+        if quoted or plain:
+            found[row, column] = quoted.replace('""', '"') or _value(plain)
+        row, column = (row + 1, 1) if end == "\n" else (row, column + 1)
+    return found
+
+
+def _value(plain):
+    if plain in ("TRUE", "FALSE"):
+        return plain == "TRUE"
+    try:
+        return float(plain)
+    except ValueError:
+        return f"neither a number nor a text: {plain}"
 
 
 def _without_cached_values(path, folder):
@@ -138,6 +182,6 @@ def _without_cached_values(path, folder):
         for name in book.namelist():
             part = book.read(name)
             if name.startswith("xl/worksheets/sheet"):
-                part = _CHARTS.sub("", _CACHED.sub(r"\1", part.decode())).encode()
+                part = _CHARTS.sub("", _STYLE.sub(r"\1", _CACHED.sub(r"\1", part.decode()))).encode()
             bare.writestr(name, part)
     return target

@@ -10,6 +10,8 @@ import pytest
 from committed_books import BOOKS
 
 import xlmc
+from xlmc.definitions.definitions_reader import read_definitions
+from xlmc.evaluation.engines import ENGINES
 
 HEADERS = "Name Cell Units Reading Error/Plus or minus/Std dev/Percent/Resolution/Use/Source"
 
@@ -30,22 +32,21 @@ def with_readings(path, target, readings, inputs=()):
     return xlmc.load(target)
 
 
-def test_rows_are_as_described_and_off(described, subtests):
+def test_rows_are_as_described_and_off(described, opened, read):
     found = [name for name in BOOKS if described[name].evidence]
     assert len(found) == 21
     for name in found:
-        with subtests.test(name):
-            book = openpyxl.load_workbook(BOOKS[name])
-            sheet, template = book["Evidence"], described[name]
-            header, *rows = sheet[sheet.tables["xlmc_evidence"].ref]
-            assert "/".join(cell.value for cell in header).replace("/", " ", 4) == HEADERS
-            for row, reading in zip(rows, template.evidence, strict=True):
-                [(at, place)] = book.defined_names[reading.symbol].destinations
-                assert row[1].value == f"={at}!{place.replace('$', '')}"
-                assert row[3].value == reading.reading
-                assert row[10].value
-            model = xlmc.load(BOOKS[name])
-            assert [each.used for each in model.definitions.evidence] == [False] * len(template.evidence)
+        book, template = opened(BOOKS[name]), described[name]
+        sheet = book["Evidence"]
+        header, *rows = sheet[sheet.tables["xlmc_evidence"].ref]
+        assert "/".join(cell.value for cell in header).replace("/", " ", 4) == HEADERS
+        for row, reading in zip(rows, template.evidence, strict=True):
+            [(at, place)] = book.defined_names[reading.symbol].destinations
+            assert row[1].value == f"={at}!{place.replace('$', '')}"
+            assert row[3].value == reading.reading
+            assert row[10].value
+        used = [each.used for each in read_definitions(read(name), ENGINES).evidence]
+        assert used == [False] * len(template.evidence), name
 
 
 CASES = [
@@ -59,10 +60,10 @@ CASES = [
 
 
 @pytest.mark.parametrize(("template", "row", "cells", "forecast", "holds"), CASES)
-def test_a_reading_keeps_what_agrees_with_it(template, row, cells, forecast, holds, tmp_path):
+def test_a_reading_keeps_what_agrees_with_it(template, row, cells, forecast, holds, tmp_path, run_of):
     name = row if not row.startswith('"') else f"=vehicle_1&{row}"
     model = with_readings(BOOKS[template], tmp_path / "read.xlsx", {name: cells})
-    with_it, without = model.simulate(20_000), xlmc.load(BOOKS[template]).simulate(20_000)
+    with_it, without = model.simulate(20_000), run_of(template)
     assert 0 < with_it.accepted < without.accepted
     assert holds(with_it[forecast].values)
 

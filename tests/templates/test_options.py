@@ -24,8 +24,8 @@ def changed(path, target, values):
 
 
 @pytest.mark.parametrize("name", TURNING)
-def test_the_turn_limits_speed_once_its_radius_is_entered(name, book_path, tmp_path):
-    off = xlmc.load(book_path[name]).simulate(20_000)
+def test_the_turn_limits_speed_once_its_radius_is_entered(name, book_path, tmp_path, run_of):
+    off = run_of(name)
     on = xlmc.load(changed(book_path[name], tmp_path / "turning.xlsx", {"R_turn_2": 5.0})).simulate(20_000)
     limit = math.sqrt(0.95 * 32.174 * 5.0) * 3600 / 5280
     assert off["Vehicle 2 impact speed"].values.max() > limit

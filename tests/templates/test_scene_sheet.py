@@ -7,8 +7,8 @@ import re
 import zipfile
 
 import numpy as np
-import openpyxl
 import pytest
+from cases import cases
 
 from templates.build import TEMPLATES
 from templates.description import Look
@@ -18,13 +18,12 @@ DRAWN = [name for name, template in TEMPLATES.items() if template.diagram is not
 PLANS = [name for name in DRAWN if TEMPLATES[name].diagram.plan]
 
 
-def points(path):
+def points(book):
     """Curve -> its points as the cells show them, (n, 2); the points are checked to stand in one block."""
-    sheet = openpyxl.load_workbook(path, data_only=True)["Scene"]
-    found = {}
-    for name, x, y in sheet.iter_rows(min_col=1, max_col=3, values_only=True):
-        if isinstance(x, int | float):
-            found.setdefault(name, []).append((x, y))
+    cells, found = book.sheets["Scene"].cells, {}
+    for row, column in cells:
+        if column == 2 and isinstance(cells[row, 2].value, int | float):
+            found.setdefault(cells[row, 1].value, []).append((cells[row, 2].value, cells[row, 3].value))
     return {name: np.array(rows) for name, rows in found.items()}
 
 
@@ -33,27 +32,27 @@ def test_the_templates_with_something_to_draw_are_drawn():
     assert PLANS == ["momentum", "planar-impact", "planar-forward", "momentum-energy"]
 
 
-@pytest.mark.parametrize("units", ["", "-si"])
-@pytest.mark.parametrize("name", DRAWN)
-def test_the_chart_has_a_series_for_every_curve_over_its_own_cells(name, units, book_path, described):
+@cases("units", ["", "-si"])
+@cases("name", DRAWN)
+def test_the_chart_has_a_series_for_every_curve_over_its_own_cells(name, units, book_path, described, read):
     diagram = described[name + units].diagram
     with zipfile.ZipFile(book_path[name + units]) as book:
         charts = [part for part in book.namelist() if part.startswith("xl/charts/chart")]
         xml = book.read(charts[0]).decode()
     assert len(charts) == 1
     areas = re.findall(r"<c:xVal>.*?<c:f>Scene!\$B\$(\d+)(?::\$B\$(\d+))?</c:f>", xml, re.DOTALL)
-    sheet = openpyxl.load_workbook(book_path[name + units], data_only=True)["Scene"]
+    cells = read(name + units).sheets["Scene"].cells
     vehicles = described[name + units].vehicles
-    names = [[sheet.cell(row, 1).value for row in range(int(top), int(end or top) + 1)] for top, end in areas]
+    names = [[cells[row, 1].value for row in range(int(top), int(end or top) + 1)] for top, end in areas]
     for curve, labels in zip(diagram.curves, names, strict=False):
         assert labels == [shown_label(curve.name, vehicles)] * len(curve.points)
     assert len(areas) == len(diagram.curves) + diagram.plan
 
 
-@pytest.mark.parametrize("name", PLANS)
-def test_a_plan_has_one_scale(name, book_path):
+@cases("name", PLANS)
+def test_a_plan_has_one_scale(name, book_path, read):
     """Unseen corners, the same to every side of the origin and beyond every point, on a square plot."""
-    drawn = points(book_path[name])
+    drawn = points(read(name))
     [frame] = [rows for curve, rows in drawn.items() if curve.startswith("Frame")]
     reach = frame[1, 0]
     np.testing.assert_array_equal(frame, [[-reach, -reach], [reach, reach]])
@@ -65,9 +64,9 @@ def test_a_plan_has_one_scale(name, book_path):
     assert width * int(size[0]) == pytest.approx(height * int(size[1]))
 
 
-@pytest.mark.parametrize("name", PLANS)
-def test_vehicles_are_drawn_where_they_are_and_as_they_head(name, book_path, shown):
-    drawn, base = points(book_path[name]), shown(name)
+@cases("name", PLANS)
+def test_vehicles_are_drawn_where_they_are_and_as_they_head(name, read, shown):
+    drawn, base = points(read(name)), shown(name)
     for j in (1, 2):
         corners, approach = drawn[f"Vehicle {j}"], drawn[f"Vehicle {j} approach"]
         heading = np.array([math.cos(math.radians(base[f"alpha_{j}"])), math.sin(math.radians(base[f"alpha_{j}"]))])
@@ -83,8 +82,8 @@ def test_vehicles_are_drawn_where_they_are_and_as_they_head(name, book_path, sho
             np.testing.assert_allclose(tail, [base[f"a_{j}"], base[f"b_{j}"]])
 
 
-def test_the_skid_is_drawn_from_the_answer_to_the_end(cells, shown, book_path):
-    drawn, base = points(book_path["skid"])["Speed"], shown("skid")
+def test_the_skid_is_drawn_from_the_answer_to_the_end(shown, read):
+    drawn, base = points(read("skid"))["Speed"], shown("skid")
     np.testing.assert_allclose(drawn[0], [0, base["v_mph"]])
     np.testing.assert_allclose(drawn[-1], [base["d_skid"], base["v_end"]])
     assert (np.diff(drawn[:, 1]) <= 0).all()

@@ -1,15 +1,18 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import openpyxl
-import pytest
+from cases import cases
 from committed_books import TEMPLATES
 
 import xlmc
 from templates.description import Equation
 from templates.vehicles import for_both, label_formula, names_a_vehicle, shown_label
 from templates.writer.cached import computed
+from xlmc.run.loading import build_model
+from xlmc.workbook.workbook import CellContent
 
 NAMED = [
     name
@@ -44,23 +47,33 @@ def test_a_label_is_a_formula_of_the_names():
     assert [len(text) for text in re.findall('"(x+)"', long)] == [255, 255, 90]
 
 
-@pytest.mark.parametrize("name", NAMED)
-def test_a_new_name_shows_in_every_label_of_every_sheet(name, book_path, described, tmp_path):
+def with_names(workbook, names):
+    """The workbook with other texts in cells of row 4 of Inputs, and with no saved value of a formula."""
+    sheets = {}
+    for sheet in workbook.sheets.values():
+        cells = {
+            at: content if content.formula is None else replace(content, value=None)
+            for at, content in sheet.cells.items()
+        }
+        if sheet.name == "Inputs":
+            typed = {at: names[content.value] for at, content in cells.items() if at[0] == 4 and content.value in names}
+            assert len(typed) == len(names)
+            cells |= {at: CellContent(name) for at, name in typed.items()}
+        sheets[sheet.name] = replace(sheet, cells=cells)
+    return replace(workbook, sheets=sheets)
+
+
+@cases("name", NAMED)
+def test_a_new_name_shows_in_every_label_of_every_sheet(name, read, described, model_of):
     """Typed by a program that calculates nothing: xlmc reads the tables' labels all the same."""
-    book = openpyxl.load_workbook(book_path[name])
     old = described[name].vehicles
     names = dict(zip(old, NEW, strict=False))
-    cells = [cell for cell in book["Inputs"][4] if cell.value in old]
-    assert len(cells) == len(old)
-    for cell in cells:
-        cell.value = names[cell.value]
-    path = tmp_path / "renamed.xlsx"
-    book.save(path)
-    typed = [cell.value for sheet in book for row in sheet.iter_rows() for cell in row]
-    shown = [*computed(path).values(), *(text for text in typed if not str(text).startswith("="))]
+    book, before = with_names(read(name), names), model_of(name)
+    contents = [content for sheet in book.sheets.values() for content in sheet.cells.values()]
+    shown = [*computed(book).values(), *(content.value for content in contents)]
     called = re.compile("|".join(old) if len(old) > 1 else r"Vehicle (?=speed)", re.IGNORECASE)
     assert not [text for text in shown if isinstance(text, str) and called.search(text)]
-    before, after = xlmc.load(book_path[name]), xlmc.load(path)
+    after = build_model(book, before.path)
     for kind in ("assumptions", "forecasts", "filters", "checks"):
         expected = [renamed(each.name, names) for each in getattr(before, kind)]
         assert [each.name for each in getattr(after, kind)] == expected
@@ -88,4 +101,4 @@ def test_phases_of_a_skid_are_called_as_one_likes(book_path, described, tmp_path
     assert [a.name for a in model.assumptions][:8:2] == [
         *("Braking friction", "Surface 2 friction", "Surface 3 friction", "On its side: deceleration")
     ]
-    assert "On its side: deceleration along the road" in computed(tmp_path / "named.xlsx").values()
+    assert "On its side: deceleration along the road" in computed(model.workbook).values()

@@ -41,7 +41,7 @@ def model():
     return xlmc.load(BOOK)
 
 
-@pytest.fixture(scope="module", params=[None, 4_000_000], ids=["the book's own settings", "4,000,000 trials"])
+@pytest.fixture(scope="module", params=[None, 2_000_000], ids=["the book's own settings", "2,000,000 trials"])
 def run(model, request):
     return model.simulate(trials=request.param, jobs=2)
 
@@ -100,8 +100,8 @@ def test_threads_change_no_bit(model):
 
 def test_the_reference_engine_agrees(model):
     """`formulas` computes cell by cell with the same libm: the two differ by the order of a few operations."""
-    fast, slow = (model.simulate(60, 39, engine=engine) for engine in ("numpy", "formulas"))
-    assert fast.accepted == 6
+    fast, slow = (model.simulate(16, 390, engine=engine) for engine in ("numpy", "formulas"))
+    assert fast.accepted == 3
     assert (fast.trial_index == slow.trial_index).all()
     for name, values in fast.forecasts.items():
         assert slow.forecasts[name] == pytest.approx(values, rel=1e-12)

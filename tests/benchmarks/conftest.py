@@ -5,6 +5,7 @@ from pathlib import Path
 from time import sleep
 
 import pytest
+from pictures import leave_out_layout
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path += [str(ROOT), str(ROOT / "benchmarks")]
@@ -29,7 +30,10 @@ def library(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def at_hand(request):
-    """`compare.main` builds no C of its own, if there is a compiler, and looks a moment only at what else runs."""
+    """`compare.main` builds no C of its own, if there is a compiler, and looks a moment only at what else runs.
+
+    Its pictures are not laid out.
+    """
     import hand_c
     import machine
 
@@ -37,5 +41,6 @@ def at_hand(request):
         if hand_c.compiler() is not None:
             library = request.getfixturevalue("library")
             patch.setattr(hand_c, "build", lambda _: library)
+        leave_out_layout(patch)
         patch.setattr(machine, "sleep", lambda _: sleep(0.05))
         yield

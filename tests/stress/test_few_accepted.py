@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+import re
+import zipfile
 
 import numpy as np
-import openpyxl
 import pytest
 import xlsxwriter
 from click.testing import CliRunner
@@ -66,8 +67,7 @@ LEAST = {
 """Means hold for normal forecasts exactly, percentiles for all; standard deviations of skewed forecasts do not."""
 
 
-@pytest.mark.parametrize("place", [0, 1, 2])
-@pytest.mark.parametrize("n", [2, 3, 10])
+@pytest.mark.parametrize(("n", "place"), [(2, 0), (2, 2), (3, 1), (10, 0), (10, 2)])
 def test_intervals_are_as_honest_as_the_docs_say(n, place):
     from stressing.few import FORECASTS, coverage
 
@@ -124,10 +124,13 @@ def test_the_command_writes_its_sheets_and_says_that_they_are_few(folder, n):
     assert f"Accepted {n} of 2,000 trials" in done.output
     told = "no trial was accepted" if n == 0 else "Only 1 trial was" if n == 1 else f"Only {n} trials were accepted"
     assert told in " ".join(done.output.split())
-    book = openpyxl.load_workbook(target)
-    assert {"Results", "Statistics", "Assumptions", "Trials", "Record"} <= set(book.sheetnames)
-    texts = [str(cell.value) for sheet in book for row in sheet.iter_rows() for cell in row if cell.value is not None]
-    assert [text for text in texts if text.lower() in ("nan", "inf", "-inf")] == []
+    with zipfile.ZipFile(target) as package:
+        names = re.findall(r'<sheet name="([^"]+)"', package.read("xl/workbook.xml").decode())
+        parts = [name for name in package.namelist() if name.startswith(("xl/worksheets/", "xl/sharedStrings"))]
+        texts = [text for name in parts for text in re.findall(r">([^<>]+)<", package.read(name).decode())]
+    assert {"Results", "Statistics", "Assumptions", "Trials", "Record"} <= set(names)
+    assert "no trial was accepted" in " ".join(texts) if n == 0 else len(texts) > 1_000
+    assert [text for text in texts if text.strip().lower() in ("nan", "inf", "-inf")] == []
 
 
 def test_the_notice_ends_where_there_are_enough(book):

@@ -9,6 +9,7 @@ import re
 from pathlib import Path
 
 import pytest
+from pictures import leave_out_layout
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "stress.md").read_text(encoding="utf-8")
@@ -43,14 +44,16 @@ def test_the_tables_are_those_of_the_results(stress):
 
 
 @pytest.mark.parametrize("part", ["counts", "correlations"])
-def test_charts_are_drawn_from_the_results(stress, part, tmp_path):
+def test_charts_are_drawn_from_the_results(stress, part, tmp_path, monkeypatch):
+    leave_out_layout(monkeypatch)
     for path in stress.PARTS[part].draw(results(stress, part), tmp_path):
         assert path.read_bytes().startswith(PNG)
         assert path.stem in stress.PARTS[part].pictures
 
 
-def test_a_part_at_a_small_size(stress, tmp_path):
+def test_a_part_at_a_small_size(stress, tmp_path, monkeypatch):
     """The few trials: what is measured, through JSON, to a picture."""
+    leave_out_layout(monkeypatch)
     part = stress.PARTS["few"]
     found = json.loads(json.dumps(part.measure(500)))
     assert {cell["runs"] for cell in found["cells"]} == {1500 // 500}

@@ -50,13 +50,14 @@ def test_adaptive(short_sequences, scale):
     """With twenty sequences at least, every number is within the tolerance in 95 % of runs less 4 standard errors."""
     from stressing.stops import least_sequences, stable_runs
 
-    found = stable_runs("normal", 2, scale, RUNS)
-    assert found["ended"] == RUNS
-    assert min(found["within"]) / RUNS > 0.95 - NOISE
+    runs = 100
+    found = stable_runs("normal", 2, scale, runs)
+    assert found["ended"] == runs
+    assert min(found["within"]) / runs > 0.95 - 4 * math.sqrt(0.95 * 0.05 / runs)
     with least_sequences(2):
-        standard = stable_runs("normal", 2, scale, RUNS)
+        standard = stable_runs("normal", 2, scale, runs)
     assert standard["sequences"] < found["sequences"]
-    assert min(standard["within"]) / RUNS < min(found["within"]) / RUNS - 0.02  # it stops by luck
+    assert min(standard["within"]) < min(found["within"]) - 0.02 * runs  # it stops by luck
 
 
 def test_adaptive_sees_what_is_rare(short_sequences):

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -67,7 +67,7 @@ def test_linear_gaussian(r, n):
     assert near(index, cramer_von_mises(r))
 
 
-@pytest.mark.parametrize("r", [0.0, 0.4, 0.9])
+@pytest.mark.parametrize("r", [0.0, 0.9])
 def test_errors_are_the_spread_between_runs(r):
     rng = np.random.default_rng(11)
     runs = [found(*gaussian(rng, 800, r)) for _ in range(300)]
@@ -86,10 +86,10 @@ def test_shares_have_no_bias(r):
 
 
 def test_noise_stays_below_the_floor_as_often_as_it_says():
-    """Of 400 tables with 5 assumptions without influence 5 % exceed a floor; 41 is the binomial's 1 − 10⁻⁵ point."""
+    """Of 200 tables with 5 assumptions without influence 5 % exceed a floor; 25 is the binomial's 1 − 10⁻⁵ point."""
     rng = np.random.default_rng(13)
     beyond = np.zeros(2)
-    for _ in range(400):
+    for _ in range(200):
         y = rng.exponential(size=300)
         other, units, above = Ranked.of(y), Units.of(300), np.zeros(2, bool)
         for _ in range(5):
@@ -97,8 +97,8 @@ def test_noise_stays_below_the_floor_as_often_as_it_says():
             above[0] |= explained_share(x, y, units).value > explained_floor(x, 5)
             above[1] |= dependence(x, other, units).value > dependence_floor(x, 5)
         beyond += above
-    assert (beyond <= 41).all()
-    assert (beyond >= 4).all()  # and the floor is not so high that nothing reaches it
+    assert (beyond <= 25).all()
+    assert (beyond >= 2).all()  # and the floor is not so high that nothing reaches it
 
 
 def test_what_only_widens_the_forecast_is_seen_by_dependence_alone():
@@ -149,6 +149,7 @@ def test_a_forecast_that_is_the_assumption_is_explained_whole():
     assert index.value > 0.95
 
 
+@settings(max_examples=60)
 @given(COLUMNS)
 def test_the_rank_correlation_is_that_of_the_statistics(columns):
     x, y = columns
@@ -157,6 +158,7 @@ def test_the_rank_correlation_is_that_of_the_statistics(columns):
     assert mine.value == pytest.approx(theirs.value, abs=1e-12, nan_ok=True)
 
 
+@settings(max_examples=60)
 @given(COLUMNS)
 def test_rank_measures_do_not_know_the_scale(columns):
     """Cubing is exact in these numbers, rising, and bends."""
@@ -168,6 +170,7 @@ def test_rank_measures_do_not_know_the_scale(columns):
     assert first == second or math.isnan(first.value)
 
 
+@settings(max_examples=60)
 @given(COLUMNS, st.floats(0.01, 100.0), st.floats(-100.0, 100.0))
 def test_the_share_does_not_know_the_unit(columns, factor, offset):
     x, y = columns
@@ -176,6 +179,7 @@ def test_the_share_does_not_know_the_unit(columns, factor, offset):
     assert other.value == pytest.approx(plain.value, abs=1e-6, nan_ok=True)
 
 
+@settings(max_examples=60)
 @given(COLUMNS)
 def test_the_quick_share_is_the_share(columns):
     x, y = columns

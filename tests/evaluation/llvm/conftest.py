@@ -1,22 +1,31 @@
 from __future__ import annotations
 
+from functools import cache
+
 import mpmath
 import numpy as np
 import pytest
 
 
+@cache
+def plain_machine():
+    """This processor without fused multiplication; one object, which keeps what it has compiled."""
+    from xlmc.evaluation.llvm import machine as machines
+
+    plain = machines.this_machine()
+    plain.fused = False
+    return plain
+
+
 @pytest.fixture(scope="module", params=["as it is", "without fused multiplication"])
 def compiled(request, lower):
     """`compiled(cells, inputs)`: what takes arrays of the inputs and gives the cells by the compiled loop."""
-    from xlmc.evaluation.llvm import machine as machines
     from xlmc.evaluation.llvm import program as programs
 
     def make(cells, inputs=("A1",)):
         with pytest.MonkeyPatch.context() as patch:
             if request.param != "as it is":
-                plain = machines.this_machine()
-                plain.fused = False
-                patch.setattr(programs, "machine", lambda: plain)
+                patch.setattr(programs, "machine", plain_machine)
             lowering, targets = lower(cells, [*inputs], [*cells])
             program = programs.JitProgram(lowering, targets, [], frozenset())
 

@@ -36,7 +36,7 @@ def programs(lower, rows, odd=(), targets=("G1", "D9")):
     return (made(lowering, [], found, frozenset()) for made in (NumpyProgram.of, JitProgram))
 
 
-@pytest.mark.parametrize("odd", [(), (30,), (20, 21, 50)])
+@pytest.mark.parametrize("odd", [(), (20, 21, 50)])
 def test_loops_of_one_shape_give_what_numpy_gives(lower, odd):
     made = list(programs(lower, 60, odd))
     for n in (1, 777):
@@ -76,14 +76,9 @@ def test_a_trial_that_errs_in_one_row_errs_alone(lower):
 
 @pytest.fixture
 def compiled(monkeypatch):
-    """The loops that were compiled."""
-    made, compile_loop = [], phases.compile_loop
-
-    def note(*given):
-        made.append(given)
-        return compile_loop(*given)
-
-    monkeypatch.setattr(phases, "compile_loop", note)
+    """The loops that would be compiled, to be looked at: there is no code to run."""
+    made = []
+    monkeypatch.setattr(phases, "compile_loop", lambda *given: made.append(given))
     return made
 
 
@@ -105,17 +100,18 @@ def test_code_that_serves_one_loop_among_many_alike_is_soon_made(loops, alone):
     assert phases._side_by_side_alone(loops) == alone
 
 
-def test_trials_one_after_another_give_the_same_bits(lower, compiled, monkeypatch):
-    n = 777
+def test_trials_one_after_another_give_the_same_bits(lower, monkeypatch):
+    n, ways, compile_loop = 777, set(), phases.compile_loop
+    monkeypatch.setattr(phases, "compile_loop", lambda *given: ways.add(given[-1]) or compile_loop(*given))
     draws = {"A1": np.random.default_rng(1).uniform(0.5, 0.9, n), "A2": np.random.default_rng(2).uniform(50, 70, n)}
     found = []
     for rare in (1, 10**9):
         monkeypatch.setattr(phases, "_RARE", rare)
-        _, program = programs(lower, 120, (20, 21, 90))
+        _, program = programs(lower, 60, (20, 21, 50))
         evaluator = program.evaluator(n)
         evaluator.filters(draws, n)
         found.append([column.as_floats().tobytes() for column in evaluator.forecasts(np.arange(n))])
-    assert {side_by_side for *_, side_by_side in compiled} == {0, 1, 2}
+    assert ways == {0, 1, 2}
     assert found[0] == found[1]
 
 

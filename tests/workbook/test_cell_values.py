@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.errors import ErrorCode
 from xlmc.workbook.sheet import CellContext, convert
@@ -30,7 +31,7 @@ VALUES = [
 ]
 
 
-@pytest.mark.parametrize(("kind", "raw", "value"), VALUES)
+@cases(("kind", "raw", "value"), VALUES)
 def test_value(kind, raw, value):
     found = convert(kind, raw, CONTEXT)
     assert found == value
@@ -55,7 +56,7 @@ def test_iso_dates_are_serial_numbers(raw, serial, serial1904):
         assert convert("d", raw, CellContext(date1904=True)) == serial1904
 
 
-@pytest.mark.parametrize(
+@cases(
     ("kind", "raw", "message"),
     [
         ("n", "12 m", "holds '12 m' where a number should be"),

@@ -6,6 +6,7 @@ import io
 import zipfile
 
 import pytest
+from cases import cases
 
 from xlmc.errors import WorkbookError
 from xlmc.workbook.reader import read_workbook
@@ -21,7 +22,7 @@ def packed(**entries):
     return file.getvalue()
 
 
-@pytest.mark.parametrize(
+@cases(
     ("data", "said", "cure"),
     [
         (OLE, "old Excel workbook (.xls)", "save it as an Excel Workbook"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import openpyxl
 import pytest
+from cases import cases
 from openpyxl.packaging.relationship import Relationship
 from openpyxl.workbook.external_link import ExternalLink
 from openpyxl.xml.functions import fromstring
@@ -73,7 +74,7 @@ FORMULAS = {
 }
 
 
-@pytest.mark.parametrize("formula", FORMULAS)
+@cases("formula", FORMULAS)
 def test_the_stored_value_is_used(linked, formula):
     expected = FORMULAS[formula]
     (check,) = verify(linked(row_of(formula))).cells

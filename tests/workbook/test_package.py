@@ -7,6 +7,7 @@ import zipfile
 from dataclasses import replace
 
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -57,7 +58,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(("data", "message"), REFUSED.values(), ids=REFUSED)
+@cases(("data", "message"), REFUSED.values(), ids=REFUSED)
 def test_refused_with_a_reason_and_advice(data, message):
     with pytest.raises(WorkbookError, match=message) as caught:
         read_parts(data)
@@ -139,7 +140,7 @@ STORED = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("target", "name"), TARGETS)
+@cases(("target", "name"), TARGETS)
 def test_targets_are_names_of_parts(rels, target, name):
     parts = dict.fromkeys(STORED, b"") | {"xl/_rels/Workbook.xml.rels": rels(("a", "thing", target)).encode()}
     found = relationships(parts, "xl/workbook.xml")["a"]

@@ -6,6 +6,7 @@ import os
 import openpyxl
 import pytest
 import xlsxwriter
+from cases import cases
 
 from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode, WorkbookError
@@ -54,7 +55,7 @@ def test_the_whole_of_a_workbook(written):
     assert book.sheets["Inputs"].merged == (Area("Inputs", 1, 4, 2, 5),)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("sheet", "place", "value", "formula"),
     [
         ("Inputs", (2, 2), 1500.0, None),
@@ -141,7 +142,7 @@ TEMPLATE = "application/vnd.openxmlformats-officedocument.spreadsheetml.template
 TEMPLATE_WITH_MACROS = "application/vnd.ms-excel.template.macroEnabled.main+xml"
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "kind", "meant"),
     [
         ("book.xlsx", PLAIN, None),

@@ -1,4 +1,5 @@
 import pytest
+from cases import cases
 
 from xlmc.errors import WorkbookError
 from xlmc.workbook.safe_xml import attribute, expat_parser, feed, is_true, tree, whole_number
@@ -24,8 +25,8 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("parse", [tree, by_feed])
-@pytest.mark.parametrize(("xml", "message"), REFUSED.values(), ids=REFUSED)
+@cases("parse", [tree, by_feed])
+@cases(("xml", "message"), REFUSED.values(), ids=REFUSED)
 def test_refused(parse, xml, message):
     with pytest.raises(WorkbookError, match=message) as caught:
         parse(xml, "xl/part.xml")

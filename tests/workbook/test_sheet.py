@@ -1,4 +1,5 @@
 import pytest
+from cases import cases
 
 from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode, WorkbookError
@@ -37,7 +38,7 @@ VALUES = {
 }
 
 
-@pytest.mark.parametrize(("cell", "value"), VALUES.items())
+@cases(("cell", "value"), VALUES.items())
 def test_values(cell, value):
     found = cells(f'<row r="7">{cell}</row>')
     assert found == {(7, 2): CellContent(value)}
@@ -189,7 +190,7 @@ def test_complaints_name_the_cell(cell, message):
     assert caught.value.where == "'My sheet'!B7"
 
 
-@pytest.mark.parametrize(
+@cases(
     ("content", "message"),
     [
         ('<row r="1"><c r="1A"/></row>', "a cell of sheet 'My sheet' has the address '1A'"),

@@ -3,6 +3,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -11,7 +12,7 @@ from xlmc.workbook.safe_xml import decode, run_text, shared_strings
 MAIN = 'xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"'
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "decoded"),
     [
         ("plain", "plain"),

@@ -8,6 +8,7 @@ and the table of functions there: reference, value and array classes); what they
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.address import Area
 from xlmc.errors import ErrorCode, FormulaError
@@ -265,8 +266,8 @@ BESIDE_A_ROW = [
 ]
 
 
-@pytest.mark.parametrize("zero", ["0", "F1"])
-@pytest.mark.parametrize(("placed", "expected"), BESIDE_A_ROW, ids=[f"{at} {text}" for (at, text), _ in BESIDE_A_ROW])
+@cases("zero", ["0", "F1"])
+@cases(("placed", "expected"), BESIDE_A_ROW, ids=[f"{at} {text}" for (at, text), _ in BESIDE_A_ROW])
 def test_a_whole_column_by_index_0_gives_the_cell_beside_the_formula(gives, placed, expected, zero):
     at, text = placed
     assert gives(CELLS, [((at, text.replace("{}", zero)), expected)]) == []

@@ -100,7 +100,7 @@ def _of(book, formula):
     return book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"answer": "B1"})
 
 
-@pytest.mark.parametrize("name", sorted(LEFT_OUT))
+@cases("name", sorted(LEFT_OUT))
 def test_a_function_of_excel_without_a_body_is_refused_by_name_with_its_cell(book, name):
     with pytest.raises(FormulaError, match=f"xlmc does not compute the function {name} of Excel") as caught:
         _of(book, f"_xlfn.{name}(A1:A3,A1:A3,A1:A3)")
@@ -126,8 +126,8 @@ SAVED = {
 }
 
 
-@pytest.mark.parametrize("engine", ENGINES_HERE)
-@pytest.mark.parametrize(("formula", "saved", "expected"), SAVED.values(), ids=SAVED)
+@cases("engine", ENGINES_HERE)
+@cases(("formula", "saved", "expected"), SAVED.values(), ids=SAVED)
 def test_what_excel_did_not_know_is_its_error_with_a_notice(lower, engine, formula, saved, expected):
     draws = {"A1": np.array([1.0, 2.0])}
     lowering, targets = lower({"A1": 1.0, "B1": (f"={formula}", saved)}, draws, ["B1"])
@@ -159,7 +159,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(("formula", "saved", "parts"), REFUSED.values(), ids=REFUSED)
+@cases(("formula", "saved", "parts"), REFUSED.values(), ids=REFUSED)
 def test_what_somebody_may_know_is_refused_by_cell(workbook, formula, saved, parts):
     book = replace(workbook({"A1": 1.0, "B1": (f"={formula}", saved)}), parts=parts)
     cell = parse_address("A1", "S")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.address import Area
 from xlmc.errors import ErrorCode, FormulaError
@@ -59,13 +60,13 @@ def array(text):
     return CellContent(None, Formula(text, 9, 26, Area("S", 9, 26, 9, 26)))
 
 
-@pytest.mark.parametrize("formula", [*(f"={text}" for text in FORMULAS), *map(array, ARRAYS)], ids=FORMULAS + ARRAYS)
+@cases("formula", [*(f"={text}" for text in FORMULAS), *map(array, ARRAYS)], ids=FORMULAS + ARRAYS)
 def test_each_trial_has_its_own_size(run, lower, formula):
     outcome = run(CELLS | {"A1": 0.0, "Z9": formula}, {"A1": DRAWS}, ["Z9"])
     assert outcome.forecasts[0] == [known(lower, formula, draw) for draw in DRAWS]
 
 
-@pytest.mark.parametrize("formula", [f"={text}" for text in FORMULAS], ids=FORMULAS)
+@cases("formula", [f"={text}" for text in FORMULAS], ids=FORMULAS)
 def test_the_compiled_engine_does_the_same(run, lower, formula):
     cells = CELLS | {"A1": 0.0, "Z9": formula}
     lowering, targets = lower(cells, {"A1": DRAWS}, ["Z9"])

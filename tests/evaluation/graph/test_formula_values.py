@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.address import Area
 from xlmc.errors import ErrorCode, XlmcError
@@ -193,7 +194,7 @@ def computed(workbook):
     return compute
 
 
-@pytest.mark.parametrize(("formula", "expected"), PLAIN, ids=[case[0] for case in PLAIN])
+@cases(("formula", "expected"), PLAIN, ids=[case[0] for case in PLAIN])
 def test_plain_formulas(computed, formula, expected):
     check = computed({"H9": f"={formula}"})["H9"]
     assert check.reason == ""
@@ -203,7 +204,7 @@ def test_plain_formulas(computed, formula, expected):
 NUMERIC = [case for case in PLAIN if isinstance(case[1], float)]
 
 
-@pytest.mark.parametrize(("formula", "expected"), NUMERIC, ids=[case[0] for case in NUMERIC])
+@cases(("formula", "expected"), NUMERIC, ids=[case[0] for case in NUMERIC])
 def test_plain_formulas_of_assumptions(book, formula, expected):
     model = book(
         {**CELLS, "H9": f"={formula}+0*(A1+B2)"},
@@ -216,7 +217,7 @@ def test_plain_formulas_of_assumptions(book, formula, expected):
     assert got == pytest.approx([expected] * 3, rel=1e-15)
 
 
-@pytest.mark.parametrize(("formula", "expected"), ARRAYS, ids=[case[0] for case in ARRAYS])
+@cases(("formula", "expected"), ARRAYS, ids=[case[0] for case in ARRAYS])
 def test_array_formulas(computed, formula, expected):
     rows, columns = len(expected), len(expected[0])
     area = Area("S", 9, 8, 8 + rows, 7 + columns)
@@ -295,7 +296,7 @@ REFUSED = [
 ]
 
 
-@pytest.mark.parametrize(("formula", "message"), REFUSED)
+@cases(("formula", "message"), REFUSED)
 def test_what_cannot_be_computed_is_refused_with_its_cell(book, formula, message):
     with pytest.raises(XlmcError, match="S!H9") as refused:
         book({**CELLS, "H9": f"=A1+{formula}"}, {"a": {"cell": "A1", "low": 0, "high": 2}}, {"answer": "H9"})

@@ -227,7 +227,7 @@ def test_a_cell_that_shows_calc_is_read_as_such(workbook):
     assert got == {"S!H9": CALC, "S!H10": CALC, "S!H11": 5.0, "S!H12": CALC}
 
 
-@pytest.mark.parametrize(
+@cases(
     ("formula", "message"),
     [
         ("1+LAMBDA(x,x)", "nothing calls this LAMBDA"),

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.address import parse_address
 from xlmc.errors import ErrorCode, FormulaError
@@ -22,7 +23,7 @@ def names(found):
     return [node.function.name if isinstance(node, Apply) else type(node).__name__ for node in found]
 
 
-@pytest.mark.parametrize(
+@cases(
     ("formula", "expected"),
     [
         ("A1+A2", ["Input", "Input", "+", "snap to zero"]),
@@ -103,7 +104,7 @@ REFUSED = [
 ]
 
 
-@pytest.mark.parametrize(("formula", "message", "hint"), REFUSED)
+@cases(("formula", "message", "hint"), REFUSED)
 def test_what_cannot_be_computed(lower, formula, message, hint):
     with pytest.raises(FormulaError) as caught:
         lower({"B1": f"={formula}", "C1": "=B1+1"}, ["A1"], ["C1"])

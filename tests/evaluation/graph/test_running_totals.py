@@ -271,8 +271,8 @@ def test_a_long_sum_in_a_branch(run):
     assert run(cells, {"A1": [1.0, -1.0]}, ["C1"]).forecasts == [[5150.0, -1.0]]
 
 
-@pytest.mark.parametrize("name", ["SUM", "PRODUCT", "AVERAGE"])
-@pytest.mark.parametrize("range_", ["B$1:B{r}", "B{r}:B$99", "OFFSET(B$1,0,0,{r},1)"])
+@cases("name", ["SUM", "PRODUCT", "AVERAGE"])
+@cases("range_", ["B$1:B{r}", "B{r}:B$99", "OFFSET(B$1,0,0,{r},1)"])
 def test_an_error_counts_before_an_overflow_of_a_shorter_range(run, name, range_):
     """The numbers overflow at both ends, and in two trials there is an error in between."""
     cells = {f"B{row}": "=1.7E308-A1" for row in (1, 2, 3, 97, 98, 99)} | {f"B{row}": "=1+A1" for row in range(4, 97)}
@@ -315,7 +315,7 @@ def sets(formula, rows=9):
     return cells | filled, [*filled]
 
 
-@pytest.mark.parametrize("formula", SETS)
+@cases("formula", SETS)
 def test_sums_of_products_means_and_counts_of_numbers_are_computed_number_by_number(run, lower, formula):
     """`run` sees that the bits are those of the careful path."""
     cells, wanted = sets(formula)

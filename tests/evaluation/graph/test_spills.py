@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.address import Area
 from xlmc.errors import ErrorCode, FormulaError
@@ -66,8 +67,8 @@ def test_a_spill_of_drawn_values(book):
     assert found["rows"].tolist() == [3.0, 3.0]
 
 
-@pytest.mark.parametrize("dynamic", [True, False])
-@pytest.mark.parametrize(
+@cases("dynamic", [True, False])
+@cases(
     "formula",
     [
         "SUM(OFFSET(H1,0,0,3,1))",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.address import Area
 from xlmc.errors import FormulaError
@@ -224,18 +225,18 @@ def answer(run):
     return compute
 
 
-@pytest.mark.parametrize("formula", [*SIZES, *COUNTS, *CONDITIONS, *PLACES, *PRODUCTS])
+@cases("formula", [*SIZES, *COUNTS, *CONDITIONS, *PLACES, *PRODUCTS])
 def test_a_whole_column_keeps_its_size(answer, formula):
     expected = {**SIZES, **COUNTS, **CONDITIONS, **PLACES, **PRODUCTS}[formula]
     assert answer(formula) == expected
 
 
-@pytest.mark.parametrize("formula", ARRAYS)
+@cases("formula", ARRAYS)
 def test_so_it_does_in_array_formulas(answer, formula):
     assert answer(formula, array=True) == ARRAYS[formula]
 
 
-@pytest.mark.parametrize("formula", REFUSED)
+@cases("formula", REFUSED)
 def test_what_needs_all_its_cells_is_refused_by_name(answer, formula):
     with pytest.raises(FormulaError, match=REFUSED[formula]):
         answer(formula)

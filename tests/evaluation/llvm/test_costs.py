@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 pytest.importorskip("llvmlite")
 
@@ -25,7 +26,7 @@ CHOSEN = [
 ]
 
 
-@pytest.mark.parametrize(("formulas", "expected"), CHOSEN)
+@cases(("formulas", "expected"), CHOSEN)
 def test_a_book_has_the_program_that_the_table_says(lower, formulas, expected):
     cells = {f"C{row}": f"={formula}" for row, formula in enumerate(formulas, 1)}
     lowering, targets = lower(cells, ["A1", "A2"], [*cells])

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cases import cases
 
 pytest.importorskip("llvmlite")
 
@@ -57,7 +58,7 @@ def stages(program):
     return len(loops), sum(len(step) for step in steps if isinstance(step, tuple))
 
 
-@pytest.mark.parametrize(
+@cases(
     ("formula", "loops", "outside"),
     [
         ("A1+A2*SIN(A1)/COS(A1)-SQRT(A2^3)", 1, 0),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 
 pytest.importorskip("llvmlite")
 
@@ -11,8 +12,8 @@ from xlmc.evaluation.llvm.uniforms import filler
 from xlmc.sampling.streams import Stream
 
 
-@pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 9])
-@pytest.mark.parametrize("start", [0, 1, 32_768, 10**12])
+@cases("count", [1, 2, 3, 4, 5, 9])
+@cases("start", [0, 1, 32_768, 10**12])
 def test_the_uniforms_of_every_stream(count, start):
     streams = [Stream(7, f"input {k}") for k in range(count)]
     rows, expected = np.empty((2, count, 1000))
@@ -43,11 +44,15 @@ BOOKS = {
 }
 
 
-@pytest.mark.parametrize("correlations", [{}, {("a", "b"): 0.5}])
-@pytest.mark.parametrize("kind", BOOKS)
+CORRELATED = {("a", "b"): 0.5}
+"""Draws of a model whose parameters do not depend on each other may be correlated."""
+
+
+@cases(
+    "kind, correlations",
+    [*((kind, {}) for kind in BOOKS), *((kind, CORRELATED) for kind in BOOKS if kind != "dynamic")],
+)
 def test_a_model_draws_the_same_on_every_engine(book, kind, correlations):
-    if kind == "dynamic" and correlations:
-        pytest.skip("correlated draws have no parameters that depend on each other")
     cells = {"A1": 1.0, "A2": 2.0, "B9": "=A1*2", "C1": "=A1+A2"}
     model = book(cells, BOOKS[kind], {"sum": "C1"}, correlations=correlations)
     one, other = (model.sampler(3, 500, engine) for engine in ("numpy", "jit"))

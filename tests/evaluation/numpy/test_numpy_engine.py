@@ -4,6 +4,7 @@ from random import Random
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import event, given, note, settings
 from hypothesis import strategies as st
 
@@ -119,8 +120,8 @@ def harmless():
     return dict(zip(INPUTS, draws, strict=True))
 
 
-@pytest.mark.parametrize("formula", HARMLESS)
-@pytest.mark.parametrize("role", ["filter", "forecast"])
+@cases("formula", HARMLESS)
+@cases("role", ["filter", "forecast"])
 def test_what_errs_nowhere_stays_on_the_fast_path(run, harmless, formula, role):
     cells = HELD | {"C1": f"={formula}", "D1": "=C1>-1E9"}
     outcome = run(cells, harmless, ["C1"], ["D1"] if role == "filter" else [])
@@ -165,7 +166,7 @@ ERRORS = {
 }
 
 
-@pytest.mark.parametrize("formula", ERRORS)
+@cases("formula", ERRORS)
 def test_one_trial_in_error_among_sound_ones(run, harmless, formula):
     harmless["A1"][17] = 0.0
     outcome = run(HELD | {"C1": f"={formula}"}, harmless, ["C1"])
@@ -255,8 +256,8 @@ def test_an_input_in_one_branch_only(run):
     assert outcome.forecasts == [[0.0, 0.25]]
 
 
-@pytest.mark.parametrize("order", [1, 0, -1])
-@pytest.mark.parametrize(
+@cases("order", [1, 0, -1])
+@cases(
     ("formulas", "forecasts"),
     [
         (["INDEX(F1:F9,{m})", "INDEX(G1:G9,{m})*2"], ["C1", "C2"]),
@@ -267,7 +268,7 @@ def test_an_input_in_one_branch_only(run):
         (["{m}", "INDEX(F1:F9,C1)", "IF(A2>1.5,1/C1,C2)"], ["C3", "C2"]),
     ],
 )
-@pytest.mark.parametrize("filters", [(), ("D1",)])
+@cases("filters", [(), ("D1",)])
 def test_a_position_that_picks_read_and_others(run, order, formulas, forecasts, filters):
     """Where nothing but picks reads it, it is kept as an index."""
     keys = [1.0 + row / 9 for row in range(9)]
@@ -280,8 +281,8 @@ def test_a_position_that_picks_read_and_others(run, order, formulas, forecasts, 
     assert not run(cells, draws, forecasts, filters).careful
 
 
-@pytest.mark.parametrize("limit", [0.0, 1.03, 1.5, 9.0])
-@pytest.mark.parametrize("formula", ["IF(A1>{0},A2,-A3)", "IF(A1>{0},A2,0)", "IF(A1>{0},1E300,A2)", "IF(A1>{0},2,-3)"])
+@cases("limit", [0.0, 1.03, 1.5, 9.0])
+@cases("formula", ["IF(A1>{0},A2,-A3)", "IF(A1>{0},A2,0)", "IF(A1>{0},1E300,A2)", "IF(A1>{0},2,-3)"])
 def test_a_choice_in_all_trials_in_some_and_in_none(run, harmless, formula, limit):
     outcome = run({"C1": "=" + formula.format(limit)}, harmless, ["C1"])
     assert not outcome.careful
@@ -290,7 +291,7 @@ def test_a_choice_in_all_trials_in_some_and_in_none(run, harmless, formula, limi
     assert outcome.forecasts == [np.where(harmless["A1"] > limit, *(np.asarray(p, float) for p in (yes, no))).tolist()]
 
 
-@pytest.mark.parametrize(
+@cases(
     ("formula", "expected"),
     [
         ('IF(IF(A1>1,TRUE,"x"),1/A1,2)', ["#VALUE!", 0.5]),  # the condition is a text in one trial

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.numpy.steps import plain_constant, reads
@@ -16,7 +17,7 @@ ELEMENTS = sorted(
 )
 
 
-@pytest.mark.parametrize("name", ELEMENTS)
+@cases("name", ELEMENTS)
 def test_no_function_of_numbers_gives_back_its_argument(name):
     """What it gives outlives the buffers that its arguments lie in."""
     function = REGISTRY[name]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import mpmath
 import pytest
+from cases import cases
 from mpmath import mpf
 
 from xlmc.errors import ErrorCode
@@ -26,7 +27,7 @@ def exact(book):
     return make
 
 
-@pytest.mark.parametrize(
+@cases(
     ("formula", "value"),
     [
         ("=0.1+0.2-0.3", lambda x: 0),
@@ -61,7 +62,7 @@ def test_values(exact, formula, value):
         assert abs(mpf(found) - value(mpf("0.75"))) < mpf(10) ** -38
 
 
-@pytest.mark.parametrize(
+@cases(
     ("formula", "code"),
     [
         ("=1/COS(RADIANS(B2))", ErrorCode.DIV0),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.errors import ErrorCode
 from xlmc.workbook.injection.formula_values import with_values, without_formula_values
@@ -28,7 +29,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize(("before", "value"), [(before, value) for before, found in CASES.items() for value in found])
+@cases(("before", "value"), [(before, value) for before, found in CASES.items() for value in found])
 def test_a_value(before, value):
     xml = with_values(SHEET.format(before).encode(), "sheet1.xml", {(2, 2): value})
     assert xml.decode() == SHEET.format(CASES[before][value])

@@ -5,6 +5,7 @@ import re
 
 import openpyxl
 import pytest
+from cases import cases
 
 from xlmc.errors import WorkbookError
 from xlmc.workbook.inject import inject, original_hash, remove_result_sheets
@@ -43,7 +44,7 @@ def test_of_the_users_parts_only_the_five_change(rich, once):
     assert {name for name in rich if once.get(name) != rich[name]} == FIVE
 
 
-@pytest.mark.parametrize(
+@cases(
     "kind",
     [
         "drawing",

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.workbook.injection.part_numbers import free_names, free_table_name, quoted, rename_in_formula
 
@@ -8,7 +9,7 @@ SHEETS = {"results": "Results (2)", "o'hara": "O'Hara (2)", "résumé": "Neu"}
 TABLES = {"trials": "Trials_2"}
 
 
-@pytest.mark.parametrize(
+@cases(
     ("formula", "expected"),
     [
         ("Results!$A$1:$B$2", "'Results (2)'!$A$1:$B$2"),

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 from hypothesis import example, given
 from hypothesis import strategies as st
 
@@ -24,7 +25,7 @@ def sheet(cells, head="", tail=""):
     return f"<worksheet>{head}<sheetData>{cells}</sheetData>{tail}</worksheet>".encode()
 
 
-@pytest.mark.parametrize(
+@cases(
     ("built", "home"),
     [
         ('<c r="A1"><v>1</v></c>', '<c r="A1" s="5"><v>1</v></c>'),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -61,7 +62,7 @@ def test_a_chain_of_cells_with_a_filter(book):
                 assert one.hessian[i] == pytest.approx(np.array(hessian, float), rel=1e-10)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("formula", "x", "function", "why"),
     [
         ("=ABS(A1)", 0.0, "ABS", "it turns at 0"),
@@ -113,7 +114,7 @@ def test_errors_of_a_branch_not_taken_are_not_told(of):
     assert not found.undefined
 
 
-@pytest.mark.parametrize(
+@cases(
     ("formula", "x", "function", "ways", "jumps"),
     [
         ("=IF(A1>0,A1,2*A1)", [-1, 2, 3], "IF", 2, True),

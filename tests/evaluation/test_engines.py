@@ -274,7 +274,7 @@ def test_loops_agree_with_the_careful_path(agree_in_loops, differences):
 
 def test_the_engine_formulas_agrees_with_the_careful_path(differences):
     """All formulas in one book: it computes each cell and each trial by itself."""
-    draws = {name: values[:10] for name, values in SOUND_DRAWS.items()}
+    draws = {name: values[:6] for name, values in SOUND_DRAWS.items()}
     cells = a_book("A1", "=C1>1.2") | {f"F{row}": f"={formula}" for row, formula in enumerate(SOUND, 1)}
     cells |= {f"G{row}": f"=F{row}+C1" for row in range(1, len(SOUND) + 1)}
     asked = [f"{column}{row}" for column in "FG" for row in range(1, len(SOUND) + 1)]
@@ -320,7 +320,7 @@ def test_errors_in_cells_of_ranges_are_the_same(differences, engine):
     for first, cell in enumerate(CELLS_THAT_MAY_ERR):
         cells = {"B1": "=A1", "B2": f"={cell}", "C1": "=A1*2", "C2": "=A1+1"}
         cells |= {f"D{row}": f"={formula}" for row, formula in enumerate(OF_RANGES, 1)}
-        for row in range(1 + first % 4, len(OF_RANGES) + 1, 4):
+        for row in range(1 + first % 8, len(OF_RANGES) + 1, 8):
             agree(differences(engine, cells, draws, [f"D{row}"], []))
         agree(differences(engine, cells, draws, [f"D{row}" for row in range(1, len(OF_RANGES) + 1)], []))
 
@@ -348,19 +348,23 @@ OUTSIDE_LOOPS += ["SUM(SINH(A1),INT(A2))", "IF(SINH(A1),1,2)", "AND(SINH(A1),TRU
 
 @OURS
 def test_functions_outside_of_loops_give_the_bits_of_the_careful_path(programs, engine):
-    """In a filter, on its survivors, and where draws are errors; they feed loops, and each other."""
+    """In a filter or on its survivors, and where draws are errors; they feed loops, and each other.
+
+    Every other formula is in a filter; where draws are errors, it is the other way round.
+    """
     for number, formula in enumerate(OUTSIDE_LOOPS):
-        for late, above in enumerate(("=C1>1.2", "=Z9<1E300")):
-            asked = a_book(formula, above), ("A1", "A2"), ["Z9", "Z8", "A1"], ["D1"]
-            sound = programs(engine, *asked)
-            given = [(sound, np.linspace(1.01, 2.9, 33)), (sound, np.array(ODD_DRAWS)), (sound, np.array([1.5]))]
-            if late == number % 2:
-                given.append((programs(engine, *asked, ["A1"]), np.array([1.5, np.nan, 2.5, 0.3])))
-            for (program, dag, nodes), a1 in given:
-                inputs, n = {"A1": a1, "A2": np.linspace(1, 2, a1.size)}, a1.size
-                found = _columns(program.evaluator(n), inputs, n)
-                expected = _columns(TrackingEvaluator(dag, *nodes), inputs, n)
-                agree(zip(found, expected, strict=True), relative=1e-15 if "LN" in formula else 0)
+        above = ["=C1>1.2", "=Z9<1E300"]
+        sound, fallible = (
+            programs(engine, a_book(formula, above[at % 2]), ("A1", "A2"), ["Z9", "Z8", "A1"], ["D1"], may_err)
+            for at, may_err in ((number, []), (number + 1, ["A1"]))
+        )
+        given = [(sound, np.linspace(1.01, 2.9, 33)), (sound, np.array(ODD_DRAWS)), (sound, np.array([1.5]))]
+        given.append((fallible, np.array([1.5, np.nan, 2.5, 0.3])))
+        for (program, dag, nodes), a1 in given:
+            inputs, n = {"A1": a1, "A2": np.linspace(1, 2, a1.size)}, a1.size
+            found = _columns(program.evaluator(n), inputs, n)
+            expected = _columns(TrackingEvaluator(dag, *nodes), inputs, n)
+            agree(zip(found, expected, strict=True), relative=1e-15 if "LN" in formula else 0)
 
 
 @OURS
@@ -400,7 +404,7 @@ def test_more_nodes_than_one_loop_holds(differences, engine):
     "formula", ["SUM(B1:B{n})", "MAX(B1:B{n})*2", "SUMPRODUCT(B1:B{n},B1:B{n})", "STDEV(B1:B{n},A1)"]
 )
 def test_ranges_wider_than_a_loop_reads(differences, engine, formula):
-    for n in (3, 250):
+    for n in (3, 201):
         cells = {f"B{k}": f"=A1/{k}" for k in range(1, n + 1)} | {"C1": "=" + formula.format(n=n)}
         agree(differences(engine, cells, {"A1": [0.0, 1.0, -500.0, 1e308]}, ["C1"], []))
 
@@ -454,7 +458,7 @@ def random_book(seed):
 
 
 @with_jit
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=45, deadline=None)
 @given(st.integers(0, 2**40))
 def test_loops_give_the_same_bits_where_no_sine_or_its_kin_is_taken(differences, seed):
     cells, draws, forecasts, filters = random_book(seed)

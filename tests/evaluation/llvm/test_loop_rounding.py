@@ -20,7 +20,7 @@ from xlmc.functions.registry import REGISTRY
 from xlmc.functions.values import Value
 
 GENERATOR = np.random.default_rng(11)
-DIGITS = (0, 1, 2, 3, 5, 9, 15, 22, -1, -2, -4, -22)
+DIGITS = (0, 1, 2, 5, 9, 15, 22, -1, -4, -22)
 TO_DIGITS = ("ROUND", "ROUNDUP", "ROUNDDOWN", "TRUNC")
 
 

@@ -66,7 +66,7 @@ def a_book(seed):
     return cells, {name: random.choices(numbers, k=20) for name in INPUTS}, forecasts, filters
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=240, deadline=None)
 @given(st.integers(0, 2**40))
 def test_the_fast_path_equals_the_careful_one(run, seed):
     case = a_book(seed)
@@ -74,15 +74,16 @@ def test_the_fast_path_equals_the_careful_one(run, seed):
     event(f"careful: {run(*case).careful}")
 
 
-@pytest.mark.parametrize("seed", range(60))
-def test_values_do_not_depend_on_which_buffers_they_lie_in(run, seed, monkeypatch):
+@cases("seed", range(30))
+def test_values_do_not_depend_on_which_buffers_they_lie_in(run, seed):
     case = a_book(seed)
     shared = run(*case)
-    monkeypatch.setattr(Buffers, "free", lambda self, nodes: [])
-    monkeypatch.setattr(Buffers, "exchange", lambda self, done, node, loose: self.take(node))
-    own = run(*case)
-    monkeypatch.setattr(Buffers, "take", lambda self, node: None)
-    none = run(*case)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Buffers, "free", lambda self, nodes: [])
+        patch.setattr(Buffers, "exchange", lambda self, done, node, loose: self.take(node))
+        own = run(*case)
+        patch.setattr(Buffers, "take", lambda self, node: None)
+        none = run(*case)
     assert shared.filters == own.filters == none.filters
     assert shared.forecasts == own.forecasts == none.forecasts
 
@@ -340,9 +341,9 @@ def test_rescues_within_rescues(run, depth):
 
 
 def test_a_long_chain_of_cells(run):
-    cells = {"B1": "=A1+1"} | {f"B{k}": f"=B{k - 1}+1" for k in range(2, 3001)}
-    outcome = run(cells, {"A1": [0.0, 1.0]}, ["B3000"])
-    assert outcome.forecasts == [[3000.0, 3001.0]]
+    cells = {"B1": "=A1+1"} | {f"B{k}": f"=B{k - 1}+1" for k in range(2, 1501)}
+    outcome = run(cells, {"A1": [0.0, 1.0]}, ["B1500"])
+    assert outcome.forecasts == [[1500.0, 1501.0]]
 
 
 def test_a_long_sum(run):

@@ -114,14 +114,25 @@ def _plain(item):
 
 @pytest.fixture(scope="session")
 def load_program():
-    """`load_program(engine)`: what makes its program; of `jit` the loops, also where they do not pay."""
+    """`load_program(engine, in_vectors)`: what makes its program; of `jit` the loops, also where they do not pay.
 
-    def load(engine):
+    These take one trial after another, which gives the same numbers and is compiled sooner, unless `in_vectors`: of
+    fewer than 16 trials a loop would put none into a vector.
+    """
+
+    def load(engine, in_vectors=False):
         if engine != "jit":
             return ENGINES[engine].load()
+        from xlmc.evaluation.llvm import phase
+        from xlmc.evaluation.llvm.loop import compile_loop
         from xlmc.evaluation.llvm.program import JitProgram
 
-        return JitProgram
+        def made(*given):
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setattr(phase, "compile_loop", lambda *asked: compile_loop(*asked[:6], side_by_side=0))
+                return JitProgram(*given)
+
+        return JitProgram if in_vectors else made
 
     return load
 

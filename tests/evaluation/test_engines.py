@@ -167,11 +167,11 @@ def _columns(evaluator, draws, n):
 def programs(lower, load_program):
     """An engine's program of cells, and the graph and the nodes of its filters and forecasts, for the careful path."""
 
-    def make(engine, cells, inputs, forecasts, filters, may_err=()):
+    def make(engine, cells, inputs, forecasts, filters, may_err=(), in_vectors=False):
         lowering, targets = lower(cells, inputs, [*filters, *forecasts], names=NAMES)
         split = targets[: len(filters)], targets[len(filters) :]
         nodes = [[lowering.target(target) for target in part] for part in split]
-        return load_program(engine)(lowering, *split, frozenset(may_err)), lowering.dag, nodes
+        return load_program(engine, in_vectors)(lowering, *split, frozenset(may_err)), lowering.dag, nodes
 
     return make
 
@@ -180,10 +180,10 @@ def programs(lower, load_program):
 def differences(programs):
     """The columns of an engine beside those of the careful path."""
 
-    def run(engine, cells, draws, forecasts, filters, may_err=()):
+    def run(engine, cells, draws, forecasts, filters, may_err=(), in_vectors=False):
         draws = {name: np.asarray(values, float) for name, values in draws.items()}
         n = len(next(iter(draws.values())))
-        program, dag, nodes = programs(engine, cells, draws, forecasts, filters, may_err)
+        program, dag, nodes = programs(engine, cells, draws, forecasts, filters, may_err, in_vectors)
         expected = _columns(TrackingEvaluator(dag, *nodes), draws, n)
         return list(zip(_columns(program.evaluator(n), draws, n), expected, strict=True))
 
@@ -230,7 +230,7 @@ def agree_in_loops(programs):
         cells = HELD | {f"F{k}!{at}": held for k in sheets for at, held in books[k].items() if "!" not in at}
         inputs = {f"F{k}!{name}": np.asarray(values, float) for k in sheets for name, values in draws.items()}
         forecasts = [f"F{k}!{at}" for k in sheets for at in OF_A_BOOK]
-        program, dag, nodes = programs("jit", cells, inputs, forecasts, [f"F{k}!D1" for k in sheets])
+        program, dag, nodes = programs("jit", cells, inputs, forecasts, [f"F{k}!D1" for k in sheets], in_vectors=True)
         for k, calm in enumerate(calm_trials(dag, *nodes, inputs, m)):
             for name in draws:
                 given = inputs[f"F{k}!{name}"]
@@ -463,4 +463,4 @@ def random_book(seed):
 def test_loops_give_the_same_bits_where_no_sine_or_its_kin_is_taken(differences, seed):
     cells, draws, forecasts, filters = random_book(seed)
     note((cells, draws, forecasts, filters))
-    agree(differences("jit", cells, draws, forecasts, filters), relative=0)
+    agree(differences("jit", cells, draws, forecasts, filters, in_vectors=True), relative=0)

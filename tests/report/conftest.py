@@ -58,6 +58,19 @@ def make():
 
 
 @pytest.fixture(scope="session")
+def package_of():
+    """The result sheets of a run as a file would hold them, made once of each run."""
+    made = {}
+
+    def pack(simulation):
+        if id(simulation) not in made:
+            made[id(simulation)] = packed_sheets(simulation), simulation  # which keeps its id as long
+        return made[id(simulation)][0]
+
+    return pack
+
+
+@pytest.fixture(scope="session")
 def opened():
     """Result sheets as openpyxl reads them."""
 
@@ -125,9 +138,9 @@ def one_accepted():
 
 
 @pytest.fixture(scope="session")
-def book(run, opened):
+def book(run, package_of):
     """The result sheets of `run`."""
-    return opened(run)
+    return openpyxl.load_workbook(io.BytesIO(package_of(run)))
 
 
 @pytest.fixture(scope="session")

@@ -61,7 +61,7 @@ def test_names_and_units_are_taken_as_they_are(make, tmp_path):
     cells = {"A1": 0.5, "B1": "=A1*2"}
     forecast = make.forecast(r"cost $\frac " + "long " * 30, "B1", units="$/$", threshold=1.0)
     figure = make.simulate(cells, [make.uniform("a", "A1", 0.0, 1.0)], [forecast]).plot()
-    figure.savefig(tmp_path / "run.png")
+    figure.savefig(tmp_path / "run.png", dpi=30)
     assert figure.axes[0].get_title("left").endswith("…")
 
 
@@ -70,7 +70,7 @@ def test_odd_forecasts_are_drawn_without_a_warning(make, tmp_path, formula):
     run = make.simulate(
         {"A1": 0.3, "B1": formula}, [make.uniform("a", "A1", 0.0, 1.0)], [make.forecast("x", "B1", threshold=5.0)]
     )
-    run.plot().savefig(tmp_path / "run.png")
+    run.plot().savefig(tmp_path / "run.png", dpi=30)
 
 
 def test_nothing_to_draw_is_a_message(none_accepted):

@@ -58,9 +58,8 @@ def test_what_the_runs_were_given(section):
     assert ("Assumption", "Nissan weight") not in rows  # the same in both
 
 
-def test_a_run_beside_itself_differs_in_nothing(runs, page_of):
-    first, _ = runs
-    page = page_of(first, beside=first)
+def test_a_run_beside_itself_differs_in_nothing(run, page_of):
+    page = page_of(run, beside=run)
     (section,) = page.all("section", id="second")
     (answers,) = section.all("table")
     assert set(answers.numbers[2::3]) == {0.0}
@@ -68,6 +67,6 @@ def test_a_run_beside_itself_differs_in_nothing(runs, page_of):
     assert "Of the" not in section.text
 
 
-def test_without_a_second_run_the_page_has_no_such_section(runs, page_of, text_of):
-    assert page_of(runs[0]).all("section", id="second") == []
-    assert page_text(runs[0], beside=runs[1]) == text_of(runs[0], beside=runs[1])
+def test_without_a_second_run_the_page_has_no_such_section(run, page_of, text_of):
+    assert page_of(run).all("section", id="second") == []
+    assert page_text(run, beside=run) == text_of(run, beside=run)

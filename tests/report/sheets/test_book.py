@@ -9,56 +9,62 @@ import zipfile
 
 import openpyxl
 import pytest
+from cases import cases
 from openpyxl.worksheet.table import Table
 from packed_sheets import packed_sheets
 
 import xlmc
 from xlmc.columns import column_store, on_disk
-from xlmc.report.sheets.book import SHEETS
+from xlmc.report.sheets.book import SHEETS, build_sheets
 
 OF_SOME = ("Evidence results", "Scenarios")  # which these books do not have
 NAMES = [sheet.name for sheet in SHEETS if sheet.name not in OF_SOME]
 RUNS = ["run", "none_accepted", "one_accepted"]
 
 
-@pytest.mark.parametrize("name", RUNS)
-def test_the_answer_comes_first_and_every_sheet_is_there(request, opened, name):
+@pytest.fixture(scope="module")
+def books(request, package_of, book):
+    """Name of each of `RUNS` -> its result sheets."""
+    other = {name: package_of(request.getfixturevalue(name)) for name in RUNS if name != "run"}
+    return {"run": book} | {name: openpyxl.load_workbook(io.BytesIO(data)) for name, data in other.items()}
+
+
+@cases("name", RUNS)
+def test_the_answer_comes_first_and_every_sheet_is_there(books, name):
     expected = NAMES if name == "run" else [sheet for sheet in NAMES if sheet != "Filter limits"]  # none to move
-    assert opened(request.getfixturevalue(name)).sheetnames == expected
+    assert books[name].sheetnames == expected
     assert expected[0] == "Results"
 
 
-@pytest.mark.parametrize("name", RUNS)
-def test_the_same_run_gives_the_same_bytes(request, name):
+@cases("name", RUNS)
+def test_the_same_run_gives_the_same_bytes(request, package_of, name):
     run = request.getfixturevalue(name)
-    assert packed_sheets(run, command="c") == packed_sheets(run, command="c")
+    assert packed_sheets(run) == package_of(run)
 
 
-def test_threads_do_not_change_a_byte(run):
-    again = run.model.simulate(jobs=2)
-    assert packed_sheets(again) == packed_sheets(run)
+def test_threads_do_not_change_a_byte(run, package_of):
+    assert packed_sheets(run.model.simulate(jobs=2)) == package_of(run)
 
 
-def test_results_on_disk_do_not_change_a_byte(run, monkeypatch):
+def test_results_on_disk_do_not_change_a_byte(run, package_of, monkeypatch):
     monkeypatch.setattr(column_store, "IN_MEMORY", 0)
     again = run.model.simulate()
     assert on_disk(again.trial_index)
-    assert packed_sheets(again) == packed_sheets(run)
+    assert packed_sheets(again) == package_of(run)
 
 
-def test_draws_that_were_not_kept_are_told(run, opened, rows_of):
+def test_draws_that_were_not_kept_are_told(run, opened_short, rows_of):
     again = run.model.simulate(keep_inputs=100)
-    book = opened(again)
+    book = opened_short(again)
     told = [str(row[0]) for row in rows_of(book["Assumptions"]) if row]
     assert f"Accepted: the first 100 of {again.accepted:,} accepted trials." in told
     assert f"Only the first 100 of {again.accepted:,} accepted trials stand here." in str(rows_of(book["Trials"]))
     assert ["counts.inputs_kept", "Accepted trials whose draws are kept", 100] in rows_of(book["Record"])
 
 
-@pytest.mark.parametrize("name", RUNS)
-def test_only_certainty_has_formulas_and_every_number_is_finite(request, opened, name):
-    book = opened(request.getfixturevalue(name))
-    for sheet in book:
+@cases("name", RUNS)
+def test_only_certainty_has_formulas_and_every_number_is_finite(books, name):
+    for sheet in books[name]:
         for row in sheet.iter_rows():
             for cell in row:
                 assert cell.data_type in ("s", "n", "b") or (cell.data_type == "f" and sheet.title == "Certainty")
@@ -66,9 +72,9 @@ def test_only_certainty_has_formulas_and_every_number_is_finite(request, opened,
                     assert math.isfinite(cell.value)
 
 
-@pytest.mark.parametrize("name", RUNS)
-def test_parts_hold_no_clock_and_nothing_that_cannot_be_injected(request, name):
-    with zipfile.ZipFile(io.BytesIO(packed_sheets(request.getfixturevalue(name)))) as package:
+@cases("name", RUNS)
+def test_parts_hold_no_clock_and_nothing_that_cannot_be_injected(request, package_of, name):
+    with zipfile.ZipFile(io.BytesIO(package_of(request.getfixturevalue(name)))) as package:
         workbook = package.read("xl/workbook.xml").decode()
         core = package.read("docProps/core.xml").decode()
     assert "2000-01-01T00:00:00Z" in core
@@ -102,7 +108,11 @@ def test_odd_names_do_no_harm(make, opened):
 
 
 def test_the_library_that_writes_is_imported_only_when_something_is_written():
-    code = "import sys, xlmc.report.summary; sys.exit('xlsxwriter' in sys.modules)"
+    """Nor is the page, or a library that draws."""
+    code = (
+        "import sys, xlmc.report.summary, xlmc.report, xlmc.cli.simulate\n"
+        "sys.exit(any(name in sys.modules for name in ('xlsxwriter', 'xlmc.report.page', 'matplotlib')))"
+    )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
@@ -114,5 +124,6 @@ def test_the_case_stands_on_top_of_every_printed_page(small_book, tmp_path):
     sheet.add_table(Table(displayName="xlmc_case", ref="A1:B4"))
     book.save(tmp_path / "book.xlsx")
     run = xlmc.load(tmp_path / "book.xlsx").simulate(trials=300)
-    for printed in openpyxl.load_workbook(io.BytesIO(packed_sheets(run))):
-        assert printed.oddHeader.right.text == "2026-17 && 18, J. Doe"
+    sheets = [part for name, part in build_sheets(run).items() if name.startswith("xl/worksheets/sheet")]
+    heads = [re.findall(rb"<oddHeader>(.*?)</oddHeader>", sheet) for sheet in sheets]
+    assert heads == [[b"&amp;R2026-17 &amp;&amp; 18, J. Doe"]] * len(NAMES)

@@ -36,6 +36,15 @@ def case(book):
     return xlmc.load(book).simulate(trials=20_000)
 
 
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A workbook, a run of it, and the file that this was saved in with all its sheets."""
+    folder = tmp_path_factory.mktemp("whole")
+    book = Path(shutil.copy(EXAMPLE, folder / "scene.xlsx"))
+    run = xlmc.load(book).simulate(trials=20_000)
+    return book, run, save(run, folder / "out.xlsx")
+
+
 @pytest.fixture
 def short_books(monkeypatch):
     """Without what takes longest to write."""
@@ -52,17 +61,15 @@ def rows(path, sheet):
     return openpyxl.load_workbook(io.BytesIO(path.read_bytes()), read_only=True)[sheet].iter_rows(values_only=True)
 
 
-def test_results_stand_behind_the_users_sheets(case, book, tmp_path):
-    before = book.read_bytes()
-    path = save(case, tmp_path / "out.xlsx", command="xlmc simulate scene.xlsx")
+def test_results_stand_behind_the_users_sheets(whole):
+    book, _, path = whole
     wanted = [sheet.name for sheet in SHEETS if sheet.name not in ("Evidence results", "Scenarios")]
     assert sheets(path) == [*sheets(book), *wanted]
-    assert book.read_bytes() == before
+    assert book.read_bytes() == EXAMPLE.read_bytes()
 
 
-def test_all_other_parts_stay_byte_for_byte(case, book, tmp_path):
-    own = read_parts(book.read_bytes())
-    saved = read_parts(save(case, tmp_path / "out.xlsx").read_bytes())
+def test_all_other_parts_stay_byte_for_byte(whole):
+    own, saved = (read_parts(path.read_bytes()) for path in (whole[0], whole[2]))
     assert {name for name in own if saved[name] != own[name]} <= MAY_CHANGE
 
 
@@ -75,9 +82,10 @@ def test_the_sheets_show_what_the_simulation_says(case, short_books, tmp_path):
         assert list(shown_of[name][3:11]) == [number for each in shown for number in (each.value, each.error)]
 
 
-def test_saving_twice_gives_the_same_file(case, tmp_path):
-    first = save(case, tmp_path / "out.xlsx").read_bytes()
-    assert save(case, tmp_path / "out.xlsx").read_bytes() == first
+def test_saving_twice_gives_the_same_file(whole):
+    _, run, path = whole
+    first = path.read_bytes()
+    assert save(run, path).read_bytes() == first
 
 
 def test_a_run_of_a_result_workbook_replaces_its_sheets(case, short_books, tmp_path):
@@ -88,7 +96,7 @@ def test_a_run_of_a_result_workbook_replaces_its_sheets(case, short_books, tmp_p
 
 def test_writing_into_the_workbook_itself_must_be_asked_for(case, short_books, book):
     before = book.read_bytes()
-    with pytest.raises(WorkbookError, match=r"the workbook itself\. .*--in-place"):
+    with pytest.raises(WorkbookError, match=r"this is the file that is read\. .*--in-place"):
         save(case, book)
     assert book.read_bytes() == before
     save(case, book, overwrite=True)

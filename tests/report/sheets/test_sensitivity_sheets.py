@@ -19,8 +19,8 @@ from xlmc.studies.sensitivity import sensitivities
 
 
 @pytest.fixture(scope="module")
-def packed(run):
-    return packed_sheets(run)
+def packed(run, package_of):
+    return package_of(run)
 
 
 @pytest.fixture(scope="module")

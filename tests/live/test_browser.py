@@ -74,14 +74,25 @@ class Page:
         (found,) = self.all(selector)
         return found
 
+    def of(self, selector, condition, *given):
+        """The first element that fits: one question to the browser, and not one for each element."""
+        found = self.run(
+            f"const [all, ...given] = arguments; "
+            f"return [...document.querySelectorAll(all)].find((each) => {condition})",
+            selector,
+            *given,
+        )
+        assert found is not None, (selector, given)
+        return found
+
     def card(self, name):
-        return next(each for each in self.all("article.card") if each.get_attribute("aria-label") == name)
+        return self.of("article.card", "each.ariaLabel === given[0]", name)
 
     def slider(self, label):
-        return next(each for each in self.all("[role=slider]") if each.get_attribute("aria-label") == label)
+        return self.of("[role=slider]", "each.ariaLabel === given[0]", label)
 
     def button(self, text, within="body"):
-        return next(each for each in self.all(f"{within} button") if each.text == text)
+        return self.of(f"{within} button", "each.checkVisibility() && each.innerText.trim() === given[0]", text)
 
     def click(self, found):
         self.run("arguments[0].scrollIntoView({block: 'center'})", found)
@@ -93,11 +104,8 @@ class Page:
         box.send_keys(control, "a", control, delete, text, enter)
 
     def box(self, card, label):
-        return next(
-            each.find_element("css selector", "input")
-            for each in card.find_elements("css selector", ".number-box")
-            if each.text.strip().startswith(label)
-        )
+        fits = "given[0].contains(each) && each.closest('.number-box').innerText.trim().startsWith(given[1])"
+        return self.of(".number-box input", fits, card, label)
 
     def tab(self, key):
         self.run("arguments[0].scrollIntoView({block: 'center'})", self.one(f"#tab-{key}"))
@@ -199,8 +207,8 @@ def test_by_mouse(chromium, running, case):
     assert not page.one("#stop").is_displayed()
     page.at_rest(page.button("All as in the workbook").click)
     assert accepted(case) in page.stand
-    shows = [each for each in page.all(".scenarios button") if each.text == "Show"]
-    page.at_rest(shows[1].click)
+    shows = "return [...document.querySelectorAll('.scenarios button')].filter((each) => each.innerText === 'Show')"
+    page.at_rest(page.run(shows)[1].click)
     assert len(page.changes) == 4
     chromium.refresh()
     page.until("document.body?.dataset.stage === 'rest' && Live.state")
@@ -243,41 +251,48 @@ def test_by_keys_alone(chromium, running, tmp_path):
         chromium.switch_to.active_element.send_keys(*keys)
 
     def focus_on(fits, most=150):
-        for _ in range(most):
-            press(Keys.TAB)
-            if fits(chromium.switch_to.active_element):
-                return chromium.switch_to.active_element
+        """Press Tab until something fits; what the same call to the browser presses behind that does nothing."""
+        page.run(
+            f"window.reached = null; window.seeking?.abort(); window.seeking = new AbortController();"
+            "const { signal } = window.seeking;"
+            "document.addEventListener('focusin', ({ target: each }) => {"
+            f" if ({fits}) window.reached ??= each; }}, {{ signal }});"
+            "document.addEventListener('keydown', (event) => {"
+            " if (window.reached && event.key === 'Tab') event.preventDefault(); }, { capture: true, signal });"
+        )
+        for _ in range(most // 10):
+            press(Keys.TAB * 10)
+            if found := page.run("if (window.reached) window.seeking.abort(); return window.reached"):
+                return found
         raise AssertionError("it cannot be reached by Tab")
 
     page.run("document.body.tabIndex = -1; document.body.focus()")
-    knob = focus_on(
-        lambda each: each.get_attribute("role") == "slider" and each.get_attribute("aria-disabled") == "false"
-    )
+    knob = focus_on("each.role === 'slider' && each.ariaDisabled === 'false'")
     before = float(knob.get_attribute("aria-valuenow"))
     page.at_rest(lambda: press(Keys.ARROW_RIGHT))
     assert float(knob.get_attribute("aria-valuenow")) > before
     assert len(page.changes) == 1
     page.at_rest(lambda: press(Keys.ARROW_LEFT))
     assert page.changes == []
-    focus_on(lambda each: each.tag_name == "input" and each.get_attribute("type") == "text" and each.is_enabled())
+    focus_on("each.matches('input[type=text]:enabled')")
     page.at_rest(lambda: press(Keys.ARROW_UP))
     assert len(page.changes) == 1
-    switch = focus_on(lambda each: each.get_attribute("role") == "switch")
+    switch = focus_on("each.role === 'switch'")
     page.at_rest(lambda: press(Keys.SPACE))
     assert switch.is_selected()
     page.at_rest(lambda: press(Keys.SPACE))
-    focus_on(lambda each: each.get_attribute("role") == "tab")
+    focus_on("each.role === 'tab'")
     press(Keys.ARROW_RIGHT)
     assert page.one("#tab-matters").get_attribute("aria-selected") == "true"
     for _ in range(3):
         press(Keys.ARROW_RIGHT)
     assert page.one("#panel-scenarios").is_displayed()
-    focus_on(lambda each: each.get_attribute("id") == "scenario-name")
+    focus_on("each.id === 'scenario-name'")
     press("by keys", Keys.ENTER)
     page.until("Live.state.scenarios.length === 1")
     page.tab("charts")
-    focus_on(lambda each: each.get_attribute("aria-label") == "Lower end of the range of Distance while responding")
-    article = next(each for each in page.all(".forecast") if each.text.startswith("Distance while responding"))
+    focus_on("each.ariaLabel === 'Lower end of the range of Distance while responding'")
+    article = page.of(".forecast", "each.innerText.startsWith('Distance while responding')")
     certainty = article.find_element("css selector", ".certainty")
     low = float(certainty.get_attribute("data-low"))
     press(Keys.ARROW_LEFT)
@@ -293,13 +308,14 @@ def test_at_every_width_nothing_overflows_and_names_and_contrast_are_right(chrom
             page.run("Live.right.choose(arguments[0])", tab)
             if tab in ("matters", "tables"):
                 page.until(f"document.querySelectorAll('#panel-{tab} table').length")
-            assert page.run("return document.documentElement.scrollWidth <= innerWidth"), (width, tab)
-            assert page.run("return document.getAnimations().length") == 0  # whoever wants less motion has it
-            unnamed = page.run(
-                "return [...document.querySelectorAll('button, input, select, [role=slider], [role=tab]')]"
+            fits, moving, unnamed = page.run(
+                "return [document.documentElement.scrollWidth <= innerWidth, document.getAnimations().length,"
+                " [...document.querySelectorAll('button, input, select, [role=slider], [role=tab]')]"
                 ".filter((each) => each.checkVisibility() && !each.textContent.trim() && !each.ariaLabel"
-                " && !each.labels?.length).map((each) => each.outerHTML)"
+                " && !each.labels?.length).map((each) => each.outerHTML)]"
             )
+            assert fits, (width, tab)
+            assert moving == 0  # whoever wants less motion has it
             assert unnamed == [], (width, tab)
             if AXE is not None and (width, tab) in LOOKED_AT:
                 chromium.execute_cdp_cmd("Runtime.evaluate", {"expression": AXE.read_text(encoding="utf-8")})

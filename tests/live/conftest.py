@@ -3,6 +3,7 @@ from __future__ import annotations
 import asyncio
 import threading
 import time
+from contextlib import contextmanager
 
 import pytest
 from chromium_browser import Browser
@@ -40,13 +41,13 @@ def chromium(browser):
     assert complaints == []
 
 
-@pytest.fixture
-def running(tmp_path):
-    """`running(book=…)`, `running(folder=…)`: a server that listens."""
+@contextmanager
+def _servers(state):
+    """`run(book=…)`, `run(folder=…)`: a server that listens; all end at the end."""
     started = []
 
     def run(clock=time.monotonic, idle=600.0, **given):
-        library = Library(Keeper(tmp_path / "state"), **given)
+        library = Library(Keeper(state), **given)
         server = LiveServer(bound_socket(0), library, idle=idle, clock=clock)
         thread = threading.Thread(target=lambda: asyncio.run(server.serve()))
         thread.start()
@@ -59,7 +60,22 @@ def running(tmp_path):
         return found
 
     yield run
-    for server, thread in started:
+    for server, _ in started:
         server.end()
+    for _, thread in started:
         thread.join(120)
         assert not thread.is_alive()
+
+
+@pytest.fixture
+def running(tmp_path):
+    """`running(book=…)`, `running(folder=…)`: a server that listens."""
+    with _servers(tmp_path / "state") as run:
+        yield run
+
+
+@pytest.fixture(scope="module")
+def running_on(tmp_path_factory):
+    """As `running`, and it listens until the last test of the file."""
+    with _servers(tmp_path_factory.mktemp("state")) as run:
+        yield run

@@ -7,7 +7,7 @@ import shutil
 
 import openpyxl
 import pytest
-from fewer_sheets import CHARTS, SENSITIVITY, keep_few_trials, leave_out
+from fewer_sheets import SHORT, keep_few_trials, keep_sheets, leave_out_fits
 from live_books import SIMPLE, change, settle
 from old_format_book import plain_book
 
@@ -45,7 +45,7 @@ def first(model):
 
 
 def test_results_of_a_changed_state_say_so_first_and_can_be_repeated(state, book, monkeypatch):
-    leave_out(monkeypatch, *CHARTS, *SENSITIVITY)
+    keep_sheets(monkeypatch, *SHORT)
     keep_few_trials(monkeypatch)
     (said,) = state.changes
     path = save_result(state, book, "book")
@@ -65,7 +65,8 @@ def test_results_of_a_changed_state_say_so_first_and_can_be_repeated(state, book
     assert first(state.own)[1] * 0.98 in [cell.value for cell in own[row.sheet][row.row]]
 
 
-def test_saved_runs_pages_and_json_carry_the_changes(state, book):
+def test_saved_runs_pages_and_json_carry_the_changes(state, book, monkeypatch):
+    leave_out_fits(monkeypatch)
     (said,) = state.changes
     run = open_run(save_result(state, book, "run"))
     assert run.changed_from.changes == (said,)
@@ -168,7 +169,7 @@ def test_a_change_that_no_table_has_room_for_is_told_with_the_column(book):
 
 
 def test_of_an_old_workbook_results_and_copies_are_new_ones_and_nothing_is_typed_into_it(tmp_path, monkeypatch):
-    leave_out(monkeypatch, *CHARTS, *SENSITIVITY)
+    keep_sheets(monkeypatch, *SHORT)
     keep_few_trials(monkeypatch)
     monkeypatch.setattr(joined_package, "parts_of_old_workbook", lambda _: read_parts(SIMPLE.read_bytes()))
     book = tmp_path / "case.xls"

@@ -22,11 +22,8 @@ SIMPLE = EXAMPLES["skid-100-ft"]
 
 def edited(source, target, changes, settings=None):
     """A copy of a workbook with other numbers in its tables: {(row's name, heading): value}."""
-    model, book = load(source), openpyxl.load_workbook(source)
-    rows = {each.name: each.row for each in (*model.assumptions, *model.filters)}
-    for (name, heading), value in changes.items():
-        sheet, row = book[rows[name].sheet], rows[name].row
-        sheet.cell(row, _headings_above(sheet, row)[heading]).value = value
+    book = openpyxl.load_workbook(source)
+    type_in(book, rows_of(load(source)), changes)
     for sheet in book:
         for row in sheet.iter_rows():
             for cell in row:
@@ -34,6 +31,22 @@ def edited(source, target, changes, settings=None):
                     sheet.cell(cell.row, cell.column + 1).value = settings[cell.value]
     book.save(target)
     return target
+
+
+def rows_of(model):
+    """Name -> a cell of its row in a table."""
+    return {each.name: each.row for each in (*model.assumptions, *model.filters)}
+
+
+def type_in(book, rows, changes):
+    """Other numbers in the tables of an open workbook; the cells and what they held before."""
+    before = []
+    for (name, heading), value in changes.items():
+        sheet, row = book[rows[name].sheet], rows[name].row
+        cell = sheet.cell(row, _headings_above(sheet, row)[heading])
+        before.append((cell, cell.value))
+        cell.value = value
+    return before
 
 
 def wide_book(path, assumptions=60, forecasts=12):

@@ -121,9 +121,7 @@ class Page:
 
 
 @pytest.fixture
-def case(tmp_path, monkeypatch):
-    """The case study with a tenth of its trials at rest, and with fewer while a handle moves."""
-    monkeypatch.setattr("xlmc.live.session.MOVING_TRIALS", 5_000)
+def case(tmp_path):
     return edited(CASE, tmp_path / "case.xlsx", {}, {"Trials": 20_000})
 
 

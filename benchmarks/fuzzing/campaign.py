@@ -110,7 +110,7 @@ def _children(kind: str, how: Kind, seed: int, numbers: list[int], until: float)
     wall = time.monotonic()
     try:
         while time.monotonic() < until:
-            if not ours.poll(0.5):
+            if not ours.poll(min(0.5, LONGEST / 3)):
                 spent = _processor_time(child.pid) - began
                 if spent > LONGEST or time.monotonic() - wall > _WAITS * LONGEST:
                     yield _lost(how, kind, seed, number, "takes too long", spent)

@@ -53,6 +53,7 @@ def serve(kind: str, how: Kind, seed: int, numbers: Iterable[int], parent: Conne
     sys.stdout = sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - as long as the process lives
     resource.setrlimit(resource.RLIMIT_AS, (_held("VmSize") + MEMORY,) * 2)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    gc.freeze()  # no garbage is looked for in what the parent holds, which would copy all of it
     with _folder_of_its_own() as folder:
         os.chdir(folder)
         for number in numbers:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 FORMULAS = [
     "AGGREGATE(A1:A4,{1,2;3,4},-1,-657434,100)",
@@ -31,8 +32,8 @@ FORMULAS = [
 
 
 @pytest.mark.usefixtures("small_blocks")
-@pytest.mark.parametrize("text", FORMULAS)
-@pytest.mark.parametrize("form", ["plain", "array", "dynamic"])
+@cases("text", FORMULAS)
+@cases("form", ["plain", "array", "dynamic"])
 def test_a_formula_that_was_found(text, form, tmp_path):
     from fuzzing import formulas
     from fuzzing.child import judged
@@ -56,8 +57,8 @@ STILL = [
 
 
 @pytest.mark.usefixtures("small_blocks")
-@pytest.mark.parametrize("text", STILL)
-@pytest.mark.parametrize("form", ["plain", "array", "block", "dynamic"])
+@cases("text", STILL)
+@cases("form", ["plain", "array", "block", "dynamic"])
 def test_a_frozen_assumption_is_one_that_varies_by_nothing(text, form, tmp_path):
     from fuzzing import formulas
     from fuzzing.inputs import Input, Reached

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections import Counter
 
 import pytest
+from cases import cases
 
 SEED = 20261122
-INPUTS = {"zip": 50, "formulas": 40, "tables": 80, "runs": 24, "blocks": 60, "old": 60}
+INPUTS = {"zip": 24, "formulas": 30, "tables": 40, "runs": 12, "blocks": 30, "old": 30}
 RAN = {"zip": 0.2, "formulas": 0.4, "tables": 0.2, "runs": 0.1, "blocks": 0.5, "old": 0.2}
 
 
@@ -28,7 +29,7 @@ def test_every_input_runs_or_is_refused_in_words(kind, tmp_path, monkeypatch):
     assert reached[Reached.REFUSED] > 0
 
 
-@pytest.mark.parametrize("kind", INPUTS)
+@cases("kind", INPUTS)
 def test_an_input_is_a_function_of_its_seed_and_number(kind):
     from fuzzing import KINDS
     from fuzzing.inputs import generator

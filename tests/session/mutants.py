@@ -17,6 +17,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator, Sequence
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -167,7 +168,12 @@ MUTANTS = {
 
 def modules_with(text: str) -> list[Path]:
     """The modules that hold a text, each as often as it stands in it."""
-    return [path for path in sorted((ROOT / "xlmc").rglob("*.py")) for _ in range(path.read_text("utf-8").count(text))]
+    return [path for path, whole in _texts().items() for _ in range(whole.count(text))]
+
+
+@cache
+def _texts() -> dict[Path, str]:
+    return {path: path.read_text("utf-8") for path in sorted((ROOT / "xlmc").rglob("*.py"))}
 
 
 def room_of(mutant: Mutant) -> str:

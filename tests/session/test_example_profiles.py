@@ -13,7 +13,7 @@ from hypothesis import given, settings, strategies as st
 drawn = []
 
 @given(st.floats() | st.integers() | st.text(" acdehinorstux"))
-@settings(max_examples=60)
+@settings(max_examples=15)
 def test_own_number(x): drawn.append(repr(x))
 
 @given(st.integers())
@@ -38,28 +38,24 @@ def drawn(run_tests, tmp_path):
 
 
 def test_the_default_examples_are_the_same_everywhere(drawn, tmp_path):
-    first = drawn()
-    assert 20 + 34 <= len(first) < 60  # a third of 60 and of 100; hypothesis may draw a simple one or two more
+    first = drawn(PYTHONHASHSEED="2")
+    assert 5 + 34 <= len(first) < 50  # a third of 15 and of 100; hypothesis may draw a simple one or two more
     constants = ", ".join(str(2.5 + n) for n in range(300))
     (tmp_path / "project" / "local.py").write_text(
         f"A = [{constants}, 'a text that stands in the source']", encoding="utf-8"
     )
     assert drawn(before="import local", PYTHONHASHSEED="1", CI="true") == first
-    assert drawn(PYTHONHASHSEED="2") == first
 
 
-@pytest.mark.parametrize(
-    ("arguments", "environment"),
-    [(["--hypothesis-profile", "explore"], {}), ([], {"HYPOTHESIS_PROFILE": "explore", "CI": "true"})],
-)
-def test_explore_draws_ten_times_as_many_and_others_each_time(drawn, arguments, environment):
-    first = drawn(*arguments, **environment)
-    assert len(first) >= 10 * (60 + 100)
-    assert arguments or first != drawn(**environment)
+def test_explore_draws_ten_times_as_many_and_others_each_time(drawn):
+    """Asked for by the option, and by the variable."""
+    first, second = drawn("--hypothesis-profile", "explore"), drawn(HYPOTHESIS_PROFILE="explore", CI="true")
+    assert min(len(first), len(second)) >= 10 * (15 + 100)
+    assert first != second
 
 
 def test_the_option_wins_over_the_variable(drawn):
-    assert len(drawn("--hypothesis-profile", "fixed", HYPOTHESIS_PROFILE="explore")) < 60
+    assert len(drawn("--hypothesis-profile", "fixed", HYPOTHESIS_PROFILE="explore")) < 50
 
 
 def test_other_profiles_are_refused(run_tests):

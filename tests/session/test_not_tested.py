@@ -20,7 +20,7 @@ def test_plain(): pass
 BROWSER = "Chromium and Chromium's driver are not installed (apt-get install chromium; apt-get install chromium-driver)"
 
 
-@pytest.mark.parametrize("processes", [[], ["-n", "2"]])
+@pytest.mark.parametrize("processes", [[], ["-n", "1"]])
 def test_the_summary_names_what_was_skipped_and_why(run_tests, processes):
     code, shown = run_tests(TESTS, *processes, plugin="not_tested", PATH="")
     assert code == 0

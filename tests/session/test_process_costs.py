@@ -3,35 +3,27 @@ from __future__ import annotations
 import pytest
 
 TESTS = """
-import gc, subprocess, sys
+import gc, os, subprocess, sys
 
-def test_a():
+def test_modules_and_garbage():
     assert gc.isenabled()
     assert gc.get_freeze_count() > 1000
     assert gc.get_threshold()[0] > 10_000
     told = subprocess.run([sys.executable, "-c", "import sys; print(sys.dont_write_bytecode)"], capture_output=True)
     assert told.stdout.split() == [b"False"]
-"""
 
-
-THREADS = """
-import os
-
-def test_a():
+def test_threads():
     assert [os.environ.get(name) for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS")] == ["1", "7"]
 """
 
 
-@pytest.mark.parametrize(("processes", "code"), [([], 1), (["-n", "1"], 0)])
-def test_processes_that_share_the_tests_have_one_thread_each_unless_told_otherwise(
-    run_tests, processes, code, monkeypatch
+@pytest.mark.parametrize(("processes", "ends"), [([], "1 failed, 1 passed"), (["-n", "1"], "2 passed")])
+def test_modules_are_kept_garbage_is_collected_and_processes_that_share_the_tests_have_one_thread(
+    run_tests, processes, ends, monkeypatch
 ):
+    """One thread each, unless told otherwise, and where the tests are shared only: alone, the test of threads fails."""
     monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
-    found, shown = run_tests(THREADS, *processes, plugin="process_costs", OMP_NUM_THREADS="7")
-    assert found == code, shown
-
-
-@pytest.mark.parametrize("processes", [[], ["-n", "1"]])
-def test_what_a_test_starts_keeps_what_it_compiled_and_garbage_is_still_collected(run_tests, processes):
-    code, shown = run_tests(TESTS, *processes, plugin="process_costs", PYTHONDONTWRITEBYTECODE="1")
-    assert code == 0, shown
+    environment = {"PYTHONDONTWRITEBYTECODE": "1", "OMP_NUM_THREADS": "7"}
+    code, shown = run_tests(TESTS, *processes, plugin="process_costs", **environment)
+    assert ends in shown
+    assert ("FAILED test_given.py::test_threads" in shown) == (code == 1) == (not processes), shown

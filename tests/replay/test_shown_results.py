@@ -22,32 +22,36 @@ from xlmc.report.sheets.save import save
 from xlmc.workbook.package import read_parts
 
 
-def first_number(sheet, after=3):
-    """The first cell below the title that holds a number and no formula."""
-    return next(
-        cell for row in sheet.iter_rows(min_row=after) for cell in row if type(cell.value) is float and cell.column > 1
-    )
+def numbers(sheet, after=3):
+    """The cells below the title that hold a number and no formula."""
+    rows = sheet.iter_rows(min_row=after)
+    return (cell for row in rows for cell in row if type(cell.value) is float and cell.column > 1)
+
+
+def first_number(sheet):
+    return next(numbers(sheet))
 
 
 SHEETS = ("Results", "Statistics", "Certainty", "Assumptions", "Trials", "Bins", "Curves")
 
 
-@pytest.mark.parametrize("factor", [1.1, 1 + 1e-9], ids=["by a tenth", "a little"])
-def test_an_edited_number_is_named_with_what_the_run_gives(edited, drawn, factor):
-    """One on each sheet; curves are written for charts."""
-    was = {}
+def test_an_edited_number_is_named_with_what_the_run_gives(edited, drawn):
+    """Two on each sheet, one by a tenth and one by a little; curves are written for charts."""
+    was, factors = {}, {}
 
     def change(book):
         for sheet in SHEETS:
-            cell = first_number(book[sheet])
-            was[f"{sheet}!{cell.coordinate}"] = cell.value
-            cell.value *= factor
+            for cell, factor in zip(numbers(book[sheet]), (1.1, 1 + 1e-9), strict=False):
+                where = f"{sheet}!{cell.coordinate}"
+                was[where], factors[where] = cell.value, factor
+                cell.value *= factor
 
     found = replay(edited(change, drawn))
+    assert len(was) == 2 * len(SHEETS)
     assert {str(each.where): each.gives for each in found.shown.differences} == was
-    assert len(found.shown.differences) == len(SHEETS)
+    assert len(found.shown.differences) == len(was)
     for each in found.shown.differences:
-        assert each.says == pytest.approx(each.gives * factor, rel=1e-15)
+        assert each.says == pytest.approx(each.gives * factors[str(each.where)], rel=1e-15)
     assert found.same_bits
     assert not found.identical
 

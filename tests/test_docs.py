@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import importlib.util
 import re
-import subprocess
 import sys
 from pathlib import Path
 
 import click
 import pytest
+from cases import cases
 from described import undescribed
+from fewer_sheets import SHORT, keep_few_trials, keep_sheets, leave_out_fits
 
-from xlmc.cli import xlmc
+from xlmc.cli import main, xlmc
 from xlmc.distributions import FAMILIES
 from xlmc.run.version import __version__
 
@@ -21,7 +22,7 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 COMMAND_LINE = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("name", sorted(xlmc.commands))
+@cases("name", sorted(xlmc.commands))
 def test_every_command_and_option_is_documented(name):
     section = COMMAND_LINE.partition(f"## `xlmc {name}")[2].partition("\n## ")[0]
     assert section, name
@@ -80,24 +81,34 @@ def test_ci_runs_the_readmes_test_command():
     assert command in (ROOT / ".ci" / "run").read_text(encoding="utf-8").splitlines()
 
 
+@pytest.fixture
+def short_books(monkeypatch):
+    """What takes longest to write, and is not looked at here."""
+    keep_sheets(monkeypatch, *SHORT)
+    keep_few_trials(monkeypatch)
+    leave_out_fits(monkeypatch)
+
+
+@pytest.mark.usefixtures("short_books")
 def test_readme_python_runs(tmp_path, monkeypatch):
     block = re.search(r"```python\n(.*?)```", README, re.DOTALL)
     assert block is not None
     (tmp_path / "examples").symlink_to(ROOT / "examples")
     monkeypatch.chdir(tmp_path)
-    subprocess.run([sys.executable, "-c", block[1]], check=True, cwd=tmp_path)
+    exec(block[1], {})
     assert (tmp_path / "intersection-results.xlsx").exists()
 
 
-def test_readme_shows_the_output_of_its_command(tmp_path):
+@pytest.mark.usefixtures("short_books")
+def test_readme_shows_the_output_of_its_command(tmp_path, monkeypatch, capsys):
     shown = README.partition("```text\n")[2].partition("```")[0]
-    printed = subprocess.run(
-        [sys.executable, "-m", "xlmc", "simulate", "examples/intersection.xlsx", "-o", str(tmp_path / "results.xlsx")],
-        check=True,
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-    ).stdout
+    command = ["xlmc", "simulate", "examples/intersection.xlsx", "-o", str(tmp_path / "results.xlsx")]
+    monkeypatch.chdir(ROOT)
+    monkeypatch.setattr(sys, "argv", command)
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert not ended.value.code
+    printed = capsys.readouterr().out
     table = [line.rstrip() for line in printed.splitlines() if "results.xlsx" not in line]
     assert [line.rstrip() for line in shown.splitlines() if "results.xlsx" not in line] == table
 

@@ -111,16 +111,44 @@ def folder(tmp_path_factory):
     return folder
 
 
+COMMANDS = """
+import contextlib, io, json, sys
+from xlmc.cli import main
+from xlmc.report.sheets import book
+
+book.SHEETS = tuple(sheet for sheet in book.SHEETS if sheet.name in ("Results", "Trials", "Largest", "Record"))
+said = []
+for arguments in json.loads(sys.argv[1]):
+    sys.argv = ["xlmc", *arguments]
+    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.suppress(SystemExit):
+        main()
+    said.append(out.getvalue())
+json.dump(said, sys.stdout)
+"""
+"""Several commands in one program, which starts once; a message or a warning would stand at stderr."""
+
+
 @pytest.fixture(scope="module")
-def answers(folder, run):
-    """The forecasts by the workbook's own settings, and with the engine `jit`."""
-    found = {}
-    for engine, options in {"slow": (), "jit": ("--engine", "jit", "--sampling", "antithetic")}.items():
-        files = ("-o", f"{engine}.xlsx", "--json", f"{engine}.json", "--extract", f"{engine}.csv")
-        done = run("-m", "xlmc", "simulate", "book.xlsx", *files, "--quiet", *options, folder=folder)
-        assert done.returncode == 0, done.stdout
-        found[engine] = json.loads((folder / f"{engine}.json").read_text(encoding="utf-8"))["forecasts"]
-    return found
+def said(folder, run):
+    """What the commands print: two runs, by the workbook's own settings and with `jit`; a replay; a help."""
+    commands = {"replay": ["replay", "slow.xlsx"], "help": ["simulate", "--help"]}
+    runs = {"slow": [], "jit": ["--engine", "jit", "--sampling", "antithetic"]}
+    for engine, options in runs.items():
+        files = ["-o", f"{engine}.xlsx", "--json", f"{engine}.json", "--extract", f"{engine}.csv"]
+        runs[engine] = ["simulate", "book.xlsx", *files, "--quiet", *options]
+    commands = runs | commands
+    done = run("-c", COMMANDS, json.dumps(list(commands.values())), folder=folder)
+    assert done.returncode == 0
+    return dict(zip(commands, json.loads(done.stdout), strict=True))
+
+
+@pytest.fixture(scope="module")
+def answers(folder, said):
+    """The forecasts of both runs."""
+    return {
+        engine: json.loads((folder / f"{engine}.json").read_text(encoding="utf-8"))["forecasts"]
+        for engine in ("slow", "jit")
+    }
 
 
 @pytest.fixture(scope="module")
@@ -171,18 +199,16 @@ def test_the_sheet_holds_the_largest_values(folder, answers, trials):
         assert list(rows[name]) == sorted((trial[name] for trial in trials), reverse=True)[:5]
 
 
-def test_the_run_is_recorded_and_repeated(folder, answers, run):
-    done = run("-m", "xlmc", "replay", "slow.xlsx", folder=folder)
-    assert done.returncode == 0, done.stdout
-    assert "identical" in done.stdout
+def test_the_run_is_recorded_and_repeated(folder, said):
+    assert "\nidentical: the same " in said["replay"]
     record = openpyxl.load_workbook(folder / "slow.xlsx")["Record"]
     texts = {str(cell) for row in record.iter_rows(values_only=True) for cell in row}
     assert "slow" in texts
     assert any("antithetic pairs: 1000 independent replicates" in text.replace(",", "") for text in texts)
 
 
-def test_the_help_lists_them(run):
-    text = " ".join(run("-m", "xlmc", "simulate", "--help").stdout.split())
+def test_the_help_lists_them(said):
+    text = " ".join(said["help"].split())
     assert "antithetic: antithetic pairs" in text
     assert "slow: the careful path alone" in text
 

@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from fewer_sheets import CHARTS, SENSITIVITY, keep_few_trials, leave_out, leave_out_fits, leave_out_shapes
+from fewer_sheets import SHORT, keep_few_trials, keep_sheets, leave_out_fits
 
 if sys.platform == "win32":
     pytest.skip("needs fork and kill", allow_module_level=True)
@@ -17,10 +17,9 @@ sys.path += [str(ROOT), str(ROOT / "benchmarks")]
 def _short_books():
     """What is written does not matter here, but that it is whole."""
     with pytest.MonkeyPatch.context() as patch:
-        leave_out(patch, *CHARTS, *SENSITIVITY)
+        keep_sheets(patch, *SHORT)
         keep_few_trials(patch)
         leave_out_fits(patch)
-        leave_out_shapes(patch)
         yield
 
 

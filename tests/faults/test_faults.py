@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 from faults import (
@@ -23,9 +24,11 @@ from faults import (
 )
 from faults import full_disk as fill_up
 
+import xlmc
 import xlmc.workbook.writer as writer
 from xlmc.workbook.target import Target
 
+ROOT = Path(__file__).resolve().parents[2]
 pytestmark = pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
 ENDING = {"workbook": ".xlsx", "page": ".html", "JSON": ".json", "saved run": ".xlmcrun", "CSV": ".csv"}
 
@@ -130,39 +133,30 @@ main()
 
 def began(folder, process):
     """Wait until the run keeps columns on disk."""
-    for _ in range(1_200):
+    for _ in range(6_000):
         if process.poll() is not None or any(folder.iterdir()):
             return any(folder.iterdir())
-        time.sleep(0.05)
+        time.sleep(0.01)
     return False
 
 
-def running(tmp_path, *options):
+def running(book, tmp_path, *options):
     temporary = tmp_path / "temporary"
     temporary.mkdir()
-    command = [
-        sys.executable,
-        "-P",
-        "-c",
-        SCRIPT,
-        "simulate",
-        "examples/intersection.xlsx",
-        "-n",
-        "1000000000",
-        *options,
-    ]
+    command = [sys.executable, "-P", "-c", SCRIPT, "simulate", str(book), "-n", "1000000000", *options]
     environment = os.environ | {"TMPDIR": str(temporary)}
     output = ("-o", str(tmp_path / "out.xlsx"), "--quiet")
-    process = subprocess.Popen([*command, *output], stderr=subprocess.PIPE, text=True, env=environment)
+    process = subprocess.Popen([*command, *output], cwd=ROOT, stderr=subprocess.PIPE, text=True, env=environment)
     assert began(temporary, process)
     return process, temporary
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)])
-@pytest.mark.parametrize("options", [(), ("-j", "2", "--scheduler", "processes")])
-def test_a_run_that_is_asked_to_end_clears_away(tmp_path, monkeypatch, number, code, options):
-    monkeypatch.chdir(os.path.dirname(os.path.dirname(os.path.dirname(__file__))))
-    process, temporary = running(tmp_path, *options)
+@pytest.mark.parametrize(
+    ("number", "code", "options"),
+    [(signal.SIGTERM, 143, ()), (signal.SIGHUP, 129, ("-j", "2", "--scheduler", "processes"))],
+)
+def test_a_run_that_is_asked_to_end_clears_away(small_book, tmp_path, number, code, options):
+    process, temporary = running(small_book, tmp_path, *options)
     process.send_signal(number)
     told = process.communicate(timeout=120)[1]
     assert process.returncode == code
@@ -171,13 +165,11 @@ def test_a_run_that_is_asked_to_end_clears_away(tmp_path, monkeypatch, number, c
     assert [left.name for left in tmp_path.iterdir()] == ["temporary"]
 
 
-def test_the_next_run_removes_the_columns_of_a_killed_one(tmp_path, monkeypatch):
-    monkeypatch.chdir(os.path.dirname(os.path.dirname(os.path.dirname(__file__))))
-    process, temporary = running(tmp_path)
+def test_the_next_run_removes_the_columns_of_a_killed_one(small_book, tmp_path, monkeypatch):
+    process, temporary = running(small_book, tmp_path)
     process.kill()
     process.communicate()
     assert list(temporary.iterdir()) != []
-    command = [sys.executable, "-P", "-m", "xlmc", "simulate", "examples/intersection.xlsx", "-n", "1000", "-o"]
-    environment = os.environ | {"TMPDIR": str(temporary)}
-    subprocess.run([*command, str(tmp_path / "o.xlsx")], env=environment, capture_output=True, check=False)
+    monkeypatch.setattr("tempfile.tempdir", str(temporary))
+    xlmc.load(small_book).simulate(100)
     assert list(temporary.iterdir()) == []

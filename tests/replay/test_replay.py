@@ -87,8 +87,10 @@ AS_IN_THE_WORKBOOK = {
     "slow reference",
     "rare",
 }
-"""Runs that their records alone tell from others: a saved run has the same, and `tests/results/saved` shows that all else
-comes back from one."""
+"""Runs that their records alone tell from others, and a saved run has the same record.
+
+`tests/results/saved` shows that all else comes back from one.
+"""
 
 
 @pytest.fixture(scope="module")

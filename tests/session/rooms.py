@@ -29,18 +29,27 @@ def room_of(path: Path) -> str:
     return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
 
 
+_STATEMENTS = ("body", "orelse", "handlers", "finalbody", "cases")
+"""Where statements hold others; an import is a statement, so that no expression has to be looked into."""
+
+
 @cache
 def imported(path: Path) -> frozenset[str]:
     """Full names of all that a file imports, wherever in it."""
     names: set[str] = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    left: list[ast.AST] = [ast.parse(path.read_text(encoding="utf-8"))]
+    while left:
+        node = left.pop()
         if isinstance(node, ast.Import):
             names.update(alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module:
             names.update({node.module, *(f"{node.module}.{alias.name}" for alias in node.names)})
+        for inner in _STATEMENTS:
+            left += getattr(node, inner, ())
     return frozenset(names)
 
 
+@cache
 def arrows() -> dict[tuple[str, str], set[str]]:
     """(room, the room that it imports from) -> the files that do."""
     found: dict[tuple[str, str], set[str]] = {}

@@ -72,13 +72,11 @@ def enlarged(tmp_path_factory):
 def run(enlarged):
     """`python ARGUMENTS` with that copy of xlmc."""
 
-    def run(*arguments, folder=None):
+    def run(*arguments, folder):
         paths = os.pathsep.join(map(str, (enlarged, ROOT / "tests" / "session")))
         command = [sys.executable, *map(str, arguments)]
         variables = {**os.environ, "PYTHONPATH": paths}
-        done = subprocess.run(
-            command, env=variables, cwd=folder or enlarged, capture_output=True, text=True, encoding="utf-8"
-        )
+        done = subprocess.run(command, env=variables, cwd=folder, capture_output=True, text=True, encoding="utf-8")
         assert not done.stderr, f"if names have changed, change docs/adding.md, too:\n{done.stderr}"
         return done
 
@@ -112,16 +110,16 @@ def folder(tmp_path_factory):
 
 
 COMMANDS = """
-import contextlib, io, json, sys
+import contextlib, io, json, runpy, sys
 from xlmc.cli import main
 from xlmc.report.sheets import book
 
 book.SHEETS = tuple(sheet for sheet in book.SHEETS if sheet.name in ("Results", "Trials", "Largest", "Record"))
 said = []
 for arguments in json.loads(sys.argv[1]):
-    sys.argv = ["xlmc", *arguments]
+    sys.argv = arguments
     with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.suppress(SystemExit):
-        main()
+        main() if arguments[0] == "xlmc" else runpy.run_path(arguments[0], run_name="__main__")
     said.append(out.getvalue())
 json.dump(said, sys.stdout)
 """
@@ -129,13 +127,18 @@ json.dump(said, sys.stdout)
 
 
 @pytest.fixture(scope="module")
-def said(folder, run):
-    """What the commands print: two runs, by the workbook's own settings and with `jit`; a replay; a help."""
-    commands = {"replay": ["replay", "slow.xlsx"], "help": ["simulate", "--help"]}
+def said(enlarged, folder, run):
+    """What programs print: two runs, by the workbook's own settings and with `jit`; a replay; a help; two scripts."""
+    commands = {
+        "replay": ["xlmc", "replay", "slow.xlsx"],
+        "help": ["xlmc", "simulate", "--help"],
+        "distributions": [str(enlarged / "docs" / "list_distributions.py")],
+        "described": [str(ROOT / "tests" / "session" / "described.py")],
+    }
     runs = {"slow": [], "jit": ["--engine", "jit", "--sampling", "antithetic"]}
     for engine, options in runs.items():
         files = ["-o", f"{engine}.xlsx", "--json", f"{engine}.json", "--extract", f"{engine}.csv"]
-        runs[engine] = ["simulate", "book.xlsx", *files, "--quiet", *options]
+        runs[engine] = ["xlmc", "simulate", "book.xlsx", *files, "--quiet", *options]
     commands = runs | commands
     done = run("-c", COMMANDS, json.dumps(list(commands.values())), folder=folder)
     assert done.returncode == 0
@@ -213,8 +216,8 @@ def test_the_help_lists_them(said):
     assert "slow: the careful path alone" in text
 
 
-def test_the_page_of_distributions_shows_it(enlarged, run):
-    assert run("docs/list_distributions.py").returncode == 0
+def test_the_page_of_distributions_shows_it(enlarged, said):
+    assert said["distributions"] == ""
     section = (enlarged / "docs" / "distributions.md").read_text(encoding="utf-8").partition("\n## Arcsine\n")[2]
     assert "Drawn: Location 0, Amplitude 1" in section.partition("\n## ")[0]
     drawn = (enlarged / "docs" / "pictures" / "distributions" / "arcsine.svg").read_text(encoding="utf-8")
@@ -233,10 +236,10 @@ def test_the_page_of_distributions_is_not_written_without_the_numbers_of_a_pictu
     assert [path.name for path in without.parent.iterdir()] == ["list_distributions.py"]
 
 
-def test_the_pages_that_it_names_are_those_that_lack_its_examples(run):
+def test_the_pages_that_it_names_are_those_that_lack_its_examples(said):
     """All but the list of functions, which another test compares with the registry."""
     sections = dict(section.split("\n", 1) for section in PAGE.read_text(encoding="utf-8").split("\n## ")[1:])
-    lines = run(ROOT / "tests" / "session" / "described.py").stdout.splitlines()
+    lines = said["described"].splitlines()
     for heading, example in EXAMPLES.items():
         (named,) = re.findall(r"^Its pages?:(.*?)\. Its tests", sections[heading], re.MULTILINE | re.DOTALL)
         lacking = [page for page, _, name in (line.partition(": ") for line in lines) if name == example]

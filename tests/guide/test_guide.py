@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import openpyxl
 import pytest
-from fewer_sheets import keep_few_trials, leave_out_drawings, leave_out_shapes
+from fewer_sheets import SHORT, fill_sheets, keep_few_trials
 
 import xlmc
 from xlmc.cli import main
@@ -80,10 +80,9 @@ def typed(monkeypatch, capsys, tmp_path):
 
 @pytest.fixture
 def short_books(monkeypatch):
-    """All sheets, with few trials and without what is drawn on them, which no line of the guide shows."""
+    """All sheets, with few trials, and those empty of which no line of the guide shows anything."""
     keep_few_trials(monkeypatch)
-    leave_out_shapes(monkeypatch)
-    leave_out_drawings(monkeypatch)
+    fill_sheets(monkeypatch, *SHORT)
 
 
 @pytest.mark.usefixtures("short_books")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from xlmc.replay import sheets as repeated_sheets
@@ -14,6 +16,7 @@ __all__ = [
     "FEW",
     "SENSITIVITY",
     "SHORT",
+    "fill_sheets",
     "keep_few_trials",
     "keep_sheets",
     "leave_out",
@@ -38,6 +41,15 @@ def leave_out(patch: pytest.MonkeyPatch, *names: str) -> None:
 def keep_sheets(patch: pytest.MonkeyPatch, *names: str) -> None:
     """Have result workbooks written with the sheets of these names alone, as long as the patch lasts."""
     patch.setattr(book, "SHEETS", tuple(sheet for sheet in book.SHEETS if sheet.name in names))
+
+
+def fill_sheets(patch: pytest.MonkeyPatch, *names: str) -> None:
+    """Have result workbooks written with all sheets and all but these empty, as long as the patch lasts."""
+    patch.setattr(
+        book,
+        "SHEETS",
+        tuple(each if each.name in names else replace(each, write=lambda *_: None) for each in book.SHEETS),
+    )
 
 
 def leave_out_drawings(patch: pytest.MonkeyPatch) -> None:

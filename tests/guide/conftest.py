@@ -13,6 +13,7 @@ import openpyxl
 import pytest
 
 import xlmc
+from xlmc.workbook.reader import read_workbook
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT))
@@ -57,7 +58,7 @@ def _saved_by_excel(book: openpyxl.Workbook, path: Path) -> None:
     from templates.writer.cached import computed
 
     book.save(path)
-    values = computed(path)
+    values = computed(read_workbook(path))
     with zipfile.ZipFile(path) as package:
         parts = {name: package.read(name) for name in package.namelist()}
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as package:
@@ -103,7 +104,7 @@ def calculated() -> Callable[[Path], dict[tuple[str, str], object]]:
 
     def calculate(path: Path) -> dict[tuple[str, str], object]:
         letter = openpyxl.utils.get_column_letter
-        values = computed(path).items()
+        values = computed(read_workbook(path)).items()
         return {(sheet, f"{letter(column + 1)}{row + 1}"): value for (sheet, row, column), value in values}
 
     return calculate

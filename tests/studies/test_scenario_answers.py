@@ -75,7 +75,7 @@ def test_errors_of_differences_are_those_of_many_seeds(model, subtests):
     Student's t of 15 degrees of freedom, for replicates, has a root mean square of 1.074; step functions of few trials
     leave their error up to 10 % too large.
     """
-    truth = answers(model, trials=200_000, seed=99)
+    truth = answers(model, trials=50_000, seed=99)
     for sampling, widest in (("mc", 1.0), ("lhs", 1.074)):
         runs = [answers(model, trials=400, seed=seed, sampling=sampling) for seed in range(24)]
         for number, scenario in enumerate(SCENARIOS[:3], 1):

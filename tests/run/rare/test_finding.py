@@ -64,12 +64,6 @@ def test_a_trial_heavier_than_any_known_is_learnt_from(random):
     assert high > math.erfc(2 / math.sqrt(2)) / 2 * 0.98
 
 
-def test_the_same_streams_give_the_same_trials(bench):
-    first, second = (bench.one_run(lambda z: np.maximum(0.0, 3.0 - z[:, 0]), 1, 77, 50) for _ in range(2))
-    assert first.equalised.points.tobytes() == second.equalised.points.tobytes()
-    assert first.equalised.acceptance == second.equalised.acceptance
-
-
 def test_too_many_for_the_limit_are_not_begun():
     def distance(z):
         return np.maximum(0.0, 3.0 - z[:, 0])

@@ -89,7 +89,7 @@ def test_the_record_says_what_was_done(run):
     assert "learned proposal" in record["sampling.method_in_words"]
 
 
-def test_threads_and_engines_change_nothing(model, run):
+def test_the_same_run_is_the_same_with_threads(model, run):
     again = model.simulate(seed=4, until_accepted=2000, rare="always", jobs=2)
     assert fingerprint(again) == fingerprint(run)
     assert again.rare == run.rare

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import builtins
 import gc
-import os
 import signal
 import subprocess
 import sys
@@ -22,15 +21,21 @@ pytestmark = [
 ]
 
 
+def in_one_process(workers, threads=1, **more):
+    return LocalCluster(n_workers=workers, threads_per_worker=threads, processes=False, dashboard_address=":0", **more)
+
+
 @pytest.fixture(scope="module")
 def cluster():
-    """Two workers in processes of their own."""
-    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs=50) as found:
-        yield found
-
-
-def in_one_process(workers, threads=1):
-    return LocalCluster(n_workers=workers, threads_per_worker=threads, processes=False, dashboard_address=":0")
+    """The address of a scheduler with a worker here and one in a process of its own, and that process."""
+    with in_one_process(1, protocol="tcp") as found:
+        command = [sys.executable, "-m", "distributed.cli.dask_worker", found.scheduler_address, "--no-nanny"]
+        options = ["--nthreads", "1", "--no-dashboard"]
+        with subprocess.Popen([*command, *options], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as other:
+            with Client(found, set_as_default=False) as client:
+                client.wait_for_workers(2, timeout=120)
+            yield found.scheduler_address, other
+            other.kill()
 
 
 @pytest.mark.parametrize(("workers", "threads"), [(1, 1), (4, 1), (1, 3)])
@@ -42,7 +47,7 @@ def test_workers_change_no_bit(model, bits, workers, threads):
 
 def test_processes_change_no_bit(model, bits, cluster):
     seen = []
-    run = model.simulate(3050, scheduler=cluster.scheduler_address, progress=seen.append)
+    run = model.simulate(3050, scheduler=cluster[0], progress=seen.append)
     assert bits(run) == bits(model.simulate(3050))
     assert [standing.trials for standing in seen] == [*range(100, 3001, 100), 3050]
 
@@ -52,19 +57,15 @@ def test_a_local_cluster(model, bits):
 
 
 def test_a_worker_that_is_killed_costs_only_time(model, bits, cluster):
-    with Client(cluster, set_as_default=False) as client:
-        pids = list(client.run(os.getpid).values())
-    for nanny in cluster.workers.values():
-        nanny.auto_restart = False  # another would take a second to start
-    killed = []
+    address, other = cluster
+    assert other.poll() is None
 
     def kill(standing):
-        if standing.trials > 300 and not killed:
-            killed.append(pids[0])
-            os.kill(pids[0], signal.SIGKILL)
+        if standing.trials > 300:
+            other.kill()
 
-    run = model.simulate(8000, scheduler=cluster.scheduler_address, progress=kill)
-    assert killed
+    run = model.simulate(8000, scheduler=address, progress=kill)
+    assert other.wait(timeout=120) != 0
     assert bits(run) == bits(model.simulate(8000))
 
 

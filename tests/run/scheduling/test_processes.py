@@ -213,7 +213,7 @@ def test_an_error_in_a_process_comes_after_the_blocks_before_it(model, process):
 KILLED = """
 import os, signal, sys, xlmc
 def kill(standing):
-    if standing.trials > 400_000:
+    if standing.trials > 150_000:
         os.kill(os.getpid(), signal.SIGKILL)
 xlmc.load(sys.argv[1]).simulate(10**9, jobs=2, scheduler="processes", progress=kill)
 """

@@ -21,7 +21,8 @@ def case_study():
 def small(case_study):
     """Few and short runs of everything; what takes half a second is not run again to see what it costs."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(import_module("xlmc.studies.methods.study"), "_PATIENCE", 0.5)
+        module = import_module("xlmc.studies.methods.study")
+        patch.setattr(module, "_PATIENCE", 0.5)
         return study(case_study, reference_trials=1 << 19, trials=1 << 13, replicates=2, seed=5)
 
 

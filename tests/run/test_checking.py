@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.address import parse_address
 from xlmc.api import Model
@@ -33,7 +34,7 @@ def checked(book):
     return make
 
 
-@pytest.mark.parametrize(
+@cases(
     ("formula", "found", "holds"),
     [
         ("=A1<0.9", "TRUE", True),

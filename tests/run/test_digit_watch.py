@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 X = {"x": {"cell": "A1", "low": 1, "high": 2}}
 
@@ -30,7 +31,7 @@ def test_lost_digits_are_warned_of(warned, formula):
     assert "xlmc stability says where" in warning
 
 
-@pytest.mark.parametrize(
+@cases(
     "formula",
     [
         "=A1^2",

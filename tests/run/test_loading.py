@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.run.loading import filter_faults
 
@@ -15,8 +16,8 @@ def faults(book, formula, **limits):
     return [str(fault) for fault in filter_faults(model)]
 
 
-@pytest.mark.parametrize("saved", [None, 0.0, 1.0, True, 7.5, "a text"])
-@pytest.mark.parametrize(
+@cases("saved", [None, 0.0, 1.0, True, 7.5, "a text"])
+@cases(
     ("formula", "held"),
     [
         ("=A1*2", "1.5 at the base case"),
@@ -35,8 +36,8 @@ def test_a_quantity_without_a_limit_is_refused_whatever_was_saved(book, formula,
     assert "neither TRUE nor FALSE. Fill in At least, At most, Above or Below" in fault
 
 
-@pytest.mark.parametrize("saved", [None, 0.0, 1.0, True, 7.5, "a text"])
-@pytest.mark.parametrize(
+@cases("saved", [None, 0.0, 1.0, True, 7.5, "a text"])
+@cases(
     "formula",
     [
         "=A1<1",

@@ -317,8 +317,17 @@ DEPENDANTS = {
 }
 
 
-@pytest.mark.parametrize("function", ["RiskCpk(A2,0.95)", "NoSuchFunction(RiskMean(A2))"])
-@pytest.mark.parametrize("formula", DEPENDANTS.values(), ids=DEPENDANTS)
+UNKNOWN = ("plain", "an error that is caught", "a name of its own", "a place that is looked for")
+"""Dependants that are tried with a function that nobody knows, too."""
+
+
+@pytest.mark.parametrize(
+    ("function", "formula"),
+    [
+        *(("RiskCpk(A2,0.95)", formula) for formula in DEPENDANTS.values()),
+        *(("NoSuchFunction(RiskMean(A2))", DEPENDANTS[name]) for name in UNKNOWN),
+    ],
+)
 def test_whatever_depends_on_such_a_cell_shows_not_available(tmp_path, formula, function):
     path = tmp_path / "book.xlsx"
     with xlsxwriter.Workbook(path) as book:

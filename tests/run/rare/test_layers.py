@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import integrate
 from scipy.special import ndtr
 
@@ -62,7 +63,7 @@ SOLVED = [
 ]
 
 
-@pytest.mark.parametrize(("formulas", "limits", "names"), SOLVED, ids=[each[0][0] for each in SOLVED])
+@cases(("formulas", "limits", "names"), SOLVED, ids=[each[0][0] for each in SOLVED])
 def test_what_is_solved(ground, formulas, limits, names):
     assert sorted(solved(ground({"f": {"cell": "B4", **limits}}, formulas=formulas))) == names
 

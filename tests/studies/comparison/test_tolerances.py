@@ -3,6 +3,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -61,7 +62,7 @@ def test_a_tolerance_in_another_kind_of_unit():
         read_tolerances(["Chevy delta-V=3 deg"], BOTH).of(SPEED, 1.0)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("source", "target", "factor"),
     [
         ("mph", "mph", 1.0),

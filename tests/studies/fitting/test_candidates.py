@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.studies.fitting import KINDS
@@ -42,7 +43,7 @@ SAME = {
 }
 
 
-@pytest.mark.parametrize("name", SAME)
+@cases("name", SAME)
 def test_density_and_distribution_function(name):
     params, oracle = SAME[name]
     x = np.unique(oracle.ppf(np.linspace(0.01, 0.99, 41)))
@@ -51,7 +52,7 @@ def test_density_and_distribution_function(name):
     np.testing.assert_allclose(CANDIDATES[name].cdf(x, *params), oracle.cdf(x), rtol=1e-11)
 
 
-@pytest.mark.parametrize("name", SAME)
+@cases("name", SAME)
 def test_the_likelihood_is_highest_at_the_estimate(name):
     _, oracle = SAME[name]
     x = np.sort(oracle.rvs(300, random_state=np.random.default_rng(11)).astype(float))

@@ -17,8 +17,7 @@ from xlmc.studies.methods.sampled import MONTE_CARLO
 REPLICATES, TRIALS = 100, 8_192
 
 
-@pytest.fixture
-def straight(book):
+def straight_book(book):
     """y = 2x + z without filters: Taylor's first order has its mean and SD exactly."""
     return book(
         {"A1": 0.5, "B1": 1.0, "C1": "=10+2*A1+B1"},
@@ -28,6 +27,11 @@ def straight(book):
         },
         {"y": "C1"},
     )
+
+
+@pytest.fixture
+def straight(book):
+    return straight_book(book)
 
 
 def test_sampling_errors_are_what_theory_says(case_study):
@@ -128,16 +132,21 @@ def test_without_filters_the_differential_method_may_do(straight):
     assert sobol.lengths[-1].shares["mean"] < 0.2 * plain.lengths[-1].shares["mean"]
 
 
-def test_nothing_is_said_of_filters_where_there_are_none(straight):
-    found = study(straight, accuracy="2%", reference_trials=1 << 14, trials=1 << 10, replicates=2)
+@pytest.fixture(scope="module")
+def of_straight(book):
+    return study(straight_book(book), accuracy="0.8%", reference_trials=1 << 14, trials=1 << 10, replicates=2)
+
+
+def test_nothing_is_said_of_filters_where_there_are_none(of_straight):
+    found = of_straight
     assert all("filters" not in said for _, said in methods_tables.cannot_lines(found))
     assert dict(methods_tables.cannot_lines(found))["Taylor, first order"].startswith("takes every curve for straight")
     assert not any(said.endswith(".") for _, said in methods_tables.cannot_lines(found))
 
 
-def test_independent_trials_are_carried_on_by_theory(straight):
+def test_independent_trials_are_carried_on_by_theory(of_straight):
     """Eight times more exact is 64 times as many trials, however the slope of two runs of each length came out."""
-    found = study(straight, accuracy="0.8%", reference_trials=1 << 14, trials=1 << 10, replicates=2)
+    found = of_straight
     plain = next(curve for curve in found.curves if curve.method is MONTE_CARLO)
     finer = replace(found, accuracy=("0.1%", 0.001, True))
     assert need(finer, plain).trials == pytest.approx(64 * need(found, plain).trials)

@@ -6,6 +6,7 @@ from itertools import zip_longest
 
 import openpyxl
 import pytest
+from cases import cases
 from openpyxl.worksheet.table import Table
 
 from xlmc.api import load
@@ -89,7 +90,7 @@ def looked_at(book):
     return make
 
 
-@pytest.mark.parametrize(("formula", "given", "better"), FORMS)
+@cases(("formula", "given", "better"), FORMS)
 def test_another_form(looked_at, formula, given, better):
     (one,) = [each for each in looked_at(formula, given).findings if each.kind == "cancellation"]
     assert one.instead == better

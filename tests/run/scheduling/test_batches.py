@@ -85,9 +85,12 @@ def numbered():
     return (Task(start, 1, False) for start in range(1000))
 
 
-@pytest.mark.parametrize("shared", [with_a_process, with_a_thread])
 @pytest.mark.parametrize(
-    "failing", [FailingLate(300, ValueError, "no such"), FailingLate(300, TwoWordsError, "no", "such")]
+    ("shared", "failing"),
+    [
+        (with_a_thread, FailingLate(300, ValueError, "no such")),
+        (with_a_process, FailingLate(300, TwoWordsError, "no", "such")),
+    ],
 )
 def test_what_goes_wrong_in_a_block_is_told_in_its_turn(shared, failing):
     """Though the other has met it long before: a run that ends earlier does not meet it at all."""

@@ -110,11 +110,13 @@ def test_it_runs_is_recorded_and_repeated(model, tmp_path, engine):
     assert record["end.by"] == "rejected"
     assert record["end.goal"] == record["end.in_words"] == "100 trials were rejected"
     assert record["settings.until_rejected"] == 100
-    saved, results = run.keep(tmp_path / "a.xlmcrun"), tmp_path / "a-results.xlsx"
-    run.save(results)
-    again = xlmc.open_run(saved)
+    kept = [run.keep(tmp_path / "a.xlmcrun")]
+    again = xlmc.open_run(kept[0])
     assert (again.settings, again.stopped) == (run.settings, run.stopped)
-    for path in (saved, results):
+    if engine == "numpy":
+        kept.append(tmp_path / "a-results.xlsx")
+        run.save(kept[1])
+    for path in kept:
         repeated = replay(path)
         assert repeated.to_the_last_bit, (repeated.changes, repeated.numbers)
         assert repeated.record["counts.trials"] == run.trials

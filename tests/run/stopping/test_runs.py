@@ -62,8 +62,14 @@ def short_sequences(monkeypatch):
 
 
 @pytest.mark.usefixtures("short_sequences")
-@pytest.mark.parametrize("end", ENDS, ids=str)
-@pytest.mark.parametrize("crew", [{"jobs": 2}, {"jobs": 3}, {"jobs": 2, "scheduler": "processes"}], ids=str)
+@pytest.mark.parametrize(
+    ("crew", "end"),
+    [
+        *(({"jobs": 3}, end) for end in ENDS),
+        *(({"jobs": 2, "scheduler": "processes"}, end) for end in (ENDS[1], ENDS[3], ENDS[4])),
+    ],
+    ids=str,
+)
 def test_who_runs_the_blocks_changes_nothing(model, end, crew):
     alone = model.simulate(seed=3, **end)
     assert alone.stopped.reached

@@ -74,7 +74,7 @@ def model():
     return load(ROOT / "examples" / "intersection.xlsx")
 
 
-@pytest.mark.parametrize("seed", [None, 1, 2])
+@pytest.mark.parametrize("seed", [None, 1])
 def test_gradient_and_hessian_of_the_case_study(model, seed):
     """To 1e-10 of the largest derivative in the assumption's own range."""
     inputs = {a.name: a.base for a in model.live}

@@ -6,7 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 from cases import cases
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from xlmc.address import Cell
@@ -147,6 +147,7 @@ def test_kinks_inside_the_ranges(of, formula, x, function, ways, jumps):
         ("=GEOMEAN(C1:C3,5)", lambda x: ((3 * x) ** 3 * 5) ** mpmath.mpf("0.25"), (1, 9)),
     ],
 )
+@settings(max_examples=30)
 @given(data=st.data())
 def test_differences_are_as_near_as_they_say(of, formula, f, x, data):
     """The error estimated covers the true one, and is itself small: 1e-7 of the derivative, 1e-4 of the second."""

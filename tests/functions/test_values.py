@@ -210,3 +210,9 @@ def test_a_scalar_as_a_range_has_one_cell():
     assert value.shape == (2, 1, 1)
     assert value.objects()[:, 0, 0].tolist() == [1.0, "a"]
     assert value.as_range() is value
+
+
+def test_a_constant_too_small_for_excel_is_zero_and_others_keep_their_bits():
+    numbers = [5e-324, -1e-310, 2.0**-1022, -(2.0**-1022), -0.0, 1e308]
+    found = [constant(number).numbers.item() for number in numbers]
+    assert [number.hex() for number in found] == [number.hex() for number in (0.0, 0.0, *numbers[2:])]

@@ -86,18 +86,6 @@ def tables() -> dict[str, list[tuple[str, ...]]]:
 
 
 @pytest.fixture(scope="session")
-def fill() -> Callable[[Path], None]:
-    """`fill(path)`: into the template at `path` goes what the guide says."""
-
-    def filled(path: Path) -> None:
-        book = openpyxl.load_workbook(path)
-        _type(book)
-        _saved_by_excel(book, path)
-
-    return filled
-
-
-@pytest.fixture(scope="session")
 def calculated() -> Callable[[Path], dict[tuple[str, str], object]]:
     """`calculated(path)`: (sheet, cell) -> the value of each formula, as a spreadsheet program would show it."""
     from templates.writer.cached import computed
@@ -111,11 +99,12 @@ def calculated() -> Callable[[Path], dict[tuple[str, str], object]]:
 
 
 @pytest.fixture(scope="session")
-def case(fill, tmp_path_factory) -> Path:
-    """The case as the guide leaves it before the first run."""
+def case(tmp_path_factory) -> Path:
+    """The case as the guide leaves it before the first run: the template, with what the guide says in it."""
     path = tmp_path_factory.mktemp("guide") / "my-case.xlsx"
-    path.write_bytes((ROOT / "templates" / "planar-impact.xlsx").read_bytes())
-    fill(path)
+    book = openpyxl.load_workbook(ROOT / "templates" / "planar-impact.xlsx")
+    _type(book)
+    _saved_by_excel(book, path)
     return path
 
 

@@ -28,8 +28,8 @@ def test_the_trials_are_those_of_the_run(run, payload_of):
         assert each["range"]["share"] == 0.51
 
 
-def test_bins_are_those_of_the_sheet(run, opened, payload_of):
-    sheet = opened(run)["Bins"]
+def test_bins_are_those_of_the_sheet(run, book, payload_of):
+    sheet = book["Bins"]
     found = payload_of(run)["forecasts"]
     for number, each in enumerate(found):
         rows = sheet.iter_rows(min_row=6, min_col=7 * number + 1, max_col=7 * number + 6, values_only=True)

@@ -18,9 +18,9 @@ from xlmc.report.sheets.bins_sheet import HEADER, TABLE
 
 
 @pytest.fixture(scope="session")
-def charts(run):
+def charts(run, package_of):
     """The charts of forecasts as openpyxl reads them, in order."""
-    with zipfile.ZipFile(io.BytesIO(packed_sheets(run))) as package:
+    with zipfile.ZipFile(io.BytesIO(package_of(run))) as package:
         names = [name for name in package.namelist() if re.fullmatch(r"xl/charts/chart\d+\.xml", name)]
         names.sort(key=lambda name: int(re.sub(r"\D", "", name)))
         drawn = [xml for xml in map(package.read, names) if not re.search(rb"<c:f>(Sensitivity|'Filter limits')!", xml)]

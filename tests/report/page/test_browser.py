@@ -51,7 +51,9 @@ def at_rest(chromium, shown, run):
     def ready():
         if not chromium.execute_script("return window.forRanges === true"):
             shown(run).execute_script("window.forRanges = true")
-        chromium.execute_script("for (const end of ['.views input', '.reset']) document.querySelector(end).click()")
+        chromium.execute_script(
+            "for (const end of ['.views input', '.reset']) document.querySelector(end).click(); scrollTo(0, 0)"
+        )
         chart = Chart(chromium)
         assert chart.ends == tuple(end.value for end in run["area"].central())
         return chart
@@ -285,6 +287,113 @@ def test_another_chart_leaves_the_grabbers_where_they_are(at_rest, run):
         check(chart, values)
 
 
+def test_the_pointer_is_told_what_it_is_at(at_rest, run):
+    from selenium.webdriver import ActionChains
+
+    chart, values = at_rest(), run["area"].values
+    over = chart.one(".u-over")
+    chart.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", over)
+    ActionChains(chart.browser).move_to_element(over).perform()
+    found = re.fullmatch(r"(\S+) to below (\S+) ft: (\S+) trials, (\S+) %", chart.one(".readout").text)
+    inside = np.count_nonzero((values >= float(found[1])) & (values < float(found[2])))
+    assert int(found[3]) == inside
+    assert found[4] == f"{100 * inside / values.size:.2f}"
+    chart.one(".views input[value=cumulative]").click()
+    ActionChains(chart.browser).move_to_element_with_offset(chart.one(".u-over"), 30, 0).perform()
+    assert re.fullmatch(r"Up to \S+ ft: \S+ ± \S+ %", chart.one(".readout").text)
+
+
+@cases("trials", [1, 7, 40, 2499, 10**7])
+def test_shares_are_those_of_the_statistics(at_rest, trials):
+    """For any count, as for the few of which one may be dragged to: the same value, error and interval."""
+    counts = sorted({count for few in range(14) for count in (few, trials - few, trials * few // 13) if few <= trials})
+    script = "return arguments[0].map(count => shareOf(count, arguments[1], arguments[2]))"
+    told = at_rest().browser.execute_script(script, counts, trials, t_quantile(math.inf, 0.95))
+    for count, share in zip(counts, told, strict=True):
+        expected = proportion(count, trials)
+        known = (share["value"], share["error"], share["low"], share["high"])
+        assert known == pytest.approx((expected.value, expected.error, *expected.interval), rel=1e-9, abs=1e-15)
+
+
+def test_a_fitted_distribution_is_drawn_and_named(at_rest):
+    from selenium.webdriver.support.select import Select
+
+    chart = at_rest()
+    browser = chart.browser
+    fits = Select(chart.one("select.fit"))
+    pixels = "return arguments[0].querySelector('canvas').toDataURL()"
+    for view in ("frequency", "cumulative", "reverse"):
+        chart.one(f".views input[value={view}]").click()
+        fits.select_by_index(0)
+        assert chart.one(".fitted").text == ""
+        before, certainty = browser.execute_script(pixels, chart.root), chart.said
+        fits.select_by_index(1)
+        assert browser.execute_script(pixels, chart.root) != before
+        assert chart.one(".fitted").text.startswith(f"Red line: {fits.options[1].text} (")
+        assert chart.said == certainty
+    fits.select_by_index(0)
+    points = browser.execute_script(
+        "return fittedLine({ shares: [0, 0.25, 0.5, 0.75, 1], parts: 2 }, { edges: [0, 2, 4] }, 100, 1, 'frequency')"
+    )
+    assert points == [[0.5, 50], [1.5, 50], [2.5, 50], [3.5, 50]]  # a uniform one: 50 trials in either bar
+
+
+def test_a_table_is_copied_as_a_table(at_rest):
+    browser = at_rest().browser
+    browser.execute_script(
+        "window.copied = null;"
+        "document.addEventListener('copy', () => { copied = String(getSelection()); }, { capture: true })"
+    )
+    browser.find_element("css selector", ".answers button.copy").click()
+    lines = [line for line in browser.execute_script("return copied").splitlines() if line.strip()]
+    assert lines[0].split("\t")[0] == "Forecast"
+    assert any(line.startswith("area\t") for line in lines)
+    assert browser.execute_script("return String(getSelection())") == ""
+
+
+def test_the_links_to_the_parts_stay_in_sight(at_rest):
+    browser = at_rest().browser
+    browser.execute_script("document.getElementById('record').scrollIntoView()")
+    top = "return Math.round(document.querySelector('nav').getBoundingClientRect().top)"
+    assert browser.execute_script(top) == 0
+    heading = "return document.querySelector('#record h2').getBoundingClientRect().top"
+    height = "return document.querySelector('nav').getBoundingClientRect().height"
+    assert browser.execute_script(heading) >= browser.execute_script(height) - 1
+
+
+def test_on_paper_is_what_is_open_and_nothing_is_to_be_pressed(at_rest):
+    browser = at_rest().browser
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    try:
+        for selector, displayed in (("details[open] summary", True), ("details:not([open]) summary", False)):
+            found = browser.find_elements("css selector", selector)
+            assert found
+            assert {each.is_displayed() for each in found} == {displayed}
+        for selector in ("nav", ".boxes", ".reset", ".views"):
+            assert not browser.find_element("css selector", selector).is_displayed()
+        for selector in (".chart canvas", ".certainty", "#statistics table", ".readout", ".overlay .legend"):
+            assert browser.find_element("css selector", selector).is_displayed()
+    finally:
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+
+
+def test_a_narrow_screen_needs_no_scrolling_aside(at_rest, run):
+    browser = at_rest().browser
+    metrics = {"width": 360, "height": 740, "deviceScaleFactor": 1, "mobile": True}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+    try:
+        chart = Chart(browser)
+        browser.execute_async_script(
+            "const wide = () => innerWidth > 360 || document.documentElement.scrollWidth > 360;"
+            "const look = () => wide() ? setTimeout(look, 20) : arguments[0]();"
+            "requestAnimationFrame(look)"
+        )
+        chart.drag("low", 20)
+        check(chart, run["area"].values)
+    finally:
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
 def test_many_trials_are_counted_to_within_what_is_said(shown, many):
     browser = shown(many)
     for index, result in enumerate(many.results.values()):
@@ -321,22 +430,6 @@ def test_whole_numbers_move_in_whole_steps_and_belong_to_the_range_that_ends_at_
     ActionChains(chart.browser).move_to_element(grip).move_by_offset(0, -over.rect["height"] // 2).perform()
     seven = int(np.count_nonzero(values == 7))
     assert chart.one(".readout").text == f"7: {seven} trials, {100 * seven / values.size:.2f} %"
-
-
-def test_the_pointer_is_told_what_it_is_at(at_rest, run):
-    from selenium.webdriver import ActionChains
-
-    chart, values = at_rest(), run["area"].values
-    over = chart.one(".u-over")
-    chart.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", over)
-    ActionChains(chart.browser).move_to_element(over).perform()
-    found = re.fullmatch(r"(\S+) to below (\S+) ft: (\S+) trials, (\S+) %", chart.one(".readout").text)
-    inside = np.count_nonzero((values >= float(found[1])) & (values < float(found[2])))
-    assert int(found[3]) == inside
-    assert found[4] == f"{100 * inside / values.size:.2f}"
-    chart.one(".views input[value=cumulative]").click()
-    ActionChains(chart.browser).move_to_element_with_offset(chart.one(".u-over"), 30, 0).perform()
-    assert re.fullmatch(r"Up to \S+ ft: \S+ ± \S+ %", chart.one(".readout").text)
 
 
 def test_nothing_is_asked_of_a_network_and_nothing_could_be(chromium, run, tmp_path, requests_of):
@@ -380,18 +473,6 @@ def test_names_are_shown_and_not_run(shown, make):
     assert browser.execute_script("return [document.images.length, window.stolen ?? null]") == [0, None]
 
 
-@cases("trials", [1, 7, 40, 2499, 10**7])
-def test_shares_are_those_of_the_statistics(at_rest, trials):
-    """For any count, as for the few of which one may be dragged to: the same value, error and interval."""
-    counts = sorted({count for few in range(14) for count in (few, trials - few, trials * few // 13) if few <= trials})
-    script = "return arguments[0].map(count => shareOf(count, arguments[1], arguments[2]))"
-    told = at_rest().browser.execute_script(script, counts, trials, t_quantile(math.inf, 0.95))
-    for count, share in zip(counts, told, strict=True):
-        expected = proportion(count, trials)
-        known = (share["value"], share["error"], share["low"], share["high"])
-        assert known == pytest.approx((expected.value, expected.error, *expected.interval), rel=1e-9, abs=1e-15)
-
-
 @cases("name", ["none_accepted", "one_accepted"])
 def test_few_trials_are_no_trouble(request, shown, name):
     run = request.getfixturevalue(name)
@@ -431,29 +512,6 @@ def test_bars_are_drawn_together_and_percentiles_marked(shown, run):
     assert "Mean" in said
     chart.one("input.line[value=Mean]").click()
     assert "Mean" not in chart.one(".readout").text
-
-
-def test_a_fitted_distribution_is_drawn_and_named(at_rest):
-    from selenium.webdriver.support.select import Select
-
-    chart = at_rest()
-    browser = chart.browser
-    fits = Select(chart.one("select.fit"))
-    pixels = "return arguments[0].querySelector('canvas').toDataURL()"
-    for view in ("frequency", "cumulative", "reverse"):
-        chart.one(f".views input[value={view}]").click()
-        fits.select_by_index(0)
-        assert chart.one(".fitted").text == ""
-        before, certainty = browser.execute_script(pixels, chart.root), chart.said
-        fits.select_by_index(1)
-        assert browser.execute_script(pixels, chart.root) != before
-        assert chart.one(".fitted").text.startswith(f"Red line: {fits.options[1].text} (")
-        assert chart.said == certainty
-    fits.select_by_index(0)
-    points = browser.execute_script(
-        "return fittedLine({ shares: [0, 0.25, 0.5, 0.75, 1], parts: 2 }, { edges: [0, 2, 4] }, 100, 1, 'frequency')"
-    )
-    assert points == [[0.5, 50], [1.5, 50], [2.5, 50], [3.5, 50]]  # a uniform one: 50 trials in either bar
 
 
 def test_a_second_run_is_drawn_and_counted(shown, run, other):
@@ -498,19 +556,6 @@ def test_every_chart_is_saved_as_a_picture_with_its_own_styles(shown, run):
     assert "Variance explained" in svg
 
 
-def test_a_table_is_copied_as_a_table(at_rest):
-    browser = at_rest().browser
-    browser.execute_script(
-        "window.copied = null;"
-        "document.addEventListener('copy', () => { copied = String(getSelection()); }, { capture: true })"
-    )
-    browser.find_element("css selector", ".answers button.copy").click()
-    lines = [line for line in browser.execute_script("return copied").splitlines() if line.strip()]
-    assert lines[0].split("\t")[0] == "Forecast"
-    assert any(line.startswith("area\t") for line in lines)
-    assert browser.execute_script("return String(getSelection())") == ""
-
-
 def test_pictures_are_copied_and_tables_saved(shown, run, other):
     browser = shown(run, beside=other)
     browser.execute_cdp_cmd(
@@ -546,55 +591,12 @@ def test_all_tables_are_opened_and_closed_at_once(shown, run):
         assert browser.execute_script(count % left) == 0
 
 
-def test_the_links_to_the_parts_stay_in_sight(at_rest):
-    browser = at_rest().browser
-    browser.execute_script("document.getElementById('record').scrollIntoView()")
-    top = "return Math.round(document.querySelector('nav').getBoundingClientRect().top)"
-    assert browser.execute_script(top) == 0
-    heading = "return document.querySelector('#record h2').getBoundingClientRect().top"
-    height = "return document.querySelector('nav').getBoundingClientRect().height"
-    assert browser.execute_script(heading) >= browser.execute_script(height) - 1
-
-
-def test_on_paper_is_what_is_open_and_nothing_is_to_be_pressed(at_rest):
-    browser = at_rest().browser
-    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
-    try:
-        for selector, displayed in (("details[open] summary", True), ("details:not([open]) summary", False)):
-            found = browser.find_elements("css selector", selector)
-            assert found
-            assert {each.is_displayed() for each in found} == {displayed}
-        for selector in ("nav", ".boxes", ".reset", ".views"):
-            assert not browser.find_element("css selector", selector).is_displayed()
-        for selector in (".chart canvas", ".certainty", "#statistics table", ".readout", ".overlay .legend"):
-            assert browser.find_element("css selector", selector).is_displayed()
-    finally:
-        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
-
-
 def test_the_case_study_prints_on_15_pages(shown):
     pypdf = pytest.importorskip("pypdf")
     printed = shown(xlmc.load(CASE).simulate(trials=50_000)).execute_cdp_cmd(
         "Page.printToPDF", {"printBackground": True}
     )["data"]
     assert len(pypdf.PdfReader(io.BytesIO(base64.b64decode(printed))).pages) <= 15
-
-
-def test_a_narrow_screen_needs_no_scrolling_aside(at_rest, run):
-    browser = at_rest().browser
-    metrics = {"width": 360, "height": 740, "deviceScaleFactor": 1, "mobile": True}
-    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
-    try:
-        chart = Chart(browser)
-        browser.execute_async_script(
-            "const wide = () => innerWidth > 360 || document.documentElement.scrollWidth > 360;"
-            "const look = () => wide() ? setTimeout(look, 20) : arguments[0]();"
-            "requestAnimationFrame(look)"
-        )
-        chart.drag("low", 20)
-        check(chart, run["area"].values)
-    finally:
-        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
 def test_a_browser_that_ended_costs_no_other_test(browser, monkeypatch):

@@ -36,9 +36,9 @@ def programs(lower, rows, odd=(), targets=("G1", "D9")):
     return (made(lowering, [], found, frozenset()) for made in (NumpyProgram.of, JitProgram))
 
 
-@pytest.mark.parametrize("odd", [(), (20, 21, 50)])
-def test_loops_of_one_shape_give_what_numpy_gives(lower, odd):
-    made = list(programs(lower, 60, odd))
+def test_loops_of_one_shape_give_what_numpy_gives(lower):
+    """Most of them are of one shape; the rows with another formula are in loops of their own."""
+    made = list(programs(lower, 60, (20, 21, 50)))
     for n in (1, 777):
         draws = {"A1": np.random.default_rng(1).uniform(0.5, 0.9, n), "A2": np.random.default_rng(2).uniform(50, 70, n)}
         found = []

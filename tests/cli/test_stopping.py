@@ -103,7 +103,7 @@ def test_the_command_in_the_record_repeats_the_run(xlmc, book, tmp_path):
 
 
 PROGRAM = """
-import signal, sys
+import signal, sys, time
 signal.signal(signal.SIGINT, signal.default_int_handler)
 from xlmc.report.sheets import book
 from xlmc.run import simulate
@@ -112,6 +112,7 @@ add = simulate._Gathered.add
 def told(self, block):
     add(self, block)
     print("block", file=sys.stderr, flush=True)
+    time.sleep(0.01)  # so that few more come before the signal, however busy the machine is
 simulate._Gathered.add = told
 from xlmc.cli import main
 main()

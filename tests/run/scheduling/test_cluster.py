@@ -32,10 +32,12 @@ def cluster():
         command = [sys.executable, "-m", "distributed.cli.dask_worker", found.scheduler_address, "--no-nanny"]
         options = ["--nthreads", "1", "--no-dashboard"]
         with subprocess.Popen([*command, *options], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as other:
-            with Client(found, set_as_default=False) as client:
-                client.wait_for_workers(2, timeout=120)
-            yield found.scheduler_address, other
-            other.kill()
+            try:
+                with Client(found, set_as_default=False) as client:
+                    client.wait_for_workers(2, timeout=120)
+                yield found.scheduler_address, other
+            finally:
+                other.kill()
 
 
 @pytest.mark.parametrize(("workers", "threads"), [(1, 1), (4, 1), (1, 3)])

@@ -2,7 +2,7 @@
 
 Under the profile `fixed` a test's examples follow from the test's source and hypothesis's version alone: not from
 chance, from failures of earlier runs, or from the constants of whichever modules happen to be imported. They are a
-third of the number that the test sets, so that the whole suite is quick; `explore` tries ten times that number.
+fifth of the number that the test sets, so that the whole suite is quick; `explore` tries ten times that number.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from hypothesis import is_hypothesis_test, settings
 from hypothesis.internal import entropy, reflection
 from hypothesis.internal.conjecture import providers
 
-FIXED, EXPLORE, SHARE, FACTOR = "fixed", "explore", 3, 10
+FIXED, EXPLORE, SHARE, FACTOR = "fixed", "explore", 5, 10
 VARIABLE = "HYPOTHESIS_PROFILE"
 _USED = "_hypothesis_internal_use_settings"
 
@@ -57,7 +57,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Under `fixed` every test has a third of its examples, under `explore` ten times as many."""
+    """Under `fixed` every test has a fifth of its examples, under `explore` ten times as many."""
     explores = settings.get_current_profile_name().startswith(EXPLORE)
     tests = {id(item.obj): item.obj for item in items if isinstance(item, pytest.Function)}
     for test in filter(is_hypothesis_test, tests.values()):

@@ -64,9 +64,8 @@ def test_any_value_of_another_kind(tiny_run, tmp_path):
     with zipfile.ZipFile(tiny_run) as package:
         found = list(places(json.loads(package.read(RUN))))
     assert len(found) > 60
-    tried = [
-        (path, value) for number, path in enumerate(found) for value in (OTHERS[(number * 7 + 3) % len(OTHERS)], ...)
-    ]
+    tried = [(path, OTHERS[(number * 7 + 3) % len(OTHERS)]) for number, path in enumerate(found)]
+    tried += [(path, ...) for path in found[::2]]
     refused = 0
     for path, value in tried:
         book = edited(tiny_run, tmp_path / "edited.xlmcrun", path, value)
@@ -74,7 +73,7 @@ def test_any_value_of_another_kind(tiny_run, tmp_path):
         assert error is None or str(error).startswith(str(book)), (path, value)
         assert error is None or not OF_PYTHON.search(error.message), (path, value)
         refused += error is not None
-    assert refused > len(found)
+    assert refused > 0.5 * len(tried)
 
 
 @pytest.mark.parametrize("kind", ["input", "prior", "forecast"])

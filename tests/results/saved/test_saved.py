@@ -351,7 +351,7 @@ def test_an_end_that_is_no_words_is_refused(saved, tmp_path, words):
         open_run(path)
 
 
-@cases("value", [None, -1, 1e308, "x", [], {}, True, float("nan"), 10**30])
+@cases("value", [None, -1, "x", {}, float("nan"), 10**30])
 @cases("part", ["settings", "settings.stopping", "stopped"])
 def test_an_edited_field_inside_a_part_opens_as_a_run_or_is_refused(tiny, tmp_path, part, value):
     def inside(document):

@@ -162,6 +162,8 @@ def test_known_members_of_risk_families():
         family = FAMILIES[name]
         for given_keys in givens(family):
             p = PERCENTILES[len(family.keys) - len(given_keys)][0]
+            if 0 < len(given_keys) < len(family.keys) - 1:
+                continue  # all missing, or one: in between nothing is done that `MEMBERS` do not show
             x = family.ppf(np.array(p), *params)
             known = {key: value for key, value in zip(family.keys, params, strict=True) if key in given_keys}
             found = match_percentiles(family, known, list(zip(p, x.tolist(), strict=True)))

@@ -99,12 +99,12 @@ def test_a_circle_through_an_input_is_none(graph_of):
     assert names(graph.formulas) == ["B1"]
 
 
-def test_a_chain_of_20_000_cells(graph_of):
-    cells = {"A1": 1.0} | {f"A{row}": f"=A{row - 1}+1" for row in range(2, 20_001)}
-    graph = graph_of(cells, ["A20000"], inputs=["A1"])
-    assert len(graph.formulas) == 19_999
+def test_a_chain_of_5_000_cells(graph_of):
+    cells = {"A1": 1.0} | {f"A{row}": f"=A{row - 1}+1" for row in range(2, 5_001)}
+    graph = graph_of(cells, ["A5000"], inputs=["A1"])
+    assert len(graph.formulas) == 4_999
     assert names(graph.formulas)[:2] == ["A2", "A3"]
-    assert len(graph.varying) == 20_000
+    assert len(graph.varying) == 5_000
 
 
 def test_cells_that_an_array_formula_fills_vary_with_it(graph_of, array):

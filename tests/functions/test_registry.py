@@ -245,7 +245,7 @@ def test_a_row_goes_to_another_process_by_its_name():
     assert [name for name, row in ROWS.items() if pickle.loads(pickle.dumps(row)) is not row] == []
 
 
-@pytest.mark.parametrize("name", ["SIN", "SQRT", "+", "SUBTOTAL", "YEARFRAC", "SUM"])
+@pytest.mark.parametrize("name", ["SIN", "+", "YEARFRAC"])
 def test_where_nothing_is_imported_yet_it_is_found(name):
     """Those of the Analysis ToolPak are registered by another module than the one that makes their bodies."""
     read = "import pickle, sys; print(pickle.loads(sys.stdin.buffer.read()).name)"

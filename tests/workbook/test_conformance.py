@@ -1,20 +1,17 @@
 """Our reader against openpyxl's on workbooks that Excel saved: every formula, every cached value."""
 
-import warnings
-from collections import defaultdict
 from datetime import date, time, timedelta
-from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
+from xml.etree.ElementTree import iterparse
 
-import openpyxl
 import pytest
 from cases import cases
-from openpyxl.formula.translate import Translator
-from openpyxl.reader import excel
+from openpyxl.reader.excel import ExcelReader
 from openpyxl.utils.datetime import to_excel
 from openpyxl.utils.escape import unescape
-from openpyxl.worksheet._reader import WorkSheetParser, WorksheetReader
+from openpyxl.worksheet import _reader
+from openpyxl.worksheet._reader import ROW_TAG, WorkSheetParser
 from openpyxl.worksheet.formula import ArrayFormula, DataTableFormula
 
 from xlmc.address import column_letters
@@ -30,9 +27,26 @@ DAMAGED = "apache__clusterfuzz-testcase-minimized-POIXSSFFuzzer-5937385319563264
 UNREADABLE_BY_OPENPYXL = {"ClosedXML__formats.xlsx", DAMAGED}
 
 
+class Shared(NamedTuple):
+    """A formula that a cell shares with the first one of its group; what openpyxl would translate to the cell."""
+
+    text: str
+    origin: str
+
+    def translate_formula(self, _):
+        return self
+
+
+class ReadCell(NamedTuple):
+    """A cell as openpyxl parses it."""
+
+    value: object
+    data_type: str
+
+
 def value_of(cell, epoch):
     """The type and value that openpyxl reads, in our terms."""
-    if isinstance(cell.value, date | time | timedelta):  # what it makes of numbers formatted so, to a millisecond
+    if isinstance(cell.value, date | time | timedelta):  # to a millisecond
         return float, pytest.approx(to_excel(cell.value, epoch), abs=2e-8)
     if cell.data_type == "e":
         return ErrorCode, ErrorCode.from_text(cell.value)
@@ -45,23 +59,18 @@ def formula_of(cell):
     """A cell's formula as openpyxl reads it, or None."""
     if isinstance(cell.value, DataTableFormula) or cell.data_type != "f":
         return None
+    if isinstance(cell.value, Shared):
+        return Shared(cell.value.text.removeprefix("="), cell.value.origin)
     text = cell.value.text if isinstance(cell.value, ArrayFormula) else cell.value
     return (text or "").removeprefix("=") or None
 
 
 def written(content, place):
-    """Our formula as the cell itself would write it, translated from its master's place by openpyxl."""
+    """Our formula: its text where it stands in the cell itself, else with its origin."""
     formula = content.formula
     if formula is None or (formula.row, formula.column) == place:
         return formula and formula.text
-    row, column = place
-    translator = _translator(formula.text, formula.row, formula.column)
-    return translator.translate_formula(f"{column_letters(column)}{row}").removeprefix("=")
-
-
-@lru_cache(maxsize=1_000)  # most cells of a shared formula follow each other
-def _translator(text, row, column):
-    return Translator(f"={text}", origin=f"{column_letters(column)}{row}")
+    return Shared(formula.text, f"{column_letters(formula.column)}{formula.row}")
 
 
 def filled(cells):
@@ -69,59 +78,60 @@ def filled(cells):
     return {place: cell for place, cell in cells.items() if cell.value not in (None, "")}
 
 
-class ReadCell(NamedTuple):
-    """A cell as openpyxl parses it."""
-
-    value: object
-    data_type: str
-
-
-def cached_cells(sheet, parsed):
-    """Place -> cell with the value that openpyxl would read with `data_only`."""
-    return sheet._cells | {(cell["row"], cell["column"]): ReadCell(cell["value"], cell["data_type"]) for cell in parsed}
-
-
 def loaded(path):
-    """The workbook with formulas, and what Excel cached for these by sheet, both in one reading.
+    """The epoch; and by the title of each worksheet its cells as they stand, and with what Excel cached for formulas.
 
-    It is without charts and pictures, which take long to read.
+    openpyxl parses the cells and nothing else, those of formulas twice. It knows no styles: dates stay numbers.
     """
-    cached = defaultdict(list)
-    parse_cell, bind_cells = WorkSheetParser.parse_cell, WorksheetReader.bind_cells
+    reader = ExcelReader(path)
+    reader.read_manifest()
+    reader.read_strings()
+    reader.read_workbook()
+    found = {}
+    for sheet, rel in reader.parser.find_sheets():
+        if rel.target in reader.valid_files and "chartsheet" not in rel.Type:
+            with reader.archive.open(rel.target) as file:
+                found[sheet.name] = parsed(file, reader.shared_strings, reader.wb.epoch)
+    return reader.wb.epoch, found
 
-    def parse_twice(parser, element):
-        cell = parse_cell(parser, element)
+
+def parsed(file, strings, epoch):
+    """The cells of a sheet as they stand, and with cached values: of each place, what openpyxl makes of it."""
+    parser = WorkSheetParser(None, strings, epoch=epoch)
+    parse_cell, stand, cached = parser.parse_cell, {}, {}
+
+    def parse_twice(element):
+        cell = parse_cell(element)
+        place = cell["row"], cell["column"]
+        stand[place] = cached[place] = ReadCell(cell["value"], cell["data_type"])
         if cell["data_type"] == "f":
             parser.data_only, parser.col_counter = True, cell["column"] - 1
-            cached[id(parser)].append(parse_cell(parser, element))
+            again = parse_cell(element)
+            cached[place] = ReadCell(again["value"], again["data_type"])
             parser.data_only = False
         return cell
 
-    def bind(reader):
-        bind_cells(reader)
-        cached[reader.ws.title] = cached.pop(id(reader.parser), [])
-
-    with pytest.MonkeyPatch.context() as patch, warnings.catch_warnings():
-        patch.setattr(excel, "find_images", lambda package, path: ([], []))
-        patch.setattr(WorkSheetParser, "parse_cell", parse_twice)
-        patch.setattr(WorksheetReader, "bind_cells", bind)
-        warnings.simplefilter("ignore")  # of extensions that openpyxl would lose on saving
-        return openpyxl.load_workbook(path), cached
+    parser.parse_cell = parse_twice
+    for _, element in iterparse(file):
+        if element.tag == ROW_TAG:
+            parser.parse_row(element)
+            element.clear()
+    return stand, cached
 
 
 @cases("path", [path for path in BOOKS if path.name not in UNREADABLE_BY_OPENPYXL] or [None])
-def test_formulas_and_values_as_openpyxl_reads_them(path):
+def test_formulas_and_values_as_openpyxl_reads_them(path, monkeypatch):
+    monkeypatch.setattr(_reader, "Translator", Shared)
     book = read_workbook(path)
-    formulas, values = loaded(path)
-    assert list(book.sheets) == [sheet.title for sheet in formulas.worksheets]
-    for sheet in formulas.worksheets:
-        cells = book.sheets[sheet.title].cells
-        theirs, cached = filled(sheet._cells), filled(cached_cells(sheet, values[sheet.title]))
+    epoch, sheets = loaded(path)
+    assert list(book.sheets) == list(sheets)
+    for title, (formulas, values) in sheets.items():
+        cells = book.sheets[title].cells
         found = {place: text for place, content in cells.items() if (text := written(content, place))}
-        assert found == {place: formula_of(cell) for place, cell in theirs.items() if formula_of(cell)}
+        assert found == {place: text for place, cell in filled(formulas).items() if (text := formula_of(cell))}
         # An empty text is now blank, now a text to openpyxl.
         found = {place: (type(c.value), c.value) for place, c in cells.items() if c.value not in (None, "")}
-        assert found == {place: value_of(cell, formulas.epoch) for place, cell in cached.items()}
+        assert found == {place: value_of(cell, epoch) for place, cell in filled(values).items()}
 
 
 @pytest.mark.parametrize("name", sorted(UNREADABLE_BY_OPENPYXL))

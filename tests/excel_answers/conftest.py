@@ -253,11 +253,17 @@ def drawn_answers(table: Table, engine: str) -> dict[Row, object]:
     lowering, draws = _drawn(table)
     faults = lowering.faults
     found: dict[Row, object] = {row: Refused(faults[row.cell].message) for row in table.rows if row.cell in faults}
-    for group in _groups([row for row in table.rows if row not in found], engine):
+    groups = _groups([row for row in table.rows if row not in found], engine)
+    while groups:
+        group = groups.pop()
         cells = [cell for row in group for cell in (row.cell, row.asked)]
         program = ENGINES[engine].load()(lowering, [Target(cell, cell) for cell in cells], [], frozenset())
-        columns = [_held(column) for column in program.evaluator(TRIALS).filters(draws, TRIALS)]
-        found |= {row: _seen(row, *pair) for row, pair in zip(group, batched(columns), strict=True)}
+        evaluator = program.evaluator(TRIALS)
+        columns = [_held(column) for column in evaluator.filters(draws, TRIALS)]
+        if engine == "numpy" and len(group) > 1 and evaluator._left_fast_path:
+            groups += [[row] for row in group]
+        else:
+            found |= {row: _seen(row, *pair) for row, pair in zip(group, batched(columns), strict=True)}
     return found
 
 
@@ -267,12 +273,16 @@ def batched(columns: list[Held]) -> Iterator[tuple[Held, Held]]:
 
 
 def _groups(rows: list[Row], engine: str) -> list[list[Row]]:
-    """Which rows are evaluated together: for NumPy each alone, as an error leads all of a block off the fast path; for
-    the compiled engine, which takes long to compile, the errors and the other rows."""
-    if engine == "numpy":
-        return [[row] for row in rows]
+    """Which rows are evaluated together: of those that give no error NumPy takes few, as an error leads all of a block
+    off the fast path, and each error alone; the compiled engine, which takes long to compile, all, and all errors."""
     errors = [row for row in rows if isinstance(row.answer, ErrorCode)]
-    return [group for group in (errors, [row for row in rows if row not in errors]) if group]
+    others = [row for row in rows if row not in errors]
+    alone, few = (1, 6) if engine == "numpy" else (len(rows), len(rows))
+    return [*_shares(errors, alone), *_shares(others, few)]
+
+
+def _shares(rows: list[Row], size: int) -> list[list[Row]]:
+    return [rows[start : start + size] for start in range(0, len(rows), size)]
 
 
 def _held(column: Column) -> Held:

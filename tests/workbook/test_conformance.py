@@ -128,7 +128,8 @@ def test_formulas_and_values_as_openpyxl_reads_them(path, monkeypatch):
     for title, (formulas, values) in sheets.items():
         cells = book.sheets[title].cells
         found = {place: text for place, content in cells.items() if (text := written(content, place))}
-        assert found == {place: text for place, cell in filled(formulas).items() if (text := formula_of(cell))}
+        theirs = {place: text for place, cell in filled(formulas).items() if (text := formula_of(cell))}
+        assert found == theirs
         # An empty text is now blank, now a text to openpyxl.
         found = {place: (type(c.value), c.value) for place, c in cells.items() if c.value not in (None, "")}
         assert found == {place: value_of(cell, epoch) for place, cell in filled(values).items()}

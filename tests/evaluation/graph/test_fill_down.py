@@ -76,7 +76,7 @@ def canonical(lowering):
     return {cell: numbers[lowering.cell(cell)] for cell in lowering.graph.formulas}
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(data=st.data())
 def test_a_pattern_gives_what_lowering_gives(lower, data):
     cells, inputs = a_book(data.draw)

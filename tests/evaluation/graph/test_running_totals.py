@@ -113,7 +113,7 @@ def test_what_two_columns_need_is_not_listed_for_each_range(workbook):
         listed = [part for parts in graph.needs.parts.values() for part in parts if isinstance(part, tuple)]
         return sum(map(len, listed))
 
-    assert kept(300) - kept(250) == kept(250) - kept(200)
+    assert kept(160) - kept(130) == kept(130) - kept(100)
 
 
 def alone(run, cells, draws, wanted):

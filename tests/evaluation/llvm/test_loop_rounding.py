@@ -20,7 +20,7 @@ from xlmc.functions.registry import REGISTRY
 from xlmc.functions.values import Value
 
 GENERATOR = np.random.default_rng(11)
-DIGITS = (0, 1, 2, 5, 9, 15, 22, -1, -4, -22)
+DIGITS = (0, 2, 9, 15, 22, -1, -22)
 TO_DIGITS = ("ROUND", "ROUNDUP", "ROUNDDOWN", "TRUNC")
 
 
@@ -39,16 +39,18 @@ def any_size(n):
 
 
 WHOLE = np.concatenate(
-    [np.arange(0.0, 120), 10.0 ** np.arange(0, 23), 2.0 ** np.arange(0, 60), 10.0 ** np.arange(16) - 1]
+    [np.arange(0.0, 60), 10.0 ** np.arange(0, 23), 2.0 ** np.arange(0, 60), 10.0 ** np.arange(16) - 1]
 )
 NUMBERS = {
     "whole": around(WHOLE),
     "halves": around(WHOLE + 0.5),
-    "decimals": around(np.concatenate([np.arange(1, 400) * 0.1, np.arange(1, 400) * 0.005, np.arange(1, 90) / 1000])),
-    "far decimals": around(np.outer(10.0 ** np.arange(-22, 5), np.arange(1, 20) * 0.5).ravel()),
-    "any size": around(any_size(400)),
-    "plain": GENERATOR.uniform(0, 1000, 4000),
-    "15 digits and more": around(GENERATOR.uniform(1e13, 1e17, 300)),
+    "decimals": around(
+        np.concatenate([np.arange(1, 400, 4) * 0.1, np.arange(1, 400, 4) * 0.005, np.arange(1, 90) / 1000])
+    ),
+    "far decimals": around(np.outer(10.0 ** np.arange(-22, 5), np.arange(1, 20, 3) * 0.5).ravel()),
+    "any size": around(any_size(100)),
+    "plain": GENERATOR.uniform(0, 1000, 2000),
+    "15 digits and more": around(GENERATOR.uniform(1e13, 1e17, 100)),
     "large": np.array([1e15, 2.0**52, 2.0**53, 4503599627370495.5, 1e22, 1e300, 1.7976931348623157e308]),
     "tiny": np.array([0.0, -0.0, 5e-324, 1e-310, 2.3e-308, 1e-307, 9e-291, 1e-290, 1.1e-290, 1e-200, 1e-30]),
 }
@@ -103,7 +105,7 @@ FINITE = st.floats(allow_nan=False, allow_infinity=False)
 DECIMALS = st.builds(lambda whole, digits: whole / 10.0**digits, st.integers(-(10**17), 10**17), st.integers(0, 20))
 
 
-@settings(max_examples=90)
+@settings(max_examples=45)
 @given(st.lists(FINITE | DECIMALS, min_size=1, max_size=40))
 @example([0.09999999999999995, 1.005, 2490399.9999999995, -2490399.9999999995, 0.285, 1e15 - 0.5])
 def test_any_numbers_are_rounded_to_the_bits_of_the_body(rounded, numbers):
@@ -156,7 +158,7 @@ def remainder(compiled):
     return compiled({"B1": "=MOD(A1,A2)"}, ("A1", "A2"))
 
 
-@settings(max_examples=90)
+@settings(max_examples=45)
 @given(st.lists(st.tuples(FINITE | DECIMALS, FINITE | DECIMALS), min_size=1, max_size=20), st.integers(1, 2**54))
 @example([(0.3, 0.1), (1.0, 0.1), (-0.3, 0.1), (6.0, 1.1)], 3)
 def test_remainders_of_any_numbers_and_of_near_multiples_are_exact(remainder, pairs, times):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import cycle
-
 import numpy as np
 import pytest
 
@@ -31,16 +29,16 @@ def computing(patch):
     patch.setattr(programs, "rules_of_looked_up", lambda *_: {})
 
 
-@pytest.mark.parametrize(("number", "processor"), [*zip(range(4), cycle(PROCESSORS))], indirect=["processor"])
+@pytest.mark.parametrize(("number", "processor"), [*zip((7, 13), PROCESSORS, strict=True)], indirect=["processor"])
 def test_the_bits_of_random_books_are_the_same(book, monkeypatch, processor, number):
-    """These books have every function and every lookup of `table_books`."""
+    """These two books have every lookup of `table_books` and all but one of its functions, a power."""
     found = told(some_book(book, number).simulate(TRIALS, 5, engine="jit"))
     with monkeypatch.context() as patch:
         computing(patch)
         assert found == told(some_book(book, number).simulate(TRIALS, 5, engine="jit"))
 
 
-ROWS = range(1, 22)
+ROWS = range(1, 13)
 
 
 def sheet(formula):

@@ -90,6 +90,7 @@ class _Other:
     def end(self) -> None:
         self._in.close()
         self._process.wait()
+        self._out.close()
 
 
 def _tell(pipe: IO[str], line: str) -> None:

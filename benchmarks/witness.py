@@ -35,6 +35,7 @@ RECORDED: Final = ROOT / "benchmarks" / "results" / "witness.json"
 
 ENGINES: Final = ("numpy", "jit")
 SAMPLINGS: Final = ("mc", "lhs", "sobol")
+RUNS: Final = tuple((engine, sampling) for engine in ENGINES for sampling in SAMPLINGS)
 TRIALS: Final = 20_000
 SEED: Final = 7
 CLOSE: Final = 1e-12
@@ -62,16 +63,21 @@ def features() -> Json:
     return {"machine": platform.machine(), "features": used, "numpy": np.__version__}
 
 
-def witnessed(path: Path, *, parts: bool = True) -> Json:
-    """What the runs of a book give: `{"numpy mc": {...}, ..., "parts": {...}}`."""
+def witnessed(path: Path, *, parts: bool = True, runs: Iterable[tuple[str, str]] = RUNS) -> Json:
+    """What the runs of a book give: `{"numpy mc": {...}, ..., "parts": {...}}`.
+
+    Args:
+        path: of the book.
+        parts: whether to look at the result workbook, which is that of the run `numpy mc`.
+        runs: engine and sampling method of each.
+    """
     model = xlmc.load(path)
     found: Json = {}
-    for engine in ENGINES:
-        for sampling in SAMPLINGS:
-            run = model.simulate(trials=TRIALS, seed=SEED, engine=engine, sampling=sampling)
-            found[f"{engine} {sampling}"] = _of_run(run)
-            if parts and (engine, sampling) == ("numpy", "mc"):
-                found["parts"] = dict(_parts(run))
+    for engine, sampling in runs:
+        run = model.simulate(trials=TRIALS, seed=SEED, engine=engine, sampling=sampling)
+        found[f"{engine} {sampling}"] = _of_run(run)
+        if parts and (engine, sampling) == ("numpy", "mc"):
+            found["parts"] = dict(_parts(run))
     return found
 
 

@@ -3,7 +3,19 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from xlmc.run.rare import learning
+
 
 @pytest.fixture
 def random():
     return np.random.default_rng(11)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def small_populations():
+    """A fourth of the points in a search, which has no share in what its answers mean: errors and limits stand."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(learning, "_POPULATION", 1_024)
+        patch.setattr(learning, "_FIRST", 16_384)
+        patch.setattr(learning, "_FITTED", 4_096)
+        yield

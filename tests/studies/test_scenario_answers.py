@@ -69,13 +69,15 @@ def test_differences_are_to_the_workbook_as_it_is(model):
     assert same.acceptance_difference.error == 0.0
 
 
-def test_errors_of_differences_are_those_of_many_seeds(model, subtests):
+def test_errors_of_differences_are_those_of_many_seeds(model):
     """Over 24 seeds the root mean square of difference less truth, in its error, is 1: within 4 standard errors of it.
 
     Student's t of 15 degrees of freedom, for replicates, has a root mean square of 1.074; step functions of few trials
     leave their error up to 10 % too large.
     """
+    model = Model(model.workbook, replace(model.definitions, scenarios=SCENARIOS[:3]), model.path)
     truth = answers(model, trials=50_000, seed=99)
+    off = {}
     for sampling, widest in (("mc", 1.0), ("lhs", 1.074)):
         runs = [answers(model, trials=400, seed=seed, sampling=sampling) for seed in range(24)]
         for number, scenario in enumerate(SCENARIOS[:3], 1):
@@ -87,8 +89,9 @@ def test_errors_of_differences_are_those_of_many_seeds(model, subtests):
 
                 z = [(value(each).value - value(truth).value) / value(each).error for each in runs]
                 spread = float(np.sqrt(np.mean(np.square(z))))
-                with subtests.test(scenario.name, key=key, sampling=sampling):
-                    assert 0.9 - 4 / np.sqrt(48) < spread < widest + 4 / np.sqrt(48)
+                if not 0.9 - 4 / np.sqrt(48) < spread < widest + 4 / np.sqrt(48):
+                    off[scenario.name, key, sampling] = spread
+    assert off == {}
 
 
 def test_common_random_numbers_make_differences_sharper(model):

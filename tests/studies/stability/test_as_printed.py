@@ -8,7 +8,7 @@ import pytest
 from xlmc.studies.stability import Level, stability
 from xlmc.studies.stability.case import Case
 
-TRIALS = 30_000
+TRIALS = 10_000
 
 
 @pytest.fixture(scope="module")

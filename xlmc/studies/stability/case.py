@@ -76,6 +76,7 @@ class Case:
         self.nodes = closure(self.dag, [*self.node.values(), *self.conditions])
         self._exact = Exact(self.dag, self.nodes)
         self._known: dict[int, dict[int, Any]] = {}
+        self._inherent: dict[Cell, Floats] = {}
 
     @cached_property
     def draws(self) -> dict[str, Floats]:
@@ -91,7 +92,7 @@ class Case:
 
     def _room(self, trials: int) -> int:
         """How many trials of so many there is room for."""
-        each = 24 * len(self.nodes) + 16 * len(self.cells) * len(self.names)
+        each = 24 * len(self.nodes) + 8 * len(self.cells) * (2 * len(self.names) + 1)
         share = _BYTES / (each * (_PRIOR + _ACCEPTED))
         return trials if share >= 1 else max(_FEWEST_OF_EITHER, int(share * trials))
 
@@ -195,10 +196,12 @@ class Case:
 
     def inherent(self, cell: Cell) -> Floats:
         """The error that rounding the assumptions, and the result, would bring alone, `(n,)`; NaN where unknown."""
-        gradient = self.derivatives.cells[cell].gradient
-        moved: Floats = np.nansum(np.abs(gradient * self.derivatives.points), axis=1)
-        node = self.node[cell]
-        return np.fmax(DOUBLE * (moved + np.abs(self.number(node))), self.of_inputs[node])
+        if cell not in self._inherent:
+            gradient = self.derivatives.cells[cell].gradient
+            moved: Floats = np.nansum(np.abs(gradient * self.derivatives.points), axis=1)
+            node = self.node[cell]
+            self._inherent[cell] = np.fmax(DOUBLE * (moved + np.abs(self.number(node))), self.of_inputs[node])
+        return self._inherent[cell]
 
     def scale(self, cell: Cell) -> float:
         """The width of a cell's central range, or its size where it hardly varies; 1 for 0."""

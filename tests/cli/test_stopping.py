@@ -117,9 +117,8 @@ simulate._Gathered.add = told
 from xlmc.cli import main
 main()
 """
-# Threads have no process of their own: tests/run/stopping/test_runs.py interrupts them.
+# This process alone, and threads: tests/run/stopping/test_runs.py interrupts them.
 CREWS = [
-    (),
     ("-j", "2", "--scheduler", "processes"),
     ("--scheduler", "local", "--workers", "1"),
 ]

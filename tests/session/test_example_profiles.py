@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+import example_profiles
 import pytest
 
 TESTS = """
@@ -37,14 +38,15 @@ def drawn(run_tests, tmp_path):
     return run
 
 
-def test_the_default_examples_are_the_same_everywhere(drawn, tmp_path):
-    first = drawn(PYTHONHASHSEED="2")
+def test_the_default_examples_are_the_same_everywhere_and_the_option_wins_over_the_variable(drawn, tmp_path):
+    first = drawn(PYTHONHASHSEED="2", CI="true")
     assert 3 + 20 <= len(first) < 32  # a fifth of 15 and of 100; hypothesis may draw a simple one or two more
     constants = ", ".join(str(2.5 + n) for n in range(300))
     (tmp_path / "project" / "local.py").write_text(
         f"A = [{constants}, 'a text that stands in the source']", encoding="utf-8"
     )
-    assert drawn(before="import local", PYTHONHASHSEED="1", CI="true") == first
+    asked = {"PYTHONHASHSEED": "1", "HYPOTHESIS_PROFILE": "explore"}
+    assert drawn("--hypothesis-profile", "fixed", before="import local", **asked) == first
 
 
 def test_explore_draws_ten_times_as_many_and_others_each_time(drawn):
@@ -54,11 +56,8 @@ def test_explore_draws_ten_times_as_many_and_others_each_time(drawn):
     assert first != second
 
 
-def test_the_option_wins_over_the_variable(drawn):
-    assert len(drawn("--hypothesis-profile", "fixed", HYPOTHESIS_PROFILE="explore")) < 32
-
-
-def test_other_profiles_are_refused(run_tests):
-    code, shown = run_tests(TESTS, plugin="example_profiles", HYPOTHESIS_PROFILE="dsek")
-    assert code == 4
-    assert "there is no hypothesis profile 'dsek': choose fixed or explore" in shown
+def test_other_profiles_are_refused(pytestconfig, monkeypatch):
+    monkeypatch.setattr(pytestconfig.option, "hypothesis_profile", None)
+    monkeypatch.setenv("HYPOTHESIS_PROFILE", "dsek")
+    with pytest.raises(pytest.UsageError, match="no hypothesis profile 'dsek': choose fixed or explore"):
+        example_profiles.pytest_configure(pytestconfig)

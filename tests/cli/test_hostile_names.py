@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 
 import openpyxl
 import pytest
+from openpyxl.workbook.defined_name import DefinedName
 
 pytestmark = pytest.mark.usefixtures("short_books")
 
@@ -59,18 +60,19 @@ def test_every_part_is_well_formed_and_no_control_is_raw(xlmc, whole_book, hosti
 
 
 @pytest.fixture
-def with_headings(case_study, tmp_path):
-    """The case study with a column of notes whose heading steers a terminal, and with such a defined name."""
+def with_headings(plain_book, tmp_path):
+    """A book with a column, now of notes, whose heading steers a terminal, and with such a defined name."""
 
     def made(name):
-        book = openpyxl.load_workbook(case_study)
-        book.save(tmp_path / "plain.xlsx")
-        with zipfile.ZipFile(tmp_path / "plain.xlsx") as old, zipfile.ZipFile(tmp_path / name, "w") as new:
+        book = openpyxl.load_workbook(plain_book)
+        book.defined_names["Sum"] = DefinedName("Sum", attr_text="Model!$A$1")
+        book.save(plain_book)
+        with zipfile.ZipFile(plain_book) as old, zipfile.ZipFile(tmp_path / name, "w") as new:
             for part in old.namelist():
                 data = old.read(part)
                 if part == "xl/workbook.xml":
                     data = data.replace(b"<definedName name=", b'<definedName comment="_x001B_[2J" name=')
-                new.writestr(part, data.replace(b"Source", b"Source_x001B_[2J\xe2\x80\xae"))
+                new.writestr(part, data.replace(b"Distribution", b"Distribution_x001B_[2J\xe2\x80\xae"))
         return tmp_path / name
 
     return made
@@ -93,7 +95,7 @@ def test_headings_and_file_names_that_steer_a_terminal_are_escaped(xlmc, with_he
     for exact in ("cells", "structure"):  # what the run was made from, to the letter: a replay compares it
         del written["record"][exact]
     assert not RAW.search(json.dumps(written, ensure_ascii=False))
-    assert "Source\\x1b[2J" in json.dumps(written, ensure_ascii=False).replace("\\\\", "\\")
+    assert "Distribution\\x1b[2J" in json.dumps(written, ensure_ascii=False).replace("\\\\", "\\")
 
 
 def test_the_book_that_is_not_there_is_named_without_steering(xlmc):

@@ -8,7 +8,7 @@ import pytest
 from cases import cases
 
 SEED = 20261122
-INPUTS = {"zip": 24, "formulas": 30, "tables": 40, "runs": 12, "blocks": 30, "old": 30}
+INPUTS = {"zip": 12, "formulas": 15, "tables": 20, "runs": 6, "blocks": 30, "old": 15}
 RAN = {"zip": 0.2, "formulas": 0.4, "tables": 0.2, "runs": 0.1, "blocks": 0.5, "old": 0.2}
 
 

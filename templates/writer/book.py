@@ -29,16 +29,22 @@ _CREATED = datetime(2001, 1, 1, tzinfo=UTC)
 """A fixed date, so that building twice gives the same file."""
 
 
-def write_book(template: Template, path: Path) -> None:
+def write_book(template: Template, path: Path, values: Values | None = None) -> None:
     """Write one edition of a template as an Excel workbook, the values of its base case cached in every formula cell.
+
+    Args:
+        template: what the workbook says, in the units of the edition.
+        path: of the workbook.
+        values: of its formula cells, where they are known; else xlmc computes them.
 
     Raises:
         KeyError: a forecast, filter or correlation names a symbol that there is not.
         FormulaError: a formula cannot be computed.
     """
-    draft = BytesIO()
-    _write(template, draft, {})
-    values = computed(read_workbook(draft.getvalue(), path.name))
+    if values is None:
+        draft = BytesIO()
+        _write(template, draft, {})
+        values = computed(read_workbook(draft.getvalue(), path.name))
     _write(template, path, values)
     if template.diagram is not None:
         fix_chart_sizes(path, *chart_size(template.diagram))

@@ -13,6 +13,7 @@ import openpyxl
 import pytest
 from committed_books import BOOKS
 from needed_programs import missing
+from recalculated_books import RECALCULATED
 
 import xlmc
 from xlmc.address import parse_address
@@ -143,13 +144,15 @@ def _named_cells(workbook):
 def recalculated(book_path, tmp_path_factory):
     """`recalculated(name, sheet)`: (row, column) -> the value that LibreOffice computes from formulas alone.
 
+    Of one of `recalculated_books.RECALCULATED`.
+
     The cached values are removed first. So are the charts, which no cell depends on, and which it takes a tenth of the
     time to convert.
     """
     if reason := missing("soffice"):
         pytest.skip(reason)
     folder = tmp_path_factory.mktemp("libreoffice")
-    bare = [_without_cached_values(path, folder) for path in book_path.values()]
+    bare = [_without_cached_values(path, folder) for path in map(book_path.get, RECALCULATED)]
     profile = f"-env:UserInstallation={(folder / 'profile').as_uri()}"
     target = ["--convert-to", _EACH_SHEET, "--outdir", str(folder / "out")]
     command = ["soffice", "--headless", profile, *target, *map(str, bare)]

@@ -177,8 +177,8 @@ def test_a_block_holds_the_fewer_trials_the_larger_its_arrays_are(lower, rows, b
 
 @pytest.mark.parametrize("program", [NumpyProgram.of, JitProgram])
 def test_a_range_that_is_folded_cell_by_cell_takes_no_array(lower, program):
-    cells = {f"A{row}": f"=A{row - 1}*1.001+A1" for row in range(2, 1_500)}
-    lowering, targets = lower({**cells, "Z1": "=SUM(A2:A1499)"}, ["A1"], ["Z1"])
+    cells = {f"A{row}": f"=A{row - 1}*1.001+A1" for row in range(2, 400)}
+    lowering, targets = lower({**cells, "Z1": "=SUM(A2:A399)"}, ["A1"], ["Z1"])
     assert program(lowering, targets, [], frozenset()).largest_block >= 1 << 15
 
 

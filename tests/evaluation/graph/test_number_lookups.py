@@ -39,10 +39,11 @@ IFERROR(VLOOKUP(A1,D1:G6,2,FALSE),-1)  IF(A1>5,VLOOKUP(A1,D1:G6,2),0)  SUM(VLOOK
 """
 
 
-@cases("formula", LOOKUPS.split())
-def test_every_lookup_finds_what_its_own_body_finds(trials, monkeypatch, formula):
+@cases("number, formula", [*enumerate(LOOKUPS.split())])
+def test_every_lookup_finds_what_its_own_body_finds(trials, monkeypatch, number, formula):
+    """In the compiled engine every third."""
     table = TABLE | MIXED | ROWS
-    found = trials(table, formula, KEYS)
+    found = trials(table, formula, KEYS) if number % 3 == 0 else trials(table, formula, KEYS, ["numpy"])
     assert len({repr(answers) for answers in found.values()}) == 1, found
     with monkeypatch.context() as as_written:
         as_written.setattr(NumberLookups, "apply", lambda *_: None)

@@ -39,7 +39,7 @@ RUNS = {
     "a text joined of 1,360": {"Z1": "=LEN(" + "&".join(["A1"] * 1360) + ")"},
     "a number that doubles in each of 2,000 cells": down("A", 2, 2000, "=A{p}+A{p}") | {"Z1": "=IFERROR(A2000,A1)"},
     "3,000 sums of one column": down("B", 1, 1000, "=A$1*{r}") | down("C", 1, 3000, "=SUM(B:B)") | {"Z1": "=SUM(C:C)"},
-    "running sums": down("B", 1, 1500, "=A$1*{r}") | down("C", 1, 1500, "=SUM($B$1:$B{r})") | {"Z1": "=SUM(C:C)"},
+    "running sums": down("B", 1, 1000, "=A$1*{r}") | down("C", 1, 1000, "=SUM($B$1:$B{r})") | {"Z1": "=SUM(C:C)"},
     "a column with a cell far down": {"B1": 1.0, "B65536": 2.0, "Z1": "=SUM(B1:B65536)+A1"},
     "the rest of a sheet": {
         "B1": 1.0,
@@ -55,7 +55,7 @@ RUNS = {
 MORE_MEMORY_OF = {
     "a sum of 300,000 numbers that vary": 300_000_000,
     "3,000 sums of one column": 150_000_000,
-    "running sums": 90_000_000,
+    "running sums": 45_000_000,
     "a column with a cell far down": 250_000_000,
 }
 """Bytes of some runs, 300 to a number of an array, 50 to a cell that a formula reads, 4,000 to a cell of a column."""

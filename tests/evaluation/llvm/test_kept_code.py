@@ -167,7 +167,8 @@ def _write_often(caches, text):
 
 
 def test_two_programs_may_write_at_once(tmp_path):
-    context = multiprocessing.get_context("spawn")
+    methods = multiprocessing.get_all_start_methods()
+    context = multiprocessing.get_context("fork" if "fork" in methods else "spawn")
     writers = [context.Process(target=_write_often, args=(tmp_path, text)) for text in (b"x", b"y")]
     for writer in writers:
         writer.start()

@@ -55,9 +55,9 @@ def sheet_names(data):
 
 @cases("number, path", [*enumerate(path for path in BOOKS if path.name not in BROKEN)] or [(0, None)])
 def test_only_the_five_change_removal_undoes_it_and_openpyxl_reads_the_result(number, path, results, other_results):
-    """openpyxl reads every fourth workbook; in another fourth the sheets are put in again, which leaves nothing behind.
+    """openpyxl reads every fourth workbook; in every eighth the sheets are put in again, which leaves nothing behind.
 
-    The hash of a host is that of what comes back, by the parts that it takes as they are; every third is hashed.
+    Every third has the same hash with them.
     """
     host = read_parts(path.read_bytes())
     once = inject(host, results)
@@ -71,7 +71,7 @@ def test_only_the_five_change_removal_undoes_it_and_openpyxl_reads_the_result(nu
         assert said(back, name) == said(host, name)
     if number % 3 == 0:
         assert original_hash(once) == original_hash(host)
-    if number % 4 == 1:
+    if number % 8 == 1:
         assert list(inject(inject(once, other_results), results).items()) == list(once.items())
     if number % 4 == 3:
         _check_reading(once, host)

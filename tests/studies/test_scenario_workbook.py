@@ -25,10 +25,12 @@ from xlmc.workbook.reader import read_workbook
 CASE = Path("examples/intersection.xlsx")
 FRICTION = "Nissan post-impact deceleration"
 STATES = {
-    "a range": ((Range(FRICTION, 0.7, 0.8),), {"Inputs!G17": 0.7, "Inputs!H17": 0.8}),
+    "a range and a limit": (
+        (Range(FRICTION, 0.7, 0.8), Limits("Restitution, tangential", {"at_most": 0.5})),
+        {"Inputs!G17": 0.7, "Inputs!H17": 0.8, "'Results wanted'!D16": 0.5},
+    ),
     "held at a value": ((Held(FRICTION, 0.7),), {"Inputs!D17": 0.7, "Inputs!P17": True}),
     "the lowest tenth": ((Band(FRICTION, 0, 10),), {"Inputs!O17": 0.635}),
-    "a limit": ((Limits("Restitution, tangential", {"at_most": 0.5}),), {"'Results wanted'!D16": 0.5}),
     "a cell": ((Typed(parse_address("Inputs!D28"), -20.0),), {"Inputs!D28": -20.0}),
     "a text": ((Typed(parse_address("Inputs!F17"), "Triangular"), Typed(parse_address("Inputs!I17"), 0.8)), None),
 }

@@ -40,7 +40,7 @@ def cluster():
                 other.kill()
 
 
-@pytest.mark.parametrize(("workers", "threads"), [(1, 1), (4, 1), (1, 3)])
+@pytest.mark.parametrize(("workers", "threads"), [(3, 1), (1, 3)])
 def test_workers_change_no_bit(model, bits, workers, threads):
     with in_one_process(workers, threads) as found:
         run = model.simulate(3050, scheduler=found.scheduler_address)

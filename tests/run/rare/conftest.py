@@ -13,9 +13,10 @@ def random():
 
 @pytest.fixture(scope="module", autouse=True)
 def small_populations():
-    """A fourth of the points in a search, which has no share in what its answers mean: errors and limits stand."""
+    """A fourth of the points and trials in a search, which has no share in what its answers mean: errors and limits stand."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(learning, "_POPULATION", 1_024)
         patch.setattr(learning, "_FIRST", 16_384)
         patch.setattr(learning, "_FITTED", 4_096)
+        patch.setattr(learning, "_TRIALS", 8_192)
         yield

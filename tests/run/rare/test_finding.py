@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from scipy.special import bdtr
 
+from xlmc.run.rare import learning
 from xlmc.run.rare.equalising import equalise
 from xlmc.run.rare.mixture import Mixture
 from xlmc.run.rare.proposal import Proposal, Shear
@@ -84,7 +85,7 @@ def test_a_layer_of_which_few_proposals_are_part_is_described_all_the_same():
     distance = wavy(half)
     random = [np.random.default_rng((11, each)) for each in (0, 1)]
     found = find(distance, lambda z: distance(z) == 0.0, 4, 300, 10**8, *random)
-    assert found.used.trials > 32_768
+    assert found.used.trials > learning._TRIALS
     assert np.all(distance(found.equalised.points) == 0.0)
     acceptance = found.equalised.acceptance
     assert abs(acceptance.value - truth) < 4.5 * acceptance.error

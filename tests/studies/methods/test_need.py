@@ -99,7 +99,7 @@ def test_filters_that_hardly_reject_are_not_blamed_for_curvature(book):
         {"y": "B1"},
         {"not the last": {"cell": "C1", "below": 0.999}},
     )
-    found = study(model, reference_trials=1 << 18, trials=1 << 10, replicates=2)
+    found = study(model, reference_trials=1 << 16, trials=1 << 10, replicates=2)
     first = curve_of(found, "taylor-1")
     parts = parts_of(found, shortfall(found, first))
     assert abs(parts.formulas) > 20.0 * abs(parts.filters)

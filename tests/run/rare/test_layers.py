@@ -95,7 +95,7 @@ def test_points_stand_for_the_trials_they_are_made_of(ground):
     varying = {**GIVEN, "b": {"cell": "A2", "distribution": "Normal", "mean": "A3", "std_dev": 1}}
     filters = {"f": {"cell": "B4", **THIN}, "g": {"cell": "A4", "at_least": 0}}
     found = ground(filters, {("d", "c"): 0.5}, formulas=["=A1-A2^2/4+A3"], given=varying)
-    uniforms = np.random.default_rng(5).random((20_000, found.dimensions))
+    uniforms = np.random.default_rng(5).random((5_000, found.dimensions))
     points = found.points(uniforms)
     assert found.uniforms(points) == pytest.approx(uniforms, abs=1e-12)
     assert np.array_equal(found.accepts(points), found._landscape.accepts_at(uniforms))

@@ -117,7 +117,7 @@ def test_a_worker_that_joins_later_is_asked_too(model, monkeypatch):
 
 @pytest.mark.parametrize("scheme", ["tcp", "tls", "http"])
 def test_no_scheduler(model, monkeypatch, scheme):
-    monkeypatch.setattr(scheduling, "PATIENCE", 0.5)
+    monkeypatch.setattr(scheduling, "PATIENCE", 0.2)
     with pytest.raises(SimulationError, match=rf"{scheme}://127\.0\.0\.1:9: no scheduler answers") as caught:
         model.simulate(1000, scheduler=f"{scheme}://127.0.0.1:9")
     assert "dask scheduler" in caught.value.hint

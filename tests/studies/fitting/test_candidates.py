@@ -115,13 +115,13 @@ def test_standard_errors_are_the_scatter_of_estimates(name):
 
 
 def test_the_bootstrap_of_the_triangular_is_the_scatter_of_estimates():
-    """40 samples, three times 100 bootstrap samples: the scatters are known to 11 % and, with the samples, to 16 %."""
+    """40 samples, twice 100 bootstrap samples: the scatters are known to 11 % and, with the samples, to 18 %."""
     candidate, random = CANDIDATES["Triangular"], np.random.default_rng(14)
     _, oracle = SAME["Triangular"]
     samples = [np.sort(oracle.rvs(200, random_state=random)) for _ in range(40)]
     estimates = [candidate.estimate(x) for x in samples]
     scatter = np.std(estimates, axis=0, ddof=1)
-    stated = np.mean([candidate.errors(x, found) for x, found in zip(samples[:3], estimates[:3], strict=True)], axis=0)
+    stated = np.mean([candidate.errors(x, found) for x, found in zip(samples[:2], estimates[:2], strict=True)], axis=0)
     np.testing.assert_allclose(stated, scatter, rtol=0.4)
 
 

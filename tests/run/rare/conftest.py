@@ -13,7 +13,7 @@ def random():
 
 @pytest.fixture(scope="module", autouse=True)
 def small_populations():
-    """A fourth of the points and trials in a search, which has no share in what its answers mean: errors and limits stand."""
+    """A fourth of the points and trials that a search learns from; whatever it learned, its answers must be right."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(learning, "_POPULATION", 1_024)
         patch.setattr(learning, "_FIRST", 16_384)

@@ -133,7 +133,8 @@ def test_a_run_in_pieces_gives_what_a_run_gives(book):
 
 def test_another_limit_makes_no_other_native_code(book):
     model = load(CASE)
-    simulate(model, trials=100, engine="jit")
+    before = applied(model, [Limits(TANGENT, {"at_most": 0.5678})])
+    simulate(before, trials=TRIALS, seed=5, engine="jit")
     misses = machine()._compiled.cache_info().misses
     moved = applied(model, [Limits(TANGENT, {"at_most": 0.4321})])
     found = simulate(moved, trials=TRIALS, seed=5, engine="jit")

@@ -70,10 +70,11 @@ class Writers:
 
     Args:
         trials: of each run.
+        book: name of an example.
     """
 
-    def __init__(self, trials: int) -> None:
-        model = xlmc.load(ROOT / "examples" / "intersection.xlsx")
+    def __init__(self, trials: int, book: str = "intersection") -> None:
+        model = xlmc.load(ROOT / "examples" / f"{book}.xlsx")
         self._runs = [model.simulate(trials, seed) for seed in (1, 2)]
         self._templates = [next(iter(entry.editions.values())).read_bytes() for entry in templates().values()][:2]
         self._contents: dict[str, list[bytes]] = {}

@@ -25,7 +25,7 @@ def _short_books():
 
 @pytest.fixture(scope="module")
 def writers():
-    """Two short runs of the case study."""
+    """Two short runs of a small book."""
     from faults import Writers
 
-    return Writers(2_000)
+    return Writers(2_000, "skid-100-ft")

@@ -7,6 +7,7 @@ import json
 import jsonschema
 import openpyxl
 import pytest
+from fewer_sheets import keep_few_trials, leave_out_fits
 from openpyxl.worksheet.table import Table
 
 from xlmc.report.json_document import SCHEMA
@@ -133,7 +134,9 @@ def test_a_weighted_run_that_keeps_no_trial_is_told_and_written(xlmc, short_book
     assert "identical" in xlmc("replay", tmp_path / "book-results.xlsx").out
 
 
-def test_a_weighted_run_says_so_everywhere_and_leaves_out_what_cannot_weight(xlmc, book, tmp_path):
+def test_a_weighted_run_says_so_everywhere_and_leaves_out_what_cannot_weight(xlmc, book, tmp_path, monkeypatch):
+    keep_few_trials(monkeypatch)
+    leave_out_fits(monkeypatch)
     path = book([*EDR[:2], 6.5, *EDR[3:]])
     page, found, rows = (tmp_path / f"book{ending}" for ending in (".html", ".json", ".csv"))
     kept = tmp_path / "book.xlmcrun"

@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 
 import openpyxl
 import pytest
+from fewer_sheets import keep_few_trials, leave_out_fits
 from openpyxl.workbook.defined_name import DefinedName
 
 pytestmark = pytest.mark.usefixtures("short_books")
@@ -40,7 +41,10 @@ def hostile(plain_book):
     return plain_book
 
 
-def test_every_part_is_well_formed_and_no_control_is_raw(xlmc, whole_book, hostile, tmp_path):
+def test_every_part_is_well_formed_and_no_control_is_raw(xlmc, whole_book, hostile, tmp_path, monkeypatch):
+    """All the sheets, with few of their many rows of numbers."""
+    keep_few_trials(monkeypatch)
+    leave_out_fits(monkeypatch)
     outputs = ("-o", "r.xlsx", "--html", "p.html", "--json", "j.json", "--extract", "t.csv", "--save-run", "s.xlmcrun")
     outcome = xlmc("simulate", hostile, *outputs)
     assert outcome.code == 0, outcome.err

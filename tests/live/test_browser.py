@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import shutil
 import time
 from pathlib import Path
 from xml.etree import ElementTree
 
 import openpyxl
 import pytest
-from live_books import CASE, SIMPLE, edited, wide_book
+from live_books import CASE, edited, simple, wide_book
 
 import xlmc
 from xlmc.definitions.scenarios import Held, Limits, Numbers
@@ -246,7 +245,7 @@ def test_by_mouse(chromium, running, case):
 def test_by_keys_alone(chromium, running, tmp_path):
     from selenium.webdriver.common.keys import Keys
 
-    page = Page(chromium, running(book=shutil.copy(SIMPLE, tmp_path / "case.xlsx")))
+    page = Page(chromium, running(book=simple(tmp_path / "case.xlsx")))
 
     def press(*keys):
         chromium.switch_to.active_element.send_keys(*keys)
@@ -301,7 +300,7 @@ def test_by_keys_alone(chromium, running, tmp_path):
 
 
 def test_at_every_width_nothing_overflows_and_names_and_contrast_are_right(chromium, running, tmp_path):
-    page = Page(chromium, running(book=shutil.copy(SIMPLE, tmp_path / "case.xlsx")))
+    page = Page(chromium, running(book=simple(tmp_path / "case.xlsx")))
     for width, height in WIDTHS:
         size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
         chromium.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
@@ -366,7 +365,7 @@ def test_a_workbook_with_sixty_assumptions_and_twelve_answers_stays_usable(chrom
 
 
 def test_names_of_a_hostile_workbook_are_text(chromium, running, tmp_path):
-    book = openpyxl.load_workbook(SIMPLE)
+    book = openpyxl.load_workbook(simple(tmp_path / "case.xlsx"))
     for sheet in book:
         for table in sheet.tables.values():
             if table.name in ("xlmc_assumptions", "xlmc_forecasts", "xlmc_filters"):
@@ -387,14 +386,14 @@ def test_names_of_a_hostile_workbook_are_text(chromium, running, tmp_path):
 def test_the_start_page_opens_what_is_there_and_what_is_dropped(chromium, running, tmp_path):
     folder = tmp_path / "folder"
     folder.mkdir()
-    shutil.copy(SIMPLE, folder / "mine.xlsx")
+    simple(folder / "mine.xlsx")
     server = running(folder=folder)
     chromium.get(server.server.link)
     end = time.monotonic() + 120
     while not (links := chromium.find_elements("css selector", "#books a")):
         assert time.monotonic() < end
     assert [each.text for each in links] == ["mine.xlsx"]
-    chromium.find_element("id", "file").send_keys(str(shutil.copy(SIMPLE, tmp_path / "other.xlsx")))
+    chromium.find_element("id", "file").send_keys(str(simple(tmp_path / "other.xlsx")))
     while "/book/" not in chromium.current_url:
         assert time.monotonic() < end
         time.sleep(0.05)

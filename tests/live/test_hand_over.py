@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-import shutil
 
 import openpyxl
 import pytest
 from fewer_sheets import SHORT, keep_few_trials, keep_sheets, leave_out_fits
-from live_books import SIMPLE, change, settle
+from live_books import change, settle, simple
 from old_format_book import plain_book
 
 from xlmc.errors import DefinitionError, WorkbookError, XlmcError
@@ -26,7 +25,7 @@ from xlmc.workbook.package import read_parts
 
 @pytest.fixture
 def book(tmp_path):
-    return shutil.copy(SIMPLE, tmp_path / "case.xlsx") and tmp_path / "case.xlsx"
+    return simple(tmp_path / "case.xlsx")
 
 
 @pytest.fixture
@@ -171,7 +170,8 @@ def test_a_change_that_no_table_has_room_for_is_told_with_the_column(book):
 def test_of_an_old_workbook_results_and_copies_are_new_ones_and_nothing_is_typed_into_it(tmp_path, monkeypatch):
     keep_sheets(monkeypatch, *SHORT)
     keep_few_trials(monkeypatch)
-    monkeypatch.setattr(joined_package, "parts_of_old_workbook", lambda _: read_parts(SIMPLE.read_bytes()))
+    parts = read_parts(simple(tmp_path / "source.xlsx").read_bytes())
+    monkeypatch.setattr(joined_package, "parts_of_old_workbook", lambda _: parts)
     book = tmp_path / "case.xls"
     book.write_bytes(plain_book({"S": b""}))
     before, session = book.read_bytes(), Session(load(book))

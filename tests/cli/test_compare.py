@@ -130,7 +130,7 @@ def test_nothing_accepted_is_a_warning_and_exit_code_1(xlmc, books, tmp_path):
 
 def test_the_case_study_on_two_rungs(xlmc):
     rungs = EXAMPLES / "intersection.xlsx", EXAMPLES / "intersection-momentum.xlsx"
-    outcome = xlmc("compare", *rungs, "--tolerance", "1.5 mph", "-n", "100000")
+    outcome = xlmc("compare", *rungs, "--tolerance", "1.5 mph", "-n", "40000")
     assert outcome.code == 0
     text = " ".join(outcome.out.split())
     assert "is enough for Chevrolet delta-V to 1.5 mph, Nissan delta-V to 1.5 mph and Chevrolet impact speed" in text

@@ -75,7 +75,7 @@ def test_models_with_the_same_assumptions_held_share_their_nodes(case):
     first = known.at_rest(frozen.having("assumption", WEIGHT, "high", 3_600.0))
     second = known.at_rest(frozen.having("assumption", WEIGHT, "high", 3_700.0))
     assert first.lowering is second.lowering is not case.lowering
-    for number in range(9):
+    for number in range(6):
         known.at_rest(state(frozen=True, base=0.7 + number / 100))
     assert len(known._holding) <= 5
 

@@ -35,6 +35,9 @@ DPI, POINTS = 60, 72
 CHART = (180.0, 110.0)
 """What is looked at of a chart on paper, width and height in points: it lies within the chart, whatever the font."""
 
+ENDS = [(1.5, 7.5), (None, 13.0), (11.0, None), (None, None)]
+"""Of ranges that a person types, one for each forecast."""
+
 CASE, MOST = 15, 25
 """The most pages of the case study, and of any book that belongs to the project."""
 
@@ -84,13 +87,22 @@ def drawn(make):
 
 
 @pytest.fixture(scope="module")
-def printed(case, drawn, tmp_path_factory):
-    """Name -> PDF: `case` as it prints, and the charts of `drawn`."""
+def typed(make):
+    """A run of a forecast for each of `ENDS`."""
+    cells = {"A1": 0.5, **{f"B{k}": f"={10 * k}*A1" for k in range(1, 5)}}
+    forecasts = [make.forecast(f"way {k}", f"B{k}") for k in range(1, 5)]
+    return make.simulate(cells, [make.uniform("a", "A1", 0.0, 1.0, base=0.5)], forecasts, trials=60)
+
+
+@pytest.fixture(scope="module")
+def printed(case, drawn, typed, tmp_path_factory):
+    """Name -> PDF: `case` as it prints, the charts of `drawn`, and `typed` with other ranges."""
     folder = tmp_path_factory.mktemp("rendering")
     with pytest.MonkeyPatch.context() as patch:
         leave_out_drawings(patch)
         book = _without_charts(save(case, folder / "case.xlsx", rows=60))
-    files = converted("pdf", folder, book, _unprinted(drawn, folder / "charts.xlsx"))
+    others = _unprinted(drawn, folder / "charts.xlsx"), _with_ranges(typed, folder / "typed.xlsx")
+    files = converted("pdf", folder, book, *others)
     return {file.stem: file for file in files}
 
 
@@ -151,6 +163,20 @@ def _unprinted(run, path):
         patch.setattr(ExactSheet, "print_area", lambda sheet, *area: sheet.name in data and print_area(sheet, *area))
         leave_out(patch, *OWN - {"Charts", "Pairs", *data})
         path.write_bytes(packed_sheets(run, rows=60))
+    return path
+
+
+def _with_ranges(run, path):
+    """The sheet Certainty of a run with `ENDS` for its ranges, and a sheet that says what is counted in each."""
+    with pytest.MonkeyPatch.context() as patch:
+        leave_out(patch, *OWN - {"Certainty", "Trials"})
+        book = openpyxl.load_workbook(io.BytesIO(packed_sheets(run, rows=60)))
+    sheet, counted = book["Certainty"], book.create_sheet("Counted", 0)
+    rows = [row[0].row for row in sheet.iter_rows() if str(row[4].value).startswith("=SUMPRODUCT")]
+    for row, (low, high) in zip(rows, ENDS, strict=True):
+        sheet.cell(row, 3).value, sheet.cell(row, 4).value = low, high
+        counted.append([f'="counted "&TEXT(Certainty!E{row},"0.{"0" * 15}")&" of "&Certainty!G{row}'])
+    book.save(path)
     return path
 
 
@@ -279,24 +305,13 @@ def test_no_cell_is_too_narrow_for_its_number(pages):
     assert not [page.sheet for page in pages if page.sheet in OWN and "###" in page.text]
 
 
-def test_ranges_that_a_person_types_are_counted_anew(make, tmp_path):
+def test_ranges_that_a_person_types_are_counted_anew(printed, typed):
     """openpyxl saves no values with formulas, so that LibreOffice has to compute them."""
-    cells = {"A1": 0.5, **{f"B{k}": f"={10 * k}*A1" for k in range(1, 5)}}
-    forecasts = [make.forecast(f"way {k}", f"B{k}") for k in range(1, 5)]
-    run = make.simulate(cells, [make.uniform("a", "A1", 0.0, 1.0, base=0.5)], forecasts, trials=60)
-    with pytest.MonkeyPatch.context() as patch:
-        leave_out(patch, *OWN - {"Certainty", "Trials"})
-        typed = openpyxl.load_workbook(io.BytesIO(packed_sheets(run, rows=60)))
-    sheet = typed["Certainty"]
-    rows = [row[0].row for row in sheet.iter_rows() if str(row[4].value).startswith("=SUMPRODUCT")]
-    ends = [(1.5, 7.5), (None, 13.0), (11.0, None), (None, None)]
-    for row, (low, high) in zip(rows, ends, strict=True):
-        sheet.cell(row, 3).value, sheet.cell(row, 4).value = low, high
-    typed.save(tmp_path / "typed.xlsx")
-    (path,) = converted("xlsx", tmp_path, tmp_path / "typed.xlsx")
-    counted = openpyxl.load_workbook(path, data_only=True)["Certainty"]
-    for row, (low, high), result in zip(rows, ends, run.results.values(), strict=True):
+    shown = " ".join(_printed(piece).text for piece in _pieces(printed["typed"]))
+    counted = re.findall(r"counted (\d\.\d{15}) of (\d+)", shown)
+    assert len(counted) == len(ENDS)
+    for (share, trials), (low, high), result in zip(counted, ENDS, typed.results.values(), strict=True):
         values = result.values[:60]
         inside = (values >= (-np.inf if low is None else low)) & (values <= (np.inf if high is None else high))
-        assert counted.cell(row, 5).value == pytest.approx(inside.mean(), abs=1e-12)
-        assert counted.cell(row, 7).value == 60
+        assert float(share) == pytest.approx(inside.mean(), abs=1e-12)
+        assert trials == "60"

@@ -163,6 +163,7 @@ def test_a_formula_like_name_is_a_title_and_a_long_one_is_shortened(make):
         {"A1": 1.0, "B1": "=A1", "B2": "=A1*2"},
         [make.uniform("a", "A1", 0.0, 1.0, base=1.0)],
         [make.forecast(name, cell) for name, cell in zip(names, ("B1", "B2"), strict=True)],
+        trials=200,
     )
     packed = packed_sheets(run)
     book = openpyxl.load_workbook(io.BytesIO(packed))

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.report.sheets import trials_sheet
 from xlmc.report.sheets.trials_sheet import HEADER
@@ -26,15 +27,21 @@ def test_a_trial_can_be_keyed_in_again(run, book):
     assert (area, difference) == (width * length + 10.0, width - length)
 
 
-@pytest.mark.parametrize(("rows", "shown"), [(7, 7), (0, 0), (-1, 0), (10**9, None)])
-def test_rows_are_capped_and_the_sheet_says_so(run, opened_short, rows, shown):
-    sheet = opened_short(run, rows=rows)["Trials"]
-    expected = run.accepted if shown is None else shown
+@pytest.fixture(scope="module")
+def few(run):
+    """300 trials of `run`."""
+    return run.model.simulate(300)
+
+
+@cases(("rows", "shown"), [(7, 7), (0, 0), (-1, 0), (10**9, None)])
+def test_rows_are_capped_and_the_sheet_says_so(few, opened_short, rows, shown):
+    sheet = opened_short(few, rows=rows)["Trials"]
+    expected = few.accepted if shown is None else shown
     assert sheet.max_row == FIRST - 1 + expected
     if shown is None:
-        assert sheet["A3"].value == f"All {run.accepted:,} accepted trials."
+        assert sheet["A3"].value == f"All {few.accepted:,} accepted trials."
     else:
-        assert sheet["A3"].value == f"Only the first {shown:,} of {run.accepted:,} accepted trials stand here."
+        assert sheet["A3"].value == f"Only the first {shown:,} of {few.accepted:,} accepted trials stand here."
         assert sheet["A3"].font.color.rgb == "FF9C0006"
 
 

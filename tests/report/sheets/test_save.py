@@ -33,7 +33,7 @@ def book(tmp_path):
 
 @pytest.fixture
 def case(book):
-    return xlmc.load(book).simulate(trials=20_000)
+    return xlmc.load(book).simulate(trials=5_000)
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +41,7 @@ def whole(tmp_path_factory):
     """A workbook, a run of it, and the file that this was saved in with all its sheets."""
     folder = tmp_path_factory.mktemp("whole")
     book = Path(shutil.copy(EXAMPLE, folder / "scene.xlsx"))
-    run = xlmc.load(book).simulate(trials=20_000)
+    run = xlmc.load(book).simulate(trials=5_000)
     return book, run, save(run, folder / "out.xlsx")
 
 
@@ -90,7 +90,7 @@ def test_saving_twice_gives_the_same_file(whole):
 
 def test_a_run_of_a_result_workbook_replaces_its_sheets(case, short_books, tmp_path):
     path = save(case, tmp_path / "out.xlsx")
-    again = xlmc.load(path).simulate(trials=20_000)
+    again = xlmc.load(path).simulate(trials=5_000)
     assert sheets(save(again, tmp_path / "again.xlsx")) == sheets(path)
 
 
@@ -134,7 +134,7 @@ def test_the_record_names_the_file_the_run_came_from(case, short_books, book, tm
     found = {row[0]: row[2] for row in record if len(row) > 2 and row[0]}
     assert found["file.sha256"] == hashlib.sha256(book.read_bytes()).hexdigest()
     assert found["run.command"] == "xlmc simulate scene.xlsx"
-    assert found["run.repeat"] == "xlmc simulate scene.xlsx --trials 20000 --seed 999"
+    assert found["run.repeat"] == "xlmc simulate scene.xlsx --trials 5000 --seed 999"
 
 
 def test_a_simulation_saves_itself(case, short_books, tmp_path):

@@ -92,7 +92,7 @@ def shown(tmp_path_factory):
     """The run, and formula -> what the result workbook shows for it; without result sheets.
 
     A sixteenth of the quantiles that stand for a piece of a distribution: the mean of the middles of 2¹⁶ equal parts is
-    off by less than 1e-8 of it, and the tolerance is 1e-6.
+    off by less than 1e-8 of it, the variance by less than 1e-7, and the tolerance is 1e-6.
     """
     folder = tmp_path_factory.mktemp("results")
     book = Workbook()

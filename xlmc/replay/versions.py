@@ -190,6 +190,7 @@ _COMMITS: Final = {
     "0.8.0": "9b6e83b15a18eff6e7b69dda8483149c1a89598f",
     "0.9.0": "adb41e5b90878c069eb919353532b23ca12c59e6",
     "0.10.0": "ef020dc5a73b4a5fcd48b50ea00a1d8bf3d0a8cc",
+    "0.11.0": "c1e30ea7db9c86e52d9a1a51f5eb1e8a31f640a7",
 }
 """The last commit of each version before this one."""
 

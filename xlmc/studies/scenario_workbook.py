@@ -111,13 +111,11 @@ def write_edited(edited: EditedWorkbook, path: Path, *, overwrite: bool = False)
         raise WorkbookError(f"a copy of a {edited.path.suffix} workbook must end in {ending}", where=path, hint=hint)
 
     def check() -> None:
-        if not is_same_file(path, edited.path):
-            Target(path, "", overwrite).check()
+        if overwrite and is_same_file(path, edited.path):
+            refuse_into_source(path, edited.sha256, "Try again")
             return
-        if not overwrite:
-            hint = "Name another file, or type the scenario into the workbook with --in-place"
-            refuse_read(path, [edited.path], hint)
-        refuse_into_source(path, edited.sha256, "Try again")
+        refuse_read(path, [edited.path], "Name another file, or type the scenario into the workbook with --in-place")
+        Target(path, "", overwrite).check()
 
     check()
     write_workbook(path, edited.data, check)

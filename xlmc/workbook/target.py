@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import unicodedata
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -48,7 +48,7 @@ class Target:
     book: str
     overwrite: bool = False
     untouched: Iterable[Path] = field(default=())
-    read: Iterable[Path] = field(default=())
+    read: Sequence[Path] = ()
 
     def check(self) -> None:
         """Refuse what must not or cannot be written; nothing is touched. To be asked before a run, and when writing.

@@ -86,13 +86,12 @@ def check_ending(path: Path, source: Path) -> None:
 
 def _check(simulation: Simulation, path: Path, *, overwrite: bool) -> None:
     """Refuse to replace somebody's file, or the workbook itself where it has changed since it was read."""
-    if not _is_source(simulation, path):
-        Target(path, simulation.model.workbook.name, overwrite).check()
+    if overwrite and _is_source(simulation, path):
+        refuse_into_source(path, simulation.model.workbook.sha256, "Run again, or write to another file")
         return
-    if not overwrite:
-        hint = "Name another file, or write the result sheets into it with --in-place (in Python: overwrite=True)"
-        refuse_read(path, [simulation.model.path], hint)
-    refuse_into_source(path, simulation.model.workbook.sha256, "Run again, or write to another file")
+    hint = "Name another file, or write the result sheets into it with --in-place (in Python: overwrite=True)"
+    refuse_read(path, [simulation.model.path], hint)
+    Target(path, simulation.model.workbook.name, overwrite).check()
 
 
 def _is_source(simulation: Simulation, path: Path) -> bool:

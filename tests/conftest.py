@@ -9,10 +9,9 @@ from __future__ import annotations
 from pathlib import Path
 from types import MappingProxyType
 
-import openpyxl
 import pytest
 from openpyxl.workbook.defined_name import DefinedName as WrittenName
-from openpyxl.worksheet.table import Table as WrittenTable
+from workbook_files import workbook_of
 
 from xlmc.address import Area, parse_address
 from xlmc.api import Model
@@ -162,20 +161,14 @@ SMALL_BOOK = {
 @pytest.fixture(scope="session")
 def small_book(tmp_path_factory):
     """A workbook file of two assumptions, two forecasts and a filter, with errors, a name, and a blank in a range."""
-    book = openpyxl.Workbook()
-    book.remove(book.active)
-    for name, rows in SMALL_BOOK.items():
-        sheet = book.create_sheet(name)
-        for row in rows:
-            sheet.append(row)
+    tables = {
+        "xlmc_assumptions": "Inputs!A1:F3",
+        "xlmc_forecasts": "Wanted!A1:D3",
+        "xlmc_filters": "Wanted!A5:D6",
+        "xlmc_settings": "Wanted!A8:B10",
+    }
+    book = workbook_of(SMALL_BOOK, tables)
     book["Inputs"]["A3"].data_type = "s"
-    for name, sheet, area in (
-        ("xlmc_assumptions", "Inputs", "A1:F3"),
-        ("xlmc_forecasts", "Wanted", "A1:D3"),
-        ("xlmc_filters", "Wanted", "A5:D6"),
-        ("xlmc_settings", "Wanted", "A8:B10"),
-    ):
-        book[sheet].add_table(WrittenTable(displayName=name, ref=area))
     book.defined_names["Rate"] = WrittenName("Rate", attr_text="Inputs!$B$5")
     path = tmp_path_factory.mktemp("small") / "small.xlsx"
     book.save(path)

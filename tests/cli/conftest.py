@@ -9,12 +9,13 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import ModuleType
 
-import openpyxl
 import pytest
 from fewer_sheets import SHORT, keep_few_trials, keep_sheets, leave_out_fits, leave_out_shapes
-from openpyxl.worksheet.table import Table
+from workbook_files import workbook_of
 
+from xlmc.api import Model
 from xlmc.cli import main
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -101,21 +102,14 @@ PLAIN = {
 
 @pytest.fixture(scope="session")
 def plain_original(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    made = openpyxl.Workbook()
-    made.remove(made.active)
-    for name, rows in PLAIN.items():
-        sheet = made.create_sheet(name)
-        for row in rows:
-            sheet.append(row)
-    for name, sheet, area in (
-        ("xlmc_assumptions", "Inputs", "A1:F4"),
-        ("xlmc_forecasts", "Wanted", "A1:D3"),
-        ("xlmc_filters", "Wanted", "A5:D6"),
-        ("xlmc_settings", "Wanted", "A8:B10"),
-    ):
-        made[sheet].add_table(Table(displayName=name, ref=area))
+    tables = {
+        "xlmc_assumptions": "Inputs!A1:F4",
+        "xlmc_forecasts": "Wanted!A1:D3",
+        "xlmc_filters": "Wanted!A5:D6",
+        "xlmc_settings": "Wanted!A8:B10",
+    }
     path = tmp_path_factory.mktemp("plain") / "case.xlsx"
-    made.save(path)
+    workbook_of(PLAIN, tables).save(path)
     return path
 
 
@@ -123,6 +117,30 @@ def plain_original(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def plain_book(plain_original: Path, tmp_path: Path) -> Path:
     """`case.xlsx`, the book `PLAIN`: what does not depend on the model takes a third of the time with it."""
     return Path(shutil.copy(plain_original, tmp_path / "case.xlsx"))
+
+
+@pytest.fixture(scope="module")
+def studies_made() -> dict[tuple[object, ...], object]:
+    """What was asked for -> what was found."""
+    return {}
+
+
+@pytest.fixture
+def made_once(studies_made: dict[tuple[object, ...], object], monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
+    """`made_once(module, name)`: a study is made once and told in several forms; what is asked again is known."""
+
+    def patch(module: ModuleType, name: str) -> None:
+        study = getattr(module, name)
+
+        def once(model: Model, *given: object, told: object = None, **asked: object) -> object:
+            key = name, model.path, model.workbook.sha256, *given, *asked.items()
+            if key not in studies_made:
+                studies_made[key] = study(model, *given, told=told, **asked)
+            return studies_made[key]
+
+        monkeypatch.setattr(module, name, once)
+
+    return patch
 
 
 @pytest.fixture

@@ -11,24 +11,9 @@ from xlmc.studies import methods
 SHORT = ("--reference-trials", "65536", "-n", "4096", "--replicates", "2", "--quiet")
 
 
-@pytest.fixture(scope="module")
-def kept():
-    """What was asked for -> what was measured."""
-    return {}
-
-
 @pytest.fixture(autouse=True)
-def studied_once(kept, monkeypatch):
-    """A study is made once and told in several forms: what is asked again is what was measured before."""
-    study = methods.study
-
-    def once(model, *, told=None, **asked):
-        key = model.path, model.workbook.sha256, *asked.items()
-        if key not in kept:
-            kept[key] = study(model, told=told, **asked)
-        return kept[key]
-
-    monkeypatch.setattr(methods, "study", once)
+def studied_once(made_once):
+    made_once(methods, "study")
 
 
 def test_words_and_files(xlmc, case_study, tmp_path, monkeypatch):

@@ -8,24 +8,9 @@ import pytest
 from xlmc.studies import screening
 
 
-@pytest.fixture(scope="module")
-def kept():
-    """What was asked for -> what was found."""
-    return {}
-
-
 @pytest.fixture(autouse=True)
-def screened_once(kept, monkeypatch):
-    """A screening is run once and told in several forms: what is asked again is what was found before."""
-    screen = screening.screen
-
-    def once(model, tolerance=(), *, told=None, **asked):
-        key = model.path, model.workbook.sha256, tolerance, *asked.items()
-        if key not in kept:
-            kept[key] = screen(model, tolerance, told=told, **asked)
-        return kept[key]
-
-    monkeypatch.setattr(screening, "screen", once)
+def screened_once(made_once):
+    made_once(screening, "screen")
 
 
 GEOMETRY = "*impact centre*, Orientation of tangent"

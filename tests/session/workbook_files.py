@@ -1,0 +1,24 @@
+"""Workbook files of some rows, with xlmc's tables on them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import openpyxl
+from openpyxl.worksheet.table import Table
+
+__all__ = ["workbook_of"]
+
+
+def workbook_of(sheets: Mapping[str, Iterable[Sequence[object]]], tables: Mapping[str, str]) -> openpyxl.Workbook:
+    """A workbook, not saved yet: sheet -> its rows, and table -> its place, such as `Inputs!A1:F3`."""
+    made = openpyxl.Workbook()
+    made.remove(made.active)
+    for name, rows in sheets.items():
+        sheet = made.create_sheet(name)
+        for row in rows:
+            sheet.append(row)
+    for name, place in tables.items():
+        sheet_name, _, area = place.partition("!")
+        made[sheet_name].add_table(Table(displayName=name, ref=area))
+    return made

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import compile_with_formulas, ir, parse
-from xlmc.formula.formula_tokens import TOKENS
+from xlmc.formula.formula_tokens import TOKENS, tokens_at
 from xlmc.formula.parse import _TreeBuilder
 
 TREES = {
@@ -238,6 +238,12 @@ def test_any_text_is_a_tree_or_a_fault_within_it(text):
         start, end = fault.span
         assert fault.text == text
         assert 0 <= start < end <= max(1, len(text))
+
+
+@given(st.lists(st.sampled_from(ALPHABET), max_size=6).map("".join) | st.text(max_size=8))
+def test_what_is_not_tried_at_a_text_does_not_match_it(text):
+    matching = [token for token in TOKENS if token._re.match(text)]
+    assert [token for token in tokens_at(text) if token in matching] == matching
 
 
 @pytest.mark.parametrize(("part", "count"), [("+A1", 4000), ("&A1", 4000), ("%", 4000)])

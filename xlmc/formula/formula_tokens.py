@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import re
 from abc import abstractmethod
-from collections.abc import Callable
-from typing import Any, ClassVar
+from collections.abc import Callable, Sequence
+from typing import Any, ClassVar, Final
 
 from formulas.errors import FormulaError as ForeignFormulaError
 from formulas.errors import TokenError
@@ -33,7 +33,7 @@ from xlmc.formula.reference_text import (
     prefix,
 )
 
-__all__ = ["QUOTED", "TOKENS", "Invocation", "Leaf", "opens_array", "without_line_breaks"]
+__all__ = ["QUOTED", "TOKENS", "Invocation", "Leaf", "opens_array", "tokens_at", "without_line_breaks"]
 
 _LINE_BREAK_IN_TEXT = "\0"  # no XML holds it, so no text of a workbook does
 
@@ -289,3 +289,14 @@ TOKENS: list[Callable[..., Any]] = [
     _Parenthesis,
     _Intersect,
 ]
+
+_OF_DIGITS: Final = (_Reference, _Number, _Intersect)
+_OF_LETTERS: Final = (_Error, _Reference, _Logical, _Name, _TableReference, _Function, _Intersect)
+_OF_SIGNS: Final = (_Operator, _Separator, _Array, Invocation, _Parenthesis, _Intersect)
+_BY_SIGN: Final = dict.fromkeys("0123456789", _OF_DIGITS) | dict.fromkeys("<>=-+*/^&%,;{}()", _OF_SIGNS)
+
+
+def tokens_at(text: str) -> Sequence[Callable[..., Any]]:
+    """Those of `TOKENS` that may stand at the start of a text, which its first sign behind the blanks decides."""
+    sign = text.lstrip()[:1]
+    return _OF_LETTERS if sign.isalpha() else _BY_SIGN.get(sign, TOKENS)

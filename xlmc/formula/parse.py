@@ -30,7 +30,7 @@ from schedula import EMPTY, DispatcherError
 
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
-from xlmc.formula.formula_tokens import QUOTED, TOKENS, Invocation, Leaf, opens_array, without_line_breaks
+from xlmc.formula.formula_tokens import QUOTED, Invocation, Leaf, opens_array, tokens_at, without_line_breaks
 from xlmc.formula.reference_text import prefix
 
 __all__ = ["compile_with_formulas", "parse", "parse_cell"]
@@ -114,17 +114,32 @@ def _operation(operator: str, operands: tuple[ir.Expression, ...]) -> ir.Express
 
 
 class _Parser(Parser):  # type: ignore[misc]  # formulas has no types
-    """`formulas.Parser` with our tokens and our builder. `rest` is what was left when the last token was looked for."""
+    """`formulas.Parser` with our tokens and our builder; it goes through `filters` once for each token.
+
+    Attributes:
+        rest: what was left when the last token was looked for.
+    """
 
     ast_builder = _TreeBuilder
 
     def __init__(self) -> None:
         super().__init__()
-        self.rest = 0
-        self.filters: list[Callable[..., Any]] = [self._note, *TOKENS]
+        self.rest = ""
+        self.filters = _Filters(self)
+
+
+class _Filters:
+    """What is tried for the next token: first what only notes the text at hand, then the classes that may be meant."""
+
+    def __init__(self, parser: _Parser) -> None:
+        self._parser = parser
+
+    def __iter__(self) -> Iterator[Callable[..., Any]]:
+        yield self._note
+        yield from tokens_at(self._parser.rest)
 
     def _note(self, text: str, context: object, parser: object) -> Any:
-        self.rest = len(text)
+        self._parser.rest = text
         raise TokenError(text)
 
 
@@ -146,7 +161,7 @@ def parse(text: str) -> ir.Expression:
     try:
         _, builder = parser.ast("=" + flat)
     except ForeignFormulaError:
-        start = min(max(0, len(text.rstrip()) - parser.rest), max(0, len(text.rstrip()) - 1))
+        start = min(max(0, len(text.rstrip()) - len(parser.rest)), max(0, len(text.rstrip()) - 1))
         raise _unread(text, start) from None
     closing = _closes_too_early(text)
     if closing is not None:

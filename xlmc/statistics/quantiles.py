@@ -29,6 +29,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -178,17 +179,23 @@ def _estimates_by_rank(
 
 def _rank_intervals(sample: Sample, p: Floats, n: Floats, confidence: float) -> Floats:
     """Return (len(p), 2) ends; infinite where the binomial count asks for a trial beyond the outermost."""
-    from scipy.special import bdtrik
-
     p = p.clip(_LEAST_SHARE, 1.0 - _LEAST_SHARE)
     tail = one_tail(confidence)
-    low, high = bdtrik(tail, n, p), bdtrik(1.0 - tail, n, p)  # ranks counted from 0
+    low, high = _ranks(tuple(p.tolist()), tuple(n.tolist()), tail)
     open_below, open_above = (1.0 - p) ** n > tail, p**n > tail
     last = np.maximum(n - 1.0, 1.0)
     ends = np.stack([low / last, high / last], axis=1).clip(0.0, 1.0)
     ends = sample.quantile(ends.ravel()).reshape(ends.shape)
     ends[open_below, 0], ends[open_above, 1] = -np.inf, np.inf
     return np.asarray(ends)
+
+
+@lru_cache(maxsize=256)
+def _ranks(p: tuple[float, ...], n: tuple[float, ...], tail: float) -> tuple[Floats, Floats]:
+    """Return two (len(p),), counted from 0; forecasts of one run often have the same number of trials."""
+    from scipy.special import bdtrik
+
+    return bdtrik(tail, n, p), bdtrik(1.0 - tail, n, p)
 
 
 def _binomial_trials(sample: Sample, p: Floats) -> Floats:

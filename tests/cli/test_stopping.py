@@ -117,16 +117,14 @@ simulate._Gathered.add = told
 from xlmc.cli import main
 main()
 """
-# This process alone, and threads: tests/run/stopping/test_runs.py interrupts them.
-CREWS = [
-    ("-j", "2", "--scheduler", "processes"),
-    ("--scheduler", "local", "--workers", "1"),
-]
+CREW = ("-j", "2", "--scheduler", "processes")
+"""Of this process alone, and of threads, tests/run/stopping/test_runs.py interrupts runs; of a local cluster,
+tests/run/scheduling/test_cluster.py."""
 
 
-def interrupted(book, options):
+def interrupted(book):
     """A run in a process group of its own, as a terminal starts it, and Ctrl-C for the group after three blocks."""
-    command = [sys.executable, "-c", PROGRAM, "simulate", str(book), "-n", "1000000000", "--quiet", *options]
+    command = [sys.executable, "-c", PROGRAM, "simulate", str(book), "-n", "1000000000", "--quiet", *CREW]
     where = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     with subprocess.Popen(command, **pipes, start_new_session=True, env=where) as process:
@@ -141,9 +139,8 @@ def interrupted(book, options):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="process groups are POSIX's")
-@pytest.mark.parametrize("options", CREWS, ids=" ".join)
-def test_ctrl_c_keeps_what_was_accepted(xlmc, book, tmp_path, options):
-    code, out, err = interrupted(book, options)
+def test_ctrl_c_keeps_what_was_accepted(xlmc, book, tmp_path):
+    code, out, err = interrupted(book)
     assert code == 130, err
     assert "Ended when it was interrupted." in out
     assert err.splitlines()[-1].startswith("xlmc: interrupted after ")

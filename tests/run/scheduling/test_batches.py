@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import gc
 import itertools
-import os
 import pickle
 import threading
 import time
@@ -10,9 +9,9 @@ import weakref
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
+from light_runners import Adding, FailingLate, NumberTask, TwoWordsError
 
 from xlmc.errors import SimulationError
-from xlmc.run.blocks import Task
 from xlmc.run.scheduling import batches
 from xlmc.run.scheduling.batches import Answers, Sharing, Worker, by_threads
 from xlmc.run.scheduling.processes import by_processes, idle_pool
@@ -40,28 +39,6 @@ class Numbers:
         return task.start
 
 
-class FailingLate:
-    """Blocks as numbers, until one fails; made in another process by its name."""
-
-    def __init__(self, first, kind, *words):
-        self.first, self.kind, self.words = first, kind, words
-
-    def runner(self):
-        return self
-
-    def run(self, task):
-        if task.start >= self.first:
-            raise self.kind(*self.words)
-        return task.start
-
-
-class TwoWordsError(Exception):
-    """Its copy cannot be made from its message."""
-
-    def __init__(self, first, second):
-        super().__init__(f"{first} {second}")
-
-
 class Slow:
     """So that the other has its part."""
 
@@ -82,7 +59,7 @@ def with_a_thread(runner, tasks):
 
 
 def numbered():
-    return (Task(start, 1, False) for start in range(1000))
+    return (NumberTask(start) for start in range(1000))
 
 
 @pytest.mark.parametrize(
@@ -98,19 +75,6 @@ def test_what_goes_wrong_in_a_block_is_told_in_its_turn(shared, failing):
     with pytest.raises((ValueError, RuntimeError, TwoWordsError), match="no such"):
         found.extend(shared(failing, numbered()))
     assert found == list(range(300))
-
-
-class Adding:
-    """A run of its own: its blocks are told from those of others; made in another process by its name."""
-
-    def __init__(self, number):
-        self.number, self.where = number, os.getpid()
-
-    def runner(self):
-        return Adding(self.number)
-
-    def run(self, task):
-        return task.start + self.number, self.where
 
 
 def test_runs_in_several_threads_at_once_get_their_own_blocks():
@@ -262,7 +226,7 @@ def test_a_run_that_is_left_ends_its_threads(monkeypatch):
     monkeypatch.setattr(batches._WorkerThread, "join", let_go)
 
     def tasks():
-        yield from (Task(start, 1, False) for start in range(10))
+        yield from (NumberTask(start) for start in range(10))
         assert other.begun.wait(120)
         raise KeyboardInterrupt
 

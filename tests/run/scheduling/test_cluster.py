@@ -8,6 +8,7 @@ import sys
 
 import pytest
 from distributed import Client, LocalCluster
+from psutil import Process
 
 from xlmc.errors import SimulationError
 from xlmc.run import simulate as module
@@ -54,8 +55,20 @@ def test_processes_change_no_bit(model, bits, cluster):
     assert [standing.trials for standing in seen] == [*range(100, 3001, 100), 3050]
 
 
-def test_a_local_cluster(model, bits):
-    assert bits(model.simulate(1000, scheduler="local", workers=1)) == bits(model.simulate(1000))
+def test_ctrl_c_in_a_local_cluster_keeps_what_was_accepted(model, bits):
+    """A terminal tells all processes of Ctrl-C; its workers go on until this process ends them."""
+    before = {*Process().children(recursive=True)}
+
+    def press(standing):
+        if standing.trials == 300:
+            for worker in {*Process().children(recursive=True)} - before:
+                worker.send_signal(signal.SIGINT)
+            signal.raise_signal(signal.SIGINT)
+
+    run = model.simulate(10**9, scheduler="local", workers=1, keep_interrupted=True, progress=press)
+    assert run.stopped.by == "interruption"
+    assert run.trials >= 300
+    assert bits(run) == bits(model.simulate(run.trials))
 
 
 def test_a_worker_that_is_killed_costs_only_time(model, bits, cluster):
@@ -115,18 +128,18 @@ def test_a_worker_that_joins_later_is_asked_too(model, monkeypatch):
         model.simulate(1000, scheduler=found.scheduler_address)
 
 
-@pytest.mark.parametrize("scheme", ["tcp", "tls", "http"])
-def test_no_scheduler(model, monkeypatch, scheme):
-    monkeypatch.setattr(scheduling, "PATIENCE", 0.2)
-    with pytest.raises(SimulationError, match=rf"{scheme}://127\.0\.0\.1:9: no scheduler answers") as caught:
-        model.simulate(1000, scheduler=f"{scheme}://127.0.0.1:9")
-    assert "dask scheduler" in caught.value.hint
+def test_no_scheduler(model, monkeypatch):
+    monkeypatch.setattr(scheduling, "PATIENCE", 0.05)
+    for scheme in ("tcp", "tls", "http"):
+        with pytest.raises(SimulationError, match=rf"{scheme}://127\.0\.0\.1:9: no scheduler answers") as caught:
+            model.simulate(1000, scheduler=f"{scheme}://127.0.0.1:9")
+        assert "dask scheduler" in caught.value.hint
     clients = [thing for thing in gc.get_objects() if type(thing).__name__ == "Closing"]
     assert all(client.status in ("closed", "newly-created") for client in clients)
 
 
 def test_no_workers(model, monkeypatch):
-    monkeypatch.setattr(scheduling, "PATIENCE", 0.5)
+    monkeypatch.setattr(scheduling, "PATIENCE", 0.1)
     with in_one_process(0) as found, pytest.raises(SimulationError, match="the scheduler has no workers") as caught:
         model.simulate(1000, scheduler=found.scheduler_address)
     assert f"dask worker {found.scheduler_address}" in caught.value.hint

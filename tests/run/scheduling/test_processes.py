@@ -5,14 +5,16 @@ import pickle
 import signal
 import subprocess
 import sys
+from threading import Event
 
 import pytest
+from light_runners import Adding
 
 from xlmc.errors import SimulationError
 from xlmc.run.blocks import Task
 from xlmc.run.scheduling import processes, worker_pool
 from xlmc.run.scheduling.batches import Answers
-from xlmc.run.scheduling.processes import WorkerProcess, by_processes, idle_pool
+from xlmc.run.scheduling.processes import IdlePool, WorkerProcess, by_processes, idle_pool
 from xlmc.run.scheduling.run_spec import RunSpec, model_runner
 
 
@@ -85,12 +87,12 @@ def answers_of(one, portable, batches):
     return found
 
 
-@pytest.mark.parametrize(("engine", "size"), [("numpy", 100), ("jit", 100), ("formulas", 10)])
-def test_blocks_of_another_process_are_the_same(model, process, engine, size):
+@pytest.mark.parametrize("engine", ["numpy", "jit"])
+def test_blocks_of_another_process_are_the_same(model, process, engine):
     """Whether it is sent a runner or a run spec; of a run its share is left to chance, here it runs all blocks."""
-    tasks = [Task(block * size, size, block < 3, block < 6) for block in range(10)]
-    runner = model_runner(model, model.program(engine), engine, 1, size)
-    portable = runner if engine == "numpy" else RunSpec.of(model, engine, 1, size)
+    tasks = [Task(100 * block, 100, block < 3, block < 6) for block in range(10)]
+    runner = model_runner(model, model.program(engine), engine, 1, 100)
+    portable = runner if engine == "numpy" else RunSpec.of(model, engine, 1, 100)
     found = answers_of(process, portable, [tasks[:3], tasks[3:4], tasks[4:]])
     assert [pickle.dumps(block) for block in found] == [pickle.dumps(runner.run(task)) for task in tasks]
 
@@ -105,30 +107,37 @@ def test_processes_wait_for_the_next_run(model, bits, children):
     assert all(one.returncode is not None for one in children[:-1])
 
 
-def rested(model):
-    """A process that has had part in a run."""
-    idle_pool.end()
-    (one,) = idle_pool.take(1)
-    answers = Answers()
-    one.begin(pickle.dumps(model_runner(model, model.program("numpy"), "numpy", 1, 100)), answers)
-    one.answered(answers.get()[1])
-    idle_pool.give_back([one])
-    return one
+class Idle:
+    """A process that has had part in a run, without the process."""
+
+    def __init__(self):
+        self.alive, self.ended = True, Event()
+
+    def rest(self):
+        return self.alive
+
+    def end(self):
+        self.ended.set()
 
 
-def test_one_that_died_while_it_waited_is_not(model, children):
-    one = rested(model)
-    children[-1].kill()
-    children[-1].wait()
-    (other,) = idle_pool.take(1)
+def test_one_that_waits_is_taken_again_unless_it_died(monkeypatch):
+    pool, one = IdlePool(), Idle()
+    pool.give_back([one])
+    assert pool.take(1) == [one]
+    pool.give_back([one])
+    one.alive = False
+    monkeypatch.setattr(processes, "WorkerProcess", Idle)
+    (other,) = pool.take(1)
     assert other is not one
-    other.end()
+    assert one.ended.is_set()
+    assert not other.ended.is_set()
 
 
-def test_nobody_waits_for_ever(model, monkeypatch, children):
+def test_nobody_waits_for_ever(monkeypatch):
     monkeypatch.setattr(processes, "_PATIENCE", 0.01)
-    rested(model)
-    assert children[-1].wait(timeout=120) is not None
+    one = Idle()
+    IdlePool().give_back([one])
+    assert one.ended.wait(timeout=120)
 
 
 class HandTimer:
@@ -148,37 +157,33 @@ class HandTimer:
             self.do(*self.given)
 
 
-def test_one_that_is_not_needed_is_ended_though_others_are(model, monkeypatch, children):
+def test_one_that_is_not_needed_is_ended_though_others_are(monkeypatch):
     """A run with many processes is over; those that follow, every few moments, need one of them."""
-    timers = []
+    timers, pool, both = [], IdlePool(), [Idle(), Idle()]
     monkeypatch.setattr(processes, "Timer", lambda *given: timers.append(HandTimer(*given)) or timers[-1])
-    started = idle_pool.take(2)
-    answers = Answers()
-    for one in started:
-        one.begin(pickle.dumps(model_runner(model, model.program("numpy"), "numpy", 1, 100)), answers)
-    for _ in started:
-        one, answer = answers.get()
-        one.answered(answer)
-    idle_pool.give_back(started)
+    pool.give_back(both)
     after_the_first = len(timers)
     for _ in range(3):
-        idle_pool.give_back(idle_pool.take(1))
+        pool.give_back(pool.take(1))
     for timer in timers[:after_the_first]:
         timer.end()
-    assert [one.poll() is None for one in children] == [False, True]
+    assert [one.ended.is_set() for one in both] == [True, False]
 
 
-def test_one_that_waits_is_taken_again_and_told_of_if_it_dies_as_its_run_begins(model, children):
-    one = rested(model)
-    (again,) = idle_pool.take(1)
-    assert again is one
+def test_one_that_rested_is_told_of_if_it_dies_as_its_run_begins(children):
+    answers = Answers()
+    for one in idle_pool.take(1):
+        one.begin(pickle.dumps(Adding(0)), answers)
+        one.answered(answers.get(timeout=120)[1])
+        idle_pool.give_back([one])
+    assert idle_pool.take(1) == [one]
     children[-1].kill()
     children[-1].wait()
-    answers = Answers()
-    again.begin(b"", answers)
+    assert not one.alive
+    one.begin(b"", answers)
     with pytest.raises(SimulationError, match="ended before its time"):
-        again.answered(answers.get(timeout=120)[1])
-    again.end()
+        one.answered(answers.get(timeout=120)[1])
+    one.end()
 
 
 def test_a_process_that_dies_is_told(model, children):
@@ -208,22 +213,3 @@ def test_an_error_in_a_process_comes_after_the_blocks_before_it(model, process):
     assert block.trials == 100
     assert isinstance(error, TypeError)
     assert "integers" in str(error)
-
-
-KILLED = """
-import os, signal, sys, xlmc
-def kill(standing):
-    if standing.trials > 150_000:
-        os.kill(os.getpid(), signal.SIGKILL)
-xlmc.load(sys.argv[1]).simulate(10**9, jobs=2, scheduler="processes", progress=kill)
-"""
-
-
-@pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
-def test_a_program_that_is_killed_leaves_no_process(case_study):
-    """Its processes hold the pipe of its errors, which is at its end when all are gone."""
-    where = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-    command = [sys.executable, "-c", KILLED, case_study]
-    found = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False, env=where, timeout=120)
-    assert found.returncode == -signal.SIGKILL
-    assert found.stderr == ""

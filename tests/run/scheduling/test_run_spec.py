@@ -9,11 +9,12 @@ from xlmc.run.blocks import Task
 from xlmc.run.scheduling.run_spec import RunSpec, check_software, model_runner, software, unpack
 
 
-def test_a_run_spec_makes_the_same_blocks(model):
-    spec = unpack(RunSpec.of(model, "numpy", 7, 100).pack())
+@pytest.mark.parametrize(("engine", "size"), [("numpy", 100), ("formulas", 10)])
+def test_a_run_spec_makes_the_same_blocks(model, engine, size):
+    spec = unpack(RunSpec.of(model, engine, 7, size).pack())
     again = spec.model()
-    task = Task(300, 80, True)
-    mine = model_runner(model, model.program("numpy"), "numpy", 7, 100).run(task)
+    task = Task(3 * size, size - 2, True)
+    mine = model_runner(model, model.program(engine), engine, 7, size).run(task)
     theirs = model_runner(again, again.program(spec.engine), spec.engine, spec.seed, spec.block).run(task)
     assert pickle.dumps(theirs) == pickle.dumps(mine)
     assert mine.accepted.size

@@ -2,14 +2,14 @@ from __future__ import annotations
 
 import re
 
-import pytest
+from cases import cases
 from committed_books import BOOKS, ROOT
 
 LEFT_BY_A_RUN = re.compile(r"^~\$|-results(-\d+)?$")
 """What a run of xlmc leaves beside a book, and Excel while it has one open."""
 
 
-@pytest.mark.parametrize("name", BOOKS)
+@cases("name", BOOKS)
 def test_every_book_of_the_list_exists(name):
     assert BOOKS[name].read_bytes().startswith(b"PK")
 

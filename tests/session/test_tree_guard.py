@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import os
 
-import pytest
 from tree_guard import changes, snapshot
 
 
@@ -30,25 +29,3 @@ def test_caches_and_environments_are_not_looked_into(tmp_path):
     for environment in (".venv", "other"):
         (tmp_path / environment / "pyvenv.cfg").write_text("", encoding="utf-8")
     assert snapshot(tmp_path) == {}
-
-
-WRITES = """
-from pathlib import Path
-def test_a(): Path("left-results.xlsx").write_text("")
-def test_b(): pass
-"""
-
-
-@pytest.mark.parametrize("processes", [[], ["-n", "1"]])
-def test_a_run_that_leaves_a_file_fails_and_names_it(run_tests, processes):
-    code, shown = run_tests(WRITES, *processes, plugin="tree_guard")
-    assert code == 1
-    assert "2 passed" in shown
-    assert shown.count("appeared: left-results.xlsx") == 1
-
-
-def test_a_run_that_leaves_nothing_passes(run_tests, tmp_path):
-    (tmp_path / "project" / "left-results.xlsx").touch()
-    code, shown = run_tests(WRITES, "-k", "test_b", plugin="tree_guard")
-    assert code == 0
-    assert "appeared" not in shown

@@ -13,10 +13,10 @@ def random():
 
 @pytest.fixture(scope="module", autouse=True)
 def small_populations():
-    """A fourth of the points and trials that a search learns from; whatever it learned, its answers must be right."""
+    """An eighth of the points and trials that a search learns from; whatever it learned, its answers must be right."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(learning, "_POPULATION", 1_024)
-        patch.setattr(learning, "_FIRST", 16_384)
-        patch.setattr(learning, "_FITTED", 4_096)
-        patch.setattr(learning, "_TRIALS", 8_192)
+        patch.setattr(learning, "_POPULATION", 512)
+        patch.setattr(learning, "_FIRST", 8_192)
+        patch.setattr(learning, "_FITTED", 2_048)
+        patch.setattr(learning, "_TRIALS", 4_096)
         yield

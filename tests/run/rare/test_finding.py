@@ -79,12 +79,12 @@ def wavy(half):
 
 def test_a_layer_of_which_few_proposals_are_part_is_described_all_the_same():
     """Its probability is 2h·E[φ(sin 3Z)], by 40-point quadrature; 4.5 standard errors are allowed for."""
-    half = 0.0007
+    half = 0.006
     nodes, weights = np.polynomial.hermite_e.hermegauss(40)
     truth = 2 * half * weights @ np.exp(-0.5 * np.sin(3.0 * nodes) ** 2) / (2 * np.pi)
     distance = wavy(half)
     random = [np.random.default_rng((11, each)) for each in (0, 1)]
-    found = find(distance, lambda z: distance(z) == 0.0, 4, 300, 10**8, *random)
+    found = find(distance, lambda z: distance(z) == 0.0, 4, 100, 10**8, *random)
     assert found.used.trials > learning._TRIALS
     assert np.all(distance(found.equalised.points) == 0.0)
     acceptance = found.equalised.acceptance

@@ -20,7 +20,7 @@ def bent_layer(random, n, dimensions):
 def test_weights_are_1_on_average_whatever_was_learnt(random, dimensions):
     """Over all proposals, accepted or not: the densities are densities, and the draws come from them."""
     proposal = fit_proposal(bent_layer(random, 4000, dimensions), np.ones(4000), random)
-    points = proposal.draw(60_000, random)
+    points = proposal.draw(20_000, random)
     weights = np.exp(proposal.log_weights(points))
     assert weights.max() <= 50.0 + 1e-9  # one in fifty proposals is a plain trial
     assert abs(weights.mean() - 1.0) < 4.5 * weights.std() / np.sqrt(weights.size)

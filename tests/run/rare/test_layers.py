@@ -118,7 +118,7 @@ def mean_over(of, weight, low, high):
 
 
 def test_the_answer_of_two_sheets_beside_another_filter_is_the_truth(book):
-    """A1² = 4 − A3 within ±10⁻⁶: two sheets, A1 = ±s, of which another filter keeps A2 ≤ 1 − A1, little of the upper."""
+    """A1² = 4 − A3 within ±10⁻⁶: two sheets, A1 = ±s; another filter, A2 ≤ 1 − A1, leaves little of one."""
     filters = {"f": {"cell": "B4", "at_least": -1e-6, "at_most": 1e-6}, "h": {"cell": "B5", "at_most": 1}}
     cells = {**CELLS, "B4": "=A1^2+A3-4", "B5": "=A1+A2"}
     given = {name: GIVEN[name] for name in "abc"}

@@ -11,9 +11,12 @@ from xml.sax.saxutils import escape
 
 import openpyxl
 import pytest
+from typed_cells import with_typed
 
 import xlmc
+from xlmc.address import parse_address
 from xlmc.workbook.reader import read_workbook
+from xlmc.workbook.workbook import Workbook
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT))
@@ -86,19 +89,6 @@ def tables() -> dict[str, list[tuple[str, ...]]]:
 
 
 @pytest.fixture(scope="session")
-def calculated() -> Callable[[Path], dict[tuple[str, str], object]]:
-    """`calculated(path)`: (sheet, cell) -> the value of each formula, as a spreadsheet program would show it."""
-    from templates.writer.cached import computed
-
-    def calculate(path: Path) -> dict[tuple[str, str], object]:
-        letter = openpyxl.utils.get_column_letter
-        values = computed(read_workbook(path)).items()
-        return {(sheet, f"{letter(column + 1)}{row + 1}"): value for (sheet, row, column), value in values}
-
-    return calculate
-
-
-@pytest.fixture(scope="session")
 def case(tmp_path_factory) -> Path:
     """The case as the guide leaves it before the first run: the template, with what the guide says in it."""
     path = tmp_path_factory.mktemp("guide") / "my-case.xlsx"
@@ -109,14 +99,28 @@ def case(tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="session")
+def workbook(case) -> Workbook:
+    """The case, read."""
+    return read_workbook(case)
+
+
+@pytest.fixture(scope="session")
 def run(case) -> xlmc.Simulation:
     """The run of section 7."""
     return xlmc.load(case).simulate()
 
 
 @pytest.fixture(scope="session")
+def changed(workbook) -> Callable[..., Workbook]:
+    """`changed({("Inputs", "D8"): 278})`: the case with other cells."""
+    return lambda cells: with_typed(
+        workbook, {parse_address(cell, sheet): each for (sheet, cell), each in cells.items()}
+    )
+
+
+@pytest.fixture(scope="session")
 def variant(case, tmp_path_factory) -> Callable[..., Path]:
-    """`variant({("Inputs", "D8"): 278})`: the case with other cells, saved by openpyxl."""
+    """`variant({("Inputs", "D8"): 278})`: a file of the case with other cells, saved by openpyxl."""
 
     def change(cells: dict[tuple[str, str], object]) -> Path:
         book = openpyxl.load_workbook(case)

@@ -11,9 +11,12 @@ from pathlib import Path
 import numpy as np
 import openpyxl
 import pytest
+from cases import cases
 from fewer_sheets import SHORT, fill_sheets, keep_few_trials, leave_out
+from typed_cells import model_of
 
 import xlmc
+from templates.writer.cached import computed
 from xlmc.cli import main
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -136,9 +139,9 @@ def test_following_the_guide_is_the_worked_example(run):
         np.testing.assert_allclose(run[name].values, result.values, rtol=1e-12)
 
 
-@pytest.mark.parametrize("change", ["nothing", *CHANGES])
-def test_what_a_change_does(run, variant, change):
-    found = xlmc.load(variant(CHANGES[change])).simulate() if change in CHANGES else run
+@cases("change", ["nothing", *CHANGES])
+def test_what_a_change_does(run, changed, change):
+    found = model_of(changed(CHANGES[change])).simulate() if change in CHANGES else run
     means = (found[name].mean.value for name in ("Nissan delta-V", "Nissan impact speed"))
     told = " | ".join([change, f"{found.accepted:,}", *(f"{mean:.2f}" for mean in means)])
     assert f"| {told} |" in GUIDE, told
@@ -182,27 +185,30 @@ def test_numbers_in_sentences(run):
     assert not missing
 
 
-def test_a_wrong_angle_turns_checks_false(variant, calculated):
-    right, wrong = (calculated(variant({("Inputs", "D8"): angle})) for angle in (186, 278))
-    assert right["Inputs", "A3"] == "All physics checks hold at the base case"
-    assert "physics check fails" in wrong["Inputs", "A3"]
-    failing = {cell for (sheet, cell), value in wrong.items() if sheet == "Model" and value is False}
+def test_a_wrong_angle_turns_checks_false(workbook, changed):
+    """The values that the case shows were computed as the others are."""
+    right, wrong = workbook.sheets, computed(changed({("Inputs", "D8"): 278}))
+    assert right["Inputs"].cells[3, 1].value == "All physics checks hold at the base case"
+    assert "physics check fails" in wrong["Inputs", 2, 0]
+    failing = {f"D{row + 1}" for (sheet, row, column), value in wrong.items() if sheet == "Model" and value is False}
     checks = {f"D{row}": check for row, check in enumerate(CHECKS, 101)}
     in_order = sorted(failing, key=lambda cell: int(cell[1:]))
     assert [checks[cell] for cell in in_order] == ["angles", "forward", "restitution", "all"]
-    assert all(right["Model", cell] is True for cell in checks)
+    assert all(right["Model"].cells[int(cell[1:]), 4].value is True for cell in checks)
 
 
-def test_an_accepted_trial_can_be_typed_into_the_workbook(run, variant, calculated):
+def test_an_accepted_trial_can_be_typed_into_the_workbook(run, changed):
     trial = run.frame().iloc[0]
     typed_in = {("Inputs", f"D{row}"): float(trial[name]) for row, name in enumerate(list(trial.index[:17]), 6)}
-    values = calculated(variant(typed_in))
+    values = computed(changed(typed_in))
     for forecast in run.model.forecasts:
-        assert values[forecast.cell.sheet, f"D{forecast.cell.row}"] == pytest.approx(trial[forecast.name], rel=1e-12)
+        sheet, row, column = forecast.cell
+        assert values[sheet, row - 1, column - 1] == pytest.approx(trial[forecast.name], rel=1e-12)
 
 
-def test_the_check_of_near_parallel_approaches_says_what_the_guide_says(case):
-    notes = [row[7].value or "" for row in openpyxl.load_workbook(case)["Model"].iter_rows(max_col=8)]
+def test_the_check_of_near_parallel_approaches_says_what_the_guide_says(workbook):
+    cells = workbook.sheets["Model"].cells.items()
+    notes = [content.value for (_, column), content in cells if column == 8 and content.value]
     assert any("9 % at δ = 10° and 94 % at 1°" in note for note in notes)
     assert "9 % at δ = 10° and by 94 % at δ = 1°" in PROSE
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-import openpyxl
 import pytest
+from typed_cells import model_of, named_cells, with_typed
 
-import xlmc
+from xlmc.address import Cell
+from xlmc.workbook.reader import read_workbook
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "guide.md").read_text(encoding="utf-8")
@@ -20,39 +21,34 @@ FORECASTS = ("Chevrolet delta-V", "Chevrolet impact speed", "Nissan impact speed
 
 
 @pytest.fixture(scope="module")
-def camera(tmp_path_factory):
+def camera():
     """The run of the book with what the page says of the video."""
-    made = openpyxl.load_workbook(ROOT / "templates" / "video-speed.xlsx")
-    sheet = made["Inputs"]
-    rows = {sheet.cell(row, 3).value: row for row in range(1, sheet.max_row + 1)}
+    made = read_workbook(ROOT / "templates" / "video-speed.xlsx")
+    at = named_cells(made)
     ends = {
         "d": re.search(r"gives ([\d.]+) to ([\d.]+) ft between them", PROSE).groups(),
         "rate": re.search(r"say ([\d.]+) to ([\d.]+) frames a second", PROSE).groups(),
     }
+    typed = {at["n"]: int(re.search(r"the hydrant: (\d+) frames", PROSE)[1])}
     for symbol, given in ends.items():
         low, high = map(float, given)
         for column, value in zip((4, 7, 8), ((low + high) / 2, low, high), strict=True):
-            sheet.cell(rows[symbol], column).value = value
-    sheet.cell(rows["n"], 4).value = int(re.search(r"the hydrant: (\d+) frames", PROSE)[1])
-    made.save(path := tmp_path_factory.mktemp("case") / "camera.xlsx")
-    return xlmc.load(path).simulate()
+            typed[at[symbol]._replace(column=column)] = value
+    return model_of(with_typed(made, typed)).simulate()
 
 
 @pytest.fixture(scope="module")
-def book(case, tmp_path_factory):
+def book(workbook):
     """`book(speed)`: the guide's case with the readings, the video's speed another one if given."""
+    labels = {content.value: row for (row, column), content in workbook.sheets["Evidence"].cells.items() if column == 1}
 
     def make(speed=None):
-        made = openpyxl.load_workbook(case)
-        sheet = made["Evidence"]
-        rows = {str(sheet.cell(row, 1).value): row for row in range(6, sheet.max_row + 1)}
+        typed = {}
         for name, reading, deviation in READINGS:
-            row = rows[f'=vehicle_1&"{name.removeprefix("Chevrolet")}"']
-            sheet.cell(row, 4).value = speed if speed and deviation else float(reading)
+            typed[Cell("Evidence", labels[name], 4)] = speed if speed and deviation else float(reading)
             if deviation:
-                sheet.cell(row, 7).value = float(deviation)
-        made.save(path := tmp_path_factory.mktemp("case") / "my-case.xlsx")
-        return xlmc.load(path)
+                typed[Cell("Evidence", labels[name], 7)] = float(deviation)
+        return model_of(with_typed(workbook, typed))
 
     return make
 

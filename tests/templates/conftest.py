@@ -11,12 +11,13 @@ from pathlib import Path
 import numpy as np
 import openpyxl
 import pytest
+import typed_cells
 from committed_books import BOOKS
 from needed_programs import missing
 from recalculated_books import RECALCULATED
+from typed_cells import named_cells, with_typed
 
 import xlmc
-from xlmc.address import parse_address
 from xlmc.evaluation.engine import Target
 from xlmc.evaluation.engines import ENGINES
 from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
@@ -86,6 +87,12 @@ def model_of(book_path):
 
 
 @pytest.fixture(scope="session")
+def typed(read):
+    """`typed(name, {"f_1": 75})`: the model of a committed workbook with other values in its cells."""
+    return lambda name, values: typed_cells.model_of(with_typed(read(name), values))
+
+
+@pytest.fixture(scope="session")
 def run_of(model_of):
     """`run_of(name)`: 20,000 trials of a committed workbook."""
     return cache(lambda name: model_of(name).simulate(20_000))
@@ -98,7 +105,7 @@ def shown(read):
     @cache
     def values(name):
         book = read(name)
-        return {symbol: book.content(cell).value for symbol, cell in _named_cells(book).items()}
+        return {symbol: book.content(cell).value for symbol, cell in named_cells(book).items()}
 
     return values
 
@@ -112,7 +119,7 @@ def cells(read):
 
     def compute(name, inputs, wanted):
         workbook = read(name)
-        at = _named_cells(workbook)
+        at = named_cells(workbook)
         live = {at[symbol]: symbol for symbol in inputs}
         resolver = Resolver(workbook, list(live))
         targets = [Target(at[symbol], at[symbol]) for symbol in wanted]
@@ -128,16 +135,6 @@ def cells(read):
         return {symbol: column.as_floats().copy() for symbol, column in zip(wanted, columns, strict=True)}
 
     return compute
-
-
-def _named_cells(workbook):
-    """Name -> its cell."""
-    found = {}
-    for each in workbook.names:
-        if not each.name.startswith("_xlnm"):
-            sheet, _, place = each.text.removeprefix("=").rpartition("!")
-            found[each.name] = parse_address(place, sheet.strip("'"))
-    return found
 
 
 @pytest.fixture(scope="session")

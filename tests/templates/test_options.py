@@ -5,28 +5,16 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import openpyxl
 import pytest
-
-import xlmc
+from cases import cases
 
 TURNING = ("momentum", "planar-impact")
 
 
-def changed(path, target, values):
-    """A copy of a workbook with other values in named cells."""
-    book = openpyxl.load_workbook(path)
-    for symbol, value in values.items():
-        [(sheet, place)] = book.defined_names[symbol].destinations
-        book[sheet][place].value = value
-    book.save(target)
-    return target
-
-
-@pytest.mark.parametrize("name", TURNING)
-def test_the_turn_limits_speed_once_its_radius_is_entered(name, book_path, tmp_path, run_of):
+@cases("name", TURNING)
+def test_the_turn_limits_speed_once_its_radius_is_entered(name, typed, run_of):
     off = run_of(name)
-    on = xlmc.load(changed(book_path[name], tmp_path / "turning.xlsx", {"R_turn_2": 5.0})).simulate(20_000)
+    on = typed(name, {"R_turn_2": 5.0}).simulate(20_000)
     limit = math.sqrt(0.95 * 32.174 * 5.0) * 3600 / 5280
     assert off["Vehicle 2 impact speed"].values.max() > limit
     assert 0 < on.accepted < off.accepted
@@ -35,7 +23,7 @@ def test_the_turn_limits_speed_once_its_radius_is_entered(name, book_path, tmp_p
     np.testing.assert_array_equal(on["Vehicle 2 impact speed"].values, off["Vehicle 2 impact speed"].values[kept])
 
 
-@pytest.mark.parametrize("name", TURNING)
+@cases("name", TURNING)
 def test_duration_gives_mean_acceleration_and_the_neglected_impulse(name, cells, shown):
     assert shown(name)["dV_tyres_1"] == "–"
     given = {"t_impact": 0.1, "f_1": 0.8}
@@ -45,7 +33,7 @@ def test_duration_gives_mean_acceleration_and_the_neglected_impulse(name, cells,
     assert found["share_tyres_1"].item() == pytest.approx(100 * 0.8 * 32.174 * 0.1 / found["dV_1"].item(), rel=1e-12)
 
 
-@pytest.mark.parametrize("name", [*TURNING, "momentum-energy"])
+@cases("name", [*TURNING, "momentum-energy"])
 def test_stuck_together_is_one_switch(name, cells):
     """The same as typing the departure of vehicle 1 for vehicle 2, too, whatever the row of vehicle 2 says."""
     wanted = ["V1_i", "V2_i", "dV_1", "E_after"]
@@ -59,22 +47,22 @@ def test_stuck_together_is_one_switch(name, cells):
         assert switched[symbol] != left_alone[symbol]
 
 
-@pytest.mark.parametrize("name", TURNING)
-def test_the_shared_road_is_ready_and_off(name, book_path):
-    [row] = xlmc.load(book_path[name]).definitions.correlations
+@cases("name", TURNING)
+def test_the_shared_road_is_ready_and_off(name, model_of):
+    [row] = model_of(name).definitions.correlations
     assert (row.first, row.second) == ("Vehicle 1 post-impact deceleration", "Vehicle 2 post-impact deceleration")
     assert row.value == 0
 
 
-def test_the_case_study_asks_for_the_papers_forecasts_and_filters_and_no_more(book_path):
-    model = xlmc.load(book_path["intersection"])
+def test_the_case_study_asks_for_the_papers_forecasts_and_filters_and_no_more(model_of):
+    model = model_of("intersection")
     assert len(model.forecasts) == 4
     assert len(model.filters) == 3
     assert not model.definitions.correlations
     assert len(model.live) == 17
 
 
-@pytest.mark.parametrize("name", TURNING)
+@cases("name", TURNING)
 def test_directions_of_force_are_reported_every_way(name, shown):
     base = shown(name)
     assert base["PDOF2_cw"] == pytest.approx(-base["PDOF_2"] % 360)

@@ -5,16 +5,13 @@ from __future__ import annotations
 import re
 
 import numpy as np
-import openpyxl
 from cases import cases
+from recalculated_books import RECALCULATED
 
-import xlmc
 from templates.checks import ALL_CHECKS
 from templates.description import Role
+from xlmc.address import parse_address
 from xlmc.run.checking import base_checks
-from xlmc.workbook.package import read_parts
-from xlmc.workbook.reader import read_workbook
-from xlmc.workbook.writer import package_bytes
 
 EDITIONS = ["", "-si"]
 FRICTION = {
@@ -50,19 +47,6 @@ SLIPS = {
 }
 
 
-def with_value(folder, path, symbol, value):
-    """The model of a copy in which one number is changed."""
-    book = read_workbook(path)
-    (text,) = (name.text for name in book.names if name.name == symbol)
-    sheet, cell = text.removeprefix("=").replace("$", "").split("!")
-    part, parts = book.sheets[sheet].part, read_parts(path.read_bytes())
-    number = rb'(<c r="%b"[^>]*><v>)[^<]*' % cell.encode()
-    changed, times = re.subn(number, rb"\g<1>%d" % value, parts[part])
-    assert times == 1
-    (folder / "slip.xlsx").write_bytes(package_bytes(parts | {part: changed}))
-    return xlmc.load(folder / "slip.xlsx")
-
-
 @cases("edition", EDITIONS)
 @cases("template", SLIPS)
 def test_a_slip_fails_a_check_at_the_base_case(template, edition, cells, shown, described):
@@ -80,29 +64,26 @@ def test_a_slip_fails_a_check_at_the_base_case(template, edition, cells, shown, 
     assert passed == []
 
 
-def test_what_fails_is_told_with_its_cell(tmp_path, book_path):
-    model = with_value(tmp_path, book_path["planar-forward"], "f_1", 75)
+def test_what_fails_is_told_with_its_cell(typed):
+    model = typed("planar-forward", {"f_1": 75})
     (failing,) = [check.fault for check in base_checks(model) if check.holds is False]
     assert re.search(r": Model!D\d+ is FALSE: ", failing)
 
 
-@cases("edition", EDITIONS)
-@cases("template", SLIPS)
-def test_a_template_as_it_comes_raises_no_alarm(run_of, template, edition):
-    run = run_of(f"{template}{edition}")
+@cases("name", RECALCULATED)
+def test_a_template_as_it_comes_raises_no_alarm(run_of, name):
+    """One edition of each; `test_editions.py` shows that the other has the same checks."""
+    run = run_of(name)
+    assert run.accepted > 100
+    assert not run.model.definitions.problems
     assert run.checks
     assert all(check.holds and not check.failed for check in run.checks)
     assert run.warnings == []
 
 
-def test_a_filled_range_in_percent_fails_in_the_accepted_trials(tmp_path, book_path):
-    book = openpyxl.load_workbook(book_path["skid"])
-    sheet = book["Inputs"]
-    for column, value in zip("GHIJKL", (None,) * 6, strict=True):
-        sheet[f"{column}6"] = value
-    sheet["F6"], sheet["G6"], sheet["H6"] = "Uniform", 60, 95
-    book.save(tmp_path / "percent.xlsx")
-    run = xlmc.load(tmp_path / "percent.xlsx").simulate(trials=20_000)
+def test_a_filled_range_in_percent_fails_in_the_accepted_trials(typed):
+    row = dict(zip("FGHIJKL", ("Uniform", 60, 95, *(None,) * 4), strict=True))
+    run = typed("skid", {parse_address(f"Inputs!{column}6"): value for column, value in row.items()}).simulate(20_000)
     friction = next(check for check in run.checks if "Friction" in check.name)
     assert friction.holds
     assert friction.failed == friction.trials == run.accepted

@@ -42,21 +42,33 @@ def other(make):
 
 
 @pytest.fixture
-def at_rest(chromium, shown, run):
+def at_rest(opened, run):
     """`at_rest()`: the first forecast of `run` as it opens, for tests that change no more than its range and its view.
 
     They share one page, which is loaded again where another was opened since.
     """
 
     def ready():
-        if not chromium.execute_script("return window.forRanges === true"):
-            shown(run).execute_script("window.forRanges = true")
-        chromium.execute_script(
+        browser = opened(run)
+        browser.execute_script(
             "for (const end of ['.views input', '.reset']) document.querySelector(end).click(); scrollTo(0, 0)"
         )
-        chart = Chart(chromium)
+        chart = Chart(browser)
         assert chart.ends == tuple(end.value for end in run["area"].central())
         return chart
+
+    return ready
+
+
+@pytest.fixture
+def opened(chromium, shown):
+    """`opened(run)`: the page of a run in the browser, where it may be open since an earlier test."""
+
+    def ready(run, **options):
+        wanted = [id(run), *map(id, options.values())]
+        if chromium.execute_script("return window.opened ?? null") != wanted:
+            shown(run, **options).execute_script("window.opened = arguments[0]", wanted)
+        return chromium
 
     return ready
 
@@ -147,8 +159,41 @@ def check(chart, values):
     assert found[2] == f"{100 * interval[1]:.{decimals}f}"
 
 
-def test_it_opens_at_the_central_range(shown, run):
-    browser = shown(run)
+def test_nothing_is_asked_of_a_network_and_nothing_could_be(chromium, opened, run, requests_of):
+    chromium.get("about:blank")
+    chromium.get_log("performance")
+    address = opened(run).current_url
+    chart = Chart(chromium)
+    chart.drag("low", 20)
+    chart.one(".views input[value=cumulative]").click()
+    asked = set(requests_of(chromium))
+    assert address in asked
+    assert asked <= {address, "data:"}
+    assert chromium.get_log("browser") == []
+    refused = chromium.execute_async_script(
+        """
+        const done = arguments[0], refused = [];
+        addEventListener("securitypolicyviolation", (event) => refused.push(event.effectiveDirective));
+        fetch("https://example.org/").catch(() => 0);
+        const image = Object.assign(new Image(), {src: "https://example.org/a.png"});
+        const script = document.createElement("script");
+        script.textContent = "window.stolen = 1";
+        document.body.append(image, script);
+        const look = () => {
+          if (refused.length < 3) return setTimeout(look, 20);
+          image.remove();
+          script.remove();
+          done([refused.sort(), window.stolen ?? null]);
+        };
+        look();
+        """
+    )
+    assert refused == [["connect-src", "img-src", "script-src-elem"], None]
+    chromium.get_log("browser")
+
+
+def test_it_opens_at_the_central_range(at_rest, run):
+    browser = at_rest().browser
     for index, result in enumerate(run.results.values()):
         chart = Chart(browser, index)
         check(chart, result.values)
@@ -394,6 +439,71 @@ def test_a_narrow_screen_needs_no_scrolling_aside(at_rest, run):
         browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
+def test_all_tables_are_opened_and_closed_at_once(opened, run):
+    browser = opened(run)
+    count = "return document.querySelectorAll('details%s').length"
+    for key, left in (("open", ":not([open])"), ("closed", "[open]")):
+        assert browser.execute_script(count % left) > 0
+        browser.find_element("css selector", f"button[data-all={key}]").click()
+        assert browser.execute_script(count % left) == 0
+
+
+def test_every_chart_is_saved_as_a_picture_with_its_own_styles(opened, run):
+    browser = opened(run)
+    browser.execute_script(
+        "window.saved = []; window.follow = HTMLAnchorElement.prototype.click;"
+        "HTMLAnchorElement.prototype.click = function () { saved.push([this.download, this.href]); }"
+    )
+    buttons = [each for each in browser.find_elements("css selector", "button.copy") if each.text == "Save picture"]
+    charts = browser.find_elements("css selector", ".chart, svg.drawn")
+    assert len(buttons) == len(charts) > 3
+    for button in buttons:
+        browser.execute_script("arguments[0].click()", button)
+    names = browser.execute_async_script(
+        "const [wanted, done] = arguments;"
+        "const look = () => saved.length < wanted ? setTimeout(look, 20) : done(saved.map(([name]) => name));"
+        "look()",
+        len(charts),
+    )
+    assert {"area-Variance-explained.svg", "area-chart.png"} <= set(names)
+    drawn = dict(browser.execute_script("return saved"))["area-Variance-explained.svg"]
+    blobs = "return Copies.standalone(document.querySelector('svg.drawn')).text()"
+    svg = browser.execute_script(blobs)
+    assert drawn.startswith("blob:")
+    assert svg.startswith("<svg")
+    assert "--dark: #2f6da8" in svg
+    assert "Variance explained" in svg
+    browser.execute_script("HTMLAnchorElement.prototype.click = window.follow")
+
+
+def test_bars_are_drawn_together_and_percentiles_marked(at_rest, run):
+    chart = at_rest()
+    browser = chart.browser
+    merged = browser.execute_script("return merged({ edges: [0, 1, 2, 3], counts: [5, 6, 7] }, 2)")
+    assert (merged["edges"], merged["counts"]) == ([0, 2, 3], [11, 7])
+    pixels = "return arguments[0].querySelector('canvas').toDataURL()"
+    before, certainty = browser.execute_script(pixels, chart.root), chart.said
+    chart.one("select.together").send_keys("four")
+    after = browser.execute_script(pixels, chart.root)
+    assert after != before
+    assert chart.said == certainty
+    chart.one("input.percentiles").send_keys("5, 50;95 %\t")
+    assert browser.execute_script(pixels, chart.root) != after
+    shown_at = dict(re.findall(r"· · (\d+) % ([-\d.]+)", chart.one(".readout").text))
+    for percent, text in shown_at.items():
+        exact = np.percentile(run["area"].values, float(percent))
+        assert float(text) == pytest.approx(exact, abs=0.01 * np.ptp(run["area"].values))
+    assert sorted(shown_at, key=float) == ["5", "50", "95"]
+    said = chart.one(".readout").text
+    chart.one("input.percentiles").send_keys(", half\t")
+    assert "from 0 to 100" in chart.one(".fault").text
+    assert chart.one(".readout").text == said
+    assert "Mean" in said
+    chart.one("input.line[value=Mean]").click()
+    assert "Mean" not in chart.one(".readout").text
+    browser.execute_script("window.opened = null")  # nobody shall find it so
+
+
 def test_many_trials_are_counted_to_within_what_is_said(shown, many):
     browser = shown(many)
     for index, result in enumerate(many.results.values()):
@@ -432,34 +542,6 @@ def test_whole_numbers_move_in_whole_steps_and_belong_to_the_range_that_ends_at_
     assert chart.one(".readout").text == f"7: {seven} trials, {100 * seven / values.size:.2f} %"
 
 
-def test_nothing_is_asked_of_a_network_and_nothing_could_be(chromium, run, tmp_path, requests_of):
-    path = tmp_path / "page.html"
-    run.save_page(path)
-    chromium.get("about:blank")
-    chromium.get_log("performance")
-    chromium.get(path.as_uri())
-    chart = Chart(chromium)
-    chart.drag("low", 20)
-    chart.one(".views input[value=cumulative]").click()
-    assert set(requests_of(chromium)) <= {path.as_uri(), "data:"}
-    assert chromium.get_log("browser") == []
-    refused = chromium.execute_async_script(
-        """
-        const done = arguments[0], refused = [];
-        addEventListener("securitypolicyviolation", (event) => refused.push(event.effectiveDirective));
-        fetch("https://example.org/").catch(() => 0);
-        document.body.append(Object.assign(new Image(), {src: "https://example.org/a.png"}));
-        const script = document.createElement("script");
-        script.textContent = "window.stolen = 1";
-        document.body.append(script);
-        const look = () => refused.length < 3 ? setTimeout(look, 20) : done([refused.sort(), window.stolen ?? null]);
-        look();
-        """
-    )
-    assert refused == [["connect-src", "img-src", "script-src-elem"], None]
-    chromium.get_log("browser")
-
-
 def test_names_are_shown_and_not_run(shown, make):
     assumptions = [make.uniform(EVIL, "A1", 0.0, 1.0, base=0.5, units=EVIL, source=EVIL)]
     forecasts = [make.forecast(EVIL, "B1", units=EVIL), make.forecast(f"{EVIL}2", "B1", units=EVIL)]
@@ -487,35 +569,8 @@ def test_few_trials_are_no_trouble(request, shown, name):
         assert chart.count == 1
 
 
-def test_bars_are_drawn_together_and_percentiles_marked(shown, run):
-    browser = shown(run)
-    merged = browser.execute_script("return merged({ edges: [0, 1, 2, 3], counts: [5, 6, 7] }, 2)")
-    assert (merged["edges"], merged["counts"]) == ([0, 2, 3], [11, 7])
-    chart = Chart(browser)
-    pixels = "return arguments[0].querySelector('canvas').toDataURL()"
-    before, certainty = browser.execute_script(pixels, chart.root), chart.said
-    chart.one("select.together").send_keys("four")
-    after = browser.execute_script(pixels, chart.root)
-    assert after != before
-    assert chart.said == certainty
-    chart.one("input.percentiles").send_keys("5, 50;95 %\t")
-    assert browser.execute_script(pixels, chart.root) != after
-    shown_at = dict(re.findall(r"· · (\d+) % ([-\d.]+)", chart.one(".readout").text))
-    for percent, text in shown_at.items():
-        exact = np.percentile(run["area"].values, float(percent))
-        assert float(text) == pytest.approx(exact, abs=0.01 * np.ptp(run["area"].values))
-    assert sorted(shown_at, key=float) == ["5", "50", "95"]
-    said = chart.one(".readout").text
-    chart.one("input.percentiles").send_keys(", half\t")
-    assert "from 0 to 100" in chart.one(".fault").text
-    assert chart.one(".readout").text == said
-    assert "Mean" in said
-    chart.one("input.line[value=Mean]").click()
-    assert "Mean" not in chart.one(".readout").text
-
-
-def test_a_second_run_is_drawn_and_counted(shown, run, other):
-    browser = shown(run, beside=other)
+def test_a_second_run_is_drawn_and_counted(opened, run, other):
+    browser = opened(run, beside=other)
     chart = Chart(browser)
     for low, high in ((chart.ends), (12.0, 20.0)):
         chart.type("low", str(low))
@@ -530,34 +585,8 @@ def test_a_second_run_is_drawn_and_counted(shown, run, other):
     assert line == [[0, 0], [0, 2], [1, 2], [1, 4], [2, 4], [2, 0], [3, 0], [3, 2], [4, 2], [4, 0]]
 
 
-def test_every_chart_is_saved_as_a_picture_with_its_own_styles(shown, run):
-    browser = shown(run)
-    browser.execute_script(
-        "window.saved = []; HTMLAnchorElement.prototype.click = function () { saved.push([this.download, this.href]); }"
-    )
-    buttons = [each for each in browser.find_elements("css selector", "button.copy") if each.text == "Save picture"]
-    charts = browser.find_elements("css selector", ".chart, svg.drawn")
-    assert len(buttons) == len(charts) > 3
-    for button in buttons:
-        browser.execute_script("arguments[0].click()", button)
-    names = browser.execute_async_script(
-        "const [wanted, done] = arguments;"
-        "const look = () => saved.length < wanted ? setTimeout(look, 20) : done(saved.map(([name]) => name));"
-        "look()",
-        len(charts),
-    )
-    assert {"area-Variance-explained.svg", "area-chart.png"} <= set(names)
-    drawn = dict(browser.execute_script("return saved"))["area-Variance-explained.svg"]
-    blobs = "return Copies.standalone(document.querySelector('svg.drawn')).text()"
-    svg = browser.execute_script(blobs)
-    assert drawn.startswith("blob:")
-    assert svg.startswith("<svg")
-    assert "--dark: #2f6da8" in svg
-    assert "Variance explained" in svg
-
-
-def test_pictures_are_copied_and_tables_saved(shown, run, other):
-    browser = shown(run, beside=other)
+def test_pictures_are_copied_and_tables_saved(opened, run, other):
+    browser = opened(run, beside=other)
     browser.execute_cdp_cmd(
         "Browser.grantPermissions", {"permissions": ["clipboardReadWrite", "clipboardSanitizedWrite"]}
     )
@@ -580,15 +609,6 @@ def test_pictures_are_copied_and_tables_saved(shown, run, other):
     assert lines[0][-3:] == ["First", "Second", "Difference"]
     assert [line[2] for line in lines[1:3]] == ["Mean", "Standard deviation"]  # the name stands in each line
     assert {(line[0], line[1]) for line in lines[1:]} == {('"area', ' ft"')}
-
-
-def test_all_tables_are_opened_and_closed_at_once(shown, run):
-    browser = shown(run)
-    count = "return document.querySelectorAll('details%s').length"
-    for key, left in (("open", ":not([open])"), ("closed", "[open]")):
-        assert browser.execute_script(count % left) > 0
-        browser.find_element("css selector", f"button[data-all={key}]").click()
-        assert browser.execute_script(count % left) == 0
 
 
 def test_the_case_study_prints_on_15_pages(shown):

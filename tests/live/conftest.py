@@ -33,7 +33,6 @@ def chromium(browser):
     Afterwards it shows nothing: a window whose server has ended would ask for it until the session ends.
     """
     found = browser()
-    found.get("about:blank")
     found.get_log("browser")
     yield found
     complaints = [entry["message"] for entry in found.get_log("browser")]

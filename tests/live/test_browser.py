@@ -8,13 +8,13 @@ from xml.etree import ElementTree
 
 import openpyxl
 import pytest
-from live_books import CASE, edited, simple, wide_book
+from live_books import simple, wide_book
 
 import xlmc
 from xlmc.definitions.scenarios import Held, Limits, Numbers
 from xlmc.run.applied_changes import applied
 
-FRICTION = "Chevrolet post-impact deceleration"
+FRICTION, DISTANCE = "Vehicle 1 friction on wet asphalt", "Vehicle 1 post-impact travel distance to rest"
 WIDTHS = ((1400, 1000), (1280, 900), (1024, 800), (768, 1024), (390, 844), (375, 812))
 LOOKED_AT = {
     (1400, "charts"),
@@ -46,15 +46,26 @@ class Page:
         self.browser, self.server = browser, server
         browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
         browser.get(server.server.link)
-        self.until("document.body?.dataset.stage === 'rest'")
+        self.loaded()
 
     def run(self, script, *given):
         return self.browser.execute_script(script, *given)
 
-    def until(self, condition, *given, seconds=120.0):
-        end = time.monotonic() + seconds
-        while not self.run(f"return {condition}", *given):
-            assert time.monotonic() < end, condition
+    def until(self, condition):
+        """Wait for something: the page looks itself, which is cheaper than to be asked."""
+        found = self.browser.execute_async_script(
+            "const done = arguments[0], end = Date.now() + 100_000;"
+            f"const look = () => {{ if ({condition}) done(true); else if (Date.now() > end) done(false);"
+            " else setTimeout(look, 10); };"
+            "look();"
+        )
+        assert found, condition
+
+    def loaded(self):
+        """Wait for the first answer of a window that is being opened."""
+        end = time.monotonic() + 120
+        while not self.run("return document.body?.dataset.stage === 'rest' && Live.state !== undefined"):
+            assert time.monotonic() < end
             time.sleep(0.03)
 
     def at_rest(self, do):
@@ -94,8 +105,19 @@ class Page:
         return self.of(f"{within} button", "each.checkVisibility() && each.innerText.trim() === given[0]", text)
 
     def click(self, found):
-        self.run("arguments[0].scrollIntoView({block: 'center'})", found)
-        found.click()
+        """Press the mouse's button on the middle of it, where nothing else may lie."""
+        at = self.run(
+            "const [found] = arguments;"
+            "found.scrollIntoView({ block: 'center', behavior: 'instant' });"
+            "const { x, y, width, height } = found.getBoundingClientRect();"
+            "const at = { x: x + width / 2, y: y + height / 2 };"
+            "return found.contains(document.elementFromPoint(at.x, at.y)) ? at : null",
+            found,
+        )
+        assert at is not None, f"{found.get_attribute('outerHTML')} is hidden"
+        for kind in ("mouseMoved", "mousePressed", "mouseReleased"):
+            button = {} if kind == "mouseMoved" else {"button": "left", "clickCount": 1}
+            self.browser.execute_cdp_cmd("Input.dispatchMouseEvent", {"type": kind, **at, **button})
 
     def type(self, box, text):
         control, delete, enter = "\ue009", "\ue017", "\ue007"
@@ -107,8 +129,7 @@ class Page:
         return self.of(".number-box input", fits, card, label)
 
     def tab(self, key):
-        self.run("arguments[0].scrollIntoView({block: 'center'})", self.one(f"#tab-{key}"))
-        self.one(f"#tab-{key}").click()
+        self.click(self.one(f"#tab-{key}"))
 
     @property
     def stand(self):
@@ -117,11 +138,6 @@ class Page:
     @property
     def changes(self):
         return self.run("return Live.state.changes")
-
-
-@pytest.fixture
-def case(tmp_path):
-    return edited(CASE, tmp_path / "case.xlsx", {}, {"Trials": 5_000})
 
 
 def accepted(book, *changes):
@@ -138,9 +154,10 @@ def saved_svg(page, button):
     return page.run("const { saved } = window; delete window.saved; return saved")
 
 
-def test_by_mouse(chromium, running, case):
+def test_by_mouse(chromium, running, tmp_path):
     from selenium.webdriver import ActionChains
 
+    case = wide_book(tmp_path / "case.xlsx", assumptions=6, forecasts=2, most=19.0)
     page = Page(chromium, running(book=case))
     assert "token" not in chromium.current_url
     assert chromium.get_cookies() == [] or all(each["httpOnly"] for each in chromium.get_cookies())
@@ -151,31 +168,30 @@ def test_by_mouse(chromium, running, case):
     drag = ActionChains(chromium, duration=30).click_and_hold(knob).move_by_offset(12, 0).move_by_offset(12, 2)
     page.at_rest(lambda: drag.release().perform())
     high = float(knob.get_attribute("aria-valuenow"))
-    assert high > 0.95
+    assert high > 0.8
     assert accepted(case, Numbers(FRICTION, {"high": high})) in page.stand
     said = page.all(".moved")[0].text
-    assert said.startswith("Chevrolet delta-V: mean ")
+    assert said.startswith("Answer 1: speed at the beginning: mean ")
     assert " → " in said
     assert "changed" in page.card(FRICTION).get_attribute("class")
 
     page.at_rest(lambda: page.type(page.box(page.card(FRICTION), "High"), "0.9"))
-    assert page.changes == [f"{FRICTION}: High 0.95 → 0.9"]
-    switch = page.card("Nissan weight").find_element("css selector", "[role=switch]")
-    page.run("arguments[0].scrollIntoView({block: 'center'})", switch)
-    page.at_rest(switch.click)
-    page.at_rest(lambda: page.type(page.box(page.card("Nissan weight"), "at"), "3450"))
-    filters = page.card("Filter Restitution, tangential")
-    page.at_rest(lambda: page.type(page.box(filters, "At most"), "0.3"))
+    assert page.changes == [f"{FRICTION}: High 0.8 → 0.9"]
+    switch = page.card(DISTANCE).find_element("css selector", "[role=switch]")
+    page.at_rest(lambda: page.click(switch))
+    page.at_rest(lambda: page.type(page.box(page.card(DISTANCE), "at"), "51"))
+    filters = page.card("Filter Plausible 1")
+    page.at_rest(lambda: page.type(page.box(filters, "At most"), "19.5"))
     changes = (
         Numbers(FRICTION, {"high": 0.9}),
-        Held("Nissan weight", 3450.0),
-        Limits("Restitution, tangential", {"at_most": 0.3}),
+        Held(DISTANCE, 51.0),
+        Limits("Plausible 1", {"at_most": 19.5}),
     )
     assert accepted(case, *changes) in page.stand
     assert "rejects " in filters.text
 
     page.type(page.all(".boxes .share")[0], "90")
-    of_one = 100.0 / int(page.stand.partition(" trials, ")[2].split()[0])  # a range holds whole trials
+    of_one = 100.0 / int(page.stand.partition(" trials, ")[2].split()[0].replace(",", ""))  # a range holds whole trials
     assert abs(float(page.all(".certainty")[0].text.split()[0]) - 90.0) <= of_one
     page.click(page.all(".views input[value=cumulative]")[0])
     page.click(page.all(".line")[0])
@@ -189,7 +205,7 @@ def test_by_mouse(chromium, running, case):
     assert parts.count("path") > 8
     texts = [each.text for each in drawing.iter() if each.tag.endswith("text")]
     assert {"mph", "0", "Accepted trials, %"} & set(texts)
-    assert drawing.find("{http://www.w3.org/2000/svg}title").text.startswith("Chart of Chevrolet delta-V")
+    assert drawing.find("{http://www.w3.org/2000/svg}title").text.startswith("Chart of Answer 1")
 
     page.tab("matters")
     page.until("document.querySelectorAll('#panel-matters svg').length > 2")
@@ -200,44 +216,44 @@ def test_by_mouse(chromium, running, case):
     page.tab("scenarios")
     page.one("#scenario-name").send_keys("dry road\ue007")
     page.until("Live.state.scenarios.length === 1")
-    page.button("Compare all in one table").click()
+    page.click(page.button("Compare all in one table"))
     page.until("document.querySelectorAll('#panel-scenarios table').length > 2")
     assert "dry road" in page.all("#panel-scenarios table")[0].text
     assert page.stand.startswith("Done: ")
     assert not page.one("#stop").is_displayed()
-    page.at_rest(page.button("All as in the workbook").click)
+    page.at_rest(lambda: page.click(page.button("All as in the workbook")))
     assert accepted(case) in page.stand
     shows = "return [...document.querySelectorAll('.scenarios button')].filter((each) => each.innerText === 'Show')"
-    page.at_rest(page.run(shows)[1].click)
+    page.at_rest(lambda: page.click(page.run(shows)[1]))
     assert len(page.changes) == 4
     chromium.refresh()
-    page.until("document.body?.dataset.stage === 'rest' && Live.state")
+    page.loaded()
     assert len(page.changes) == 4
     assert accepted(case, *changes) in page.stand
 
     page.tab("studies")
     before = case.read_bytes()
     news = "document.querySelector('#news').textContent.includes('{}')"
-    page.button("JSON").click()
+    page.click(page.button("JSON"))
     page.until(news.format("case-dry road-results.json"))
-    page.button("A copy of the workbook").click()
+    page.click(page.button("A copy of the workbook"))
     page.until(news.format("case-dry road.xlsx"))
-    page.button("The workbook itself …").click()
+    page.click(page.button("The workbook itself …"))
     assert chromium.switch_to.active_element.text == "Type them in"
-    page.button("Leave it").click()
+    page.click(page.button("Leave it"))
     assert chromium.switch_to.active_element.text == "The workbook itself …"
     assert case.read_bytes() == before
-    page.button("The workbook itself …").click()
-    page.at_rest(page.button("Type them in").click)
+    page.click(page.button("The workbook itself …"))
+    page.at_rest(lambda: page.click(page.button("Type them in")))
     assert page.changes == []
     assert case.with_name("case-before.xlsx").read_bytes() == before != case.read_bytes()
     assert accepted(case) in page.stand
     assert accepted(case.with_name("case-before.xlsx"), *changes) in page.stand
     assert not page.button("A copy of the workbook").is_enabled()
-    page.button("JSON").click()
+    page.click(page.button("JSON"))
     page.until("document.querySelector('#news').textContent.includes('case-results.json')")
     assert case.with_name("case-results.json").exists()
-    page.button("Verify against Excel").click()
+    page.click(page.button("Verify against Excel"))
     page.until("document.querySelector('#panel-studies [role=status]').textContent.startsWith('xlmc verify, ')")
     assert page.one("#panel-studies pre").text
 
@@ -299,8 +315,16 @@ def test_by_keys_alone(chromium, running, tmp_path):
     assert float(certainty.get_attribute("data-low")) < low
 
 
-def test_at_every_width_nothing_overflows_and_names_and_contrast_are_right(chromium, running, tmp_path):
-    page = Page(chromium, running(book=simple(tmp_path / "case.xlsx")))
+def test_names_of_a_hostile_workbook_are_text_and_at_every_width_nothing_overflows(chromium, running, tmp_path):
+    book = openpyxl.load_workbook(simple(tmp_path / "case.xlsx"))
+    for sheet in book:
+        for table in sheet.tables.values():
+            if table.name in ("xlmc_assumptions", "xlmc_forecasts", "xlmc_filters"):
+                for row in list(sheet[table.ref])[1:]:
+                    row[0].value = f"{EVIL} {row[0].row}"
+    path = tmp_path / f"{EVIL.replace('/', '')}.xlsx"
+    book.save(path)
+    page = Page(chromium, running(book=path))
     if AXE is not None:
         chromium.execute_cdp_cmd("Runtime.evaluate", {"expression": AXE.read_text(encoding="utf-8")})
     for width, height in WIDTHS:
@@ -326,6 +350,9 @@ def test_at_every_width_nothing_overflows_and_names_and_contrast_are_right(chrom
                 )
                 assert found == [], (width, tab)
     chromium.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    assert EVIL in page.one("#left").text
+    assert page.run("return window.stolen") is None
+    assert page.all("img") == []
 
 
 def test_a_workbook_with_sixty_assumptions_and_twelve_answers_stays_usable(chromium, running, tmp_path):
@@ -363,25 +390,6 @@ def test_a_workbook_with_sixty_assumptions_and_twelve_answers_stays_usable(chrom
     assert aside.text == "16 sentences on answers without a chart"
     page.click(aside)
     assert "Answer 7: speed at the beginning" in page.one(".further").text
-
-
-def test_names_of_a_hostile_workbook_are_text(chromium, running, tmp_path):
-    book = openpyxl.load_workbook(simple(tmp_path / "case.xlsx"))
-    for sheet in book:
-        for table in sheet.tables.values():
-            if table.name in ("xlmc_assumptions", "xlmc_forecasts", "xlmc_filters"):
-                for row in list(sheet[table.ref])[1:]:
-                    row[0].value = f"{EVIL} {row[0].row}"
-    path = tmp_path / f"{EVIL.replace('/', '')}.xlsx"
-    book.save(path)
-    page = Page(chromium, running(book=path))
-    for tab in ("charts", "matters", "tables", "scenarios"):
-        page.run("Live.right.choose(arguments[0])", tab)
-        if tab in ("matters", "tables"):
-            page.until(f"document.querySelectorAll('#panel-{tab} table').length")
-    assert EVIL in page.one("#left").text
-    assert page.run("return window.stolen") is None
-    assert page.all("img") == []
 
 
 def test_the_start_page_opens_what_is_there_and_what_is_dropped(chromium, running, tmp_path):

@@ -64,12 +64,17 @@ def type_in(book, rows, changes):
     return before
 
 
-def wide_book(path, assumptions=60, forecasts=12):
-    """A workbook with many assumptions of three kinds, many answers, and filters; its runs are short."""
+def wide_book(path, assumptions=60, forecasts=12, most=60.0):
+    """A workbook with many assumptions of three kinds, many answers, and filters; its runs are short.
+
+    Args:
+        most: the largest answers that the filters keep. Nothing is rejected by default; 19 rejects half of Answer 1.
+    """
     book = openpyxl.Workbook()
     inputs, wanted = book.active, book.create_sheet("Wanted")
     inputs.title = "Inputs"
-    inputs.append(["Name", "Value", "Distribution", "Low", "High", "Likeliest", "Mean", "Std dev", "Units", "Source"])
+    parameters = ("Low", "High", "Likeliest", "Mean", "Std dev")
+    inputs.append(["Name", "Value", "Distribution", *parameters, "Units", "Source", "Frozen"])
     kinds = (
         ("friction on wet asphalt", 0.7, "Uniform", 0.6, 0.8, None, None, None, "g", "Measured; report, page 12"),
         ("approach speed", 30.0, "Normal", None, None, None, 30.0, 2.0, "mph", "A witness"),
@@ -87,13 +92,13 @@ def wide_book(path, assumptions=60, forecasts=12):
     for column, heading in enumerate(("Name", "Value", "At least", "At most", "Because"), start=1):
         wanted.cell(below, column, heading)
         for row in (1, 2):
-            filter_ = (f"Plausible {row}", f"=B{row + 1}", 5.0, 60.0, "Seen")
+            filter_ = (f"Plausible {row}", f"=B{row + 1}", 5.0, most, "Seen")
             wanted.cell(below + row, column, filter_[column - 1])
     for row, setting in enumerate((("Setting", "Value"), ("Trials", 5_000)), start=below + 4):
         wanted.cell(row, 1, setting[0])
         wanted.cell(row, 2, setting[1])
     for sheet, name, area in (
-        (inputs, "xlmc_assumptions", f"A1:J{assumptions + 1}"),
+        (inputs, "xlmc_assumptions", f"A1:K{assumptions + 1}"),
         (wanted, "xlmc_forecasts", f"A1:D{forecasts + 1}"),
         (wanted, "xlmc_filters", f"A{below}:E{below + 2}"),
         (wanted, "xlmc_settings", f"A{below + 4}:B{below + 5}"),

@@ -7,7 +7,6 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import openpyxl
-import pytest
 from live_books import simple, wide_book
 
 import xlmc

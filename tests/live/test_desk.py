@@ -7,14 +7,14 @@ import shutil
 
 import pytest
 from fewer_sheets import SHORT, keep_sheets, leave_out_fits
-from live_books import change, edited, simple
+from live_books import change, edited, small
 
 import xlmc
 
 
 @pytest.fixture
 def book(tmp_path):
-    return simple(tmp_path / "case.xlsx")
+    return small(tmp_path / "case.xlsx")
 
 
 @pytest.fixture
@@ -58,7 +58,7 @@ def test_a_half_written_or_faulty_workbook_leaves_the_last_good_answer(running, 
         book.write_bytes(whole[: len(whole) // 2])
         trouble = window.next("trouble", lambda message: message["about"] == "book" and message["text"])
         assert "case.xlsx" in trouble["text"]
-        source = simple(tmp_path / "source.xlsx")
+        source = small(tmp_path / "source.xlsx")
         faulty = edited(source, tmp_path / "faulty.xlsx", {(name, number["heading"]): "much"})
         saved_as_excel_does(faulty, book)
         trouble = window.next("trouble", lambda message: message["about"] == "book" and "!" in message["text"])
@@ -76,7 +76,7 @@ def test_a_workbook_that_cannot_be_read_at_first_is_shown_once_it_can(running, t
     server = running(book=book)
     with server.window(server.library.only) as window:
         assert window.next("trouble")["text"]
-        saved_as_excel_does(simple(tmp_path / "source.xlsx"), book)
+        saved_as_excel_does(small(tmp_path / "source.xlsx"), book)
         assert window.next("rest")["sentences"]
 
 

@@ -6,7 +6,8 @@ import random
 from dataclasses import replace
 
 import pytest
-from live_books import CASE, change, settle
+from cases import cases
+from live_books import CASE, change, settle, wide_book
 
 from xlmc.errors import XlmcError
 from xlmc.live.adjustments import LIMITS, Adjustments, changes_of
@@ -22,7 +23,8 @@ from xlmc.workbook.writer import package_bytes
 
 FRICTION, WEIGHT = "Chevrolet post-impact deceleration", "Nissan weight"
 TRIALS = 3_000
-SEQUENCES, STEPS = 2, 10
+SEQUENCES, STEPS = (2, 3), 9
+"""Seeds, and moves of each: together they try each kind of move."""
 
 
 def short(model):
@@ -34,6 +36,12 @@ def short(model):
 @pytest.fixture(scope="module")
 def case():
     return short(load(CASE))
+
+
+@pytest.fixture(scope="module")
+def mixed(tmp_path_factory):
+    """Uniform, normal and triangular assumptions, and filters that reject half: soon read, soon run."""
+    return load(wide_book(tmp_path_factory.mktemp("mixed") / "mixed.xlsx", assumptions=6, forecasts=2, most=19.0))
 
 
 def state(**values):
@@ -90,12 +98,12 @@ def test_what_decides_more_than_draws_is_made_anew(book):
     assert KnownModels(model, TRIALS).moving(frozen).model.lowering is not model.lowering
 
 
-@pytest.mark.parametrize("seed", range(SEQUENCES))
-def test_after_any_moves_the_numbers_at_rest_are_those_of_the_edited_workbook(case, seed, monkeypatch):
+@cases("seed", SEQUENCES)
+def test_after_any_moves_the_numbers_at_rest_are_those_of_the_edited_workbook(mixed, seed, monkeypatch):
     """Drags, typed numbers, frozen switches, bands, limits, scenarios, a workbook that is saved meanwhile."""
     monkeypatch.setattr("xlmc.live.session.MOVING_TRIALS", 1_000)  # which come before those at rest
+    case = short(mixed)
     chance, session, compared = random.Random(seed), Session(case), 0
-    own = load(CASE)
     for step in range(STEPS):
         try:
             _move(session, case, chance)
@@ -107,7 +115,7 @@ def test_after_any_moves_the_numbers_at_rest_are_those_of_the_edited_workbook(ca
         if session._problem is not None:
             session.receive(Said("reset", {"of": "assumption", "name": ""}))
             continue
-        expected = simulate(short(edited(own, changes_of(case.definitions, session.adjustments))))
+        expected = simulate(short(edited(mixed, changes_of(case.definitions, session.adjustments))))
         assert_same(session.rest, expected, (seed, step, session.adjustments))
         compared += 1
     assert compared > STEPS // 4
@@ -125,7 +133,7 @@ def edited(own, changes):
 def _move(session, model, chance):
     kind, row, limited = chance.random(), chance.choice(model.live), chance.choice(model.filters)
     if kind < 0.4:
-        key = chance.choice(["low", "high"])
+        key = chance.choice([key for key in ("low", "high", "mean") if key in row.parameters])
         middle = row.parameters[key]
         for part in range(chance.randint(1, 3)):
             value = middle + abs(middle) * chance.uniform(-0.1, 0.1)
@@ -150,7 +158,7 @@ def _move(session, model, chance):
     elif kind < 0.96:
         session.receive(Said("reset", {"of": "assumption", "name": row.name}))
     else:
-        session.replace_book(short(load(CASE)), [])
+        session.replace_book(short(load(model.path)), [])
 
 
 def _some_work(session, chance):

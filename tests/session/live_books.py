@@ -24,8 +24,12 @@ SIMPLE = EXAMPLES["skid-100-ft"]
 
 def simple(path):
     """The simple example at this path, as Excel saved it, with 5,000 trials, which take a quarter of the time."""
+    return _with_fewer_trials(SIMPLE, path)
+
+
+def _with_fewer_trials(source, path):
     many, few, changed = b"<v>200000</v>", b"<v>5000</v>", 0
-    parts = read_parts(SIMPLE.read_bytes())
+    parts = read_parts(source.read_bytes())
     for name, data in parts.items():
         if many in data:
             changed += data.count(many)
@@ -35,15 +39,20 @@ def simple(path):
     return path
 
 
-def edited(source, target, changes, settings=None):
+def short_case(path):
+    """The case study at this path, with 5,000 trials."""
+    return _with_fewer_trials(CASE, path)
+
+
+def small(path):
+    """A workbook with three assumptions and one answer, which is loaded and run in a fifth of the simple one's time."""
+    return wide_book(path, assumptions=3, forecasts=1)
+
+
+def edited(source, target, changes):
     """A copy of a workbook with other numbers in its tables: {(row's name, heading): value}."""
     book = openpyxl.load_workbook(source)
     type_in(book, rows_of(load(source)), changes)
-    for sheet in book:
-        for row in sheet.iter_rows():
-            for cell in row:
-                if cell.value in (settings or {}):
-                    sheet.cell(cell.row, cell.column + 1).value = settings[cell.value]
     book.save(target)
     return target
 
@@ -74,7 +83,7 @@ def wide_book(path, assumptions=60, forecasts=12, most=60.0):
     inputs, wanted = book.active, book.create_sheet("Wanted")
     inputs.title = "Inputs"
     parameters = ("Low", "High", "Likeliest", "Mean", "Std dev")
-    inputs.append(["Name", "Value", "Distribution", *parameters, "Units", "Source", "Frozen"])
+    inputs.append(["Name", "Value", "Distribution", *parameters, "Units", "Source", "Frozen", "Lower cutoff"])
     kinds = (
         ("friction on wet asphalt", 0.7, "Uniform", 0.6, 0.8, None, None, None, "g", "Measured; report, page 12"),
         ("approach speed", 30.0, "Normal", None, None, None, 30.0, 2.0, "mph", "A witness"),
@@ -92,13 +101,13 @@ def wide_book(path, assumptions=60, forecasts=12, most=60.0):
     for column, heading in enumerate(("Name", "Value", "At least", "At most", "Because"), start=1):
         wanted.cell(below, column, heading)
         for row in (1, 2):
-            filter_ = (f"Plausible {row}", f"=B{row + 1}", 5.0, most, "Seen")
+            filter_ = (f"Plausible {row}", f"=B{min(row, forecasts) + 1}", 5.0, most, "Seen")
             wanted.cell(below + row, column, filter_[column - 1])
     for row, setting in enumerate((("Setting", "Value"), ("Trials", 5_000)), start=below + 4):
         wanted.cell(row, 1, setting[0])
         wanted.cell(row, 2, setting[1])
     for sheet, name, area in (
-        (inputs, "xlmc_assumptions", f"A1:K{assumptions + 1}"),
+        (inputs, "xlmc_assumptions", f"A1:L{assumptions + 1}"),
         (wanted, "xlmc_forecasts", f"A1:D{forecasts + 1}"),
         (wanted, "xlmc_filters", f"A{below}:E{below + 2}"),
         (wanted, "xlmc_settings", f"A{below + 4}:B{below + 5}"),

@@ -117,7 +117,7 @@ def load_program():
     """`load_program(engine, in_vectors)`: what makes its program; of `jit` the loops, also where they do not pay.
 
     These take one trial after another, which gives the same numbers and is compiled sooner, unless `in_vectors`: of
-    fewer than 16 trials a loop would put none into a vector.
+    fewer than 16 trials a loop would put none into a vector. Then they take one vector after another.
     """
 
     def load(engine, in_vectors=False):
@@ -129,10 +129,10 @@ def load_program():
 
         def made(*given):
             with pytest.MonkeyPatch.context() as patch:
-                patch.setattr(phase, "compile_loop", lambda *asked: compile_loop(*asked[:6], side_by_side=0))
+                patch.setattr(phase, "compile_loop", lambda *asked: compile_loop(*asked[:6], int(in_vectors)))
                 return JitProgram(*given)
 
-        return JitProgram if in_vectors else made
+        return made
 
     return load
 

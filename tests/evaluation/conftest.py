@@ -157,8 +157,8 @@ def ways(lower, load_program):
         answers = {"constants": [_plain(value.objects().ravel()[0]) for value in known]}
         drawn = {a: v for a, v in cells.items() if type(v) in (int, float) and a not in held}
         draws = {address: np.full(3, float(value)) for address, value in drawn.items()}
+        lowering, found = lower(book, draws, targets, **of_workbook)
         for way in WAYS[1:]:
-            lowering, found = lower(book, draws, targets, **of_workbook)
             program = load_program(way)(lowering, [], found, frozenset(draws))
             evaluator = program.evaluator(3)
             list(evaluator.filters(draws, 3))
@@ -174,13 +174,14 @@ def ways(lower, load_program):
 def trials(lower, load_program):
     """`trials(cells, formula, draws, engines)`: what it gives for each number in A1, as a constant and drawn."""
 
-    def compute(cells, formula, draws, engines=WAYS[1:]):
-        asked = {f"Z{row}": f"={formula.replace('A1', repr(draw))}" for row, draw in enumerate(draws, 100)}
-        lowering, found = lower(cells | asked, {}, asked)
-        answers = {"constants": [_plain(lowering.known(target).objects().ravel()[0]) for target in found]}
-        n = len(draws)
+    def compute(cells, formula, draws, engines=WAYS[1:], *, constants=True):
+        answers, n = {}, len(draws)
+        if constants:
+            asked = {f"Z{row}": f"={formula.replace('A1', repr(draw))}" for row, draw in enumerate(draws, 100)}
+            lowering, found = lower(cells | asked, {}, asked)
+            answers["constants"] = [_plain(lowering.known(target).objects().ravel()[0]) for target in found]
+        lowering, found = lower(cells | {"A1": 0.0, "Z9": f"={formula}"}, ["A1"], ["Z9"])
         for way in engines:
-            lowering, found = lower(cells | {"A1": 0.0, "Z9": f"={formula}"}, ["A1"], ["Z9"])
             evaluator = load_program(way)(lowering, [], found, frozenset()).evaluator(n)
             list(evaluator.filters({"A1": np.array(draws)}, n))
             answers[way] = _objects(evaluator.forecasts(np.arange(n))[0])

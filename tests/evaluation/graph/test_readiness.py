@@ -52,4 +52,4 @@ def buffers(lower, rows):
 
 
 def test_what_waits_does_not_depend_on_the_number_of_time_steps(lower):
-    assert buffers(lower, 150) == buffers(lower, 300) < 20
+    assert buffers(lower, 150) == buffers(lower, 200) < 20

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from cases import cases
 
-from xlmc.address import Area
+from xlmc.address import Area, Cell, column_letters
 from xlmc.errors import FormulaError
 from xlmc.evaluation.tracking import TrackingEvaluator
 from xlmc.workbook.workbook import CellContent, Formula
@@ -216,30 +216,40 @@ ARRAYS = {
 OTHER = {f"Other!A{row}": float(row) for row in range(1, 21)}
 
 
-@pytest.fixture
-def answer(run):
-    def compute(formula, array=False):
-        content = CellContent(None, Formula(formula, 9, 26, array=Area("S", 9, 26, 9, 26))) if array else f"={formula}"
-        return run({"A1": 0.0, **CELLS, **OTHER, "Z9": content}, {"A1": [1.0, 1.0]}, ["Z9"]).forecasts[0][0]
+def differing(run, table, array=False):
+    """The formulas of a table that give something else, with what they give: some at a time, in the ninth row.
 
-    return compute
+    Where such a block leaves the fast path each is asked for alone, to see what it gives there by itself.
+    """
+    found, left = {}, [[*table][start : start + 12] for start in range(0, len(table), 12)]
+    while left:
+        some = left.pop()
+        cells = [Cell("S", 9, 26 + at) for at in range(len(some))]
+        areas = [Area("S", 9, cell.column, 9, cell.column) if array else None for cell in cells]
+        placed = {
+            f"{column_letters(cell.column)}9": CellContent(None, Formula(formula, 9, cell.column, area))
+            for cell, formula, area in zip(cells, some, areas, strict=True)
+        }
+        outcome = run({"A1": 0.0, **CELLS, **OTHER, **placed}, {"A1": [1.0, 1.0]}, [*placed])
+        if outcome.careful and len(some) > 1:
+            left += [[formula] for formula in some]
+        else:
+            found |= {formula: gives[0] for formula, gives in zip(some, outcome.forecasts, strict=True)}
+    return {formula: gives for formula, gives in found.items() if gives != table[formula]}
 
 
-@cases("formula", [*SIZES, *COUNTS, *CONDITIONS, *PLACES, *PRODUCTS])
-def test_a_whole_column_keeps_its_size(answer, formula):
-    expected = {**SIZES, **COUNTS, **CONDITIONS, **PLACES, **PRODUCTS}[formula]
-    assert answer(formula) == expected
+def test_a_whole_column_keeps_its_size(run):
+    assert differing(run, {**SIZES, **COUNTS, **CONDITIONS, **PLACES, **PRODUCTS}) == {}
 
 
-@cases("formula", ARRAYS)
-def test_so_it_does_in_array_formulas(answer, formula):
-    assert answer(formula, array=True) == ARRAYS[formula]
+def test_so_it_does_in_array_formulas(run):
+    assert differing(run, ARRAYS, array=True) == {}
 
 
 @cases("formula", REFUSED)
-def test_what_needs_all_its_cells_is_refused_by_name(answer, formula):
+def test_what_needs_all_its_cells_is_refused_by_name(run, formula):
     with pytest.raises(FormulaError, match=REFUSED[formula]):
-        answer(formula)
+        run({"A1": 0.0, **CELLS, **OTHER, "Z9": f"={formula}"}, {"A1": [1.0, 1.0]}, ["Z9"])
 
 
 def test_a_range_that_moves_with_its_formula_ends_with_the_last_filled_cell(run):

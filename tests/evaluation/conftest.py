@@ -52,6 +52,12 @@ def _evaluate(evaluator, draws, n):
 
 
 @pytest.fixture(scope="session")
+def evaluate():
+    """`evaluate(evaluator, draws, n)`: the bits and the values of all columns, filters first."""
+    return _evaluate
+
+
+@pytest.fixture(scope="session")
 def lower(workbook):
     """`lower(cells, inputs, targets)`: the lowered graph; inputs and targets are addresses, `held` are held cells."""
 

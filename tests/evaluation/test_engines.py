@@ -425,8 +425,9 @@ def test_a_formula_that_names_an_empty_cell_gives_zero(differences, engine):
     assert found[0][0][1].tolist() == [0.0, 0.0]
 
 
-@OURS
-@pytest.mark.parametrize("depth", [3, 30, 300])
+@pytest.mark.parametrize(
+    ("engine", "depth"), [("numpy", 30), *(pytest.param("jit", depth, marks=with_jit) for depth in (3, 30, 300))]
+)
 def test_branches_within_branches(differences, engine, depth):
     cells = {"B1": "=1/A1"} | {f"B{k}": f"=IF(A1>{k}/1000,SQRT(B{k - 1}),B{k - 1})" for k in range(2, depth)}
     draws = [0.0, *np.random.default_rng(1).uniform(-0.01, depth / 1000, 40)]

@@ -21,10 +21,10 @@ def tangents(request, monkeypatch):
 
 
 def runs(model):
-    return [told(model.simulate(trials, 5)) for trials in (1, 2_049, TRIALS)]
+    return [told(model.simulate(trials, 5)) for trials in (1, 2_049)]
 
 
-@pytest.mark.parametrize(("number", "tangents"), [*zip(range(8), cycle([True, False]))], indirect=["tangents"])
+@pytest.mark.parametrize(("number", "tangents"), [*zip(range(6), cycle([True, False]))], indirect=["tangents"])
 def test_the_bits_of_random_books_are_the_same(book, monkeypatch, tangents, number):
     """The first four of these books have every function and every lookup of `table_books`."""
     found = runs(some_book(book, number))
@@ -74,9 +74,9 @@ def test_a_row_that_errs_errs_in_its_trials_alone(book):
 
 def test_blocks_are_as_large_as_they_were(book):
     """Where more values wait than a largest block has room for, nothing is looked up: a block would be another one."""
-    many = {f"B{row}": f"=EXP(VLOOKUP(A1,$K$1:$P$9,3)/{row}+A2)*A2" for row in range(1, 200)}
+    many = {f"B{row}": f"=EXP(VLOOKUP(A1,$K$1:$P$9,3)/{row}+A2)*A2" for row in range(1, 140)}
     cells = CELLS | many | {"C1": "=EXP(VLOOKUP(A1,$K$1:$P$9,3))+A2"}
-    forecasts = {f"f{row}": f"B{row}" for row in range(1, 200)} | {"x": "C1"}
+    forecasts = {f"f{row}": f"B{row}" for row in range(1, 140)} | {"x": "C1"}
     names, program = looked_up(book(cells, GIVEN, forecasts))
     assert names == []
     assert program.largest_block < 1 << 15

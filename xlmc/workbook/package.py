@@ -14,7 +14,8 @@ import struct
 import zipfile
 import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from urllib.parse import unquote
 
 from xlmc.errors import WorkbookError
@@ -34,6 +35,7 @@ __all__ = [
     "read_parts",
     "relationships",
     "rels_part",
+    "stored_part",
 ]
 
 SAVE_AS = "Open it in Excel and save it as an Excel Workbook (.xlsx)"
@@ -117,12 +119,11 @@ def relationships(parts: Mapping[str, bytes], part: str = "") -> dict[str, Relat
     Raises:
         WorkbookError: the rels part is not XML.
     """
-    stored = {name.casefold(): name for name in parts}
-    rels = stored.get(rels_part(part).casefold())
+    rels = stored_part(parts, rels_part(part))
     if rels is None:
         return {}
-    elements = tree(parts[rels], rels).findall("{*}Relationship")
-    return {element.get("Id", ""): _relationship(stored, part, element.attrib) for element in elements}
+    folder = posixpath.join("/", posixpath.dirname(part))
+    return {pointer: _in_package(parts, meant) for pointer, meant in _pointers(parts[rels], rels, folder)}
 
 
 def content_type(parts: Mapping[str, bytes], part: str) -> str:
@@ -144,6 +145,14 @@ def rels_part(part: str) -> str:
     """`xl/workbook.xml -> xl/_rels/workbook.xml.rels`; `"" -> _rels/.rels`."""
     folder, name = posixpath.split(part)
     return posixpath.join(folder, "_rels", f"{name}.rels")
+
+
+def stored_part(parts: Mapping[str, bytes], name: str) -> str | None:
+    """The name of a part as the package writes it: part names match whatever their case."""
+    if name in parts:
+        return name
+    folded = name.casefold()
+    return next((stored for stored in parts if stored.casefold() == folded), None)
 
 
 def hash_parts(parts: Mapping[str, bytes]) -> str:
@@ -217,11 +226,26 @@ def _unpack(package: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
     return content
 
 
-def _relationship(stored: Mapping[str, str], part: str, attributes: Mapping[str, str]) -> Relationship:
+@lru_cache(maxsize=128)
+def _pointers(xml: bytes, rels: str, folder: str) -> tuple[tuple[str, Relationship], ...]:
+    """The pointers of a rels part by their id, with targets as it means them; one injection asks some times for each.
+
+    Raises:
+        WorkbookError: the part is not XML.
+    """
+    return tuple((e.get("Id", ""), _meant(folder, e.attrib)) for e in tree(xml, rels).findall("{*}Relationship"))
+
+
+def _meant(folder: str, attributes: Mapping[str, str]) -> Relationship:
     kind, target = attributes.get("Type", ""), attributes.get("Target", "")
     if attributes.get("TargetMode") == "External":
         return Relationship(kind, target, external=True)
-    meant = posixpath.normpath(posixpath.join("/", posixpath.dirname(part), target)).lstrip("/")
-    # Part names match whatever their case, and a target may be percent-encoded.
-    found = stored.get(meant.casefold()) or stored.get(unquote(meant).casefold())
-    return Relationship(kind, found or meant)
+    return Relationship(kind, posixpath.normpath(posixpath.join(folder, target)).lstrip("/"))
+
+
+def _in_package(parts: Mapping[str, bytes], meant: Relationship) -> Relationship:
+    """The pointer with its target by the name that the part has, which may be percent-encoded in the pointer."""
+    if meant.external or meant.target in parts:
+        return meant
+    found = stored_part(parts, meant.target) or stored_part(parts, unquote(meant.target))
+    return meant if found is None else replace(meant, target=found)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from xlmc.errors import WorkbookError
 from xlmc.workbook.injection.splice import Element, SplicedXml, render
-from xlmc.workbook.package import CONTENT_TYPES, relationships, rels_part
+from xlmc.workbook.package import CONTENT_TYPES, relationships, rels_part, stored_part
 from xlmc.workbook.safe_xml import REPAIR
 
 __all__ = ["Roles", "add_types", "drop_types", "roles", "types_of"]
@@ -38,7 +38,7 @@ def roles(parts: Mapping[str, bytes]) -> Roles:
         WorkbookError: the package does not say which part is the workbook, or lacks its content types.
     """
     workbook = _target(parts, "", "officeDocument")
-    rels = None if workbook is None else _stored(parts, rels_part(workbook))
+    rels = None if workbook is None else stored_part(parts, rels_part(workbook))
     if workbook is None or rels is None or CONTENT_TYPES not in parts:
         raise WorkbookError("the package does not say where its workbook is", hint=REPAIR)
     return Roles(
@@ -52,10 +52,6 @@ def roles(parts: Mapping[str, bytes]) -> Roles:
 def _target(parts: Mapping[str, bytes], part: str, kind: str) -> str | None:
     found = (r.target for r in relationships(parts, part).values() if r.kind == kind and r.target in parts)
     return next(found, None)
-
-
-def _stored(parts: Mapping[str, bytes], name: str) -> str | None:
-    return next((stored for stored in parts if stored.casefold() == name.casefold()), None)
 
 
 def types_of(xml: bytes, names: Collection[str]) -> dict[str, str]:

@@ -45,8 +45,8 @@ def answer_here(script, given):
 def at_hand():
     """`compare.main` builds no C, which no contestant of these tests needs, and looks a moment only at what else runs.
 
-    Its pictures are not laid out. Each script measures once in a process of its own, then in this one; that of the
-    scaling in this one, where it starts itself as its other process.
+    Its pictures are not laid out. The script of a contestant measures once in a process of its own, then in this one,
+    as the others do; that of the scaling starts itself as its other process.
     """
     import growth
     import hand_c
@@ -56,7 +56,7 @@ def at_hand():
 
     from xlmc.run.scheduling.processes import idle_pool
 
-    apart = ["one_contestant.py", "one_growth.py"]
+    apart = ["one_contestant.py"]
     in_a_process = processes.answer_of
 
     def answer_of(python, script, given, limit):

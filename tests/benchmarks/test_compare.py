@@ -15,6 +15,7 @@ from contestants import formulas_model
 from line_up import line_up
 
 import xlmc
+from xlmc.run.scheduling.processes import IdlePool, idle_pool
 
 CONTESTANTS = ("xlmc/numpy", "hand/NumPy")
 PEER = "formulas"
@@ -25,9 +26,12 @@ PEER = "formulas"
 def results(tmp_path_factory, at_hand):
     folder = tmp_path_factory.mktemp("results")
     given = ["--quick", "--books", "case-study", "--contestants", *CONTESTANTS, "--output", str(folder), "--parts"]
+    ended = []
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(compare, "draw", lambda _: None)
+        patch.setattr(IdlePool, "end", lambda pool: ended.append(pool))  # the next process would cost half a second
         assert compare.main([*given, "rates", "scaling"]) == folder
+    assert ended == [idle_pool]  # before the run that is to start its process anew
     path = folder / "rates.json"
     measured = json.loads(path.read_text(encoding="utf-8"))
     records = measured["found"]["case-study"]

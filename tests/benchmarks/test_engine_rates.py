@@ -1,12 +1,19 @@
 from __future__ import annotations
 
+import pickle
+from concurrent.futures import ThreadPoolExecutor
+
 import books
 import engine_rates
 import pytest
 
 
-def test_a_line_a_book(capsys):
+def test_a_line_a_book(capsys, monkeypatch):
+    """In this process; another one is sent the function and sends back the rates."""
     pytest.importorskip("llvmlite")
+    rates = engine_rates.Rates(2.0, 1.0, (2.0,))
+    assert pickle.loads(pickle.dumps((engine_rates.measured, rates))) == (engine_rates.measured, rates)
+    monkeypatch.setattr(engine_rates, "ProcessPoolExecutor", lambda workers, _: ThreadPoolExecutor(workers))
     engine_rates.main(["--quick", "--books", "benchmark skid"])
     lines = [line.split("|")[1:-1] for line in capsys.readouterr().out.splitlines()]
     assert [line[0].strip() for line in lines] == ["book", "---", "benchmark skid"]

@@ -6,8 +6,10 @@ import pytest
 from xlmc.evaluation.llvm import program
 
 
-def test_costs_are_told_by_kind(capsys):
+def test_costs_are_told_by_kind(capsys, monkeypatch):
     pytest.importorskip("llvmlite")
+    monkeypatch.setattr(node_costs, "FEW", 1)
+    monkeypatch.setattr(node_costs, "MANY", 3)
     chosen = program.loops_pay
     node_costs.main(["--quick"])
     lines = capsys.readouterr().out.splitlines()

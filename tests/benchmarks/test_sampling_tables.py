@@ -89,8 +89,8 @@ KEPT = ("speed, 3 % kept", "speed, 33 % kept")
 
 @pytest.mark.parametrize(("method", "name"), [(method, KEPT[n % 2]) for n, method in enumerate(METHODS)])
 def test_some_of_the_runs_again(coverage, method, name):
-    """40 runs with other seeds: 95 % ± 4 binomial standard errors, which 100 % is within, so from below only."""
-    runs = 40
+    """20 runs with other seeds: 95 % ± 4 binomial standard errors, which 100 % is within, so from below only."""
+    runs = 20
     cell = coverage.measure(name, method, runs, first=50_000)
     assert min(cell.hits) > runs * (0.95 - 4 * math.sqrt(0.95 * 0.05 / runs))
 
@@ -98,17 +98,17 @@ def test_some_of_the_runs_again(coverage, method, name):
 @pytest.mark.parametrize(
     ("name", "trials"),
     [
-        ("sum of normals, 16 % kept", 200_000),
-        ("speed", 100_000),
-        ("speed, 33 % kept", 100_000),
-        ("speed, 3 % kept", 1_000_000),
+        ("sum of normals, 16 % kept", 50_000),
+        ("speed", 25_000),
+        ("speed, 33 % kept", 25_000),
+        ("speed, 3 % kept", 250_000),
     ],
 )
 def test_the_truths_are_true(coverage, name, trials):
-    """Beside a Monte Carlo run with more than 25,000 accepted trials: within 4.5 of its errors."""
+    """Beside a Monte Carlo run with more than 6,000 accepted trials: within 4.5 of its errors."""
     problem = coverage.PROBLEMS[name]
     sample = coverage.one_run(problem, coverage.SamplingPlan.of("mc", trials), 77)
-    assert sample.n > 25_000
+    assert sample.n > 6_000
     for estimate, truth in zip(coverage.estimates(sample), problem.truth(), strict=True):
         assert abs(estimate.value - truth) < 4.5 * estimate.error
 
@@ -132,8 +132,8 @@ def test_gains_of_known_variances(sobol, monkeypatch):
 
 
 def test_unfiltered_sobol_means_of_the_case_study_hardly_vary(sobol):
-    """Six seeds and a quarter of the trials: the ratios are more than a hundred times the bar of 1,000."""
+    """Six seeds and a sixteenth of the trials: the ratios are still far above the bar of 1,000."""
     book = sobol.load(sobol.CASE_STUDY)
     free = sobol.Model(book.workbook, sobol.replace(book.definitions, filters=()), book.path)
-    plain, even = (sobol.means(free, method, range(6), 1 << 15) for method in ("mc", "sobol"))
+    plain, even = (sobol.means(free, method, range(6), 1 << 13) for method in ("mc", "sobol"))
     assert (plain.var(axis=0) > 1_000 * even.var(axis=0)).all()

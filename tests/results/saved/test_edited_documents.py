@@ -60,6 +60,7 @@ def refusal(path):
     return None
 
 
+@pytest.mark.usefixtures("read_once")
 def test_any_value_of_another_kind(tiny_run, tmp_path):
     with zipfile.ZipFile(tiny_run) as package:
         found = list(places(json.loads(package.read(RUN))))

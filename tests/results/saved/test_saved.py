@@ -30,9 +30,9 @@ RUNS = {
     "some draws kept": {"keep_inputs": 10},
     "no draws kept": {"keep_inputs": 0},
     "compiled": {"engine": "jit"},
-    "slow reference": {"engine": "formulas", "trials": 40},
+    "slow reference": {"engine": "formulas", "trials": 10},
     "one trial": {"trials": 1},
-    "rare": {"until_accepted": 300, "rare": "always"},
+    "rare": {"until_accepted": 100, "rare": "always"},
 }
 
 
@@ -119,7 +119,7 @@ def test_columns_on_disk_are_saved_and_opened_on_disk(model, tmp_path, saved, mo
 
 
 def test_saving_takes_little_memory(run, tmp_path):
-    n = 2_000_000
+    n = 1_000_000
     large = replace(
         run,
         trials=n,
@@ -237,7 +237,8 @@ FAULTS = {
 }
 
 
-@pytest.mark.parametrize(("change", "message"), FAULTS.values(), ids=FAULTS)
+@pytest.mark.usefixtures("read_once")
+@cases(("change", "message"), list(FAULTS.values()), ids=list(FAULTS))
 def test_what_is_no_saved_run_is_refused_in_words(saved, tmp_path, change, message):
     with pytest.raises(XlmcError, match=message):
         open_run(repacked(saved, tmp_path / "bad.xlmcrun", change))
@@ -303,7 +304,8 @@ def test_goals_are_saved_and_opened_as_in_version_0_4(model, tmp_path, asked, wr
         assert (again.settings, again.stopped) == (run.settings, run.stopped)
 
 
-@pytest.mark.parametrize(
+@pytest.mark.usefixtures("read_once")
+@cases(
     ("goal", "message"),
     [
         ({"accepted": 1}, "1 accepted trials were asked for"),
@@ -331,6 +333,7 @@ def test_a_goal_that_no_run_may_have_is_refused(saved, tmp_path, goal, message):
 FIELDS = ["settings", "stopped", "tally", "faults", "invalid", "columns", "order", "origin", "block", "trials"]
 
 
+@pytest.mark.usefixtures("read_once")
 @cases("value", [None, -1, 1e308, "x", [], [[]], {}, True])
 @cases("field", FIELDS)
 def test_an_edited_field_opens_as_a_run_or_is_refused_naming_the_file(tiny, tmp_path, field, value):
@@ -351,6 +354,7 @@ def test_an_end_that_is_no_words_is_refused(saved, tmp_path, words):
         open_run(path)
 
 
+@pytest.mark.usefixtures("read_once")
 @cases("value", [None, -1, "x", {}, float("nan"), 10**30])
 @cases("part", ["settings", "settings.stopping", "stopped"])
 def test_an_edited_field_inside_a_part_opens_as_a_run_or_is_refused(tiny, tmp_path, part, value):
@@ -409,6 +413,7 @@ def tiny(model, tmp_path_factory):
     return keep(model.simulate(20), tmp_path_factory.mktemp("tiny") / "tiny.xlmcrun")
 
 
+@pytest.mark.usefixtures("read_once")
 @settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_a_damaged_file_is_a_message_or_does_no_harm(tiny, tmp_path, data):

@@ -31,13 +31,15 @@ def test_independent_trials(name, n):
     distribution = DISTRIBUTIONS[name]
     draws = distribution.rvs((RUNS, n), random_state=np.random.default_rng(n))
     percents = [5, 24.5, 50, 75.5, 95]
-    hits = dict.fromkeys(["mean", "deviation", *percents], 0)
+    truth = {"mean": distribution.mean(), "deviation": distribution.std()}
+    truth |= {percent: distribution.ppf(percent / 100) for percent in percents}
+    hits = dict.fromkeys(truth, 0)
     for run in draws:
         sample = xs.Sample.of(run)
-        hits["mean"] += covers(xs.mean(sample), distribution.mean())
-        hits["deviation"] += covers(xs.standard_deviation(sample), distribution.std())
+        hits["mean"] += covers(xs.mean(sample), truth["mean"])
+        hits["deviation"] += covers(xs.standard_deviation(sample), truth["deviation"])
         for percent, estimate in xs.percentiles(sample, percents).items():
-            hits[percent] += covers(estimate, distribution.ppf(percent / 100))
+            hits[percent] += covers(estimate, truth[percent])
     skewed = name != "normal"
     slack = {"mean": 0.01 * skewed, "deviation": 0.04 * skewed + 0.01}
     for key, count in hits.items():

@@ -1,6 +1,7 @@
 """What every run of the tests has, of whichever folder: see `tests/session`."""
 
 pytest_plugins = (
+    "both_ends",
     "cases",
     "costliest",
     "example_profiles",

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-PLUGINS = ["cases", "costliest", "not_tested", "process_costs", "tree_guard", "work_stealing"]
+PLUGINS = ["both_ends", "cases", "costliest", "not_tested", "process_costs", "tree_guard", "work_stealing"]
 COSTS = """
 import subprocess, sys, time
 
@@ -56,6 +56,11 @@ def test_threads():
 WRITES = """
 from pathlib import Path
 def test_a(): Path("left-results.xlsx").write_text("")
+"""
+COLLECTED = """
+import os, time
+from pathlib import Path
+(Path.cwd().parent / f"{time.monotonic_ns()} {os.environ['PYTEST_XDIST_WORKER']} {Path(__file__).name}").touch()
 """
 NEIGHBOURS = """
 import os, pytest
@@ -121,7 +126,8 @@ def run(run_tests, tmp_path_factory):
 @pytest.fixture(scope="module")
 def shared(run):
     """All but those that fail, by two processes."""
-    sources = {"costs": COSTS, "neighbours": NEIGHBOURS, "processes": PROCESSES, "skipped": SKIPPED, "writes": WRITES}
+    sources = {"costs": COSTS, "processes": PROCESSES, "skipped": SKIPPED}
+    sources |= {"neighbours": COLLECTED + NEIGHBOURS, "writes": COLLECTED + WRITES}
     return run(sources, "-n", "2")
 
 
@@ -191,6 +197,13 @@ def test_each_of_two_workers_has_neighbouring_tests(shared):
     who = [path.name.partition("-")[2] for path in sorted((shared.folder / "base").glob("??-*"))]
     assert len(who) == 40
     assert sum(a != b for a, b in pairwise(who)) <= 10
+
+
+def test_the_second_worker_collects_from_the_end(shared):
+    seen = [path.name.split()[1:] for path in sorted(shared.folder.glob("* test_*.py"))]
+    files = ["test_neighbours.py", "test_writes.py"]
+    assert [name for worker, name in seen if worker == "gw0"] == files
+    assert [name for worker, name in seen if worker == "gw1"] == files[::-1]
 
 
 def test_every_case_that_fails_is_named(alone):

@@ -60,7 +60,6 @@ def test_every_part_is_well_formed_and_no_control_is_raw(xlmc, whole_book, hosti
         json.dumps(json.loads((tmp_path / "j.json").read_text(encoding="utf-8"))["forecasts"], ensure_ascii=False)
     )
     assert xlmc("replay", "s.xlmcrun").code == 0
-    assert xlmc("replay", "r.xlsx").code == 0
 
 
 @pytest.fixture
@@ -141,3 +140,4 @@ def test_forecast_names_are_escaped_in_json_keys_and_headings_of_extracts(xlmc, 
     head = (tmp_path / "t.csv").read_text(encoding="utf-8-sig").splitlines()[0]
     assert "\\x1b[2J\\x07" in head
     assert not RAW.search(head)
+    assert xlmc("replay", "r.xlsx").code == 0

@@ -107,7 +107,7 @@ def test_what_became_somebodys_stays_and_results_go_to_the_next_number(xlmc, boo
     written()
     change(tmp_path / "book-results.xlsx")
     before = contents(tmp_path)
-    for seed in (1, 2):  # the second time the number is our own
+    for seed in (1, 2) if change is change_a_part else (1,):  # the second time the number is our own
         outcome = xlmc("simulate", book, "--seed", seed, "--quiet")
         told = [line for line in outcome.err.splitlines() if "results go to" in line]
         assert len(told) == 1
@@ -147,25 +147,27 @@ def test_every_kind_of_output_replaces_its_own_but_tables(xlmc, book, written, t
 
 
 @pytest.mark.parametrize("command", ["simulate", "report"])
-@pytest.mark.parametrize("name", NAMED)
-def test_every_kind_of_output_spares_what_was_changed(xlmc, book, written, tmp_path, name, command):
+def test_every_kind_of_output_spares_what_was_changed(xlmc, book, written, tmp_path, command):
     written(*ALL)
-    if command == "report" and name == "a.xlmcrun":
-        return
     (tmp_path / "run.xlmcrun").write_bytes((tmp_path / "a.xlmcrun").read_bytes())
-    for other in set(NAMED) - {name}:
-        (tmp_path / other).unlink()
-    path = tmp_path / name
-    path.write_bytes(path.read_bytes().replace(b"a", b"b", 1))
-    before = contents(tmp_path)
     options = ALL if command == "simulate" else (*ALL[:4], *ALL[6:])
     source = book if command == "simulate" else "run.xlmcrun"
-    outcome = xlmc(command, source, *options, "--quiet")
-    assert outcome.code == 2
-    assert f"xlmc: {name}: the file exists already, and" in outcome.err
-    assert contents(tmp_path) == before
+    changed = {name: (tmp_path / name).read_bytes().replace(b"a", b"b", 1) for name in options[1::2]}
+    for name in NAMED:
+        (tmp_path / name).unlink()
+    for name, content in changed.items():
+        (tmp_path / name).write_bytes(content)
+        before = contents(tmp_path)
+        outcome = xlmc(command, source, *options, "--quiet")
+        assert outcome.code == 2
+        assert f"xlmc: {name}: the file exists already, and" in outcome.err
+        assert contents(tmp_path) == before
+        (tmp_path / name).unlink()
+    for name, content in changed.items():
+        (tmp_path / name).write_bytes(content)
     xlmc(command, source, *options, "--overwrite")
-    assert contents(tmp_path)[name] != before[name]
+    after = contents(tmp_path)
+    assert [name for name, content in changed.items() if after[name] == content] == []
 
 
 @cases("spelling", ["book.xlsx", "./book.xlsx", "folder/../book.xlsx", "link.xlsx", "hard.xlsx"])
@@ -275,18 +277,19 @@ def test_a_book_that_is_opened_or_changed_during_a_run_in_place_keeps_its_state(
     assert "book-results.xlsx was written instead" in outcome.err
 
 
-@pytest.mark.parametrize("code", [5, 32, 33, 1224, 391])
 def test_a_file_that_excel_holds_on_windows_is_spared_and_the_result_stands_beside_it(
-    xlmc, book, written, tmp_path, monkeypatch, code
+    xlmc, book, written, tmp_path, monkeypatch
 ):
+    """Which may say so in several ways, one after the other."""
     written("-o", "a.xlsx")
     before = (tmp_path / "a.xlsx").read_bytes()
-    replace, naps = os.replace, []
+    replace, naps, codes = os.replace, [], [5, 32, 33, 1224, 391]
 
     def held(source, target):
         if os.path.basename(target) == "a.xlsx":
             error = PermissionError(13, "The process cannot access the file")
-            error.winerror = code
+            codes.append(codes.pop(0))
+            error.winerror = codes[-1]
             raise error
         return replace(source, target)
 
@@ -297,6 +300,7 @@ def test_a_file_that_excel_holds_on_windows_is_spared_and_the_result_stands_besi
     assert (tmp_path / "a.xlsx").read_bytes() == before
     assert zipfile.is_zipfile(tmp_path / "a-2.xlsx")
     assert 2 < sum(nap for nap in naps if nap) < 10
+    assert len([nap for nap in naps if nap]) >= len(codes)
     assert sorted(contents(tmp_path)) == ["a-2.xlsx", "a.xlsx", "book.xlsx"]
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import openpyxl
 import pytest
+from fewer_sheets import keep_few_trials
 
 from xlmc import __version__
 from xlmc.errors import XlmcError
@@ -22,18 +23,17 @@ DOCS = Path(__file__).resolve().parents[2] / "docs"
 
 @pytest.fixture(scope="module")
 def written():
-    """What one run wrote: name -> bytes, of the run with whole books and of that with short ones."""
-    return {True: {}, False: {}}
+    """What one run wrote: name -> bytes."""
+    return {}
 
 
 @pytest.fixture
-def results(request, xlmc, short_books, written, plain_book, tmp_path):
+def results(xlmc, short_books, written, plain_book, tmp_path):
     """The results of a plain book, in the folder that commands run in."""
-    files = written["whole_book" in request.fixturenames]
-    if not files:
+    if not written:
         assert xlmc("simulate", plain_book, "--seed", 5, "--save-run", "case.xlmcrun").code == 0
-        files |= {path.name: path.read_bytes() for path in tmp_path.iterdir()}
-    for name, content in files.items():
+        written |= {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    for name, content in written.items():
         (tmp_path / name).write_bytes(content)
     return tmp_path / "case-results.xlsx"
 
@@ -52,8 +52,7 @@ def change_formula(path, sheet, address, more):
     path.write_bytes(package_bytes(parts | {part: changed}))
 
 
-@pytest.mark.parametrize("name", ["case-results.xlsx", "case.xlmcrun"])
-def test_identical(xlmc, whole_book, results, name):
+def replays_identically(xlmc, name):
     outcome = xlmc("replay", name)
     assert outcome.code == 0
     assert outcome.err == ""
@@ -61,6 +60,16 @@ def test_identical(xlmc, whole_book, results, name):
     assert first == f"{name} records a run of case.xlsx: 2,000 trials, seed 5."
     assert second.startswith("identical: the same ")
     assert second.endswith(" accepted trials to the last bit.")
+
+
+def test_a_workbook_with_all_sheets_is_identical(xlmc, plain_book, monkeypatch):
+    keep_few_trials(monkeypatch)
+    assert xlmc("simulate", plain_book, "--seed", 5).code == 0
+    replays_identically(xlmc, "case-results.xlsx")
+
+
+def test_a_saved_run_is_identical(xlmc, results):
+    replays_identically(xlmc, "case.xlmcrun")
 
 
 def test_a_changed_cell_is_named(xlmc, results, monkeypatch):
@@ -138,8 +147,6 @@ def test_a_run_of_an_older_version_that_gives_other_numbers(xlmc, results):
     assert any(line.startswith("  git worktree add ../xlmc-0.1.0 ") for line in lines)
     assert "Speed: mean: recorded 10.5, repeated 1.6" in outcome.out
     assert "edited" not in outcome.out
-    found = json.loads(xlmc("replay", results, "--json").out)
-    assert found["made_by"] == "0.1.0"
 
 
 def test_a_workbook_that_an_older_version_ran_and_this_one_refuses(xlmc, results, monkeypatch):
@@ -158,6 +165,7 @@ def test_a_workbook_that_an_older_version_ran_and_this_one_refuses(xlmc, results
     assert outcome.out.splitlines()[1:3] == ["differs.", f"xlmc 0.1.0 made this run, and this is xlmc {__version__}."]
     assert "The workbook cannot be run any more: no" in outcome.out
     assert "edited" not in outcome.out
+    assert json.loads(xlmc("replay", results, "--json").out)["made_by"] == "0.1.0"
 
 
 def test_edited_results_are_named_and_counted(xlmc, results):

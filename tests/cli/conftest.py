@@ -17,6 +17,7 @@ from workbook_files import workbook_of
 
 from xlmc.api import Model
 from xlmc.cli import main
+from xlmc.studies import fitting
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -141,6 +142,41 @@ def made_once(studies_made: dict[tuple[object, ...], object], monkeypatch: pytes
         monkeypatch.setattr(module, name, once)
 
     return patch
+
+
+@pytest.fixture
+def fitted_once(studies_made: dict[tuple[object, ...], object], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Equal values are fitted once, and without what no test here looks at: the standard errors of the triangular
+    distribution, which take most of a fit.
+    """
+    monkeypatch.setattr("xlmc.studies.fitting.solved_forms._BOOTSTRAP_SAMPLES", 6)
+    fit = fitting.fit
+
+    def once(values: list[float], **asked: object) -> object:
+        key = "fit", *values, *sorted(asked.items())
+        if key not in studies_made:
+            studies_made[key] = fit(values, **asked)
+        return studies_made[key]
+
+    monkeypatch.setattr(fitting, "fit", once)
+
+
+@pytest.fixture
+def simulated(
+    xlmc: Callable[..., Outcome], studies_made: dict[tuple[object, ...], object], tmp_path: Path
+) -> Callable[..., None]:
+    """`simulated(book, *options)`: the folder as after `xlmc simulate BOOK OPTIONS`, which is run once."""
+
+    def write(book: Path, *options: object) -> None:
+        key = "simulate", book.name, book.read_bytes(), *options
+        if key not in studies_made:
+            before = {*tmp_path.iterdir()}
+            assert xlmc("simulate", book, *options).code in (0, 1)
+            studies_made[key] = {path.name: path.read_bytes() for path in {*tmp_path.iterdir()} - before}
+        for name, data in studies_made[key].items():
+            (tmp_path / name).write_bytes(data)
+
+    return write
 
 
 @pytest.fixture

@@ -177,7 +177,7 @@ def test_the_way_evidence_is_used_is_an_option(xlmc, short_books, book, tmp_path
         data = json.loads(found.read_text(encoding="utf-8"))
         accepted[way] = data["accepted"] if "accepted" in data else data["record"]["counts"]["accepted"]
         assert (data["weights"] is not None) == (way == "weights")
-        assert xlmc("replay", tmp_path / "book-results.xlsx").code == 0
+        assert way != "weights" or xlmc("replay", tmp_path / "book-results.xlsx").code == 0
     assert accepted["weights"] == 4_000 > accepted["rejection"] == accepted["auto"]
     refused = xlmc("simulate", path, "--evidence", "both")
     assert (refused.code, "'both' is not one of auto, rejection, weights" in refused.err) == (2, True)

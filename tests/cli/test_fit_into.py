@@ -13,13 +13,9 @@ from openpyxl.worksheet.table import Table
 
 from xlmc.cli import fit_into
 
+pytestmark = pytest.mark.usefixtures("fitted_once")
+
 VALUES = np.random.default_rng(999).normal(0.75, 0.06, 40).round(3)
-
-
-@pytest.fixture(autouse=True)
-def few_samples(monkeypatch):
-    """No test here looks at the standard errors of the triangular distribution, which take most of a fit."""
-    monkeypatch.setattr("xlmc.studies.fitting.solved_forms._BOOTSTRAP_SAMPLES", 6)
 
 
 @pytest.fixture

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import zipfile
+from functools import partial
 
 import openpyxl
 import pytest
@@ -31,24 +32,10 @@ def contents(folder):
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
 
 
-@pytest.fixture(scope="module")
-def kept():
-    """Options of `xlmc simulate book.xlsx` -> what it wrote: name -> bytes."""
-    return {}
-
-
 @pytest.fixture
-def written(xlmc, book, kept, tmp_path):
+def written(simulated, book):
     """`written(*options)`: the folder as after `xlmc simulate book.xlsx` with these options, which is run once."""
-
-    def write(*options):
-        if options not in kept:
-            assert xlmc("simulate", book, *options).code == 1  # some trials are lost to errors
-            kept[options] = {name: data for name, data in contents(tmp_path).items() if name != "book.xlsx"}
-        for name, data in kept[options].items():
-            (tmp_path / name).write_bytes(data)
-
-    return write
+    return partial(simulated, book)
 
 
 def save_again(path):

@@ -7,6 +7,7 @@ import openpyxl
 import pandas
 import pytest
 from cases import cases
+from fewer_sheets import keep_few_trials
 from openpyxl.worksheet.table import Table
 
 import xlmc as package
@@ -26,7 +27,8 @@ def case_book(plain_book):
     return plain_book
 
 
-def test_what_is_reported_is_what_simulate_wrote(xlmc, whole_book, case_book, tmp_path):
+def test_what_is_reported_is_what_simulate_wrote(xlmc, whole_book, case_book, tmp_path, monkeypatch):
+    keep_few_trials(monkeypatch)
     options = ("--save-run", "case.xlmcrun", "--json", "a.json", "--extract", "a.csv", "--extract", "a.parquet")
     run = xlmc("simulate", case_book, *options)
     assert run.code == 0
@@ -49,14 +51,14 @@ def summary(printed):
     return printed.partition("\nResults are in")[0]
 
 
-def test_nothing_is_simulated(xlmc, case_book, monkeypatch):
-    xlmc("simulate", case_book, "--save-run", "case.xlmcrun")
+def test_nothing_is_simulated(xlmc, simulated, book, monkeypatch):
+    simulated(book, "--save-run", "first.xlmcrun")
 
     def refuse(*_, **__):
         raise AssertionError("a run was simulated")
 
     monkeypatch.setattr("xlmc.api.Model.simulate", refuse)
-    assert xlmc("report", "case.xlmcrun", "-o", "b.xlsx").code == 0
+    assert xlmc("report", "first.xlmcrun", "-o", "b.xlsx").code == 1  # errors in cells
 
 
 def test_a_second_run_stands_beside_the_first_on_the_page(xlmc, case_book, tmp_path):
@@ -77,16 +79,16 @@ def test_a_second_run_stands_beside_the_first_on_the_page(xlmc, case_book, tmp_p
     assert (tmp_path / "two.html").read_bytes() == (tmp_path / "2.xlmcrun").read_bytes()
 
 
-def test_by_default_it_writes_the_result_workbook(xlmc, book, tmp_path):
-    xlmc("simulate", book, "--save-run", "first.xlmcrun")
+def test_by_default_it_writes_the_result_workbook(xlmc, simulated, book, tmp_path):
+    simulated(book, "--save-run", "first.xlmcrun")
     outcome = xlmc("report", "first.xlmcrun")
     assert outcome.code == 1  # errors in cells
     assert (tmp_path / "first-results.xlsx").read_bytes() == (tmp_path / "book-results.xlsx").read_bytes()
     assert "were lost to errors in cells" in outcome.err
 
 
-def test_it_writes_no_workbook_where_something_else_is_asked_for(xlmc, book, tmp_path):
-    xlmc("simulate", book, "--save-run", "first.xlmcrun")
+def test_it_writes_no_workbook_where_something_else_is_asked_for(xlmc, simulated, book, tmp_path):
+    simulated(book, "--save-run", "first.xlmcrun")
     xlmc("report", "first.xlmcrun", "--json", "first.json")
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "book-results.xlsx",
@@ -152,9 +154,9 @@ def refuse(*_, **__):
 
 
 @pytest.mark.parametrize("command", ["simulate", "report"])
-def test_a_file_that_cannot_be_written_takes_no_other_with_it(xlmc, book, tmp_path, monkeypatch, command):
-    xlmc("simulate", book, "--save-run", "run.xlmcrun")
-    source = book if command == "simulate" else "run.xlmcrun"
+def test_a_file_that_cannot_be_written_takes_no_other_with_it(xlmc, simulated, book, tmp_path, monkeypatch, command):
+    simulated(book, "--save-run", "first.xlmcrun")
+    source = book if command == "simulate" else "first.xlmcrun"
     monkeypatch.setattr("xlmc.api.Simulation.save", refuse)
     monkeypatch.setattr("xlmc.api.Simulation.save_page", refuse)
     outcome = xlmc(command, source, "-o", "b.xlsx", "--html", "b.html", "--json", "b.json", "--extract", "b.csv")
@@ -174,9 +176,9 @@ def test_what_is_no_saved_run(xlmc, book):
     assert outcome.err.startswith(f"xlmc: {other}: the file is not a saved run. Save one with xlmc simulate --save-run")
 
 
-def test_results_of_another_kind_of_workbook_are_refused(xlmc, book, tmp_path):
-    xlmc("simulate", book, "--save-run", "run.xlmcrun")
-    outcome = xlmc("report", "run.xlmcrun", "-o", "b.xlsm")
+def test_results_of_another_kind_of_workbook_are_refused(xlmc, simulated, book):
+    simulated(book, "--save-run", "first.xlmcrun")
+    outcome = xlmc("report", "first.xlmcrun", "-o", "b.xlsm")
     assert outcome.code == 2
     assert "must end in .xlsx" in outcome.err
 

@@ -14,7 +14,7 @@ def screened_once(made_once):
 
 
 GEOMETRY = "*impact centre*, Orientation of tangent"
-OF_THE_CASE_STUDY = "--tolerance", "0.4 mph", "--freeze", GEOMETRY, "-n", "100000"
+OF_THE_CASE_STUDY = "--tolerance", "0.4 mph", "--freeze", GEOMETRY, "-n", "40000"
 
 
 def test_the_case_study(xlmc, case_study):

@@ -91,7 +91,7 @@ def test_unfiltered_runs_have_the_correlations_and_the_margins(book, method, cor
     """Spearman's matrix within family-wise 99.9 % limits of the target: 6 pairs of independent trials, whose errors no
     method exceeds; margins by Kolmogorov and Smirnov at 99.9 % for each of the 4 (family-wise 99.6 %)."""
     model = book(CELLS, GIVEN, {"x": "B1"}, correlations=correlations)
-    run = model.simulate(40_000, 11, sampling=method)
+    run = model.simulate(10_000, 11, sampling=method)
     n, names = run.accepted, list(GIVEN)
     seen = np.corrcoef(stats.rankdata([run.inputs[name] for name in names], axis=1))
     z = stats.norm.isf(0.001 / 6 / 2)

@@ -66,14 +66,6 @@ def test_evidence_moves_no_draw_and_every_engine_keeps_the_same_trials(book, nor
             assert np.array_equal(one.inputs["c"], normal.simulate(trials=5_000, engine="jit").inputs["c"])
 
 
-def test_a_search_for_rare_trials_keeps_the_same_posterior(book):
-    far = {**READING, "reading": 4.5}
-    run = book(CELLS, OTHERS, FORECASTS, evidence={"EDR": far}).simulate(until_accepted=2_000, rare="always")
-    assert run.rare is not None
-    assert close(run["y"].mean, 3.6)
-    assert close(run["y"].standard_deviation, 0.447214)
-
-
 def test_what_keeps_no_trial_without_its_chance_is_told_at_the_base_case(normal):
     from xlmc.report.summary import base_case
 

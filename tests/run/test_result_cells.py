@@ -285,17 +285,25 @@ NOT_COMPUTED = {
 }
 
 
-@pytest.mark.parametrize("formula", NOT_COMPUTED)
-def test_what_xlmc_does_not_compute_shows_not_available_and_is_named(tmp_path, formula):
-    cells = {"B1": (f"={formula}", STALE), "C1": ("=A1+A2", 15), "D1": ("=RiskMean(A2)", STALE)}
+def test_what_xlmc_does_not_compute_shows_not_available_and_is_named(tmp_path):
+    """Cells of one reason are named together."""
+    of = {f"B{row}": formula for row, formula in enumerate(NOT_COMPUTED, 1)}
+    cells = {address: (f"={formula}", STALE) for address, formula in of.items()}
+    cells |= {"C1": ("=A1+A2", 15), "D2": ("=RiskMean(A2)", STALE)}
     run = run_of(tmp_path / "book.xlsx", cells)
     found = shown(run, tmp_path / "out.xlsx")
-    assert (found["B1"], found["C1"], found["D1"]) == ("#N/A", 15, run["S!A2"].mean.value)
+    assert (found["C1"], found["D2"]) == (15, run["S!A2"].mean.value)
+    assert {address: found[address] for address in of} == dict.fromkeys(of, "#N/A")
+    assert {f"S!{address}" for address in of} == {str(each) for each in run.shown_results.missing if each.sheet == "S"}
     [warning] = run.warnings
-    assert "S!B1" in warning
-    assert NOT_COMPUTED[formula] in warning
-    [notice] = [each for each in run.model.notices if str(each.where) == "S!B1" and "#N/A" in each.message]
-    assert NOT_COMPUTED[formula] in notice.message
+    first = {reason: address for address, reason in reversed(list(zip(of, NOT_COMPUTED.values(), strict=True)))}
+    for reason, address in first.items():
+        assert reason in warning
+        assert re.search(rf"\bS!{address}\b", warning)
+        told = [each.message for each in run.model.notices if str(each.where) == f"S!{address}"]
+        assert len([message for message in told if "#N/A" in message and reason in message]) == 1
+    together = "RiskCpk is not computed by xlmc in S!B1, S!B12:B13: #N/A"
+    assert any(together in each.message for each in run.model.notices)
 
 
 DEPENDANTS = {

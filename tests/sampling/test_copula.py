@@ -13,7 +13,7 @@ from xlmc.distributions import family_named
 from xlmc.sampling.copula import GaussianCopula, Ties, bounds, nearest_correlation, parameter, spearman
 from xlmc.sampling.draws import Draw
 
-N = 200_000
+N = 50_000
 
 
 def matrix(k, **pairs):

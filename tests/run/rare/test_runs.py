@@ -162,6 +162,17 @@ def test_dynamic_correlated_and_whole_numbers_come_along(book):
         assert abs(mine.value - true) < 4.5 * mine.error
 
 
+def test_a_search_keeps_the_posterior_of_a_reading_that_is_far_off(book):
+    """X ~ N(0, 1) and a reading of 4.5 with a standard deviation of 0.5: mean 3.6, SD √0.2."""
+    x = {"x": {"cell": "A1", "distribution": "Normal", "mean": 0, "std_dev": 1}, "c": {"cell": "C1", **UNIT}}
+    reading = {"EDR": {"cell": "B1", "reading": 4.5, "error": "normal", "std_dev": 0.5}}
+    cells = {"A1": 0.0, "B1": "=A1*1", "C1": 2.0, "D1": "=A1+C1"}
+    found = book(cells, x, {"y": "B1", "sum": "D1"}, evidence=reading).simulate(until_accepted=2_000, rare="always")
+    assert found.rare is not None
+    for mine, true in ((found["y"].mean, 3.6), (found["y"].standard_deviation, math.sqrt(0.2))):
+        assert abs(mine.value - true) < 4 * mine.error
+
+
 def test_the_command_line_says_so(tmp_path):
     made = CliRunner().invoke(command, [str(tmp_path / "none.xlsx"), "--rare", "sometimes"])
     assert made.exit_code == 2

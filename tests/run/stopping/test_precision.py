@@ -149,7 +149,7 @@ COVERAGE = [
     ("uniform", "sd", 0.006, math.sqrt(1 / 12)),
     ("lognormal", "p75.5", 0.12, math.exp(NORMAL_755)),
 ]
-REPLICATES = 400
+REPLICATES = 200
 STATISTICS = {
     "sd": statistics.standard_deviation,
     "p75.5": partial(statistics.percentile, percent=75.5),
@@ -159,7 +159,7 @@ STATISTICS = {
 
 @pytest.mark.parametrize(("draw", "numbers", "tolerance", "true"), COVERAGE)
 def test_intervals_of_runs_that_ended_by_themselves_hold_the_truth(block, run_rule, draw, numbers, tolerance, true):
-    """Of 400 runs that end after some 2,000 to 6,000 numbers, at least 94 % but for chance.
+    """Of 200 runs that end after some 2,000 to 6,000 numbers, at least 94 % but for chance.
 
     Were the coverage 94 %, one of the two cases would fail by chance in 1 % of all seeds.
     """

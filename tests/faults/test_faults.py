@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import random
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -26,6 +28,8 @@ from faults import full_disk as fill_up
 
 import xlmc
 import xlmc.workbook.writer as writer
+from xlmc.cli import main
+from xlmc.columns import column_store
 from xlmc.workbook.target import Target
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -56,8 +60,7 @@ def test_a_kill_while_a_kind_of_output_is_written_breaks_nothing(writers, kind, 
     if kind in ("Parquet", COLUMNS):
         path = tmp_path / ("out.parquet" if kind == "Parquet" else "out.")
     if kind != COLUMNS:
-        writers.write(kind, 0, path)
-        writers.contents(kind)
+        path.write_bytes(writers.contents(kind)[0])
 
     def work():
         kill_at_call(4, tmp_path)
@@ -79,7 +82,7 @@ def test_a_full_disk_breaks_nothing_and_is_told(writers, kind, tmp_path):
     if kind in ("Parquet", COLUMNS):
         path = tmp_path / ("out.parquet" if kind == "Parquet" else "out.")
     if kind != COLUMNS:
-        writers.write(kind, 0, path)
+        path.write_bytes(writers.contents(kind)[0])
     child = in_child(lambda: _write_limited(writers, kind, path, 1_500))
     _check_full(writers, kind, path, os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), found)
     assert found.broken == []
@@ -97,7 +100,7 @@ def test_two_writers_of_one_file_do_not_disturb_each_other(tmp_path):
     path.write_bytes(b"0" * 200_000)
 
     def work(byte):
-        for _ in range(60):
+        for _ in range(30):
             writer.write_workbook(path, byte * 200_000)
 
     children = [in_child(lambda byte=byte: work(byte)) for byte in (b"1", b"2")]
@@ -131,44 +134,71 @@ main()
 """
 
 
-def began(folder, process):
+def typed(book, tmp_path):
+    """A run without end, after the name of the program."""
+    return ["simulate", str(book), "-n", "1000000000", "-o", str(tmp_path / "out.xlsx"), "--quiet"]
+
+
+def began(folder, is_over):
     """Wait until the run keeps columns on disk."""
-    for _ in range(6_000):
-        if process.poll() is not None or any(folder.iterdir()):
-            return any(folder.iterdir())
-        time.sleep(0.01)
-    return False
+    while not (found := any(folder.iterdir())) and not is_over():
+        time.sleep(0.005)
+    return found
 
 
-def running(book, tmp_path, *options):
-    temporary = tmp_path / "temporary"
-    temporary.mkdir()
-    command = [sys.executable, "-P", "-c", SCRIPT, "simulate", str(book), "-n", "1000000000", *options]
+@pytest.fixture
+def temporary(tmp_path):
+    folder = tmp_path / "temporary"
+    folder.mkdir()
+    return folder
+
+
+def test_a_program_that_is_asked_to_end_clears_away(small_book, tmp_path, temporary):
+    command = [sys.executable, "-P", "-c", SCRIPT, *typed(small_book, tmp_path), "-j", "2", "--scheduler", "processes"]
     environment = os.environ | {"TMPDIR": str(temporary)}
-    output = ("-o", str(tmp_path / "out.xlsx"), "--quiet")
-    process = subprocess.Popen([*command, *output], cwd=ROOT, stderr=subprocess.PIPE, text=True, env=environment)
-    assert began(temporary, process)
-    return process, temporary
-
-
-@pytest.mark.parametrize(
-    ("number", "code", "options"),
-    [(signal.SIGTERM, 143, ()), (signal.SIGHUP, 129, ("-j", "2", "--scheduler", "processes"))],
-)
-def test_a_run_that_is_asked_to_end_clears_away(small_book, tmp_path, number, code, options):
-    process, temporary = running(small_book, tmp_path, *options)
-    process.send_signal(number)
+    process = subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, text=True, env=environment)
+    assert began(temporary, lambda: process.poll() is not None)
+    process.send_signal(signal.SIGHUP)
     told = process.communicate(timeout=120)[1]
-    assert process.returncode == code
-    assert told == f"xlmc: ended by {signal.Signals(number).name}; no file is left half-written.\n"
+    assert process.returncode == 129
+    assert told == "xlmc: ended by SIGHUP; no file is left half-written.\n"
     assert list(temporary.iterdir()) == []
     assert [left.name for left in tmp_path.iterdir()] == ["temporary"]
 
 
-def test_the_next_run_removes_the_columns_of_a_killed_one(small_book, tmp_path, monkeypatch):
-    process, temporary = running(small_book, tmp_path)
-    process.kill()
-    process.communicate()
+def forked(book, tmp_path, temporary):
+    """The number of a process that runs the command line; what it tells goes to the file `told`."""
+
+    def work():
+        os.dup2(os.open(tmp_path / "told", os.O_WRONLY | os.O_CREAT), 2)
+        column_store.IN_MEMORY = column_store.WRITTEN = 0
+        tempfile.tempdir = str(temporary)
+        sys.argv = ["xlmc", *typed(book, tmp_path)]
+        try:
+            main()
+        except SystemExit as ended:
+            code = ended.code
+        gc.collect()  # as at the end of a program
+        os._exit(code)
+
+    child = in_child(work)
+    assert began(temporary, lambda: os.waitpid(child, os.WNOHANG)[0])
+    return child
+
+
+def test_a_run_that_is_asked_to_end_clears_away(small_book, tmp_path, temporary):
+    child = forked(small_book, tmp_path, temporary)
+    os.kill(child, signal.SIGTERM)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 143
+    assert (tmp_path / "told").read_text("utf-8") == "xlmc: ended by SIGTERM; no file is left half-written.\n"
+    assert list(temporary.iterdir()) == []
+    assert sorted(left.name for left in tmp_path.iterdir()) == ["temporary", "told"]
+
+
+def test_the_next_run_removes_the_columns_of_a_killed_one(small_book, tmp_path, temporary, monkeypatch):
+    child = forked(small_book, tmp_path, temporary)
+    os.kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
     assert list(temporary.iterdir()) != []
     monkeypatch.setattr("tempfile.tempdir", str(temporary))
     xlmc.load(small_book).simulate(100)

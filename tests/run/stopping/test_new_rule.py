@@ -12,13 +12,13 @@ import openpyxl
 import pytest
 from click.testing import CliRunner
 from described import undescribed
+from fewer_sheets import SHORT, keep_sheets
 
 import xlmc
 import xlmc.cli
 from xlmc.definitions.stopping import GOALS, MOST_TRIALS, Option, WholeGoal
 from xlmc.errors import DefinitionError, SimulationError
 from xlmc.replay import replay
-from xlmc.report.sheets import book
 from xlmc.results.record import make_record
 from xlmc.run.stopping import RULES
 
@@ -73,8 +73,7 @@ def doors(monkeypatch):
     """The two tables of which the docstring of `xlmc.definitions.stopping` speaks."""
     monkeypatch.setitem(GOALS, "rejected", RejectedTrials)
     monkeypatch.setitem(RULES, "rejected", UntilRejected)
-    slow = ("Charts", "Sensitivity", "Filter limits", "Pairs")
-    monkeypatch.setattr(book, "SHEETS", [sheet for sheet in book.SHEETS if sheet.name not in slow])
+    keep_sheets(monkeypatch, *SHORT)
 
 
 @pytest.fixture

@@ -13,7 +13,9 @@ from zipfile import ZipFile
 import numpy as np
 import openpyxl
 import pytest
+from cases import cases
 from committed_books import BOOKS, ROOT
+from document_texts import squeezed, texts_of
 from fewer_sheets import leave_out, leave_out_drawings
 from needed_programs import missing
 from packed_sheets import packed_sheets
@@ -22,6 +24,9 @@ import xlmc
 from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.evaluation.engines import ENGINES
 from xlmc.report import save
+from xlmc.report.document import Wanted
+from xlmc.report.document.build import build
+from xlmc.report.document.report_file import save_report
 from xlmc.report.sheets.exact_book import ExactSheet
 from xlmc.workbook.reader import read_workbook
 
@@ -40,6 +45,8 @@ ENDS = [(1.5, 7.5), (None, 13.0), (11.0, None), (None, None)]
 
 CASE, MOST = 15, 25
 """The most pages of the case study, and of any book that belongs to the project."""
+
+OF_REPORT = {"Case number": "2026-17", "Client": '#x *b* <i> & "q"'}
 
 MISSING = missing("soffice", "pdftotext", "pdftoppm")
 
@@ -96,14 +103,15 @@ def typed(make):
 
 @pytest.fixture(scope="module")
 def printed(case, drawn, typed, tmp_path_factory):
-    """Name -> PDF: `case` as it prints, the charts of `drawn`, and `typed` with other ranges."""
+    """Name -> PDF: `case` as it prints, the charts of `drawn`, `typed` with other ranges, and the report of `drawn`."""
     folder = tmp_path_factory.mktemp("rendering")
     with pytest.MonkeyPatch.context() as patch:
         leave_out_drawings(patch)
         book = _without_charts(save(case, folder / "case.xlsx", rows=60))
     others = _unprinted(drawn, folder / "charts.xlsx"), _with_ranges(typed, folder / "typed.xlsx")
-    files = converted("pdf", folder, book, *others)
-    return {file.stem: file for file in files}
+    report = save_report(drawn, folder / "report.docx", Wanted(OF_REPORT))
+    files = converted("pdf", folder, book, *others, report)
+    return {file.stem: file for file in files}  # without the report where LibreOffice Writer is not installed
 
 
 @pytest.fixture(scope="module")
@@ -250,7 +258,7 @@ def test_every_sheet_has_a_page_with_something_on_it(pages):
     assert all(len(page.words) > 8 for page in pages)
 
 
-@pytest.mark.parametrize(("word", "count"), [("Figure", 11), ("Scatter", 3)])
+@cases(("word", "count"), [("Figure", 11), ("Scatter", 3)])
 def test_every_chart_draws_something_above_its_caption(all_pages, word, count):
     found = captions(all_pages, word)
     assert sorted(found) == list(range(1, count + 1))
@@ -276,7 +284,7 @@ def test_the_sentences_are_printed_whole(pages, case):
         assert statement.text in printed
 
 
-@pytest.mark.parametrize(
+@cases(
     ("sheet", "count"),
     [
         *(("Results", 1), ("Charts", 1), ("Statistics", 1), ("Certainty", 1), ("Pairs", 1), ("Assumptions", 1)),
@@ -315,3 +323,16 @@ def test_ranges_that_a_person_types_are_counted_anew(printed, typed):
         inside = (values >= (-np.inf if low is None else low)) & (values <= (np.inf if high is None else high))
         assert float(share) == pytest.approx(inside.mean(), abs=1e-12)
         assert trials == "60"
+
+
+def test_a_report_for_word_shows_all_its_texts(printed, drawn):
+    pytest.importorskip("docx")
+    if not printed["report"].exists():
+        pytest.skip("LibreOffice Writer is not installed (apt-get install libreoffice-writer-nogui)")
+    pages = subprocess.run(
+        ["pdftotext", str(printed["report"]), "-"], check=True, capture_output=True, text=True
+    ).stdout
+    text = re.sub(r"book\.xlsx,seed1Page\d+of\d+|Case2026-17", "", squeezed(pages))
+    texts = list(texts_of(build(drawn, Wanted(OF_REPORT))))
+    assert len(texts) > 150
+    assert [each for each in texts if squeezed(each) not in text and squeezed(each) != "2026-17"] == []

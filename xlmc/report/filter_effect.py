@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +40,9 @@ PERCENTS = (5.0, 50.0, 95.0)
 _BINS = 24
 _LONG = 1.3
 """If all draws cover more than this multiple of their middle 99.6 %, the chart leaves out their tails."""
+
+_FOUND: Final[WeakKeyDictionary[Simulation, dict[str, FilterEffect]]] = WeakKeyDictionary()
+"""By assumption. Sheets, page, document and JSON of one run want the same."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,9 +132,13 @@ def filter_effect_of(simulation: Simulation, assumption: str) -> FilterEffect | 
     """What the filters of a run did to one of its assumptions; None where the assumption is not drawn."""
     if assumption not in simulation.inputs:
         return None
-    accepted, replicate, weighting = simulation.inputs[assumption], simulation.replicate, simulation.weighting
-    kept = None if replicate is None else replicate[: accepted.size]
-    return filter_effect(simulation.prior[assumption], accepted, kept, None if weighting is None else weighting.weights)
+    found = _FOUND.setdefault(simulation, {})
+    if assumption not in found:
+        accepted, replicate, weighting = simulation.inputs[assumption], simulation.replicate, simulation.weighting
+        kept = None if replicate is None else replicate[: accepted.size]
+        weights = None if weighting is None else weighting.weights
+        found[assumption] = filter_effect(simulation.prior[assumption], accepted, kept, weights)
+    return found[assumption]
 
 
 def shapes_of(simulation: Simulation, assumption: str) -> Shapes | None:

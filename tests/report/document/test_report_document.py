@@ -1,21 +1,20 @@
 from __future__ import annotations
 
-import itertools
 import re
-import subprocess
 import zipfile
 from datetime import date
 from pathlib import Path
 
 import pytest
-from needed_programs import missing
+from document_texts import squeezed, texts_of
 
 import xlmc
+from xlmc.api import Simulation
 from xlmc.errors import SimulationError, WorkbookError
 from xlmc.report.document import SECTIONS, Wanted
 from xlmc.report.document.build import build
 from xlmc.report.document.glossary import GLOSSARY, WORDS_OF_EVIDENCE, WORDS_OF_SCENARIOS
-from xlmc.report.document.parts import Bullets, Figure, Heading, Paragraph, Table
+from xlmc.report.document.parts import Heading, Table
 from xlmc.report.json_document import document as results
 
 docx = pytest.importorskip("docx")
@@ -31,7 +30,7 @@ NUMBER = re.compile(r"(?<![\w.,])[-−]?\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?(?![\w]|
 
 @pytest.fixture(scope="module")
 def case_study():
-    return xlmc.load(BOOK).simulate()
+    return xlmc.load(BOOK).simulate(trials=20_000)
 
 
 @pytest.fixture(scope="module")
@@ -53,30 +52,6 @@ def pages(files):
 @pytest.fixture(scope="module")
 def word(files):
     return docx.Document(files[1])
-
-
-def squeezed(text):
-    return re.sub(r"\s+", "", text)
-
-
-def texts_of(document):
-    """Every text that a reader of the document sees, in its order, but for those in pictures."""
-    for label, said in document.cover:
-        yield from (label, said)
-    for block in document.blocks:
-        match block:
-            case Heading(text, _) | Paragraph(text, _):
-                yield text
-            case Bullets(texts, _):
-                yield from texts
-            case Figure(_, caption):
-                yield caption
-            case Table():
-                yield block.caption
-                cells = itertools.chain(block.heads, *block.rows)
-                yield from (cell for cell in cells if isinstance(cell, str))
-            case _:
-                yield block.text
 
 
 def texts_of_word(word):
@@ -201,7 +176,7 @@ def test_every_influence_has_its_numbers_of_the_json(case_study, word):
         assert explained == "noise" or shown(each["explained"], explained, 100.0)
         assert rank == "noise" or shown(each["rank_correlation"], rank)
         compared += (explained != "noise") + (rank != "noise")
-    assert compared > 30
+    assert compared > 20
 
 
 def test_what_each_filter_rejected_is_that_of_the_json(case_study, word):
@@ -235,10 +210,11 @@ def test_the_pdf_is_pdf_a_with_an_intent_embedded_fonts_and_tags(files):
         assert all(len(str(each.Alt)) > 10 for each in pictures)
 
 
-def test_the_same_run_gives_the_same_bytes(case_study, files, tmp_path):
-    for path in files:
-        again = case_study.save_report(tmp_path / path.name, case=CASE)
-        assert again.read_bytes() == path.read_bytes()
+def test_the_same_run_gives_the_same_bytes(run, tmp_path):
+    first, again = Simulation.of(run), Simulation.of(run.model.simulate())
+    for ending in (".pdf", ".docx"):
+        one, other = (each.save_report(tmp_path / f"{id(each)}{ending}", case=CASE) for each in (first, again))
+        assert one.read_bytes() == other.read_bytes()
 
 
 def test_word_has_headings_captions_heading_rows_and_numbered_pages(files, word):
@@ -255,20 +231,6 @@ def test_word_has_headings_captions_heading_rows_and_numbered_pages(files, word)
 def test_texts_of_a_person_never_become_markup(pages, word):
     assert squeezed(CASE["Client"]) in squeezed(pages[0])
     assert CASE["Client"] in "\n".join(paragraph.text for paragraph in word.paragraphs)
-
-
-@pytest.mark.skipif(bool(missing("soffice")), reason=missing("soffice"))
-def test_libreoffice_shows_the_same_text_and_tables(built, files, tmp_path):
-    profile = f"-env:UserInstallation={(tmp_path / 'profile').as_uri()}"
-    command = ["soffice", profile, "--headless", "--convert-to", "pdf", "--outdir", str(tmp_path), str(files[1])]
-    subprocess.run(command, check=True, capture_output=True, timeout=120)
-    if not (tmp_path / "report.pdf").exists():
-        pytest.skip("LibreOffice Writer is not installed (apt-get install libreoffice-writer-nogui)")
-    printed = [page.extract_text() for page in pypdf.PdfReader(tmp_path / "report.pdf").pages]
-    assert 5 <= len(printed) <= 12
-    text = re.sub(r"intersection\.xlsx,seed999Page\d+of\d+|Case2026-17", "", squeezed("".join(printed)))
-    lost = [each for each in texts_of(built) if squeezed(each) not in text and squeezed(each) != "2026-17"]
-    assert lost == []
 
 
 def test_sections_forecasts_and_paper_can_be_chosen(case_study, tmp_path):

@@ -1,11 +1,10 @@
 from __future__ import annotations
 
 import re
-import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from document_texts import squeezed
 
 from xlmc.api import Simulation
 from xlmc.errors import SimulationError
@@ -16,10 +15,6 @@ from xlmc.report.document.parts import Document, Drawing, Figure, Heading, Parag
 docx = pytest.importorskip("docx")
 pypdf = pytest.importorskip("pypdf")
 pytest.importorskip("typst")
-
-
-def squeezed(text):
-    return re.sub(r"\s+", "", text)
 
 
 def written(simulation, folder, **options):
@@ -82,19 +77,14 @@ def test_a_letter_that_no_font_has_is_said_and_no_file_is_written(make, tmp_path
     assert list(tmp_path.iterdir()) == []
 
 
-def test_reports_need_no_network_and_no_font_of_the_system(make, tmp_path):
-    script = (
-        "import socket, sys\n"
-        "def refuse(*_, **__): raise AssertionError('the network was used')\n"
-        "socket.socket.connect = socket.getaddrinfo = refuse\n"
-        "import xlmc\n"
-        "run = xlmc.load('examples/skid-100-ft.xlsx').simulate(trials=2000)\n"
-        "run.save_report(sys.argv[1], sections=['answer', 'forecasts'])\n"
-        "assert not any(name.startswith('matplotlib') for name in sys.modules)\n"
-    )
-    root = Path(__file__).resolve().parents[3]
-    path = tmp_path / "report.pdf"
-    subprocess.run([sys.executable, "-c", script, str(path)], check=True, cwd=root)
+def test_reports_need_no_network_no_font_of_the_system_and_no_library_of_plots(run, tmp_path, monkeypatch):
+    def refuse(*_, **__):
+        raise AssertionError("the network was used")
+
+    for what in ("socket.connect", "getaddrinfo"):
+        monkeypatch.setattr(f"socket.{what}", refuse)
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    path = Simulation.of(run).save_report(tmp_path / "report.pdf", sections=["answer", "forecasts"])
     fonts = {
         str(font["/BaseFont"]).partition("+")[2]
         for page in pypdf.PdfReader(path).pages

@@ -9,6 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from cases import cases
 
 import xlmc
 
@@ -36,14 +37,18 @@ TABLE_2 = {
 }
 
 
+SIZES = None, 2_000_000
+
+
 @pytest.fixture(scope="module")
 def model():
     return xlmc.load(BOOK)
 
 
-@pytest.fixture(scope="module", params=[None, 2_000_000], ids=["the book's own settings", "2,000,000 trials"])
-def run(model, request):
-    return model.simulate(trials=request.param, jobs=2)
+@pytest.fixture(scope="module")
+def runs(model):
+    """By the number of trials: the book's own, and ten times as many."""
+    return {trials: model.simulate(trials=trials, jobs=2) for trials in SIZES}
 
 
 def near(estimate, value, error):
@@ -55,12 +60,16 @@ def test_default_settings(model):
     assert (settings.trials, settings.seed, settings.sampling) == (200_000, 999, "mc")
 
 
-def test_acceptance(run):
+@cases("trials", SIZES)
+def test_acceptance(runs, trials):
+    run = runs[trials]
     assert near(run.acceptance, *ACCEPTANCE)
 
 
-@pytest.mark.parametrize("name", REFERENCE)
-def test_the_four_numbers_of_each_forecast(run, name):
+@cases("trials", SIZES)
+@cases("name", REFERENCE)
+def test_the_four_numbers_of_each_forecast(runs, trials, name):
+    run = runs[trials]
     mean, mean_error, deviation, low, high = REFERENCE[name]
     result = run[name]
     assert near(result.mean, mean, mean_error)
@@ -70,18 +79,19 @@ def test_the_four_numbers_of_each_forecast(run, name):
     assert near(found[1], high, QUANTILE_ERROR)
 
 
-@pytest.mark.parametrize("name", TABLE_2)
-def test_the_papers_own_table(run, name):
+@cases("trials", SIZES)
+@cases("name", TABLE_2)
+def test_the_papers_own_table(runs, trials, name):
     """The paper printed one decimal from 3481 trials: half a unit of rounding, and 4 of its own standard errors."""
-    result = run[name]
+    result = runs[trials][name]
     paper_error = (result.values.size / 3481) ** 0.5
     found = (result.mean, result.standard_deviation, *result.central(0.51))
     for estimate, printed in zip(found, TABLE_2[name], strict=True):
         assert abs(estimate.value - printed) <= 0.05 + 4 * estimate.error * (1 + paper_error**2) ** 0.5
 
 
-def test_400_000_trials_begin_with_the_200_000(model):
-    short, long = model.simulate(200_000), model.simulate(400_000)
+def test_more_trials_begin_with_the_200_000(runs):
+    short, long = runs.values()
     m = short.accepted
     assert (long.trial_index[:m] == short.trial_index).all()
     assert long.trial_index[m] >= 200_000
@@ -89,8 +99,8 @@ def test_400_000_trials_begin_with_the_200_000(model):
         assert (long.forecasts[name][:m] == values).all()
 
 
-def test_threads_change_no_bit(model):
-    one, two = model.simulate(jobs=1), model.simulate(jobs=2)
+def test_threads_change_no_bit(model, runs):
+    one, two = model.simulate(jobs=1), runs[None]
     assert (one.trial_index == two.trial_index).all()
     for name in one.forecasts:
         assert (one.forecasts[name] == two.forecasts[name]).all()

@@ -6,7 +6,6 @@ from types import SimpleNamespace
 
 import openpyxl
 import pytest
-from fewer_sheets import CHARTS, SENSITIVITY, leave_out
 from packed_sheets import packed_sheets
 
 from xlmc.address import parse_address
@@ -72,22 +71,10 @@ def package_of():
 
 @pytest.fixture(scope="session")
 def opened():
-    """Result sheets as openpyxl reads them."""
+    """`opened(run, "Results")`: result sheets, all or those of these names, as openpyxl reads them."""
 
-    def read(simulation, **options):
-        return openpyxl.load_workbook(io.BytesIO(packed_sheets(simulation, **options)))
-
-    return read
-
-
-@pytest.fixture(scope="session")
-def opened_short(opened):
-    """As `opened`, without the charts and the sheets on sensitivity, which take longest."""
-
-    def read(simulation, **options):
-        with pytest.MonkeyPatch.context() as patch:
-            leave_out(patch, *CHARTS, *SENSITIVITY)
-            return opened(simulation, **options)
+    def read(simulation, *names, **options):
+        return openpyxl.load_workbook(io.BytesIO(packed_sheets(simulation, *names, **options)))
 
     return read
 

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
+from fewer_sheets import keep_sheets
+
 from xlmc.report.sheets.book import build_sheets
 from xlmc.run.simulation import Simulation
 from xlmc.workbook.writer import package_bytes
@@ -11,6 +14,9 @@ from xlmc.workbook.writer import package_bytes
 __all__ = ["packed_sheets"]
 
 
-def packed_sheets(simulation: Simulation, **options: Any) -> bytes:
-    """A workbook of the result sheets of a run, as `build_sheets` makes its parts."""
-    return package_bytes(build_sheets(simulation, **options))
+def packed_sheets(simulation: Simulation, *names: str, **options: Any) -> bytes:
+    """A workbook of the result sheets of a run, as `build_sheets` makes its parts: those of these names, or all."""
+    with pytest.MonkeyPatch.context() as patch:
+        if names:
+            keep_sheets(patch, *names)
+        return package_bytes(build_sheets(simulation, **options))

@@ -62,26 +62,26 @@ def test_the_header_is_frozen_and_repeated(book):
     assert sheet.print_title_rows == f"${HEADER + 1}:${HEADER + 1}"
 
 
-def test_correlations_are_listed(make, opened_short, row_of):
+def test_correlations_are_listed(make, opened, row_of):
     assumptions = [make.uniform(name, cell, 0.0, 1.0, base=0.5) for name, cell in (("a", "A1"), ("b", "A2"))]
     pair = Correlation("a", "b", 0.7, make.cell("E1"))
     run = make.simulate(
         {"A1": 0.5, "A2": 0.5, "B1": "=A1+A2"}, assumptions, [make.forecast("x", "B1")], correlations=[pair]
     )
-    sheet = opened_short(run)["Assumptions"]
+    sheet = opened(run, "Assumptions", "Curves")["Assumptions"]
     rows = [row for row in sheet.iter_rows(values_only=True) if row[0] == "a" and row[1] == "b"]
     assert [(row[5], row[7]) for row in rows] == [(0.7, 0.7)]
     found = rank_correlation(run.inputs["a"], run.inputs["b"])
     assert [row[9:11] for row in rows] == [(found.value, found.error)]
 
 
-def test_the_sheets_of_a_run_in_replicates(make, opened_short, rows_of):
+def test_the_sheets_of_a_run_in_replicates(make, opened, rows_of):
     """How it was sampled stands on Results, and errors of accepted draws come from the replicates."""
     assumptions = [make.uniform(name, cell, 0.0, 1.0, base=0.5) for name, cell in (("a", "A1"), ("b", "A2"))]
     cells = {"A1": 0.5, "A2": 0.5, "B1": "=A1+A2", "C1": "=A1>0.3"}
     model = make.simulate(cells, assumptions, [make.forecast("x", "B1")], [make.filter("f", "C1")]).model
     run = model.simulate(4_000, 1, sampling="lhs")
-    book = opened_short(run)
+    book = opened(run, "Results", "Assumptions", "Curves")
     results = [row[0] for row in rows_of(book["Results"]) if row]
     sentence = "Latin hypercube: 16 independent replicates of 250 trials; errors come from the differences between "
     assert any(str(text).startswith(sentence) for text in results)

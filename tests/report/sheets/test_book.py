@@ -50,9 +50,9 @@ def test_another_run_threads_and_results_on_disk_do_not_change_a_byte(run, packa
     assert packed_sheets(again) == package_of(run)
 
 
-def test_draws_that_were_not_kept_are_told(run, opened_short, rows_of):
+def test_draws_that_were_not_kept_are_told(run, opened, rows_of):
     again = run.model.simulate(keep_inputs=100)
-    book = opened_short(again)
+    book = opened(again, "Assumptions", "Curves", "Trials", "Record")
     told = [str(row[0]) for row in rows_of(book["Assumptions"]) if row]
     assert f"Accepted: the first 100 of {again.accepted:,} accepted trials." in told
     assert f"Only the first 100 of {again.accepted:,} accepted trials stand here." in str(rows_of(book["Trials"]))

@@ -10,11 +10,13 @@ from packed_sheets import packed_sheets
 from xlmc import statistics
 from xlmc.results.statements import certainties, statements
 
+SHEETS = ("Certainty", "Trials")  # the second of which the first counts in
+
 
 @pytest.fixture(scope="module")
 def sheets(run):
     """The sheet Certainty twice: its formulas, and the values they are saved with; 400 trials are written out."""
-    packed = packed_sheets(run, rows=400)
+    packed = packed_sheets(run, *SHEETS, rows=400)
     return [openpyxl.load_workbook(io.BytesIO(packed), data_only=values)["Certainty"] for values in (False, True)]
 
 
@@ -68,14 +70,14 @@ def test_own_ranges_count_the_trials_on_the_sheet(run, sheets):
         assert "Trials!$" in formula[4]
 
 
-def test_nothing_is_offered_without_trials_to_count(run, none_accepted, opened_short):
-    for book in (opened_short(run, rows=0), opened_short(none_accepted)):
+def test_nothing_is_offered_without_trials_to_count(run, none_accepted, opened):
+    for book in (opened(run, *SHEETS, rows=0), opened(none_accepted, *SHEETS)):
         assert "Certainty of a range of your own" not in [cell.value for cell in book["Certainty"]["A"]]
 
 
-def test_replicates_get_no_error_of_independent_trials(run):
+def test_replicates_get_no_error_of_independent_trials(run, opened):
     again = run.model.simulate(trials=4000, sampling="lhs")
-    sheet = openpyxl.load_workbook(io.BytesIO(packed_sheets(again)))["Certainty"]
+    sheet = opened(again, *SHEETS)["Certainty"]
     texts = [str(cell.value) for cell in sheet["A"]]
     assert any("no error is given" in text for text in texts)
     heading = next(row for row in sheet.iter_rows(values_only=True) if row[:4] == ("Forecast", "Units", "From", "to"))

@@ -11,7 +11,7 @@ from xlmc.results.record import make_record
 @pytest.fixture(scope="session")
 def read_back(run, opened):
     """What a program reads of the sheet Record by its keys: entries, and the rows of tables."""
-    sheet = opened(run, command="xlmc simulate book.xlsx -n 5000")["Record"]
+    sheet = opened(run, "Record", command="xlmc simulate book.xlsx -n 5000")["Record"]
     entries, tables, keys = {}, {}, []
     for row in sheet.iter_rows():
         key = row[0].value

@@ -107,22 +107,20 @@ def test_notices_and_sentences_stand_on_the_sheet(book, rows_of):
 
 
 @pytest.mark.parametrize("text", ["The workbook has no filters: every trial is accepted."])
-def test_a_run_without_filters_says_so(one_accepted, opened_short, row_of, text):
-    assert row_of(opened_short(one_accepted)["Results"], text)
+def test_a_run_without_filters_says_so(one_accepted, opened, row_of, text):
+    assert row_of(opened(one_accepted, "Results")["Results"], text)
 
 
-def test_the_base_case_says_which_filter_would_reject_it(none_accepted, opened_short, rows_of):
-    texts = [row[0] for row in rows_of(opened_short(none_accepted)["Results"]) if row]
+def test_the_base_case_says_which_filter_would_reject_it(none_accepted, opened, rows_of):
+    texts = [row[0] for row in rows_of(opened(none_accepted, "Results")["Results"]) if row]
     assert (
         "The base case has every assumption at the value in its cell. As a trial it would be rejected by: never."
         in texts
     )
 
 
-def test_without_an_accepted_trial_the_warning_stands_first_and_no_number_is_made_up(
-    none_accepted, opened_short, row_of
-):
-    sheet = opened_short(none_accepted)["Results"]
+def test_without_an_accepted_trial_the_warning_stands_first_and_no_number_is_made_up(none_accepted, opened, row_of):
+    sheet = opened(none_accepted, "Results")["Results"]
     assert "no trial was accepted: the filters contradict the assumptions" in sheet["A3"].value
     assert row_of(sheet, "x") == ["x", None, 0, *["–"] * 8, 1.0]
     assert row_of(sheet, "Accepted")[2:4] == [0, 0]

@@ -77,9 +77,7 @@ def test_all_other_parts_stay_byte_for_byte(whole):
 
 def test_the_sheets_show_what_the_simulation_says(case, short_books, tmp_path):
     written = rows(save(case, tmp_path / "out.xlsx"), "Results")
-    first_of = reversed(
-        [row for row in written if row and row[0] in case.forecasts]
-    )
+    first_of = reversed([row for row in written if row and row[0] in case.forecasts])
     shown_of = {row[0]: row for row in first_of}  # a later table has the names, too
     for name, result in case.results.items():
         low, high = result.central()

@@ -135,7 +135,7 @@ def test_no_more_than_noise_is_pale(make, opened):
         [make.uniform("a", "A1", 0.0, 1.0, base=0.5), make.uniform("b", "A2", 0.0, 1.0, base=0.5)],
         [make.forecast("x", "B1")],
     )
-    with zipfile.ZipFile(io.BytesIO(packed_sheets(run))) as package:
+    with zipfile.ZipFile(io.BytesIO(packed_sheets(run, "Sensitivity"))) as package:
         xml = next(
             text
             for text in (package.read(n).decode() for n in package.namelist() if n.startswith("xl/charts/chart"))
@@ -151,7 +151,7 @@ def test_sobol_indices_stand_where_they_are_right(make, opened):
         [make.uniform("a", "A1", 0.0, 1.0, base=0.5), make.uniform("b", "A2", 0.0, 1.0, base=0.5)],
         [make.forecast("x", "B1")],
     )
-    sheet = opened(run)["Sensitivity"]
+    sheet = opened(run, "Sensitivity")["Sensitivity"]
     each = sensitivities(run)["x"].influences[0]
     row = next(row for row in sheet.iter_rows(values_only=True) if row[0] == each.assumption and row[12])
     assert row[12:16] == (each.first_order.value, each.first_order.error, each.total.value, each.total.error)
@@ -193,7 +193,7 @@ def test_answers_in_different_units_are_drawn_as_shares_of_their_ranges(make):
         [make.forecast("x", "B1", units="ft"), make.forecast("y", "B2", units="mph")],
         [make.filter("f", "A1", below=0.6)],
     )
-    packed = packed_sheets(run)
+    packed = packed_sheets(run, "Filter limits")
     with zipfile.ZipFile(io.BytesIO(packed)) as package:
         texts = [package.read(n).decode() for n in package.namelist() if n.startswith("xl/charts/chart")]
     xml = next(text for text in texts if "Change of each mean" in text)
@@ -224,7 +224,7 @@ def test_what_is_noise_reads_noise_in_the_table(make, opened):
     )
     rows = {
         row[0].value: row
-        for row in opened(run)["Sensitivity"].iter_rows()
+        for row in opened(run, "Sensitivity")["Sensitivity"].iter_rows()
         if row[0].value in ("a", "b") and row[9].value
     }
     noisy = {name: [row[place].number_format == NOISE for place in (2, 5, 8, 10)] for name, row in rows.items()}
@@ -242,7 +242,7 @@ def test_units_that_read_like_a_reference_stay_words(make):
         [make.forecast("f", "B1", units="Model!D50")],
         [make.filter("kept", "B1", at_least=0.5)],
     )
-    with zipfile.ZipFile(io.BytesIO(packed_sheets(run))) as package:
+    with zipfile.ZipFile(io.BytesIO(packed_sheets(run, "Sensitivity", "Filter limits"))) as package:
         charts = [package.read(name).decode() for name in package.namelist() if name.startswith("xl/charts/chart")]
     assert [xml for xml in charts if "(Model!\N{WORD JOINER}D50)</a:t>" in xml]
     assert {f for xml in charts for f in re.findall(r"<c:f>(.*?)</c:f>", xml) if "D50" in f} == set()

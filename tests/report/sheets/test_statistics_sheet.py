@@ -56,9 +56,10 @@ def test_extremes_show_the_digits_of_the_mean(book):
     assert formats["Minimum"] == formats["Mean"] == "#,##0.000"
 
 
-def test_six_forecasts_stand_on_a_page(make, opened_short):
+def test_six_forecasts_stand_on_a_page(make, opened):
     forecasts = [make.forecast(f"f{n}", "B1" if n == 0 else f"D{n}") for n in range(13)]
     cells = {"A1": 0.5, "B1": "=A1*2"} | {f"D{n}": "=A1+1" for n in range(1, 13)}
-    sheet = opened_short(make.simulate(cells, [make.uniform("a", "A1", 0.0, 1.0, base=0.5)], forecasts))["Statistics"]
+    run = make.simulate(cells, [make.uniform("a", "A1", 0.0, 1.0, base=0.5)], forecasts)
+    sheet = opened(run, "Statistics")["Statistics"]
     begins = [brk.id + 1 for brk in sheet.row_breaks.brk]
     assert [sheet.cell(row, 2).value for row in begins] == ["f6", "f12"]

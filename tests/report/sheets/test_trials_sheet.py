@@ -34,8 +34,8 @@ def few(run):
 
 
 @cases(("rows", "shown"), [(7, 7), (0, 0), (-1, 0), (10**9, None)])
-def test_rows_are_capped_and_the_sheet_says_so(few, opened_short, rows, shown):
-    sheet = opened_short(few, rows=rows)["Trials"]
+def test_rows_are_capped_and_the_sheet_says_so(few, opened, rows, shown):
+    sheet = opened(few, "Trials", rows=rows)["Trials"]
     expected = few.accepted if shown is None else shown
     assert sheet.max_row == FIRST - 1 + expected
     if shown is None:
@@ -45,10 +45,10 @@ def test_rows_are_capped_and_the_sheet_says_so(few, opened_short, rows, shown):
         assert sheet["A3"].font.color.rgb == "FF9C0006"
 
 
-def test_a_book_of_many_columns_shows_fewer_trials_unless_asked(run, opened_short, monkeypatch):
+def test_a_book_of_many_columns_shows_fewer_trials_unless_asked(run, opened, monkeypatch):
     monkeypatch.setattr(trials_sheet, "NUMBERS", 4 * 50 + 3)
-    assert opened_short(run)["Trials"].max_row == FIRST - 1 + 50
-    assert opened_short(run, rows=60)["Trials"].max_row == FIRST - 1 + 60
+    assert opened(run, "Trials")["Trials"].max_row == FIRST - 1 + 50
+    assert opened(run, "Trials", rows=60)["Trials"].max_row == FIRST - 1 + 60
 
 
 def test_the_header_is_frozen_repeated_and_filters(run, book):
@@ -58,22 +58,22 @@ def test_the_header_is_frozen_repeated_and_filters(run, book):
     assert sheet.auto_filter.ref == f"A{HEADER + 1}:E{HEADER + 1 + run.accepted}"
 
 
-def test_a_forecast_that_is_no_number_says_so(make, opened_short):
+def test_a_forecast_that_is_no_number_says_so(make, opened):
     run = make.simulate(
         {"A1": 0.5, "B1": "=SQRT(A1-0.5)"},
         [make.uniform("a", "A1", 0.0, 1.0, base=0.5)],
         [make.forecast("root", "B1")],
         trials=50,
     )
-    shown = [row[2] for row in opened_short(run)["Trials"].iter_rows(min_row=FIRST, values_only=True)]
+    shown = [row[2] for row in opened(run, "Trials")["Trials"].iter_rows(min_row=FIRST, values_only=True)]
     assert shown.count("–") == run.faults["root"]["#NUM!"] > 0
 
 
-def test_an_assumption_and_a_forecast_may_share_a_name(make, opened_short):
+def test_an_assumption_and_a_forecast_may_share_a_name(make, opened):
     run = make.simulate(
         {"A1": 0.5, "B1": "=A1"}, [make.uniform("v", "A1", 0.0, 1.0, base=0.5)], [make.forecast("v", "B1")], trials=5
     )
-    assert [cell.value for cell in opened_short(run)["Trials"][HEADER + 1]] == ["Trial", "v", "v"]
+    assert [cell.value for cell in opened(run, "Trials")["Trials"][HEADER + 1]] == ["Trial", "v", "v"]
 
 
 @pytest.mark.parametrize("name", ["Bins", "Curves"])

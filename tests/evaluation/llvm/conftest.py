@@ -1,10 +1,39 @@
 from __future__ import annotations
 
+from contextlib import contextmanager
 from functools import cache
 
-import mpmath
-import numpy as np
 import pytest
+
+
+@pytest.fixture
+def compile_nothing(monkeypatch):
+    """Loops are not compiled: there is no code to run. `compile_nothing`: what each would be compiled of."""
+    from xlmc.evaluation.llvm import phase
+    from xlmc.evaluation.llvm.machine import NativeLoop
+
+    made = []
+    monkeypatch.setattr(phase, "compile_loop", lambda *given: made.append(given) or NativeLoop(0, None))
+    return made
+
+
+@pytest.fixture(scope="session")
+def side_by_side():
+    """`with side_by_side(k):` loops take so many vectors of trials at once; with 0 one trial after another.
+
+    They give the same bits, which `test_shapes` shows; one vector takes half as long to compile as two, one trial a
+    third.
+    """
+    from xlmc.evaluation.llvm import phase
+    from xlmc.evaluation.llvm.loop import compile_loop
+
+    @contextmanager
+    def patched(count):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(phase, "compile_loop", lambda *given: compile_loop(*given[:6], count))
+            yield
+
+    return patched
 
 
 @cache
@@ -18,12 +47,12 @@ def plain_machine():
 
 
 @pytest.fixture(scope="module", params=["as it is", "without fused multiplication"])
-def compiled(request, lower):
+def compiled(request, lower, side_by_side):
     """`compiled(cells, inputs)`: what takes arrays of the inputs and gives the cells by the compiled loop."""
     from xlmc.evaluation.llvm import program as programs
 
     def make(cells, inputs=("A1",)):
-        with pytest.MonkeyPatch.context() as patch:
+        with pytest.MonkeyPatch.context() as patch, side_by_side(1):
             if request.param != "as it is":
                 patch.setattr(programs, "machine", plain_machine)
             lowering, targets = lower(cells, [*inputs], [*cells])
@@ -42,16 +71,5 @@ def compiled(request, lower):
 
 @pytest.fixture(scope="session")
 def distance():
-    """`distance(computed, exact)`: how many units in the last place of the exact value lie between, at most.
-
-    The unit of a subnormal is that of all subnormals.
-    """
-
-    def found(computed, exact):
-        worst = 0.0
-        for value, truth in zip(computed, exact, strict=True):
-            unit = mpmath.mpf(float(np.spacing(abs(float(truth)))))
-            worst = max(worst, float(abs(mpmath.mpf(float(value)) - truth) / unit))
-        return worst
-
-    return found
+    """`distance(computed, exact)`: how many units in the last place of the exact value lie between, at most."""
+    return lambda computed, exact: exact.distance(computed)

@@ -59,11 +59,19 @@ MODELS = {
     "one of them always true": (GIVEN, {"x": "B3"}, {"f": "C1", "o": {"cell": "C7", "only_for": ("x",)}}),
     "many filters": (GIVEN, {"x": "B3"}, {f"f{i}": {"cell": "C2", "at_least": i / 20 - 1} for i in range(16)}),
 }
+IN_VECTORS = "forecasts late, early and drawn"
 DRAWN_ELSEWHERE = ("forecasts late, early and drawn", "no filters", "few accepted", "filters of some forecasts only")
 """Whose draws are also made outside of the native call."""
 
 
-def ran(model, whole, blocks=range(5, 8), *, inputs=True, draws_given=False):
+@pytest.fixture(autouse=True)
+def one_trial_after_another(side_by_side):
+    """A whole block calls the same loops, whichever these are; those that take one trial are compiled sooner."""
+    with side_by_side(0):
+        yield
+
+
+def ran(model, whole, blocks=range(5, 7), *, inputs=True, draws_given=False):
     runner = model_runner(model, model.program("jit"), "jit", 7, BLOCK)
     assert runner._run_whole is not None
     if draws_given:
@@ -94,9 +102,12 @@ def bits(block):
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_a_whole_block_is_the_block(book, name):
-    """With inputs kept and without, and cut anywhere; of some models with given draws, too."""
+def test_a_whole_block_is_the_block(book, side_by_side, name):
+    """With inputs kept and without, and cut anywhere; of some models with given draws, too. One is in vectors."""
     model, ways = book(CELLS, *MODELS[name]), [False, *([True] if name in DRAWN_ELSEWHERE else [])]
+    if name == IN_VECTORS:
+        with side_by_side(2):
+            model.program("jit")  # which is kept
     for inputs in (True, False):
         expected = list(map(bits, ran(model, False, inputs=inputs)))
         for draws_given in ways:

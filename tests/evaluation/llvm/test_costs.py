@@ -27,7 +27,7 @@ CHOSEN = [
 
 
 @cases(("formulas", "expected"), CHOSEN)
-def test_a_book_has_the_program_that_the_table_says(lower, formulas, expected):
+def test_a_book_has_the_program_that_the_table_says(lower, compile_nothing, formulas, expected):
     cells = {f"C{row}": f"={formula}" for row, formula in enumerate(formulas, 1)}
     lowering, targets = lower(cells, ["A1", "A2"], [*cells])
     assert type(ENGINES["jit"].load()(lowering, targets[:1], targets[1:], frozenset())) is expected

@@ -8,6 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 from cases import cases
+from exact_numbers import Exact
 
 pytest.importorskip("llvmlite")
 
@@ -37,18 +38,23 @@ POSITIVE = np.concatenate(
 )
 
 
+@cache
+def exactly(function, precision, *of):
+    """Of arrays that are given as bytes; kept for the other way of compiling."""
+    with mpmath.workprec(precision):
+        columns = [np.frombuffer(each).tolist() for each in of]
+        return Exact.of(function(*map(mpmath.mpf, row)) for row in zip(*columns, strict=True))
+
+
 def test_exponentials(compiled, distance):
-    with mpmath.workprec(200):
-        exact = [mpmath.exp(mpmath.mpf(float(x))) for x in EXPONENTS]
-        assert distance(compiled({"B1": "=EXP(A1)"})(EXPONENTS)[0], exact) < 0.75
+    found = compiled({"B1": "=EXP(A1)"})(EXPONENTS)[0]
+    assert distance(found, exactly(mpmath.exp, 200, EXPONENTS.tobytes())) < 0.75
 
 
 def test_logarithms(compiled, distance):
     natural, common, again = compiled({"B1": "=LN(A1)", "B2": "=LOG10(A1)", "B3": "=LOG(A1)"})(POSITIVE)
-    with mpmath.workprec(200):
-        exact = [mpmath.mpf(float(x)) for x in POSITIVE]
-        assert distance(natural, map(mpmath.log, exact)) < 0.9
-        assert distance(common, map(mpmath.log10, exact)) < 0.51
+    assert distance(natural, exactly(mpmath.log, 200, POSITIVE.tobytes())) < 0.9
+    assert distance(common, exactly(mpmath.log10, 200, POSITIVE.tobytes())) < 0.51
     assert again.tolist() == common.tolist()
 
 
@@ -57,6 +63,7 @@ def test_powers_of_ten_have_whole_logarithms(compiled):
     assert compiled({"B1": "=LOG10(A1)"})(10.0**exponents)[0].tolist() == exponents.tolist()
 
 
+@cache
 def bases_and_exponents():
     """Of which the power is a number of Excel's: small and large bases, near 1 with large exponents."""
     bases = (np.exp(GENERATOR.uniform(-30, 30, N)), GENERATOR.uniform(0.7, 1.42, N), np.exp2(GENERATOR.normal(size=N)))
@@ -70,9 +77,8 @@ def bases_and_exponents():
 
 def test_powers(compiled, distance):
     x, y = bases_and_exponents()
-    with mpmath.workprec(300):
-        exact = [mpmath.power(mpmath.mpf(float(a)), mpmath.mpf(float(b))) for a, b in zip(x, y, strict=True)]
-        assert distance(compiled({"B1": "=A1^A2"}, ("A1", "A2"))(x, y)[0], exact) < 0.9
+    found = compiled({"B1": "=A1^A2"}, ("A1", "A2"))(x, y)[0]
+    assert distance(found, exactly(mpmath.power, 300, x.tobytes(), y.tobytes())) < 0.9
 
 
 OF_POSITIVE = np.concatenate([np.exp(GENERATOR.uniform(-7, 7, N)), GENERATOR.uniform(0.9, 1.1, N), np.arange(1.0, 100)])
@@ -80,20 +86,14 @@ BASES = {"whole": np.concatenate([OF_POSITIVE, -OF_POSITIVE]), "others": OF_POSI
 CONSTANT = {"whole": (4.0, 5.0, 7.0, -2.0, -3.0, 40.0), "others": (1.5, -0.5, 0.1)}
 
 
-@cache
-def exact_powers(which, exponent):
-    """Kept for the other way of compiling."""
-    with mpmath.workprec(300):
-        return [mpmath.power(mpmath.mpf(float(a)), mpmath.mpf(exponent)) for a in BASES[which]]
-
-
 @pytest.mark.parametrize("which", CONSTANT)
 def test_powers_with_a_constant_exponent(compiled, distance, which):
     exponents = CONSTANT[which]
     found = compiled({f"B{row}": f"=A1^{exponent!r}" for row, exponent in enumerate(exponents, 1)})(BASES[which])
-    with mpmath.workprec(300):
-        for exponent, powers in zip(exponents, found, strict=True):
-            assert distance(powers, exact_powers(which, exponent)) < 0.9, exponent
+    bases = BASES[which]
+    for exponent, powers in zip(exponents, found, strict=True):
+        exact = exactly(mpmath.power, 300, bases.tobytes(), np.full(bases.size, exponent).tobytes())
+        assert distance(powers, exact) < 0.9, exponent
 
 
 def test_powers_that_a_double_holds_are_exact(compiled):
@@ -128,15 +128,13 @@ FORMULAS = (
 
 
 @cases("formula", FORMULAS)
-def test_at_the_edges_errors_and_zeros_are_those_of_the_numpy_engine(lower, formula):
-    from xlmc.evaluation.llvm.program import JitProgram
-    from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
-
+def test_at_the_edges_errors_and_zeros_are_those_of_the_numpy_engine(lower, load_program, formula):
+    """Trial by trial: the tests above see vectors."""
     a, b = (each.ravel() for each in np.meshgrid(EDGES, EDGES))
+    lowering, targets = lower({"B1": f"={formula}"}, ["A1", "A2"], ["B1"])
     found = []
-    for engine in (NumpyProgram.of, JitProgram):
-        lowering, targets = lower({"B1": f"={formula}"}, ["A1", "A2"], ["B1"])
-        evaluator = engine(lowering, targets, [], frozenset()).evaluator(a.size)
+    for engine in ("numpy", "jit"):
+        evaluator = load_program(engine)(lowering, targets, [], frozenset()).evaluator(a.size)
         found.append(evaluator.filters({"A1": a, "A2": b}, a.size)[0])
     one, two = (np.zeros(a.size) if column.codes is None else column.codes for column in found)
     assert one.tolist() == two.tolist()

@@ -30,10 +30,11 @@ def computing(patch):
 
 
 @pytest.mark.parametrize(("number", "processor"), [*zip((7, 13), PROCESSORS, strict=True)], indirect=["processor"])
-def test_the_bits_of_random_books_are_the_same(book, monkeypatch, processor, number):
+def test_the_bits_of_random_books_are_the_same(book, monkeypatch, side_by_side, processor, number):
     """These two books have every lookup of `table_books` and all but one of its functions, a power."""
-    found = told(some_book(book, number).simulate(TRIALS, 5, engine="jit"))
-    with monkeypatch.context() as patch:
+    with side_by_side(1):
+        found = told(some_book(book, number).simulate(TRIALS, 5, engine="jit"))
+    with monkeypatch.context() as patch, side_by_side(0):
         computing(patch)
         assert found == told(some_book(book, number).simulate(TRIALS, 5, engine="jit"))
 
@@ -76,21 +77,23 @@ def built(book, formula):
     ],
     indirect=["processor"],
 )
-def test_rows_of_a_sheet_share_tables_and_code(book, monkeypatch, processor, formula):
-    model, names, codes = built(book, formula)
+def test_rows_of_a_sheet_share_tables_and_code(book, monkeypatch, side_by_side, processor, formula):
+    with side_by_side(1):
+        model, names, codes = built(book, formula)
+        found = told(model.simulate(TRIALS, 5, engine="jit"))
     assert "picked" in names
     assert not {"ATAN", "SIN", "EXP", "^", "LN", "the cell found"} & {*names}
-    found = told(model.simulate(TRIALS, 5, engine="jit"))
-    with monkeypatch.context() as patch:
+    with monkeypatch.context() as patch, side_by_side(0):
         computing(patch)
         computed, _, codes_of_computed = built(book, formula)
         assert found == told(computed.simulate(TRIALS, 5, engine="jit"))
     assert len(codes) <= len(codes_of_computed) + 1
 
 
-def test_rows_with_a_constant_of_their_own_are_computed(book):
+def test_rows_with_a_constant_of_their_own_are_computed(book, side_by_side):
     """A table is part of the code of a loop: so many tables would be as many codes."""
-    _, names, codes = built(book, "EXP(-{x}*({row}+0.1))*A2")
+    with side_by_side(0):
+        _, names, codes = built(book, "EXP(-{x}*({row}+0.1))*A2")
     assert "picked" not in names
     assert names.count("EXP") == len(ROWS)
     assert len(codes) < 6

@@ -73,7 +73,7 @@ def stages(program):
         ("2", 0, 0),
     ],
 )
-def test_what_stands_in_loops(program, formula, loops, outside):
+def test_what_stands_in_loops(program, compile_nothing, formula, loops, outside):
     assert stages(program(formula)) == (loops, outside)
 
 

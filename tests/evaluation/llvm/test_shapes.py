@@ -31,29 +31,15 @@ def march(rows, odd=()):
     return cells
 
 
-def programs(lower, rows, odd=(), targets=("G1", "D9")):
-    lowering, found = lower(march(rows, odd), ["A1", "A2"], targets)
-    return (made(lowering, [], found, frozenset()) for made in (NumpyProgram.of, JitProgram))
-
-
-def test_loops_of_one_shape_give_what_numpy_gives(lower):
-    """Most of them are of one shape; the rows with another formula are in loops of their own."""
-    made = list(programs(lower, 60, (20, 21, 50)))
-    for n in (1, 777):
-        draws = {"A1": np.random.default_rng(1).uniform(0.5, 0.9, n), "A2": np.random.default_rng(2).uniform(50, 70, n)}
-        found = []
-        for program in made:
-            evaluator = program.evaluator(n)
-            evaluator.filters(draws, n)
-            found.append([column.as_floats().copy() for column in evaluator.forecasts(np.arange(n))])
-        for careful, native in zip(*found, strict=True):
-            np.testing.assert_allclose(native, careful, rtol=1e-13, err_msg=f"{n} trials")
+def made(lower, rows, odd=(), make=JitProgram):
+    lowering, found = lower(march(rows, odd), ["A1", "A2"], ("G1", "D9"))
+    return make(lowering, [], found, frozenset())
 
 
 @pytest.mark.parametrize("odd", [(), (20, 21, 50)])
-def test_loops_of_one_shape_have_one_code(lower, compiled, odd):
-    _, program = programs(lower, 60, odd)
-    dag, machine = compiled[0][:2]
+def test_loops_of_one_shape_have_one_code(lower, compile_nothing, odd):
+    program = made(lower, 60, odd)
+    dag, machine = compile_nothing[0][:2]
     codes = {}
     for plan in program.late._stages.loop_plans() if program.late.slots else program.first._stages.loop_plans():
         module = ir.Module()
@@ -63,30 +49,23 @@ def test_loops_of_one_shape_have_one_code(lower, compiled, odd):
     assert all(len({*alike}) == 1 for alike in codes.values())
 
 
-def test_a_trial_that_errs_in_one_row_errs_alone(lower):
+def test_a_trial_that_errs_in_one_row_errs_alone(lower, side_by_side):
     cells = march(60) | {"G1": "=D60/(B30-B30*A3)", "A3": 0.5}
     lowering, found = lower(cells, ["A1", "A2", "A3"], ["G1"])
     draws = {"A1": np.full(5, 0.7), "A2": np.full(5, 60.0), "A3": np.array([0.5, 1.0, 0.5, 1.0, 0.25])}
-    evaluator = JitProgram(lowering, [], found, frozenset()).evaluator(5)
+    with side_by_side(0):  # so few trials are in no vector
+        evaluator = JitProgram(lowering, [], found, frozenset()).evaluator(5)
     evaluator.filters(draws, 5)
     (column,) = evaluator.forecasts(np.arange(5))
     assert column.codes is not None
     assert (column.codes > 0).tolist() == [False, True, False, True, False]
 
 
-@pytest.fixture
-def compiled(monkeypatch):
-    """The loops that would be compiled, to be looked at: there is no code to run."""
-    made = []
-    monkeypatch.setattr(phases, "compile_loop", lambda *given: made.append(given))
-    return made
-
-
-def test_more_rows_are_compiled_no_longer(lower, compiled):
+def test_more_rows_are_compiled_no_longer(lower, compile_nothing):
     def loops(rows):
-        compiled.clear()
-        _, program = programs(lower, rows)
-        return len(compiled), len(set(program.slots.values()))
+        compile_nothing.clear()
+        program = made(lower, rows)
+        return len(compile_nothing), len(set(program.slots.values()))
 
     few, many = loops(100), loops(200)
     assert few[0] == many[0] < 12
@@ -100,23 +79,28 @@ def test_code_that_serves_one_loop_among_many_alike_is_soon_made(loops, alone):
     assert phases._side_by_side_alone(loops) == alone
 
 
-def test_trials_one_after_another_give_the_same_bits(lower, monkeypatch):
-    n, ways, compile_loop = 777, set(), phases.compile_loop
+def test_loops_give_what_numpy_gives_and_one_trial_after_another_the_same_bits(lower, monkeypatch):
+    """Most of them are of one shape; the rows with another formula are in loops of their own, of either kind."""
+    ways, compile_loop = set(), phases.compile_loop
     monkeypatch.setattr(phases, "compile_loop", lambda *given: ways.add(given[-1]) or compile_loop(*given))
-    draws = {"A1": np.random.default_rng(1).uniform(0.5, 0.9, n), "A2": np.random.default_rng(2).uniform(50, 70, n)}
-    found = []
+    made_of = {"numpy": made(lower, 60, (20, 21, 50), NumpyProgram.of)}
     for rare in (1, 10**9):
         monkeypatch.setattr(phases, "_RARE", rare)
-        _, program = programs(lower, 60, (20, 21, 50))
-        evaluator = program.evaluator(n)
-        evaluator.filters(draws, n)
-        found.append([column.as_floats().tobytes() for column in evaluator.forecasts(np.arange(n))])
+        made_of[rare] = made(lower, 60, (20, 21, 50))
     assert ways == {0, 1, 2}
-    assert found[0] == found[1]
+    for n in (1, 777):
+        draws = {"A1": np.random.default_rng(1).uniform(0.5, 0.9, n), "A2": np.random.default_rng(2).uniform(50, 70, n)}
+        found = {}
+        for way, program in made_of.items():
+            evaluator = program.evaluator(n)
+            evaluator.filters(draws, n)
+            found[way] = np.array([column.as_floats() for column in evaluator.forecasts(np.arange(n))])
+        assert found[1].tobytes() == found[10**9].tobytes()
+        np.testing.assert_allclose(found[1], found["numpy"], rtol=1e-13, err_msg=f"{n} trials")
 
 
-def test_a_small_model_has_its_constants_in_its_code(lower, compiled):
-    programs(lower, 9)
-    *_, program = programs(lower, 9)
-    assert all(not slots for *_, slots, _ in compiled)
+def test_a_small_model_has_its_constants_in_its_code(lower, compile_nothing):
+    made(lower, 9)
+    program = made(lower, 9)
+    assert all(not slots for *_, slots, _ in compile_nothing)
     assert program.largest_block >= 1 << 15

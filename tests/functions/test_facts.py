@@ -41,7 +41,8 @@ MADE = {"shown", "snap to zero", *(row.name for row in (*SO_FAR.values(), POSITI
 OURS = {*REGISTRY, *CHOICES, *REFERENCE_FUNCTIONS, *LAMBDAS, *WRITTEN_OUT, "LET", "LAMBDA"}
 NAMES = {name for name in OURS if name.isupper()}
 
-_QUOTED = re.compile(r"[\"'](?:" + "|".join(map(re.escape, NAMES)) + r")[\"' ]")
+_QUOTED = re.compile(r"(?=[\"']([^\"' \n]+)([\"' ]))")
+"""A text, or the first word of one, and what ends it."""
 
 LISTS = {
     ("definitions/in_cells/random_functions.py", "INVERSES"): "any other function of RAND() is computed from its draw",
@@ -131,8 +132,9 @@ def _owned(node: ast.AST, owner: str | None) -> Iterator[tuple[str, list[str]]]:
 
 def _lists(source: str) -> dict[str, list[list[str]]]:
     """By name: the lists in a file that hold two names of functions, or more."""
-    if not _QUOTED.search(source):
-        return {}
+    named = {(name, end) for name, end in _QUOTED.findall(source) if name in NAMES}
+    if len({name for name, _ in named}) < 2 and all(end != " " for _, end in named):
+        return {}  # which spares parsing most files
     found = defaultdict(list)
     for owner, names in _owned(ast.parse(source), None):
         if len(NAMES.intersection(names)) > 1:

@@ -151,8 +151,7 @@ def _simulate(source, engine, folder):
 
 
 def test_the_command_gives_the_same_results_with_every_engine(path, tmp_path, monkeypatch):
-    slow = ("Charts", "Pairs", "Sensitivity")
-    monkeypatch.setattr(book, "SHEETS", [sheet for sheet in book.SHEETS if sheet.name not in slow])
+    monkeypatch.setattr(book, "SHEETS", [sheet for sheet in book.SHEETS if sheet.name in ("Results", "Record")])
     results = []
     for engine in ENGINES:
         done = _simulate(path, engine, tmp_path)

@@ -31,9 +31,9 @@ def march(rows, odd=()):
     return cells
 
 
-def made(lower, rows, odd=(), make=JitProgram):
+def made(lower, rows, odd=()):
     lowering, found = lower(march(rows, odd), ["A1", "A2"], ("G1", "D9"))
-    return make(lowering, [], found, frozenset())
+    return JitProgram(lowering, [], found, frozenset())
 
 
 @pytest.mark.parametrize("odd", [(), (20, 21, 50)])
@@ -67,7 +67,7 @@ def test_more_rows_are_compiled_no_longer(lower, compile_nothing):
         program = made(lower, rows)
         return len(compile_nothing), len(set(program.slots.values()))
 
-    few, many = loops(100), loops(200)
+    few, many = loops(70), loops(140)
     assert few[0] == many[0] < 12
     assert many[1] < 1.1 * few[1]
 
@@ -83,10 +83,11 @@ def test_loops_give_what_numpy_gives_and_one_trial_after_another_the_same_bits(l
     """Most of them are of one shape; the rows with another formula are in loops of their own, of either kind."""
     ways, compile_loop = set(), phases.compile_loop
     monkeypatch.setattr(phases, "compile_loop", lambda *given: ways.add(given[-1]) or compile_loop(*given))
-    made_of = {"numpy": made(lower, 60, (20, 21, 50), NumpyProgram.of)}
+    lowering, targets = lower(march(60, (20, 21, 50)), ["A1", "A2"], ("G1", "D9"))
+    made_of = {"numpy": NumpyProgram.of(lowering, [], targets, frozenset())}
     for rare in (1, 10**9):
         monkeypatch.setattr(phases, "_RARE", rare)
-        made_of[rare] = made(lower, 60, (20, 21, 50))
+        made_of[rare] = JitProgram(lowering, [], targets, frozenset())
     assert ways == {0, 1, 2}
     for n in (1, 777):
         draws = {"A1": np.random.default_rng(1).uniform(0.5, 0.9, n), "A2": np.random.default_rng(2).uniform(50, 70, n)}

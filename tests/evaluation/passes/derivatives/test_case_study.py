@@ -74,15 +74,12 @@ def model():
     return load(ROOT / "examples" / "intersection.xlsx")
 
 
-@pytest.mark.parametrize("seed", [None, 1])
-def test_gradient_and_hessian_of_the_case_study(model, seed):
-    """To 1e-10 of the largest derivative in the assumption's own range."""
-    inputs = {a.name: a.base for a in model.live}
+def test_gradient_and_hessian_of_the_case_study(model):
+    """At some point of the ranges, to 1e-10 of the largest derivative in the assumption's own range."""
     ranges = [(float(a.parameters["low"]), float(a.parameters["high"])) for a in model.live]
-    if seed is not None:
-        shares = np.random.default_rng(seed).random(len(ranges))
-        points = (low + share * (high - low) for (low, high), share in zip(ranges, shares, strict=True))
-        inputs = dict(zip(inputs, points, strict=True))
+    shares = np.random.default_rng(1).random(len(ranges))
+    points = [low + share * (high - low) for (low, high), share in zip(ranges, shares, strict=True)]
+    inputs = dict(zip((a.name for a in model.live), points, strict=True))
     found = derivatives(model, inputs, order=2)
     assert not found.undefined
     assert not found.numerical

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import sys
 from collections.abc import Sized
 
 import pytest
@@ -246,19 +247,23 @@ def test_what_is_not_tried_at_a_text_does_not_match_it(text):
     assert [token for token in tokens_at(text) if token in matching] == matching
 
 
-@pytest.mark.parametrize(("part", "count"), [("+A1", 4000), ("&A1", 4000), ("%", 4000)])
-def test_long_formulas(part, count):
-    tree = parse("A1" + part * count)
+MANY = sys.getrecursionlimit() + 100
+"""More than Python's own calls may be deep."""
+
+
+@pytest.mark.parametrize("part", ["+A1", "&A1", "%"])
+def test_long_formulas(part):
+    tree = parse("A1" + part * MANY)
     depth = 0
     while isinstance(tree, ir.Binary | ir.Unary):
         tree = tree.left if isinstance(tree, ir.Binary) else tree.operand
         depth += 1
-    assert depth == count
+    assert depth == MANY
 
 
 @pytest.mark.parametrize(("opening", "closing"), [("(", ")"), ("ABS(", ")"), ("-", ""), ("1+(", ")")])
 def test_deep_formulas(opening, closing):
-    assert isinstance(parse(opening * 1500 + "A1" + closing * 1500), ir.Expression)
+    assert isinstance(parse(opening * MANY + "A1" + closing * MANY), ir.Expression)
 
 
 def test_the_same_text_is_parsed_once():

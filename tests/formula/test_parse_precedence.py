@@ -65,13 +65,13 @@ def larger(parts):
     )
 
 
-@settings(max_examples=600, deadline=None)
+@settings(max_examples=400, deadline=None)
 @given(st.recursive(st.sampled_from(list(LEAVES)), larger, max_leaves=12))
 def test_brackets_stand_only_where_precedence_needs_them(tree):
     assert parse(written(tree)) == tree
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=200, deadline=None)
 @given(st.recursive(st.sampled_from(list(LEAVES)), larger, max_leaves=8))
 def test_more_brackets_change_nothing(tree):
     text = written(tree)

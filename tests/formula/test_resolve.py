@@ -248,7 +248,7 @@ def test_nesting_as_deep_as_excel_allows(see, nested):
 
 @pytest.mark.parametrize(
     "text",
-    ["ABS(" * 1000 + "A1" + ")" * 1000, "-" * 3000 + "A1", "1+(" * 1000 + "A1" + ")" * 1000, "A1" + "%" * 3000],
+    ["ABS(" * 1000 + "A1" + ")" * 1000, "-" * 1000 + "A1", "1+(" * 1000 + "A1" + ")" * 1000, "A1" + "%" * 1000],
 )
 def test_deeper_nesting_is_refused(see, text):
     with pytest.raises(FormulaError, match="nested deeper than"):
@@ -256,10 +256,10 @@ def test_deeper_nesting_is_refused(see, text):
 
 
 def test_a_long_sum_is_no_nesting(workbook):
-    tree = Resolver(workbook({})).formula(Cell("S", 1, 2), Formula("A1" + "+A1" * 4000, 1, 2))
+    tree = Resolver(workbook({})).formula(Cell("S", 1, 2), Formula("A1" + "+A1" * 1200, 1, 2))
     first, rest = ir.chain(tree)
     assert {first, *rest} == {Cell("S", 1, 1), ("+", Cell("S", 1, 1))}
-    assert len(rest) == 4000
+    assert len(rest) == 1200
 
 
 def test_names_of_names_cannot_grow_beyond_measure(resolved):

@@ -57,14 +57,14 @@ def translated(text, here, there):
     return Translator(f"={text}", origin=origin).translate_formula(target).removeprefix("=")
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=250, deadline=None)
 @given(formulas, places, shifts)
 def test_a_formula_and_its_translation_have_one_shape(text, here, shift):
     there = (here[0] + shift[0], here[1] + shift[1])
     assert shape_of(translated(text, here, there), *there) == shape_of(text, *here)
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=250, deadline=None)
 @given(formulas, places, shifts)
 def test_the_same_text_elsewhere_has_its_shape_only_if_nothing_in_it_moves(text, here, shift):
     there = (here[0] + shift[0], here[1] + shift[1])
@@ -72,7 +72,7 @@ def test_the_same_text_elsewhere_has_its_shape_only_if_nothing_in_it_moves(text,
     assert (shape_of(text, *there) != shape_of(text, *here)) is moves
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=200, deadline=None)
 @given(st.lists(formulas, min_size=2, max_size=4), places, shifts)
 def test_what_was_parsed_for_another_cell_means_the_same_here(workbook, texts, here, shift):
     there = (here[0] + shift[0], here[1] + shift[1])

@@ -5,10 +5,26 @@ import sys
 from zipfile import ZipFile
 
 import pytest
+from workbook_files import workbook_of
 
 from xlmc.studies import methods
 
 SHORT = ("--reference-trials", "65536", "-n", "4096", "--replicates", "2", "--quiet")
+
+
+BOOK = {
+    "Inputs": [["Name", "Value", "Low", "High"], ["a", 0.5, 0, 1], ["b", 2, 1, 3]],
+    "Model": [["=Inputs!B2*Inputs!B3", "=3*4"]],
+    "Wanted": [
+        ["Name", "Cell", "Units"],
+        ["Speed", "=Model!A1", "mph"],
+        ["Constant", "=Model!B1", "mph"],
+        [],
+        ["Name", "Cell", "Above", "Because"],
+        ["fast", "=Inputs!B3", 0.4, "seen"],
+    ],
+}
+"""One of the forecasts does not vary, and the filter rejects nothing."""
 
 
 @pytest.fixture(autouse=True)
@@ -16,7 +32,15 @@ def studied_once(made_once):
     made_once(methods, "study")
 
 
-def test_words_and_files(xlmc, case_study, tmp_path, monkeypatch):
+@pytest.fixture(scope="module")
+def book(tmp_path_factory):
+    tables = {"xlmc_assumptions": "Inputs!A1:D3", "xlmc_forecasts": "Wanted!A1:C3", "xlmc_filters": "Wanted!A5:D6"}
+    path = tmp_path_factory.mktemp("methods") / "book.xlsx"
+    workbook_of(BOOK, tables).save(path)
+    return path
+
+
+def test_words_and_files(xlmc, book, tmp_path, monkeypatch):
     files = [tmp_path / name for name in ("m.png", "m.html", "m.xlsx")]
     outputs = [each for file in files for each in ("-o", file)]
     pypdf = pytest.importorskip("pypdf")
@@ -26,7 +50,7 @@ def test_words_and_files(xlmc, case_study, tmp_path, monkeypatch):
     axis = pytest.importorskip("matplotlib.axis").Axis
     monkeypatch.setattr(axis, "get_minorticklocs", lambda _: [])  # and the small ticks half of the rest
     pdf = tmp_path / "m.pdf"
-    outcome = xlmc("methods", case_study.with_name("skid-100-ft.xlsx"), *SHORT, *outputs, "--pdf", pdf)
+    outcome = xlmc("methods", book, *SHORT, *outputs, "--pdf", pdf)
     assert outcome.code == 0
     text = " ".join(outcome.out.split())
     for name in ("Bounds, corners", "Taylor, second order", "Scrambled Sobol", "Importance grid", "engine formulas"):
@@ -50,9 +74,8 @@ def test_words_and_files(xlmc, case_study, tmp_path, monkeypatch):
         assert all(b'<c:logBase val="10"/>' in package.read(name) for name in charts)
 
 
-def test_json(xlmc, case_study):
-    """One of the skid sheet's forecasts does not vary, and its filter rejects nothing."""
-    outcome = xlmc("methods", case_study.with_name("skid-100-ft.xlsx"), *SHORT, "--json", "--accuracy", "1%")
+def test_json(xlmc, book):
+    outcome = xlmc("methods", book, *SHORT, "--json", "--accuracy", "1%")
     assert outcome.code == 0
     found = json.loads(outcome.out)
     methods = {each["method"]: each for each in found["methods"]}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import closing
 
 import jsonschema
 import openpyxl
@@ -44,8 +45,9 @@ def book(tmp_path):
 
 
 def words(path):
-    sheet = openpyxl.load_workbook(path)["Evidence results"]
-    return " ".join(str(cell.value) for row in sheet for cell in row if cell.value is not None)
+    with closing(openpyxl.load_workbook(path, read_only=True)) as book:
+        rows = [*book["Evidence results"].iter_rows(values_only=True)]
+    return " ".join(str(value) for row in rows for value in row if value is not None)
 
 
 def test_evidence_that_agrees_is_shown_everywhere_with_what_it_moves(xlmc, short_books, book, tmp_path):

@@ -230,7 +230,7 @@ def test_continuous_up_to_the_bounds(first, second):
 @pytest.mark.parametrize(("first", "second"), PAIRS)
 @pytest.mark.parametrize("wanted", [0.3, -0.1])
 def test_draws_have_it(first, second, wanted):
-    n = 100_000
+    n = 25_000
     u = np.random.default_rng(1904).random((2, n))
     copula = GaussianCopula(np.array([[1.0, wanted], [wanted, 1.0]]), [first, second])
     assert not copula.repaired
@@ -253,10 +253,10 @@ def test_solved_parameters_that_contradict_each_other_are_repaired():
     copula = GaussianCopula(target, [TENTH, None, None])
     assert copula.repaired
     assert np.linalg.eigvalsh(copula.spearman)[0] > -1e-9
-    u = np.random.default_rng(7).random((3, 100_000))
+    u = np.random.default_rng(7).random((3, 25_000))
     copula.join(u)
     found = stats.spearmanr(np.array([values(TENTH, u[0]), u[1], u[2]]).T).statistic
-    assert found == pytest.approx(copula.spearman, abs=4 * 1.2 / math.sqrt(100_000))
+    assert found == pytest.approx(copula.spearman, abs=4 * 1.2 / math.sqrt(25_000))
 
 
 @cases(

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
+import signal
 import sys
-from collections.abc import Callable
+import traceback
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
+from typing import IO, NoReturn
 
 import pytest
 from fewer_sheets import SHORT, keep_few_trials, keep_sheets, leave_out_fits, leave_out_shapes
@@ -61,6 +65,70 @@ def on_a_screen(xlmc: Callable[..., Outcome], monkeypatch: pytest.MonkeyPatch) -
             return replace(outcome, err=shown.result().decode(encoding))
 
     return run
+
+
+@dataclass
+class Started:
+    """A command that runs in a process of its own.
+
+    Attributes:
+        number: of the process, and of its group.
+        out, err: what it prints.
+    """
+
+    number: int
+    out: IO[str]
+    err: IO[str]
+
+    def ended(self) -> Outcome:
+        """Wait for its end, and take what it has not been asked for yet."""
+        with self.out, self.err, ThreadPoolExecutor(1) as pool:
+            err = pool.submit(self.err.read)
+            out = self.out.read()
+            status = os.waitpid(self.number, 0)[1]
+            return Outcome(os.waitstatus_to_exitcode(status), out, err.result())
+
+
+@pytest.fixture
+def started(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Callable[..., Started]]:
+    """`started("open", path)`: as typed in an empty folder of a terminal of its own; forked, which is soon done."""
+    monkeypatch.chdir(tmp_path)
+    numbers = []
+
+    def start(*arguments: object) -> Started:
+        (out, told), (err, said) = os.pipe(), os.pipe()
+        if not (number := os.fork()):
+            _run_command(told, said, arguments)
+        numbers.append(number)
+        os.close(told)
+        os.close(said)
+        return Started(number, open(out, encoding="utf-8"), open(err, encoding="utf-8"))
+
+    yield start
+    for number in numbers:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(number, signal.SIGKILL)
+
+
+def _run_command(out: int, err: int, arguments: tuple[object, ...]) -> NoReturn:
+    """In a forked process, which nothing of the tests may go on in."""
+    code = 1
+    try:
+        os.setsid()
+        os.dup2(out, 1)
+        os.dup2(err, 2)
+        sys.stdout, sys.stderr = (os.fdopen(number, "w", encoding="utf-8") for number in (1, 2))
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # which a shell's background ignores
+        sys.argv = ["xlmc", *map(str, arguments)]
+        main()
+    except SystemExit as ended:
+        code = int(ended.code or 0)
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(code)
 
 
 def _all_of(leader: int) -> bytes:

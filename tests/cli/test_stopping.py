@@ -3,14 +3,15 @@ from __future__ import annotations
 import os
 import re
 import signal
-import subprocess
 import sys
+import time
 from contextlib import closing
 
 import openpyxl
 import pytest
 
 from xlmc.cli.progress_bar import errors_line, trials_line
+from xlmc.run import simulate
 from xlmc.run.stopping import Progress
 from xlmc.statistics import Estimate
 
@@ -102,47 +103,30 @@ def test_the_command_in_the_record_repeats_the_run(xlmc, book, tmp_path):
     assert record_of(tmp_path / "case-results.xlsx")["run.fingerprint"] == record["run.fingerprint"]
 
 
-PROGRAM = """
-import signal, sys, time
-signal.signal(signal.SIGINT, signal.default_int_handler)
-from xlmc.report.sheets import book
-from xlmc.run import simulate
-book.SHEETS = tuple(sheet for sheet in book.SHEETS if sheet.name in ("Results", "Trials", "Record"))
-add = simulate._Gathered.add
-def told(self, block):
-    add(self, block)
-    print("block", file=sys.stderr, flush=True)
-    time.sleep(0.01)  # so that few more come before the signal, however busy the machine is
-simulate._Gathered.add = told
-from xlmc.cli import main
-main()
-"""
-CREW = ("-j", "2", "--scheduler", "processes")
-"""Of this process alone, and of threads, tests/run/stopping/test_runs.py interrupts runs; of a local cluster,
-tests/run/scheduling/test_cluster.py."""
-
-
-def interrupted(book):
-    """A run in a process group of its own, as a terminal starts it, and Ctrl-C for the group after three blocks."""
-    command = [sys.executable, "-c", PROGRAM, "simulate", str(book), "-n", "1000000000", "--quiet", *CREW]
-    where = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    with subprocess.Popen(command, **pipes, start_new_session=True, env=where) as process:
-        try:
-            told = [process.stderr.readline() for _ in range(3)]
-            os.killpg(process.pid, signal.SIGINT)
-            out, err = process.communicate(timeout=300)
-        finally:
-            process.kill()
-    assert told == ["block\n"] * 3
-    return process.returncode, out, err.replace("block\n", "")
-
-
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
 @pytest.mark.skipif(os.name != "posix", reason="process groups are POSIX's")
-def test_ctrl_c_keeps_what_was_accepted(xlmc, book, tmp_path):
-    code, out, err = interrupted(book)
-    assert code == 130, err
-    assert "Ended when it was interrupted." in out
+def test_ctrl_c_keeps_what_was_accepted(xlmc, started, book, tmp_path, monkeypatch):
+    """A terminal tells the whole process group of Ctrl-C.
+
+    Of this process alone, and of threads, tests/run/stopping/test_runs.py interrupts runs; of a local cluster,
+    tests/run/scheduling/test_cluster.py.
+    """
+    add = simulate._Gathered.add
+
+    def told(self, block):
+        add(self, block)
+        print("block", file=sys.stderr, flush=True)
+        time.sleep(0.01)  # so that few more come before the signal, however busy the machine is
+
+    monkeypatch.setattr(simulate._Gathered, "add", told)
+    running = started("simulate", book, "-n", 10**9, "--quiet", "-j", 2, "--scheduler", "processes")
+    assert [running.err.readline() for _ in range(3)] == ["block\n"] * 3
+    os.killpg(running.number, signal.SIGINT)
+    outcome = running.ended()
+    monkeypatch.setattr(simulate._Gathered, "add", add)
+    err = outcome.err.replace("block\n", "")
+    assert outcome.code == 130, err
+    assert "Ended when it was interrupted." in outcome.out
     assert err.splitlines()[-1].startswith("xlmc: interrupted after ")
     assert "Traceback" not in err
     results = tmp_path / "case-results.xlsx"

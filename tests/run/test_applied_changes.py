@@ -61,8 +61,15 @@ KINDS = {
     ),
 }
 
-AMONG_SEVERAL = {"a range", "held at a value", "limits", "a fixed input"}
-"""Kinds that the last one has too."""
+TOGETHER = [
+    ("one end", "numbers"),
+    ("held", "another limit"),
+    ("the lowest tenth",),
+    ("the highest tenth", "a correlation"),
+    ("another distribution",),
+    ("several",),
+]
+"""Kinds that one workbook can have; the last one has those that are missing here."""
 
 
 @pytest.fixture(scope="module")
@@ -94,10 +101,11 @@ def assert_same(found, expected):
         assert all(mine[name].tobytes() == theirs[name].tobytes() for name in mine)
 
 
-@cases("kind", [kind for kind in KINDS if kind not in AMONG_SEVERAL])
-def test_changes_give_what_the_edited_workbook_gives(case, kind):
+@cases("kinds", TOGETHER)
+def test_changes_give_what_the_edited_workbook_gives(case, kinds):
     run(case)  # so that its program is there to be used again
-    changes, cells = KINDS[kind]
+    changes = [change for kind in kinds for change in KINDS[kind][0]]
+    cells = {cell: value for kind in kinds for cell, value in KINDS[kind][1].items()}
     assert_same(run(applied(case, changes)), run(edited(case.workbook, cells)))
 
 

@@ -30,7 +30,7 @@ def test_pairs_near_one(asked, sampling):
     assert abs(found["found"] - found["expected"]) < 5 * found["error"]
     draws = model.simulate(TRIALS, 3, sampling=sampling).inputs
     for name, law in (("first", stats.uniform()), ("second", stats.norm(5.0, 2.0))):
-        assert stats.kstest(draws[name], law.cdf).statistic < 2.5 / np.sqrt(TRIALS)
+        assert stats.kstest(draws[name], law.cdf, method="asymp").statistic < 2.5 / np.sqrt(TRIALS)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])

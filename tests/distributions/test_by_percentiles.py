@@ -58,12 +58,6 @@ def test_out_may_be_u():
             "p90",
             "No single Normal has Mean 5, P90 4",
         ),
-        (
-            ByPercentiles(FAMILIES["Triangular"], (), (10.0, 50.0, 90.0)),
-            (3.0, 5.0, 9.0),
-            "p90",
-            "No single Triangular has P10 3, P50 5, P90 9",
-        ),
     ],
 )
 def test_bad_percentiles(family, params, key, message):
@@ -119,13 +113,15 @@ def givens(family):
 
 
 def members():
+    """One or the other of the percentiles in turn."""
     for name, params in MEMBERS:
         family = FAMILIES[name]
-        for given_keys in givens(family):
-            for p in PERCENTILES[len(family.keys) - len(given_keys)]:
-                if name == "Student's t" and "degrees" not in given_keys and p in ((0.1, 0.5, 0.9), (0.1, 0.9)):
-                    continue  # symmetric percentiles leave the degrees open: a test of its own
-                yield family, params, given_keys, p
+        for number, given_keys in enumerate(givens(family)):
+            choices = PERCENTILES[len(family.keys) - len(given_keys)]
+            p = choices[number % len(choices)]
+            if name == "Student's t" and "degrees" not in given_keys and p in ((0.1, 0.5, 0.9), (0.1, 0.9)):
+                continue  # symmetric percentiles leave the degrees open: a test of its own
+            yield family, params, given_keys, p
 
 
 @cases("family, params, given_keys, p", members())
@@ -162,8 +158,8 @@ def test_known_members_of_risk_families():
         family = FAMILIES[name]
         for given_keys in givens(family):
             p = PERCENTILES[len(family.keys) - len(given_keys)][0]
-            if 0 < len(given_keys) < len(family.keys) - 1:
-                continue  # all missing, or one: in between nothing is done that `MEMBERS` do not show
+            if given_keys not in ((), family.keys[:-1]):
+                continue  # all missing, or the last one: in between nothing is done that `MEMBERS` do not show
             x = family.ppf(np.array(p), *params)
             known = {key: value for key, value in zip(family.keys, params, strict=True) if key in given_keys}
             found = match_percentiles(family, known, list(zip(p, x.tolist(), strict=True)))
@@ -196,7 +192,7 @@ def test_any_member_by_three_percentiles(name, shape, log_scale, location):
         np.testing.assert_allclose(family.ppf(p, *found), x, rtol=0, atol=1e-8 * (x[2] - x[0]))
 
 
-@settings(max_examples=20)
+@settings(max_examples=10)
 @given(low=st.floats(-10, 10), rise=st.floats(0.01, 10), fall=st.floats(0.01, 10))
 @pytest.mark.parametrize("name", ["Triangular", "BetaPERT"])
 @pytest.mark.parametrize("given_keys", [(), ("likeliest",), ("low", "likeliest"), ("low", "high")])

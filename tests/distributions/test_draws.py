@@ -1,4 +1,4 @@
-"""200,000 draws of every family through the sampler, as a run makes them."""
+"""100,000 draws of every family through the sampler, as a run makes them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from scipy import stats
 from xlmc.distributions import FAMILIES, ByPercentiles
 from xlmc.sampling.draws import Draw, DrawStage, Sampler
 
-TRIALS, BLOCK, BINS = 200_000, 50_000, 1000
+TRIALS, BLOCK, BINS = 100_000, 25_000, 500
 CUMUL = FAMILIES["Cumul"].built(np.array([[1.0, 0.25], [1.5, 0.75]]))
 GENERAL = FAMILIES["General"].built(np.array([[0.70, 2.0], [0.85, 2.0]]))
 HISTOGRM = FAMILIES["Histogrm"].built(np.array([[1.0], [4.0], [2.0]]))
@@ -50,7 +50,7 @@ def p_value(draws, edges):
 
 @pytest.mark.parametrize("name", CASES)
 def test_draws_fit(name):
-    """Chi-square over 1000 bins of equal probability; a right family fails one seed in a thousand."""
+    """Chi-square over 500 bins of equal probability; a right family fails one seed in a thousand."""
     family, parameters, oracle = CASES[name]
     assert p_value(drawn(family, parameters), oracle.ppf(np.arange(1, BINS) / BINS)) > 1e-3
 

@@ -2,8 +2,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import subprocess
-import sys
 
 import pytest
 from cases import cases
@@ -59,12 +57,6 @@ def test_the_interval_of_a_scale_stays_positive_and_agrees_with_the_plain_one_wh
 
 def test_the_interval_of_a_scale_of_two_trials_may_be_unbounded():
     assert with_relative_error(1.0, 1.0, 1.0, 0.9999, 2).interval == (0.0, math.inf)
-
-
-def test_importing_does_not_load_scipy():
-    code = "import sys, xlmc.statistics; print([name for name in sys.modules if name.startswith('scipy')])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
 
 
 EXAMPLES = settings(max_examples=50, deadline=None)

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
+from cases import cases
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDERS = ("xlmc", "tests", "benchmarks", "docs", "examples")
@@ -60,7 +60,7 @@ def test_text_files_are_opened_as_utf_8():
     assert found == []
 
 
-@pytest.mark.parametrize(
+@cases(
     ("code", "silent"),
     [
         ("path.read_text()", True),

@@ -3,6 +3,7 @@ from __future__ import annotations
 import contest
 import pytest
 import rates
+from cases import cases
 from contest import CellPlace, Task
 from hypothesis import given
 from hypothesis import strategies as st
@@ -62,7 +63,7 @@ def test_forecasts_that_differ_are_told_with_their_cell():
     assert len(rates.differing(TASK, [[None, 2.1]], truth)) == 2
 
 
-@pytest.mark.parametrize("value", [True, "3", None, float("nan"), float("inf")])
+@cases("value", [True, "3", None, float("nan"), float("inf")])
 def test_only_real_numbers_are_answers(value):
     assert _real(value) is None
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.sampling.sampling_methods import METHODS
 
@@ -70,7 +71,7 @@ def test_the_bar_of_tails_can_be_missed(tails):
     assert tails.faults([told]) == []
 
 
-@pytest.mark.parametrize("method", ["mc", "lhs", "sobol"])
+@cases("method", ["mc", "lhs", "sobol"])
 def test_many_runs_at_once_have_the_numbers_of_each_alone(tails, method):
     """`measure` compares the first run with xlmc's own functions, and ends with an error where they differ."""
     found = tails.measure(method, 1_000, range(40, 42))
@@ -87,7 +88,7 @@ def test_the_bar_can_be_missed(coverage):
 KEPT = ("speed, 3 % kept", "speed, 33 % kept")
 
 
-@pytest.mark.parametrize(("method", "name"), [(method, KEPT[n % 2]) for n, method in enumerate(METHODS)])
+@cases(("method", "name"), [(method, KEPT[n % 2]) for n, method in enumerate(METHODS)])
 def test_some_of_the_runs_again(coverage, method, name):
     """20 runs with other seeds: 95 % ± 4 binomial standard errors, which 100 % is within, so from below only."""
     runs = 20
@@ -95,7 +96,7 @@ def test_some_of_the_runs_again(coverage, method, name):
     assert min(cell.hits) > runs * (0.95 - 4 * math.sqrt(0.95 * 0.05 / runs))
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "trials"),
     [
         ("sum of normals, 16 % kept", 50_000),

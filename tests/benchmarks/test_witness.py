@@ -4,6 +4,7 @@ from copy import deepcopy
 
 import pytest
 import witness
+from cases import cases
 from committed_books import BOOKS
 
 
@@ -18,7 +19,7 @@ def test_every_book_has_a_witness(recorded):
     assert all(runs | {"parts"} == set(book) for book in recorded["books"].values())
 
 
-@pytest.mark.parametrize(("name", "first"), [("yaw-mark", 0), ("collinear-head-on", 1)])
+@cases(("name", "first"), [("yaw-mark", 0), ("collinear-head-on", 1)])
 def test_a_book_gives_what_was_recorded(recorded, name, first):
     """Of the two books each has every other run, so that both engines and all sampling methods are seen.
 
@@ -37,7 +38,7 @@ def _changed(book, change):
     return other
 
 
-@pytest.mark.parametrize(
+@cases(
     ("change", "to_the_bit", "about"),
     [
         (lambda book: book["numpy mc"].update(accepted=1), ["numpy mc: accepted"], ["numpy mc: accepted"]),

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from cases import cases
 from scipy import stats
 
@@ -11,7 +10,7 @@ BETA = FAMILIES["Beta"]
 U = np.array([0.0, 1e-6, 0.3, 0.5, 0.99, 1 - 2.0**-53])
 
 
-@pytest.mark.parametrize(
+@cases(
     "params",
     [
         (0.0, 1.0, 2.0, 3.0),

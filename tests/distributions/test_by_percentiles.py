@@ -46,7 +46,7 @@ def test_out_may_be_u():
     np.testing.assert_array_equal(u, expected)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("family", "params", "key", "message"),
     [
         (REACTION, (2.0, 0.8), "p10", "P10 (2) is not below P90 (0.8)"),

@@ -44,7 +44,7 @@ CASES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", CASES)
+@cases("name", CASES)
 def test_moments_and_draws(name):
     """Mean and variance as in the formulas, and those of the draws within 4 standard errors."""
     family, params, mean, variance = CASES[name]

@@ -127,7 +127,7 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("rows", "options", "message", "places"), BAD.values(), ids=BAD)
+@cases(("rows", "options", "message", "places"), BAD.values(), ids=list(BAD))
 def test_bad_data(rows, options, message, places):
     with pytest.raises(DataError) as caught:
         custom_pieces(rows, **options)

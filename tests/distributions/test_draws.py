@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.distributions import FAMILIES, ByPercentiles
@@ -48,14 +48,14 @@ def p_value(draws, edges):
     return stats.chisquare(counts).pvalue
 
 
-@pytest.mark.parametrize("name", CASES)
+@cases("name", CASES)
 def test_draws_fit(name):
     """Chi-square over 500 bins of equal probability; a right family fails one seed in a thousand."""
     family, parameters, oracle = CASES[name]
     assert p_value(drawn(family, parameters), oracle.ppf(np.arange(1, BINS) / BINS)) > 1e-3
 
 
-@pytest.mark.parametrize("name", ["Gamma", "Student's t", "Lognormal", "Weibull"])
+@cases("name", ["Gamma", "Student's t", "Lognormal", "Weibull"])
 def test_draws_of_an_upper_tail_fit(name):
     """Beyond the quantile of 1 - 1e-9: of a thousand million draws without cutoff, one."""
     family, parameters, oracle = CASES[name]

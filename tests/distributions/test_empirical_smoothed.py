@@ -76,7 +76,7 @@ def test_silvermans_rule(data):
     assert silverman(data) == pytest.approx(expected, rel=1e-14)
 
 
-@pytest.mark.parametrize("data", [[4.0], [4.0, 4.0]])
+@cases("data", [[4.0], [4.0, 4.0]])
 def test_values_that_do_not_vary_have_no_bandwidth(data):
     assert silverman(data) == 0
 

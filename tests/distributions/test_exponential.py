@@ -23,7 +23,7 @@ def test_it_has_no_memory(quantiles_agree):
     assert EXPONENTIAL.sf(300.0, 2.0) == pytest.approx(2.6503965530043108e-261, rel=1e-12)
 
 
-@pytest.mark.parametrize(("rate", "shown"), [(0, "0"), (-2, "-2")])
+@cases(("rate", "shown"), [(0, "0"), (-2, "-2")])
 def test_rate_must_be_positive(rate, shown):
     fault = EXPONENTIAL.fault(rate)
     assert (fault.key, fault.message) == ("rate", f"Rate ({shown}) must be above 0")

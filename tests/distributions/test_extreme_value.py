@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from cases import cases
 from scipy import stats
 
@@ -33,7 +32,7 @@ def test_far_values_raise_no_flag(clean):
     np.testing.assert_array_equal(MAXIMUM.sf(np.array([-1e300, 1e300]), 0, 1e-100), [1, 0])
 
 
-@pytest.mark.parametrize("scale", [0, -1])
+@cases("scale", [0, -1])
 def test_scale_must_be_positive(scale):
     fault = MAXIMUM.fault(0, scale)
     assert (fault.key, fault.message) == ("scale", f"Scale ({scale}) must be above 0")

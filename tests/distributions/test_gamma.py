@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from cases import cases
 from scipy import stats
 
@@ -10,7 +9,7 @@ from xlmc.distributions import FAMILIES, Truncated
 GAMMA = FAMILIES["Gamma"]
 
 
-@pytest.mark.parametrize(
+@cases(
     "params",
     [(0.0, 1.0, 1.0), (1.0, 2.0, 3.0), (-5.0, 0.1, 2.5), (0.0, 1.0, 0.5), (10.0, 1e-3, 200.0), (0.0, 7.0, 1e6)],
 )
@@ -22,7 +21,7 @@ def test_against_scipy(params, quantiles_agree, moments_agree, draws_fit):
     draws_fit(GAMMA, params, oracle)
 
 
-@pytest.mark.parametrize("shape", [0.01, 0.1])
+@cases("shape", [0.01, 0.1])
 def test_shapes_that_crowd_at_the_location(shape):
     """All but the largest draws lie next to the location, so quantiles are compared as ratios."""
     u = np.array([0.25, 0.5, 0.75, 0.99, 1 - 1e-6])
@@ -30,7 +29,7 @@ def test_shapes_that_crowd_at_the_location(shape):
     assert GAMMA.ppf(1e-300, 2.0, 3.0, shape) == 2.0
 
 
-@pytest.mark.parametrize("count", [2, 5])
+@cases("count", [2, 5])
 def test_a_whole_shape_sums_exponential_waits(count):
     """Erlang's formula: P(X > x) = e^-x · Σ x^k / k!."""
     x = np.array([0.1, 2.0, 30.0, 200.0])

@@ -4,7 +4,6 @@ import math
 from fractions import Fraction
 
 import numpy as np
-import pytest
 from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
@@ -15,16 +14,14 @@ from xlmc.distributions.hypergeometric import Hypergeometric
 HYPERGEOMETRIC = Hypergeometric()
 
 
-@pytest.mark.parametrize(
-    "params", [(20, 10, 50), (30, 40, 50), (3, 5, 5000), (400, 300, 1000), (49_999, 50_000, 99_999)]
-)
+@cases("params", [(20, 10, 50), (30, 40, 50), (3, 5, 5000), (400, 300, 1000), (49_999, 50_000, 99_999)])
 def test_against_scipy(params, counts_agree):
     success, trials, population = params
     # SciPy adds up exponentials of logarithms, which costs it digits; the exact sums below are the sharper test.
     counts_agree(HYPERGEOMETRIC, params, stats.hypergeom(population, success, trials), digits=1e-8)
 
 
-@pytest.mark.parametrize(("success", "trials", "population"), [(20, 10, 50), (30, 40, 50), (200, 150, 400)])
+@cases(("success", "trials", "population"), [(20, 10, 50), (30, 40, 50), (200, 150, 400)])
 def test_against_exact_sums(success, trials, population):
     low, high = max(0, success + trials - population), min(success, trials)
     whole = math.comb(population, trials)

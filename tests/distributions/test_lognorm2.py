@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from cases import cases
 from scipy import stats
 
@@ -31,7 +30,7 @@ def test_values_up_to_the_location_are_impossible(clean):
     np.testing.assert_array_equal(LOGNORM2.sf(np.array([-5.0, 2.0]), 2.0, 1.0, 0.5), 1)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("params", "key", "message"),
     [
         ((0, 1, 0), "sigma", "Sigma (0) must be above 0"),

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from cases import cases
 from scipy import stats
 
@@ -44,7 +43,7 @@ def test_extreme_ratios_raise_no_flag(clean):
     assert LOGNORMAL.cdf(-1.0, 0.0, 1.0, 1.0) == 0
 
 
-@pytest.mark.parametrize(
+@cases(
     ("params", "key", "message"),
     [
         ((2, 2, 1), "mean", "Mean (2) must be above Location (2)"),

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from cases import cases
 from scipy import stats
 
@@ -19,7 +18,7 @@ def test_against_scipy(params, quantiles_agree, moments_agree, draws_fit):
     draws_fit(PARETO, params, oracle)
 
 
-@pytest.mark.parametrize("shape", [1.0, 0.5])
+@cases("shape", [1.0, 0.5])
 def test_heavy_tails(shape):
     """The largest quantiles are some 1e12 interquartile ranges away, so they are compared as ratios."""
     u = np.array([1e-6, 0.5, 0.999, 1 - 1e-6])
@@ -36,7 +35,7 @@ def test_above_a_cutoff_it_is_pareto_again(quantiles_agree):
     quantiles_agree(Truncated(PARETO), (1e9, np.inf, 1.0, 3.0), stats.pareto(3.0, scale=1e9))
 
 
-@pytest.mark.parametrize(
+@cases(
     ("params", "key", "message"),
     [((0, 1), "location", "Location (0) must be above 0"), ((1, 0), "shape", "Shape (0) must be above 0")],
 )

@@ -26,7 +26,7 @@ def test_against_exact_sums():
     np.testing.assert_allclose(POISSON.cdf(np.arange(25.0), 2), at_most, rtol=1e-14)
 
 
-@pytest.mark.parametrize("rate", [1.2e5, 1e6, 1e8])
+@cases("rate", [1.2e5, 1e6, 1e8])
 def test_large_rates_against_sums_of_masses(rate):
     """Masses by Loader's expansion, added up over 14 standard deviations either way; SciPy is no oracle out there."""
     reach = math.floor(14 * math.sqrt(rate))

@@ -45,7 +45,7 @@ HEAVY = [("Cauchy", (10.0, 2.0), stats.cauchy(10, 2)), ("Levy", (1.0, 2.0), stat
 NAMES = [f"{name} {params}" for name, params, _ in (*CASES, *HEAVY)]
 
 
-@pytest.mark.parametrize(("name", "params", "oracle"), [*CASES, *HEAVY], ids=NAMES)
+@cases(("name", "params", "oracle"), [*CASES, *HEAVY], ids=list(NAMES))
 def test_against_scipy(name, params, oracle, quantiles_agree, moments_agree, draws_fit):
     family = FAMILIES[name]
     if name == "Levy":  # its quartiles say little of values up to 1e12: the far ones are compared as ratios

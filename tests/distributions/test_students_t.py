@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from cases import cases
 from scipy import stats
 
@@ -10,9 +9,7 @@ from xlmc.distributions import FAMILIES, Truncated
 STUDENTS_T = FAMILIES["Student's t"]
 
 
-@pytest.mark.parametrize(
-    "params", [(0.0, 1.0, 3.0), (10.0, 2.0, 5.0), (-4.0, 1e-3, 2.5), (0.0, 1.0, 30.0), (0.0, 1.0, 1e6)]
-)
+@cases("params", [(0.0, 1.0, 3.0), (10.0, 2.0, 5.0), (-4.0, 1e-3, 2.5), (0.0, 1.0, 30.0), (0.0, 1.0, 1e6)])
 def test_against_scipy(params, quantiles_agree, moments_agree, draws_fit):
     midpoint, scale, degrees = params
     oracle = stats.t(degrees, midpoint, scale)

@@ -38,7 +38,7 @@ def test_the_variance_of_narrow_shapes(shape, variance):
     assert WEIBULL.variance(0.0, 1.0, shape) == pytest.approx(variance, rel=1e-9)
 
 
-@pytest.mark.parametrize("shape", [0.01, 0.1])
+@cases("shape", [0.01, 0.1])
 def test_blunt_shapes(shape):
     """Quantiles spread over hundreds of orders of magnitude, so they are compared as ratios."""
     u = np.array([0.3, 0.5, 0.9, 0.999])
@@ -57,7 +57,7 @@ def test_far_values_raise_no_flag(clean):
     np.testing.assert_array_equal(WEIBULL.cdf(np.array([-1.0, 0.0, 1e300]), 0, 1e-100, 3), [0, 0, 1])
 
 
-@pytest.mark.parametrize(
+@cases(
     ("params", "key", "message"),
     [((0, 0, 1), "scale", "Scale (0) must be above 0"), ((0, 1, -1), "shape", "Shape (-1) must be above 0")],
 )

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from cases import cases
 from scipy import stats
 
@@ -15,7 +14,7 @@ def test_against_scipy(probability, counts_agree):
     counts_agree(YES_NO, (probability,), stats.bernoulli(probability))
 
 
-@pytest.mark.parametrize("always", [0, 1])
+@cases("always", [0, 1])
 def test_certainty(always, clean):
     np.testing.assert_array_equal(YES_NO.ppf(np.array([0.0, 0.5, 1 - 2.0**-53]), always), always)
     np.testing.assert_array_equal(YES_NO.support(always), [always, always])
@@ -26,7 +25,7 @@ def test_a_rare_event_keeps_its_probability():
     np.testing.assert_array_equal(YES_NO.ppf(u, 2.0**-52), [1, 0])
 
 
-@pytest.mark.parametrize(("probability", "shown"), [(-0.25, "-0.25"), (25, "25")])
+@cases(("probability", "shown"), [(-0.25, "-0.25"), (25, "25")])
 def test_bad_probabilities(probability, shown):
     fault = YES_NO.fault(probability)
     assert (fault.key, fault.message) == ("probability", f"Probability ({shown}) must be from 0 to 1")

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
@@ -23,7 +24,7 @@ def test_it_is_scipys_also_with_ties(values):
         assert found == pytest.approx(stats.spearmanr(x, y).statistic, abs=1e-12)
 
 
-@pytest.mark.parametrize("rho", [0.0, 0.5, -0.8])
+@cases("rho", [0.0, 0.5, -0.8])
 def test_the_error_is_the_spread_from_run_to_run(rho):
     """1,000 runs know a spread to 2.2 %: four of those, and 3 % for the formula. Coverage: 95 % ± 4 binomial errors."""
     rng = np.random.default_rng(3)
@@ -48,7 +49,7 @@ def test_replicates():
     assert found.interval == pytest.approx((found.value - half, found.value + half))
 
 
-@pytest.mark.parametrize("ids", [[0] * 30, [0] * 25 + [1] * 5])
+@cases("ids", [[0] * 30, [0] * 25 + [1] * 5])
 def test_too_few_replicates_or_trials_in_them_give_no_error(ids):
     x = np.arange(30.0)
     assert rank_correlation(x, np.sin(x), ids).error is None

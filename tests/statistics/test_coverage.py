@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 
 import xlmc.statistics as xs
@@ -22,9 +23,7 @@ def covers(estimate, truth):
     return estimate.interval[0] <= truth <= estimate.interval[1]
 
 
-@pytest.mark.parametrize(
-    ("name", "n"), [("normal", 200), ("exponential", 200), ("lognormal", 200), ("exponential", 1000)]
-)
+@cases(("name", "n"), [("normal", 200), ("exponential", 200), ("lognormal", 200), ("exponential", 1000)])
 def test_independent_trials(name, n):
     """Slack: skewed distributions cost the mean 1 % at n = 200 and the standard deviation 4 % (Student's t assumes
     neither); the ranks of the percentiles are exact up to interpolation, 0.5 %."""

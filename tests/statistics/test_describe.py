@@ -112,7 +112,7 @@ def test_odd_samples_raise_no_warning_and_give_no_nonsense(columns):
         assert each.interval is None or each.interval[0] <= each.value * (1 + 1e-9)
 
 
-@pytest.mark.parametrize("bad", [np.nan, np.inf])
+@cases("bad", [np.nan, np.inf])
 def test_values_that_are_no_numbers_are_refused(bad):
     with pytest.raises(ValueError, match="finite"):
         xs.describe([1.0, bad])

@@ -78,7 +78,7 @@ def test_two_errors_are_at_most_one_unit_of_the_last_supported_digit(error):
     assert 20 * error > unit * (1 - 1e-9)
 
 
-@pytest.mark.parametrize("error", [None, 0.0])
+@cases("error", [None, 0.0])
 def test_without_an_error_nothing_limits_the_digits(error):
     assert supported_digits(Estimate(17.0, error)) is None
 

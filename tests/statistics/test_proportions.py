@@ -40,7 +40,7 @@ def test_intervals_are_scipys(method, theirs, confidence, case):
     assert found == pytest.approx((low, high), rel=1e-9, abs=1e-12)
 
 
-@pytest.mark.parametrize("trials", [20, 1000, 200_000])
+@cases("trials", [20, 1000, 200_000])
 def test_shares_of_a_few_in_all_trials_are_covered(trials):
     """The exact coverage, no simulation: for every share from 0.01 hits on, 92.5 % or more; Wilson's own has 84 %."""
     ends = np.array([proportion(hits, trials).interval for hits in range(min(trials, 200) + 1)])
@@ -86,7 +86,7 @@ def test_no_trials_give_nan():
         assert (estimate.error, estimate.interval, estimate.n) == (None, None, 0)
 
 
-@pytest.mark.parametrize(("hits", "trials"), [(-1, 4), (5, 4)])
+@cases(("hits", "trials"), [(-1, 4), (5, 4)])
 def test_impossible_counts_are_refused(hits, trials):
     with pytest.raises(ValueError, match="successes"):
         proportion(hits, trials)
@@ -121,7 +121,7 @@ def test_the_weighted_error_is_that_of_a_weighted_mean():
     assert estimate.interval == pytest.approx(indicator.interval, abs=0.003)  # symmetric there, Wilson's here
 
 
-@pytest.mark.parametrize("method", ["wilson", "clopper-pearson"])
+@cases("method", ["wilson", "clopper-pearson"])
 def test_equal_weights_are_nearly_no_weights(method):
     """The error divides by n − 1 and the interval takes Student's t: at 400 trials below 1 %."""
     x = np.random.default_rng(2).normal(size=400)
@@ -163,7 +163,7 @@ def test_replicates_that_all_agree_still_leave_an_error():
     assert estimate.interval[0] < 0.24 < estimate.interval[1]
 
 
-@pytest.mark.parametrize("hits", [0, 100])
+@cases("hits", [0, 100])
 def test_replicates_without_success_or_failure_have_the_interval_of_independent_trials(hits):
     pooled, plain = replicated_proportion([hits] * 3, [100] * 3), proportion(3 * hits, 300)
     assert (pooled.error, pooled.interval) == (plain.error, plain.interval)
@@ -182,7 +182,7 @@ def test_one_replicate_gives_a_value_without_an_error():
     assert share([True, False], replicate=[1, 1]).error is None
 
 
-@pytest.mark.parametrize("replicated", [False, True])
+@cases("replicated", [False, True])
 def test_the_share_between_is_the_rest_of_those_below_and_above(replicated):
     x = np.random.default_rng(3).normal(0.0, 1.0, 2000)
     replicate = np.arange(2000) // 125 if replicated else None

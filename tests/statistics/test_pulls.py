@@ -62,7 +62,7 @@ def test_the_skewness_of_pulls_is_that_of_the_influences():
         assert trial_skewness(m, (a, b), 1000) == pytest.approx(stats.skew(a * z + b * z * z) / 1000**0.5, rel=1e-9)
 
 
-@pytest.mark.parametrize("method", ["lhs", "sobol"])
+@cases("method", ["lhs", "sobol"])
 def test_replicates_of_one_skewed_input(method):
     """Student's t of 16 replicates covers 86 to 91 % for the exponential one and 79 to 88 % for a lognormal one."""
     hits = dict.fromkeys(((name, which) for name in FORECASTS for which in ("mean", "deviation")), 0)

@@ -114,14 +114,14 @@ def test_one_replicate_gives_a_value_without_an_error():
     assert (estimate.value, estimate.error, estimate.interval) == (2.0, None, None)
 
 
-@pytest.mark.parametrize("weights", [None, [0.0, 0.0]])
+@cases("weights", [None, [0.0, 0.0]])
 def test_no_trials_give_nan(weights):
     estimate = median([] if weights is None else [1.0, 2.0], weights)
     assert math.isnan(estimate.value)
     assert (estimate.error, estimate.interval, estimate.n) == (None, None, 0)
 
 
-@pytest.mark.parametrize("weights", [None, [2.0]])
+@cases("weights", [None, [2.0]])
 def test_one_trial_is_every_percentile_and_bounds_none(weights):
     assert median([7.0], weights).value == 7.0
     assert (median([7.0], weights).error, median([7.0], weights).interval) == (None, None)
@@ -133,7 +133,7 @@ def test_percents_outside_0_and_100_are_refused(percent):
         percentile([1.0, 2.0], percent)
 
 
-@pytest.mark.parametrize("share", [-0.1, 51])
+@cases("share", [-0.1, 51])
 def test_shares_outside_0_and_1_are_refused(share):
     with pytest.raises(ValueError, match="between 0 and 1"):
         central_interval([1.0, 2.0], share)
@@ -211,7 +211,7 @@ def test_weights_that_grow_towards_a_tail_count_where_they_stand():
     assert curve == pytest.approx([0.5 - 1.96 * error_of_share, 0.5 + 1.96 * error_of_share], abs=0.01)
 
 
-@pytest.mark.parametrize("weighted", [False, True])
+@cases("weighted", [False, True])
 def test_the_replicate_error_is_that_of_the_share_below(weighted):
     """The quantile curve of evenly spread values is their share, whose error and Student's t the quantile has."""
     rng, n = np.random.default_rng(4), 20_000

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 
 import xlmc.statistics as xs
@@ -43,7 +44,7 @@ def truths(filtered):
     return [x.mean(), x.std(), np.median(x), np.mean(x > 2.5)]
 
 
-@pytest.mark.parametrize("filtered", [False, True], ids=["all", "filtered"])
+@cases("filtered", [False, True], ids=["all", "filtered"])
 def test_errors_and_coverage_with_replicates(filtered):
     """300 runs know a spread to 4 %, 20 replicates an error to 16 %, so their mean to 1 %; four of those."""
     found = runs(filtered)

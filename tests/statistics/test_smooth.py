@@ -70,7 +70,7 @@ CLOSED_FORMS = {
 }
 
 
-@pytest.mark.parametrize("name", CLOSED_FORMS)
+@cases("name", CLOSED_FORMS)
 def test_values_and_errors_are_those_of_the_closed_forms(name):
     distribution, expected = CLOSED_FORMS[name]
     sample = xs.Sample.of(grid(distribution))
@@ -95,7 +95,7 @@ def test_agrees_with_scipy():
     assert xs.mean_standard_error(x).value == pytest.approx(stats.sem(x))
 
 
-@pytest.mark.parametrize("n", [100, 1000])
+@cases("n", [100, 1000])
 def test_the_error_of_the_variance_is_the_textbooks(n):
     x = np.random.default_rng(n).exponential(size=n)
     s2, m4 = np.var(x, ddof=1), stats.moment(x, 4)
@@ -234,7 +234,7 @@ def test_one_trial_has_a_mean_and_no_spread():
         assert math.isnan(SMOOTH[name]([4.0]).value)
 
 
-@pytest.mark.parametrize("weights", [None, np.ones(7)])
+@cases("weights", [None, np.ones(7)])
 def test_equal_values_have_no_spread_and_no_shape(weights):
     x = np.full(7, 0.1)
     for name in ("variance", "standard_deviation", "coefficient_of_variation", "mean_standard_error"):

@@ -6,7 +6,7 @@ import importlib
 import math
 
 import numpy as np
-import pytest
+from cases import cases
 
 from xlmc.statistics import mode
 
@@ -14,7 +14,7 @@ FAMILIES = ["Yes-No", "Poisson", "Geometric", "Binomial"]
 RUNS = 50
 
 
-@pytest.mark.parametrize(("name", "trials"), [*((name, 10) for name in FAMILIES), ("Poisson", 200), ("Binomial", 200)])
+@cases(("name", "trials"), [*((name, 10) for name in FAMILIES), ("Poisson", 200), ("Binomial", 200)])
 def test_percentiles_of_counts_are_covered(name, trials):
     """Ties make intervals longer, never shorter: 95 % less 4 standard errors, and 2 % for interpolated ranks."""
     from stressing.discrete import measure
@@ -23,7 +23,7 @@ def test_percentiles_of_counts_are_covered(name, trials):
     assert min(found["held"]) / RUNS > 0.95 - 4 * math.sqrt(0.95 * 0.05 / RUNS) - 0.02
 
 
-@pytest.mark.parametrize("name", FAMILIES)
+@cases("name", FAMILIES)
 def test_the_mode_is_the_most_probable_value(name):
     """Of 4,000 trials the runner-up has fewer by 8 standard errors or more; of the Poisson by 2.7, of the Binomial by
     3.0, so that it wins in 0.4 and 0.1 % of runs, and 3 times in 40 in less than 1 in 1,000 of such tests."""

@@ -9,6 +9,7 @@ import zipfile
 import numpy as np
 import pytest
 import xlsxwriter
+from cases import cases
 from click.testing import CliRunner
 
 import xlmc.statistics as xs
@@ -38,7 +39,7 @@ DEFINED_FROM = {
 With 5 trials the median lies outside them all in 1 of 16 runs, so 95 % confidence needs 6."""
 
 
-@pytest.mark.parametrize("n", [0, 1, 2, 3, 4, 5, 6, 10, 16])
+@cases("n", [0, 1, 2, 3, 4, 5, 6, 10, 16])
 def test_what_is_defined(n):
     found = xs.describe(np.random.default_rng(n).normal(5.0, 1.0, n), threshold=5.0)
     assert found.trials == n
@@ -67,7 +68,7 @@ LEAST = {
 """Means hold for normal forecasts exactly, percentiles for all; standard deviations of skewed forecasts do not."""
 
 
-@pytest.mark.parametrize(("n", "place"), [(2, 0), (2, 2), (3, 1), (10, 0), (10, 2)])
+@cases(("n", "place"), [(2, 0), (2, 2), (3, 1), (10, 0), (10, 2)])
 def test_intervals_are_as_honest_as_the_docs_say(n, place):
     from stressing.few import FORECASTS, coverage
 
@@ -113,7 +114,7 @@ def _write(path, below):
             sheet.add_table(row, column, row + len(rows), column + len(headings) - 1, options)
 
 
-@pytest.mark.parametrize("n", [0, 1, 10])
+@cases("n", [0, 1, 10])
 def test_the_command_writes_its_sheets_and_says_that_they_are_few(folder, n):
     target = folder / f"{n}-results.xlsx"
     done = CliRunner().invoke(

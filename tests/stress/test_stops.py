@@ -6,12 +6,13 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 
 RUNS = 200
 NOISE = 4 * math.sqrt(0.95 * 0.05 / RUNS)
 
 
-@pytest.mark.parametrize(("name", "needed", "slack"), [("normal", 2_000, 0.0), ("exponential", 2_000, 0.01),
+@cases(("name", "needed", "slack"), [("normal", 2_000, 0.0), ("exponential", 2_000, 0.01),
                                                        ("lognormal, σ 1", 4_000, 0.04)])  # fmt: skip
 def test_precision(name, needed, slack):
     """95 % less 4 standard errors, and what intervals of skewed means lack without any stop rule. The mean at the stop

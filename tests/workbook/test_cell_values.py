@@ -38,7 +38,7 @@ def test_value(kind, raw, value):
     assert type(found) is type(value)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("raw", "serial", "serial1904"),
     [
         ("2001-03-11", 36961.0, 35499.0),

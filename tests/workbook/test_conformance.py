@@ -146,7 +146,7 @@ def test_formulas_and_values_as_openpyxl_reads_them(path, monkeypatch):
         assert found == {place: value_of(cell, epoch) for place, cell in filled(values).items()}
 
 
-@pytest.mark.parametrize("name", sorted(UNREADABLE_BY_OPENPYXL))
+@cases("name", sorted(UNREADABLE_BY_OPENPYXL))
 def test_books_that_openpyxl_cannot_read_are_read_or_refused_with_a_reason(name):
     if name == DAMAGED:
         with pytest.raises(WorkbookError, match="Bad CRC-32"):

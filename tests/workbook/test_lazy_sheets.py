@@ -3,6 +3,7 @@ from __future__ import annotations
 import pickle
 
 import pytest
+from cases import cases
 
 from xlmc.address import Cell
 from xlmc.errors import WorkbookError
@@ -64,7 +65,7 @@ def test_sheets_that_mention_a_word_are_found_without_parsing(book):
     assert list(sheets.mentioning([b"rand", b"risk"])) == ["Two", "Four"]
 
 
-@pytest.mark.parametrize(("where", "told"), [(None, "book.xlsx"), ("Sheet1!B7", "Sheet1!B7")])
+@cases(("where", "told"), [(None, "book.xlsx"), ("Sheet1!B7", "Sheet1!B7")])
 def test_a_complaint_without_a_place_gets_the_file(where, told):
     with pytest.raises(WorkbookError, match="what is wrong") as caught, naming_file("book.xlsx"):
         raise WorkbookError("what is wrong", where=where, hint="what to do")
@@ -89,7 +90,7 @@ XLDAPR = '<futureMetadata name="XLDAPR">{}</futureMetadata>'.format
 RICH = '<futureMetadata name="XLRICHVALUE"><bk/></futureMetadata>'
 
 
-@pytest.mark.parametrize(
+@cases(
     ("types", "future", "cells", "marks"),
     [
         (["XLDAPR"], XLDAPR(SPILLS), [[(1, 0)]], {"1"}),

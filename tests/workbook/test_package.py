@@ -72,7 +72,7 @@ def test_within_limits():
     assert read_parts(GOOD, JUST_ENOUGH) == PARTS
 
 
-@pytest.mark.parametrize(
+@cases(
     ("limits", "message"),
     [
         (replace(JUST_ENOUGH, entries=3), "holds 4 parts; xlmc reads up to 3"),
@@ -117,7 +117,7 @@ def test_damage_is_told_and_never_a_traceback(changes):
         assert set(read_parts(bytes(data)).values()) <= set(PARTS.values())
 
 
-@pytest.mark.parametrize(
+@cases(
     ("part", "expected"),
     [("", "_rels/.rels"), ("xl/workbook.xml", "xl/_rels/workbook.xml.rels"), ("book.xml", "_rels/book.xml.rels")],
 )

@@ -116,7 +116,7 @@ def test_a_file_of_another_person(tmp_path, monkeypatch):
         read_workbook(tmp_path / "locked.xlsx")
 
 
-@pytest.mark.parametrize("name", ["a\0b.xlsx", "x" * 5000])
+@cases("name", ["a\0b.xlsx", "x" * 5000])
 def test_a_name_no_file_can_have(name):
     with pytest.raises(WorkbookError, match="the file cannot be read"):
         read_workbook(name)

@@ -34,7 +34,7 @@ def test_refused(parse, xml, message):
     assert "repair" in caught.value.hint
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "latin-1"])
+@cases("encoding", ["utf-8", "utf-8-sig", "utf-16", "latin-1"])
 def test_encodings(encoding):
     declared = f'<?xml version="1.0" encoding="{encoding.removesuffix("-sig")}"?><x>5 °</x>'
     assert tree(declared.encode(encoding), "p").text == "5 °"
@@ -59,14 +59,12 @@ def test_attribute_finds_the_one_with_a_namespace():
     assert attribute(element, "missing") is None
 
 
-@pytest.mark.parametrize(
-    ("text", "truth"), [("1", True), ("true", True), ("0", False), ("false", False), (None, False)]
-)
+@cases(("text", "truth"), [("1", True), ("true", True), ("0", False), ("false", False), (None, False)])
 def test_is_true(text, truth):
     assert is_true(text) is truth
 
 
-@pytest.mark.parametrize(
+@cases(
     ("text", "number"),
     [("0", 0), ("017", 17), ("999999999", 999_999_999), (None, None), ("", None), ("-1", None), ("9" * 5000, None)],
 )

@@ -45,12 +45,12 @@ def test_values(cell, value):
     assert type(found[7, 2].value) is type(value)
 
 
-@pytest.mark.parametrize("cell", ['<c r="B7" s="3"/>', '<c r="B7" t="s"/>', '<c r="B7"><f></f></c>'])
+@cases("cell", ['<c r="B7" s="3"/>', '<c r="B7" t="s"/>', '<c r="B7"><f></f></c>'])
 def test_blank_cells_are_left_out(cell):
     assert cells(f'<row r="7">{cell}</row>') == {}
 
 
-@pytest.mark.parametrize(
+@cases(
     ("rows", "places"),
     [
         ("<row><c><v>1</v></c><c><v>2</v></c></row><row><c><v>3</v></c></row>", [(1, 1), (1, 2), (2, 1)]),
@@ -74,7 +74,7 @@ FORMULAS = {
 }
 
 
-@pytest.mark.parametrize(("formula", "text"), FORMULAS.items())
+@cases(("formula", "text"), FORMULAS.items())
 def test_plain_formulas(formula, text):
     found = cells(f'<row r="2"><c r="C2">{formula}<v>3</v></c></row>')
     assert found == {(2, 3): CellContent(3.0, Formula(text, 2, 3))}
@@ -106,7 +106,7 @@ def test_shared_formulas_keep_apart_and_a_new_master_takes_over():
     assert texts == {(1, 1): "X1", (1, 2): "Y1", (2, 1): "X1", (2, 2): "Y1", (3, 1): "Z3", (4, 1): "Z3"}
 
 
-@pytest.mark.parametrize(("mark", "dynamic"), [("", False), ('cm="1"', True), ('cm="2"', False)])
+@cases(("mark", "dynamic"), [("", False), ('cm="1"', True), ('cm="2"', False)])
 def test_array_formulas(mark, dynamic):
     found = cells(
         f'<row r="1"><c r="A1" {mark}><f t="array" ref="A1:A2">B1:B2*2</f><v>2</v></c></row>'
@@ -173,7 +173,7 @@ def test_elements_of_other_namespaces_are_not_cells():
     assert parsed(SHEET + other).cells == EXPECTED
 
 
-@pytest.mark.parametrize(
+@cases(
     ("cell", "message"),
     [
         ('<c r="B7"><v>fast</v></c>', "the cell holds 'fast' where a number should be"),

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.address import Area
 from xlmc.errors import WorkbookError
@@ -160,7 +161,7 @@ def table(attributes, *columns):
     return f"<table {MAIN_OF_TABLES} id='1' {attributes}><tableColumns>{listed}</tableColumns></table>".encode()
 
 
-@pytest.mark.parametrize(
+@cases(
     ("attributes", "rows"),
     [("", (1, 0)), ('headerRowCount="0"', (0, 0)), ('totalsRowCount="1"', (1, 1)), ('totalsRowShown="0"', (1, 0))],
 )
@@ -170,7 +171,7 @@ def test_a_table(attributes, rows):
     assert read_table(xml, "xl/tables/table1.xml", "Inputs") == expected
 
 
-@pytest.mark.parametrize(
+@cases(
     ("attributes", "message"),
     [
         ('ref="A1:C3"', "table 'T' of sheet 'S' does not fit its range A1:C3"),
@@ -207,14 +208,12 @@ def test_a_missing_table_is_told(rels):
         list(tables_of(parts, PART, "S"))
 
 
-@pytest.mark.parametrize(
-    ("reference", "corners"), [("A1:B2", (1, 1, 2, 2)), ("B2:A1", (1, 1, 2, 2)), ("C3", (3, 3, 3, 3))]
-)
+@cases(("reference", "corners"), [("A1:B2", (1, 1, 2, 2)), ("B2:A1", (1, 1, 2, 2)), ("C3", (3, 3, 3, 3))])
 def test_area_of(reference, corners):
     assert area_of(reference, "S", "a thing") == Area("S", *corners)
 
 
-@pytest.mark.parametrize("reference", [None, "", "A:B", "A0", "#REF!"])
+@cases("reference", [None, "", "A:B", "A0", "#REF!"])
 def test_complaint(reference):
     with pytest.raises(WorkbookError, match="a thing of sheet 'S' has no valid range"):
         area_of(reference, "S", "a thing")

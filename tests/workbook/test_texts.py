@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import re
 
-import pytest
 from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
@@ -41,7 +40,7 @@ def test_decode_undoes_what_excel_writes(text):
     assert decode(encode(text)) == text
 
 
-@pytest.mark.parametrize(("keep", "read"), [(True, " \n5 m "), (False, "5 m")])
+@cases(("keep", "read"), [(True, " \n5 m "), (False, "5 m")])
 def test_white_space_at_the_ends(keep, read):
     assert run_text(" \n5 m ", keep) == read
 

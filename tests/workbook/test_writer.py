@@ -9,6 +9,7 @@ import zipfile
 from pathlib import Path, PureWindowsPath
 
 import pytest
+from cases import cases
 
 from xlmc.errors import WorkbookError
 from xlmc.workbook import writer
@@ -239,7 +240,7 @@ def test_a_disk_without_second_names_is_written_to(tmp_path, monkeypatch):
 LONG = "\\".join(["folder of a case"] * 16)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("path", "expected"),
     [
         (r"C:\cases\case.xlsx", r"C:\cases\case.xlsx"),
@@ -260,7 +261,7 @@ def test_a_folder_so_long_that_the_temporary_file_would_not_fit_is_extended_too(
     assert extended(rf"{folder}\a.xlsx").startswith("\\\\?\\C:\\")
 
 
-@pytest.mark.parametrize("path", [rf"\\server\share\{LONG}\case.xlsx", r"\\server\share\case.xlsx"])
+@cases("path", [rf"\\server\share\{LONG}\case.xlsx", r"\\server\share\case.xlsx"])
 def test_names_beside_a_path_on_a_server_stay_on_it(path):
     beside = PureWindowsPath(extended(path)).with_name("case-2.xlsx")
     assert str(beside) == extended(path).replace("case.xlsx", "case-2.xlsx")

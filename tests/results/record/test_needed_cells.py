@@ -223,7 +223,7 @@ def test_settings_are_read_back_exactly(model, monkeypatch):
         assert recorded_settings(Record((settings_section(run),))) == run.settings
 
 
-@pytest.mark.parametrize(("made", "said"), [("0.2.0", "xlmc 0.2.0 computed"), (None, "An older xlmc computed")])
+@cases(("made", "said"), [("0.2.0", "xlmc 0.2.0 computed"), (None, "An older xlmc computed")])
 def test_settings_of_a_run_in_float32_are_refused(run, made, said):
     section = settings_section(run)
     older = replace(section, entries=(*section.entries, Entry("arithmetic", "Arithmetic", "float32")))

@@ -54,7 +54,7 @@ def test_the_threshold_has_a_sentence_of_its_own(threshold, text):
     assert sentences(GRID, units="mph", threshold=threshold)[1] == text
 
 
-@pytest.mark.parametrize(
+@cases(
     ("asked", "text", "words"),
     [
         ((20.0, 80.5), "P(speed from 20 to 80.5 mph) = 60.5 % ± 0.2 %", "from 20 to 80.5 mph"),

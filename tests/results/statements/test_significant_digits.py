@@ -3,7 +3,6 @@ from __future__ import annotations
 import re
 
 import numpy as np
-import pytest
 from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
@@ -27,7 +26,7 @@ def test_shares_have_the_digits_of_their_error(number, text):
     assert percent_text(Estimate(*number, n=100)) == text
 
 
-@pytest.mark.parametrize(
+@cases(
     ("hits", "text"),
     [
         (0, "0 of 30,000 trials; at most 0.013 % with 95 % confidence"),

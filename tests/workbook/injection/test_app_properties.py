@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import re
 
-import pytest
+from cases import cases
 
 from xlmc.workbook.injection.app_properties import list_sheets, unlist_sheets
 
@@ -61,7 +61,7 @@ STALE = {
 }
 
 
-@pytest.mark.parametrize("xml", STALE.values(), ids=STALE)
+@cases("xml", STALE.values(), ids=list(STALE))
 def test_a_list_that_was_stale_before_stays(xml):
     assert list_sheets(xml, "app", ["Szene"], ["Results"]) == xml
     assert unlist_sheets(xml, "app", ["Szene", "Results"], ["Results"]) == xml

@@ -3,6 +3,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from cases import cases
 
 from xlmc.errors import WorkbookError
 from xlmc.workbook.injection.book_edit import (
@@ -40,7 +41,7 @@ def taken_out(xml):
     return without_sheets(document, marked_sheets(document.root, "book"))
 
 
-@pytest.mark.parametrize(
+@cases(
     "rest",
     [
         "",
@@ -150,7 +151,7 @@ def test_pointers_get_free_ids_and_go_again():
     assert drop_pointers(done, "rels", ids) == POINTERS
 
 
-@pytest.mark.parametrize("name", ["Results", 'say "hi"', "O'Hara & sons"])
+@cases("name", ["Results", 'say "hi"', "O'Hara & sons"])
 def test_marks_are_found_whatever_the_name(name):
     done = add_sheets(book(), "book", [NewSheet(name, "rId8", None, (mark(name),))])
     assert marked_sheets(parse_spans(done, "book"), "book") == [2]

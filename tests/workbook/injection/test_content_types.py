@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import re
 
-import pytest
+from cases import cases
 
 from xlmc.workbook.injection.content_types import add_types, drop_types, types_of
 
@@ -20,7 +20,7 @@ def added(xml, host=HOST):
     return [tag for tag in re.findall(r"<[^>]*>", xml.decode()) if tag not in host.decode()]
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "kind", "tags"),
     [
         ("xl/sheet2.xml", SHEET, [f'<Override PartName="/xl/sheet2.xml" ContentType="{SHEET}"/>']),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
 from cases import cases
 
 from xlmc.errors import ErrorCode
@@ -41,7 +40,7 @@ def test_a_prefix_is_kept():
     assert "<x:c><x:f>A1</x:f><x:v>3</x:v></x:c>" in xml
 
 
-@pytest.mark.parametrize("before", CASES)
+@cases("before", CASES)
 def test_a_fingerprint_does_not_see_values_beside_such_functions(before):
     marked = f'<c r="Z2"><f>_xll.RiskMean(A1)</f></c>{before}'
     sheet = SHEET.format(marked).encode()

@@ -113,7 +113,7 @@ def _check_reading(once, host):
         assert len(names) == 3 + len(read_structure(host).sheets)
 
 
-@pytest.mark.parametrize("name", sorted(BROKEN))
+@cases("name", sorted(BROKEN))
 def test_a_damaged_workbook_says_so(name):
     with pytest.raises(WorkbookError, match="damaged"):
         read_parts((FOLDER / name).read_bytes())

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import pytest
 from cases import cases
 
 from xlmc.workbook.injection.part_numbers import free_names, free_table_name, quoted, rename_in_formula
@@ -36,7 +35,7 @@ def test_names_change_in_formulas(formula, expected):
     assert rename_in_formula(formula, SHEETS, TABLES) == expected
 
 
-@pytest.mark.parametrize(
+@cases(
     ("wanted", "taken", "found"),
     [
         (["Results", "Trials"], ["Scene"], ["Results", "Trials"]),
@@ -50,9 +49,7 @@ def test_sheet_names_are_free(wanted, taken, found):
     assert list(free_names(wanted, taken).items()) == list(zip(wanted, found, strict=True))
 
 
-@pytest.mark.parametrize(
-    ("taken", "found"), [(set(), "Trials"), ({"trials"}, "Trials_2"), ({"trials", "trials_2"}, "Trials_3")]
-)
+@cases(("taken", "found"), [(set(), "Trials"), ({"trials"}, "Trials_2"), ({"trials", "trials_2"}, "Trials_3")])
 def test_table_names_are_free(taken, found):
     assert free_table_name("Trials", taken) == found
 

@@ -95,7 +95,7 @@ def test_every_kind_of_conditional_style_is_renumbered_and_text_is_not():
     assert with_differential(xml, STYLES) == b'<a headerRowDxfId="3" dataDxfId="4" dxfId="4"/><t> dxfId="0"</t>'
 
 
-@pytest.mark.parametrize("attribute", ["cm", "vm"])
+@cases("attribute", ["cm", "vm"])
 def test_metadata_is_refused(attribute):
     with pytest.raises(ValueError, match="dynamic array"):
         at_home(sheet(f'<c r="A1" s="1" {attribute}="1"><v>1</v></c>'), STRINGS, STYLES)
@@ -109,7 +109,7 @@ def test_shared_items():
     assert shared_items(None) == []
 
 
-@pytest.mark.parametrize(
+@cases(
     ("built", "home"),
     [
         ("<c:f>R!$A$1</c:f>", "<c:f>'R 2'!$A$1</c:f>"),
@@ -130,7 +130,7 @@ def test_names_change_in_formulas_links_and_text_boxes_only(built, home):
     assert rename_in_xml(built.encode(), Renames()) == built.encode()
 
 
-@pytest.mark.parametrize(
+@cases(
     ("wanted", "taken", "found"),
     [
         ("xl/charts/chart1.xml", [], "xl/charts/chart1.xml"),
@@ -144,7 +144,7 @@ def test_part_names_are_free(wanted, taken, found):
     assert free_part_names([wanted], taken) == {wanted: found}
 
 
-@pytest.mark.parametrize(
+@cases(
     ("source", "target", "pointer"),
     [
         ("xl/workbook.xml", "xl/worksheets/sheet1.xml", "worksheets/sheet1.xml"),

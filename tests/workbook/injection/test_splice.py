@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -34,9 +35,7 @@ EDITED = (
 )
 
 
-@pytest.mark.parametrize(
-    "encoding", ["UTF-8", "utf-8", "UTF-16", "utf-16-le", "utf-16-be", "iso-8859-1", "windows-1252"]
-)
+@cases("encoding", ["UTF-8", "utf-8", "UTF-16", "utf-16-le", "utf-16-be", "iso-8859-1", "windows-1252"])
 def test_edits_land_where_they_should_in_every_encoding(encoding):
     xml = TEXT.format(encoding).encode(encoding)
     assert with_every_edit(xml).decode().replace("utf-8", "UTF-8") == EDITED
@@ -78,7 +77,7 @@ def test_canonical_form_does_not_see_layout():
     assert one.canonical() == other.canonical() != different.canonical()
 
 
-@pytest.mark.parametrize(
+@cases(
     ("xml", "message"),
     [
         (b"<a><b></a>", "not well-formed"),

@@ -3,6 +3,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from cases import cases
 
 from xlmc.workbook.injection.splice import parse_spans
 from xlmc.workbook.injection.styles_merge import merge_styles
@@ -77,7 +78,7 @@ HOSTS = {
 }
 
 
-@pytest.mark.parametrize("host", HOSTS.values(), ids=HOSTS)
+@cases("host", HOSTS.values(), ids=list(HOSTS))
 def test_every_built_style_looks_the_same_in_its_new_place(host, built):
     merged, places = merge_styles(host.encode(), "styles", built)
     for old, new in enumerate(places.cells):
@@ -85,14 +86,14 @@ def test_every_built_style_looks_the_same_in_its_new_place(host, built):
     assert all(int(count) == size for count, size in counts(merged).values())
 
 
-@pytest.mark.parametrize("host", HOSTS.values(), ids=HOSTS)
+@cases("host", HOSTS.values(), ids=list(HOSTS))
 def test_lists_stand_in_the_order_of_the_schema(host, built):
     merged, _ = merge_styles(host.encode(), "styles", built)
     names = [child.local for child in parse_spans(merged, "styles").children]
     assert names == sorted(names, key=ORDER.index)
 
 
-@pytest.mark.parametrize("host", HOSTS.values(), ids=HOSTS)
+@cases("host", HOSTS.values(), ids=list(HOSTS))
 def test_a_second_merge_adds_nothing(host, built):
     once, places = merge_styles(host.encode(), "styles", built)
     assert merge_styles(once, "styles", built) == (once, places)

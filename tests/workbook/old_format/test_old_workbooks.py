@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import openpyxl
 import pytest
+from cases import cases
 from click.testing import CliRunner
 from crystal_ball_book import Asked, Drawn, read_parts, save, write_parts
 from needed_programs import missing
@@ -61,7 +62,7 @@ DRAWINGS = {
 }
 
 
-@pytest.mark.parametrize("how", DRAWINGS.values(), ids=DRAWINGS)
+@cases("how", DRAWINGS.values(), ids=list(DRAWINGS))
 def test_hidden_texts_are_read_from_drawings(how):
     chart = record(0x809, struct.pack("<HH12x", 0x600, 0x20)) + drawing([shape("Other", "x")]) + record(0x0A)
     found = read_old_workbook(plain_book({"Empty": b"", "S": drawing(SHAPES, **how) + chart}))

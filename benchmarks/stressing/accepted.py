@@ -62,6 +62,13 @@ def exact_coverage(ends: Floats, trials: int, shares: Floats) -> Floats:
     return np.asarray(np.sum(chances * ((ends[:, 0] <= shares[:, None]) & (shares[:, None] <= ends[:, 1])), axis=1))
 
 
+def _wilson(hits: Floats, trials: int) -> Floats:
+    """95 % intervals of a share, (k, 2), as Wilson (1927) has them."""
+    z = stats.norm.ppf(0.975)
+    half = z * np.sqrt(hits * (trials - hits) / trials + z**2 / 4)
+    return np.asarray(np.stack([hits + z**2 / 2 - half, hits + z**2 / 2 + half], axis=1) / (trials + z**2))
+
+
 def shares(acceptance: float, expected: Floats) -> dict[str, Any]:
     """Exact coverage of the acceptance where so many are expected to be accepted, `(n,)`; xlmc's, and two others'."""
     found: dict[str, list[float]] = {"xlmc": [], "Wilson": [], "Clopper–Pearson": []}
@@ -71,7 +78,7 @@ def shares(acceptance: float, expected: Floats) -> dict[str, Any]:
         counts = range(most + 1)
         ways = {
             "xlmc": [xs.proportion(k, trials).interval for k in counts],
-            "Wilson": [stats.binomtest(k, trials).proportion_ci(method="wilson") for k in counts],
+            "Wilson": _wilson(np.arange(most + 1.0), trials),
             "Clopper–Pearson": [xs.proportion(k, trials, method="clopper-pearson").interval for k in counts],
         }
         for name, ends in ways.items():
@@ -79,14 +86,15 @@ def shares(acceptance: float, expected: Floats) -> dict[str, Any]:
     return {"acceptance": acceptance, "expected": expected.tolist(), "coverage": found}
 
 
-def waited_for(acceptance: float, wanted: int) -> dict[str, float]:
+def waited_for(acceptance: float, wanted: int, points: int = 20_000) -> dict[str, float]:
     """Exact, of `--until-accepted`: how often the interval holds, and the averages of N/n and (N − 1)/(n − 1).
 
-    Summed over the trials that the last acceptance may fall on, but for 1e-9 of the probability in either tail.
+    Summed over the trials that the last acceptance may fall on, in so many groups or some more, but for 1e-9 of the
+    probability in either tail.
     """
     law = stats.nbinom(wanted, acceptance)
     low, high = int(law.ppf(1e-9)), int(law.isf(1e-9))
-    step = max(1, (high - low) // 20_000)
+    step = max(1, (high - low) // points)
     misses = np.arange(low, high + step, step)
     chances = np.diff(law.cdf(np.append(misses, misses[-1] + step) - 1))
     found = [xs.inverse_proportion(wanted, wanted + int(miss) + step // 2) for miss in misses]

@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from stressing.workbook import book_of
-from xlmc.api import Model
+from xlmc.api import Model, Simulation
 from xlmc.statistics import rank_correlation
 
-__all__ = ["MATRICES", "book", "measure"]
+__all__ = ["MATRICES", "book", "compared", "measure"]
 
 Pairs = Mapping[tuple[str, str], float]
 
@@ -44,7 +44,12 @@ def book(pairs: Pairs) -> Model:
 
 def measure(model: Model, pairs: Pairs, trials: int, seed: int, sampling: str = "mc") -> list[dict[str, Any]]:
     """Pair by pair: asked, aimed at (after repair), expected of so many draws, found in them, and its error."""
-    run = model.simulate(trials, seed, sampling=sampling)
+    return compared(model, pairs, model.simulate(trials, seed, sampling=sampling))
+
+
+def compared(model: Model, pairs: Pairs, run: Simulation) -> list[dict[str, Any]]:
+    """The same of a run that was made."""
+    trials = run.accepted
     (group,) = model.groups
     found = []
     for (first, second), asked in pairs.items():

@@ -9,6 +9,7 @@ from scipy import stats
 
 from stressing.workbook import book_of
 from xlmc.api import Model
+from xlmc.statistics import mode
 
 __all__ = ["LAWS", "book", "measure"]
 
@@ -40,5 +41,5 @@ def measure(name: str, trials: int, runs: int, first: int = 0) -> dict[str, Any]
         for place, (percent, true) in enumerate(zip(PERCENTS, truth, strict=True)):
             interval = result.percentile(percent).interval
             held[place] += interval is not None and interval[0] <= true <= interval[1]
-        modes += result.statistics.mode.value == likely
+        modes += mode(result.sample).value == likely
     return {"family": name, "trials": trials, "runs": runs, "percents": PERCENTS, "held": held.tolist(), "modes": modes}

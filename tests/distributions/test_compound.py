@@ -15,7 +15,7 @@ POISSON, EXPONENTIAL, NORMAL = FAMILIES["Poisson"], FAMILIES["Exponential"], FAM
 CLAIMS = Compound(Part("frequency", POISSON), Part("severity", EXPONENTIAL))
 INSURED = Compound(Part("frequency", POISSON), Part("severity", EXPONENTIAL), deductible=True, limit=True)
 DICE = Compound(Part("frequency", DiscreteUniform()), Part("severity", DiscreteUniform()))
-N = 200_000
+N = 50_000
 
 
 def uniforms(seed, n=N):
@@ -58,7 +58,7 @@ def test_moments_and_draws(name):
 
 
 def test_against_an_independent_sampler():
-    """Kolmogorov-Smirnov of 200,000 draws with NumPy's: a right one fails one seed in a thousand."""
+    """Kolmogorov-Smirnov of 50,000 draws with NumPy's: a right one fails one seed in a thousand."""
     rng = np.random.default_rng(11)
     counts = rng.poisson(5.0, N)
     amounts = np.minimum(np.maximum(rng.exponential(1000.0, counts.sum()) - 500, 0), 2000)

@@ -25,7 +25,7 @@ def test_a_share_that_was_waited_for_is_right_on_average(rate, wanted):
     """Exact but for 2e-9 of the probability, whose shares may be large, and for grouping trials: 0.1 % in all."""
     from stressing.accepted import waited_for
 
-    found = waited_for(rate, wanted)
+    found = waited_for(rate, wanted, 4_000)
     assert found["coverage"] == pytest.approx(0.95, abs=0.002)
     assert abs(found["(N-1)/(n-1)"]) < 1e-3
     assert found["N/n"] == pytest.approx(1 / (wanted - 1), rel=0.1)  # the share as it is usually given
@@ -40,12 +40,12 @@ def strict(book):
 
 
 def test_runs_of_a_strict_filter(strict):
-    """200 runs with 2 accepted trials expected: the interval of the acceptance holds 1 in 2,000 in 95 % less 4
+    """100 runs with 2 accepted trials expected: the interval of the acceptance holds 1 in 2,000 in 95 % less 4
     standard errors of them; the average share is right to 4 standard errors."""
-    runs = [strict.simulate(4_000, seed, keep_inputs=0) for seed in range(200)]
+    runs = [strict.simulate(4_000, seed, keep_inputs=0) for seed in range(100)]
     held = sum(run.acceptance.interval[0] <= 5e-4 <= run.acceptance.interval[1] for run in runs)
-    assert held / 200 > 0.95 - 4 * math.sqrt(0.95 * 0.05 / 200)
-    assert np.mean([run.accepted for run in runs]) == pytest.approx(2.0, abs=4 * math.sqrt(2.0 / 200))
+    assert held / 100 > 0.95 - 4 * math.sqrt(0.95 * 0.05 / 100)
+    assert np.mean([run.accepted for run in runs]) == pytest.approx(2.0, abs=4 * math.sqrt(2.0 / 100))
     assert {0, 1, 2, 3} < {run.accepted for run in runs}
 
 
@@ -56,10 +56,10 @@ def test_none_accepted_says_how_many_may_be(strict):
 
 
 def test_waiting_for_accepted_trials(strict):
-    """60 runs until 20 are accepted: the share is right to 4 standard errors, and so is what was accepted."""
-    runs = [strict.simulate(seed=seed, until_accepted=20, keep_inputs=0) for seed in range(60)]
+    """40 runs until 20 are accepted: the share is right to 4 standard errors, and so is what was accepted."""
+    runs = [strict.simulate(seed=seed, until_accepted=20, keep_inputs=0) for seed in range(40)]
     assert {run.accepted for run in runs} == {20}
     shares = np.array([run.acceptance.value for run in runs])
-    assert shares.mean() == pytest.approx(5e-4, abs=4 * shares.std(ddof=1) / math.sqrt(60))
+    assert shares.mean() == pytest.approx(5e-4, abs=4 * shares.std(ddof=1) / math.sqrt(40))
     pooled = np.concatenate([run["x"].values for run in runs])
     assert pooled.mean() == pytest.approx(0.50025, abs=4 * math.sqrt(1 / 12 / pooled.size))

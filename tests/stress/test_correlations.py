@@ -21,15 +21,16 @@ PAIRS = [
 def test_pairs_near_one(asked, sampling):
     """Within 5 standard errors of what so many draws of this correlation have on average; each margin stays its own,
     to a Kolmogorov distance that chance exceeds once in 100,000."""
-    from stressing.dependence import book, measure
+    from stressing.dependence import book, compared
 
     named = {("first", "second"): asked}
     model = book(named)
-    (found,) = measure(model, named, TRIALS, 3, sampling)
+    run = model.simulate(TRIALS, 3, sampling=sampling)
+    (found,) = compared(model, named, run)
     assert model.notices == ()
     assert found["aimed"] == pytest.approx(asked, abs=1e-12)
     assert abs(found["found"] - found["expected"]) < 5 * found["error"]
-    draws = model.simulate(TRIALS, 3, sampling=sampling).inputs
+    draws = run.inputs
     for name, law in (("first", stats.uniform()), ("second", stats.norm(5.0, 2.0))):
         assert stats.kstest(draws[name], law.cdf, method="asymp").statistic < 2.5 / np.sqrt(TRIALS)
 

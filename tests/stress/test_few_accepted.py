@@ -16,7 +16,7 @@ import xlmc.statistics as xs
 from xlmc.api import load
 from xlmc.cli import xlmc as command
 
-RUNS = 250
+RUNS = 150
 NOISE = 4 * math.sqrt(0.95 * 0.05 / RUNS)
 COUNTS = [0, 1, 10]
 

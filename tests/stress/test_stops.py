@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from cases import cases
 
-RUNS = 200
+RUNS = 120
 NOISE = 4 * math.sqrt(0.95 * 0.05 / RUNS)
 
 
@@ -16,7 +16,7 @@ NOISE = 4 * math.sqrt(0.95 * 0.05 / RUNS)
                                                        ("lognormal, σ 1", 4_000, 0.04)])  # fmt: skip
 def test_precision(name, needed, slack):
     """95 % less 4 standard errors, and what intervals of skewed means lack without any stop rule. The mean at the stop
-    is off by less than a quarter of its error: the bias of the rule, which is of the order 1/√n, and chance, 4/√300."""
+    is off by less than a quarter of its error: the bias of the rule, which is of the order 1/√n, and chance, 4/√120."""
     from stressing.stops import FORECASTS, precise_runs
 
     forecast = FORECASTS[name]
@@ -51,7 +51,7 @@ def test_adaptive(short_sequences, scale):
     """With twenty sequences at least, every number is within the tolerance in 95 % of runs less 4 standard errors."""
     from stressing.stops import least_sequences, stable_runs
 
-    runs = 100
+    runs = 60
     found = stable_runs("normal", 2, scale, runs)
     assert found["ended"] == runs
     assert min(found["within"]) / runs > 0.95 - 4 * math.sqrt(0.95 * 0.05 / runs)
@@ -78,22 +78,22 @@ def model(book):
 
 
 def test_whole_runs_until_so_many_are_accepted(model):
-    """100 runs: neither the share nor the mean is moved by more than 4 standard errors."""
-    runs = [model.simulate(seed=seed, until_accepted=50, keep_inputs=0) for seed in range(100)]
+    """60 runs: neither the share nor the mean is moved by more than 4 standard errors."""
+    runs = [model.simulate(seed=seed, until_accepted=50, keep_inputs=0) for seed in range(60)]
     shares = np.array([run.acceptance.value for run in runs])
     means = np.array([run["x"].mean.value for run in runs])
-    assert shares.mean() == pytest.approx(0.1, abs=4 * shares.std(ddof=1) / math.sqrt(100))
-    assert means.mean() == pytest.approx(10.5, abs=4 * means.std(ddof=1) / math.sqrt(100))
+    assert shares.mean() == pytest.approx(0.1, abs=4 * shares.std(ddof=1) / math.sqrt(60))
+    assert means.mean() == pytest.approx(10.5, abs=4 * means.std(ddof=1) / math.sqrt(60))
     held = sum(run.acceptance.interval[0] <= 0.1 <= run.acceptance.interval[1] for run in runs)
-    assert held / 100 > 0.95 - 4 * math.sqrt(0.95 * 0.05 / 100)
+    assert held / 60 > 0.95 - 4 * math.sqrt(0.95 * 0.05 / 60)
 
 
 def test_whole_runs_until_the_mean_is_known(model, monkeypatch):
-    """60 runs in small blocks, which give the rule as many chances to stop by luck as it can have."""
+    """40 runs in small blocks, which give the rule as many chances to stop by luck as it can have."""
     monkeypatch.setattr("xlmc.run.simulate.BLOCK", 2_048)
-    runs = [model.simulate(seed=seed, precision=0.012, precision_of="mean", keep_inputs=0) for seed in range(60)]
+    runs = [model.simulate(seed=seed, precision=0.012, precision_of="mean", keep_inputs=0) for seed in range(40)]
     assert {run.stopped.by for run in runs} == {"precision"}
     held = sum(run["x"].mean.interval[0] <= 10.5 <= run["x"].mean.interval[1] for run in runs)
-    assert held / 60 > 0.95 - 4 * math.sqrt(0.95 * 0.05 / 60)
+    assert held / 40 > 0.95 - 4 * math.sqrt(0.95 * 0.05 / 40)
     off = np.array([(run["x"].mean.value - 10.5) / run["x"].mean.error for run in runs])
-    assert abs(off.mean()) < 4 / math.sqrt(60)
+    assert abs(off.mean()) < 4 / math.sqrt(40)

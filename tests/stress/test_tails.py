@@ -11,7 +11,7 @@ from scipy import stats
 
 from xlmc.statistics import farthest_part
 
-TRIALS, SEEDS = 5_000, 100
+TRIALS, SEEDS = 5_000, 60
 
 
 @pytest.fixture(scope="module")

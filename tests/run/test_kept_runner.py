@@ -35,6 +35,11 @@ ODD = (
 """Errors in quantities and in what they are compared with, texts, and a limit in a cell."""
 
 
+@pytest.fixture(scope="module")
+def case():
+    return load(CASE)
+
+
 def moves(model):
     """Changes one after another, each to the model as it was: ranges, a limit that moves alone, and all back."""
     if any(each.name == FRICTION for each in model.assumptions):
@@ -69,8 +74,8 @@ def run(model, kept, block=BLOCK):
     ("which", "engine"),
     [("case study", "numpy"), ("errors", "numpy"), ("errors", "jit"), ("too large to keep", "jit")],
 )
-def test_a_kept_runner_gives_what_a_new_one_gives(book, engine, which, monkeypatch):
-    model = load(CASE) if which == "case study" else book(*ODD)
+def test_a_kept_runner_gives_what_a_new_one_gives(book, case, engine, which, monkeypatch):
+    model = case if which == "case study" else book(*ODD)
     if which == "too large to keep":
         monkeypatch.setattr(kept_runner, "_MOST_BYTES", 100)
     kept = KeptRunner(model, engine, 5, TRIALS)
@@ -121,11 +126,10 @@ def test_a_kept_runner_does_not_hold_for_other_nodes_or_other_kinds_of_limits(bo
     assert not kept.holds_for(applied(model, [Limits("by a cell", {"at_least": 0.3})]))
 
 
-def test_a_run_in_pieces_gives_what_a_run_gives(book):
-    model = load(CASE)
+def test_a_run_in_pieces_gives_what_a_run_gives(case):
     for sampling, engine in (("lhs", "numpy"), ("sobol", "numpy"), ("mc", "jit")):
-        whole = simulate(model, trials=40_000, sampling=sampling, engine=engine)
-        pieces = simulate(model, trials=40_000, sampling=sampling, engine=engine, pieces=2_048)
+        whole = simulate(case, trials=40_000, sampling=sampling, engine=engine)
+        pieces = simulate(case, trials=40_000, sampling=sampling, engine=engine, pieces=2_048)
         assert pieces.block == whole.block
         assert_same(pieces, whole)
         assert {name: values.tobytes() for name, values in pieces.prior.items()} == {
@@ -133,12 +137,11 @@ def test_a_run_in_pieces_gives_what_a_run_gives(book):
         }
 
 
-def test_another_limit_makes_no_other_native_code(book):
-    model = load(CASE)
-    before = applied(model, [Limits(TANGENT, {"at_most": 0.5678})])
+def test_another_limit_makes_no_other_native_code(case):
+    before = applied(case, [Limits(TANGENT, {"at_most": 0.5678})])
     simulate(before, trials=TRIALS, seed=5, engine="jit")
     misses = machine()._compiled.cache_info().misses
-    moved = applied(model, [Limits(TANGENT, {"at_most": 0.4321})])
+    moved = applied(case, [Limits(TANGENT, {"at_most": 0.4321})])
     found = simulate(moved, trials=TRIALS, seed=5, engine="jit")
     assert machine()._compiled.cache_info().misses == misses
     assert found.accepted == simulate(moved, trials=TRIALS, seed=5).accepted

@@ -12,7 +12,7 @@ from scipy import stats
 import xlmc
 from xlmc.results.statements.in_words import distribution_text
 
-TRIALS = 100_000
+TRIALS = 50_000
 COLUMNS = [
     *("Name", "Value", "Distribution", "Minimum", "Likeliest", "Maximum", "Mean", "Std dev", "Location", "Scale"),
     *("Shape", "Rate", "Alpha", "Beta", "Midpoint", "Degrees of freedom", "Mu", "Sigma", "Bottom", "Top", "Bottom %"),

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-TRIALS, FEWER = 250_000, 100_000
+TRIALS, FEWER = 80_000, 40_000
 LEVEL = 1e-4
 CASES = {
     "Binomial": ({"probability": 0.3, "trials": 20}, stats.binom(20, 0.3)),

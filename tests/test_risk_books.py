@@ -15,7 +15,7 @@ from scipy import integrate, stats
 
 import xlmc
 
-TRIALS = 40_000
+TRIALS = 20_000
 
 
 def pert(low, likeliest, high):

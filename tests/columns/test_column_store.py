@@ -134,7 +134,6 @@ def test_the_folder_goes_with_its_last_use_and_the_numbers_stay():
     folder.append("a", [np.arange(4.0)])
     path, column = folder.path, folder.array("a", REAL)
     del folder
-    gc.collect()
     assert not path.exists()
     assert column.tolist() == [0, 1, 2, 3]
 

@@ -41,8 +41,8 @@ def test_encodings(encoding):
 
 
 def test_deep_nesting_is_no_trouble():
-    root = tree(b"<x>" * 100_000 + b"</x>" * 100_000, "p")
-    assert sum(1 for _ in root.iter()) == 100_000
+    root = tree(b"<x>" * 30_000 + b"</x>" * 30_000, "p")
+    assert sum(1 for _ in root.iter()) == 30_000
 
 
 def test_feed_gives_a_long_text_whole():

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from types import MappingProxyType
 
-import pytest
+from cases import cases
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -51,7 +51,7 @@ def test_no_table_at_all(only_problem):
     only_problem("case.xlsx", "no xlmc tables", "xlmc new", tables=dict(NONE))
 
 
-@pytest.mark.parametrize("kind", ["assumption", "forecast"])
+@cases("kind", ["assumption", "forecast"])
 def test_a_kind_that_is_missing(read, kind):
     found = read(tables={f"xlmc_{kind}s": None, "xlmc_correlations": None})
     assert [(problem.where, problem.message, problem.hint) for problem in found.problems] == [

@@ -70,7 +70,7 @@ def test_names_count_every_tab_also_those_without_cells(with_chart):
     ]
 
 
-@pytest.mark.parametrize(
+@cases(
     ("properties", "date1904"),
     [
         ("", False),
@@ -122,7 +122,7 @@ WORKBOOK = f'<workbook xmlns="{MAIN}" xmlns:r="{OFFICE}"><sheets>{{}}</sheets></
 SHEET = '<sheet name="{}" sheetId="1" r:id="{}"/>'.format
 
 
-@pytest.mark.parametrize(
+@cases(
     ("more", "message"),
     [
         ({"_rels/.rels": "<Relationships/>"}, "the file is a zip, but not an Excel workbook"),

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import openpyxl
 import pytest
+from cases import cases
 from crystal_ball_book import Asked, Decided, Drawn, Tied, block, object_guid, read_parts, save, write_parts
 from openpyxl.worksheet.table import Table
 
@@ -90,7 +91,7 @@ UNREADABLE = {
 }
 
 
-@pytest.mark.parametrize(("skid", "why"), UNREADABLE.values(), ids=UNREADABLE)
+@cases(("skid", "why"), UNREADABLE.values(), ids=list(UNREADABLE))
 def test_what_cannot_be_read_is_no_constant_but_costs_the_forecasts_that_need_it(read, skid, why):
     found = read(skid, OFFSET, TOTAL, Asked(S, "$B$6", "Other"))
     assert [f.name for f in found.forecasts] == ["Other"]
@@ -225,7 +226,7 @@ FILTERS = {
 }
 
 
-@pytest.mark.parametrize(("members", "limits", "only_for", "told"), FILTERS.values(), ids=FILTERS)
+@cases(("members", "limits", "only_for", "told"), FILTERS.values(), ids=list(FILTERS))
 def test_a_filter_is_of_its_forecast_unless_it_says_all(read, members, limits, only_for, told):
     filtered = replace(TOTAL, prefs={"fFilterPrefs": {"fUseFilter": True, **members}})
     found = read(SKID, filtered, Asked(S, "$B$6", "Other"))

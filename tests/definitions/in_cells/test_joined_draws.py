@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import cases
 from openpyxl import Workbook
 from scipy import stats
 
@@ -36,7 +37,7 @@ def model(tmp_path):
     return made
 
 
-@pytest.mark.parametrize(
+@cases(
     ("cells", "message", "tau"),
     [
         ({**TWO, **CLAYTON}, "the copula Clayton of theta 2", 0.5),
@@ -72,7 +73,7 @@ def test_what_is_drawn(model, cells, message, tau):
         run.inputs["S!A3#1"]
 
 
-@pytest.mark.parametrize(
+@cases(
     ("change", "where", "message"),
     [
         ({"L1": "Joe"}, "S!K1", "The range S!K1:L3 does not say which copula it is"),
@@ -132,7 +133,7 @@ def test_partners(model):
         assert abs(found[i, j] - wanted) < 5 / math.sqrt(TRIALS)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("change", "message"),
     [
         ({"A1": "=RiskNormal(0,1)"}, "RiskIndepC('p') stands in 0 draws that vary, and must stand in one"),

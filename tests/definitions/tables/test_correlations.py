@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import pytest
 from cases import cases
 
 from xlmc.definitions.definitions import Correlation
@@ -23,7 +22,7 @@ def test_mistakes(only_problem, changes, where, message, hint):
     only_problem(where, message, hint, changes)
 
 
-@pytest.mark.parametrize("pair", [["Weight", "Friction"], ["FRICTION", " weight "]])
+@cases("pair", [["Weight", "Friction"], ["FRICTION", " weight "]])
 def test_a_pair_may_stand_once_in_either_order(only_problem, blocks, pair):
     only_problem(
         "Answers!A22",

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import math
 
-import pytest
 from cases import cases
 
 from xlmc.address import Area, Cell
@@ -29,7 +28,7 @@ def test_mistakes(only_problem, changes, where, message, hint):
     only_problem(where, message, hint, changes)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("row", "where", "message"),
     [
         (
@@ -88,7 +87,7 @@ def test_a_certainty_of_no_range(only_problem, blocks):
     only_problem("Answers!F2", message, "Exchange", columns, tables={"xlmc_forecasts": "Answers!A1:G2"})
 
 
-@pytest.mark.parametrize("value", [41.5, True])
+@cases("value", [41.5, True])
 def test_a_constant_is_pointed_out(read, value):
     found = read({"Model!B1": value})
     assert found.problems == ()

@@ -79,7 +79,7 @@ def test_a_formula_stays_a_cell(one):
     assert assumption.parameters["p10"] == Cell("Extra", 2, 4)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("distribution", "columns", "where", "message"),
     [
         ("Uniform", {"P10": 1, "P90": 2}, "Extra!A2", "Uniform needs Low"),

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import pytest
 from cases import cases
 
 from xlmc.definitions.definitions import Settings
@@ -136,7 +135,7 @@ def test_when_the_run_ends(read, blocks, rows, trials, expected):
     assert (found.settings.trials, found.settings.stopping) == (trials, expected)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("rows", "message"),
     [
         ([["Precision %", 1], ["Precision", 1]], "Precision and Precision % are both set"),

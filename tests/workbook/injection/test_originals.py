@@ -3,6 +3,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from cases import cases
 
 from xlmc.workbook.inject import inject, original_hash, remove_result_sheets
 
@@ -100,7 +101,7 @@ def test_any_other_calculation_chain_stays(once):
     assert CHAIN in remove_result_sheets(once)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("part", "change"),
     [
         (BOOK, (">0</definedName>", ">1</definedName>")),
@@ -117,7 +118,7 @@ def test_the_fingerprint_shows_a_change_of_the_users_parts(rich, once, part, cha
     assert original_hash(edited(once, part, change)) != original_hash(rich)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("part", "change"),
     [
         (BOOK, ('windowWidth="16095"', 'windowWidth="9000"')),

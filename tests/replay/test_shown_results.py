@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import shutil
 import subprocess
 import zipfile
 
@@ -12,7 +11,8 @@ import numpy as np
 import openpyxl
 import pytest
 import xlsxwriter
-from fewer_sheets import FEW
+from cases import cases
+from fewer_sheets import FEW, SHORT, keep_sheets
 from needed_programs import missing
 
 import xlmc
@@ -20,16 +20,13 @@ from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.replay import replay
 from xlmc.report.sheets.save import save
 from xlmc.workbook.package import read_parts
+from xlmc.workbook.reader import read_workbook
 
 
 def numbers(sheet, after=3):
     """The cells below the title that hold a number and no formula."""
     rows = sheet.iter_rows(min_row=after)
     return (cell for row in rows for cell in row if type(cell.value) is float and cell.column > 1)
-
-
-def first_number(sheet):
-    return next(numbers(sheet))
 
 
 SHEETS = ("Results", "Statistics", "Certainty", "Assumptions", "Trials", "Bins", "Curves")
@@ -56,22 +53,6 @@ def test_an_edited_number_is_named_with_what_the_run_gives(edited, drawn):
     assert not found.identical
 
 
-def test_one_edited_number_is_enough(edited):
-    def change(book):
-        first_number(book["Assumptions"]).value *= 1 + 1e-9
-
-    found = replay(edited(change))
-    assert len(found.shown.differences) == 1
-    assert not found.identical
-
-
-def put(sheet, address, value):
-    def change(book):
-        book[sheet][address] = value
-
-    return change
-
-
 EDITS = {
     "a sentence": ("Results", "A1", "Results of another simulation", "Results of the simulation"),
     "a cell that was added": ("Statistics", "Z99", 5, None),
@@ -80,28 +61,36 @@ EDITS = {
     "a number that was taken out": ("Trials", "B6", None, float),
     "a text in place of a number": ("Trials", "B7", "2", float),
 }
+RECORD = ["sampling.seed", "end.most_trials", "end.reached", "run.repeat", "conventions.mode", "counts.acceptance"]
+
+
+def typed_ranges(book):
+    """The cells From, to, Certainty, ±, Trials of each line for a person's own range."""
+    return [row[2:7] for row in book["Certainty"].iter_rows() if str(row[4].value).startswith("=SUMPRODUCT")]
 
 
 def test_any_other_edit_is_named(edited):
+    """Of shown results, of entries of the record, and of formulas, beside a range that somebody typed or without."""
+    says, gives = {}, {}
+
     def change(book):
-        for sheet, address, value, _ in EDITS.values():
+        for sheet, address, value, was in EDITS.values():
             book[sheet][address] = value
+            says[f"{sheet}!{address}"], gives[f"{sheet}!{address}"] = value, was
+        for cell in (row[2] for row in book["Record"].iter_rows() if row[0].value in RECORD):
+            cell.value = cell.value + 1 if isinstance(cell.value, int | float) else f"{cell.value} or so"
+            says[f"Record!{cell.coordinate}"] = cell.value
+        (_, _, without, *_), (low, _, beside, *_) = typed_ranges(book)
+        low.value = 12
+        for cell, forged in ((without, "=1-0.01"), (beside, "95 %")):
+            says[f"Certainty!{cell.coordinate}"] = cell.value = forged
 
     found = replay(edited(change))
-    gives = {str(each.where): each.gives for each in found.shown.differences}
-    assert len(found.shown.differences) == len(gives)
-    shown = {where: float if isinstance(value, float) else value for where, value in gives.items()}
-    assert shown == {f"{sheet}!{address}": was for sheet, address, _, was in EDITS.values()}
+    assert {str(each.where): each.says for each in found.shown.differences} == says
+    assert len(found.shown.differences) == len(says) == len(EDITS) + len(RECORD) + 2
+    given = {str(each.where): each.gives for each in found.shown.differences if str(each.where) in gives}
+    assert {where: float if isinstance(value, float) else value for where, value in given.items()} == gives
     assert not found.identical
-
-
-def test_an_edited_formula_is_named(edited):
-    def change(book):
-        cell = next(c for row in book["Certainty"].iter_rows() for c in row if str(c.value).startswith("=SUMPRODUCT"))
-        cell.value = "=1-0.01"
-
-    [difference] = replay(edited(change)).shown.differences
-    assert difference.says == "=1-0.01"
 
 
 def test_the_smallest_edit_of_a_file_that_no_program_has_saved(results, tmp_path):
@@ -119,23 +108,27 @@ def test_the_smallest_edit_of_a_file_that_no_program_has_saved(results, tmp_path
     assert replay(path).shown.differences[0].gives == value
 
 
-def test_a_sheet_that_was_deleted_is_named(edited):
-    found = replay(edited(lambda book: book.remove(book["Statistics"])))
-    assert found.shown.missing == ("Statistics",)
-    assert not found.identical
+def test_sheets_are_known_again_by_another_name_and_one_that_was_deleted_is_named(edited):
+    """The values of two certainties beside typed ranges are forged besides."""
 
-
-def test_sheets_are_known_again_by_another_name(edited):
     def change(book):
         for sheet in list(book):
             if sheet.title in ("Results", "Statistics", "Trials", "Bins"):
                 sheet.title = f"Old {sheet.title}"
         book.move_sheet("Old Trials", -5)
+        book.remove(book["Assumptions"])
         book["Old Statistics"]["D8"] = 1e9
+        for value, (low, _, certainty, *_) in zip([0.95, "=0.95"], typed_ranges(book), strict=True):
+            low.value, certainty.value = 12, value
 
     found = replay(edited(change))
-    assert [str(each.where) for each in found.shown.differences] == ["'Old Statistics'!D8"]
+    differences = {(each.where.sheet, each.says) for each in found.shown.differences}
+    assert differences == {("Old Statistics", 1e9), ("Certainty", 0.95), ("Certainty", "=0.95")}
+    assert "'Old Statistics'!D8" in {str(each.where) for each in found.shown.differences}
+    assert len(found.shown.differences) == len(differences)
     assert {"Old Results", "Old Statistics", "Old Trials", "Old Bins"} <= set(found.shown.sheets)
+    assert found.shown.missing == ("Assumptions",)
+    assert not found.identical
 
 
 def test_a_range_that_somebody_typed_is_said_and_no_edit(edited):
@@ -149,29 +142,12 @@ def test_a_range_that_somebody_typed_is_said_and_no_edit(edited):
     assert "holds a range that a person typed" in said
 
 
-def typed_ranges(book):
-    """The cells From, to, Certainty, ±, Trials of each line for a person's own range."""
-    return [row[2:7] for row in book["Certainty"].iter_rows() if str(row[4].value).startswith("=SUMPRODUCT")]
-
-
-@pytest.mark.parametrize("forged", [[0.95, "=0.95"], ["95 %"]])
-def test_a_certainty_that_somebody_typed_beside_a_range_of_their_own_is_named(edited, forged):
-    def change(book):
-        for value, (low, _, certainty, *_) in zip(forged, typed_ranges(book), strict=False):
-            low.value, certainty.value = 12, value
-
-    found = replay(edited(change))
-    assert {each.where.sheet for each in found.shown.differences} == {"Certainty"}
-    assert [each.says for each in found.shown.differences] == forged
-    assert not found.identical
-
-
-def test_what_a_program_counts_in_a_range_of_ones_own_is_recounted(results, tmp_path):
+def test_what_a_program_counts_in_a_range_of_ones_own_is_recounted(results, run, tmp_path):
     """The value that stands with the formula, as Excel saves it, must be the share in that range."""
     book = openpyxl.load_workbook(results)
     low, high, certainty, error, _ = typed_ranges(book)[0]
     where = certainty.coordinate, error.coordinate
-    values = replay(results).repeated.forecasts["area"]
+    values = run.forecasts["area"]
     values = values[~np.isnan(values)][:FEW]  # the rows of the sheet Trials
     share = np.mean((values >= 12) & (values <= high.value))
     shown = {low.coordinate: 12, where[0]: share, where[1]: math.sqrt(share * (1 - share) / values.size)}
@@ -197,23 +173,8 @@ def with_numbers(results, folder, values):
     return path
 
 
-RECORD = ["sampling.seed", "end.most_trials", "end.reached", "run.repeat", "conventions.mode", "counts.acceptance"]
-
-
-def test_an_edited_entry_of_the_record_is_named(edited):
-    def change(book):
-        for cell in (row[2] for row in book["Record"].iter_rows() if row[0].value in RECORD):
-            cell.value = cell.value + 1 if isinstance(cell.value, int | float) else f"{cell.value} or so"
-            where.append(f"Record!{cell.coordinate}")
-
-    where = []
-    found = replay(edited(change))
-    assert len(where) == len(RECORD)
-    assert where == [str(each.where) for each in found.shown.differences]
-    assert not found.identical
-
-
-def test_a_warning_that_was_taken_off_the_record_is_named(tmp_path, edited, small_book):
+def test_a_warning_that_was_taken_off_the_record_is_named(tmp_path, edited, small_book, monkeypatch):
+    keep_sheets(monkeypatch, *SHORT)
     source = tmp_path / "warned.xlsx"
     xlmc.load(small_book).simulate(trials=100, until_accepted=90).save(source)
 
@@ -226,47 +187,40 @@ def test_a_warning_that_was_taken_off_the_record_is_named(tmp_path, edited, smal
     assert not found.identical
 
 
-@pytest.mark.parametrize("key", ["counts.accepted", "file.name", "end.by", "counts", "end"])
-def test_a_record_that_lacks_an_entry_is_refused_by_name(edited, key):
-    def change(book):
-        cell = next(row[0] for row in book["Record"].iter_rows() if row[0].value == key)
-        cell.value = f"{key}x"
-
+@cases("key", ["counts.accepted", "file.name", "end.by", "counts", "end"])
+def test_a_record_that_lacks_an_entry_is_refused_by_name(typed, in_record, key):
+    book = typed({("Record", in_record(key), 1): f"{key}x"})
     with pytest.raises(WorkbookError, match=f"the record lacks '{key}.*It was edited"):
-        replay(edited(change))
+        replay(book)
 
 
-def test_results_beside_a_sheet_of_their_name(small_book, tmp_path):
-    book = openpyxl.load_workbook(small_book)
+def test_results_in_the_workbook_itself_beside_a_sheet_of_their_name(small_book, tmp_path):
+    path, book = tmp_path / "book.xlsx", openpyxl.load_workbook(small_book)
     book.create_sheet("Results")["A1"] = "mine"
-    book.save(tmp_path / "book.xlsx")
-    xlmc.load(tmp_path / "book.xlsx").simulate().save(tmp_path / "r.xlsx")
-    found = replay(tmp_path / "r.xlsx")
+    book.save(path)
+    xlmc.load(path).simulate().save(path, overwrite=True)
+    found = replay(path)
     assert found.to_the_last_bit
     assert "Results (2)" in found.shown.sheets
 
 
-@pytest.mark.parametrize("rows", [0, 3, 20_000])
-def test_any_number_of_trials_on_the_sheet(small_book, tmp_path, rows):
-    save(xlmc.load(small_book).simulate(), tmp_path / "r.xlsx", rows=rows, command="xlmc simulate small.xlsx")
-    assert replay(tmp_path / "r.xlsx").to_the_last_bit
-
-
-def test_a_file_that_was_renamed(results, tmp_path):
-    found = replay(shutil.copy(results, tmp_path / "another name.xlsx"))
+@cases("rows", [0, 20_000])
+def test_any_number_of_trials_on_the_sheet_of_a_file_that_was_renamed(run, tmp_path, rows):
+    path = save(run, tmp_path / f"{rows}.xlsx", rows=rows, command="xlmc simulate small.xlsx")
+    found = replay(path.rename(tmp_path / f"another name {rows}.xlsx"))
     assert found.to_the_last_bit
     assert len(found.shown.sheets) >= 8
 
 
-def test_of_another_model_no_sheet_is_compared(edited):
-    found = replay(edited(put("Inputs", "C2", 1.25)))
+def test_of_another_model_no_sheet_is_compared(typed):
+    found = replay(typed({("Inputs", 2, 3): 1.25}))
     assert found.shown.differences == ()
     assert "the model is no longer the one" in found.shown.left_out[0]
     assert not found.identical
 
 
-def test_sheets_that_another_version_laid_out_otherwise_are_not_held_against_the_file(edited, monkeypatch):
-    path = edited(put("Results", "A1", "Results"))
+def test_sheets_that_another_version_laid_out_otherwise_are_not_held_against_the_file(typed, monkeypatch):
+    path = typed({("Results", 1, 1): "Results"})
     now = xlmc.__version__
     for module in ("repeat", "shown_results", "versions"):
         monkeypatch.setattr(f"xlmc.replay.{module}.__version__", "9.9.9")
@@ -275,8 +229,10 @@ def test_sheets_that_another_version_laid_out_otherwise_are_not_held_against_the
     assert found.shown.left_out == (f"the sheet Results, which xlmc {now} wrote differently from 9.9.9",)
 
 
-def test_numbers_that_differ_from_those_of_another_version_are_named(edited, monkeypatch):
-    path = edited(lambda book: setattr(first_number(book["Results"]), "value", 12.5))
+def test_numbers_that_differ_from_those_of_another_version_are_named(typed, results, monkeypatch):
+    cells = read_workbook(results).sheets["Results"].cells
+    at = next(at for at, cell in sorted(cells.items()) if at[0] > 2 and at[1] > 1 and isinstance(cell.value, float))
+    path = typed({("Results", *at): 12.5})
     for module in ("repeat", "shown_results", "versions"):
         monkeypatch.setattr(f"xlmc.replay.{module}.__version__", "9.9.9")
     found = replay(path)

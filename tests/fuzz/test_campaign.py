@@ -7,6 +7,9 @@ import signal
 
 import pytest
 
+INPUTS = 3
+"""Of both sizes, odd and even."""
+
 
 def kind_of(run):
     from fuzzing.inputs import Input, Kind
@@ -20,7 +23,7 @@ def summary(run, monkeypatch, longest):
 
     monkeypatch.setattr(module, "LONGEST", longest)
     monkeypatch.setattr(module, "_WAITS", 1000.0)
-    return module.campaign("any", kind_of(run), 1, range(5))
+    return module.campaign("any", kind_of(run), 1, range(INPUTS))
 
 
 def once(what):
@@ -54,10 +57,10 @@ def test_what_breaks_a_child_is_a_finding(what, longest, key, monkeypatch):
     from fuzzing.inputs import Reached
 
     found = summary(once(what), monkeypatch, longest)
-    assert found.inputs == 5
+    assert found.inputs == INPUTS
     assert set(found.found) == {key}
-    assert 0 < found.found[key].count < 5
-    assert found.found[key].count + found.reached[Reached.RAN] == 5
+    assert 0 < found.found[key].count < INPUTS
+    assert found.found[key].count + found.reached[Reached.RAN] == INPUTS
 
 
 def test_memory_that_was_given_back_is_counted(monkeypatch):

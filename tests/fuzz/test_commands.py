@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 
 import pytest
+from fewer_sheets import SHORT, keep_sheets
 
 from xlmc.cli import main
 
@@ -49,7 +50,8 @@ def test_what_it_may_do_is_none(monkeypatch, tmp_path):
     assert commanded(monkeypatch, tmp_path / "b.xlsx", ("No problem found.\n", "", 0)) is Reached.RAN
 
 
-def test_the_real_one_runs_a_book_and_refuses_another(tmp_path):
+def test_the_real_one_runs_a_book_and_refuses_another(tmp_path, monkeypatch):
+    keep_sheets(monkeypatch, *SHORT)
     from fuzzing.commands import commanded
     from fuzzing.formulas import book_of
     from fuzzing.inputs import Reached

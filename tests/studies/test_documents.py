@@ -11,7 +11,7 @@ def test_the_python_of_the_page_on_comparing_runs(monkeypatch, capsys):
     assert block is not None
     monkeypatch.chdir(ROOT)
     assert block[1].count("100_000") == 2
-    exec(block[1].replace("100_000", "20_000"), {})
+    exec(block[1].replace("100_000", "10_000"), {})
     printed = capsys.readouterr().out
     assert "is enough for Chevrolet delta-V to 1.5 mph" in printed
     assert "Nissan yaw moment of inertia" in printed

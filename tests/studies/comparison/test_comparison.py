@@ -191,7 +191,7 @@ def test_the_ladder_on_the_case_study(planar, momentum):
     11.80333, 23.06344, 33.16317, 4.74205. `momentum` has the filters V2 > 0 and its own, which reject next to nothing
     more: P(V2 > 0) = .991, and its mean of V2 rises by less than 0.1.
     """
-    found = compare(planar, momentum, ["0.8 mph", "Nissan delta-V=1.5 mph"], trials=120_000)
+    found = compare(planar, momentum, ["0.9 mph", "Nissan delta-V=1.5 mph"], trials=60_000)
     assert found.simpler == 1
     verdicts = {each.first.name: each.judgement.verdict for each in found.forecasts}
     assert verdicts == {

@@ -23,7 +23,7 @@ def small(case_study):
     with pytest.MonkeyPatch.context() as patch:
         module = import_module("xlmc.studies.methods.study")
         patch.setattr(module, "_PATIENCE", 0.5)
-        return study(case_study, reference_trials=1 << 19, trials=1 << 13, replicates=2, seed=5)
+        return study(case_study, reference_trials=1 << 18, trials=1 << 13, replicates=2, seed=5)
 
 
 SECONDS = {"mc": 5e-7, "lhs": 6e-7, "sobol": 7e-7, "grid": 2e-6, "surrogate": 2e-6, "mc/jit": 1e-7, "mc/formulas": 4e-3}

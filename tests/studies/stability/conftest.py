@@ -12,6 +12,15 @@ from xlmc.api import load
 ROOT = Path(__file__).resolve().parents[3]
 
 
+@pytest.fixture(scope="module")
+def few_points():
+    """A quarter of the points are looked at: enough for digits that are lost in most of them."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("xlmc.studies.stability.case._PRIOR", 512)
+        patch.setattr("xlmc.studies.stability.case._ACCEPTED", 256)
+        yield
+
+
 @pytest.fixture(scope="session")
 def as_printed(tmp_path_factory):
     """`as_printed(ranges, formulas)`: the model of `examples/as_printed.py`, changed as asked."""

@@ -10,6 +10,8 @@ from xlmc.studies.stability.case import Case
 
 TRIALS = 10_000
 
+pytestmark = pytest.mark.usefixtures("few_points")
+
 
 @pytest.fixture(scope="module")
 def found(as_printed):

@@ -20,6 +20,9 @@ from xlmc.studies.stability import Level, rounding_errors, stability
 
 ROOT = Path(__file__).resolve().parents[3]
 SPARE = "AD"
+
+pytestmark = pytest.mark.usefixtures("few_points")
+
 DIGITS = {"quadrant", "division", "cancellation", "rounding", "angles"}
 """Kinds of finding that another form of the formula removes."""
 

@@ -7,7 +7,7 @@ import io
 import random
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from xlsxwriter import Workbook
 
@@ -88,6 +88,7 @@ def written(book, write_run, cells, runs, later, heights):
 
 
 @given(CELLS, RUNS, CELLS, HEIGHTS)
+@example([((3, 1), ("write_string", "\x1c1"), False)], [], [], {})  # a text that Python reads as a number
 def test_runs_of_numbers_among_cells_are_what_xlsxwriter_writes_cell_by_cell(cells, runs, later, heights):
     packed = io.BytesIO()
     with Workbook(packed, OPTIONS) as plain:

@@ -50,6 +50,8 @@ CLOCK = "docProps/core.xml"
 SHORT = st.integers(-(10**10), 10**10).map(lambda number: number / 64)
 """Numbers of at most 15 digits, of which XlsxWriter writes all."""
 TEXT = st.text(st.sampled_from("a<&>\"' =#\n\t\x01\u00e9\u0394\U0001f600_x0041_"), max_size=12)
+NUMBERLIKE = [" 1", "\n1", "\x1c1", "\x0b1", "\xa01", "\x851", "١", "1_0", "nan"]
+"""Texts that Python reads as numbers."""
 WRITES = st.one_of(
     st.tuples(st.just("write_number"), SHORT),
     st.tuples(st.just("write_string"), TEXT.filter(bool)),
@@ -88,7 +90,7 @@ def written(book, write_run, cells, runs, later, heights):
 
 
 @given(CELLS, RUNS, CELLS, HEIGHTS)
-@example([((3, 1), ("write_string", "\x1c1"), False)], [], [], {})  # a text that Python reads as a number
+@example([((row, 1), ("write_string", text), False) for row, text in enumerate(NUMBERLIKE, 3)], [], [], {})
 def test_runs_of_numbers_among_cells_are_what_xlsxwriter_writes_cell_by_cell(cells, runs, later, heights):
     packed = io.BytesIO()
     with Workbook(packed, OPTIONS) as plain:

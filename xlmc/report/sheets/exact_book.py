@@ -244,11 +244,9 @@ def _point(index: int, number: Any) -> str:
     """A number, or the text of one, as a point of a chart.
 
     Raises:
-        ValueError: it is another text, or one with characters that are written otherwise.
+        ValueError: it is another text.
     """
     float(number)
-    if not str(number).isprintable():
-        raise ValueError
     return f'<c:pt idx="{index}"><c:v>{number}</c:v></c:pt>'
 
 

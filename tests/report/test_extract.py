@@ -13,12 +13,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import xlmc
-from xlmc.columns import PART
 from xlmc.errors import SimulationError, WorkbookError
 from xlmc.report.extract import safe_heading
 from xlmc.results.record import make_record
 
 parquet = pytest.importorskip("pyarrow.parquet")
+
+PART = 512
+"""Trials that are written at once, so that the files have several parts."""
 
 
 @pytest.fixture(scope="session")
@@ -26,12 +28,11 @@ def model(small_book):
     return xlmc.load(small_book)
 
 
-@pytest.fixture(scope="session")
-def many(model):
-    """More accepted trials than are written at once."""
-    run = model.simulate(120_000)
-    assert run.accepted > PART
-    return run
+@pytest.fixture
+def few_at_once(monkeypatch):
+    """Few trials are written at once."""
+    monkeypatch.setattr("xlmc.report.extract.PART", PART)
+    monkeypatch.setattr("xlmc.report.extract._ROW_GROUP", PART)
 
 
 def read_csv(path):
@@ -43,7 +44,10 @@ def read_parquet(path):
 
 
 @pytest.mark.parametrize(("ending", "read"), [("csv", read_csv), ("parquet", read_parquet)])
-def test_it_reads_back_as_the_frame_to_the_last_bit(many, tmp_path, ending, read):
+@pytest.mark.usefixtures("few_at_once")
+def test_it_reads_back_as_the_frame_to_the_last_bit(model, tmp_path, ending, read):
+    many = model.simulate(2_000)
+    assert many.accepted > 2 * PART
     many.extract(tmp_path / f"trials.{ending}")
     expected = many.frame()
     if ending == "csv":
@@ -126,15 +130,13 @@ def test_columns_on_disk_give_the_same_files(model, tmp_path, monkeypatch):
     assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
 
 
+@pytest.mark.usefixtures("few_at_once")
 @pytest.mark.parametrize("ending", ["csv", "parquet"])
 def test_it_takes_no_more_memory_for_more_trials(model, tmp_path, ending, monkeypatch):
-    part = 1024
     monkeypatch.setattr("xlmc.report.extract.make_record", lambda *_: _Empty())
-    monkeypatch.setattr("xlmc.report.extract.PART", part)
-    monkeypatch.setattr("xlmc.report.extract._ROW_GROUP", part)
     run = model.simulate(50)
     peaks = []
-    for n in (8 * part, 32 * part):
+    for n in (8 * PART, 32 * PART):
         large = replace(
             run,
             trial_index=np.arange(n),
@@ -145,7 +147,7 @@ def test_it_takes_no_more_memory_for_more_trials(model, tmp_path, ending, monkey
         large.extract(tmp_path / f"trials.{ending}", overwrite=True)
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
-    table = 8 * 5 * 24 * part  # bytes of what the second has more
+    table = 8 * 5 * 24 * PART  # bytes of what the second has more
     assert peaks[1] - peaks[0] < 0.05 * table
 
 

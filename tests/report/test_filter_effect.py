@@ -18,7 +18,7 @@ def test_shift_and_narrowing_are_those_of_the_marginals():
 
 
 def test_errors_are_what_other_seeds_would_change():
-    runs = [filter_effect(RANDOM.normal(0.0, 2.0, 900), RANDOM.normal(1.0, 1.0, 300)) for _ in range(400)]
+    runs = [filter_effect(RANDOM.normal(0.0, 2.0, 900), RANDOM.normal(1.0, 1.0, 300)) for _ in range(200)]
     for pick in (lambda run: run.shift, lambda run: run.narrowing):
         spread = np.std([pick(run).value for run in runs], ddof=1)
         stated = np.mean([pick(run).error for run in runs])

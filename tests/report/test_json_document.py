@@ -50,7 +50,6 @@ def runs(run, none_accepted, one_accepted, make, small_book):
         "Latin hypercube": model.simulate(sampling="lhs"),
         "until accepted": model.simulate(until_accepted=50),
         "too few accepted": model.simulate(30, until_accepted=100),
-        "compiled": model.simulate(engine="jit"),
         "some draws": model.simulate(keep_inputs=10),
     }
 

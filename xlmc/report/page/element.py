@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from html import escape
 
 __all__ = ["EMPTY", "Html", "element", "join", "void"]
@@ -39,9 +40,16 @@ def void(name: str, /, **attributes: str | None) -> Html:
 
 def join(children: tuple[Html | str, ...] | list[Html]) -> Html:
     """The children as HTML, one after the other."""
-    return Html("".join(each.source if isinstance(each, Html) else escape(each) for each in children))
+    return Html("".join([each.source if isinstance(each, Html) else escape(each) for each in children]))
 
 
 def _attributes(attributes: dict[str, str | None]) -> str:
-    found = ((key.rstrip("_").replace("_", "-"), value) for key, value in attributes.items() if value is not None)
-    return "".join(f' {key}="{escape(value)}"' for key, value in found)
+    if not attributes:
+        return ""
+    return "".join([f' {_name(key)}="{escape(value)}"' for key, value in attributes.items() if value is not None])
+
+
+@cache
+def _name(key: str) -> str:
+    """An attribute's name, as the page has it."""
+    return key.rstrip("_").replace("_", "-")

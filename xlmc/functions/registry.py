@@ -269,7 +269,8 @@ class Function:
                 known[key] = _coerce(argument, key[1])
             array, found = known[key]
             arrays.append(array)
-            errors = np.where(errors > 0, errors, found).astype(np.uint8, copy=False)
+            if found.size != 1 or found.item():  # one that is none changes nothing
+                errors = np.where(errors > 0, errors, found).astype(np.uint8, copy=False)
         if errors.all():  # else the body would compute, text by text at worst, results that the errors replace
             shape = np.broadcast_shapes(errors.shape, *(array.shape for array in arrays))
             return Value.of_errors(np.broadcast_to(errors, shape))

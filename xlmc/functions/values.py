@@ -5,6 +5,7 @@ Trials are axis 0: a scalar cell is `(n,)`, a range `(n, r, c)`; a constant has 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final
@@ -100,6 +101,10 @@ class Value:
     @classmethod
     def of_numbers(cls, x: Floats, errors: Codes | None = None) -> Value:
         """Make numbers of floats, with errors boxed in them or beside them; 0 where they are too small for Excel."""
+        if errors is None and x.size == 1:  # as nearly every constant
+            number = x.item()
+            if number == 0.0 or TINIEST <= abs(number) < math.inf:
+                return cls(x, np.zeros((1,) * x.ndim, np.uint8))
         x = tiny_to_zero(x)
         codes = unbox_errors(x) if errors is None else np.where(errors > 0, errors, unbox_errors(x))
         return cls._with_errors(x, codes, NUMBER)
@@ -139,6 +144,8 @@ class Value:
     @property
     def errors(self) -> Codes:
         """The error codes, 0 where there is none; they broadcast to the shape."""
+        if self.kinds.size == 1 and self.kinds.item() < ERROR:  # as nearly every constant
+            return np.zeros(self.kinds.shape, np.uint8)
         return np.maximum(self.kinds, np.uint8(ERROR)) - np.uint8(ERROR)
 
     @property

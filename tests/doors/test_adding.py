@@ -114,7 +114,7 @@ import contextlib, io, json, runpy, sys
 from xlmc.cli import main
 from xlmc.report.sheets import book
 
-book.SHEETS = tuple(sheet for sheet in book.SHEETS if sheet.name in ("Results", "Trials", "Largest", "Record"))
+book.SHEETS = tuple(sheet for sheet in book.SHEETS if sheet.name in ("Results", "Largest", "Record"))
 said = []
 for arguments in json.loads(sys.argv[1]):
     sys.argv = arguments

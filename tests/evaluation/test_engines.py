@@ -409,12 +409,21 @@ def test_functions_between_loops_give_the_bits_of_the_careful_path(programs, agr
 
 
 @OURS
+def test_a_value_that_a_function_hands_on_stays_when_its_memory_is_used_again(differences, engine):
+    """HYPERLINK gives its second argument as it is, an array that nothing else reads."""
+    cells = {"B1": "=A1+1", "C1": '=HYPERLINK("x",B1)', "D1": "=C1*2+1", "E1": "=SINH(D1)", "F1": "=E1*3"}
+    draws = {"A1": np.linspace(0.1, 2.0, 20)}
+    agree(differences(engine, cells, draws, ["C1", "D1", "F1"], []), relative=1e-15)
+
+
+@OURS
 def test_draws_that_are_errors(differences, engine):
     cells = {"C1": "=A1+1", "C2": "=IFERROR(A1,7)", "C3": "=IF(A2>1,A1,A2)", "C4": "=A1>0", "D1": "=A2<3"}
     draws = {"A1": [np.nan, 1.0, np.nan, 2.0], "A2": [1.0, 2.0, 2.0, 3.0]}
     found = differences(engine, cells, draws, ["C1", "C2", "C3", "C4", "A1"], ["D1", "C4"], may_err=["A1"])
     agree(found)
     agree(differences(engine, cells, draws, ["C1", "C2", "C3", "C4", "A1"], [], may_err=["A1"]))
+    agree(differences(engine, {}, draws, ["A1"], [], may_err=["A1"]))  # which nothing computes
 
 
 @ENGINE

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from cases import cases
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from xlmc.errors import ErrorCode
@@ -107,6 +107,7 @@ wanted = st.sampled_from([1.0, "a", ">0", "<>a", "*", "", "=", None, True, DIV0]
 
 
 @pytest.mark.parametrize("name", ["SUMIFS", "COUNTIFS", "AVERAGEIFS", "MAXIFS", "SUMIF"])
+@settings(max_examples=60)
 @given(data=st.data())
 def test_trials_together_are_the_trials_alone(name, data):
     def drawn(strategy, *shape):

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from cases import cases
@@ -97,21 +99,24 @@ def test_table(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-15)
 
 
+@cache
 def numerals(form):
     """Those of 1 to 3999, in one call of the function."""
     return function_named("ROMAN")([Value.of_numbers(EVERY), constant(form)]).objects()
 
 
-@pytest.mark.parametrize("form", [0, 1, 4])
+@pytest.mark.parametrize("form", [1, 4])
 def test_every_numeral_reads_as_its_number(form):
     found = numerals(form)
     assert function_named("ARABIC")([from_objects(found)]).objects().tolist() == EVERY.tolist()
     assert max(map(len, found)) < 16
-    assert form == 0 or all(len(new) <= len(old) for new, old in zip(found, numerals(form - 1), strict=True))
+    assert all(len(new) <= len(old) for new, old in zip(found, numerals(form - 1), strict=True))
 
 
-def test_the_classic_form_repeats_no_letter_four_times():
-    for numeral in numerals(0):
+def test_the_classic_form_reads_as_its_number_and_repeats_no_letter_four_times():
+    found = numerals(0)
+    assert function_named("ARABIC")([from_objects(found)]).objects().tolist() == EVERY.tolist()
+    for numeral in found:
         assert not any(letter * 4 in numeral for letter in "IXCM")
         assert not any(letter * 2 in numeral for letter in "VLD")
 

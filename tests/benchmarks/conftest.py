@@ -45,8 +45,8 @@ def answer_here(script, given):
 def at_hand():
     """`compare.main` builds no C, which no contestant of these tests needs, and looks a moment only at what else runs.
 
-    Its pictures are not laid out. The script of a contestant measures once in a process of its own, then in this one,
-    as the others do; that of the scaling starts itself as its other process.
+    Its pictures are not laid out. The scripts measure in this process; that of the scaling starts itself as its other
+    process.
     """
     import growth
     import hand_c
@@ -56,20 +56,11 @@ def at_hand():
 
     from xlmc.run.scheduling.processes import idle_pool
 
-    apart = ["one_contestant.py"]
-    in_a_process = processes.answer_of
-
-    def answer_of(python, script, given, limit):
-        if script not in apart:
-            return answer_here(script, given)
-        apart.remove(script)
-        return in_a_process(python, script, given, limit)
-
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(hand_c, "build", lambda folder: folder / "hand.so")
         leave_out_layout(patch)
         patch.setattr(machine, "sleep", lambda _: sleep(0.05))
         for module in (processes, scaling, growth):
-            patch.setattr(module, "answer_of", answer_of)
+            patch.setattr(module, "answer_of", lambda python, script, given, limit: answer_here(script, given))
         yield
         idle_pool.end()

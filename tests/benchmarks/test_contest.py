@@ -1,6 +1,10 @@
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+
 import contest
+import processes
 import pytest
 import rates
 from cases import cases
@@ -70,3 +74,32 @@ def test_only_real_numbers_are_answers(value):
 
 def test_numbers_are_answers():
     assert (_real(3), _real(2.5)) == (3.0, 2.5)
+
+
+SCRIPT = """
+import json, os, sys
+given = json.loads(sys.stdin.readline())
+if given["task"] == "fail":
+    sys.exit("there is no such book")
+print("some words")
+print(json.dumps({"given": given, "threads": os.environ["OMP_NUM_THREADS"], "paths": sys.path}))
+"""
+
+
+def test_a_script_answers_in_a_process_of_its_own(tmp_path, monkeypatch):
+    folder = tmp_path / "scripts"
+    folder.mkdir()
+    (folder / "say.py").write_text(SCRIPT, encoding="utf-8")
+    monkeypatch.setattr(processes, "HERE", folder)
+    answer = processes.answer_of(Path(sys.executable), "say.py", {"task": "skid"}, 60)
+    assert answer["given"] == {"task": "skid"}
+    assert answer["threads"] == "1"
+    assert str(tmp_path) in answer["paths"]
+    assert processes.answer_of(Path(sys.executable), "say.py", {"task": "fail"}, 60) == "failed: there is no such book"
+    assert processes.answer_of(Path(sys.executable), "say.py", {"task": "skid"}, 1e-3) == "no answer within 0 s"
+
+
+@cases("script", ["one_contestant.py", "one_growth.py", "one_scaling.py"])
+def test_a_script_that_is_started_does_its_work(script):
+    source = Path(rates.__file__).with_name(script).read_text(encoding="utf-8")
+    assert source.endswith('if __name__ == "__main__":\n    main()\n')

@@ -23,7 +23,7 @@ def covers(estimate, truth):
     return estimate.interval[0] <= truth <= estimate.interval[1]
 
 
-@cases(("name", "n"), [("normal", 200), ("exponential", 200), ("lognormal", 200), ("exponential", 1000)])
+@cases(("name", "n"), [("normal", 200), ("exponential", 200), ("lognormal", 200)])
 def test_independent_trials(name, n):
     """Slack: skewed distributions cost the mean 1 % at n = 200 and the standard deviation 4 % (Student's t assumes
     neither); the ranks of the percentiles are exact up to interpolation, 0.5 %."""

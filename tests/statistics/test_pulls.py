@@ -16,7 +16,7 @@ from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.statistics.estimate import LENGTHENED, t_quantile, t_range
 from xlmc.statistics.pulls import trial_skewness
 
-RUNS = 250
+RUNS = 200
 NOISE = 3 * math.sqrt(0.95 * 0.05 / RUNS)
 
 FORECASTS = {

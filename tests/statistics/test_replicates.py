@@ -11,7 +11,7 @@ from scipy import stats
 
 import xlmc.statistics as xs
 
-RUNS, REPLICATES, STRATA = 300, 20, 50
+RUNS, REPLICATES, STRATA = 200, 20, 50
 NOISE = 4 * math.sqrt(0.95 * 0.05 / RUNS)
 
 
@@ -46,7 +46,7 @@ def truths(filtered):
 
 @cases("filtered", [False, True], ids=["all", "filtered"])
 def test_errors_and_coverage_with_replicates(filtered):
-    """300 runs know a spread to 4 %, 20 replicates an error to 16 %, so their mean to 1 %; four of those."""
+    """200 runs know a spread to 5 %, 20 replicates an error to 16 %, so their mean to 1 %; 3.3 of those."""
     found = runs(filtered)
     for column, truth in enumerate(truths(filtered)):
         estimates = [run[column] for run in found]

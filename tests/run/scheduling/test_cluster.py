@@ -2,13 +2,16 @@ from __future__ import annotations
 
 import builtins
 import gc
+import os
 import signal
 import subprocess
 import sys
+import time
+from threading import Timer
 
 import pytest
 from distributed import Client, LocalCluster
-from psutil import Process
+from psutil import STATUS_ZOMBIE, Process
 
 from xlmc.errors import SimulationError
 from xlmc.run import simulate as module
@@ -55,20 +58,29 @@ def test_processes_change_no_bit(model, bits, cluster):
     assert [standing.trials for standing in seen] == [*range(100, 3001, 100), 3050]
 
 
-def test_ctrl_c_in_a_local_cluster_keeps_what_was_accepted(model, bits):
+def test_ctrl_c_in_a_local_cluster_keeps_what_was_accepted(model, bits, capfd):
     """A terminal tells all processes of Ctrl-C; its workers go on until this process ends them."""
-    before = {*Process().children(recursive=True)}
+    before, told, alive = {*Process().children(recursive=True)}, [], []
 
     def press(standing):
         if standing.trials == 300:
-            for worker in {*Process().children(recursive=True)} - before:
+            told.extend({*Process().children(recursive=True)} - before)
+            for worker in told:
                 worker.send_signal(signal.SIGINT)
+        if standing.trials == 3_000:
+            time.sleep(0.1)  # for one that ends
+            alive.extend(worker for worker in told if worker.is_running() and worker.status() != STATUS_ZOMBIE)
             signal.raise_signal(signal.SIGINT)
 
+    watch = Timer(60, os.kill, (os.getpid(), signal.SIGINT))  # for a run that has lost its workers
+    watch.start()
     run = model.simulate(10**9, scheduler="local", workers=1, keep_interrupted=True, progress=press)
+    watch.cancel()
     assert run.stopped.by == "interruption"
-    assert run.trials >= 300
+    assert run.trials >= 3_000
     assert bits(run) == bits(model.simulate(run.trials))
+    assert alive == told != []
+    assert "Traceback" not in capfd.readouterr().err
 
 
 def test_a_worker_that_is_killed_costs_only_time(model, bits, cluster):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.errors import DefinitionError, FormulaError, SimulationError, WorkbookError
 from xlmc.workbook.reader import read_workbook
@@ -18,7 +19,7 @@ def verdict(error):
     return None if found is None else found.key
 
 
-@pytest.mark.parametrize(
+@cases(
     "error",
     [
         WorkbookError("the file is empty", where="case.xlsx"),
@@ -31,7 +32,7 @@ def test_a_message_with_a_place_is_fine(error):
     assert verdict(error) is None
 
 
-@pytest.mark.parametrize(
+@cases(
     ("error", "key"),
     [
         (WorkbookError(" ", where="case.xlsx"), "is empty"),

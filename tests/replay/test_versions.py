@@ -7,6 +7,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from cases import cases
 
 import xlmc
 from xlmc.replay import versions
@@ -24,7 +25,7 @@ def rules(monkeypatch):
     monkeypatch.setattr(versions, "__version__", "0.10.1")
 
 
-@pytest.mark.parametrize(
+@cases(
     ("version", "contents", "expected"),
     [
         ("0.1.0", ["=a"], ["0.3.0", "0.10.0"]),
@@ -46,7 +47,7 @@ def test_rules_are_in_the_order_of_versions_and_none_is_of_the_future():
     assert numbers[-1] <= versions._parts(xlmc.__version__)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("said", "formula", "met"),
     [
         ("TRUNC", "=1+trunc(A1,2)", True),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from cases import cases
 
 from xlmc.address import Area, Cell
 from xlmc.studies.verify import Status, verify
@@ -13,7 +14,7 @@ from xlmc.workbook.workbook import CellContent, Formula
 SHORT_SINE, SHORT_COSINE = 1.22514845490862e-16, 6.1257422745431e-17  # saved by 32-bit Excel
 
 
-@pytest.mark.parametrize(
+@cases(
     ("formula", "saved", "status"),
     [
         ("=SIN(RADIANS(A1))", SHORT_SINE, Status.MATCHED),
@@ -42,8 +43,8 @@ def array_in_b1(workbook, text, saved, dynamic=False):
     return workbook({"A1": 2.0, **{cell: value for cell, value in cells.items() if value is not None}})
 
 
-@pytest.mark.parametrize("dynamic", [False, True])
-@pytest.mark.parametrize(
+@cases("dynamic", [False, True])
+@cases(
     ("text", "saved", "cell", "got"),
     [
         ("A1*{1,2;3,4}", (2.0, 4.0, 6.0, 8.0), "B1", 2.0),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.studies.comparison import compare
 from xlmc.studies.comparison.paired_statistics import Accepted, range_of
@@ -37,7 +38,7 @@ def test_the_answer_with_the_smaller_spread_tells_more(answering):
     assert text.endswith("of a.xlsx. The two answers agree.")
 
 
-@pytest.mark.parametrize(
+@cases(
     ("low", "expected"),
     [
         (0.3, RivalVerdict.AGREE),  # of b − a, a tenth of a tenth is below 0: P = 0.7²/2 doubled is 0.49

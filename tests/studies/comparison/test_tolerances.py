@@ -18,7 +18,7 @@ ANGLE = Forecast("PDOF", Cell("S", 2, 1), Cell("S", 2, 1), units="deg")
 BOTH = [SPEED, ANGLE]
 
 
-@pytest.mark.parametrize(
+@cases(
     ("texts", "speed", "angle"),
     [
         ([], (0.2, False), (0.2, False)),
@@ -37,7 +37,7 @@ def test_tolerances_as_typed(texts, speed, angle):
     assert found.of(ANGLE, 2.0) == (pytest.approx(angle[0]), angle[1])
 
 
-@pytest.mark.parametrize(
+@cases(
     ("texts", "message"),
     [
         (["half"], "cannot be read"),
@@ -85,7 +85,7 @@ def test_units(source, target, factor):
     assert found is None if factor is None else found == pytest.approx(factor, rel=1e-12)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("value", "error", "verdict"),
     [
         (0.2, 0.05, "within"),

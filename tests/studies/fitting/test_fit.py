@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.distributions import FAMILIES
@@ -126,7 +127,7 @@ def test_what_cannot_be_fitted_says_why():
     assert fit([4, 4, 5, 5]).unfit["Negbin"] == "the variance of the values is not above their mean"
 
 
-@pytest.mark.parametrize(
+@cases(
     ("values", "kind", "message", "hint"),
     [
         ([], None, "there is no value to fit", "One measurement justifies a uniform range only"),
@@ -176,7 +177,7 @@ def test_headings_are_those_of_the_families():
     assert checked >= {"Normal", "Uniform", "Triangular", *(candidate.name for candidate in KINDS["counts"])}
 
 
-@pytest.mark.parametrize(
+@cases(
     ("n", "words"),
     [(2, "2 values cannot tell"), (14, "cannot tell"), (15, "only roughly"), (29, "only roughly"), (30, None)],
 )
@@ -226,7 +227,7 @@ DATA = {
 }
 
 
-@pytest.mark.parametrize("name", DATA)
+@cases("name", DATA)
 def test_shares_at_most_rise_from_0_to_1_beyond_the_support_too(name):
     values = np.sort(DATA[name])
     margin = 0.3 * (values[-1] - values[0])

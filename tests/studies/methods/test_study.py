@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.errors import SimulationError
 from xlmc.report.methods import methods_tables
@@ -202,7 +203,7 @@ def test_accuracy_in_units(straight):
     assert any("--precision 0.5 --precision-of mean,sd,range`" in each for each in said)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("asked", "message"),
     [
         ({"accuracy": "good"}, "is not a precision"),

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.api import Model
 from xlmc.studies.sensitivity import sensitivities
@@ -145,7 +146,7 @@ def test_replicated_runs(model, sampling):
     assert answer.error == pytest.approx(result.error, rel=0.02)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("relation", "limit", "values", "expected"),
     [
         ("<=", 0.25, [0.25 - 0.08, 0.1, 0.2], (0.175, 0.2, 0.225, 0.25, 0.275, 0.3, 0.325)),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
+from cases import cases
 
 from xlmc.statistics import Estimate
 from xlmc.studies.sensitivity.measures import ForecastSensitivity, Influence, noise
@@ -31,10 +31,8 @@ def test_what_is_strong_is_no_noise():
     assert not any((found.explained, found.dependence, found.correlation, found.first_order, found.total))
 
 
-@pytest.mark.parametrize("sign", [1, -1])
-@pytest.mark.parametrize(
-    ("errors", "count", "is_noise"), [(1.9, 1, True), (2.0, 1, False), (2.0, 20, True), (3.1, 20, False)]
-)
+@cases("sign", [1, -1])
+@cases(("errors", "count", "is_noise"), [(1.9, 1, True), (2.0, 1, False), (2.0, 20, True), (3.1, 20, False)])
 def test_of_many_assumptions_the_largest_lies_farther_off_by_chance(sign, errors, count, is_noise):
     weak = influence(rank_correlation=Estimate(sign * errors * 0.01, 0.01))
     assert {each.correlation for each in of(*[weak] * count)} == {is_noise}

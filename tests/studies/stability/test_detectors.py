@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.studies.stability import Level, stability
 from xlmc.workbook.workbook import CellContent, Formula
@@ -78,7 +79,7 @@ def test_no_quadrant_is_lost(look, formula):
     assert "quadrant" not in kinds(look({"B1": formula}))
 
 
-@pytest.mark.parametrize(
+@cases(
     "cells",
     [
         {"B1": "=IF(A1<0,PI(),0)+ATAN(A2/A1)"},
@@ -109,7 +110,7 @@ def test_only_assumptions_that_a_cell_depends_on_are_named(look):
     assert [one.name for one in only(found, "edge").where] == ["x"]
 
 
-@pytest.mark.parametrize(
+@cases(
     ("cells", "filters"),
     [
         ({"B1": "=ATAN(A2/A1)*IF(A1<0,1,2)"}, {}),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from cases import cases
 
 from xlmc.studies.stability import Level, stability
 
@@ -99,7 +100,7 @@ def found(book):
     return stability(book(cells, ranges, forecasts, filters), trials=1000, seed=5)
 
 
-@pytest.mark.parametrize("name", PLANTED)
+@cases("name", PLANTED)
 def test_each_is_found_with_its_culprit_and_another_form(found, name):
     column = chr(ord("A") + list(PLANTED).index(name))
     (one,) = [each for each in found.findings if each.name == name and each.level < Level.NOTE]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 
 import pytest
+from cases import cases
 
 from xlmc.address import parse_address
 from xlmc.evaluation.engine import Target
@@ -38,7 +39,7 @@ BETTER = "=-(v_2*SIN(RADIANS(A8-A5))+m_1/m_2*v_1*SIN(RADIANS(A6-A5)))/SIN(RADIAN
 TERMS = ["m_1*v_1*COS(RADIANS(A6))", "COS(RADIANS(A8))*v_2*m_2", "-m_1*V*COS(RADIANS(A5))"]
 
 
-@pytest.mark.parametrize("order", list(itertools.permutations(TERMS)))
+@cases("order", list(itertools.permutations(TERMS)))
 def test_the_speed_divided_by_a_cosine(case, order):
     total = "+".join(order).replace("+-", "-")
     for formula in (f"=({total})/(m_2*COS(RADIANS(A7)))", f"=1/(COS(RADIANS(A7))*m_2)*({total})"):
@@ -67,7 +68,7 @@ def test_a_change_of_spin(case, extra):
     assert same(made, cell, better)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("formula", "better"),
     [
         ("=SIN(RADIANS(A5)-RADIANS(A7))*2", "=SIN(RADIANS(A5-A7))*2"),
@@ -83,7 +84,7 @@ def test_differences_of_angles(case, formula, better):
     assert tree is None or same(made, cell, tree)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("formula", "better"),
     [
         ("=ATAN(A5/A7)", "=ATAN2(A7,A5)"),

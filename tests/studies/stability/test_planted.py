@@ -9,6 +9,8 @@ from cases import cases
 
 from xlmc.studies.stability import Level, stability
 
+pytestmark = pytest.mark.usefixtures("few_points")
+
 DATA = (1e6, 1e6 + 2)
 PLANTED = {
     "variance": (

@@ -12,6 +12,8 @@ from openpyxl.worksheet.table import Table
 from xlmc.api import load
 from xlmc.studies.stability import Level, stability
 
+pytestmark = pytest.mark.usefixtures("few_points")
+
 TINY, SMALL, DATA = (1e-9, 1e-8), (1e-6, 1e-5), (1e6, 1e6 + 2)
 
 FORMS = [

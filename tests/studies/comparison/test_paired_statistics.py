@@ -1,6 +1,6 @@
 """Differences of two runs over the same trials, and their errors.
 
-Coverage: the spread of a difference over 200 independent pairs of runs is known to 1/√(2·200) = 5 % of itself, and
+Coverage: the spread of a difference over 100 independent pairs of runs is known to 1/√(2·100) = 7 % of itself, and
 must agree with the mean of the errors stated to 4 times that and 10 % for what is only true of many trials.
 """
 
@@ -46,7 +46,7 @@ STATISTICS = {
 @pytest.fixture(scope="module")
 def many():
     rng = np.random.default_rng(999)
-    return [difference(*both_ways(rng, 2000), 0.51) for _ in range(200)]
+    return [difference(*both_ways(rng, 2000), 0.51) for _ in range(100)]
 
 
 @pytest.mark.parametrize("name", STATISTICS)
@@ -54,7 +54,7 @@ def test_errors_are_the_spread_between_runs(many, name):
     found = [STATISTICS[name](each) for each in many]
     spread = np.std([each.value for each in found], ddof=1)
     stated = np.mean([each.error for each in found])
-    assert stated == pytest.approx(spread, rel=4 * 0.05 + 0.1)
+    assert stated == pytest.approx(spread, rel=4 * 0.07 + 0.1)
 
 
 @pytest.mark.parametrize("name", ["mean", "SD", "low", "high"])

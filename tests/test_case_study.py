@@ -110,8 +110,8 @@ def test_threads_change_no_bit(model, runs):
 
 def test_the_reference_engine_agrees(model):
     """`formulas` computes cell by cell with the same libm: the two differ by the order of a few operations."""
-    fast, slow = (model.simulate(16, 390, engine=engine) for engine in ("numpy", "formulas"))
-    assert fast.accepted == 3
+    fast, slow = (model.simulate(3, 1959, engine=engine) for engine in ("numpy", "formulas"))
+    assert fast.accepted == 2
     assert (fast.trial_index == slow.trial_index).all()
     for name, values in fast.forecasts.items():
         assert slow.forecasts[name] == pytest.approx(values, rel=1e-12)

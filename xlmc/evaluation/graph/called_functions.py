@@ -121,9 +121,16 @@ def not_computed(name: str) -> FormulaError:
     if name in LEFT_OUT:
         hint = "replace it by functions that xlmc computes: docs/functions.md lists them"
         return FormulaError(f"xlmc does not compute the function {name} of Excel", hint=hint)
+    return FormulaError(f"the function {name} is not known to xlmc", hint=_hint(name))
+
+
+@cache
+def _hint(name: str) -> str:
+    """What to do about an unknown function. A workbook of another program calls each many times, and may have the rest
+    computed: to look through all names takes longer than that.
+    """
     close = get_close_matches(name, [key for key in REGISTRY if key[0].isalpha()], n=1)
-    hint = f"did you mean {close[0]}?" if close else "check its spelling, or replace it by functions xlmc knows"
-    return FormulaError(f"the function {name} is not known to xlmc", hint=hint)
+    return f"did you mean {close[0]}?" if close else "check its spelling, or replace it by functions xlmc knows"
 
 
 @cache

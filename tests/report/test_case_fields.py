@@ -3,6 +3,7 @@ from __future__ import annotations
 from datetime import date
 
 import pytest
+from cases import cases
 
 from xlmc.address import Area
 from xlmc.definitions.definitions_reader import read_definitions
@@ -38,7 +39,7 @@ def test_what_is_given_wins_and_an_empty_text_leaves_a_field_out():
     assert dict(found.fields) == {"Title": "Elm St"}
 
 
-@pytest.mark.parametrize(
+@cases(
     ("value", "from_1904", "dated", "printed"),
     [
         (46349.0, False, date(2026, 11, 23), "23 November 2026"),
@@ -58,7 +59,7 @@ def test_no_table_gives_no_fields():
     assert dict(found.fields) == {}
 
 
-@pytest.mark.parametrize(
+@cases(
     ("workbook", "said"),
     [
         (book(("Date", 1.0), ("date", 2.0)), "Date occurs twice in xlmc_case"),
@@ -72,7 +73,7 @@ def test_a_table_that_says_two_things_is_refused_with_its_cell(workbook, said):
     assert "S!" in str(refused.value)
 
 
-@pytest.mark.parametrize("text", ["Case number", "=17", "  = x"])
+@cases("text", ["Case number", "=17", "  = x"])
 def test_a_field_that_is_typed_without_a_name_or_a_text_is_refused(text):
     with pytest.raises(SimulationError, match="a field of the case is not"):
         fields_from([text])

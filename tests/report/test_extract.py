@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pandas
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -197,7 +198,7 @@ def test_nothing_else_is_called_as_the_trials_are(make, tmp_path, whose):
         pandas.testing.assert_frame_equal(read(tmp_path / f"trials.{ending}"), expected, check_exact=True)
 
 
-@pytest.mark.parametrize(
+@cases(
     ("name", "field"),
     [
         (";=1+1", ";'=1+1"),

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 
 from xlmc.report.filter_effect import filter_effect, marginal
 
@@ -31,9 +32,7 @@ def test_marginals_leave_out_draws_that_are_errors():
     assert list(found.percentiles) == [5.0, 50.0, 95.0]
 
 
-@pytest.mark.parametrize(
-    ("prior", "accepted"), [([2.0] * 9, [2.0] * 3), ([], []), ([1.0], [1.0]), ([1.0, 2.0, 3.0], [])]
-)
+@cases(("prior", "accepted"), [([2.0] * 9, [2.0] * 3), ([], []), ([1.0], [1.0]), ([1.0, 2.0, 3.0], [])])
 def test_where_there_is_nothing_to_compare_there_is_no_number(prior, accepted):
     found = filter_effect(np.array(prior), np.array(accepted))
     assert np.isnan(found.shift.value)

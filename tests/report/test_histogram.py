@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -45,7 +46,7 @@ def test_the_inside_bars_hold_exactly_the_central_range():
     assert bins.outside[straddling].item() > 0
 
 
-@pytest.mark.parametrize(
+@cases(
     ("values", "width", "fewest", "most"),
     [
         (RANDOM.normal(12.0, 0.7, 3500), 0.1, 35, 60),
@@ -88,7 +89,7 @@ def test_whole_numbers_have_a_bar_each():
     assert all(counted[k] == np.count_nonzero(values == k) for k in range(11))
 
 
-@pytest.mark.parametrize("value", [0.0, 7.0, -3.3e12, 4.2e-9])
+@cases("value", [0.0, 7.0, -3.3e12, 4.2e-9])
 def test_a_constant_has_one_bar(value):
     bins = histogram(np.full(10, value), value, value)
     assert bins.inside.tolist().count(10) == 1
@@ -102,7 +103,7 @@ def test_far_outliers_are_counted_and_not_drawn():
     assert bins.edges[0] > -10.0
 
 
-@pytest.mark.parametrize(
+@cases(
     ("values", "labels"),
     [
         (np.linspace(9.6, 13.8, 3000), ["9.5", "10.0", "10.5", "11.0", "11.5", "12.0", "12.5", "13.0", "13.5"]),

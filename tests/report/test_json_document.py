@@ -7,6 +7,7 @@ import re
 import jsonschema
 import numpy as np
 import pytest
+from cases import cases
 
 import xlmc
 from xlmc.errors import WorkbookError
@@ -67,7 +68,7 @@ KINDS = (
 )
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@cases("kind", KINDS)
 def test_the_document_keeps_to_its_schema(runs, validator, kind):
     text = json.dumps(document(runs[kind], command="xlmc simulate"), allow_nan=False)
     validator.validate(json.loads(text))
@@ -89,7 +90,7 @@ def changes():
     ]
 
 
-@pytest.mark.parametrize(("path", "value"), changes())
+@cases(("path", "value"), changes())
 def test_the_schema_refuses_what_is_no_document(run, validator, path, value):
     found = json.loads(json.dumps(document(run)))
     inner = found
@@ -155,7 +156,7 @@ def test_warnings_and_notices(none_accepted):
     assert [notice["message"] for notice in found["notices"]] == [n.message for n in none_accepted.notices]
 
 
-@pytest.mark.parametrize(
+@cases(
     ("estimate", "reason"),
     [
         (Estimate(1.0, 0.5, (0.0, 2.0)), None),

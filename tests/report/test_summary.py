@@ -3,6 +3,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from cases import cases
 
 from xlmc.report.summary import (
     ERROR_SENTENCE,
@@ -70,14 +71,12 @@ def test_different_ranges_are_told_apart(make):
     assert range_heading(summarise(run)) == "Central range"
 
 
-@pytest.mark.parametrize(
-    ("share", "text"), [(0.51, "51 %"), (0.245, "24.5 %"), ((1 - 0.51) / 2, "24.5 %"), (1.0, "100 %")]
-)
+@cases(("share", "text"), [(0.51, "51 %"), (0.245, "24.5 %"), ((1 - 0.51) / 2, "24.5 %"), (1.0, "100 %")])
 def test_shares_in_percent(share, text):
     assert percent(share) == text
 
 
-@pytest.mark.parametrize(
+@cases(
     ("found", "text"),
     [
         (proportion(0, 5), "0 %, at most 46 %"),
@@ -106,7 +105,7 @@ def test_the_base_case_is_computed_with_frozen_cells_held(run):
     assert found.rejected_by == ()
 
 
-@pytest.mark.parametrize(
+@cases(
     ("base", "rejected"),
     [(0.5, ()), (5.0, ("small",)), (-1.0, ("root",)), (11.0, ("small", "tiny"))],
 )

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-import pytest
+from cases import cases
 
 from templates.notation import printed
 
@@ -17,7 +17,7 @@ NOTATION = {
 }
 
 
-@pytest.mark.parametrize(
+@cases(
     ("formula", "expected"),
     [
         ("SIN(RADIANS(beta_1-alpha_1))", "sin(β1 − α1)"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import cases
 
 import xlmc
 
@@ -270,7 +271,7 @@ EXAMPLES = [
 ]
 
 
-@pytest.mark.parametrize(("template", "inputs", "expected", "tolerance"), EXAMPLES)
+@cases(("template", "inputs", "expected", "tolerance"), EXAMPLES)
 def test_worked_example(template, inputs, expected, tolerance, cells):
     found = cells(template, inputs, list(expected))
     for symbol, value in expected.items():
@@ -326,7 +327,7 @@ BOOKS = {
 }
 
 
-@pytest.mark.parametrize("name", BOOKS)
+@cases("name", BOOKS)
 def test_example_book_shows_the_published_figures(name, shown):
     found = shown(name)
     for symbol, (value, tolerance) in BOOKS[name].items():
@@ -334,7 +335,7 @@ def test_example_book_shows_the_published_figures(name, shown):
     assert found["checks_hold"] is (name not in ("textbook-claim", "video-two-frames"))
 
 
-@pytest.mark.parametrize("name", BOOKS)
+@cases("name", BOOKS)
 def test_example_book_runs(name, book_path):
     run = xlmc.load(book_path[name]).simulate(1_000)
     assert run.accepted == 1_000

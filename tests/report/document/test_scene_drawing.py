@@ -5,6 +5,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from cases import cases
 
 import xlmc
 from xlmc.errors import WorkbookError
@@ -64,7 +65,7 @@ def test_up_is_up_and_right_is_right():
     assert b[1] < a[1]
 
 
-@pytest.mark.parametrize(
+@cases(
     "drawn",
     [
         series([0, 1], [0, 1], sheet="Other"),
@@ -93,7 +94,7 @@ def test_a_chart_that_is_no_xml_is_refused():
         scene_drawing(Workbook("book.xlsx", {}, parts={"xl/charts/chart1.xml": b"<!DOCTYPE x>"}))
 
 
-@pytest.mark.parametrize("name", ["planar-impact", "planar-forward-si", "skid", "critical-speed-yaw"])
+@cases("name", ["planar-impact", "planar-forward-si", "skid", "critical-speed-yaw"])
 def test_the_scene_of_a_template_is_drawn(name):
     drawing = scene_drawing(xlmc.load(TEMPLATES / f"{name}.xlsx").workbook)
     assert paths(drawing)

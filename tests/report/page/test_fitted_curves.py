@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from cases import cases
 from scipy import stats
 
 from xlmc.report.histogram import histogram
@@ -31,6 +31,6 @@ def test_whole_numbers_are_fitted_as_counts():
     np.testing.assert_allclose(np.diff(best.shares), stats.poisson.pmf(bins.edges, 4.0), atol=2e-3)
 
 
-@pytest.mark.parametrize("x", [np.full(100, 3.0), np.arange(14.0)], ids=["all equal", "too few"])
+@cases("x", [np.full(100, 3.0), np.arange(14.0)], ids=["all equal", "too few"])
 def test_nothing_is_fitted_to_what_tells_nothing(x):
     assert fitted_curves(x, bins_of(x)) == []

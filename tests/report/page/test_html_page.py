@@ -125,9 +125,7 @@ def test_assumptions_are_the_numbers_of_the_sheet(run, book, page_of):
     assert "not needed" in section.text
 
 
-@pytest.mark.parametrize(
-    ("section", "sheet"), [("pairs", "Pairs"), ("sensitivity", "Sensitivity"), ("limits", "Filter limits")]
-)
+@cases(("section", "sheet"), [("pairs", "Pairs"), ("sensitivity", "Sensitivity"), ("limits", "Filter limits")])
 def test_tables_are_those_of_the_sheets(run, book, page_of, section, sheet):
     (found,) = page_of(run).all("section", id=section)
     assert found.numbers

@@ -8,7 +8,7 @@ import tomllib
 from importlib.resources import files
 from pathlib import Path
 
-import pytest
+from cases import cases
 
 FOLDER = files("xlmc.report.page") / "uplot"
 ROOT = Path(__file__).resolve().parents[3]
@@ -19,7 +19,7 @@ SUMS = {
 }
 
 
-@pytest.mark.parametrize("name", SUMS)
+@cases("name", SUMS)
 def test_its_files_are_unmodified(name):
     assert hashlib.sha256((FOLDER / name).read_bytes()).hexdigest() == SUMS[name]
 

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from cases import cases
 from fewer_sheets import leave_out_fits
 from hypothesis import given
 from hypothesis import strategies as st
@@ -136,7 +137,7 @@ def test_trials_on_disk_give_the_same_table(make, monkeypatch):
         assert getattr(in_memory, name).tolist() == getattr(on_disk, name).tolist()
 
 
-@pytest.mark.parametrize(("forecasts", "most"), [(0, MOST_VALUES), (1, MOST_VALUES), (8, 6250), (40, 1250)])
+@cases(("forecasts", "most"), [(0, MOST_VALUES), (1, MOST_VALUES), (8, 6250), (40, 1250)])
 def test_forecasts_share_the_page(forecasts, most):
     assert most_values(forecasts) == most
     assert forecasts * most <= ALL_VALUES

@@ -5,6 +5,7 @@ import re
 from xml.etree import ElementTree
 
 import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -62,7 +63,7 @@ def test_lines_go_through_their_points_and_end_in_a_number():
     assert len(list(root.iter("circle"))) == 4
 
 
-@pytest.mark.parametrize("points", [(), ((0.0, math.nan, None),), ((1.0, 0.0, None),)])
+@cases("points", [(), ((0.0, math.nan, None),), ((1.0, 0.0, None),)])
 def test_lines_of_nothing_are_drawn(points):
     assert read(lines([Line("a", points)], "T", "x", "y", 1.0)).tag == "svg"
 
@@ -78,14 +79,14 @@ def test_every_value_and_tick_stands_between_the_ends(values):
     assert 1 <= len(scale.ticks) <= 7
 
 
-@pytest.mark.parametrize("values", [[], [math.nan], [math.inf, -math.inf], [0.0], [5.0, 5.0]])
+@cases("values", [[], [math.nan], [math.inf, -math.inf], [0.0], [5.0, 5.0]])
 def test_what_has_no_width_is_given_one(values):
     scale = scale_of(values, 0.0, 1.0)
     assert scale.low < scale.high
     assert scale.ticks
 
 
-@pytest.mark.parametrize(
+@cases(
     ("values", "ticks"),
     [
         ([0.0, 71.0], [0.0, 20.0, 40.0, 60.0]),

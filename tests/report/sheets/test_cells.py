@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import math
 
-import pytest
+from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -27,7 +27,7 @@ PAIRED = [
 ]
 
 
-@pytest.mark.parametrize(("value", "error", "expected"), PAIRED)
+@cases(("value", "error", "expected"), PAIRED)
 def test_formats_of_a_value_beside_its_error(value, error, expected):
     assert paired_format(Estimate(value, error)) == expected
 
@@ -40,7 +40,7 @@ def test_the_sheet_shows_the_digits_that_the_command_line_prints(value, error):
     assert decimals == min(len(printed), max(room, 0))
 
 
-@pytest.mark.parametrize(
+@cases(
     ("estimate", "expected"),
     [
         (proportion(3542, 200_000), "0.000%"),
@@ -53,14 +53,12 @@ def test_formats_of_shares(estimate, expected):
     assert share_format(estimate) == expected
 
 
-@pytest.mark.parametrize(
-    ("spread", "expected"), [(200.0, "#,##0.0"), (0.35, "#,##0.0000"), (4e8, "0.000E+00"), (0.0, "General")]
-)
+@cases(("spread", "expected"), [(200.0, "#,##0.0"), (0.35, "#,##0.0000"), (4e8, "0.000E+00"), (0.0, "General")])
 def test_formats_of_single_trials_follow_their_spread(spread, expected):
     assert spread_format(spread) == expected
 
 
-@pytest.mark.parametrize(
+@cases(
     ("value", "error", "expected"),
     [
         (1234567.7995, 0.00035, ("#,##0", "#,##0.00000")),

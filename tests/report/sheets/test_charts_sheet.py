@@ -7,6 +7,7 @@ import zipfile
 import numpy as np
 import openpyxl
 import pytest
+from cases import cases
 from openpyxl.chart.chartspace import ChartSpace
 from openpyxl.chart.reader import read_chart
 from openpyxl.utils import column_index_from_string, get_column_letter, range_boundaries
@@ -70,7 +71,7 @@ def test_charts_draw_the_bins_of_their_forecast(run, book, charts):
         assert chart.x_axis.tickLblSkip == chart.x_axis.tickMarkSkip == figure.bins.step
 
 
-@pytest.mark.parametrize(("first", "name", "above"), [(4, "area", False), (5, "area", True), (6, "difference", False)])
+@cases(("first", "name", "above"), [(4, "area", False), (5, "area", True), (6, "difference", False)])
 def test_cumulative_charts_draw_exact_shares_and_shade_the_central_range(run, book, charts, first, name, above):
     inside, outside = charts[first].series
     labels = _cells(book, inside.cat.strRef.f)

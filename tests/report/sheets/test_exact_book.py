@@ -7,6 +7,7 @@ import io
 import random
 
 import pytest
+from cases import cases
 from hypothesis import example, given
 from hypothesis import strategies as st
 from xlsxwriter import Workbook
@@ -109,7 +110,7 @@ def test_every_number_of_a_run_is_read_back_as_the_same_number(numbers):
     assert [float(each.partition(b"</v>")[0]).hex() for each in found] == [number.hex() for number in numbers]
 
 
-@pytest.mark.parametrize("seed", range(5))
+@cases("seed", range(5))
 def test_parts_are_those_of_a_file_of_xlsxwriters(seed):
     packed = io.BytesIO()
     with Workbook(packed, OPTIONS) as plain:
@@ -140,8 +141,8 @@ def test_a_column_that_a_sheet_has_no_room_for_is_refused():
         book.add_worksheet().write_numbers(1_048_575, 0, [1.0, 2.0], book.add_format({}))
 
 
-@pytest.mark.parametrize("number", [0.1 + 0.2, 1 / 3, 2.0**-1074, 1.7976931348623157e308, -0.1, 7, 123456789012345678])
-@pytest.mark.parametrize("styled", [True, False])
+@cases("number", [0.1 + 0.2, 1 / 3, 2.0**-1074, 1.7976931348623157e308, -0.1, 7, 123456789012345678])
+@cases("styled", [True, False])
 def test_a_number_is_read_back_as_the_same_number(number, styled):
     with ExactBook() as book:
         book.add_worksheet().write_number(0, 0, number, book.add_format({"bold": True}) if styled else None)

@@ -7,6 +7,7 @@ import zipfile
 import numpy as np
 import openpyxl
 import pytest
+from cases import cases
 from packed_sheets import packed_sheets
 
 from xlmc.report.sheets.styles import bounds
@@ -75,9 +76,7 @@ def test_one_forecast_has_no_pairs_and_many_have_the_first_ones(make, opened, on
     assert len(book["Pairs"]._charts) == 15
 
 
-@pytest.mark.parametrize(
-    ("lowest", "highest"), [(18.9, 26.6), (-3.0, 4.0), (1e-9, 3e-9), (1.2e6, 3.8e6), (0.0, 1.0), (99.99, 100.01)]
-)
+@cases(("lowest", "highest"), [(18.9, 26.6), (-3.0, 4.0), (1e-9, 3e-9), (1.2e6, 3.8e6), (0.0, 1.0), (99.99, 100.01)])
 def test_axes_have_round_limits_about_what_they_show(lowest, highest):
     found = bounds(lowest, highest)
     step = found["major_unit"]
@@ -88,6 +87,6 @@ def test_axes_have_round_limits_about_what_they_show(lowest, highest):
     assert float(f"{step:.6e}"[0]) in (1.0, 2.0, 5.0)
 
 
-@pytest.mark.parametrize("ends", [(3.0, 3.0), (1e9, 1e9 + 1e-7)])
+@cases("ends", [(3.0, 3.0), (1e9, 1e9 + 1e-7)])
 def test_without_a_spread_an_axis_is_left_to_the_program(ends):
     assert bounds(*ends) == {}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import cases
 
 from xlmc.report.sheets.paper import MOST_ACROSS, MOST_UPRIGHT, SMALLEST, lay_out
 
@@ -24,7 +25,7 @@ def test_letters_shrink_before_a_page_is_begun_but_never_below_what_can_be_read(
     assert longer.scale >= SMALLEST
 
 
-@pytest.mark.parametrize(("width", "upright"), [(MOST_UPRIGHT, True), (MOST_ACROSS, False)])
+@cases(("width", "upright"), [(MOST_UPRIGHT, True), (MOST_ACROSS, False)])
 def test_the_widest_sheets_have_the_smallest_letters(width, upright):
     found = lay_out(width, [15.0] * 200, list(range(0, 200, 5)))
     assert found.upright == upright

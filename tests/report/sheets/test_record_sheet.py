@@ -3,6 +3,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from cases import cases
 
 from xlmc.report.sheets.cells import number_format
 from xlmc.results.record import make_record
@@ -63,7 +64,7 @@ def test_empty_tables_say_none(book, row_of):
     assert sheet.cell(row + 1, 2).value == "None"
 
 
-@pytest.mark.parametrize(
+@cases(
     ("value", "shown"),
     [
         *((20_000, "#,##0"), (4960.0, "#,##0"), (0.0172, "General"), (1 / 3, "#,##0.000000")),

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-import pytest
+from cases import cases
 
 from xlmc.report.summary import ERROR_SENTENCE
 
@@ -106,7 +106,7 @@ def test_notices_and_sentences_stand_on_the_sheet(book, rows_of):
     assert "S!A3: no forecast or filter needs the assumption 'idle'" in texts
 
 
-@pytest.mark.parametrize("text", ["The workbook has no filters: every trial is accepted."])
+@cases("text", ["The workbook has no filters: every trial is accepted."])
 def test_a_run_without_filters_says_so(one_accepted, opened, row_of, text):
     assert row_of(opened(one_accepted, "Results")["Results"], text)
 

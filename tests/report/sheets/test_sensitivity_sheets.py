@@ -8,6 +8,7 @@ import zipfile
 
 import openpyxl
 import pytest
+from cases import cases
 from openpyxl.utils import range_boundaries
 from packed_sheets import packed_sheets
 
@@ -202,7 +203,7 @@ def test_answers_in_different_units_are_drawn_as_shares_of_their_ranges(make):
     assert first == pytest.approx(second)
 
 
-@pytest.mark.parametrize(("limit", "unmoved"), [(0.5, False), (5.0, True)])
+@cases(("limit", "unmoved"), [(0.5, False), (5.0, True)])
 def test_changes_of_nothing_are_explained(make, limit, unmoved):
     """No trial is near a limit of 5, and 0 ± 0 is no certainty that none ever is."""
     run = make.simulate(
@@ -248,7 +249,7 @@ def test_units_that_read_like_a_reference_stay_words(make):
     assert {f for xml in charts for f in re.findall(r"<c:f>(.*?)</c:f>", xml) if "D50" in f} == set()
 
 
-@pytest.mark.parametrize("name", ["Sensitivity", "Filter limits"])
+@cases("name", ["Sensitivity", "Filter limits"])
 def test_charts_come_first_and_the_tables_below_them_are_not_printed(book, name):
     sheet = book[name]
     last = int(sheet.print_area.rpartition("$")[2])

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-import pytest
+from cases import cases
 
 NAMES = {
     "Mean": "mean",
@@ -26,7 +26,7 @@ def _expected(estimate):
     ]
 
 
-@pytest.mark.parametrize(("label", "attribute"), NAMES.items())
+@cases(("label", "attribute"), NAMES.items())
 def test_every_statistic_has_its_error_and_interval(run, book, row_of, label, attribute):
     estimates = [getattr(run[name].statistics, attribute) for name in ("area", "difference")]
     expected = [number for estimate in estimates for number in _expected(estimate)]

@@ -76,7 +76,7 @@ def test_an_assumption_and_a_forecast_may_share_a_name(make, opened):
     assert [cell.value for cell in opened(run, "Trials")["Trials"][HEADER + 1]] == ["Trial", "v", "v"]
 
 
-@pytest.mark.parametrize("name", ["Bins", "Curves"])
+@cases("name", ["Bins", "Curves"])
 def test_sheets_of_numbers_that_charts_draw_open_hidden(book, name):
     assert book[name].sheet_state == "hidden"
     assert str(book[name]["A2"].value).endswith("This sheet opens hidden; hidden sheets are not printed.")

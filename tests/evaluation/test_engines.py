@@ -445,9 +445,9 @@ def test_branches_within_branches(differences, engine, depth):
 
 @OURS
 def test_more_nodes_than_one_loop_holds(differences, engine):
-    cells = {"B1": "=A1+1"} | {f"B{k}": f"=B{k - 1}+A1/{k}" for k in range(2, 300)}
-    cells |= {"C1": "=SQRT(B299-2000)+B7"}
-    agree(differences(engine, cells, {"A1": [0.0, 1.0, 500.0]}, ["C1", "B299"], []))
+    cells = {"B1": "=A1+1"} | {f"B{k}": f"=B{k - 1}+A1/{k}" for k in range(2, 161)}
+    cells |= {"C1": "=SQRT(B160-2000)+B7"}
+    agree(differences(engine, cells, {"A1": [0.0, 1.0, 500.0]}, ["C1", "B160"], []))
 
 
 @OURS

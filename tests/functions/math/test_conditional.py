@@ -80,7 +80,7 @@ def test_a_criterion_without_its_range_is_refused(evaluate):
 
 
 def test_criteria_and_cells_of_their_own_in_many_trials():
-    n, k = 50_000, 64
+    n, k = 36_000, 64
     rng = np.random.default_rng(1)
     x, y = rng.integers(0, 9, (n, k)) * 1.0, rng.random((1, k))
     bounds = rng.integers(0, 9, n) * 1.0

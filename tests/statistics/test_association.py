@@ -26,15 +26,15 @@ def test_it_is_scipys_also_with_ties(values):
 
 @cases("rho", [0.0, 0.5, -0.8])
 def test_the_error_is_the_spread_from_run_to_run(rho):
-    """1,000 runs know a spread to 2.2 %: four of those, and 3 % for the formula. Coverage: 95 % ± 4 binomial errors."""
+    """500 runs know a spread to 3.2 %: four of those, and 3 % for the formula. Coverage: 95 % ± 4 binomial errors."""
     rng = np.random.default_rng(3)
-    z = rng.normal(size=(1000, 2, 300))
+    z = rng.normal(size=(500, 2, 300))
     z[:, 1] = rho * z[:, 0] + math.sqrt(1 - rho**2) * z[:, 1]
     found = [rank_correlation(*run) for run in z]
-    assert np.mean([each.error for each in found]) == pytest.approx(np.std([each.value for each in found]), rel=0.12)
+    assert np.mean([each.error for each in found]) == pytest.approx(np.std([each.value for each in found]), rel=0.16)
     truth = 6 / np.pi * np.arcsin(rho / 2)
     held = np.mean([each.interval[0] <= truth <= each.interval[1] for each in found])
-    assert held == pytest.approx(0.95, abs=4 * math.sqrt(0.95 * 0.05 / 1000) + 0.005)
+    assert held == pytest.approx(0.95, abs=4 * math.sqrt(0.95 * 0.05 / 500) + 0.005)
 
 
 def test_replicates():

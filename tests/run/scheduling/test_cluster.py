@@ -2,12 +2,10 @@ from __future__ import annotations
 
 import builtins
 import gc
-import os
 import signal
 import subprocess
 import sys
 import time
-from threading import Timer
 
 import pytest
 from distributed import Client, LocalCluster
@@ -67,17 +65,13 @@ def test_ctrl_c_in_a_local_cluster_keeps_what_was_accepted(model, bits, capfd):
             told.extend({*Process().children(recursive=True)} - before)
             for worker in told:
                 worker.send_signal(signal.SIGINT)
-        if standing.trials == 3_000:
-            time.sleep(0.1)  # for one that ends
+            time.sleep(0.2)  # for one that ends
             alive.extend(worker for worker in told if worker.is_running() and worker.status() != STATUS_ZOMBIE)
             signal.raise_signal(signal.SIGINT)
 
-    watch = Timer(60, os.kill, (os.getpid(), signal.SIGINT))  # for a run that has lost its workers
-    watch.start()
     run = model.simulate(10**9, scheduler="local", workers=1, keep_interrupted=True, progress=press)
-    watch.cancel()
     assert run.stopped.by == "interruption"
-    assert run.trials >= 3_000
+    assert run.trials >= 300
     assert bits(run) == bits(model.simulate(run.trials))
     assert alive == told != []
     assert "Traceback" not in capfd.readouterr().err

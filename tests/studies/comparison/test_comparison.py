@@ -190,6 +190,9 @@ def test_the_ladder_on_the_case_study(planar, momentum):
     Converged values (2e9 trials): without filters the means are 12.1658, 23.7710, 33.6923, 8.8974 mph, with them
     11.80333, 23.06344, 33.16317, 4.74205. `momentum` has the filters V2 > 0 and its own, which reject next to nothing
     more: P(V2 > 0) = .991, and its mean of V2 rises by less than 0.1.
+
+    Of what must be within, the lower end of Chevrolet's impact speed differs most: by 0.63, with an error of 0.06 at
+    60,000 trials. A verdict clears the accuracy by three errors: 0.81.
     """
     found = compare(planar, momentum, ["0.9 mph", "Nissan delta-V=1.5 mph"], trials=60_000)
     assert found.simpler == 1

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import os
+import subprocess
 import sys
 from pathlib import Path
 
@@ -97,6 +99,16 @@ def test_a_script_answers_in_a_process_of_its_own(tmp_path, monkeypatch):
     assert str(tmp_path) in answer["paths"]
     assert processes.answer_of(Path(sys.executable), "say.py", {"task": "fail"}, 60) == "failed: there is no such book"
     assert processes.answer_of(Path(sys.executable), "say.py", {"task": "skid"}, 1e-3) == "no answer within 0 s"
+
+
+def test_scripts_find_what_they_import(tmp_path):
+    """Where nothing but their own folder and the project's is on the path."""
+    folder = Path(rates.__file__).parent
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(folder), str(folder.parent)])}
+    scripts = "import one_contestant, one_growth, one_scaling, conformance"
+    command = [sys.executable, "-W", "ignore", "-c", scripts]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 @cases("script", ["one_contestant.py", "one_growth.py", "one_scaling.py"])

@@ -9,6 +9,7 @@ import openpyxl
 import pytest
 from fewer_sheets import keep_few_trials
 
+from xlmc.api import Model
 from xlmc.errors import SimulationError
 from xlmc.evaluation.llvm import REPAYS_FROM
 
@@ -259,3 +260,15 @@ def test_the_engine_jit_prints_the_same_answers_and_keeps_its_code_unless_it_is_
         machine.cache_clear()
         assert xlmc(*option, "simulate", book, "--engine", "jit", "-o", "r.xlsx", "--overwrite") == answer
         assert (tmp_path / "xlmc").exists() is there
+
+
+def test_a_local_cluster_and_its_workers_are_asked_for(xlmc, book, monkeypatch):
+    asked, simulate = {}, Model.simulate
+
+    def told(model, *given, **named):
+        asked.update(named)
+        return simulate(model, *given, **{**named, "scheduler": None, "workers": None})
+
+    monkeypatch.setattr(Model, "simulate", told)
+    assert xlmc("simulate", book, "-n", 1_000, "--scheduler", "local", "--workers", 1).code == 0
+    assert (asked["scheduler"], asked["workers"]) == ("local", 1)

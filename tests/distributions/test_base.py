@@ -105,9 +105,8 @@ def test_draws_are_finite_rise_and_lie_in_the_support(family, params):
 
 @cases(("family", "params"), CASES)
 def test_a_bad_parameter_spoils_its_own_trials_only(family, params, clean):
-    """NaN in every place, and an infinite or too large one in turn."""
-    others = itertools.cycle([np.inf, -np.inf, 1e200])
-    for place, bad in ((place, bad) for place in range(len(params)) for bad in (np.nan, next(others))):
+    """NaN, infinite and too large ones in every place."""
+    for place, bad in itertools.product(range(len(params)), (np.nan, np.inf, -np.inf, 1e200)):
         columns = [np.full(3, value) for value in params]
         columns[place][1] = bad
         for result, expected in (

@@ -108,10 +108,11 @@ def test_two_writers_of_one_file_do_not_disturb_each_other(tmp_path):
         content = path.read_bytes()
         assert len(content) == 200_000
         assert len(set(content)) == 1
-        done, status = os.waitpid(-1, os.WNOHANG)
-        if done:
-            children.remove(done)
-            assert status == 0
+        for child in [*children]:
+            done, status = os.waitpid(child, os.WNOHANG)
+            if done:
+                children.remove(done)
+                assert status == 0
     assert [left.name for left in tmp_path.iterdir()] == ["case.html"]
 
 
@@ -140,8 +141,9 @@ def typed(book, tmp_path):
 
 
 def began(folder, is_over):
-    """Wait until the run keeps columns on disk."""
-    while not (found := any(folder.iterdir())) and not is_over():
+    """Wait until the run keeps columns on disk, at most a minute."""
+    end = time.monotonic() + 60
+    while not (found := any(folder.iterdir())) and not is_over() and time.monotonic() < end:
         time.sleep(0.005)
     return found
 

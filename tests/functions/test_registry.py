@@ -114,7 +114,7 @@ def first_difference(function: Function, random: Random) -> str | None:
 
 
 @given(seed=seeds)
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=15, deadline=None)
 def test_trials_together_are_the_trials_alone(seed):
     """One test of all functions: what hypothesis does for a test takes longer than a function."""
     fixed = [function for function in ROWS.values() if not function.volatile]

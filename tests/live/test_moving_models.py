@@ -23,7 +23,7 @@ from xlmc.workbook.writer import package_bytes
 
 FRICTION, WEIGHT = "Chevrolet post-impact deceleration", "Nissan weight"
 TRIALS = 3_000
-SEQUENCES, STEPS = (2, 3), 9
+SEQUENCES, STEPS = (3, 18), 9
 """Seeds, and moves of each: together they try each kind of move."""
 
 

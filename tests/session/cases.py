@@ -43,6 +43,8 @@ def cases(names: str | Sequence[str], values: Iterable[object], ids: Sequence[st
                 arguments = dict(zip(keys, case, strict=True))
                 try:
                     test(**fixtures, **arguments)
+                except pytest.skip.Exception as skipped:
+                    raise TypeError("a case cannot be skipped: leave it out of the cases") from skipped
                 except (Exception, pytest.fail.Exception) as failure:
                     shown = ", ".join(f"{name}={value!r:.200}" for name, value in arguments.items())
                     failure.add_note(f"case {ids[number] if ids else number}: {shown}")

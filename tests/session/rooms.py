@@ -30,7 +30,7 @@ def room_of(path: Path) -> str:
 
 
 _IMPORT = re.compile(
-    r"^[ \t]*(import [\w.]+.*|from [\w.]+ import (?:\([^)]*\)|[^(\n]+))$"
+    r"^[ \t]*(import [\w.]+.*|from [\w.]+ import (?:\([^)]*\)|[^(\n#]+))[ \t]*(?:#.*)?$"
     r"|[;:][ \t]*(?:import [\w.]+|from [\w.]+ import \w+)\b",
     re.MULTILINE,
 )

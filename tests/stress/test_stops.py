@@ -16,7 +16,7 @@ NOISE = 4 * math.sqrt(0.95 * 0.05 / RUNS)
                                                        ("lognormal, σ 1", 4_000, 0.04)])  # fmt: skip
 def test_precision(name, needed, slack):
     """95 % less 4 standard errors, and what intervals of skewed means lack without any stop rule. The mean at the stop
-    is off by less than a quarter of its error: the bias of the rule, which is of the order 1/√n, and chance, 4/√120."""
+    is off by less than four tenths of its error: the bias of the rule, of the order 1/√n, and chance, 4/√120."""
     from stressing.stops import FORECASTS, precise_runs
 
     forecast = FORECASTS[name]

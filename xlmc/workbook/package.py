@@ -123,7 +123,11 @@ def relationships(parts: Mapping[str, bytes], part: str = "") -> dict[str, Relat
     if rels is None:
         return {}
     folder = posixpath.join("/", posixpath.dirname(part))
-    return {pointer: _in_package(parts, meant) for pointer, meant in _pointers(parts[rels], rels, folder)}
+    pointers = dict(_pointers(parts[rels], rels, folder))
+    if all(meant.external or meant.target in parts for meant in pointers.values()):
+        return pointers
+    stored = {name.casefold(): name for name in parts}
+    return {pointer: _in_package(stored, meant) for pointer, meant in pointers.items()}
 
 
 def content_type(parts: Mapping[str, bytes], part: str) -> str:
@@ -243,9 +247,14 @@ def _meant(folder: str, attributes: Mapping[str, str]) -> Relationship:
     return Relationship(kind, posixpath.normpath(posixpath.join(folder, target)).lstrip("/"))
 
 
-def _in_package(parts: Mapping[str, bytes], meant: Relationship) -> Relationship:
-    """The pointer with its target by the name that the part has, which may be percent-encoded in the pointer."""
-    if meant.external or meant.target in parts:
+def _in_package(stored: Mapping[str, str], meant: Relationship) -> Relationship:
+    """The pointer with its target by the name that the part has, which may be percent-encoded in the pointer.
+
+    Args:
+        stored: the names of all parts, by what they are in lower case.
+        meant: the pointer as its rels part has it.
+    """
+    if meant.external:
         return meant
-    found = stored_part(parts, meant.target) or stored_part(parts, unquote(meant.target))
+    found = stored.get(meant.target.casefold()) or stored.get(unquote(meant.target).casefold())
     return meant if found is None else replace(meant, target=found)

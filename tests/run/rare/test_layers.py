@@ -94,8 +94,8 @@ def test_correlated_assumptions_and_those_with_parameters_that_vary_are_not_solv
 
 def test_points_stand_for_the_trials_they_are_made_of(ground):
     varying = {**GIVEN, "b": {"cell": "A2", "distribution": "Normal", "mean": "A3", "std_dev": 1}}
-    filters = {"f": {"cell": "B4", **THIN}, "g": {"cell": "A4", "at_least": 0}}
-    found = ground(filters, {("d", "c"): 0.5}, formulas=["=A1-A2^2/4+A3"], given=varying)
+    filters = {"f": {"cell": "B4", **THIN}, "g": {"cell": "A4", "at_least": 0}, "h": "B5"}
+    found = ground(filters, {("d", "c"): 0.5}, formulas=["=A1-A2^2/4+A3", "=OR(A1<0,A2>1)"], given=varying)
     uniforms = np.random.default_rng(5).random((5_000, found.dimensions))
     points = found.points(uniforms)
     assert found.uniforms(points) == pytest.approx(uniforms, abs=1e-12)

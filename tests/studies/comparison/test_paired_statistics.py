@@ -54,7 +54,8 @@ def test_errors_are_the_spread_between_runs(many, name):
     found = [STATISTICS[name](each) for each in many]
     spread = np.std([each.value for each in found], ddof=1)
     stated = np.mean([each.error for each in found])
-    assert stated == pytest.approx(spread, rel=4 * 0.07 + 0.1)
+    few = 0.1 if name == "kolmogorov" else 0.0  # whose error is that of many trials
+    assert stated == pytest.approx(spread, rel=4 * 0.07 + few)
 
 
 @pytest.mark.parametrize("name", ["mean", "SD", "low", "high"])

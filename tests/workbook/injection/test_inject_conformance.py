@@ -113,6 +113,11 @@ def _check_reading(once, host):
         assert len(names) == 3 + len(read_structure(host).sheets)
 
 
+def test_there_are_many_makes():
+    hosts = [read_parts(path.read_bytes()) for path in BOOKS if path.name not in BROKEN]
+    assert len({make(host) for host in hosts}) > 50
+
+
 @cases("name", sorted(BROKEN))
 def test_a_damaged_workbook_says_so(name):
     with pytest.raises(WorkbookError, match="damaged"):

@@ -56,8 +56,10 @@ def _stale_values(workbook: Workbook, tables: Iterable[Table]) -> dict[Cell, Cel
     cells: list[Cell] = []
     for table in tables:
         skipped = _POINTS if table.name.casefold().startswith(_OF_VALUES) else (*_POINTS, "value")
-        held = ((cell, workbook.content(cell)) for cell in _body(table, skipped))
-        cells += [cell for cell, content in held if content.formula is not None and content.value is not None]
+        for cell in _body(table, skipped):
+            content = workbook.content(cell)
+            if content.formula is not None and content.value is not None:
+                cells.append(cell)
     found = _calculated(workbook, cells) if cells else {}
     return {cell: value for cell, value in found.items() if _differs(workbook.content(cell).value, value)}
 

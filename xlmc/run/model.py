@@ -197,15 +197,17 @@ class Model:
         named, chances = {a.name: a for a in (*self.assumptions, *self.chances)}, {a.name for a in self.chances}
         live: list[Assumption] = []
         draws: dict[str, Draw] = {}
+        found: dict[str, Bounds] = {}
         for name in self.needed.live:
-            draws[name] = known.get(name) or draw_of(named[name], self.lowering)
+            draws[name] = draw = known.get(name) or draw_of(named[name], self.lowering)
+            if (ends := draw.support()) is not None:
+                found[name] = ends
             if name not in chances:
                 live.append(named[name])
         self.live: tuple[Assumption, ...] = tuple(live)
         self.bases: Mapping[str, float | None] = {a.name: a.base for a in live}
         self.draws: Mapping[str, Draw] = draws
-        found = {name: draw.support() for name, draw in self.draws.items()}
-        self._ends = {name: ends for name, ends in found.items() if ends is not None}
+        self._ends = found
         rows = definitions.correlations
         tied = {name for row in rows for name in (row.first, row.second)}
         self._correlated = {name: draw for name, draw in self.draws.items() if name in tied}

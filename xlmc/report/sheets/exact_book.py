@@ -230,24 +230,17 @@ class ExactBook(Workbook):  # type: ignore[misc]  # the library has no types
 
 def _write_kept_numbers(chart: Any, data: Sequence[Any]) -> None:
     """Write what a chart shows until a program reads its cells: what XlsxWriter writes, where all of it is numbers."""
-    kept = list(data or ())
+    kept, points = list(data or ()), []
     try:
-        written = "".join([_point(index, number) for index, number in enumerate(kept) if number is not None])
+        for index, number in enumerate(kept):
+            if number is not None:
+                float(number)  # so that a text that is none is found
+                points.append(f'<c:pt idx="{index}"><c:v>{number}</c:v></c:pt>')
     except ValueError:
         Chart._write_num_cache(chart, data)
         return
     head = f'<c:numCache><c:formatCode>General</c:formatCode><c:ptCount val="{len(kept)}"/>'
-    chart.fh.write(f"{head}{written}</c:numCache>")
-
-
-def _point(index: int, number: Any) -> str:
-    """A number, or the text of one, as a point of a chart.
-
-    Raises:
-        ValueError: it is another text.
-    """
-    float(number)
-    return f'<c:pt idx="{index}"><c:v>{number}</c:v></c:pt>'
+    chart.fh.write(f"{head}{''.join(points)}</c:numCache>")
 
 
 class _PartsAlone(Packager):  # type: ignore[misc]  # the library has no types

@@ -7,7 +7,7 @@ Column A, folded away, holds the keys of `Record`: `file.sha256` beside an entry
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import count
+from itertools import count, repeat
 from typing import TYPE_CHECKING
 
 from xlmc.report.sheets.cells import NONE, Shown, number_format
@@ -102,7 +102,7 @@ def _write_table(page: Page, section: str, table: RecordTable) -> None:
     page.line([Shown(label, look="header left") for _, label in table.columns], starts, last)
     for number, row in enumerate(table.rows):
         _write_key(page, page.row, f"{section}[{number}]")
-        cells = [_cell(value, "listed" if listed else "text") for value in row]
+        cells = list(map(_cell, row, repeat("listed" if listed else "text")))
         page.line(cells, starts, None if listed else last, fit=not listed)
 
 

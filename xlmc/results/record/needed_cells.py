@@ -148,7 +148,7 @@ def cell_section(needed: Mapping[Cell, str], *, rows: int = MOST_ROWS) -> Sectio
         rows: the most cells to list one a row.
     """
     sheets = {name: quote_sheet(name) for name in {cell.sheet for cell in needed}}  # once each: cells may be very many
-    contents = {f"{sheets[cell.sheet]}!{cell.a1}": text for cell, text in needed.items()}
+    contents = dict(zip([f"{sheets[cell.sheet]}!{cell.a1}" for cell in needed], needed.values(), strict=True))
     packed = _json(contents)
     entries = (
         Entry("count", "Cells", len(contents)),

@@ -26,6 +26,7 @@ def cases(names: str | Sequence[str], values: Iterable[object], ids: Sequence[st
 
     Raises:
         ValueError: there is no case, or one has another number of values than there are names.
+        TypeError: when run: a case asks to be skipped, which would leave the others untried.
     """
     if cases.apart:
         return pytest.mark.parametrize(names, values, ids=ids)

@@ -7,6 +7,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from cases import cases
 
 PLUGINS = ["both_ends", "cases", "costliest", "not_tested", "process_costs", "tree_guard", "work_stealing"]
 COSTS = """
@@ -214,6 +215,12 @@ def test_every_case_that_fails_is_named(alone):
     assert "case 1: b=1, c=1" in alone.shown
     assert "case 1: word='right'" in alone.shown
     assert "case 0: word" not in alone.shown
+
+
+def test_a_case_cannot_be_skipped(monkeypatch):
+    monkeypatch.setattr(cases, "apart", False)
+    with pytest.raises(TypeError, match="leave it out of the cases"):
+        cases("a", [1, 2])(lambda a: pytest.skip("not here"))()
 
 
 def test_apart_each_case_is_a_test(quiet):

@@ -131,8 +131,7 @@ def with_numbers(workbook: Workbook, definitions: Definitions) -> Definitions:
         DefinitionError: such a cell depends on an assumption, or does not hold what it must.
         FormulaError: one cannot be computed.
     """
-    if [a for a in definitions.assumptions if a.formulas]:
-        definitions = _with_base_parameters(workbook, definitions)
+    definitions = _with_base_parameters(workbook, definitions)
     cells = [cell for each in definitions.filters if each.evidence for cell in each.evidence.cells]
     cells += [row.value for row in definitions.correlations if isinstance(row.value, Cell)]
     if not cells:

@@ -52,7 +52,8 @@ def write_record(page: Page, record: Record, name: str) -> None:
     page.sheet.set_column(1, 1, WIDTHS[1], None, {"collapsed": True})
     page.height = _ROW
     page.title("Record of the run", f"{name}: what the numbers depend on, and how to repeat them", _FIRST)
-    behind = [section for section in record.sections if _is_behind(section)]
+    empty = [s for s in record.sections if not s.entries and s.table is not None and not s.table.rows]
+    behind = [section for section in record.sections if section.key in _LISTED | _ELSEWHERE or section in empty]
     for section in record.sections:
         if section not in behind:
             _write_section(page, section)
@@ -61,13 +62,6 @@ def write_record(page: Page, record: Record, name: str) -> None:
     for section in behind:
         _write_section(page, section)
     page.set_up_printing(name, printed=printed, columns=(_FIRST, _LAST))
-
-
-def _is_behind(section: Section) -> bool:
-    """Whether it stands behind what is printed."""
-    return section.key in _LISTED | _ELSEWHERE or (
-        not section.entries and section.table is not None and not section.table.rows
-    )
 
 
 def _write_section(page: Page, section: Section) -> None:

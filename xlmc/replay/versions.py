@@ -192,6 +192,7 @@ _COMMITS: Final = {
     "0.10.0": "ef020dc5a73b4a5fcd48b50ea00a1d8bf3d0a8cc",
     "0.11.0": "c1e30ea7db9c86e52d9a1a51f5eb1e8a31f640a7",
     "0.11.1": "1fda55809b9b6bbbc6a1e1c28b25a49d63a3bf88",
+    "0.11.2": "4ec8e9b473b0f6efb5197e5c76ea5bf21cce2973",
 }
 """The last commit of each version before this one."""
 

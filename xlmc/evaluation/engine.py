@@ -16,7 +16,6 @@ from xlmc.functions.values import BLANK, ERROR, TEXT, Bools, Codes, Floats, Valu
 
 if TYPE_CHECKING:
     from xlmc.formula import ir
-    from xlmc.sampling.draws import Linear
 
 __all__ = [
     "BLANK_RESULT",
@@ -27,10 +26,12 @@ __all__ = [
     "Column",
     "Evaluator",
     "KeptBlock",
+    "Linear",
     "Program",
     "Room",
     "RunsWholeBlocks",
     "Target",
+    "UniformStream",
     "column_of",
 ]
 
@@ -116,6 +117,22 @@ class Room:
     accepted: NDArray[np.int64]
     draws: Mapping[str, Floats]
     forecasts: Sequence[Floats]
+
+
+class UniformStream(Protocol):
+    """A random stream whose uniforms an engine can draw itself."""
+
+    @property
+    def beginning(self) -> tuple[int, int]:
+        """The 128-bit state of a PCG64DXSM before the first trial, and its increment."""
+
+
+@dataclass(frozen=True, slots=True)
+class Linear:
+    """Draws that are offset + factor·uniform, all of them, in the order of their stages."""
+
+    streams: Sequence[UniformStream]
+    maps: Sequence[tuple[float, float]]
 
 
 class BlockRunner(Protocol):

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from xlmc import statistics
 from xlmc.definitions.evidence import Bell, Within
 from xlmc.run.evidence_trials import EvidenceTrials, evidence_trials
-from xlmc.run.stopping.stopped import list_of
+from xlmc.run.plain_words import list_of
 from xlmc.statistics import Estimate, Sample
 
 if TYPE_CHECKING:

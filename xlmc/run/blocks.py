@@ -24,10 +24,10 @@ from xlmc.evaluation.engine import (
     Column,
     Evaluator,
     KeptBlock,
+    Linear,
     Room,
     RunsWholeBlocks,
 )
-from xlmc.sampling.draws import Linear
 
 __all__ = ["Block", "FilterTally", "ModelRunner", "Portable", "Runner", "Task", "fault_text", "portions"]
 

@@ -22,6 +22,7 @@ from xlmc.evaluation.engine import (
     Column,
     Evaluator,
     KeptBlock,
+    Linear,
     Program,
     Room,
     RunsWholeBlocks,
@@ -31,7 +32,6 @@ from xlmc.run.needed import filter_condition
 
 if TYPE_CHECKING:
     from xlmc.functions.values import Bools
-    from xlmc.sampling.draws import Linear
 
 __all__ = ["FilteringEvaluator", "FilteringProgram", "conditions_of", "discards_by_name", "filters_by_forecast"]
 

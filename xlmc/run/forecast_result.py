@@ -16,7 +16,7 @@ from xlmc import statistics
 from xlmc.columns import numbers
 from xlmc.definitions.definitions import Forecast
 from xlmc.errors import Notice
-from xlmc.run.stopping.stopped import list_of
+from xlmc.run.plain_words import list_of
 from xlmc.statistics import Description, Estimate, Sample, errors_from_trials, too_short
 
 __all__ = ["FARTHEST_PART", "TELLING", "ForecastResult", "Replicates", "interval_notices", "tail_notices"]

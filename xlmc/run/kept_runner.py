@@ -23,13 +23,13 @@ from numpy.typing import NDArray
 
 from xlmc.address import Cell
 from xlmc.definitions.definitions import Filter
-from xlmc.evaluation.engine import Column, Evaluator, Target
+from xlmc.evaluation.engine import Column, Evaluator, Linear, Target
 from xlmc.evaluation.engines import ENGINES
 from xlmc.run.blocks import ModelRunner
 from xlmc.run.draw_binding import base_point, parameter_target
 from xlmc.run.model import Model, paused_collection
 from xlmc.run.needed import filter_condition, filter_limits
-from xlmc.sampling.draws import Draw, DrawStage, Linear, Sampler
+from xlmc.sampling.draws import Draw, DrawStage, Sampler
 from xlmc.statistics.estimate import finite
 
 __all__ = ["KeptRunner"]

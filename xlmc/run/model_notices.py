@@ -11,7 +11,7 @@ from xlmc.definitions.definitions import Assumption, Forecast
 from xlmc.errors import Notice
 from xlmc.formula import Graph
 from xlmc.run.needed import Needed
-from xlmc.run.stopping.stopped import list_of
+from xlmc.run.plain_words import list_of
 
 __all__ = ["example_notices", "heavy_notices", "still_notices"]
 

@@ -23,9 +23,10 @@ from xlmc.run.checking import CheckResult, check_results
 from xlmc.run.digit_watch import lost_digits
 from xlmc.run.directions import direction_notices
 from xlmc.run.forecast_result import ForecastResult, Replicates, tail_notices
+from xlmc.run.plain_words import list_of
 from xlmc.run.result_cells import RunFacts, ShownResults, shown_results
 from xlmc.run.stopping import Stopped
-from xlmc.run.stopping.stopped import ALL_TRIALS, list_of
+from xlmc.run.stopping.stopped import ALL_TRIALS
 from xlmc.run.weighing import Weighting, weighting_of
 from xlmc.sampling.sampling_methods import METHODS
 from xlmc.sampling.sampling_plan import SamplingPlan

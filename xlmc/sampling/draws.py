@@ -18,13 +18,14 @@ from xlmc.distributions.parameters import Fault
 from xlmc.distributions.truncated import Slice
 from xlmc.distributions.uniform import Uniform
 from xlmc.errors import SimulationError
+from xlmc.evaluation.engine import Linear
 from xlmc.functions.denormals import TINIEST, flush
 from xlmc.sampling.copula import Ties, ties_of
 from xlmc.sampling.copulas import Joining
 from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.sampling.streams import Stream
 
-__all__ = ["CorrelatedGroup", "Draw", "DrawStage", "DynamicParameters", "Filler", "Linear", "Sampler"]
+__all__ = ["CorrelatedGroup", "Draw", "DrawStage", "DynamicParameters", "Filler", "Sampler"]
 
 Floats = NDArray[np.float64]
 
@@ -179,14 +180,6 @@ class CorrelatedGroup:
     names: tuple[str, ...]
     copula: Joining
     where: Cell | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Linear:
-    """Draws that are offset + factor·uniform, all of them, in the order of their stages."""
-
-    streams: tuple[Stream, ...]
-    maps: tuple[tuple[float, float], ...]
 
 
 class Sampler:

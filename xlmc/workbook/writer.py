@@ -18,8 +18,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-from xlmc.columns.column_store import new_file_name, owned, remove_stray_files
 from xlmc.errors import WorkbookError
+from xlmc.workbook.temporary_names import new_file_name, owned, remove_stray_files
 
 __all__ = [
     "TakenError",

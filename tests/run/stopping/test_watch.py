@@ -10,9 +10,9 @@ from xlmc.address import parse_address
 from xlmc.definitions.definitions import Forecast
 from xlmc.definitions.stopping import NO_GOAL, AcceptedTrials, stopping
 from xlmc.errors import SimulationError
+from xlmc.run.plain_words import duration
 from xlmc.run.stopping import Interruption, Stopped, Watch, chosen_rule, may_end_early, refuse_other_sampling
 from xlmc.run.stopping.rule import UntilAccepted
-from xlmc.run.stopping.stopped import duration
 
 
 def watch(block_of_trials, *, rule=None, trials=100, seconds=None, interrupted_after=10**9):

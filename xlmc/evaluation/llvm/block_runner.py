@@ -12,12 +12,12 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 from math import gcd
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.evaluation.engine import KeptBlock, Room
+from xlmc.evaluation.engine import KeptBlock, Linear, Room
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Input
 from xlmc.evaluation.llvm.block_kernel import WORD, Layout, compile_kernel
@@ -28,9 +28,6 @@ from xlmc.evaluation.llvm.phase import Loop, Phase
 from xlmc.evaluation.llvm.uniforms import filler
 from xlmc.functions import Kind
 from xlmc.functions.values import Floats
-
-if TYPE_CHECKING:
-    from xlmc.sampling.draws import Linear
 
 __all__ = ["BlockParts", "NativeBlockRunner", "block_parts"]
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import FormulaError
-from xlmc.evaluation.engine import BlockRunner, Column, Evaluator, Target
+from xlmc.evaluation.engine import BlockRunner, Column, Evaluator, Linear, Target
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.lower import Lowering
 from xlmc.evaluation.graph.nodes import Input, Select
@@ -31,7 +31,6 @@ from xlmc.functions.values import Floats, constant
 
 if TYPE_CHECKING:
     from xlmc.evaluation.engine import Program
-    from xlmc.sampling.draws import Linear
 
 __all__ = ["JitProgram", "fastest_program"]
 

@@ -9,12 +9,13 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Sequence
 from functools import cache
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 import numpy as np
 from llvmlite import ir
 from numpy.typing import NDArray
 
+from xlmc.evaluation.engine import UniformStream
 from xlmc.evaluation.llvm.machine import NativeLoop, machine
 
 __all__ = ["Fill", "filler", "halves", "jump"]
@@ -37,12 +38,7 @@ _ALL_BITS: Final = (1 << 128) - 1
 _LOW_HALF: Final = (1 << 64) - 1
 
 
-class _Stream(Protocol):
-    @property
-    def beginning(self) -> tuple[int, int]: ...
-
-
-def filler(streams: Sequence[_Stream], maps: Sequence[tuple[float, float]], rows: NDArray[np.float64]) -> Fill:
+def filler(streams: Sequence[UniformStream], maps: Sequence[tuple[float, float]], rows: NDArray[np.float64]) -> Fill:
     """A `Fill` that fills `rows` (k, block) with offset + factor·uniform, from a trial on.
 
     Args:

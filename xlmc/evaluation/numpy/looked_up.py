@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from xlmc.columns.cache_lines import aligned_array
+from xlmc.evaluation.cache_lines import aligned_array
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant
 from xlmc.evaluation.graph.table_functions import TableFunction, table_function_of

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.columns.cache_lines import aligned_array
+from xlmc.evaluation.cache_lines import aligned_array
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Select, uses
 from xlmc.evaluation.graph.number_lookups import key_of, lookup_of

@@ -21,9 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.definitions.stopping import StableDigits
+from xlmc.run.plain_words import be, list_of
 from xlmc.run.stopping.progress import RunningMoments
 from xlmc.run.stopping.rule import Columns, Observed
-from xlmc.run.stopping.stopped import be, list_of
 
 __all__ = ["LEAST_SEQUENCES", "Sequences", "UntilStable", "numerical_tolerance", "sequence_length"]
 

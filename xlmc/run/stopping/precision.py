@@ -19,9 +19,9 @@ from typing import Final
 
 from xlmc.columns import numbers
 from xlmc.definitions.stopping import Precision
+from xlmc.run.plain_words import be, list_of
 from xlmc.run.stopping.progress import RunningMoments
 from xlmc.run.stopping.rule import Columns, Observed
-from xlmc.run.stopping.stopped import be, list_of
 from xlmc.statistics import Estimate, Sample, percentile
 
 __all__ = [

@@ -12,10 +12,11 @@ from xlmc.definitions.definitions import Forecast
 from xlmc.definitions.stopping import Stopping
 from xlmc.distributions.spelling import name_key
 from xlmc.errors import SimulationError
+from xlmc.run.plain_words import duration
 from xlmc.run.stopping.adaptive import UntilStable
 from xlmc.run.stopping.precision import UntilPrecise
 from xlmc.run.stopping.rule import Columns, Observed, StopRule, UntilAccepted
-from xlmc.run.stopping.stopped import Stopped, duration
+from xlmc.run.stopping.stopped import Stopped
 from xlmc.sampling.sampling_methods import METHODS
 
 __all__ = ["RULES", "Interruption", "Watch", "chosen_rule", "may_end_early", "refuse_other_sampling"]

@@ -9,9 +9,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from xlmc.columns import column_store
-from xlmc.columns.column_store import (
-    ColumnStore,
+from xlmc.columns.column_store import ColumnStore
+from xlmc.workbook import temporary_names
+from xlmc.workbook.temporary_names import (
     new_file_name,
     new_folder_name,
     owned,
@@ -88,11 +88,11 @@ def test_a_process_of_another_person_lives(monkeypatch):
         raise PermissionError
 
     monkeypatch.setattr(os, "kill", refuse)
-    assert column_store._lives(1)
+    assert temporary_names._lives(1)
 
 
 def test_a_number_no_process_can_have_is_dead():
-    assert not column_store._lives(10**30)
+    assert not temporary_names._lives(10**30)
 
 
 def kernel_of(handle, error=0, wait=0):
@@ -121,5 +121,5 @@ def test_processes_on_windows_by_a_substitute(monkeypatch, kernel, lives):
     import ctypes
 
     monkeypatch.setattr(ctypes, "windll", SimpleNamespace(kernel32=kernel), raising=False)
-    assert column_store._lives_on_windows(123) is lives
+    assert temporary_names._lives_on_windows(123) is lives
     assert kernel.closed == ([7] if kernel.handle else [])

@@ -18,6 +18,7 @@ from templates.description import (
 )
 from templates.editions import Both
 from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
+from templates.road_friction import FRICTION, FRICTION_ROWS, FRICTION_SHAPE, FRICTION_SOURCE
 from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY
 
@@ -49,9 +50,9 @@ _ASSUMPTIONS = (
         "f",
         "Friction",
         "g",
-        0.75,
-        "Example, dry asphalt: uniform .70 to .85, tails to .60 and .95 (SAE 2001-01-3347, Figure 4 and Table 1)",
-        {"Low": 0.60, "Low likeliest": 0.70, "High likeliest": 0.85, "High": 0.95},
+        FRICTION,
+        FRICTION_SOURCE,
+        FRICTION_SHAPE,
         "Trapezoid",
         "0.000",
     ),
@@ -149,7 +150,7 @@ _CHECKS = checks_section(
         "Friction is that of road tyres, up to 1.2",
         "AND(f>0,f<=1.2)",
         "published values",
-        "FALSE: more than road tyres hold; the published range ends at 0.95.",
+        "FALSE: more than road tyres hold; the published ranges end at 0.95.",
     ),
     check(
         "check_slowing",
@@ -197,10 +198,7 @@ _GUIDE = (
         ("Use a value measured on the scene, and remember that sliding sideways is not braking.",),
         (
             ("Surface", "Friction (g)"),
-            ("Dry asphalt, averages of tests", ".72 to .78"),
-            ("Travelled asphalt, below 30 mph", ".60 to .80"),
-            ("Travelled asphalt, above 30 mph", ".55 to .70"),
-            ("Case study of SAE 2001-01-3347, dry asphalt", ".60 to .95"),
+            *FRICTION_ROWS,
         ),
     ),
     CAVEATS,

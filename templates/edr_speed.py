@@ -20,6 +20,7 @@ from templates.description import (
 )
 from templates.editions import Both
 from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, READINGS, SIGNS
+from templates.road_friction import FRICTION_SHAPE, FRICTION_SOURCE
 from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY, MPH
 
@@ -67,9 +68,10 @@ _ASSUMPTIONS = (
         "Deceleration while braking",
         "g",
         0.70,
-        "Example. Enter: friction of this surface",
-        {"Low": 0.65, "High": 0.75},
-        number_format="0.000",
+        FRICTION_SOURCE,
+        FRICTION_SHAPE,
+        "Trapezoid",
+        "0.000",
     ),
     Input(
         "tau",
@@ -219,7 +221,7 @@ _ANSWERS = (
     speed_answer("vi", "vi", "Speed at the impact", "v_impact_s"),
     Equation(
         "v_on_[mph|kmh]",
-        "von",
+        "von ([mph|km/h])",
         "Speed at the sample at which the brake was first on",
         "[mph|km/h]",
         "CHOOSE(MAX(n_on,1),t_0," + ",".join(f"t_{number}" for number in _SAMPLES) + ")",

@@ -2,13 +2,28 @@
 
 from __future__ import annotations
 
-from templates.braking import BRAKING, BRAKING_CHECK, BRAKING_INPUT, RESPONSE_FILTER, STOPPING_SPEED, time_of_braking
+from templates.braking import (
+    BRAKED_CHECK,
+    BRAKED_INPUT,
+    BRAKING,
+    BRAKING_CHECK,
+    BRAKING_INPUT,
+    BRAKING_TIME,
+    NO_BRAKING,
+    RESPONSE_BEYOND,
+    RESPONSE_FILTER,
+    RESPONSE_LIMITS,
+    SCENE_TELLS,
+    STOPPING_SPEED,
+    way_braked,
+)
 from templates.checks import check, checks_section
 from templates.description import (
     Curve,
     Diagram,
     Equation,
     EvidenceRow,
+    FilterRow,
     ForecastRow,
     GuideSection,
     Input,
@@ -20,7 +35,7 @@ from templates.description import (
 from templates.editions import Both
 from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, READINGS, SIGNS
 from templates.speed_answer import speed_answer
-from templates.thrown_body import EFFICIENCY_CHECK, THROWN
+from templates.thrown_body import ANGLE_CHECK, EFFICIENCY_CHECK, PROJECTION_SPEED, THROWN, after_landing
 from templates.units import CONVERSIONS, GRAVITY, MPH
 
 __all__ = ["TEMPLATE"]
@@ -30,10 +45,10 @@ _ASSUMPTIONS = (
     Input(
         "d_before",
         "db",
-        "«1» marks before the impact",
+        "«1» marks before the impact (used where it braked)",
         "[ft|m]",
         Both(30, 9),
-        "Example. Enter: surveyed up to the point of impact; 0 where there are none",
+        "Example. Enter: surveyed up to the point of impact. Did it not brake? Answer 2 below",
         {"Low": Both(27, 8), "High": Both(33, 10)},
         number_format="0.0",
     ),
@@ -43,17 +58,17 @@ _ASSUMPTIONS = (
         "«1» braking after the impact, to rest",
         "[ft|m]",
         Both(50, 15),
-        "Example. Enter: from the point of impact to rest, where it braked all the way",
+        "Example. Enter: from the point of impact to rest, where it braked all the way; 0 where that is not known",
         {"Low": Both(47, 14), "High": Both(53, 16)},
         number_format="0.0",
     ),
     Input(
         "s",
         "s",
-        "Throw distance, from the impact to rest",
+        "Throw distance along the ground, from the impact to rest",
         "[ft|m]",
         Both(54, 16.5),
-        "Example. Enter: surveyed; as wide as the point of impact is uncertain",
+        "Example. Enter: surveyed; as wide as the point of impact is uncertain; 0 where it is not known",
         {"Low": Both(50, 15.5), "High": Both(58, 17.5)},
         number_format="0.0",
     ),
@@ -74,7 +89,7 @@ _ASSUMPTIONS = (
         "Pedestrian: walking speed",
         "[ft|m]/s",
         Both(4.5, 1.4),
-        "Experts' reports take 4 to 5 ft/s; see sheet Guide for age",
+        "Experts' reports take [4 to 5 ft/s|1.2 to 1.5 m/s]; see sheet Guide for age",
         {"Low": Both(4, 1.2), "High": Both(5, 1.5)},
         number_format="0.00",
     ),
@@ -91,37 +106,61 @@ _CONSTANTS = (
         number_format="0",
         choices=(1, 2),
     ),
+    BRAKED_INPUT,
     Input(
         "limit",
-        "V",
+        "V ([mph|km/h])",
         "Speed that the question is about, such as the limit",
         "[mph|km/h]",
         Both(30, 50),
         "Enter: the posted limit",
         number_format="0.0",
     ),
+    *RESPONSE_LIMITS,
     GRAVITY,
     *CONVERSIONS,
 )
 
 _SPEED = (
     BRAKING,
+    *way_braked("d_before", "db"),
+    Equation(
+        "marks_known",
+        "",
+        "Marks after the impact were measured (1 = yes)",
+        "",
+        "IF(d_after>0,1,0)",
+        "input",
+        "A blank length is no measurement: it gives no speed.",
+        number_format="0",
+    ),
     Equation(
         "v_marks",
         "vs",
         "Impact speed, from the marks after it",
         "[ft|m]/s",
-        "SQRT(2*b*d_after)",
+        "IF(marks_known=1,SQRT(2*b*d_after),NA())",
         "√(2·b·da)",
+    ),
+    Equation(
+        "throw_known",
+        "",
+        "A throw was measured (1 = yes)",
+        "",
+        "IF(s>0,1,0)",
+        "input",
+        number_format="0",
     ),
     Equation(
         "v_projected",
         "vp",
         "Projection speed of the body",
         "[ft|m]/s",
-        "SQRT(2*mu*g*s)/(COS(RADIANS(angle))+mu*SIN(RADIANS(angle)))",
-        "Searle, SAE 831622: √(2 μ g s)/(cos θ + μ sin θ)",
+        f"IF(throw_known=1,{PROJECTION_SPEED},NA())",
+        "Searle, SAE 831622, with the fall H: √(2 μ g (s − μH))/(cos θ + μ sin θ)",
+        "Flight, landing and slide with one μ; s is the whole distance.",
     ),
+    after_landing("v_projected", "vp"),
     Equation(
         "v_thrown",
         "vt",
@@ -132,48 +171,68 @@ _SPEED = (
         "A vehicle is never slower than the body that it throws.",
     ),
     Equation("v_i", "vi", "Impact speed", "[ft|m]/s", "IF(known=2,v_thrown,v_marks)", "input"),
-    Equation("v_0", "v0", "Speed before braking", "[ft|m]/s", "SQRT(v_i^2+2*b*d_before)", "√(vi² + 2·b·db)"),
+    Equation("v_0", "v0", "Speed before braking", "[ft|m]/s", "SQRT(v_i^2+2*b*d_braked)", "√(vi² + 2·b·d)"),
 )
 
 _TIME = (
     Equation("t_walk", "tw", "From becoming a hazard to the impact", "s", "walked/walking", "dw / u"),
-    time_of_braking("d_before"),
-    Equation("t_response", "tr", "Response time that this crash implies", "s", "t_walk-t_brake", "tw − tb"),
+    BRAKING_TIME,
+    Equation(
+        "t_response",
+        "tr",
+        "Response time that this crash implies",
+        "s",
+        "t_walk-t_brake",
+        "tw − tb",
+        "Without braking: at least.",
+    ),
+    RESPONSE_BEYOND,
     Equation(
         "D_0",
         "D0",
         "«1» distance from the point of impact when the hazard began",
         "[ft|m]",
-        "v_0*t_response+d_before",
-        "v0·tr + db",
+        "v_0*t_response+d_braked",
+        "v0·tr + d",
         number_format="0.00",
     ),
     Equation("V_s", "V", "The speed in question", "[ft|m]/s", f"limit/({MPH})", "input"),
     Equation(
         "stops",
         "",
-        "Same driver at that speed: stops before the point of impact (1 = yes)",
+        "Same driver at that speed: stops before the point of impact, at most (1 = yes)",
         "",
         "IF(AND(D_0-V_s*t_response>0,V_s^2<=2*b*(D_0-V_s*t_response)),1,0)",
         "V² ≤ 2·b·(D0 − V·tr)",
         "The template time-distance also asks whether the pedestrian would have cleared.",
         number_format="0",
     ),
+    Equation(
+        "stops_least",
+        "",
+        "The same, at least (1 = yes)",
+        "",
+        "IF(did_brake=1,stops,0)",
+        "without braking: 0",
+        "A driver who had not responded when he struck may never have braked.",
+        number_format="0",
+    ),
 )
 
 _ANSWERS = (
+    speed_answer("vi", "vi", "Impact speed", "v_i"),
     speed_answer("vs", "vs", "Impact speed, from the marks", "v_marks"),
     speed_answer("vt", "vt", "Impact speed, from the throw", "v_thrown"),
     speed_answer("v0", "v0", "Speed before braking", "v_0"),
     STOPPING_SPEED,
     Equation(
         "apart",
-        "vt − vs",
+        "vt − vs ([mph|km/h])",
         "Impact speed from the throw, less that from the marks",
         "[mph|km/h]",
         f"(v_thrown-v_marks)*{MPH}",
         "definition",
-        "Two answers to one question: near 0 where both are right.",
+        "Two answers to one question: near 0 where both are right. None where one was not measured.",
         Role.ANSWER,
         "0.00",
     ),
@@ -184,18 +243,19 @@ _CHECKS = checks_section(
     check(
         "check_lengths",
         "No length or time is negative",
-        "AND(d_before>=0,d_after>=0,s>0,walked>0,walking>0,limit>0)",
+        "AND(d_before>=0,d_after>=0,s>=0,H>=0,walked>0,walking>0,limit>0)",
         "geometry",
-        "FALSE: a length below 0, or none.",
+        "FALSE: a length below 0, or no way walked.",
     ),
     check(
         "check_known",
         "What the impact speed is taken from was measured",
-        "IF(known=2,s>0,d_after>0)",
+        "IF(known=2,throw_known=1,marks_known=1)",
         "input",
-        "FALSE: no braking after the impact. Choose the throw (2), or enter the length.",
+        "FALSE: what is chosen was not measured, so that there is no impact speed. Choose the other, or enter it.",
     ),
     BRAKING_CHECK,
+    BRAKED_CHECK,
     check(
         "check_body",
         "Friction of the body is up to 1.2",
@@ -203,12 +263,13 @@ _CHECKS = checks_section(
         "plausibility",
         "FALSE: more than a body on the ground can have. A percentage entered as a number?",
     ),
+    ANGLE_CHECK,
     check(
-        "check_angle",
-        "The angle of projection is that of a throw",
-        "AND(angle>=0,angle<=2*DEGREES(ATAN(mu)))",
+        "check_slide",
+        "The body slides on after it lands",
+        "IF(AND(throw_known=1,ABS(angle)<90,mu<=1.2),IF(s>mu*H,u_after>=0,FALSE),TRUE)",
         "physics",
-        "FALSE: steeper than twice the angle that throws farthest; a vehicle does not project so.",
+        "FALSE: so steep, or short, a throw stops where it lands: the formula gives too low a speed, or none.",
     ),
     EFFICIENCY_CHECK,
     check(
@@ -221,7 +282,7 @@ _CHECKS = checks_section(
     check(
         "check_response",
         "The hazard began before the braking",
-        "t_response>0",
+        "IF(check_known,t_response>0,TRUE)",
         "physics",
         "FALSE: the driver braked before there was a hazard. Look at the way walked and the walking speed.",
     ),
@@ -243,7 +304,7 @@ _DIAGRAM = Diagram(
     (
         Curve("«1»", Look.FIRST, (*(_still_to_go(f"{step}/12") for step in _STEPS), ("t_walk", "0"))),
         Curve("Pedestrian", Look.SECOND, (("0", "walked"), ("t_walk", "0"))),
-        Curve("Braking begins", Look.POINT, (("t_response", "d_before"),)),
+        Curve("Braking begins", Look.POINT, (("t_response", "d_braked"),)),
     ),
     remark="Drawn from the cells below.",
 )
@@ -257,7 +318,8 @@ _GUIDE = (
         "When to use this model",
         (
             "A vehicle braked, struck a pedestrian with its front, and braked on to rest. Marks and throw each give "
-            "the impact speed; marks before the impact the speed before braking; the way walked, the response time.",
+            "the impact speed; marks before the impact the speed before braking; the way walked, the response time. A "
+            "length that was not measured is 0, and gives no answer of its own.",
             "Marks and throw answer one question twice. Choose the better one; sheet Evidence has a row in which "
             "their difference must be 0, within an error that you decide on before you look.",
             "Not for a body carried on the vehicle, thrown over the roof, or struck by its corner; not where the "
@@ -268,6 +330,7 @@ _GUIDE = (
             "would have done.",
         ),
     ),
+    NO_BRAKING,
     GuideSection(
         "Walking: published values",
         ("Use the pedestrian's age and what witnesses saw.",),
@@ -299,15 +362,34 @@ TEMPLATE = Template(
         _CHECKS,
     ),
     forecasts=(
+        ForecastRow("«1» impact speed", "vi_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("«1» impact speed, from the marks", "vs_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("«1» impact speed, from the throw", "vt_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("«1» speed before braking", "v0_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow("Implied response time", "t_response", "s"),
+        SCENE_TELLS,
+        ForecastRow("Implied response time (without braking: at least)", "t_response", "s"),
         ForecastRow("Distance when the hazard began", "D_0", "[ft|m]"),
-        ForecastRow("Highest speed that still stops", "v_stop_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow("Same driver at the limit: stops (1 = yes)", "stops", "", threshold=0.5),
+        ForecastRow("Highest speed that still stops (without braking: at most)", "v_stop_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("Same driver at the limit: stops, at most (1 = yes)", "stops", "", threshold=0.5),
+        ForecastRow("Same driver at the limit: stops, at least (1 = yes)", "stops_least", "", threshold=0.5),
     ),
-    filters=(RESPONSE_FILTER,),
+    filters=(
+        RESPONSE_FILTER,
+        FilterRow(
+            "Marks were measured",
+            "marks_known",
+            "A blank length gives no answer",
+            above=0.5,
+            only_for="«1» impact speed, from the marks",
+        ),
+        FilterRow(
+            "A throw was measured",
+            "throw_known",
+            "A blank length gives no answer",
+            above=0.5,
+            only_for="«1» impact speed, from the throw",
+        ),
+    ),
     evidence=(
         EvidenceRow(
             "Throw and marks agree",
@@ -319,7 +401,7 @@ TEMPLATE = Template(
         ),
         EvidenceRow(
             "Impact speed in an EDR or a video",
-            "vs_[mph|kmh]",
+            "vi_[mph|kmh]",
             None,
             "Normal",
             {},

@@ -18,6 +18,7 @@ from templates.description import (
 )
 from templates.editions import Both
 from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
+from templates.road_friction import FRICTION, FRICTION_ROWS, FRICTION_SHAPE, FRICTION_SOURCE
 from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY, MPH
 from templates.vehicles import phase
@@ -25,10 +26,15 @@ from templates.vehicles import phase
 __all__ = ["TEMPLATE"]
 
 _SURFACES = (1, 2, 3)
-_FRICTION = "Example, dry asphalt: uniform .70 to .85, tails to .60 and .95 (SAE 2001-01-3347, Figure 4 and Table 1)"
 _LATER = (
-    ("yaw", "Yaw", 0.75, (0.60, 0.95), "Tyres that slide sideways: as for braking. Held at length 0 until used"),
-    ("trip", "Trip", 0.75, (0.60, 0.95), "Placeholder, not a published value. Held at length 0 until used"),
+    ("yaw", "Yaw", FRICTION, (0.55, 0.80), "Tyres that slide sideways: as for braking. Held at length 0 until used"),
+    (
+        "trip",
+        "Trip",
+        FRICTION,
+        (0.55, 0.80),
+        "No published value is known here: as tyres that slide, until you enter one. Held at length 0 until used",
+    ),
     (
         "roll",
         "Roll",
@@ -40,6 +46,7 @@ _LATER = (
 )
 """Phases after the skid: symbol, name until another is typed, deceleration, its range, source."""
 _PHASES = (*map(str, _SURFACES), *(symbol for symbol, *_ in _LATER))
+_FURTHER_FRICTION = "As the first surface, held: set Frozen to FALSE, and enter its own where the skid goes on over it"
 _FURTHER = "Example, held: set Frozen to FALSE, and a length, where the skid goes on over another surface"
 
 
@@ -51,12 +58,10 @@ def _surface(number: int) -> tuple[Input, Input]:
             f"f{number}",
             f"{phase(number)} friction",
             "g",
-            0.75,
-            _FRICTION if first else _FURTHER,
-            {"Low": 0.60, "Low likeliest": 0.70, "High likeliest": 0.85, "High": 0.95}
-            if first
-            else {"Low": 0.60, "High": 0.95},
-            "Trapezoid" if first else "Uniform",
+            FRICTION,
+            FRICTION_SOURCE if first else _FURTHER_FRICTION,
+            FRICTION_SHAPE,
+            "Trapezoid",
             "0.000",
             frozen=not first,
         ),
@@ -111,7 +116,7 @@ _ASSUMPTIONS = (
     *(given for symbol, _, *rest in _LATER for given in _later(symbol, *rest)),
     Input(
         "v_end",
-        "vend",
+        "vend,given ([mph|km/h])",
         "Speed at the end of the skid",
         "[mph|km/h]",
         0,
@@ -122,7 +127,7 @@ _ASSUMPTIONS = (
     ),
     Input(
         "v_begin",
-        "vbegin",
+        "vbegin,given ([mph|km/h])",
         "Speed at the beginning of the skid (used where known = 2)",
         "[mph|km/h]",
         Both(55, 90),
@@ -268,7 +273,7 @@ _ANSWERS = (
     ),
     Equation(
         "v_[mph|kmh]",
-        "v",
+        "v ([mph|km/h])",
         "Speed at the beginning of the skid",
         "[mph|km/h]",
         f"v_start*{MPH}",
@@ -333,7 +338,7 @@ _AIR_BRAKES = (
     ),
     Equation(
         "v_air_[mph|kmh]",
-        "vair",
+        "vair ([mph|km/h])",
         "Speed when the brakes were applied, stopped by air brakes",
         "[mph|km/h]",
         f'IF(N(t_rise)>0,2*way_air/(t_rise/2+SQRT(t_rise^2/4+2*way_air/(drag_mean*g)))*{MPH},"–")',
@@ -364,7 +369,7 @@ _CHECKS = checks_section(
         "Frictions are those of road tyres, up to 1.2",
         "AND(MIN({0})>0,MAX({0})<=1.2,braking>0,braking<=1)".format(",".join(f"f_{i}" for i in _PHASES)),
         "published values",
-        "FALSE: more than road tyres give; the published range ends at 0.95. A percentage entered as a number?",
+        "FALSE: more than road tyres give; the published ranges end at 0.95. A percentage entered as a number?",
     ),
     check(
         "check_end",
@@ -430,10 +435,7 @@ _GUIDE = (
         ("Measure on the scene with a similar car where you can. The ranges below are no substitute for that.",),
         (
             ("Surface", "Friction (g)"),
-            ("Dry asphalt, averages of tests", ".72 to .78"),
-            ("Travelled asphalt, below 30 mph", ".60 to .80"),
-            ("Travelled asphalt, above 30 mph", ".55 to .70"),
-            ("Case study of SAE 2001-01-3347, dry asphalt", ".60 to .95"),
+            *FRICTION_ROWS,
             ("Shape of the paper's Figure 4", "uniform .70 to .85, straight tails to the extremes of the literature"),
             ("Motorcycle on its side, [25 mph|40 km/h] (Day and Smith, 1984)", ".45 to .58"),
             ("Motorcycle on its side, fairing (Raftery, 1995)", ".26; without fairing .33"),

@@ -9,10 +9,13 @@ __all__ = ["speed_answer"]
 
 
 def speed_answer(symbol: str, notation: str, name: str, quantity: str, note: str = "") -> Equation:
-    """The speed `quantity`, in ft/s or m/s, as an answer; the unit ends its symbol."""
+    """The speed `quantity`, in ft/s or m/s, as an answer; the unit ends its symbol and its notation.
+
+    So that no equation prints a speed as itself times a conversion.
+    """
     return Equation(
         f"{symbol}_[mph|kmh]",
-        notation,
+        f"{notation} ([mph|km/h])",
         name,
         "[mph|km/h]",
         f"{quantity}*{MPH}",

@@ -1,11 +1,17 @@
-"""A body that a vehicle throws: how it slides and how it leaves, the same in every template (Searle, SAE 831622)."""
+"""A body that a vehicle throws: flight, landing and slide, the same in every template.
+
+With the fall H of its centre of gravity, s = (v·cos θ + μ·v·sin θ)²/(2·μ·g) + μ·H: the flight, then a landing at which
+friction takes μ times the vertical speed from the speed along the ground, then the slide (Searle, SAE 831622). It holds
+where the body slides on after it lands; a body that stops where it lands comes less far, and was faster.
+"""
 
 from __future__ import annotations
 
 from templates.checks import check
-from templates.description import Input
+from templates.description import Equation, Input
+from templates.editions import Both
 
-__all__ = ["EFFICIENCY_CHECK", "THROWN"]
+__all__ = ["ANGLE_CHECK", "EFFICIENCY_CHECK", "FRICTION_ROWS", "PROJECTION_SPEED", "THROWN", "after_landing"]
 
 THROWN = (
     Input(
@@ -14,10 +20,22 @@ THROWN = (
         "Friction of the body on the ground",
         "",
         0.66,
-        "Placeholder, not a published value. Enter: tests of clothed dummies on this surface, as wide as they scatter",
+        "Values that authors use with their equations: .5 to .8, most .60 to .71, Searle .66 and later .7 (Eubanks, "
+        "Current Trends in Pedestrian Crash Reconstruction, 2008; sheet Guide). Enter: tests on this surface",
         {"Low": 0.5, "Low likeliest": 0.6, "High likeliest": 0.7, "High": 0.8},
         "Trapezoid",
         "0.00",
+    ),
+    Input(
+        "H",
+        "H",
+        "Fall of the body's centre of gravity, from projection to rest",
+        "[ft|m]",
+        Both(2.3, 0.70),
+        "Example, an adult on foot: [35 in|0.89 m] above the feet in a case on tarorigin.com, less some "
+        "[7 in|0.19 m], judged, where it lies. Enter: from this body's height, the vehicle's front, and the slope",
+        {"Low": Both(2.0, 0.6), "High": Both(2.7, 0.8)},
+        number_format="0.00",
     ),
     Input(
         "angle",
@@ -25,7 +43,8 @@ THROWN = (
         "Angle of projection above the ground",
         "deg",
         15,
-        "Example. Seldom known: 0 where the body was pushed forward; wide where it was lifted",
+        "Example, judged; riders of motorcycles leave at 10 to 20° (Hutchison, vceinc.com). Seldom known: 0 where the "
+        "body was pushed forward; wide where it was lifted",
         {"Low": 0, "High": 30},
         number_format="0.0",
     ),
@@ -35,12 +54,38 @@ THROWN = (
         "Projection speed over «1» speed",
         "",
         0.9,
-        "Example. 1: the body reached the vehicle's speed. Less where it was lifted, or hit at the edge",
+        "Example, judged; no published value is quoted here. 1: the body reached the vehicle's speed. Less where it "
+        "was lifted, or hit at the edge",
         {"Low": 0.8, "High": 1},
         number_format="0.00",
     ),
 )
-"""Friction on the ground, angle of projection, and projection speed over that of the vehicle."""
+"""Friction on the ground, fall, angle of projection, and projection speed over that of the vehicle."""
+
+PROJECTION_SPEED = "SQRT(2*mu*g*(s-mu*H))/(COS(RADIANS(angle))+mu*SIN(RADIANS(angle)))"
+"""Formula of the speed at the angle given; #NUM! where the whole distance is shorter than the fall takes, s < μ·H."""
+
+
+def after_landing(speed: str, notation: str) -> Equation:
+    """Speed along the ground just after the landing, of a body projected at `speed`; below 0 the body stops there."""
+    return Equation(
+        "u_after",
+        "ul",
+        "Speed along the ground after landing",
+        "[ft|m]/s",
+        f"{speed}*COS(RADIANS(angle))-mu*SQRT(({speed}*SIN(RADIANS(angle)))^2+2*g*H)",
+        f"{notation}·cos θ − μ·√({notation}²·sin² θ + 2·g·H)",
+        "Friction acts on the landing blow too. Below 0: it stops where it lands; the formula gives too low a speed.",
+    )
+
+
+ANGLE_CHECK = check(
+    "check_angle",
+    "The angle of projection is an angle above or below the ground, within 90°",
+    "ABS(angle)<90",
+    "geometry",
+    "FALSE: a compass direction entered as a slope?",
+)
 
 EFFICIENCY_CHECK = check(
     "check_efficiency",
@@ -49,3 +94,14 @@ EFFICIENCY_CHECK = check(
     "physics",
     "FALSE: an inelastic body cannot leave faster than what pushes it.",
 )
+
+FRICTION_ROWS = (
+    ("Searle", ".66, later .7"),
+    ("Hague", ".62"),
+    ("Northwestern University Traffic Institute", ".60"),
+    ("Aronberg and Snider", ".5"),
+    ("Collins", ".8"),
+    ("Schmidt and Nagel", ".7"),
+    ("Stcherbatcheff", ".71"),
+)
+"""Rows of the Guide: author, friction of a body in that author's equations, all as listed by Eubanks (2008)."""

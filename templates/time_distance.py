@@ -2,7 +2,21 @@
 
 from __future__ import annotations
 
-from templates.braking import BRAKING, BRAKING_CHECK, BRAKING_INPUT, RESPONSE_FILTER, STOPPING_SPEED, time_of_braking
+from templates.braking import (
+    BRAKED_CHECK,
+    BRAKED_INPUT,
+    BRAKING,
+    BRAKING_CHECK,
+    BRAKING_INPUT,
+    BRAKING_TIME,
+    NO_BRAKING,
+    RESPONSE_BEYOND,
+    RESPONSE_FILTER,
+    RESPONSE_LIMITS,
+    SCENE_TELLS,
+    STOPPING_SPEED,
+    way_braked,
+)
 from templates.checks import check, checks_section
 from templates.description import (
     Curve,
@@ -27,10 +41,13 @@ __all__ = ["TEMPLATE"]
 
 _RESPONSE = "To brake lights, surprise: mean 1.25 s, SD 0.46 s (Ergonomics, 1993); cut off at 0.5 and 3 s"
 
+_HIT = "Same driver: impact speed if not avoided (without braking: at least)"
+_MARGIN = "Same driver: margin if it arrives (without braking: at most)"
+
 _ASSUMPTIONS = (
     Input(
         "v_impact",
-        "vi",
+        "vi ([mph|km/h])",
         "«1» speed at the impact",
         "[mph|km/h]",
         Both(40, 64),
@@ -41,10 +58,10 @@ _ASSUMPTIONS = (
     Input(
         "d_brake",
         "db",
-        "«1» braking distance before the impact",
+        "«1» braking distance before the impact (used where it braked)",
         "[ft|m]",
         Both(60, 18),
-        "Example. Enter: skid or ABS marks up to the point of impact; 0 where it did not brake",
+        "Example. Enter: skid or ABS marks up to the point of impact. Did it not brake? Answer 2 below",
         {"Low": Both(57, 17), "High": Both(63, 19)},
         number_format="0.0",
     ),
@@ -61,7 +78,7 @@ _ASSUMPTIONS = (
     ),
     Input(
         "u",
-        "u",
+        "u ([mph|km/h])",
         "Intruder: speed when it became a hazard",
         "[mph|km/h]",
         0,
@@ -106,15 +123,17 @@ _ASSUMPTIONS = (
 )
 
 _CONSTANTS = (
+    BRAKED_INPUT,
     Input(
         "limit",
-        "V",
+        "V ([mph|km/h])",
         "Speed that the question is about, such as the limit",
         "[mph|km/h]",
         Both(45, 70),
         "Enter: the posted limit, or the speed that was prudent there",
         number_format="0.0",
     ),
+    *RESPONSE_LIMITS,
     GRAVITY,
     *CONVERSIONS,
 )
@@ -122,8 +141,9 @@ _CONSTANTS = (
 _AS_IT_WAS = (
     Equation("v_i", "vi", "Speed at the impact", "[ft|m]/s", f"v_impact/({MPH})", "input"),
     BRAKING,
-    Equation("v_0", "v0", "Speed before braking", "[ft|m]/s", "SQRT(v_i^2+2*b*d_brake)", "v0² = vi² + 2·b·db"),
-    time_of_braking("d_brake"),
+    *way_braked("d_brake", "db"),
+    Equation("v_0", "v0", "Speed before braking", "[ft|m]/s", "SQRT(v_i^2+2*b*d_braked)", "v0² = vi² + 2·b·d"),
+    BRAKING_TIME,
     Equation("u_s", "u", "Intruder's speed at the start", "[ft|m]/s", f"u/({MPH})", "input"),
     Equation(
         "t_intruder",
@@ -149,15 +169,25 @@ _AS_IT_WAS = (
         "s",
         "t_intruder-t_brake",
         "tI − tb",
-        "Rise of the brakes included. Below 0: braking began before there was a hazard.",
+        "Rise of the brakes included. Below 0: braking began before there was a hazard. Without braking: at least.",
+    ),
+    RESPONSE_BEYOND,
+    Equation(
+        "t_weighed",
+        "",
+        "Response time, as evidence weighs it",
+        "s",
+        "IF(AND(did_brake=0,ISNUMBER(t_usual)),t_usual,t_response)",
+        "tr, or the reading",
+        "Without braking the reading itself, which weighs nothing: a lower bound is no measured time.",
     ),
     Equation(
         "D_0",
         "D0",
         "Distance from the point of impact when the hazard began",
         "[ft|m]",
-        "v_0*t_response+d_brake",
-        "v0·tr + db",
+        "v_0*t_response+d_braked",
+        "v0·tr + d",
         number_format="0.00",
     ),
     Equation("V_s", "V", "The speed in question", "[ft|m]/s", f"limit/({MPH})", "input"),
@@ -174,7 +204,9 @@ def _instead(driver: str, who: str, response: str) -> tuple[Equation, ...]:
             "[ft|m]",
             f"D_0-V_s*{response}",
             "D0 − V·t",
-            "0 or less: the vehicle arrives before it brakes." if driver == "same" else "",
+            "0 or less: it arrives before it brakes. Without braking before the impact: he brakes as soon as tI has passed."
+            if driver == "same"
+            else "",
             number_format="0.00",
         ),
         Equation(
@@ -216,11 +248,33 @@ def _instead(driver: str, who: str, response: str) -> tuple[Equation, ...]:
     )
 
 
+_NEVER = (
+    Equation(
+        "t_arrive_never",
+        "ta,never",
+        "Never braking: arrives after",
+        "s",
+        "D_0/V_s",
+        "D0 / V",
+        "A driver who had not responded when he struck may never have braked. It strikes at the speed in question.",
+    ),
+    Equation(
+        "avoided_least",
+        "",
+        "Same driver: avoided, at least (1 = yes)",
+        "",
+        "IF(did_brake=1,avoided_same,IF(t_arrive_never>=t_clear,1,0))",
+        "without braking: D0 / V ≥ tc",
+        "Without braking, at most is as above: he brakes as soon as the time to the impact has passed. Else equal.",
+        number_format="0",
+    ),
+)
+
 _ANSWERS = (
     speed_answer("v0", "v0", "Speed before braking", "v_0"),
     Equation(
         "over_[mph|kmh]",
-        "v0 − V",
+        "v0 − V ([mph|km/h])",
         "Speed before braking, less the speed in question",
         "[mph|km/h]",
         f"v_0*{MPH}-limit",
@@ -265,7 +319,7 @@ _SELF_TEST = (
 )
 
 _CHECKS = checks_section(
-    6,
+    7,
     check(
         "check_inputs",
         "Speeds, distances and times are not negative",
@@ -281,6 +335,7 @@ _CHECKS = checks_section(
         "FALSE: neither speed nor acceleration: it stands still.",
     ),
     BRAKING_CHECK,
+    BRAKED_CHECK,
     check(
         "check_response",
         "The hazard began before the braking",
@@ -326,10 +381,15 @@ _DIAGRAM = Diagram(
             Look.SECOND,
             tuple(_seen_at(f"{step}/12", "V_s", "t_response", "t_clear") for step in _STEPS),
         ),
+        Curve(
+            "Same driver, never braking",
+            Look.LINE,
+            (("0", "D_0"), ("IF(did_brake=1,0,t_clear)", "IF(did_brake=1,D_0,D_0-V_s*t_clear)")),
+        ),
         Curve("Intruder at the point of impact", Look.FIRST_PATH, (("t_intruder", "0"), ("t_intruder", "D_0"))),
         Curve("Intruder has cleared", Look.SECOND_PATH, (("t_clear", "0"), ("t_clear", "D_0"))),
     ),
-    remark="Drawn from the cells below. A curve that reaches 0 after the intruder has cleared, or never, is no crash.",
+    remark="Drawn from the cells below. Never braking is drawn where it did not brake. A curve that reaches 0 after the intruder has cleared, or never, is no crash.",
 )
 
 _GUIDE = (
@@ -359,19 +419,29 @@ _GUIDE = (
             "Ordinary driver: would a driver drawn from the published distribution have avoided it from there? Another "
             "question, with another answer, often a very different one. Say which one you answer.",
             "The implied response time is evidence: below 0.5 s nobody responds, and a filter rejects it. The row on "
-            "sheet Evidence weighs it by the published distribution of response times, if you set Use to TRUE; "
-            "do so only if nothing else in the workbook already uses that distribution for this driver.",
+            "sheet Evidence weighs it by the published distribution of response times, if you set Use to TRUE; it has "
+            "no effect without braking. Do so only if nothing else in the workbook already uses that distribution for "
+            "this driver.",
             "Where the vehicle was no faster than the speed in question, that speed would not have helped: the same "
             "driver has then not avoided it. See how often it was above the limit.",
             "Yes and no (1 and 0): the mean is the probability. So is Above threshold, with its interval.",
         ),
     ),
+    NO_BRAKING,
     GuideSection(
         "Published values",
         ("A constant acceleration is for the first [30 ft|10 m] or so: it falls as speed grows.",),
         (
             ("Quantity", "Values"),
             ("Response to brake lights, surprise", "mean 1.25 s, SD 0.46 s"),
+            (
+                "Green's review of such times (Transportation Human Factors 2(3), 2000)",
+                "brake lights ahead about 1.25 s; an object that suddenly moves into the path roughly 1.5 s",
+            ),
+            (
+                "A barrel that rolls toward the path, drivers unaware (HFES Proceedings 37, 1993, page 206)",
+                "mean 1.5 s, 85th percentile 1.9 s, at all ages alike",
+            ),
             (
                 "Of drivers who braked in 122 events of left turns across the path",
                 "100, 99, 90, 58, 30 % reached .4, .5, .6, .7, .8 g (SAE 2019-01-0414, tallied by Peck)",
@@ -400,20 +470,23 @@ TEMPLATE = Template(
         Section("1  As it was", _AS_IT_WAS),
         Section("2  The same driver at the speed in question", _instead("same", "Same driver", "t_response")),
         Section("3  An ordinary driver at the speed in question", _instead("fresh", "Ordinary driver", "t_fresh")),
-        Section("4  Answers (the forecasts)", _ANSWERS),
-        Section("5  Test of the sheet itself", _SELF_TEST),
+        Section("4  The same driver, had he never braked", _NEVER),
+        Section("5  Answers (the forecasts)", _ANSWERS),
+        Section("6  Test of the sheet itself", _SELF_TEST),
         _CHECKS,
     ),
     forecasts=(
         ForecastRow("«1» speed before braking", "v0_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("«1» speed before braking, above the limit", "over_[mph|kmh]", "[mph|km/h]", threshold=0),
-        ForecastRow("Implied response time", "t_response", "s"),
+        SCENE_TELLS,
+        ForecastRow("Implied response time (without braking: at least)", "t_response", "s"),
         ForecastRow("Distance when the hazard began", "D_0", "[ft|m]"),
-        ForecastRow("Highest speed that still stops", "v_stop_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow("Same driver: stops (1 = yes)", "stops_same", "", threshold=0.5),
-        ForecastRow("Same driver: avoided (1 = yes)", "avoided_same", "", threshold=0.5),
-        ForecastRow("Same driver: impact speed if not avoided", "v_hit_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow("Same driver: margin if it arrives", "margin", "s", threshold=0),
+        ForecastRow("Highest speed that still stops (without braking: at most)", "v_stop_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("Same driver: stops, at most (1 = yes)", "stops_same", "", threshold=0.5),
+        ForecastRow("Same driver: avoided, at most (1 = yes)", "avoided_same", "", threshold=0.5),
+        ForecastRow("Same driver: avoided, at least (1 = yes)", "avoided_least", "", threshold=0.5),
+        ForecastRow(_HIT, "v_hit_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow(_MARGIN, "margin", "s", threshold=0),
         ForecastRow("Ordinary driver: avoided (1 = yes)", "avoided_fresh", "", threshold=0.5),
     ),
     filters=(
@@ -423,25 +496,26 @@ TEMPLATE = Template(
             "avoided_same",
             "The impact speed is that of the trials in which there is an impact",
             below=0.5,
-            only_for="Same driver: impact speed if not avoided",
+            only_for=_HIT,
         ),
         FilterRow(
             "Arrives",
             "stops_same",
             "The margin is that of the trials in which the vehicle arrives",
             below=0.5,
-            only_for="Same driver: margin if it arrives",
+            only_for=_MARGIN,
         ),
     ),
     evidence=(
         EvidenceRow(
             "Response time of surprised drivers",
-            "t_response",
+            "t_weighed",
             1.25,
             "Normal",
             {"Std dev": 0.46},
-            "Ergonomics, 1993. Set Use to TRUE to weigh the implied response time by it",
+            "Ergonomics, 1993. Set Use to TRUE to weigh the implied response time by it. No effect without braking",
             use=False,
+            named="t_usual",
         ),
     ),
     settings=(("Trials", 200_000), ("Seed", 999)),

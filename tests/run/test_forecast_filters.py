@@ -129,3 +129,12 @@ def test_a_base_case_that_is_discarded_is_told_all_the_same(model):
     run = Model(model.workbook, hidden, model.path).simulate(200)
     base = {each["name"]: each["base_case"] for each in document(run)["forecasts"]}
     assert base["ten"] == 5.0
+
+
+def test_an_error_that_is_discarded_is_no_base_case(model):
+    """B3 divides by 0 at the base case: it has no value there, not 0."""
+    hidden = replace(model.definitions, forecast_filters=(own("low", "B1", "odd", at_least=6.0),))
+    run = Model(model.workbook, hidden, model.path).simulate(200)
+    base = {each["name"]: each["base_case"] for each in document(run)["forecasts"]}
+    assert base["odd"] is None
+    assert base["ten"] == 5.0

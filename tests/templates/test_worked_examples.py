@@ -16,7 +16,7 @@ CRUSH = {"A_given_1": 479.7, "B_given_1": 52.2, "A_given_2": 355.8, "B_given_2":
 CRUSH |= {f"c_1_{i}": 14 for i in range(1, 7)} | {f"c_2_{i}": 25.138 for i in range(1, 7)}
 CRUSH |= {f"{symbol}_{j}": 0 for symbol in ("bias", "theta", "h") for j in (1, 2)}
 WEDGE = CRUSH | {f"c_1_{i}": 4.8 * (i - 1) for i in range(1, 7)}
-THROW = {"s": 60, "mu": 0.66, "g": 32.174}
+THROW = {"s": 60, "mu": 0.66, "H": 0, "g": 32.174}
 YAW = {"chord": 52, "ordinate": 6, "f": 0.2, "bank": 0, "offset": 0, "g": 32.174}
 SKID = {"f_1": 0.75, "d_1": 100, "d_2": 0, "d_3": 0, "v_end": 0, "grade": 0, "g": 32.174}
 
@@ -137,7 +137,7 @@ EXAMPLES = [
         {"closing_mph": 35, "dV1_mph": 35, "ratio": 1, "check_balance": 1, "E_2": 0},
         2e-4,
     ),
-    ("pedestrian-throw", THROW, {"vmax_mph": 34.417, "vmin_mph": 28.725}, 1e-3),
+    ("pedestrian-throw", THROW, {"vlevel_mph": 34.417, "vmin_mph": 28.725}, 1e-3),
     ("pedestrian-throw", THROW | {"angle": 0}, {"v_mph": 34.4178}, 5e-5),
     ("pedestrian-throw", THROW | {"angle": 33.42480}, {"v_mph": 28.7255}, 5e-5),  # atan .66
     ("pedestrian-throw", THROW | {"angle": 0, "efficiency": 0.8}, {"V_vehicle_mph": 34.4178 / 0.8}, 1e-4),
@@ -258,7 +258,7 @@ EXAMPLES = [
     ("pedestrian", {"d_after": 60, "f": 0.66, "g": 32.174, "known": 1}, {"vs_mph": 34.4178}, 5e-5),
     (
         "pedestrian",
-        {"s": 60, "mu": 0.66, "angle": 0, "efficiency": 0.8, "g": 32.174, "known": 2},
+        {"s": 60, "mu": 0.66, "H": 0, "angle": 0, "efficiency": 0.8, "g": 32.174, "known": 2},
         {"vt_mph": 34.4178 / 0.8, "v_i": 34.4178 / 0.8 / MPH},
         1e-4,
     ),
@@ -292,11 +292,12 @@ def test_delta_v_closes_the_energy_balance(cells):
     assert v["m_1"] * v["dV_1"] == pytest.approx(v["m_2"] * v["dV_2"])
 
 
-def test_every_angle_of_a_throw_lies_between_searles_bounds(cells):
-    angles = np.linspace(0, 2 * np.degrees(np.arctan(0.66)), 200)
-    v = cells("pedestrian-throw", THROW | {"angle": angles}, ["v_throw", "v_least", "v_most"])
+def test_a_throw_is_at_least_searles_bound_and_level_fastest_up_to_twice_the_best_angle(cells):
+    twice = 2 * np.degrees(np.arctan(0.66))
+    angles = np.linspace(-10, twice + 10, 200)
+    v = cells("pedestrian-throw", THROW | {"H": 2.3, "angle": angles}, ["v_throw", "v_least", "v_level"])
     assert (v["v_throw"] >= v["v_least"] * (1 - 1e-12)).all()
-    assert (v["v_throw"] <= v["v_most"] * (1 + 1e-12)).all()
+    assert ((v["v_throw"] <= v["v_level"]) == ((angles >= 0) & (angles <= twice))).all()
 
 
 def test_the_textbook_that_prints_80_is_caught(cells):

@@ -122,7 +122,12 @@ class _FilteringRunner:
 
 
 def _discarding(column: Column, conditions: Sequence[Column]) -> Column:
-    """The column with a code where a condition is false, that of the first such condition, or is an error."""
+    """The column with a code where a condition is false, that of the first such condition, or is an error.
+
+    Where the forecast is an error itself, the code that takes the place of the error's goes with NaN: what is discarded
+    is still shown at the base case.
+    """
+    values = column.values if column.codes is None else column.as_floats()
     kind = np.min_scalar_type(DISCARDED_FIRST + len(conditions))
     codes = np.zeros(column.values.shape, kind) if column.codes is None else column.codes.astype(kind)
     for condition in conditions:
@@ -133,7 +138,7 @@ def _discarding(column: Column, conditions: Sequence[Column]) -> Column:
         if condition.codes is not None:
             false = false & (condition.codes == 0)
         codes[false] = DISCARDED_FIRST + number
-    return Column(column.values, codes)
+    return Column(values, codes)
 
 
 def _discard(column: Floats, fails: Sequence[Bools]) -> tuple[Floats, Counter[int]]:

@@ -61,7 +61,7 @@ _ASSUMPTIONS = (
         "Deceleration before the edge",
         "g",
         0.45,
-        "Example. Enter: friction of that surface where marks show braking",
+        "Example (.45 in Design News, 19 August 2002). Enter: friction of that surface where marks show braking",
         {"Low": 0.40, "High": 0.50},
         number_format="0.000",
     ),

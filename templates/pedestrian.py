@@ -304,7 +304,7 @@ _DIAGRAM = Diagram(
     (
         Curve("«1»", Look.FIRST, (*(_still_to_go(f"{step}/12") for step in _STEPS), ("t_walk", "0"))),
         Curve("Pedestrian", Look.SECOND, (("0", "walked"), ("t_walk", "0"))),
-        Curve("Braking begins", Look.POINT, (("t_response", "d_braked"),)),
+        Curve("Braking begins, or the impact", Look.POINT, (("t_response", "d_braked"),)),
     ),
     remark="Drawn from the cells below.",
 )

@@ -39,9 +39,9 @@ _LATER = (
         "roll",
         "Roll",
         0.50,
-        (0.38, 0.60),
+        (0.40, 0.60),
         "Dolly tests on soil: .52 and .53 over the whole roll (Rose, Rollover Accident Reconstruction); within one "
-        "roll from .6 to .2 (SAE 2009-01-0093). Held at length 0 until used",
+        "roll from .6 to .2, whose middle is .4 (SAE 2009-01-0093). Held at length 0 until used",
     ),
 )
 """Phases after the skid: symbol, name until another is typed, deceleration, its range, source."""
@@ -142,7 +142,7 @@ _ASSUMPTIONS = (
         "Perception and response time",
         "s",
         1.25,
-        "Published distribution: mean 1.25 s, standard deviation 0.46 s; cut off where no one can respond",
+        "To brake lights, surprise: mean 1.25 s, SD 0.46 s (Ergonomics, 1993); cut off where no one can respond",
         {"Mean": 1.25, "Std dev": 0.46, "Lower cutoff": 0.3},
         "Normal",
         "0.00",

@@ -204,7 +204,7 @@ def _instead(driver: str, who: str, response: str) -> tuple[Equation, ...]:
             "[ft|m]",
             f"D_0-V_s*{response}",
             "D0 − V·t",
-            "0 or less: it arrives before it brakes. Without braking before the impact: he brakes as soon as tI has passed."
+            "0 or less: it arrives before it brakes. Without braking: he brakes as soon as tI has passed."
             if driver == "same"
             else "",
             number_format="0.00",
@@ -384,12 +384,19 @@ _DIAGRAM = Diagram(
         Curve(
             "Same driver, never braking",
             Look.LINE,
-            (("0", "D_0"), ("IF(did_brake=1,0,t_clear)", "IF(did_brake=1,D_0,D_0-V_s*t_clear)")),
+            (
+                ("0", "D_0"),
+                (
+                    "IF(did_brake=1,0,MIN(t_clear,t_arrive_never))",
+                    "IF(did_brake=1,D_0,D_0-V_s*MIN(t_clear,t_arrive_never))",
+                ),
+            ),
         ),
         Curve("Intruder at the point of impact", Look.FIRST_PATH, (("t_intruder", "0"), ("t_intruder", "D_0"))),
         Curve("Intruder has cleared", Look.SECOND_PATH, (("t_clear", "0"), ("t_clear", "D_0"))),
     ),
-    remark="Drawn from the cells below. Never braking is drawn where it did not brake. A curve that reaches 0 after the intruder has cleared, or never, is no crash.",
+    remark="Drawn from the cells below. Never braking is drawn where it did not brake. A curve that reaches 0 after "
+    "the intruder has cleared, or never, is no crash.",
 )
 
 _GUIDE = (

@@ -87,6 +87,8 @@ def _draw_forecast(
     _number(sheet, styles, row, 4, forecast.threshold)
     sheet.write_string(row, 5, notation, styles("centred"))
     sheet.write_blank(row, 6, None, styles("text"))
+    if len(forecast.name) > _WIDTHS[0]:
+        fit_row(sheet, row, [(forecast.name, _WIDTHS[0])])
 
 
 def _draw_filters(

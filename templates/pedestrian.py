@@ -35,7 +35,7 @@ from templates.description import (
 from templates.editions import Both
 from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, READINGS, SIGNS
 from templates.speed_answer import speed_answer
-from templates.thrown_body import ANGLE_CHECK, EFFICIENCY_CHECK, PROJECTION_SPEED, THROWN, after_landing
+from templates.thrown_body import ANGLE_CHECK, EFFICIENCY_CHECK, THROWN, projection
 from templates.units import CONVERSIONS, GRAVITY, MPH
 
 __all__ = ["TEMPLATE"]
@@ -151,16 +151,7 @@ _SPEED = (
         "input",
         number_format="0",
     ),
-    Equation(
-        "v_projected",
-        "vp",
-        "Projection speed of the body",
-        "[ft|m]/s",
-        f"IF(throw_known=1,{PROJECTION_SPEED},NA())",
-        "Searle, SAE 831622, with the fall H: √(2 μ g (s − μH))/(cos θ + μ sin θ)",
-        "Flight, landing and slide with one μ; s is the whole distance.",
-    ),
-    after_landing("v_projected", "vp"),
+    *projection("v_projected", "vp", "Projection speed of the body", where="throw_known=1"),
     Equation(
         "v_thrown",
         "vt",
@@ -264,13 +255,6 @@ _CHECKS = checks_section(
         "FALSE: more than a body on the ground can have. A percentage entered as a number?",
     ),
     ANGLE_CHECK,
-    check(
-        "check_slide",
-        "The body slides on after it lands",
-        "IF(AND(throw_known=1,ABS(angle)<90,mu<=1.2),IF(s>mu*H,u_after>=0,FALSE),TRUE)",
-        "physics",
-        "FALSE: so steep, or short, a throw stops where it lands: the formula gives too low a speed, or none.",
-    ),
     EFFICIENCY_CHECK,
     check(
         "check_walking",

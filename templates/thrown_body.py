@@ -2,7 +2,8 @@
 
 With the fall H of its centre of gravity, s = (v·cos θ + μ·v·sin θ)²/(2·μ·g) + μ·H: the flight, then a landing at which
 friction takes μ times the vertical speed from the speed along the ground, then the slide (Searle, SAE 831622). It holds
-where the body slides on after it lands; a body that stops where it lands comes less far, and was faster.
+where the body slides on after it lands. A body that stops where it lands comes less far than that equation says: it was
+faster, and its flight alone gives its speed.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from templates.checks import check
 from templates.description import Equation, Input
 from templates.editions import Both
 
-__all__ = ["ANGLE_CHECK", "EFFICIENCY_CHECK", "FRICTION_ROWS", "PROJECTION_SPEED", "THROWN", "after_landing"]
+__all__ = ["ANGLE_CHECK", "EFFICIENCY_CHECK", "FRICTION_ROWS", "THROWN", "projection"]
 
 THROWN = (
     Input(
@@ -62,20 +63,49 @@ THROWN = (
 )
 """Friction on the ground, fall, angle of projection, and projection speed over that of the vehicle."""
 
-PROJECTION_SPEED = "SQRT(2*mu*g*(s-mu*H))/(COS(RADIANS(angle))+mu*SIN(RADIANS(angle)))"
-"""Formula of the speed at the angle given; #NUM! where the whole distance is shorter than the fall takes, s < μ·H."""
+_COSINE, _SINE = "COS(RADIANS(angle))", "SIN(RADIANS(angle))"
+_SLIDES = f"IF(s>mu*H,SQRT(2*mu*g*(s-mu*H))/({_COSINE}+mu*{_SINE}),0)"
+_STOPS = f"s*SQRT(g/(2*(H+s*TAN(RADIANS(angle)))))/{_COSINE}"
 
 
-def after_landing(speed: str, notation: str) -> Equation:
-    """Speed along the ground just after the landing, of a body projected at `speed`; below 0 the body stops there."""
-    return Equation(
-        "u_after",
-        "ul",
-        "Speed along the ground after landing",
-        "[ft|m]/s",
-        f"{speed}*COS(RADIANS(angle))-mu*SQRT(({speed}*SIN(RADIANS(angle)))^2+2*g*H)",
-        f"{notation}·cos θ − μ·√({notation}²·sin² θ + 2·g·H)",
-        "Friction acts on the landing blow too. Below 0: it stops where it lands; the formula gives too low a speed.",
+def projection(symbol: str, notation: str, name: str, where: str = "") -> tuple[Equation, ...]:
+    """Steps to the speed `symbol` at which a body of the inputs `THROWN` leaves, to come to rest after `s`.
+
+    Args:
+        symbol: of the speed.
+        notation: of the speed.
+        name: of the speed.
+        where: condition without which the throw has no speed; by default none.
+    """
+    speed = f"IF(u_after>=0,v_slide,{_STOPS})"
+    return (
+        Equation(
+            "v_slide",
+            "vslide",
+            "Projection speed, if the body slides on after it lands",
+            "[ft|m]/s",
+            _SLIDES,
+            "Searle, SAE 831622, with the fall H: √(2 μ g (s − μH))/(cos θ + μ sin θ)",
+            "Flight, landing and slide with one μ; s is the whole distance.",
+        ),
+        Equation(
+            "u_after",
+            "ul",
+            "Speed along the ground after landing",
+            "[ft|m]/s",
+            f"v_slide*{_COSINE}-mu*SQRT((v_slide*{_SINE})^2+2*g*H)",
+            "v·cos θ − μ·√(v²·sin² θ + 2·g·H)",
+            "Friction acts on the landing blow too. Below 0: it stopped where it landed, after a flight only.",
+        ),
+        Equation(
+            symbol,
+            notation,
+            name,
+            "[ft|m]/s",
+            f"IF({where},{speed},NA())" if where else speed,
+            "as above; where it stopped: s = v²·cos² θ·(tan θ + √(tan² θ + 2·g·H/(v²·cos² θ)))/g",
+            "Steep or short throws stop where they land.",
+        ),
     )
 
 

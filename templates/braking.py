@@ -107,7 +107,7 @@ RESPONSE_BEYOND = Equation(
     "Δtr",
     "Response time, beyond its limits",
     "s",
-    "IF(did_brake=1,MAX(t_soonest-t_response,t_response-t_latest),0)",
+    "IF(AND(did_brake=1,ISNUMBER(t_response)),MAX(t_soonest-t_response,t_response-t_latest),0)",
     "tmin − tr, tr − tmax",
     "Below 0: between them. Without braking 0: what is only a lower bound rejects nothing.",
 )

@@ -172,7 +172,7 @@ _PARTS: dict[str, Callable[[_Measured], dict[str, Any]]] = {
 
 
 def _engines() -> list[str]:
-    from xlmc.evaluation.engines import ENGINES
+    from xlmc.engine.engines import ENGINES
 
     return list(ENGINES)
 

@@ -21,10 +21,10 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
+from xlmc.analysis.studies.verify import CellCheck, Status, verify
 from xlmc.errors import WorkbookError
-from xlmc.formula.shape import shape_of
-from xlmc.studies.verify import CellCheck, Status, verify
-from xlmc.workbook.reader import read_workbook
+from xlmc.excel.formula.shape import shape_of
+from xlmc.excel.workbook.reader import read_workbook
 
 ENDINGS = (".xlsx", ".xlsm")
 LEFT_OUT = (Status.VOLATILE, Status.NOT_CACHED)

@@ -20,14 +20,14 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 import xlmc
-from xlmc.address import parse_address
 from xlmc.api import Model
-from xlmc.definitions.evidence import Evidence
-from xlmc.definitions.tables.evidence_rows import as_filter
-from xlmc.run import evidence_trials
-from xlmc.run.agreement import Agreement, agreement
-from xlmc.run.simulate import simulate
-from xlmc.statistics import Estimate
+from xlmc.excel.address import parse_address
+from xlmc.montecarlo.definitions.evidence import Evidence
+from xlmc.montecarlo.definitions.tables.evidence_rows import as_filter
+from xlmc.montecarlo.diagnostics import evidence_trials
+from xlmc.montecarlo.diagnostics.agreement import Agreement, agreement
+from xlmc.montecarlo.simulation.simulate import simulate
+from xlmc.montecarlo.statistics import Estimate
 
 __all__ = ["ROWS", "Item", "Row", "faults", "found", "main", "with_evidence"]
 

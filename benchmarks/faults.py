@@ -37,9 +37,9 @@ import numpy as np
 import xlmc
 from xlmc.api import Simulation
 from xlmc.cli.new import templates
-from xlmc.columns import column_store
 from xlmc.errors import XlmcError
-from xlmc.workbook.writer import write_workbook
+from xlmc.excel.workbook.writer import write_workbook
+from xlmc.montecarlo.columns import column_store
 
 TOLD = 7
 """Exit code of a child that was told of a full disk in words."""

@@ -22,9 +22,9 @@ from problems import PROBLEMS, STATISTICS, Problem
 from scipy.special import bdtr
 from tables import placed
 
-import xlmc.statistics as xs
-from xlmc.sampling.sampling_methods import METHODS
-from xlmc.sampling.sampling_plan import SamplingPlan
+import xlmc.montecarlo.statistics as xs
+from xlmc.montecarlo.sampling.sampling_methods import METHODS
+from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 
 __all__ = ["RUNS", "Cell", "faults", "measure", "one_run", "table"]
 

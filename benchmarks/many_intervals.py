@@ -1,7 +1,7 @@
 """Mean, SD, percentiles and a share of many runs at once, with the intervals and notices that xlmc gives each of them.
 
-The formulas of `xlmc.statistics` on arrays with one row a run, without weights: some ten times as fast as its functions
-run by run. `tail_coverage.py` compares the two in every batch, and does not go on where they differ.
+The formulas of `xlmc.montecarlo.statistics` on arrays with one row a run, without weights: some ten times as fast as
+its functions run by run. `tail_coverage.py` compares the two in every batch, and does not go on where they differ.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import bdtrik, betaincinv, stdtrit
 
-from xlmc.statistics import pulls
-from xlmc.statistics.estimate import LENGTHENED
+from xlmc.montecarlo.statistics import pulls
+from xlmc.montecarlo.statistics.estimate import LENGTHENED
 
 __all__ = ["Numbers", "mean_and_deviation", "percentile", "share"]
 

@@ -22,8 +22,8 @@ from typing import Any
 from tables import placed
 
 import xlmc
-from xlmc.studies.methods import study
-from xlmc.studies.methods.need import choice
+from xlmc.analysis.studies.methods import study
+from xlmc.analysis.studies.methods.need import choice
 
 __all__ = ["BOOKS", "PAGE", "RESULTS", "SEEDS", "advice", "faults", "table"]
 

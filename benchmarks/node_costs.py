@@ -1,4 +1,4 @@
-"""What a cell of each kind costs in the engines `numpy` and `jit`: the table of `xlmc/evaluation/llvm/costs.py`.
+"""What a cell of each kind costs in the engines `numpy` and `jit`: the table of `xlmc/engine/llvm/costs.py`.
 
     python benchmarks/node_costs.py [--quick]
 
@@ -20,7 +20,7 @@ import books
 
 import xlmc
 from xlmc.api import Model
-from xlmc.evaluation.llvm import program
+from xlmc.engine.llvm import program
 
 __all__ = ["FORMULAS", "main", "measured"]
 

@@ -15,8 +15,8 @@ from contest import measured
 
 import xlmc
 from xlmc.api import load
-from xlmc.evaluation.engines import ENGINES
-from xlmc.run.simulate import BLOCK
+from xlmc.engine.engines import ENGINES
+from xlmc.montecarlo.simulation.simulate import BLOCK
 
 
 def main() -> None:

@@ -16,8 +16,8 @@ from typing import IO, Any
 from contest import measured
 
 import xlmc
-from xlmc.run.scheduling.processes import idle_pool
-from xlmc.run.simulate import BLOCK
+from xlmc.montecarlo.loop.scheduling.processes import idle_pool
+from xlmc.montecarlo.simulation.simulate import BLOCK
 
 ONE, TWO, ANEW, APART = "1", "2", "2 anew", "two programs"
 MOST_TRIALS = 30_000_000

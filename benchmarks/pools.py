@@ -51,7 +51,7 @@ CASES = {
 def by_pool(pool: Executor, portable: Any, own: Any, others: int, blocks: int, tasks: Iterable[Any]) -> Iterator[Any]:
     """The blocks in the order of their tasks."""
     from xlmc.errors import SimulationError
-    from xlmc.run.scheduling.batches import Answers, Sharing, Worker
+    from xlmc.montecarlo.loop.scheduling.batches import Answers, Sharing, Worker
 
     packed, answers = pickle.dumps(portable, protocol=5), Answers()
 
@@ -80,7 +80,7 @@ _runners: dict[bytes, Any] = {}
 
 def run_there(packed: bytes, tasks: Any) -> Any:
     """In the other process: the blocks, or None where there are no tasks but only a runner to be made."""
-    from xlmc.run.scheduling.batches import run_batch
+    from xlmc.montecarlo.loop.scheduling.batches import run_batch
 
     if packed not in _runners:
         _runners.clear()
@@ -96,8 +96,8 @@ class Pools:
 
     def choose(self, way: str) -> None:
         """Have the runs that follow use it."""
-        from xlmc.run.scheduling import worker_pool
-        from xlmc.run.scheduling.processes import by_processes
+        from xlmc.montecarlo.loop.scheduling import worker_pool
+        from xlmc.montecarlo.loop.scheduling.processes import by_processes
 
         worker_pool.by_processes = (
             by_processes if way == OWN else lambda *given: by_pool(self._pool(way, given[2]), *given)
@@ -119,7 +119,7 @@ class Pools:
     def end(self, way: str) -> None:
         """So that its next run starts a process."""
         if way == OWN:
-            from xlmc.run.scheduling.processes import idle_pool
+            from xlmc.montecarlo.loop.scheduling.processes import idle_pool
 
             idle_pool.end()
         else:

@@ -30,10 +30,10 @@ from rare_problems import PROBLEMS, STATISTICS
 from scipy.special import bdtr
 from tables import placed
 
-import xlmc.statistics as xs
-from xlmc.run.rare.landscape import Landscape
-from xlmc.run.rare.search import Found
-from xlmc.statistics import Estimate
+import xlmc.montecarlo.statistics as xs
+from xlmc.montecarlo.rare.landscape import Landscape
+from xlmc.montecarlo.rare.search import Found
+from xlmc.montecarlo.statistics import Estimate
 
 __all__ = ["covered", "estimates", "faults"]
 

@@ -15,10 +15,10 @@ from typing import Any
 from scipy import integrate
 from scipy.special import ndtr, ndtri
 
-from xlmc.address import parse_address
 from xlmc.api import Model
-from xlmc.definitions.definitions import Assumption, Correlation, Definitions, Filter, Forecast
-from xlmc.workbook.workbook import CellContent, Formula, Sheet, Workbook
+from xlmc.excel.address import parse_address
+from xlmc.excel.workbook.workbook import CellContent, Formula, Sheet, Workbook
+from xlmc.montecarlo.definitions.definitions import Assumption, Correlation, Definitions, Filter, Forecast
 
 __all__ = ["ORDINARY", "SEVERAL", "THIN", "RareBook"]
 

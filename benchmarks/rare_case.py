@@ -12,9 +12,9 @@ from typing import Any
 from rare_problems import STATISTICS
 
 import xlmc
-import xlmc.statistics as xs
+import xlmc.montecarlo.statistics as xs
 from xlmc.api import Model
-from xlmc.statistics import Estimate
+from xlmc.montecarlo.statistics import Estimate
 
 __all__ = ["CASE", "LABELS", "WORDS", "held", "model", "narrowed", "plain", "searched"]
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr, ndtri
 
-from xlmc.run.rare.search import Found, find
-from xlmc.run.rare.splitting import descend
+from xlmc.montecarlo.rare.search import Found, find
+from xlmc.montecarlo.rare.splitting import descend
 
 __all__ = ["Distance", "Floats", "compared", "one_run"]
 

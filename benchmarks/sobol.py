@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from tables import placed
 
 from xlmc.api import Model, load
-from xlmc.sampling.sampling_methods import METHODS
+from xlmc.montecarlo.sampling.sampling_methods import METHODS
 
 __all__ = ["gains", "means", "table"]
 

@@ -30,12 +30,12 @@ from scipy.special import bdtr
 from tables import placed
 from tail_problems import ORDINARY, PROBLEMS, RANKS, STATISTICS, Problem
 
-import xlmc.statistics as xs
-from xlmc.run.forecast_result import FARTHEST_PART, TELLING
-from xlmc.run.simulation import FEW, LEAST_ACCEPTED
-from xlmc.sampling.sampling_methods import METHODS
-from xlmc.sampling.sampling_plan import SamplingPlan
-from xlmc.statistics.sample import MOST_GROUPS
+import xlmc.montecarlo.statistics as xs
+from xlmc.montecarlo.loop.forecast_result import FARTHEST_PART, TELLING
+from xlmc.montecarlo.sampling.sampling_methods import METHODS
+from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
+from xlmc.montecarlo.simulation.simulation import FEW, LEAST_ACCEPTED
+from xlmc.montecarlo.statistics.sample import MOST_GROUPS
 
 __all__ = ["Cell", "faults", "measure", "one_run", "tables"]
 

@@ -19,11 +19,11 @@ from machine import describe
 from tables import placed
 
 import xlmc
+from xlmc.analysis.studies.methods import STATISTICS, Runs, Study, recommendation, study
+from xlmc.analysis.studies.methods.curve import runs_of
+from xlmc.analysis.studies.methods.sampled import MONTE_CARLO
 from xlmc.cli.methods import study_json
-from xlmc.report.methods import methods_tables, save_methods
-from xlmc.studies.methods import STATISTICS, Runs, Study, recommendation, study
-from xlmc.studies.methods.curve import runs_of
-from xlmc.studies.methods.sampled import MONTE_CARLO
+from xlmc.outputs.methods import methods_tables, save_methods
 
 __all__ = ["PAGE", "filled", "theory_rows", "theory_runs", "write"]
 

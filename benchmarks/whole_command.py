@@ -85,8 +85,8 @@ def _real(argument: Any) -> Any:
 def record(path: Path, trials: int = TRIALS) -> int:
     """Write what xlmc asks of XlsxWriter for the result sheets of a run; how many calls that are."""
     import xlmc
-    from xlmc.report.sheets import exact_book
-    from xlmc.report.sheets.book import build_sheets
+    from xlmc.outputs.sheets import exact_book
+    from xlmc.outputs.sheets.book import build_sheets
 
     run = xlmc.load(CASE_STUDY).simulate(trials)
     calls: list[Call] = []

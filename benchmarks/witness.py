@@ -26,7 +26,7 @@ from typing import Any, Final
 import numpy as np
 
 import xlmc
-from xlmc.report.json_document import document
+from xlmc.outputs.json_document import document
 
 __all__ = ["differences", "features", "main", "recorded", "witnessed"]
 

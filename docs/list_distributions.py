@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from xlmc.distributions import FAMILIES, Family, ParameterSpec
-from xlmc.distributions.parameters import show
-from xlmc.distributions.spelling import plain
-from xlmc.distributions.whole_numbers import WholeNumbers
+from xlmc.montecarlo.distributions import FAMILIES, Family, ParameterSpec
+from xlmc.montecarlo.distributions.parameters import show
+from xlmc.montecarlo.distributions.spelling import plain
+from xlmc.montecarlo.distributions.whole_numbers import WholeNumbers
 
 PAGE = Path(__file__).with_name("distributions.md")
 PICTURES = PAGE.parent / "pictures" / "distributions"

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from xlmc.evaluation.graph.choices import CHOICES
-from xlmc.evaluation.graph.expressions import WRITTEN_OUT
-from xlmc.evaluation.graph.lambdas import LAMBDAS
-from xlmc.evaluation.graph.reference_functions import REFERENCE_FUNCTIONS
-from xlmc.functions.families import REGISTRY
+from xlmc.engine.graph.choices import CHOICES
+from xlmc.engine.graph.expressions import WRITTEN_OUT
+from xlmc.engine.graph.lambdas import LAMBDAS
+from xlmc.engine.graph.reference_functions import REFERENCE_FUNCTIONS
+from xlmc.excel.functions.families import REGISTRY
 
 PAGE = Path(__file__).with_name("functions.md")
 

@@ -13,12 +13,12 @@ import pytest
 from openpyxl.workbook.defined_name import DefinedName as WrittenName
 from workbook_files import workbook_of
 
-from xlmc.address import Area, parse_address
 from xlmc.api import Model
-from xlmc.definitions.definitions import Assumption, Correlation, Definitions, Filter, Forecast
-from xlmc.definitions.evidence import Evidence
-from xlmc.definitions.tables.evidence_rows import as_filter
-from xlmc.workbook.workbook import CellContent, DefinedName, Formula, Sheet, Table, Workbook
+from xlmc.excel.address import Area, parse_address
+from xlmc.excel.workbook.workbook import CellContent, DefinedName, Formula, Sheet, Table, Workbook
+from xlmc.montecarlo.definitions.definitions import Assumption, Correlation, Definitions, Filter, Forecast
+from xlmc.montecarlo.definitions.evidence import Evidence
+from xlmc.montecarlo.definitions.tables.evidence_rows import as_filter
 
 
 def _content(value, row, column):

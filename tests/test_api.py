@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 import xlmc
-from xlmc.run import loading, simulate, simulation
+from xlmc.montecarlo.model import loading
+from xlmc.montecarlo.simulation import simulate, simulation
 
 BOOK = Path(__file__).resolve().parents[1] / "examples" / "skid-100-ft.xlsx"
 

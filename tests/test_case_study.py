@@ -9,7 +9,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from cases import cases
 
 import xlmc
 
@@ -60,14 +59,14 @@ def test_default_settings(model):
     assert (settings.trials, settings.seed, settings.sampling) == (200_000, 999, "mc")
 
 
-@cases("trials", SIZES)
+@pytest.mark.parametrize("trials", SIZES)
 def test_acceptance(runs, trials):
     run = runs[trials]
     assert near(run.acceptance, *ACCEPTANCE)
 
 
-@cases("trials", SIZES)
-@cases("name", REFERENCE)
+@pytest.mark.parametrize("trials", SIZES)
+@pytest.mark.parametrize("name", REFERENCE)
 def test_the_four_numbers_of_each_forecast(runs, trials, name):
     run = runs[trials]
     mean, mean_error, deviation, low, high = REFERENCE[name]
@@ -79,8 +78,8 @@ def test_the_four_numbers_of_each_forecast(runs, trials, name):
     assert near(found[1], high, QUANTILE_ERROR)
 
 
-@cases("trials", SIZES)
-@cases("name", TABLE_2)
+@pytest.mark.parametrize("trials", SIZES)
+@pytest.mark.parametrize("name", TABLE_2)
 def test_the_papers_own_table(runs, trials, name):
     """The paper printed one decimal from 3481 trials: half a unit of rounding, and 4 of its own standard errors."""
     result = runs[trials][name]
@@ -118,8 +117,8 @@ def test_the_reference_engine_agrees(model):
 
 
 def test_verify_finds_every_cell_right():
-    from xlmc.studies.verify import Status, verify
-    from xlmc.workbook.reader import read_workbook
+    from xlmc.analysis.studies.verify import Status, verify
+    from xlmc.excel.workbook.reader import read_workbook
 
     found = verify(read_workbook(BOOK))
     assert found.count(Status.MATCHED) == len(found.cells) > 70

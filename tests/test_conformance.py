@@ -12,7 +12,7 @@ from statistics import median
 
 import pytest
 
-from xlmc.studies.verify import Status
+from xlmc.analysis.studies.verify import Status
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT.parent / "shared" / "conformance"

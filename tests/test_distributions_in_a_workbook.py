@@ -10,7 +10,7 @@ import xlsxwriter
 from scipy import stats
 
 import xlmc
-from xlmc.results.statements.in_words import distribution_text
+from xlmc.analysis.results.statements.in_words import distribution_text
 
 TRIALS = 50_000
 COLUMNS = [

@@ -9,20 +9,19 @@ from pathlib import Path
 
 import click
 import pytest
-from cases import cases
 from described import undescribed
 from fewer_sheets import SHORT, keep_few_trials, keep_sheets, leave_out_fits
 
 from xlmc.cli import main, xlmc
-from xlmc.distributions import FAMILIES
-from xlmc.run.version import __version__
+from xlmc.montecarlo.distributions import FAMILIES
+from xlmc.montecarlo.loop.version import __version__
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 COMMAND_LINE = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
 
 
-@cases("name", sorted(xlmc.commands))
+@pytest.mark.parametrize("name", sorted(xlmc.commands))
 def test_every_command_and_option_is_documented(name):
     section = COMMAND_LINE.partition(f"## `xlmc {name}")[2].partition("\n## ")[0]
     assert section, name

@@ -16,12 +16,12 @@ from openpyxl import Workbook
 from scipy import stats
 
 import xlmc
-from xlmc.address import Area
 from xlmc.api import Model
-from xlmc.definitions.definitions_reader import read_definitions
+from xlmc.engine.engines import ENGINES
 from xlmc.errors import XlmcError
-from xlmc.evaluation.engines import ENGINES
-from xlmc.workbook.workbook import CellContent, Formula
+from xlmc.excel.address import Area
+from xlmc.excel.workbook.workbook import CellContent, Formula
+from xlmc.montecarlo.definitions.definitions_reader import read_definitions
 
 TRIALS = 25_000
 

@@ -9,7 +9,7 @@ import xlsxwriter
 from scipy import stats
 
 import xlmc
-from xlmc.results.statements.in_words import distribution_text
+from xlmc.analysis.results.statements.in_words import distribution_text
 
 TRIALS = 100_000
 HEADINGS = ["Name", "Value", "Distribution", "Low", "High", "Data"]

@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import xlmc.run.simulate
-from xlmc import statistics
+import xlmc.montecarlo.simulation.simulate
+from xlmc.analysis.results.record import make_record
 from xlmc.api import Model
-from xlmc.definitions.definitions import Settings
 from xlmc.errors import SimulationError
-from xlmc.results.record import make_record
-from xlmc.run.sobol_order import plan_sampling
-from xlmc.sampling.sampling_methods import METHODS
+from xlmc.montecarlo import statistics
+from xlmc.montecarlo.definitions.definitions import Settings
+from xlmc.montecarlo.loop.sobol_order import plan_sampling
+from xlmc.montecarlo.sampling.sampling_methods import METHODS
 
 ROUNDED = ", whole ones, for the 1,000 trials that were asked for"
 STRATIFIED = [method for method in METHODS if method != "mc"]
@@ -29,7 +29,7 @@ GIVEN = {
 @pytest.fixture
 def model(book, monkeypatch):
     """A filter, a dynamic parameter, a correlated group, an error now and then; blocks that cut through replicates."""
-    monkeypatch.setattr(xlmc.run.simulate, "BLOCK", 300)
+    monkeypatch.setattr(xlmc.montecarlo.simulation.simulate, "BLOCK", 300)
     filters = {"f": {"cell": "B2", "below": 0.4}}
     return book(CELLS, GIVEN, {"x": "B1", "y": "B3"}, filters, {("a", "c"): 0.5})
 
@@ -49,7 +49,7 @@ def test_who_runs_the_blocks_changes_no_bit(model, method, scheduler):
 @pytest.mark.parametrize("method", STRATIFIED)
 def test_the_block_size_changes_no_bit(model, monkeypatch, method):
     small = model.simulate(5_000, 3, sampling=method)
-    monkeypatch.setattr(xlmc.run.simulate, "BLOCK", 4_096)
+    monkeypatch.setattr(xlmc.montecarlo.simulation.simulate, "BLOCK", 4_096)
     assert everything(model.simulate(5_000, 3, sampling=method)) == everything(small)
 
 

@@ -12,12 +12,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from xlmc.analysis.studies.comparison import compare
+    from xlmc.analysis.studies.screening import screen
+    from xlmc.analysis.studies.sensitivity import sensitivities
     from xlmc.api import Model, Simulation, load, open_run
-    from xlmc.run.forecast_result import ForecastResult
-    from xlmc.run.version import __version__
-    from xlmc.studies.comparison import compare
-    from xlmc.studies.screening import screen
-    from xlmc.studies.sensitivity import sensitivities
+    from xlmc.montecarlo.loop.forecast_result import ForecastResult
+    from xlmc.montecarlo.loop.version import __version__
 
 __all__ = [
     "ForecastResult",
@@ -32,15 +32,15 @@ __all__ = [
 ]
 
 _HOMES = {
-    "ForecastResult": "run.simulation",
+    "ForecastResult": "montecarlo.simulation.simulation",
     "Model": "api",
     "Simulation": "api",
-    "__version__": "run.version",
-    "compare": "studies.comparison",
+    "__version__": "montecarlo.loop.version",
+    "compare": "analysis.studies.comparison",
     "load": "api",
     "open_run": "api",
-    "screen": "studies.screening",
-    "sensitivities": "studies.sensitivity",
+    "screen": "analysis.studies.screening",
+    "sensitivities": "analysis.studies.sensitivity",
 }
 
 

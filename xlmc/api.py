@@ -1,6 +1,6 @@
 """What people use in Python: the model of a workbook, its runs, and all that can be asked of either.
 
-What a model and a run *are* is in `xlmc.run`; the methods here call the rooms that do the work.
+What a model and a run *are* is in `xlmc.montecarlo.loop`; the methods here call the rooms that do the work.
 """
 
 from __future__ import annotations
@@ -9,21 +9,25 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from xlmc.definitions.stopping import stopping
-from xlmc.run import loading, model, simulation
+from xlmc.montecarlo.definitions.stopping import stopping
+from xlmc.montecarlo.model import loading, model
+from xlmc.montecarlo.simulation import simulation
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from xlmc.definitions.scenarios import Scenario
-    from xlmc.run.simulate import OnProgress
-    from xlmc.studies.scenario_answers import ScenarioAnswers
+    from xlmc.analysis.studies.scenario_answers import ScenarioAnswers
+    from xlmc.montecarlo.definitions.scenarios import Scenario
+    from xlmc.montecarlo.simulation.simulate import OnProgress
 
 __all__ = ["Model", "Simulation", "load", "open_run"]
 
 
 class Simulation(simulation.Simulation):
-    """A finished run that can write files and draw figures: `xlmc.run.simulation.Simulation` says what it holds."""
+    """A finished run that can write files and draw figures.
+
+    `xlmc.montecarlo.simulation.simulation.Simulation` says what it holds.
+    """
 
     model: Model
 
@@ -34,7 +38,7 @@ class Simulation(simulation.Simulation):
         Each has a `name`, its `run`, the `acceptance`, and for each forecast `mean`, `low`, `high`, `above` and their
         `differences` to the workbook as it is.
         """
-        from xlmc.studies.scenario_answers import scenario_answers
+        from xlmc.analysis.studies.scenario_answers import scenario_answers
 
         return scenario_answers(self)
 
@@ -58,7 +62,7 @@ class Simulation(simulation.Simulation):
         Raises:
             WorkbookError: the file is not ours to replace, or cannot be written.
         """
-        from xlmc.report import save
+        from xlmc.outputs import save
 
         return save(self, Path(path), overwrite=overwrite)
 
@@ -73,7 +77,7 @@ class Simulation(simulation.Simulation):
         Raises:
             WorkbookError: the file does not end in `.html`, or cannot be written.
         """
-        from xlmc.report.page import save_page
+        from xlmc.outputs.page import save_page
 
         return save_page(self, Path(path), beside=beside, overwrite=overwrite)
 
@@ -84,7 +88,7 @@ class Simulation(simulation.Simulation):
             WorkbookError: the file cannot be written.
             SimulationError: the workbook was not read from a file.
         """
-        from xlmc.results.saved import keep
+        from xlmc.analysis.results.saved import keep
 
         return keep(self, Path(path), overwrite=overwrite)
 
@@ -95,7 +99,7 @@ class Simulation(simulation.Simulation):
             WorkbookError: the file has another ending, or cannot be written.
             SimulationError: Parquet needs pyarrow, which is not installed.
         """
-        from xlmc.report.extract import extract
+        from xlmc.outputs.extract import extract
 
         return extract(self, Path(path), overwrite=overwrite)
 
@@ -105,7 +109,7 @@ class Simulation(simulation.Simulation):
         Raises:
             WorkbookError: the file cannot be written, or does not end in `.json`.
         """
-        from xlmc.report.json_document import save_json
+        from xlmc.outputs.json_document import save_json
 
         return save_json(self, Path(path), overwrite=overwrite)
 
@@ -137,7 +141,7 @@ class Simulation(simulation.Simulation):
                 character.
             WorkbookError: the file has another ending, is there already, or cannot be written.
         """
-        from xlmc.report.document import Wanted, save_report
+        from xlmc.outputs.document import Wanted, save_report
 
         wanted = Wanted(case or {}, sections, forecasts, paper)
         return save_report(self, Path(path), wanted, overwrite=overwrite)
@@ -148,13 +152,16 @@ class Simulation(simulation.Simulation):
         Raises:
             SimulationError: matplotlib is not installed, or there is nothing to draw.
         """
-        from xlmc.report.plot import plot
+        from xlmc.outputs.plot import plot
 
         return plot(self)
 
 
 class Model(model.Model):
-    """A workbook's assumptions, forecasts and filters, which can be simulated: see `xlmc.run.model.Model`."""
+    """A workbook's assumptions, forecasts and filters, which can be simulated.
+
+    See `xlmc.montecarlo.model.model.Model`.
+    """
 
     @classmethod
     def of(cls, known: model.Model) -> Model:
@@ -173,7 +180,7 @@ class Model(model.Model):
             DefinitionError: the scenario is not possible.
             FormulaError: a cell cannot be computed in it.
         """
-        from xlmc.studies.scenario_answers import model_of
+        from xlmc.analysis.studies.scenario_answers import model_of
 
         return Model.of(model_of(self, scenario))
 
@@ -192,7 +199,7 @@ class Model(model.Model):
             DefinitionError: the scenario is not possible, or a table lacks a column for it.
             WorkbookError: a cell holds a formula, or the file cannot be written.
         """
-        from xlmc.studies.scenario_workbook import edited_workbook, write_edited
+        from xlmc.analysis.studies.scenario_workbook import edited_workbook, write_edited
 
         return write_edited(edited_workbook(self, scenario), Path(path), overwrite=overwrite)
 
@@ -255,16 +262,16 @@ class Model(model.Model):
             keep_interrupted: end the run with what it has when Ctrl-C is pressed, rather than raise KeyboardInterrupt.
             progress: called with a `Progress` (trials, accepted, share done, means) after every block.
             tell: called before the run with a sentence on the disk that it needs, if it needs any.
-            **goals: options of goals that have no argument here: see `xlmc.definitions.stopping`.
+            **goals: options of goals that have no argument here: see `xlmc.montecarlo.definitions.stopping`.
 
         Raises:
             SimulationError: an argument is out of its range, there is no room on the disk for the accepted trials,
                 or the workers cannot be used.
         """
-        from xlmc.run.simulate import simulate
+        from xlmc.montecarlo.simulation.simulate import simulate
 
         if scenarios:
-            from xlmc.studies.scenario_answers import models_of
+            from xlmc.analysis.studies.scenario_answers import models_of
 
             models_of(self)  # a scenario that is not possible is refused before the run
         run = simulate(
@@ -315,6 +322,6 @@ def open_run(path: str | Path) -> Simulation:
         WorkbookError: the file cannot be read, or is no saved run.
         XlmcError: its workbook cannot be understood any more.
     """
-    from xlmc.results.saved import open_run
+    from xlmc.analysis.results.saved import open_run
 
     return Simulation.of(open_run(path))

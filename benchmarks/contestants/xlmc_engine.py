@@ -15,7 +15,7 @@ class Xlmc:
         import numpy
 
         import xlmc
-        from xlmc.run.simulate import BLOCK
+        from xlmc.montecarlo.simulation.simulate import BLOCK
 
         self.engine = task.options["engine"]
         self._keeps = {"keep_inputs": None} if task.options.get("draws_kept") else {}

@@ -37,13 +37,13 @@ _WANTED: Final = (
     "scipy.optimize",
     "scipy.special",
     "xlmc.cli",
-    "xlmc.evaluation.formulas_engine",
-    "xlmc.evaluation.llvm",
-    "xlmc.functions.families",
-    "xlmc.report.page",
-    "xlmc.replay",
-    "xlmc.studies.verify",
-    "xlmc.workbook.old_format.joined_package",
+    "xlmc.engine.reference.formulas_engine",
+    "xlmc.engine.llvm",
+    "xlmc.excel.functions.families",
+    "xlmc.outputs.page",
+    "xlmc.outputs.replay",
+    "xlmc.analysis.studies.verify",
+    "xlmc.excel.workbook.old_format.joined_package",
     "xlsxwriter",
 )
 
@@ -52,4 +52,4 @@ def warm_up() -> None:
     """Import what xlmc imports when it needs it, so that children begin with it, and make blocks small."""
     for module in _WANTED:
         import_module(module)
-    setattr(import_module("xlmc.run.simulate"), "BLOCK", BLOCK)  # noqa: B010 - it is final to all others
+    setattr(import_module("xlmc.montecarlo.simulation.simulate"), "BLOCK", BLOCK)  # noqa: B010 - it is final to all others

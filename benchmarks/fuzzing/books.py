@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Final
 from xml.sax.saxutils import escape, quoteattr
 
-from xlmc.address import column_letters
+from xlmc.excel.address import column_letters
 
 __all__ = ["ROOT", "Sheet", "Table", "book", "cell", "packed", "parts_of", "shipped"]
 

@@ -19,7 +19,7 @@ from typing import Final
 
 from fuzzing.inputs import Kind, Reached, generator
 from fuzzing.verdict import Finding, of_error
-from xlmc.workbook.temporary_names import new_folder_name, owned, remove_stray_folders
+from xlmc.excel.workbook.temporary_names import new_folder_name, owned, remove_stray_folders
 
 __all__ = ["MEMORY", "Outcome", "judged", "serve"]
 

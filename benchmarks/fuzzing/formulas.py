@@ -15,16 +15,16 @@ from fuzzing import grammar
 from fuzzing.books import MAIN, Sheet, Table, cell, packed, parts_of
 from fuzzing.inputs import Disagreement, Input, Reached, steps_of
 from fuzzing.splicing import spliced
-from xlmc.address import Area
 from xlmc.api import Model
-from xlmc.definitions.definitions import Definitions
-from xlmc.definitions.definitions_reader import read_definitions
-from xlmc.evaluation.engines import ENGINES
-from xlmc.report.summary import summarise, summary_text
-from xlmc.run.loading import build_model
-from xlmc.run.simulation import Simulation
-from xlmc.workbook.reader import read_workbook
-from xlmc.workbook.workbook import CellContent, Formula, Workbook
+from xlmc.engine.engines import ENGINES
+from xlmc.excel.address import Area
+from xlmc.excel.workbook.reader import read_workbook
+from xlmc.excel.workbook.workbook import CellContent, Formula, Workbook
+from xlmc.montecarlo.definitions.definitions import Definitions
+from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+from xlmc.montecarlo.model.loading import build_model
+from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.outputs.summary import summarise, summary_text
 
 __all__ = ["book_of", "make", "run"]
 

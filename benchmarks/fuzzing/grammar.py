@@ -10,8 +10,8 @@ from typing import Final
 
 from fuzzing import hostile
 from fuzzing.books import ROOT
-from xlmc.functions.families import function_named
-from xlmc.functions.registry import Function, Kind, Parameter
+from xlmc.excel.functions.families import function_named
+from xlmc.excel.functions.registry import Function, Kind, Parameter
 
 __all__ = ["formula", "names"]
 

@@ -21,9 +21,9 @@ from crystal_ball_book import Asked, Decided, Drawn, Tied, save
 
 from fuzzing import zips
 from fuzzing.inputs import Disagreement, Input, Reached, steps_of
-from xlmc.definitions.definitions_reader import read_definitions
-from xlmc.evaluation.engines import ENGINES
-from xlmc.workbook.reader import read_workbook
+from xlmc.engine.engines import ENGINES
+from xlmc.excel.workbook.reader import read_workbook
+from xlmc.montecarlo.definitions.definitions_reader import read_definitions
 
 __all__ = ["BLOCK_CHANGES", "book_parts", "make", "refuse_silence", "run"]
 

@@ -24,8 +24,8 @@ from old_format_book import compound, drawing, number, plain_book, record, shape
 from fuzzing import zips
 from fuzzing.hidden_blocks import BLOCK_CHANGES, book_parts, refuse_silence
 from fuzzing.inputs import Input, Reached, steps_of
-from xlmc.workbook.old_format import joined_package
-from xlmc.workbook.reader import read_workbook
+from xlmc.excel.workbook.old_format import joined_package
+from xlmc.excel.workbook.reader import read_workbook
 
 __all__ = ["make", "run"]
 

@@ -10,7 +10,7 @@ from xml.parsers import expat
 
 from fuzzing.inputs import Disagreement
 from xlmc.api import Simulation
-from xlmc.report.summary import summarise, summary_text
+from xlmc.outputs.summary import summarise, summary_text
 
 __all__ = ["examined"]
 
@@ -27,7 +27,7 @@ def examined(found: Simulation, folder: Path, steps: tuple[str, ...]) -> None:
         _ = found.warnings, found.notices_of_run
     if "write" not in steps:
         return
-    from xlmc.replay import replay
+    from xlmc.outputs.replay import replay
 
     book, page, document, run = (folder / f"out.{end}" for end in ("xlsx", "html", "json", "xlmcrun"))
     for path in (book, page, document, run):

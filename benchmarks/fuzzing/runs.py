@@ -24,7 +24,7 @@ from fuzzing.outputs import examined
 from fuzzing.xml_changes import changed
 from xlmc.api import load, open_run
 from xlmc.errors import XlmcError
-from xlmc.replay import replay
+from xlmc.outputs.replay import replay
 
 __all__ = ["make", "run"]
 

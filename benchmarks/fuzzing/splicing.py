@@ -9,7 +9,7 @@ from typing import Final
 
 from fuzzing import grammar
 from fuzzing.books import shipped
-from xlmc.workbook.reader import read_workbook
+from xlmc.excel.workbook.reader import read_workbook
 
 __all__ = ["spliced"]
 

@@ -12,7 +12,7 @@ from fuzzing.commands import commanded
 from fuzzing.inputs import Input, Reached, steps_of
 from fuzzing.outputs import examined
 from xlmc.api import load
-from xlmc.distributions import FAMILIES
+from xlmc.montecarlo.distributions import FAMILIES
 
 __all__ = ["make", "run"]
 

@@ -20,11 +20,11 @@ from fuzzing.inputs import Input, Reached, steps_of
 from fuzzing.outputs import examined
 from fuzzing.xml_changes import changed
 from xlmc.api import Model
-from xlmc.definitions.definitions_reader import read_definitions
+from xlmc.engine.engines import ENGINES
 from xlmc.errors import XlmcError
-from xlmc.evaluation.engines import ENGINES
-from xlmc.run.labels import calculate_labels
-from xlmc.workbook.reader import read_workbook
+from xlmc.excel.workbook.reader import read_workbook
+from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+from xlmc.montecarlo.model.labels import calculate_labels
 
 __all__ = ["make", "run"]
 
@@ -88,7 +88,7 @@ def run(given: Input, folder: Path) -> Reached:
     calculated = calculate_labels(workbook)
     definitions = read_definitions(calculated, ENGINES)
     if "verify" in given.steps:
-        from xlmc.studies.verify import verify
+        from xlmc.analysis.studies.verify import verify
 
         verify(workbook, definitions)
     if definitions.problems:

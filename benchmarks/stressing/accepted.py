@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from problems import Normals
 from scipy import stats
 
-import xlmc.statistics as xs
-from xlmc.sampling.sampling_plan import SamplingPlan
+import xlmc.montecarlo.statistics as xs
+from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 
 __all__ = ["METHODS", "after_filters", "exact_coverage", "shares", "waited_for"]
 

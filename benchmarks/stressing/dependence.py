@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from stressing.workbook import book_of
 from xlmc.api import Model, Simulation
-from xlmc.statistics import rank_correlation
+from xlmc.montecarlo.statistics import rank_correlation
 
 __all__ = ["MATRICES", "book", "compared", "measure"]
 

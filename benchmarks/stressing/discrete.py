@@ -9,7 +9,7 @@ from scipy import stats
 
 from stressing.workbook import book_of
 from xlmc.api import Model
-from xlmc.statistics import mode
+from xlmc.montecarlo.statistics import mode
 
 __all__ = ["LAWS", "book", "measure"]
 

@@ -9,9 +9,9 @@ from typing import Any, Final
 import numpy as np
 
 from stressing.charts import COLOURS, binomial_error, coverage_axis, figure, save
-from xlmc.run.forecast_result import FARTHEST_PART, TELLING
-from xlmc.run.simulation import FEW, LEAST_ACCEPTED
-from xlmc.sampling.sampling_methods import METHODS
+from xlmc.montecarlo.loop.forecast_result import FARTHEST_PART, TELLING
+from xlmc.montecarlo.sampling.sampling_methods import METHODS
+from xlmc.montecarlo.simulation.simulation import FEW, LEAST_ACCEPTED
 
 __all__ = ["correlations", "counts", "few", "samplers", "shares", "stops", "tails"]
 

@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 from scipy import stats
 
-import xlmc.statistics as xs
+import xlmc.montecarlo.statistics as xs
 
 __all__ = ["FORECASTS", "STATISTICS", "coverage", "truths"]
 

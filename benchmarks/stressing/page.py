@@ -12,7 +12,7 @@ from tables import placed
 
 from stressing.forms import FORMS
 from stressing.sweeps import SWEEPS
-from xlmc.sampling.sampling_methods import METHODS
+from xlmc.montecarlo.sampling.sampling_methods import METHODS
 
 __all__ = ["TABLES", "filled"]
 

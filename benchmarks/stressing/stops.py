@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
-import xlmc.statistics as xs
-from xlmc.definitions.stopping import Precision, StableDigits
-from xlmc.run.stopping import adaptive
-from xlmc.run.stopping.adaptive import UntilStable
-from xlmc.run.stopping.precision import UntilPrecise
+import xlmc.montecarlo.statistics as xs
+from xlmc.montecarlo.definitions.stopping import Precision, StableDigits
+from xlmc.montecarlo.loop.stopping import adaptive
+from xlmc.montecarlo.loop.stopping.adaptive import UntilStable
+from xlmc.montecarlo.loop.stopping.precision import UntilPrecise
 
 __all__ = ["FORECASTS", "Forecast", "fixed_runs", "least_sequences", "precise_runs", "stable_runs"]
 

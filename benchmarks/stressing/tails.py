@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from stressing.workbook import book_of
 from xlmc.api import Model
-from xlmc.statistics import farthest_part
+from xlmc.montecarlo.statistics import farthest_part
 
 __all__ = ["FORECASTS", "QUARTILE", "book", "measure"]
 

@@ -21,7 +21,7 @@ from templates.writer.places import name_cells, places, reference
 from templates.writer.results_sheet import draw_results_wanted
 from templates.writer.scene_sheet import chart_size, draw_scene
 from templates.writer.styles import Styles
-from xlmc.workbook.reader import read_workbook
+from xlmc.excel.workbook.reader import read_workbook
 
 __all__ = ["write_book"]
 

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from xlmc.address import Cell
+from xlmc.engine.graph.lower import Lowering, lower_cells
 from xlmc.errors import ErrorCode
-from xlmc.evaluation.graph.lower import Lowering, lower_cells
-from xlmc.formula import Resolver
-from xlmc.workbook.workbook import Workbook
+from xlmc.excel.address import Cell
+from xlmc.excel.formula import Resolver
+from xlmc.excel.workbook.workbook import Workbook
 
 __all__ = ["Shown", "Values", "computed"]
 

@@ -54,7 +54,7 @@ def at_hand():
     import processes
     import scaling
 
-    from xlmc.run.scheduling.processes import idle_pool
+    from xlmc.montecarlo.loop.scheduling.processes import idle_pool
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(hand_c, "build", lambda folder: folder / "hand.so")

@@ -15,7 +15,7 @@ from contestants import formulas_model
 from line_up import line_up
 
 import xlmc
-from xlmc.run.scheduling.processes import IdlePool, idle_pool
+from xlmc.montecarlo.loop.scheduling.processes import IdlePool, idle_pool
 
 CONTESTANTS = ("xlmc/numpy", "hand/NumPy")
 PEER = "formulas"

@@ -9,13 +9,12 @@ import contest
 import processes
 import pytest
 import rates
-from cases import cases
 from contest import CellPlace, Task
 from hypothesis import given
 from hypothesis import strategies as st
 from one_contestant import _real
 
-from xlmc.address import Cell
+from xlmc.excel.address import Cell
 
 
 class Clock:
@@ -69,7 +68,7 @@ def test_forecasts_that_differ_are_told_with_their_cell():
     assert len(rates.differing(TASK, [[None, 2.1]], truth)) == 2
 
 
-@cases("value", [True, "3", None, float("nan"), float("inf")])
+@pytest.mark.parametrize("value", [True, "3", None, float("nan"), float("inf")])
 def test_only_real_numbers_are_answers(value):
     assert _real(value) is None
 
@@ -111,7 +110,7 @@ def test_scripts_find_what_they_import(tmp_path):
     assert (done.returncode, done.stderr) == (0, "")
 
 
-@cases("script", ["one_contestant.py", "one_growth.py", "one_scaling.py"])
+@pytest.mark.parametrize("script", ["one_contestant.py", "one_growth.py", "one_scaling.py"])
 def test_a_script_that_is_started_does_its_work(script):
     source = Path(rates.__file__).with_name(script).read_text(encoding="utf-8")
     assert source.endswith('if __name__ == "__main__":\n    main()\n')

@@ -9,7 +9,6 @@ import hand_written_plain
 import numpy as np
 import pytest
 import tables
-from cases import cases
 
 import xlmc
 
@@ -34,8 +33,8 @@ def marches(tmp_path_factory):
     return found
 
 
-@cases("search", hand_written_march.SEARCHES)
-@cases("cells", CELLS)
+@pytest.mark.parametrize("search", hand_written_march.SEARCHES)
+@pytest.mark.parametrize("cells", CELLS)
 def test_time_steps_in_numpy(marches, cells, search):
     inputs, truth = marches[cells]
     evaluate = hand_written_march.buffered(TRIALS, cells, search)
@@ -43,14 +42,14 @@ def test_time_steps_in_numpy(marches, cells, search):
         np.testing.assert_allclose(evaluate(inputs.copy()), truth, rtol=1e-12)
 
 
-@cases("search", hand_written_march.SEARCHES)
-@cases("cells", CELLS)
+@pytest.mark.parametrize("search", hand_written_march.SEARCHES)
+@pytest.mark.parametrize("cells", CELLS)
 def test_time_steps_in_c(marches, library, cells, search):
     inputs, truth = marches[cells]
     np.testing.assert_allclose(hand_c.March(library, cells, search).evaluate(inputs), truth, rtol=1e-12)
 
 
-@cases("search", hand_written_march.SEARCHES)
+@pytest.mark.parametrize("search", hand_written_march.SEARCHES)
 def test_drawn_answers_of_time_steps_are_of_one_distribution(library, search):
     n, chunk = 20_001, 1_024
     for found in (

@@ -4,7 +4,7 @@ import importlib.util
 from pathlib import Path
 
 import numpy as np
-from cases import cases
+import pytest
 
 from templates.planar_impact import evaluate
 
@@ -13,7 +13,7 @@ FORECASTS = ("dV1_mph", "dV2_mph", "V1_mph", "V2_mph")
 KERNELS = ("plain", "buffered")
 
 
-@cases("kernel", KERNELS)
+@pytest.mark.parametrize("kernel", KERNELS)
 def test_kernels_compute_the_equations_of_the_template(hand_written, kernel):
     n = 20_000
     low, high = hand_written.LOW[:, None], hand_written.HIGH[:, None]

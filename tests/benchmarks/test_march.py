@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import xlmc
-from xlmc.distributions.spelling import name_key
+from xlmc.montecarlo.distributions.spelling import name_key
 
 CELLS = 20
 OF_THE_ANSWER = 3

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import json
 
-from cases import cases
+import pytest
 from method_advice import BOOKS, PAGE, RESULTS, faults, table
 
 RECORDS = json.loads(RESULTS.read_text(encoding="utf-8"))
@@ -17,7 +17,7 @@ def test_the_page_shows_the_committed_records():
     assert table(RECORDS) in PAGE.read_text(encoding="utf-8")
 
 
-@cases(
+@pytest.mark.parametrize(
     ("changed", "fault"),
     [
         ({"recommended": "lhs"}, "recommends ['lhs', 'mc']"),

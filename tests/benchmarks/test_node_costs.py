@@ -3,7 +3,7 @@ from __future__ import annotations
 import node_costs
 import pytest
 
-from xlmc.evaluation.llvm import program
+from xlmc.engine.llvm import program
 
 
 def test_costs_are_told_by_kind(capsys, monkeypatch):

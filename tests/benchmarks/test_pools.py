@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pools
 
-from xlmc.run.blocks import Task
-from xlmc.run.scheduling import processes
+from xlmc.montecarlo.loop.blocks import Task
+from xlmc.montecarlo.loop.scheduling import processes
 
 FOUND = json.loads((Path(pools.HERE) / "results" / "pools.json").read_text(encoding="utf-8"))["found"]
 ROWS = {

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from cases import cases
 
-from xlmc.run.rare.landscape import Landscape
-from xlmc.run.rare.layered import ground_of
-from xlmc.run.rare.strays import wide_assumptions
+from xlmc.montecarlo.rare.landscape import Landscape
+from xlmc.montecarlo.rare.layered import ground_of
+from xlmc.montecarlo.rare.strays import wide_assumptions
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +38,7 @@ def test_the_bar_names_what_misses_it(bench):
     assert "switch" in faults[0]
 
 
-@cases(
+@pytest.mark.parametrize(
     ("name", "draws"),
     [
         ("speeds or weights", 50_000),

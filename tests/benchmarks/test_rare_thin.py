@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.run.rare.landscape import Landscape
-from xlmc.run.rare.layered import Layered, ground_of
+from xlmc.montecarlo.rare.landscape import Landscape
+from xlmc.montecarlo.rare.layered import Layered, ground_of
 
 
 @pytest.fixture(scope="module")

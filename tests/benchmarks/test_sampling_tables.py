@@ -10,9 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from cases import cases
 
-from xlmc.sampling.sampling_methods import METHODS
+from xlmc.montecarlo.sampling.sampling_methods import METHODS
 
 BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
 
@@ -71,7 +70,7 @@ def test_the_bar_of_tails_can_be_missed(tails):
     assert tails.faults([told]) == []
 
 
-@cases("method", ["mc", "lhs", "sobol"])
+@pytest.mark.parametrize("method", ["mc", "lhs", "sobol"])
 def test_many_runs_at_once_have_the_numbers_of_each_alone(tails, method):
     """`measure` compares the first run with xlmc's own functions, and ends with an error where they differ."""
     found = tails.measure(method, 1_000, range(40, 42))
@@ -88,7 +87,7 @@ def test_the_bar_can_be_missed(coverage):
 KEPT = ("speed, 3 % kept", "speed, 33 % kept")
 
 
-@cases(("method", "name"), [(method, KEPT[n % 2]) for n, method in enumerate(METHODS)])
+@pytest.mark.parametrize(("method", "name"), [(method, KEPT[n % 2]) for n, method in enumerate(METHODS)])
 def test_some_of_the_runs_again(coverage, method, name):
     """20 runs with other seeds: 95 % ± 4 binomial standard errors, which 100 % is within, so from below only."""
     runs = 20
@@ -96,7 +95,7 @@ def test_some_of_the_runs_again(coverage, method, name):
     assert min(cell.hits) > runs * (0.95 - 4 * math.sqrt(0.95 * 0.05 / runs))
 
 
-@cases(
+@pytest.mark.parametrize(
     ("name", "trials"),
     [
         ("sum of normals, 16 % kept", 50_000),

@@ -7,8 +7,8 @@ import zipfile
 import whole_command
 from fewer_sheets import SENSITIVITY, leave_out
 
-from xlmc.report.sheets import book
-from xlmc.workbook.writer import package_bytes
+from xlmc.excel.workbook.writer import package_bytes
+from xlmc.outputs.sheets import book
 
 TRIALS = 3_000
 NUMBER = re.compile(rb"<v>([^<]*\.[^<]*)</v>")

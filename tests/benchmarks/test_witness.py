@@ -4,7 +4,6 @@ from copy import deepcopy
 
 import pytest
 import witness
-from cases import cases
 from committed_books import BOOKS
 
 
@@ -19,7 +18,7 @@ def test_every_book_has_a_witness(recorded):
     assert all(runs | {"parts"} == set(book) for book in recorded["books"].values())
 
 
-@cases(("name", "first"), [("yaw-mark", 0), ("collinear-head-on", 1)])
+@pytest.mark.parametrize(("name", "first"), [("yaw-mark", 0), ("collinear-head-on", 1)])
 def test_a_book_gives_what_was_recorded(recorded, name, first):
     """Of the two books each has every other run, so that both engines and all sampling methods are seen.
 
@@ -38,7 +37,7 @@ def _changed(book, change):
     return other
 
 
-@cases(
+@pytest.mark.parametrize(
     ("change", "to_the_bit", "about"),
     [
         (lambda book: book["numpy mc"].update(accepted=1), ["numpy mc: accepted"], ["numpy mc: accepted"]),

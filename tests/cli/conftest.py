@@ -19,9 +19,9 @@ import pytest
 from fewer_sheets import SHORT, keep_few_trials, keep_sheets, leave_out_fits, leave_out_shapes
 from workbook_files import workbook_of
 
+from xlmc.analysis.studies import fitting
 from xlmc.api import Model
 from xlmc.cli import main
-from xlmc.studies import fitting
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -217,7 +217,7 @@ def fitted_once(studies_made: dict[tuple[object, ...], object], monkeypatch: pyt
     """Equal values are fitted once, and without what no test here looks at: the standard errors of the triangular
     distribution, which take most of a fit.
     """
-    monkeypatch.setattr("xlmc.studies.fitting.solved_forms._BOOTSTRAP_SAMPLES", 6)
+    monkeypatch.setattr("xlmc.analysis.studies.fitting.solved_forms._BOOTSTRAP_SAMPLES", 6)
     fit = fitting.fit
 
     def once(values: list[float], **asked: object) -> object:

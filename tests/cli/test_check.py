@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import openpyxl
 import pytest
-from cases import cases
 
 pytestmark = pytest.mark.usefixtures("short_books")
 
@@ -40,7 +39,7 @@ def test_lists_every_problem_with_its_cell(xlmc, spoiled):
     assert "2 problems found" in outcome.err
 
 
-@cases(
+@pytest.mark.parametrize(
     ("formula", "message"),
     [
         ("=SQRTT(Inputs!B2)", "Did you mean SQRT?"),

@@ -11,7 +11,7 @@ import pytest
 from fewer_sheets import keep_few_trials, leave_out_fits
 from openpyxl.worksheet.table import Table
 
-from xlmc.report.json_document import SCHEMA
+from xlmc.outputs.json_document import SCHEMA
 
 HEADINGS = ["Name", "Cell", "Reading", "Error", "±", "Std dev", "Source", "Use"]
 EDR = ["EDR", "=Inputs!F1", 2, "Normal", None, 0.5, "CDR report, p. 4"]

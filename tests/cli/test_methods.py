@@ -7,7 +7,7 @@ from zipfile import ZipFile
 import pytest
 from workbook_files import workbook_of
 
-from xlmc.studies import methods
+from xlmc.analysis.studies import methods
 
 SHORT = ("--reference-trials", "65536", "-n", "4096", "--replicates", "2", "--quiet")
 

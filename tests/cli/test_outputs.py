@@ -9,13 +9,12 @@ from functools import partial
 
 import openpyxl
 import pytest
-from cases import cases
 
 import xlmc as package
 from xlmc.errors import WorkbookError
-from xlmc.workbook.package import read_parts
-from xlmc.workbook.seal import read_seal
-from xlmc.workbook.writer import package_bytes
+from xlmc.excel.workbook.package import read_parts
+from xlmc.excel.workbook.seal import read_seal
+from xlmc.excel.workbook.writer import package_bytes
 
 pytestmark = pytest.mark.usefixtures("short_books")
 
@@ -157,8 +156,8 @@ def test_every_kind_of_output_spares_what_was_changed(xlmc, book, written, tmp_p
     assert [name for name, content in changed.items() if after[name] == content] == []
 
 
-@cases("spelling", ["book.xlsx", "./book.xlsx", "folder/../book.xlsx", "link.xlsx", "hard.xlsx"])
-@cases("overwrite", [(), ("--overwrite",)])
+@pytest.mark.parametrize("spelling", ["book.xlsx", "./book.xlsx", "folder/../book.xlsx", "link.xlsx", "hard.xlsx"])
+@pytest.mark.parametrize("overwrite", [(), ("--overwrite",)])
 def test_the_book_itself_is_no_output(xlmc, book, tmp_path, spelling, overwrite):
     (tmp_path / "folder").mkdir(exist_ok=True)
     if not (tmp_path / "link.xlsx").exists():
@@ -189,7 +188,7 @@ def test_a_result_that_is_run_in_place_is_the_persons_from_then_on(xlmc, book, w
     assert "results go to" in outcome.err
 
 
-@cases("options", [("--extract", "a.csv", "--extract", each) for each in ("./a.csv", "A.csv")])
+@pytest.mark.parametrize("options", [("--extract", "a.csv", "--extract", each) for each in ("./a.csv", "A.csv")])
 def test_two_outputs_in_one_file_are_refused(xlmc, book, tmp_path, options):
     outcome = xlmc("simulate", book, *options)
     assert outcome.code == 2
@@ -197,7 +196,7 @@ def test_two_outputs_in_one_file_are_refused(xlmc, book, tmp_path, options):
     assert sorted(contents(tmp_path)) == ["book.xlsx"]
 
 
-@cases("option", ["-o", "--html", "--json", "--save-run", "--extract"])
+@pytest.mark.parametrize("option", ["-o", "--html", "--json", "--save-run", "--extract"])
 def test_a_folder_is_refused_in_one_line(xlmc, book, tmp_path, option):
     outcome = xlmc("simulate", book, option, ".", "--quiet")
     assert outcome.code == 2

@@ -9,7 +9,7 @@ import pytest
 
 import xlmc as package
 from xlmc.errors import WorkbookError
-from xlmc.workbook.seal import read_seal
+from xlmc.excel.workbook.seal import read_seal
 
 pytestmark = pytest.mark.usefixtures("short_books")
 

@@ -14,9 +14,9 @@ from fewer_sheets import keep_few_trials
 
 from xlmc import __version__
 from xlmc.errors import XlmcError
-from xlmc.workbook.package import read_parts
-from xlmc.workbook.reader import read_workbook
-from xlmc.workbook.writer import package_bytes
+from xlmc.excel.workbook.package import read_parts
+from xlmc.excel.workbook.reader import read_workbook
+from xlmc.excel.workbook.writer import package_bytes
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 
@@ -159,7 +159,7 @@ def test_a_workbook_that_an_older_version_ran_and_this_one_refuses(xlmc, results
     def refuse(*_):
         raise XlmcError("no")
 
-    monkeypatch.setattr("xlmc.replay.repeat.build_model", refuse)
+    monkeypatch.setattr("xlmc.outputs.replay.repeat.build_model", refuse)
     outcome = xlmc("replay", results)
     assert outcome.code == 1
     assert outcome.out.splitlines()[1:3] == ["differs.", f"xlmc 0.1.0 made this run, and this is xlmc {__version__}."]
@@ -189,7 +189,7 @@ def test_edited_results_are_named_and_counted(xlmc, results):
 
 
 def test_another_processor(xlmc, results, monkeypatch):
-    monkeypatch.setattr("xlmc.results.record.make.processor", lambda: {"machine": "arm64", "system": "Darwin"})
+    monkeypatch.setattr("xlmc.analysis.results.record.make.processor", lambda: {"machine": "arm64", "system": "Darwin"})
     outcome = xlmc("replay", results)
     assert outcome.code == 0
     assert "identical: the same" in outcome.out

@@ -6,13 +6,12 @@ import shutil
 import openpyxl
 import pandas
 import pytest
-from cases import cases
 from fewer_sheets import keep_few_trials
 from openpyxl.worksheet.table import Table
 
 import xlmc as package
 from xlmc.errors import WorkbookError
-from xlmc.run.simulation import KEPT_INPUTS
+from xlmc.montecarlo.simulation.simulation import KEPT_INPUTS
 
 pytestmark = pytest.mark.usefixtures("short_books")
 
@@ -120,7 +119,7 @@ def test_draws_that_were_not_saved_are_blank_and_said_to_be(xlmc, small_book, tm
     assert pandas.read_csv(tmp_path / "t.csv")["width"].notna().sum() == 10
 
 
-@cases(
+@pytest.mark.parametrize(
     ("options", "message"),
     [
         (("--json", "a.xlsx"), "JSON is written to a .json file. Name it 'a.json'"),
@@ -140,7 +139,7 @@ def test_draws_that_were_not_saved_are_blank_and_said_to_be(xlmc, small_book, tm
     ],
 )
 def test_names_are_refused_before_the_run(xlmc, book, tmp_path, monkeypatch, options, message):
-    monkeypatch.setattr("xlmc.run.loading.load", lambda path: 1 / 0)
+    monkeypatch.setattr("xlmc.montecarlo.model.loading.load", lambda path: 1 / 0)
     before = book.read_bytes()
     outcome = xlmc("simulate", book, *options)
     assert outcome.code == 2
@@ -222,7 +221,7 @@ def test_the_report_of_a_result_workbook_is_that_of_its_run(xlmc, case_book, tmp
     assert not (tmp_path / "c.pdf").exists()
 
 
-@cases("options", [(), ("--pdf", "a.pdf", "--json", "a.json"), ("-o", "b.xlsx")])
+@pytest.mark.parametrize("options", [(), ("--pdf", "a.pdf", "--json", "a.json"), ("-o", "b.xlsx")])
 def test_of_a_result_workbook_reports_alone_are_written(xlmc, book, tmp_path, options):
     outcome = xlmc("report", book, *options)
     assert outcome.code == 2

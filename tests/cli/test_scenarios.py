@@ -12,7 +12,7 @@ import openpyxl
 import pytest
 from openpyxl.worksheet.table import Table
 
-from xlmc.report.json_document import SCHEMA
+from xlmc.outputs.json_document import SCHEMA
 
 pytestmark = pytest.mark.usefixtures("short_books")
 
@@ -200,7 +200,7 @@ def test_what_cannot_be_typed(xlmc, book, tmp_path, monkeypatch, arguments, mess
 
 
 def test_ctrl_c_while_scenarios_are_run_keeps_the_run(xlmc, book, tmp_path, monkeypatch):
-    from xlmc.studies import scenario_answers
+    from xlmc.analysis.studies import scenario_answers
 
     def interrupted(*_):
         raise KeyboardInterrupt

@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from xlmc.studies import screening
+from xlmc.analysis.studies import screening
 
 
 @pytest.fixture(autouse=True)

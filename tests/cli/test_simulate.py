@@ -10,8 +10,8 @@ import pytest
 from fewer_sheets import keep_few_trials
 
 from xlmc.api import Model
+from xlmc.engine.llvm import REPAYS_FROM
 from xlmc.errors import SimulationError
-from xlmc.evaluation.llvm import REPAYS_FROM
 
 pytestmark = pytest.mark.usefixtures("short_books")
 
@@ -77,7 +77,7 @@ def test_a_full_disk_is_a_message_and_nothing_is_lost(xlmc, book, tmp_path, monk
     results = tmp_path / "case-results.xlsx"
     xlmc("simulate", book, "-n", 5_000)
     before = results.read_bytes()
-    monkeypatch.setattr("xlmc.columns.column_store.IN_MEMORY", 0)
+    monkeypatch.setattr("xlmc.montecarlo.columns.column_store.IN_MEMORY", 0)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "none"))
     outcome = xlmc("simulate", book, "-n", 10_000)
     assert outcome.code == 2
@@ -87,7 +87,7 @@ def test_a_full_disk_is_a_message_and_nothing_is_lost(xlmc, book, tmp_path, monk
 
 
 def test_a_run_on_disk_says_so_before_it_starts(xlmc, book, monkeypatch):
-    monkeypatch.setattr("xlmc.columns.column_store.IN_MEMORY", 0)
+    monkeypatch.setattr("xlmc.montecarlo.columns.column_store.IN_MEMORY", 0)
     said = xlmc("simulate", book, "-n", 2_000).err
     assert said.startswith("This run keeps about ")
     assert "GB on disk in" in said
@@ -98,8 +98,8 @@ def test_a_run_that_the_disk_cannot_hold_is_refused(xlmc, book, tmp_path, monkey
     results = tmp_path / "case-results.xlsx"
     xlmc("simulate", book, "-n", 5_000)
     before = results.read_bytes()
-    monkeypatch.setattr("xlmc.columns.column_store.IN_MEMORY", 0)
-    monkeypatch.setattr("xlmc.run.disk_needed.room_on_disk", lambda: (tmp_path, 1_000))
+    monkeypatch.setattr("xlmc.montecarlo.columns.column_store.IN_MEMORY", 0)
+    monkeypatch.setattr("xlmc.montecarlo.loop.disk_needed.room_on_disk", lambda: (tmp_path, 1_000))
     outcome = xlmc("simulate", book, "-n", 10_000)
     assert outcome.code == 2
     assert "the run needs about" in outcome.err
@@ -168,7 +168,7 @@ def test_the_reference_engine_gives_the_same_answer(xlmc, book):
 
 
 def test_help_imports_no_numerical_library_and_reads_no_workbook_modules():
-    slow = ("numpy", "scipy", "pandas", "openpyxl", "rich", "formulas", "xlmc.workbook.reader", "asyncio")
+    slow = ("numpy", "scipy", "pandas", "openpyxl", "rich", "formulas", "xlmc.excel.workbook.reader", "asyncio")
     program = (
         "import runpy, sys; sys.argv = ['xlmc', '--help']\n"
         "try: runpy.run_module('xlmc', run_name='__main__')\nexcept SystemExit: pass\n"
@@ -179,7 +179,7 @@ def test_help_imports_no_numerical_library_and_reads_no_workbook_modules():
 
 
 def test_without_llvmlite_the_engine_jit_says_what_to_install(xlmc, book, tmp_path, monkeypatch):
-    monkeypatch.setattr("xlmc.evaluation.llvm.find_spec", lambda name: None)
+    monkeypatch.setattr("xlmc.engine.llvm.find_spec", lambda name: None)
     outcome = xlmc("simulate", book, "-n", 1_000, "--engine", "jit")
     assert outcome.code == 2
     assert 'pip install "xlmc[jit]"' in outcome.err
@@ -201,7 +201,7 @@ def test_a_long_run_is_told_of_the_engine_jit(xlmc, book, monkeypatch, trials, o
         raise SimulationError("stopped by the test")
 
     monkeypatch.setattr("xlmc.api.Model.simulate", stopped)
-    monkeypatch.setattr("xlmc.evaluation.llvm.find_spec", lambda name: object() if installed else None)
+    monkeypatch.setattr("xlmc.engine.llvm.find_spec", lambda name: object() if installed else None)
     assert ("--engine jit" in xlmc("simulate", book, "-n", trials, *options).err) is hinted
 
 
@@ -250,8 +250,8 @@ def test_the_engine_jit_prints_the_same_answers_and_keeps_its_code_unless_it_is_
     xlmc, book, tmp_path, monkeypatch
 ):
     pytest.importorskip("llvmlite")
-    from xlmc.evaluation.llvm import kept_code
-    from xlmc.evaluation.llvm.machine import machine
+    from xlmc.engine.llvm import kept_code
+    from xlmc.engine.llvm.machine import machine
 
     monkeypatch.setattr(kept_code, "_caches", lambda: tmp_path)
     answer = xlmc("simulate", book, "-o", "r.xlsx")

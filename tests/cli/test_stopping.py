@@ -11,9 +11,9 @@ import openpyxl
 import pytest
 
 from xlmc.cli.progress_bar import errors_line, trials_line
-from xlmc.run import simulate
-from xlmc.run.stopping import Progress
-from xlmc.statistics import Estimate
+from xlmc.montecarlo.loop.stopping import Progress
+from xlmc.montecarlo.simulation import simulate
+from xlmc.montecarlo.statistics import Estimate
 
 pytestmark = pytest.mark.usefixtures("short_books")
 
@@ -108,8 +108,8 @@ def test_the_command_in_the_record_repeats_the_run(xlmc, book, tmp_path):
 def test_ctrl_c_keeps_what_was_accepted(xlmc, started, book, tmp_path, monkeypatch):
     """A terminal tells the whole process group of Ctrl-C.
 
-    Of this process alone, and of threads, tests/run/stopping/test_runs.py interrupts runs; of a local cluster,
-    tests/run/scheduling/test_cluster.py.
+    Of this process alone, and of threads, tests/montecarlo/loop/stopping/test_runs.py interrupts runs; of a local cluster,
+    tests/montecarlo/loop/scheduling/test_cluster.py.
     """
     add = simulate._Gathered.add
 

@@ -7,7 +7,7 @@ import pytest
 from openpyxl.worksheet.table import Table
 
 from xlmc.errors import WorkbookError
-from xlmc.report import study_report
+from xlmc.outputs import study_report
 
 
 @pytest.fixture

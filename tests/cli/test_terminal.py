@@ -14,14 +14,13 @@ from pathlib import Path
 
 import openpyxl
 import pytest
-from cases import cases
 from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.api import Model, load
 from xlmc.cli import main, terminal
 from xlmc.cli.printing import table_lines
-from xlmc.workbook.printable import printable
+from xlmc.excel.workbook.printable import printable
 
 pytestmark = pytest.mark.usefixtures("short_books")
 
@@ -72,7 +71,7 @@ COMMANDS = [
 ]
 
 
-@cases("encoding", ENCODINGS)
+@pytest.mark.parametrize("encoding", ENCODINGS)
 @pytest.mark.parametrize("arguments", COMMANDS, ids=" ".join)
 def test_no_encoding_stops_a_command(greek, tmp_path, typed, arguments, encoding):
     shutil.copy(greek, tmp_path / "case.xlsx")

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from cases import cases
 
-from xlmc.evaluation.engines import ENGINES
+from xlmc.engine.engines import ENGINES
 
 pytestmark = pytest.mark.usefixtures("short_books")
 
@@ -27,7 +26,9 @@ def one_line(xlmc):
     return refused
 
 
-@cases("option, typed", [("--trials", "2,000"), *(("-n", each) for each in ("2e3", "2k", "0.002M", "2_000", "2 000"))])
+@pytest.mark.parametrize(
+    ("option", "typed"), [("--trials", "2,000"), *(("-n", each) for each in ("2e3", "2k", "0.002M", "2_000", "2 000"))]
+)
 def test_trials_as_people_write_them(xlmc, plain_book, monkeypatch, option, typed):
     monkeypatch.setattr("xlmc.api.Simulation.save", lambda *_, **__: None)
     outcome = xlmc("simulate", plain_book, "-o", "r.xlsx", option, typed)
@@ -43,17 +44,17 @@ def test_other_counts_and_seeds_too(xlmc, plain_book):
     assert "seed 1000" in outcome.out
 
 
-@cases("typed", ["200.000", "many", "1.5", "", "2,00", "0,200", "1e-3", "1e400", "9" * 500, "nan"])
+@pytest.mark.parametrize("typed", ["200.000", "many", "1.5", "", "2,00", "0,200", "1e-3", "1e400", "9" * 500, "nan"])
 def test_a_number_that_could_mean_two_or_none(one_line, typed):
     assert "not a whole number. Type it like 200000" in one_line("simulate", BOOK, "-n", typed)
 
 
-@cases(("typed", "said"), [("0", "too small. Type 1 or more."), ("-5", "too small")])
+@pytest.mark.parametrize(("typed", "said"), [("0", "too small. Type 1 or more."), ("-5", "too small")])
 def test_a_number_out_of_range(one_line, typed, said):
     assert said in one_line("simulate", BOOK, "-n", typed)
 
 
-@cases(
+@pytest.mark.parametrize(
     ("arguments", "said"),
     [
         (("simulat", BOOK), "there is no command 'simulat'. Did you mean simulate?"),
@@ -84,7 +85,7 @@ def test_slips(one_line, arguments, said):
     assert said in one_line(*arguments)
 
 
-@cases("units", ["SI", "Si", "si"])
+@pytest.mark.parametrize("units", ["SI", "Si", "si"])
 def test_units_in_any_case(xlmc, tmp_path, units):
     assert xlmc("new", "Skid", f"{units}.xlsx", "--units", units).code == 0
     assert (tmp_path / f"{units}.xlsx").exists()
@@ -120,7 +121,7 @@ def test_the_list_of_commands_is_whole(xlmc):
     assert [line.split()[0] for line in text.partition("Commands:\n")[2].splitlines() if line[2] != " "] == COMMANDS
 
 
-@cases("command", COMMANDS)
+@pytest.mark.parametrize("command", COMMANDS)
 def test_help_is_understood_by_every_terminal(xlmc, command):
     """click writes it, which takes no heed of what the terminal's encoding lacks."""
     assert xlmc(command, "--help").out.isascii()

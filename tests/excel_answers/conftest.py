@@ -24,13 +24,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from xlmc.address import Area, Cell, column_letters, parse_address
+from xlmc.engine.engine import TEXT_RESULT, Column, Target
+from xlmc.engine.engines import ENGINES
+from xlmc.engine.graph.lower import Lowering, lower_until_complete
 from xlmc.errors import ErrorCode
-from xlmc.evaluation.engine import TEXT_RESULT, Column, Target
-from xlmc.evaluation.engines import ENGINES
-from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
-from xlmc.formula import Resolver, build_graph
-from xlmc.workbook.workbook import CellContent, Formula, Sheet, Workbook
+from xlmc.excel.address import Area, Cell, column_letters, parse_address
+from xlmc.excel.formula import Resolver, build_graph
+from xlmc.excel.workbook.workbook import CellContent, Formula, Sheet, Workbook
 
 FOLDER = Path(__file__).parent
 DRAWN = "Drawn"

@@ -10,7 +10,7 @@ import re
 
 import pytest
 
-from xlmc.functions.families import REGISTRY
+from xlmc.excel.functions.families import REGISTRY
 
 UNSEEN = {"NOW", "TODAY"}
 """What has another answer each day."""

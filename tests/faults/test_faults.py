@@ -27,10 +27,10 @@ from faults import (
 from faults import full_disk as fill_up
 
 import xlmc
-import xlmc.workbook.writer as writer
+import xlmc.excel.workbook.writer as writer
 from xlmc.cli import main
-from xlmc.columns import column_store
-from xlmc.workbook.target import Target
+from xlmc.excel.workbook.target import Target
+from xlmc.montecarlo.columns import column_store
 
 ROOT = Path(__file__).resolve().parents[2]
 pytestmark = pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
@@ -127,7 +127,7 @@ def test_two_writers_that_both_begin_a_new_file(tmp_path):
 
 SCRIPT = """
 import sys
-from xlmc.columns import column_store
+from xlmc.montecarlo.columns import column_store
 column_store.IN_MEMORY = column_store.WRITTEN = 0
 from xlmc.cli import main
 sys.argv = ["xlmc", *sys.argv[1:]]

@@ -14,6 +14,6 @@ def small_blocks(monkeypatch):
     """As in a campaign: as many trials at once as are asked for, and not 32,768."""
     from fuzzing import BLOCK
 
-    from xlmc.run import simulate
+    from xlmc.montecarlo.simulation import simulate
 
     monkeypatch.setattr(simulate, "BLOCK", BLOCK)

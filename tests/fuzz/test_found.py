@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-from cases import cases
 
 FORMULAS = [
     "AGGREGATE(A1:A4,{1,2;3,4},-1,-657434,100)",
@@ -32,8 +31,8 @@ FORMULAS = [
 
 
 @pytest.mark.usefixtures("small_blocks")
-@cases("text", FORMULAS)
-@cases("form", ["plain", "array", "dynamic"])
+@pytest.mark.parametrize("text", FORMULAS)
+@pytest.mark.parametrize("form", ["plain", "array", "dynamic"])
 def test_a_formula_that_was_found(text, form, tmp_path):
     from fuzzing import formulas
     from fuzzing.child import judged
@@ -59,7 +58,9 @@ STILL = [
 
 
 @pytest.mark.usefixtures("small_blocks")
-@cases("text, form", [(text, form) for number, text in enumerate(STILL) for form in ("plain", FORMS[number % 3])])
+@pytest.mark.parametrize(
+    ("text", "form"), [(text, form) for number, text in enumerate(STILL) for form in ("plain", FORMS[number % 3])]
+)
 def test_a_frozen_assumption_is_one_that_varies_by_nothing(text, form, tmp_path):
     from fuzzing import formulas
     from fuzzing.inputs import Input, Reached

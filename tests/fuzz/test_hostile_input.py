@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 
 import pytest
-from cases import cases
 from fewer_sheets import SHORT, keep_sheets
 
 SEED = 20261122
@@ -31,7 +30,7 @@ def test_every_input_runs_or_is_refused_in_words(kind, tmp_path, monkeypatch):
     assert reached[Reached.REFUSED] > 0
 
 
-@cases("kind", INPUTS)
+@pytest.mark.parametrize("kind", INPUTS)
 def test_an_input_is_a_function_of_its_seed_and_number(kind):
     from fuzzing import KINDS
     from fuzzing.inputs import generator

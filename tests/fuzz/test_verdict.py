@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from cases import cases
 
 from xlmc.errors import DefinitionError, FormulaError, SimulationError, WorkbookError
-from xlmc.workbook.reader import read_workbook
+from xlmc.excel.workbook.reader import read_workbook
 
 
 def verdict(error):
@@ -19,7 +18,7 @@ def verdict(error):
     return None if found is None else found.key
 
 
-@cases(
+@pytest.mark.parametrize(
     "error",
     [
         WorkbookError("the file is empty", where="case.xlsx"),
@@ -32,7 +31,7 @@ def test_a_message_with_a_place_is_fine(error):
     assert verdict(error) is None
 
 
-@cases(
+@pytest.mark.parametrize(
     ("error", "key"),
     [
         (WorkbookError(" ", where="case.xlsx"), "is empty"),
@@ -53,5 +52,5 @@ def test_a_finding_is_told_by_the_innermost_place_in_xlmc():
     with pytest.raises(TypeError) as raised:
         read_workbook(5)
     found = of_error(raised.value)
-    assert found.key.startswith("TypeError at workbook/reader.py:read_workbook:")
+    assert found.key.startswith("TypeError at excel/workbook/reader.py:read_workbook:")
     assert "TypeError: " in found.detail

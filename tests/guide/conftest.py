@@ -14,9 +14,9 @@ import pytest
 from typed_cells import with_typed
 
 import xlmc
-from xlmc.address import parse_address
-from xlmc.workbook.reader import read_workbook
-from xlmc.workbook.workbook import Workbook
+from xlmc.excel.address import parse_address
+from xlmc.excel.workbook.reader import read_workbook
+from xlmc.excel.workbook.workbook import Workbook
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT))

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import openpyxl
 import pytest
-from cases import cases
 from fewer_sheets import SHORT, fill_sheets, keep_few_trials, leave_out
 from typed_cells import model_of
 
@@ -139,7 +138,7 @@ def test_following_the_guide_is_the_worked_example(run):
         np.testing.assert_allclose(run[name].values, result.values, rtol=1e-12)
 
 
-@cases("change", ["nothing", *CHANGES])
+@pytest.mark.parametrize("change", ["nothing", *CHANGES])
 def test_what_a_change_does(run, changed, change):
     found = model_of(changed(CHANGES[change])).simulate() if change in CHANGES else run
     means = (found[name].mean.value for name in ("Nissan delta-V", "Nissan impact speed"))

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from typed_cells import model_of, named_cells, with_typed
 
-from xlmc.address import Cell
-from xlmc.workbook.reader import read_workbook
+from xlmc.excel.address import Cell
+from xlmc.excel.workbook.reader import read_workbook
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "guide.md").read_text(encoding="utf-8")

@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from xlmc.definitions.stopping import GOALS
-from xlmc.definitions.tables.settings import _settings
-from xlmc.distributions import FAMILIES
-from xlmc.evaluation.engines import ENGINES
-from xlmc.report.sheets.book import SHEETS
-from xlmc.sampling.sampling_methods import METHODS
+from xlmc.engine.engines import ENGINES
+from xlmc.montecarlo.definitions.stopping import GOALS
+from xlmc.montecarlo.definitions.tables.settings import _settings
+from xlmc.montecarlo.distributions import FAMILIES
+from xlmc.montecarlo.sampling.sampling_methods import METHODS
+from xlmc.outputs.sheets.book import SHEETS
 
 __all__ = ["undescribed"]
 

@@ -6,7 +6,7 @@ import itertools
 import re
 from collections.abc import Iterator
 
-from xlmc.report.document.parts import Bullets, Document, Figure, Heading, Paragraph, Table
+from xlmc.outputs.document.parts import Bullets, Document, Figure, Heading, Paragraph, Table
 
 __all__ = ["squeezed", "texts_of"]
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from xlmc.replay import sheets as repeated_sheets
-from xlmc.report.page import payload
-from xlmc.report.sheets import assumptions_sheet, book, save
-from xlmc.report.sheets.exact_book import ExactSheet
+from xlmc.outputs.page import payload
+from xlmc.outputs.replay import sheets as repeated_sheets
+from xlmc.outputs.sheets import assumptions_sheet, book, save
+from xlmc.outputs.sheets.exact_book import ExactSheet
 
 __all__ = [
     "CHARTS",

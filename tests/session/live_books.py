@@ -13,10 +13,10 @@ from openpyxl.utils import range_boundaries
 from openpyxl.worksheet.table import Table
 from websockets.sync.client import connect
 
-from xlmc.live.protocol import Said
-from xlmc.run.loading import load
-from xlmc.workbook.package import read_parts
-from xlmc.workbook.writer import package_bytes
+from xlmc.excel.workbook.package import read_parts
+from xlmc.excel.workbook.writer import package_bytes
+from xlmc.montecarlo.model.loading import load
+from xlmc.outputs.live.protocol import Said
 
 CASE = EXAMPLES["intersection"]
 SIMPLE = EXAMPLES["skid-100-ft"]

@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 from fewer_sheets import keep_sheets
 
-from xlmc.report.sheets.book import build_sheets
-from xlmc.run.simulation import Simulation
-from xlmc.workbook.writer import package_bytes
+from xlmc.excel.workbook.writer import package_bytes
+from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.outputs.sheets.book import build_sheets
 
 __all__ = ["packed_sheets"]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from xlmc.cli import main
-from xlmc.report.sheets import book
+from xlmc.outputs.sheets import book
 
 _WRITTEN = ("Results", "Trials", "Record")
 

@@ -2,14 +2,14 @@ from __future__ import annotations
 
 import re
 
-from cases import cases
+import pytest
 from committed_books import BOOKS, ROOT
 
 LEFT_BY_A_RUN = re.compile(r"^~\$|-results(-\d+)?$")
 """What a run of xlmc leaves beside a book, and Excel while it has one open."""
 
 
-@cases("name", BOOKS)
+@pytest.mark.parametrize("name", BOOKS)
 def test_every_book_of_the_list_exists(name):
     assert BOOKS[name].read_bytes().startswith(b"PK")
 

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from xlmc.address import Cell, parse_address
 from xlmc.api import Model
-from xlmc.run.loading import build_model
-from xlmc.workbook.workbook import CellContent, CellValue, Workbook
+from xlmc.excel.address import Cell, parse_address
+from xlmc.excel.workbook.workbook import CellContent, CellValue, Workbook
+from xlmc.montecarlo.model.loading import build_model
 
 __all__ = ["model_of", "named_cells", "with_typed"]
 

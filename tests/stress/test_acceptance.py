@@ -6,10 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from cases import cases
 
 
-@cases("rate", [1e-2, 1e-6])
+@pytest.mark.parametrize("rate", [1e-2, 1e-6])
 def test_the_interval_covers_however_few_are_accepted(rate):
     """Exact, no simulation: 92.5 % at least and 97 % on average, from 0.05 accepted trials expected to 60."""
     from stressing.accepted import shares
@@ -20,7 +19,7 @@ def test_the_interval_covers_however_few_are_accepted(rate):
     assert min(found["Wilson"]) < 0.86  # without what xlmc does about a few hits
 
 
-@cases(("rate", "wanted"), [(1e-2, 100), (1e-2, 2), (1e-4, 10), (1e-6, 2)])
+@pytest.mark.parametrize(("rate", "wanted"), [(1e-2, 100), (1e-2, 2), (1e-4, 10), (1e-6, 2)])
 def test_a_share_that_was_waited_for_is_right_on_average(rate, wanted):
     """Exact but for 2e-9 of the probability, whose shares may be large, and for grouping trials: 0.1 % in all."""
     from stressing.accepted import waited_for

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from cases import cases
 from scipy import stats
 
 TRIALS = 50_000
@@ -17,7 +16,7 @@ PAIRS = [
 ]
 
 
-@cases(("sampling", "asked"), PAIRS)
+@pytest.mark.parametrize(("sampling", "asked"), PAIRS)
 def test_pairs_near_one(asked, sampling):
     """Within 5 standard errors of what so many draws of this correlation have on average; each margin stays its own,
     to a Kolmogorov distance that chance exceeds once in 100,000."""
@@ -35,7 +34,7 @@ def test_pairs_near_one(asked, sampling):
         assert stats.kstest(draws[name], law.cdf, method="asymp").statistic < 2.5 / np.sqrt(TRIALS)
 
 
-@cases("sign", [1.0, -1.0])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_exactly_one_is_one_draw_seen_twice(sign):
     from stressing.dependence import book
 

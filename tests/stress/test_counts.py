@@ -6,9 +6,9 @@ import importlib
 import math
 
 import numpy as np
-from cases import cases
+import pytest
 
-from xlmc.statistics import mode
+from xlmc.montecarlo.statistics import mode
 
 FAMILIES = ["Yes-No", "Poisson", "Geometric", "Binomial"]
 
@@ -19,14 +19,14 @@ def held(found):
     return min(found["held"]) / runs > 0.95 - 4 * math.sqrt(0.95 * 0.05 / runs) - 0.02
 
 
-@cases("name", FAMILIES)
+@pytest.mark.parametrize("name", FAMILIES)
 def test_percentiles_of_ten_counts_are_covered(name):
     from stressing.discrete import measure
 
     assert held(measure(name, 10, 50))
 
 
-@cases("name", FAMILIES)
+@pytest.mark.parametrize("name", FAMILIES)
 def test_the_mode_is_the_most_probable_value_and_percentiles_are_covered(name):
     """Of 4,000 trials the runner-up has fewer by 8 standard errors or more; of the Poisson by 2.7, of the Binomial by
     3.0, so that it wins in 0.4 and 0.1 % of runs, and 3 times in 40 in less than 1 in 1,000 of such tests."""
@@ -46,5 +46,5 @@ def test_the_most_frequent_value_by_hand():
 def test_parts_do_not_change_it(monkeypatch):
     values = np.random.default_rng(3).poisson(2.5, 1_000).astype(float)
     whole = mode(values)
-    monkeypatch.setattr(importlib.import_module("xlmc.statistics.mode"), "PART", 7)
+    monkeypatch.setattr(importlib.import_module("xlmc.montecarlo.statistics.mode"), "PART", 7)
     assert mode(values) == whole

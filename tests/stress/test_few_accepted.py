@@ -9,10 +9,9 @@ import zipfile
 import numpy as np
 import pytest
 import xlsxwriter
-from cases import cases
 from click.testing import CliRunner
 
-import xlmc.statistics as xs
+import xlmc.montecarlo.statistics as xs
 from xlmc.api import load
 from xlmc.cli import xlmc as command
 
@@ -39,7 +38,7 @@ DEFINED_FROM = {
 With 5 trials the median lies outside them all in 1 of 16 runs, so 95 % confidence needs 6."""
 
 
-@cases("n", [0, 1, 2, 3, 4, 5, 6, 10, 16])
+@pytest.mark.parametrize("n", [0, 1, 2, 3, 4, 5, 6, 10, 16])
 def test_what_is_defined(n):
     found = xs.describe(np.random.default_rng(n).normal(5.0, 1.0, n), threshold=5.0)
     assert found.trials == n
@@ -68,7 +67,7 @@ LEAST = {
 """Means hold for normal forecasts exactly, percentiles for all; standard deviations of skewed forecasts do not."""
 
 
-@cases(("n", "place"), [(2, 0), (2, 2), (3, 1), (10, 0), (10, 2)])
+@pytest.mark.parametrize(("n", "place"), [(2, 0), (2, 2), (3, 1), (10, 0), (10, 2)])
 def test_intervals_are_as_honest_as_the_docs_say(n, place):
     from stressing.few import FORECASTS, coverage
 
@@ -114,7 +113,7 @@ def _write(path, below):
             sheet.add_table(row, column, row + len(rows), column + len(headings) - 1, options)
 
 
-@cases("n", [0, 1, 10])
+@pytest.mark.parametrize("n", [0, 1, 10])
 def test_the_command_writes_its_sheets_and_says_that_they_are_few(folder, n):
     target = folder / f"{n}-results.xlsx"
     done = CliRunner().invoke(

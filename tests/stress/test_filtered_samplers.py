@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 
 import pytest
-from cases import cases
 
 RUNS = 60
 
 
-@cases("method", ["lhs", "sobol"])
+@pytest.mark.parametrize("method", ["lhs", "sobol"])
 def test_intervals_hold_the_truth_from_ten_accepted_trials_a_replicate(method):
     """95 % less 4 binomial standard errors of 60 runs, 11 %; the standard deviation of the kept tail, which is as
     skewed as an exponential, may have 4 % less: docs/stress.md."""

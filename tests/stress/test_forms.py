@@ -11,7 +11,6 @@ import math
 
 import numpy as np
 import pytest
-from cases import cases
 
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("llvmlite") is None, reason="the engine jit needs llvmlite")
 
@@ -51,7 +50,7 @@ def test_the_table_has_these_forms():
     assert list(SWEEPS) == SWEPT
 
 
-@cases("name", SWEPT)
+@pytest.mark.parametrize("name", SWEPT)
 def test_the_rewritten_forms_lose_a_few_roundings_at_most(sweep, name):
     from stressing.forms import FORMS
     from stressing.rounding import BOUND
@@ -62,14 +61,14 @@ def test_the_rewritten_forms_lose_a_few_roundings_at_most(sweep, name):
             assert found.excess(engine, each.rewritten, each.rewritten).max() < BOUND, (engine, each.number)
 
 
-@cases(("number", "name", "least"), FAILS)
+@pytest.mark.parametrize(("number", "name", "least"), FAILS)
 def test_the_printed_forms_fail_where_theory_says(sweep, number, name, least):
     found, each = sweep(name), form(number)
     for engine in ENGINES:
         assert found.excess(engine, each.printed, each.rewritten).max() > least
 
 
-@cases("name", ["through 90", "through 270"])
+@pytest.mark.parametrize("name", ["through 90", "through 270"])
 def test_at_90_degrees_the_printed_speed_is_wrong_and_no_error_says_so(sweep, name):
     found, each = sweep(name), form(16)
     assert found.x[-1] == 0.0
@@ -79,7 +78,7 @@ def test_at_90_degrees_the_printed_speed_is_wrong_and_no_error_says_so(sweep, na
         assert found.errors[engine][each.rewritten][-1] < 1e-15
 
 
-@cases("name", ["through 90", "through 270"])
+@pytest.mark.parametrize("name", ["through 90", "through 270"])
 def test_from_the_other_side_of_90_degrees_it_is_the_same(forms_book, name):
     from stressing.forms import FORMS
     from stressing.rounding import BOUND, measured
@@ -104,7 +103,7 @@ def test_the_printed_direction_is_half_a_turn_off_where_the_arctangent_loses_the
         assert found.errors[engine][each.rewritten].max() < 1e-15
 
 
-@cases("name", ["sideswipe", "pole"])
+@pytest.mark.parametrize("name", ["sideswipe", "pole"])
 def test_what_the_evidence_does_not_hold_no_form_gives_back(sweep, name):
     """Here κ grows as 1/δ: the rewritten forms lose digits too, as many as the evidence itself."""
     found, each = sweep(name), form(15 if name == "sideswipe" else 10)

@@ -6,13 +6,12 @@ import math
 
 import numpy as np
 import pytest
-from cases import cases
 
 RUNS = 120
 NOISE = 4 * math.sqrt(0.95 * 0.05 / RUNS)
 
 
-@cases(("name", "needed", "slack"), [("normal", 2_000, 0.0), ("exponential", 2_000, 0.01),
+@pytest.mark.parametrize(("name", "needed", "slack"), [("normal", 2_000, 0.0), ("exponential", 2_000, 0.01),
                                                        ("lognormal, σ 1", 4_000, 0.04)])  # fmt: skip
 def test_precision(name, needed, slack):
     """95 % less 4 standard errors, and what intervals of skewed means lack without any stop rule. The mean at the stop
@@ -41,7 +40,7 @@ def test_precision_does_not_take_for_known_what_has_not_varied_yet():
 @pytest.fixture
 def short_sequences(monkeypatch):
     """Of 500 rather than 10,000: as many of them are needed, with 1/√20 of the scale."""
-    from xlmc.run.stopping import adaptive
+    from xlmc.montecarlo.loop.stopping import adaptive
 
     monkeypatch.setattr(adaptive, "sequence_length", lambda share: 500)
 
@@ -90,7 +89,7 @@ def test_whole_runs_until_so_many_are_accepted(model):
 
 def test_whole_runs_until_the_mean_is_known(model, monkeypatch):
     """40 runs in small blocks, which give the rule as many chances to stop by luck as it can have."""
-    monkeypatch.setattr("xlmc.run.simulate.BLOCK", 2_048)
+    monkeypatch.setattr("xlmc.montecarlo.simulation.simulate.BLOCK", 2_048)
     runs = [model.simulate(seed=seed, precision=0.012, precision_of="mean", keep_inputs=0) for seed in range(40)]
     assert {run.stopped.by for run in runs} == {"precision"}
     held = sum(run["x"].mean.interval[0] <= 10.5 <= run["x"].mean.interval[1] for run in runs)

@@ -6,10 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from cases import cases
 from scipy import stats
 
-from xlmc.statistics import farthest_part
+from xlmc.montecarlo.statistics import farthest_part
 
 TRIALS, SEEDS = 5_000, 60
 
@@ -62,7 +61,7 @@ def test_few_trials_say_nothing_of_tails(model):
     assert not any("hang" in notice.message for notice in model.simulate(900, 1).notices_of_run)
 
 
-@cases("weights", [None, [1.0, 1.0, 1.0, 1.0], [2.0, 2.0, 2.0, 2.0]])
+@pytest.mark.parametrize("weights", [None, [1.0, 1.0, 1.0, 1.0], [2.0, 2.0, 2.0, 2.0]])
 def test_the_part_of_the_farthest(weights):
     assert farthest_part([1.0, 1.0, 5.0, 1.0], weights) == pytest.approx(0.75)
     assert farthest_part([3.0, -3.0]) == pytest.approx(0.5)

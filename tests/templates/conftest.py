@@ -18,11 +18,11 @@ from recalculated_books import RECALCULATED
 from typed_cells import named_cells, with_typed
 
 import xlmc
-from xlmc.evaluation.engine import Target
-from xlmc.evaluation.engines import ENGINES
-from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
-from xlmc.formula import Resolver, build_graph
-from xlmc.workbook.reader import read_workbook
+from xlmc.engine.engine import Target
+from xlmc.engine.engines import ENGINES
+from xlmc.engine.graph.lower import Lowering, lower_until_complete
+from xlmc.excel.formula import Resolver, build_graph
+from xlmc.excel.workbook.reader import read_workbook
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT))

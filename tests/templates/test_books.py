@@ -7,7 +7,6 @@ import re
 import zipfile
 
 import pytest
-from cases import cases
 from committed_books import BOOKS, EXAMPLES, TEMPLATES
 from recalculated_books import RECALCULATED
 from xlsxwriter.workbook import Workbook
@@ -72,7 +71,7 @@ def rows(book, table):
     return [dict(zip([cell.value for cell in header], row, strict=True)) for row in body]
 
 
-@cases("name", RECALCULATED)
+@pytest.mark.parametrize("name", RECALCULATED)
 def test_cached_values_are_what_libreoffice_computes(name, read, recalculated):
     """They are also what xlmc computes in every cell of every book; see `test_cached_values_are_what_xlmc_computes`.
 
@@ -94,7 +93,7 @@ def test_cached_values_are_what_libreoffice_computes(name, read, recalculated):
     assert found > 30
 
 
-@cases("name", RECALCULATED)
+@pytest.mark.parametrize("name", RECALCULATED)
 def test_tables_stand_where_they_belong(name, book_path, described, opened):
     book = opened(book_path[name])
     one_forecast = any(row.only_for for row in described[name].filters)
@@ -105,7 +104,7 @@ def test_tables_stand_where_they_belong(name, book_path, described, opened):
         assert list(rows(book, table)[0]) == headers
 
 
-@cases("name", RECALCULATED)
+@pytest.mark.parametrize("name", RECALCULATED)
 def test_every_quantity_is_a_named_cell(name, book_path, described, opened):
     book = opened(book_path[name])
     template = described[name]
@@ -124,7 +123,7 @@ def test_every_quantity_is_a_named_cell(name, book_path, described, opened):
         assert book[sheet][place].value == f"={equation.formula}"
 
 
-@cases("name", RECALCULATED)
+@pytest.mark.parametrize("name", RECALCULATED)
 def test_forecasts_and_filters_point_at_their_cells(name, book_path, described, opened):
     book, template = opened(book_path[name]), described[name]
     for table, described_rows in (("xlmc_forecasts", template.forecasts), ("xlmc_filters", template.filters)):
@@ -157,7 +156,7 @@ def test_the_case_study_says_what_the_paper_says(book_path, opened, model_of):
     assert [cell.value for cell in rows(book, "xlmc_correlations")[0].values()] == [None, None, None]
 
 
-@cases("name", RECALCULATED)
+@pytest.mark.parametrize("name", RECALCULATED)
 def test_assumption_cells_are_green_and_forecast_cells_blue(name, book_path, described, opened):
     book = opened(book_path[name])
     colours = {}
@@ -171,7 +170,7 @@ def test_assumption_cells_are_green_and_forecast_cells_blue(name, book_path, des
     assert colours == {"green": {"FFC6E7B5"}, "blue": {"FFBBDDF7"}, "yellow": {"FFFFF2C2"}}
 
 
-@cases("name", RECALCULATED)
+@pytest.mark.parametrize("name", RECALCULATED)
 def test_formulas_are_guarded_and_inputs_are_open(name, book_path, described, opened):
     """A formula is locked, or Excel asks before it is typed over; no input is locked; there is no password."""
     book = opened(book_path[name])
@@ -194,7 +193,7 @@ def test_formulas_are_guarded_and_inputs_are_open(name, book_path, described, op
         assert not book[sheet].protection.sheet
 
 
-@cases("name", BOOKS)
+@pytest.mark.parametrize("name", BOOKS)
 def test_names_are_names_to_excel(name, described):
     """It takes e and E for one name, and R2C3, R or AB12 for cells."""
     symbols = [quantity.symbol for quantity in (*described[name].inputs, *described[name].equations)]
@@ -202,7 +201,7 @@ def test_names_are_names_to_excel(name, described):
     assert not [symbol for symbol in symbols if LIKE_A_CELL.fullmatch(symbol)]
 
 
-@cases("name", TEMPLATES)
+@pytest.mark.parametrize("name", TEMPLATES)
 def test_every_default_has_a_source_and_every_filter_a_reason(name, described):
     template = described[name]
     assert all(given.source for given in template.inputs)
@@ -212,7 +211,7 @@ def test_every_default_has_a_source_and_every_filter_a_reason(name, described):
     assert template.needs
 
 
-@cases("name", [name for name in TEMPLATES if name not in RECALCULATED])
+@pytest.mark.parametrize("name", [name for name in TEMPLATES if name not in RECALCULATED])
 def test_the_other_edition_runs_and_keeps_trials(name, model_of):
     """Its ranges and limits are typed by hand for its units. Of planar impact some 1 in 90 trials is kept."""
     model = model_of(name)
@@ -220,7 +219,7 @@ def test_the_other_edition_runs_and_keeps_trials(name, model_of):
     assert model.simulate(4_000).accepted > 20
 
 
-@cases("name", TEMPLATES)
+@pytest.mark.parametrize("name", TEMPLATES)
 def test_the_empty_template_shows_a_possible_crash(name, described, shown):
     template, base = described[name], shown(name)
     assert base["checks_hold"] is True
@@ -232,7 +231,7 @@ def test_the_empty_template_shows_a_possible_crash(name, described, shown):
         assert row.below is None or value < row.below
 
 
-@cases("name", BOOKS)
+@pytest.mark.parametrize("name", BOOKS)
 def test_cached_values_are_what_xlmc_computes(name, read):
     """To 1e-12, since the last digit of a sine depends on the processor."""
     found = computed(read(name))
@@ -259,7 +258,7 @@ def test_every_committed_book_has_a_script(described):
     assert described.keys() == BOOKS.keys()
 
 
-@cases("name", BOOKS)
+@pytest.mark.parametrize("name", BOOKS)
 def test_the_committed_book_is_what_the_script_writes(name, book_path, described, read, tmp_path_factory):
     """With the values that its cells show; the test above says that they are those that the script computes."""
     path = tmp_path_factory.mktemp("written") / f"{name}.xlsx"
@@ -269,7 +268,7 @@ def test_the_committed_book_is_what_the_script_writes(name, book_path, described
     expect_same_parts(book_path[name], path)
 
 
-@cases(
+@pytest.mark.parametrize(
     ("folder", "first", "books"),
     [("templates", "critical-speed-yaw-si", TEMPLATES), ("examples", "yaw-mark", EXAMPLES)],
 )

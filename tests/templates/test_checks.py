@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cases import cases
+import pytest
 
 from templates.build import TEMPLATES
 
@@ -91,7 +91,7 @@ CASES = [
 ]
 
 
-@cases(("template", "failing", "changes"), CASES)
+@pytest.mark.parametrize(("template", "failing", "changes"), CASES)
 def test_a_contradiction_turns_its_check_red(template, failing, changes, cells, described):
     names = [row.symbol for row in described[template].equations if row.role.value == "check"]
     found = {symbol: value.item() for symbol, value in cells(template, changes, names).items()}

@@ -3,7 +3,7 @@ from __future__ import annotations
 import re
 
 import numpy as np
-from cases import cases
+import pytest
 
 from templates.build import TEMPLATES
 from templates.description import Equation
@@ -65,7 +65,7 @@ def pairs(name):
                 yield both[0][0], both[1][0]
 
 
-@cases("name", TEMPLATES)
+@pytest.mark.parametrize("name", TEMPLATES)
 def test_labels_of_the_editions_name_the_same_vehicles_and_units_are_counterparts(name):
     for imperial, si in pairs(name):
         assert VEHICLE.findall(imperial.name) == VEHICLE.findall(si.name)
@@ -78,7 +78,7 @@ def drawn(given, rng, n):
     return rng.uniform(p["Low"], p["High"], n) if "Low" in p else rng.normal(p["Mean"], p["Std dev"], n)
 
 
-@cases("name", TEMPLATES)
+@pytest.mark.parametrize("name", TEMPLATES)
 def test_both_editions_give_the_same_crash(name, cells, shown, described):
     """100 draws of the imperial assumptions; the SI workbook, given them in its own units, answers in its own units."""
     template, rng, n = described[name], np.random.default_rng(9), 100

@@ -7,14 +7,13 @@ from types import MappingProxyType
 
 import numpy as np
 import pytest
-from cases import cases
 from committed_books import BOOKS
 from recalculated_books import RECALCULATED
 from typed_cells import model_of, named_cells, with_typed
 
-from xlmc.address import Cell
-from xlmc.definitions.definitions_reader import read_definitions
-from xlmc.evaluation.engines import ENGINES
+from xlmc.engine.engines import ENGINES
+from xlmc.excel.address import Cell
+from xlmc.montecarlo.definitions.definitions_reader import read_definitions
 
 HEADERS = "Name Cell Units Reading Error/Plus or minus/Std dev/Percent/Resolution/Use/Source"
 
@@ -68,7 +67,7 @@ CASES = [
 ]
 
 
-@cases(("template", "row", "reading", "forecast", "holds"), CASES)
+@pytest.mark.parametrize(("template", "row", "reading", "forecast", "holds"), CASES)
 def test_a_reading_keeps_what_agrees_with_it(template, row, reading, forecast, holds, read_in, run_of):
     with_it, without = read_in(template, row, reading).simulate(20_000), run_of(template)
     assert 0 < with_it.accepted < without.accepted

@@ -3,7 +3,7 @@ from __future__ import annotations
 from decimal import Decimal, getcontext
 
 import numpy as np
-from cases import cases
+import pytest
 
 import xlmc
 
@@ -12,7 +12,7 @@ PI = Decimal("3.14159265358979323846264338327950288419716939937510582097494459")
 FORECASTS = ("Vehicle 1 delta-V", "Vehicle 2 delta-V", "Vehicle 1 impact speed", "Vehicle 2 impact speed")
 
 
-@cases("units", ["", "-si"])
+@pytest.mark.parametrize("units", ["", "-si"])
 def test_every_trial_gives_what_planar_impact_gives(book_path, units):
     """The same draws by name, before filters: equal to 1e-12 of the width of the central 51 % range."""
     trials = 20_000
@@ -57,8 +57,8 @@ STRESSES = [
 ]
 
 
-@cases("name", ["momentum", "planar-impact"])
-@cases(("what", "value", "error"), STRESSES)
+@pytest.mark.parametrize("name", ["momentum", "planar-impact"])
+@pytest.mark.parametrize(("what", "value", "error"), STRESSES)
 def test_speed_of_vehicle_2_keeps_its_digits(name, what, value, error, cells, described):
     """300 scenes of the example's ranges against 50 digits: the median error as known; the largest, relative to the
     terms that V2i is the difference of, within 8 times that.

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from cases import cases
+import pytest
 
 from templates.notation import printed
 
@@ -17,7 +17,7 @@ NOTATION = {
 }
 
 
-@cases(
+@pytest.mark.parametrize(
     ("formula", "expected"),
     [
         ("SIN(RADIANS(beta_1-alpha_1))", "sin(β1 − α1)"),

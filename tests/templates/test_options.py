@@ -6,12 +6,11 @@ import math
 
 import numpy as np
 import pytest
-from cases import cases
 
 TURNING = ("momentum", "planar-impact")
 
 
-@cases("name", TURNING)
+@pytest.mark.parametrize("name", TURNING)
 def test_the_turn_limits_speed_once_its_radius_is_entered(name, typed, run_of):
     off = run_of(name)
     on = typed(name, {"R_turn_2": 5.0}).simulate(20_000)
@@ -23,7 +22,7 @@ def test_the_turn_limits_speed_once_its_radius_is_entered(name, typed, run_of):
     np.testing.assert_array_equal(on["Vehicle 2 impact speed"].values, off["Vehicle 2 impact speed"].values[kept])
 
 
-@cases("name", TURNING)
+@pytest.mark.parametrize("name", TURNING)
 def test_duration_gives_mean_acceleration_and_the_neglected_impulse(name, cells, shown):
     assert shown(name)["dV_tyres_1"] == "–"
     given = {"t_impact": 0.1, "f_1": 0.8}
@@ -33,7 +32,7 @@ def test_duration_gives_mean_acceleration_and_the_neglected_impulse(name, cells,
     assert found["share_tyres_1"].item() == pytest.approx(100 * 0.8 * 32.174 * 0.1 / found["dV_1"].item(), rel=1e-12)
 
 
-@cases("name", [*TURNING, "momentum-energy"])
+@pytest.mark.parametrize("name", [*TURNING, "momentum-energy"])
 def test_stuck_together_is_one_switch(name, cells):
     """The same as typing the departure of vehicle 1 for vehicle 2, too, whatever the row of vehicle 2 says."""
     wanted = ["V1_i", "V2_i", "dV_1", "E_after"]
@@ -47,7 +46,7 @@ def test_stuck_together_is_one_switch(name, cells):
         assert switched[symbol] != left_alone[symbol]
 
 
-@cases("name", TURNING)
+@pytest.mark.parametrize("name", TURNING)
 def test_the_shared_road_is_ready_and_off(name, model_of):
     [row] = model_of(name).definitions.correlations
     assert (row.first, row.second) == ("Vehicle 1 post-impact deceleration", "Vehicle 2 post-impact deceleration")
@@ -62,7 +61,7 @@ def test_the_case_study_asks_for_the_papers_forecasts_and_filters_and_no_more(mo
     assert len(model.live) == 17
 
 
-@cases("name", TURNING)
+@pytest.mark.parametrize("name", TURNING)
 def test_directions_of_force_are_reported_every_way(name, shown):
     base = shown(name)
     assert base["PDOF2_cw"] == pytest.approx(-base["PDOF_2"] % 360)

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from cases import cases
 
 from templates.planar_impact import evaluate
 
@@ -129,7 +128,7 @@ def test_swapping_the_vehicles_swaps_the_answers(scenes):
         np.testing.assert_allclose(-theirs[symbol], ours[symbol], rtol=1e-10, atol=1e-9)
 
 
-@cases("alpha_2", [90.0, 270.0])
+@pytest.mark.parametrize("alpha_2", [90.0, 270.0])
 def test_turning_the_axes_changes_nothing_even_at_the_pole_of_equation_16(described, shown, alpha_2):
     base = shown("intersection")
     scene = {given.symbol: given.base for given in described["intersection"].inputs if given.base is not None}
@@ -166,7 +165,7 @@ def test_the_three_directions_of_force_agree(scenes):
 
 
 # Directions (alpha_1, alpha_2, beta_1, beta_2, gamma_t) that contradict physics in one way and no other.
-@cases(
+@pytest.mark.parametrize(
     ("failing", "directions"),
     [
         ("check_energy", (170, 250, 180, 270, 40)),
@@ -186,7 +185,7 @@ def test_each_check_fails_alone_where_it_should(described, failing, directions):
     assert bool(values["checks_hold"]) is (failing is None)
 
 
-@cases("friction", [{"f_1": 75}, {"f_2": 0}])
+@pytest.mark.parametrize("friction", [{"f_1": 75}, {"f_2": 0}])
 def test_frictions_that_no_tyre_has_fail_their_check(described, friction):
     values = evaluate(base_inputs(described) | friction)
     assert not values["check_friction"]

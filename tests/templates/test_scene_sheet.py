@@ -8,7 +8,6 @@ import zipfile
 
 import numpy as np
 import pytest
-from cases import cases
 
 from templates.build import TEMPLATES
 from templates.description import Look
@@ -32,8 +31,8 @@ def test_the_templates_with_something_to_draw_are_drawn():
     assert PLANS == ["momentum", "planar-impact", "planar-forward", "momentum-energy"]
 
 
-@cases("units", ["", "-si"])
-@cases("name", DRAWN)
+@pytest.mark.parametrize("units", ["", "-si"])
+@pytest.mark.parametrize("name", DRAWN)
 def test_the_chart_has_a_series_for_every_curve_over_its_own_cells(name, units, book_path, described, read):
     diagram = described[name + units].diagram
     with zipfile.ZipFile(book_path[name + units]) as book:
@@ -49,7 +48,7 @@ def test_the_chart_has_a_series_for_every_curve_over_its_own_cells(name, units, 
     assert len(areas) == len(diagram.curves) + diagram.plan
 
 
-@cases("name", PLANS)
+@pytest.mark.parametrize("name", PLANS)
 def test_a_plan_has_one_scale(name, book_path, read):
     """Unseen corners, the same to every side of the origin and beyond every point, on a square plot."""
     drawn = points(read(name))
@@ -64,7 +63,7 @@ def test_a_plan_has_one_scale(name, book_path, read):
     assert width * int(size[0]) == pytest.approx(height * int(size[1]))
 
 
-@cases("name", PLANS)
+@pytest.mark.parametrize("name", PLANS)
 def test_vehicles_are_drawn_where_they_are_and_as_they_head(name, read, shown):
     drawn, base = points(read(name)), shown(name)
     for j in (1, 2):

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from cases import cases
 from scipy.stats import norm
 
 N = 200_000
@@ -124,7 +123,7 @@ def test_a_recorded_speed_under_hard_braking(cells):
     close_quantile(found["vi_mph"], 0.975, 47.33, 1e-2)
 
 
-@cases(
+@pytest.mark.parametrize(
     ("distance", "frames", "expected"),
     [(10, 2, {0.025: 24.56, 0.5: 34.09, 0.975: 55.72}), (100, 20, {0.025: 32.82, 0.975: 35.47})],
 )

@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 
 import numpy as np
-from cases import cases
+import pytest
 from recalculated_books import RECALCULATED
 
 from templates.checks import ALL_CHECKS
 from templates.description import Role
-from xlmc.address import parse_address
-from xlmc.run.checking import base_checks
+from xlmc.excel.address import parse_address
+from xlmc.montecarlo.diagnostics.checking import base_checks
 
 EDITIONS = ["", "-si"]
 FRICTION = {
@@ -47,8 +47,8 @@ SLIPS = {
 }
 
 
-@cases("edition", EDITIONS)
-@cases("template", SLIPS)
+@pytest.mark.parametrize("edition", EDITIONS)
+@pytest.mark.parametrize("template", SLIPS)
 def test_a_slip_fails_a_check_at_the_base_case(template, edition, cells, shown, described):
     """All slips of a workbook are computed at once, one a row."""
     name, slips = f"{template}{edition}", SLIPS[template]
@@ -70,7 +70,7 @@ def test_what_fails_is_told_with_its_cell(typed):
     assert re.search(r": Model!D\d+ is FALSE: ", failing)
 
 
-@cases("name", RECALCULATED)
+@pytest.mark.parametrize("name", RECALCULATED)
 def test_a_template_as_it_comes_raises_no_alarm(run_of, name):
     """One edition of each; `test_editions.py` shows that the other has the same checks."""
     run = run_of(name)

@@ -3,15 +3,15 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from cases import cases
+import pytest
 from committed_books import TEMPLATES
 
 from templates.description import Equation
 from templates.vehicles import for_both, label_formula, names_a_vehicle, shown_label
 from templates.writer.cached import computed
-from xlmc.address import Cell
-from xlmc.run.loading import build_model
-from xlmc.workbook.workbook import CellContent
+from xlmc.excel.address import Cell
+from xlmc.excel.workbook.workbook import CellContent
+from xlmc.montecarlo.model.loading import build_model
 
 NAMED = [
     name
@@ -74,7 +74,7 @@ def with_names(workbook, names):
     return replace(workbook, sheets=sheets)
 
 
-@cases("name", NAMED)
+@pytest.mark.parametrize("name", NAMED)
 def test_a_new_name_shows_in_every_label_of_every_sheet(name, read, described, model_of):
     """Typed by a program that calculates nothing: xlmc reads the tables' labels all the same."""
     old = described[name].vehicles

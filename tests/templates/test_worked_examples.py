@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from cases import cases
 
 import xlmc
 
@@ -271,7 +270,7 @@ EXAMPLES = [
 ]
 
 
-@cases(("template", "inputs", "expected", "tolerance"), EXAMPLES)
+@pytest.mark.parametrize(("template", "inputs", "expected", "tolerance"), EXAMPLES)
 def test_worked_example(template, inputs, expected, tolerance, cells):
     found = cells(template, inputs, list(expected))
     for symbol, value in expected.items():
@@ -330,7 +329,7 @@ BOOKS = {
 }
 
 
-@cases("name", BOOKS)
+@pytest.mark.parametrize("name", BOOKS)
 def test_example_book_shows_the_published_figures(name, shown):
     found = shown(name)
     for symbol, (value, tolerance) in BOOKS[name].items():
@@ -338,7 +337,7 @@ def test_example_book_shows_the_published_figures(name, shown):
     assert found["checks_hold"] is (name not in ("textbook-claim", "video-two-frames"))
 
 
-@cases("name", BOOKS)
+@pytest.mark.parametrize("name", BOOKS)
 def test_example_book_runs(name, book_path):
     run = xlmc.load(book_path[name]).simulate(1_000)
     assert run.accepted == 1_000

@@ -36,7 +36,7 @@ from xlmc.cli.stability import stability
 from xlmc.cli.terminal import prepare, say
 from xlmc.cli.verify import verify
 from xlmc.errors import XlmcError
-from xlmc.run.version import __version__
+from xlmc.montecarlo.loop.version import __version__
 
 __all__ = ["main", "xlmc"]
 

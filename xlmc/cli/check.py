@@ -15,12 +15,12 @@ from xlmc.cli.terminal import paragraph, say
 from xlmc.errors import sentence
 
 if TYPE_CHECKING:
-    from xlmc.definitions.definitions import Correlation, Definitions
-    from xlmc.run.cell_errors import BaseErrors
-    from xlmc.run.checking import CheckResult
-    from xlmc.run.model import Model
-    from xlmc.run.simulation import Simulation
-    from xlmc.workbook.workbook import Workbook
+    from xlmc.excel.workbook.workbook import Workbook
+    from xlmc.montecarlo.definitions.definitions import Correlation, Definitions
+    from xlmc.montecarlo.diagnostics.cell_errors import BaseErrors
+    from xlmc.montecarlo.diagnostics.checking import CheckResult
+    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.simulation.simulation import Simulation
 
 __all__ = ["check", "check_table", "failing_lines", "scenario_table", "show_first"]
 
@@ -35,15 +35,15 @@ def check(book: Path) -> None:
 
     Checks that fail at the base case, and cells that are errors there, come first.
     """
+    from xlmc.analysis.studies.scenario_answers import models_of
     from xlmc.cli.printing import notices
-    from xlmc.definitions.definitions_reader import read_definitions
+    from xlmc.engine.engines import ENGINES
     from xlmc.errors import XlmcError
-    from xlmc.evaluation.engines import ENGINES
-    from xlmc.run.labels import calculate_labels
-    from xlmc.run.loading import filter_faults
-    from xlmc.run.model import Model
-    from xlmc.studies.scenario_answers import models_of
-    from xlmc.workbook.reader import read_workbook
+    from xlmc.excel.workbook.reader import read_workbook
+    from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+    from xlmc.montecarlo.model.labels import calculate_labels
+    from xlmc.montecarlo.model.loading import filter_faults
+    from xlmc.montecarlo.model.model import Model
 
     workbook = calculate_labels(read_workbook(book))
     definitions = read_definitions(workbook, ENGINES)
@@ -80,8 +80,8 @@ def check(book: Path) -> None:
 
 def _show_base_case(model: Model) -> list[str]:
     """Print the checks that fail and the cells in error; return why the answer must not be used as it is."""
-    from xlmc.run.cell_errors import errors_at_base
-    from xlmc.run.checking import base_checks
+    from xlmc.montecarlo.diagnostics.cell_errors import errors_at_base
+    from xlmc.montecarlo.diagnostics.checking import base_checks
 
     failing = [check.fault for check in base_checks(model) if check.holds is False]
     errors = errors_at_base(model)
@@ -101,7 +101,7 @@ def _show_base_case(model: Model) -> list[str]:
 
 def _error_lines(model: Model, errors: BaseErrors) -> Iterator[str]:
     """The cells that errors come from with their formulas, then the cells that have theirs from these."""
-    from xlmc.results.record.needed_cells import content_text
+    from xlmc.analysis.results.record.needed_cells import content_text
 
     handled = "" if errors.answers else " (handled: no forecast, filter or check is an error)"
     for cell, code in list(errors.roots.items())[:_MOST_CELLS]:
@@ -115,10 +115,10 @@ def _error_lines(model: Model, errors: BaseErrors) -> Iterator[str]:
 
 
 def _show_definitions(definitions: Definitions, model: Model | None) -> None:
+    from xlmc.analysis.results.statements.in_words import distribution_text, evidence_text, limits_text
     from xlmc.cli.printing import table
-    from xlmc.distributions.parameters import show
-    from xlmc.report.summary import percent
-    from xlmc.results.statements.in_words import distribution_text, evidence_text, limits_text
+    from xlmc.montecarlo.distributions.parameters import show
+    from xlmc.outputs.summary import percent
 
     table(
         "Assumptions",
@@ -153,8 +153,8 @@ def _show_definitions(definitions: Definitions, model: Model | None) -> None:
 
 def scenario_table(definitions: Definitions) -> None:
     """Print what each scenario changes; nothing where there are none."""
+    from xlmc.analysis.results.statements.in_words import changes_text
     from xlmc.cli.printing import table
-    from xlmc.results.statements.in_words import changes_text
 
     changes = [(each.name, changes_text(each), each.note) for each in definitions.scenarios]
     if changes:
@@ -162,7 +162,7 @@ def scenario_table(definitions: Definitions) -> None:
 
 
 def _drawn_with(model: Model | None, correlation: Correlation) -> str:
-    from xlmc.run.correlating import drawn_correlation
+    from xlmc.montecarlo.model.correlating import drawn_correlation
 
     found = None if model is None else drawn_correlation(model.groups, correlation.first, correlation.second)
     return "-" if found is None else f"{found:.3g}"
@@ -180,7 +180,7 @@ def _show_need(model: Model, workbook: Workbook) -> None:
 
 def show_first(run: Simulation) -> None:
     """Print the checks that fail, then evidence that contradicts, then the cells that trials were lost in."""
-    from xlmc.results.record.errors_met import lost_sentences
+    from xlmc.analysis.results.record.errors_met import lost_sentences
 
     name = run.model.workbook.name
     _show_lines(f"{name}: checks that fail", failing_lines(run))
@@ -206,7 +206,7 @@ def _show_lines(title: str, lines: Sequence[str]) -> None:
 def check_table(run: Simulation) -> None:
     """Print how many accepted trials fail each check; only how many checks there are where no trial fails one."""
     from xlmc.cli.printing import table
-    from xlmc.run.checking import checks_sentence
+    from xlmc.montecarlo.diagnostics.checking import checks_sentence
 
     if not run.checks:
         return
@@ -219,6 +219,6 @@ def check_table(run: Simulation) -> None:
 
 
 def _share(check: CheckResult) -> str:
-    from xlmc.report.summary import share_text
+    from xlmc.outputs.summary import share_text
 
     return share_text(check.share)

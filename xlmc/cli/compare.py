@@ -16,9 +16,9 @@ from xlmc.cli.terminal import say_json
 from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
-    from xlmc.report.study_report import Block, StudyReport
-    from xlmc.studies.comparison import Comparison, ForecastComparison
-    from xlmc.studies.comparison.causes import Step
+    from xlmc.analysis.studies.comparison import Comparison, ForecastComparison
+    from xlmc.analysis.studies.comparison.causes import Step
+    from xlmc.outputs.study_report import Block, StudyReport
 
 __all__ = ["compare"]
 
@@ -66,13 +66,13 @@ def compare(
     quiet: bool,
 ) -> None:
     """Run the workbooks FIRST and SECOND over the same trials, and say whether the simpler one is enough."""
+    from xlmc.analysis.studies import comparison
+    from xlmc.analysis.studies.comparison.verdicts import book_names
     from xlmc.cli.printing import notices, warnings
     from xlmc.cli.progress_bar import step_line
-    from xlmc.report.study_report import Files
-    from xlmc.run.directions import direction_notices
-    from xlmc.run.loading import load
-    from xlmc.studies import comparison
-    from xlmc.studies.comparison.verdicts import book_names
+    from xlmc.montecarlo.diagnostics.directions import direction_notices
+    from xlmc.montecarlo.model.loading import load
+    from xlmc.outputs.study_report import Files
 
     books = load(first), load(second)
     files = Files(output, html, pdf, docx, [first, second], overwrite=overwrite)
@@ -108,7 +108,7 @@ def compare(
 
 
 def _contradict(each: ForecastComparison) -> bool:
-    from xlmc.studies.comparison.rivalry import RivalVerdict
+    from xlmc.analysis.studies.comparison.rivalry import RivalVerdict
 
     return each.rivalry is not None and each.rivalry.agreement is RivalVerdict.CONTRADICT
 
@@ -131,8 +131,8 @@ def _pairs(given: tuple[str, ...], option: str, form: str) -> dict[str, str]:
 
 
 def _report(found: Comparison) -> StudyReport:
-    from xlmc.report.study_report import StudyReport, Table
-    from xlmc.studies.comparison.verdicts import book_names, verdict_text
+    from xlmc.analysis.studies.comparison.verdicts import book_names, verdict_text
+    from xlmc.outputs.study_report import StudyReport, Table
 
     books = book_names(found)
     headings = ("", "First", "Second", "Difference", "Tolerance")
@@ -142,8 +142,8 @@ def _report(found: Comparison) -> StudyReport:
 
 
 def _sentences(found: Comparison) -> Iterator[str]:
-    from xlmc.report.summary import estimate_text
-    from xlmc.studies.comparison.verdicts import book_names, inputs_text
+    from xlmc.analysis.studies.comparison.verdicts import book_names, inputs_text
+    from xlmc.outputs.summary import estimate_text
 
     books, accepted, trials = book_names(found), found.acceptance, found.first.trials
     yield (
@@ -170,8 +170,8 @@ def _title(each: ForecastComparison) -> str:
 
 
 def _rows(each: ForecastComparison) -> list[tuple[str, ...]]:
-    from xlmc.report.summary import estimate_text, percent
-    from xlmc.studies.comparison.verdicts import amount, is_chance
+    from xlmc.analysis.studies.comparison.verdicts import amount, is_chance
+    from xlmc.outputs.summary import estimate_text, percent
 
     found = each.difference
     rows = []
@@ -190,8 +190,8 @@ def _rows(each: ForecastComparison) -> list[tuple[str, ...]]:
 
 
 def _as_json(found: Comparison) -> dict[str, object]:
+    from xlmc.analysis.studies.comparison.verdicts import book_names, verdict_text
     from xlmc.cli.study_output import acceptance_json
-    from xlmc.studies.comparison.verdicts import book_names, verdict_text
 
     books, inputs = book_names(found), found.inputs
     return {
@@ -217,7 +217,7 @@ def _as_json(found: Comparison) -> dict[str, object]:
 
 def _entry(each: ForecastComparison, books: tuple[str, str]) -> dict[str, object]:
     from xlmc.cli.study_output import difference_json, estimate_json
-    from xlmc.statistics.estimate import finite
+    from xlmc.montecarlo.statistics.estimate import finite
 
     entry: dict[str, object] = {
         "name": each.first.name,

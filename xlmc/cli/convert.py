@@ -26,10 +26,10 @@ def convert(book: Path, output: Path | None, overwrite: bool) -> None:
     The copy gives the same accepted trials as BOOK, to the last bit.
     """
     from xlmc.cli.printing import notices, table
-    from xlmc.report.conversion.convert import convert as write
-    from xlmc.report.sheets.save import check_ending
-    from xlmc.run.loading import load
-    from xlmc.workbook.target import copy_ending
+    from xlmc.excel.workbook.target import copy_ending
+    from xlmc.montecarlo.model.loading import load
+    from xlmc.outputs.conversion.convert import convert as write
+    from xlmc.outputs.sheets.save import check_ending
 
     model = load(book)
     path = output or model.path.with_name(f"{model.path.stem}-converted{copy_ending(model.path)}")

@@ -16,9 +16,9 @@ from xlmc.cli.terminal import say, say_json
 from xlmc.cli.writing import NOT_WRITTEN, write_files, written_or_told
 
 if TYPE_CHECKING:
-    from xlmc.report.study_curves import Curves
-    from xlmc.report.study_report import Block, StudyReport, Table
-    from xlmc.studies.fitting import Fitted, Fitting
+    from xlmc.analysis.studies.fitting import Fitted, Fitting
+    from xlmc.outputs.study_curves import Curves
+    from xlmc.outputs.study_report import Block, StudyReport, Table
 
 __all__ = ["fit"]
 
@@ -74,10 +74,10 @@ def fit(
     """
     import numpy as np
 
+    from xlmc.analysis.studies import fitting
     from xlmc.cli import fit_into
-    from xlmc.report.study_report import Files
-    from xlmc.studies import fitting
-    from xlmc.workbook.printable import label
+    from xlmc.excel.workbook.printable import label
+    from xlmc.outputs.study_report import Files
 
     book, reference = _book_and_range(source, cells)
     name = label(name.strip())
@@ -123,7 +123,7 @@ def _chosen(found: Fitting, distribution: str | None) -> Fitted:
         DefinitionError: there is none of that name.
         UsageError: it was not fitted.
     """
-    from xlmc.distributions import family_named
+    from xlmc.montecarlo.distributions import family_named
 
     if distribution is None:
         return found.fits[0]
@@ -159,11 +159,11 @@ def _values(book: Path, reference: str) -> tuple[list[float], str, int]:
     Raises:
         DefinitionError: there is no such range, or a cell in it holds something else.
     """
-    from xlmc.definitions.cell_references import area_of_reference
-    from xlmc.definitions.computed import Computed
-    from xlmc.definitions.tables.data import area_values
-    from xlmc.definitions.tables.table_rows import number_in
-    from xlmc.workbook.reader import read_workbook
+    from xlmc.excel.workbook.reader import read_workbook
+    from xlmc.montecarlo.definitions.cell_references import area_of_reference
+    from xlmc.montecarlo.definitions.computed import Computed
+    from xlmc.montecarlo.definitions.tables.data import area_values
+    from xlmc.montecarlo.definitions.tables.table_rows import number_in
 
     workbook = read_workbook(book)
     only_sheet = next(iter(workbook.sheets)) if len(workbook.sheets) == 1 else None
@@ -191,7 +191,7 @@ def _as_json(found: Fitting, source: str, blank: int, row: dict[str, str]) -> di
 
 
 def _entry(fitted: Fitted) -> dict[str, object]:
-    from xlmc.statistics.estimate import finite
+    from xlmc.montecarlo.statistics.estimate import finite
 
     return {
         "distribution": fitted.name,
@@ -209,7 +209,7 @@ def _entry(fitted: Fitted) -> dict[str, object]:
 
 def _report(found: Fitting, values: list[float], source: str, blank: int, row: dict[str, str]) -> StudyReport:
     """What was found; the row to paste comes last."""
-    from xlmc.report.study_report import StudyReport, Table
+    from xlmc.outputs.study_report import StudyReport, Table
 
     as_row = Table(f"{row['Distribution']} as a row of xlmc_assumptions", tuple(row), (tuple(row.values()),))
     below = f"{source}: {found.n} values"
@@ -225,7 +225,7 @@ def _cautions(found: Fitting) -> list[str]:
 
 
 def _ranking(found: Fitting, source: str, blank: int) -> Table:
-    from xlmc.report.study_report import Table
+    from xlmc.outputs.study_report import Table
 
     left_out = f"; {blank} blank cells left out" if blank else ""
     title = f"{source}: {found.n} values as {found.kind}{left_out}; the best by {found.by.upper()} first"
@@ -250,8 +250,8 @@ def _curves(found: Fitting, values: list[float]) -> Curves:
     """The values and the families that describe them best, as shares at most."""
     import numpy as np
 
-    from xlmc.report.study_curves import Curves, Line
-    from xlmc.studies.fitting import share_at_most
+    from xlmc.analysis.studies.fitting import share_at_most
+    from xlmc.outputs.study_curves import Curves, Line
 
     ranked = np.sort(values)
     shown = np.unique(np.linspace(0, ranked.size - 1, min(ranked.size, _VALUES)).astype(int))
@@ -285,8 +285,8 @@ _MEANING = (
 
 
 def _parameters(fitted: Fitted) -> str:
-    from xlmc.statistics import format_estimate
-    from xlmc.studies.fitting import parameter_texts
+    from xlmc.analysis.studies.fitting import parameter_texts
+    from xlmc.montecarlo.statistics import format_estimate
 
     parts, texts = [], parameter_texts(fitted)
     for heading, value in fitted.parameters.items():

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from xlmc.errors import WorkbookError
 
 if TYPE_CHECKING:
-    from xlmc.definitions.tables.new_row import RowEdit
-    from xlmc.studies.fitting import Fitted
-    from xlmc.workbook.workbook import Table, Workbook
+    from xlmc.analysis.studies.fitting import Fitted
+    from xlmc.excel.workbook.workbook import Table, Workbook
+    from xlmc.montecarlo.definitions.tables.new_row import RowEdit
 
 __all__ = ["Edited", "prepare", "write"]
 
@@ -41,11 +41,11 @@ def prepare(path: Path, name: str, fitted: Fitted, base: float, source: str) -> 
         DefinitionError: the row has no place in the workbook, or the workbook would not be right with it.
         WorkbookError: the file cannot be read, a program has it open, or a cell of the row holds a formula.
     """
-    from xlmc.definitions.tables.new_row import row_edit
-    from xlmc.studies.fitting import parameter_texts, rounded_value
-    from xlmc.workbook.reader import read_workbook
-    from xlmc.workbook.target import refuse_into_old_workbook
-    from xlmc.workbook.writer import package_bytes, refuse_if_open
+    from xlmc.analysis.studies.fitting import parameter_texts, rounded_value
+    from xlmc.excel.workbook.reader import read_workbook
+    from xlmc.excel.workbook.target import refuse_into_old_workbook
+    from xlmc.excel.workbook.writer import package_bytes, refuse_if_open
+    from xlmc.montecarlo.definitions.tables.new_row import row_edit
 
     refuse_if_open(path)
     workbook = read_workbook(path)
@@ -64,15 +64,15 @@ def write(edited: Edited) -> Path:
         TakenError: it has changed since it was read, or a program has it open.
         WorkbookError: it cannot be written.
     """
-    from xlmc.workbook.target import refuse_into_source
-    from xlmc.workbook.writer import write_workbook
+    from xlmc.excel.workbook.target import refuse_into_source
+    from xlmc.excel.workbook.writer import write_workbook
 
     write_workbook(edited.path, edited.data, lambda: refuse_into_source(edited.path, edited.sha256, "Fit again"))
     return edited.path
 
 
 def _parts(workbook: Workbook, row: RowEdit) -> dict[str, bytes]:
-    from xlmc.workbook.injection.cell_edit import with_contents, with_last_row
+    from xlmc.excel.workbook.injection.cell_edit import with_contents, with_last_row
 
     parts = dict(workbook.parts)
     sheet = workbook.sheets[row.table.area.sheet]
@@ -84,7 +84,7 @@ def _parts(workbook: Workbook, row: RowEdit) -> dict[str, bytes]:
 
 
 def _table_part(parts: Mapping[str, bytes], table: Table) -> str:
-    from xlmc.workbook.safe_xml import decode, tree
+    from xlmc.excel.workbook.safe_xml import decode, tree
 
     for name, xml in parts.items():
         if name.casefold().endswith(".xml") and b"tableColumns" in xml:
@@ -96,9 +96,9 @@ def _table_part(parts: Mapping[str, bytes], table: Table) -> str:
 
 def _refuse_new_problems(before: Workbook, after: Workbook) -> None:
     """What the workbook did not have before: parameters outside the cutoffs that stand in the row, for example."""
-    from xlmc.definitions.definitions_reader import read_definitions
-    from xlmc.evaluation.engines import ENGINES
-    from xlmc.run.labels import calculate_labels
+    from xlmc.engine.engines import ENGINES
+    from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+    from xlmc.montecarlo.model.labels import calculate_labels
 
     known = {str(each) for each in read_definitions(calculate_labels(before), ENGINES).problems}
     for problem in read_definitions(calculate_labels(after), ENGINES).problems:

@@ -14,7 +14,7 @@ from xlmc.cli.terminal import paragraph, say, say_json
 from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
-    from xlmc.studies.methods import Curve, Runs, Study
+    from xlmc.analysis.studies.methods import Curve, Runs, Study
 
 __all__ = ["methods", "study_json"]
 
@@ -77,11 +77,11 @@ def methods(
     quiet: bool,
 ) -> None:
     """Measure every method of uncertainty analysis on BOOK: time, evaluations, errors, and which to use."""
+    from xlmc.analysis.studies.methods import quick_settings, study
     from xlmc.cli.progress_bar import step_line
-    from xlmc.report.methods import check_targets, save_methods
-    from xlmc.report.study_report import refuse_other_ending
-    from xlmc.run.loading import load
-    from xlmc.studies.methods import quick_settings, study
+    from xlmc.montecarlo.model.loading import load
+    from xlmc.outputs.methods import check_targets, save_methods
+    from xlmc.outputs.study_report import refuse_other_ending
 
     model = load(book)
     for path, ending in ((html, ".html"), (pdf, ".pdf"), (docx, ".docx")):
@@ -107,9 +107,9 @@ def methods(
 
 
 def _show(found: Study) -> None:
+    from xlmc.analysis.studies.methods import recommendation
     from xlmc.cli.printing import table
-    from xlmc.report.methods import methods_tables
-    from xlmc.studies.methods import recommendation
+    from xlmc.outputs.methods import methods_tables
 
     shown = methods_tables.reference_table(found), methods_tables.error_table(found), methods_tables.bounds_table(found)
     for each in shown:
@@ -125,9 +125,9 @@ def _show(found: Study) -> None:
 
 def study_json(found: Study) -> dict[str, Any]:
     """Everything that was measured, as JSON holds it."""
-    from xlmc.statistics.estimate import finite
-    from xlmc.studies.methods import STATISTICS, recommendation
-    from xlmc.studies.methods.need import choice
+    from xlmc.analysis.studies.methods import STATISTICS, recommendation
+    from xlmc.analysis.studies.methods.need import choice
+    from xlmc.montecarlo.statistics.estimate import finite
 
     reference = found.reference
     best = choice(found) if found.varying else None
@@ -164,10 +164,10 @@ def study_json(found: Study) -> dict[str, Any]:
 
 
 def _curve(found: Study, curve: Curve) -> dict[str, Any]:
-    from xlmc.report.methods.methods_tables import cannot
-    from xlmc.statistics.estimate import finite
-    from xlmc.studies.methods import STATISTICS, need
-    from xlmc.studies.methods.need import shortfall
+    from xlmc.analysis.studies.methods import STATISTICS, need
+    from xlmc.analysis.studies.methods.need import shortfall
+    from xlmc.montecarlo.statistics.estimate import finite
+    from xlmc.outputs.methods.methods_tables import cannot
 
     drawn = curve not in found.once
     wanted = need(found, curve) if drawn and found.varying else None
@@ -194,8 +194,8 @@ def _curve(found: Study, curve: Curve) -> dict[str, Any]:
 
 
 def _of_length(found: Study, runs: Runs, drawn: bool) -> dict[str, Any]:
-    from xlmc.statistics.estimate import finite
-    from xlmc.studies.methods import STATISTICS
+    from xlmc.analysis.studies.methods import STATISTICS
+    from xlmc.montecarlo.statistics.estimate import finite
 
     return {
         "trials": runs.budget if drawn else None,

@@ -65,8 +65,8 @@ def _list(known: Mapping[str, Template]) -> None:
 
 def _copy(source: Path, target: Path, templates: Sequence[Path], *, overwrite: bool) -> None:
     """Copy a template; an existing file is replaced where it is an untouched copy of one."""
-    from xlmc.workbook.target import Target
-    from xlmc.workbook.writer import write_workbook
+    from xlmc.excel.workbook.target import Target
+    from xlmc.excel.workbook.writer import write_workbook
 
     goal = Target(target, "", overwrite, templates)
     goal.check()
@@ -111,7 +111,7 @@ def templates(package: Path = _PACKAGE) -> dict[str, Template]:
 def _template(name: str, books: Mapping[str, Path]) -> Template:
     from xml.etree import ElementTree
 
-    from xlmc.workbook.package import read_parts
+    from xlmc.excel.workbook.package import read_parts
 
     editions = {units: books[name + end] for units, end in _UNITS.items() if name + end in books}
     core = read_parts(books[name].read_bytes()).get("docProps/core.xml", b"<none/>")

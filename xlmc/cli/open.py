@@ -16,8 +16,8 @@ from xlmc.cli.terminal import say
 from xlmc.errors import WorkbookError
 
 if TYPE_CHECKING:
-    from xlmc.live.library import Library
-    from xlmc.live.server import LiveServer
+    from xlmc.outputs.live.library import Library
+    from xlmc.outputs.live.server import LiveServer
 
 __all__ = ["open_window"]
 
@@ -32,7 +32,7 @@ def open_window(book: Path | None, no_browser: bool, port: int | None) -> None:
     """Open the live window on BOOK, or on the workbooks of FOLDER: move ranges, and see the answers change."""
     import webbrowser
 
-    from xlmc.live.server import LiveServer, bound_socket
+    from xlmc.outputs.live.server import LiveServer, bound_socket
 
     library = _library(book)
     server = LiveServer(bound_socket(port or 0), library)
@@ -46,8 +46,8 @@ def open_window(book: Path | None, no_browser: bool, port: int | None) -> None:
 
 
 def _library(book: Path | None) -> Library:
-    from xlmc.live.kept_scenarios import Keeper, state_folder
-    from xlmc.live.library import Library, Sample
+    from xlmc.outputs.live.kept_scenarios import Keeper, state_folder
+    from xlmc.outputs.live.library import Library, Sample
 
     samples = [
         Sample(name if units == "imperial" else f"{name} ({units.upper()})", template.question, path)

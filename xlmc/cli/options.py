@@ -7,10 +7,10 @@ from typing import Any, TypeVar
 
 import click
 
-from xlmc.definitions.evidence_ways import EVIDENCE_WAYS
-from xlmc.definitions.stopping import GOALS, RARE, Option
-from xlmc.evaluation.engines import ENGINES
-from xlmc.sampling.sampling_methods import METHODS
+from xlmc.engine.engines import ENGINES
+from xlmc.montecarlo.definitions.evidence_ways import EVIDENCE_WAYS
+from xlmc.montecarlo.definitions.stopping import GOALS, RARE, Option
+from xlmc.montecarlo.sampling.sampling_methods import METHODS
 
 __all__ = [
     "OneOf",
@@ -47,7 +47,7 @@ class WholeNumber(click.ParamType):  # type: ignore[type-arg]  # no generic befo
         Raises:
             BadParameter: it is none, or lies outside.
         """
-        from xlmc.definitions.amounts import typed_whole_number
+        from xlmc.montecarlo.definitions.amounts import typed_whole_number
 
         found = value if isinstance(value, int) else typed_whole_number(value)
         if found is None:

@@ -17,8 +17,8 @@ from xlmc.errors import WorkbookError
 
 if TYPE_CHECKING:
     from xlmc.api import Simulation
-    from xlmc.report.document import Wanted
-    from xlmc.run.model import Model
+    from xlmc.montecarlo.model.model import Model
+    from xlmc.outputs.document import Wanted
 
 __all__ = ["Outputs", "Reports", "Wishes", "output_options", "results_beside"]
 
@@ -99,7 +99,7 @@ class Reports(NamedTuple):
             WorkbookError: it has another ending than it must, or its folder is missing.
             SimulationError: a library is missing.
         """
-        from xlmc.report.document import check_report_path
+        from xlmc.outputs.document import check_report_path
 
         for path, ending in ((self.pdf, ".pdf"), (self.docx, ".docx")):
             if path is None:
@@ -124,7 +124,7 @@ class Wishes(NamedTuple):
         Raises:
             SimulationError: a field of the case has no name, or there is no such section.
         """
-        from xlmc.report.document import Wanted, check_wanted, fields_from
+        from xlmc.outputs.document import Wanted, check_wanted, fields_from
 
         sections = () if self.sections is None else tuple(name.strip() for name in self.sections.split(","))
         wanted = Wanted(fields_from(self.case), sections, self.report_forecasts, self.paper)
@@ -173,11 +173,11 @@ class Outputs(NamedTuple):
             SimulationError: it has no such forecast.
         """
         if self.reports.paths:
-            from xlmc.report.document import check_wanted_of
+            from xlmc.outputs.document import check_wanted_of
 
             check_wanted_of(self.wishes.wanted(), model)
         elif self.book is not None:
-            from xlmc.report.case_fields import case_of
+            from xlmc.outputs.case_fields import case_of
 
             case_of(model.workbook, {})
 
@@ -194,7 +194,7 @@ class Outputs(NamedTuple):
                 not ours to replace, it is the source, or it is given twice.
             SimulationError: a library is missing.
         """
-        from xlmc.workbook.target import Target, refuse_same_file
+        from xlmc.excel.workbook.target import Target, refuse_same_file
 
         self._check_endings(like)
         for path in self._others:
@@ -213,19 +213,19 @@ class Outputs(NamedTuple):
             if path is not None and os.path.isdir(path) and (self.named or path != self.book):
                 raise WorkbookError("this is a folder, not a file", where=path, hint="Name a file")
         if self.book is not None:
-            from xlmc.report.sheets.save import check_ending
+            from xlmc.outputs.sheets.save import check_ending
 
             check_ending(self.book, like)
         if self.run is not None:
-            from xlmc.results.saved.keeping import check_run_path
+            from xlmc.analysis.results.saved.keeping import check_run_path
 
             check_run_path(self.run)
         if self.html is not None:
-            from xlmc.report.page import check_page_path
+            from xlmc.outputs.page import check_page_path
 
             check_page_path(self.html)
         if self.json is not None:
-            from xlmc.report.json_document import check_json_path
+            from xlmc.outputs.json_document import check_json_path
 
             check_json_path(self.json)
         if self.reports.paths:
@@ -234,7 +234,7 @@ class Outputs(NamedTuple):
         elif self.wishes != Wishes():
             raise click.UsageError("--case, --sections, --forecasts and --paper are of a report: give --pdf or --docx.")
         for path in self.extract:
-            from xlmc.report.extract import check_extract_path
+            from xlmc.outputs.extract import check_extract_path
 
             check_extract_path(path)
 
@@ -244,8 +244,8 @@ class Outputs(NamedTuple):
         return [path for path in (self.source, self.beside) if path is not None]
 
     def _with_book(self) -> Outputs:
-        from xlmc.workbook.target import Target, free_target, refuse_read
-        from xlmc.workbook.writer import check_folder, refuse_if_open
+        from xlmc.excel.workbook.target import Target, free_target, refuse_read
+        from xlmc.excel.workbook.writer import check_folder, refuse_if_open
 
         if self.book is None:
             return self
@@ -282,8 +282,8 @@ class Outputs(NamedTuple):
         return written, lines
 
     def _write_beside(self, path: Path, write: _Write) -> Path:
-        from xlmc.workbook.target import free_target, refuse_read
-        from xlmc.workbook.writer import TakenError
+        from xlmc.excel.workbook.target import free_target, refuse_read
+        from xlmc.excel.workbook.writer import TakenError
 
         try:
             if not (self.in_place and path == self.book):
@@ -342,6 +342,6 @@ class _Write(Protocol):
 
 def results_beside(source: Path, ending: str | None = None) -> Path:
     """The file that the results of a workbook or a saved run go to by default: `case.xlsx -> case-results.xlsx`."""
-    from xlmc.workbook.target import copy_ending
+    from xlmc.excel.workbook.target import copy_ending
 
     return source.with_name(f"{source.stem}-results{copy_ending(source) if ending is None else ending}")

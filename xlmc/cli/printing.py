@@ -12,7 +12,7 @@ from itertools import zip_longest
 from typing import TYPE_CHECKING, Final
 
 from xlmc.cli.terminal import encodable, on_terminal, paragraph, put, say, width
-from xlmc.workbook.printable import printable
+from xlmc.excel.workbook.printable import printable
 
 if TYPE_CHECKING:
     from xlmc.errors import Notice

@@ -7,11 +7,11 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from xlmc.cli.terminal import encodable, on_terminal
-from xlmc.workbook.printable import printable
+from xlmc.excel.workbook.printable import printable
 
 if TYPE_CHECKING:
-    from xlmc.run.simulate import OnProgress
-    from xlmc.run.stopping import Progress
+    from xlmc.montecarlo.loop.stopping import Progress
+    from xlmc.montecarlo.simulation.simulate import OnProgress
 
 __all__ = ["errors_line", "progress_bar", "step_line", "trials_line"]
 

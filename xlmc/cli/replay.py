@@ -13,8 +13,8 @@ from xlmc.cli.options import jobs_option
 from xlmc.cli.terminal import say, say_json
 
 if TYPE_CHECKING:
-    from xlmc.replay import CellDifference, Change, NumberChange, Replayed
-    from xlmc.workbook.workbook import CellValue
+    from xlmc.excel.workbook.workbook import CellValue
+    from xlmc.outputs.replay import CellDifference, Change, NumberChange, Replayed
 
 __all__ = ["replay"]
 
@@ -32,8 +32,8 @@ _LONGEST = 60
 @click.option("--quiet", is_flag=True, help="Print no progress bar.")
 def replay(recorded: Path, jobs: int, as_json: bool, quiet: bool) -> None:
     """Repeat the run recorded in RESULTS, a result workbook or a saved run, from the definitions in the same file."""
-    from xlmc import replay as replaying
     from xlmc.cli.progress_bar import progress_bar
+    from xlmc.outputs import replay as replaying
 
     with progress_bar(quiet) as progress:
         found = replaying.replay(recorded, jobs=jobs, progress=progress)
@@ -47,7 +47,7 @@ def replay(recorded: Path, jobs: int, as_json: bool, quiet: bool) -> None:
 
 
 def _lines(found: Replayed, path: Path) -> Iterator[str]:
-    from xlmc.results.record import changed_from_of
+    from xlmc.analysis.results.record import changed_from_of
 
     record = found.record
     yield (
@@ -73,8 +73,8 @@ def _lines(found: Replayed, path: Path) -> Iterator[str]:
 
 def _other_version(found: Replayed) -> Iterator[str]:
     """Which xlmc made the run, what has changed since, and how to repeat it as it was."""
-    from xlmc.replay.versions import install
-    from xlmc.run.version import __version__
+    from xlmc.montecarlo.loop.version import __version__
+    from xlmc.outputs.replay.versions import install
 
     made = f"xlmc {found.version}" if found.version else "A version of xlmc that did not record its number"
     yield f"{made} made this run, and this is xlmc {__version__}."

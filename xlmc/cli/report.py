@@ -54,8 +54,8 @@ def report(
     from xlmc.api import open_run
     from xlmc.cli.printing import notices, warnings
     from xlmc.cli.simulate import show_run
-    from xlmc.workbook.package import WORKBOOKS
-    from xlmc.workbook.target import copy_ending
+    from xlmc.excel.workbook.package import WORKBOOKS
+    from xlmc.excel.workbook.target import copy_ending
 
     if run.suffix.casefold() in WORKBOOKS:
         if output or html or json_path or extract or not reports.paths:
@@ -94,7 +94,7 @@ def _repeated(results: Path, quiet: bool) -> Simulation:
     """
     from xlmc.api import Simulation
     from xlmc.cli.progress_bar import progress_bar
-    from xlmc.replay import recorded_run
+    from xlmc.outputs.replay import recorded_run
 
     with progress_bar(quiet) as progress:
         return Simulation.of(recorded_run(results, progress=progress))

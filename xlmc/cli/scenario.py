@@ -10,8 +10,8 @@ import click
 from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
-    from xlmc.run.model import Model
-    from xlmc.studies.scenario_workbook import EditedWorkbook
+    from xlmc.analysis.studies.scenario_workbook import EditedWorkbook
+    from xlmc.montecarlo.model.model import Model
 
 __all__ = ["scenario"]
 
@@ -30,11 +30,11 @@ def scenario(book: Path, name: str | None, output: Path | None, in_place: bool, 
     The cells that the scenario changes get its contents, and the formulas that depend on them get their new values.
     Without --output and --in-place nothing is written; the cells are only shown.
     """
+    from xlmc.analysis.studies.scenario_answers import models_of
+    from xlmc.analysis.studies.scenario_workbook import edited_workbook, write_edited
     from xlmc.cli.check import scenario_table
-    from xlmc.run.loading import load
-    from xlmc.studies.scenario_answers import models_of
-    from xlmc.studies.scenario_workbook import edited_workbook, write_edited
-    from xlmc.workbook.writer import refuse_if_open
+    from xlmc.excel.workbook.writer import refuse_if_open
+    from xlmc.montecarlo.model.loading import load
 
     if in_place and output is not None:
         raise click.UsageError("--in-place and --output cannot both be given.")
@@ -60,7 +60,7 @@ def scenario(book: Path, name: str | None, output: Path | None, in_place: bool, 
 def _show(edited: EditedWorkbook, model: Model) -> None:
     """Print the cells with what they held and hold, and what could not be computed."""
     from xlmc.cli.printing import table
-    from xlmc.definitions.tables.table_rows import as_text
+    from xlmc.montecarlo.definitions.tables.table_rows import as_text
 
     rows = [
         (str(cell), as_text(old) or "nothing", as_text(new) or "nothing") for cell, (old, new) in edited.cells.items()

@@ -15,8 +15,8 @@ from xlmc.cli.terminal import say_json
 from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
-    from xlmc.report.study_report import Block, StudyReport, Table
-    from xlmc.studies.screening import AtEnds, Cost, Screening
+    from xlmc.analysis.studies.screening import AtEnds, Cost, Screening
+    from xlmc.outputs.study_report import Block, StudyReport, Table
 
 __all__ = ["screen"]
 
@@ -80,11 +80,11 @@ def screen(
     """Find which assumptions of BOOK may be held at their base values, and which filters may be left out, without
     changing its answers.
     """
+    from xlmc.analysis.studies import screening
     from xlmc.cli.printing import warnings
     from xlmc.cli.progress_bar import step_line
-    from xlmc.report.study_report import Files
-    from xlmc.run.loading import load
-    from xlmc.studies import screening
+    from xlmc.montecarlo.model.loading import load
+    from xlmc.outputs.study_report import Files
 
     model = load(book)
     files = Files(output, html, pdf, docx, [book], overwrite=overwrite)
@@ -118,7 +118,7 @@ def screen(
 
 
 def _report(found: Screening) -> StudyReport:
-    from xlmc.report.study_report import StudyReport
+    from xlmc.outputs.study_report import StudyReport
 
     run = found.run
     below = f"{run.model.workbook.name}: {found.runs} runs of {run.trials:,} trials, seed {run.settings.seed}"
@@ -143,7 +143,7 @@ def _tables(found: Screening) -> Iterator[Block]:
 
 def _table(title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]]) -> Table:
     """What each change costs. `first` are columns with headings."""
-    from xlmc.report.study_report import Table
+    from xlmc.outputs.study_report import Table
 
     headings = (*(heading for heading, _ in first), "Cost", "Accepted, %")
     rows = tuple(
@@ -180,8 +180,8 @@ def _size(tolerances: float) -> str:
 
 def _of_forecast(found: Screening, name: str) -> Table:
     """A table of the number of a forecast that each change moves most, measured in its tolerance."""
-    from xlmc.report.study_report import Table
-    from xlmc.studies.comparison.verdicts import amount
+    from xlmc.analysis.studies.comparison.verdicts import amount
+    from xlmc.outputs.study_report import Table
 
     units = found.run[name].definition.units
     rows = []
@@ -202,7 +202,7 @@ def _of_forecast(found: Screening, name: str) -> Table:
 
 def _most_moved(found: Screening, cost: Cost, name: str) -> tuple[str, float]:
     """The number of a forecast that moves most, and by how many tolerances."""
-    from xlmc.studies.comparison.tolerances import in_tolerances
+    from xlmc.analysis.studies.comparison.tolerances import in_tolerances
 
     each = cost.forecasts[name]
     limits = each.tolerances(found.tolerances[name][0], found.chance)
@@ -213,7 +213,7 @@ def _most_moved(found: Screening, cost: Cost, name: str) -> tuple[str, float]:
 
 def _tolerance(found: Screening, name: str) -> str:
     """The tolerance of a forecast in words: `1 mph, and P(> 18) 1.2 points`."""
-    from xlmc.studies.comparison.verdicts import is_chance, points
+    from xlmc.analysis.studies.comparison.verdicts import is_chance, points
 
     value, stated = found.tolerances[name]
     text = f"{value:.3g} {found.run[name].definition.units}".rstrip() + ("" if stated else " (a tenth of the SD)")
@@ -228,14 +228,14 @@ def _names(costs: Sequence[Cost]) -> list[str]:
 
 
 def _percent(cost: Cost) -> str:
-    from xlmc.statistics import format_estimate
+    from xlmc.montecarlo.statistics import format_estimate
 
     change = cost.acceptance.relative
     return format_estimate(100.0 * change.value, None if change.error is None else 100.0 * change.error)
 
 
 def _verdicts(found: Screening) -> Iterable[str]:
-    from xlmc.studies.comparison.verdicts import undecided_text
+    from xlmc.analysis.studies.comparison.verdicts import undecided_text
 
     if found.joint:
         yield (
@@ -344,7 +344,7 @@ def _as_json(found: Screening) -> dict[str, object]:
 
 def _entry(cost: Cost, found: Screening) -> dict[str, object]:
     from xlmc.cli.study_output import acceptance_json, difference_json
-    from xlmc.statistics.estimate import finite
+    from xlmc.montecarlo.statistics.estimate import finite
 
     expected = {each.name: each.size for each in found.expected}
     return {

@@ -22,10 +22,10 @@ from xlmc.cli.terminal import paragraph, say
 from xlmc.cli.writing import NOT_WRITTEN
 
 if TYPE_CHECKING:
+    from xlmc.analysis.studies.scenario_answers import ScenarioAnswers
     from xlmc.api import Simulation
     from xlmc.errors import Notice
-    from xlmc.run.model import Model
-    from xlmc.studies.scenario_answers import ScenarioAnswers
+    from xlmc.montecarlo.model.model import Model
 
 __all__ = ["show_run", "simulate"]
 
@@ -99,11 +99,11 @@ def simulate(
     **length: Any,
 ) -> None:
     """Run BOOK, print the summary, and write result sheets and charts into a copy of it."""
+    from xlmc.analysis.studies.scenario_answers import models_of
     from xlmc.api import load
     from xlmc.cli.printing import notices, warnings
     from xlmc.cli.progress_bar import progress_bar
-    from xlmc.run.simulation import KEPT_INPUTS
-    from xlmc.studies.scenario_answers import models_of
+    from xlmc.montecarlo.simulation.simulation import KEPT_INPUTS
 
     if in_place and output is not None:
         raise click.UsageError("--in-place and --output cannot both be given.")
@@ -170,8 +170,8 @@ def _with_scenarios(run: Simulation, jobs: int, quiet: bool) -> tuple[Simulation
     """The answers of the scenarios; after Ctrl-C none, and the run as one that was made without them."""
     from dataclasses import replace
 
+    from xlmc.analysis.studies.scenario_answers import scenario_answers
     from xlmc.cli.progress_bar import step_line
-    from xlmc.studies.scenario_answers import scenario_answers
 
     try:
         if run.stopped.interrupted and run.settings.scenarios:
@@ -193,8 +193,8 @@ def _of_scenarios(answers: Sequence[ScenarioAnswers]) -> list[str]:
 
 def _hints(model: Model, trials: int | None, engine: str | None) -> list[Notice]:
     """What could make the run shorter."""
+    from xlmc.engine.llvm import REPAYS_FROM, available
     from xlmc.errors import Notice
-    from xlmc.evaluation.llvm import REPAYS_FROM, available
 
     settings = model.definitions.settings
     if (engine or settings.engine) != "numpy" or (trials or settings.trials) < REPAYS_FROM or not available():
@@ -204,11 +204,11 @@ def _hints(model: Model, trials: int | None, engine: str | None) -> list[Notice]
 
 def show_run(run: Simulation) -> None:
     """Print the paper's table, the acceptance and what each filter rejected."""
+    from xlmc.analysis.results.statements.in_words import sampling_sentence
     from xlmc.cli.check import check_table, show_first
     from xlmc.cli.printing import table
-    from xlmc.report.summary import ERROR_SENTENCE, summarise, summary_text
-    from xlmc.results.statements.in_words import sampling_sentence
-    from xlmc.run.stopping.stopped import ALL_TRIALS
+    from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
+    from xlmc.outputs.summary import ERROR_SENTENCE, summarise, summary_text
 
     show_first(run)
     headings, rows = summary_text(summarise(run))
@@ -233,7 +233,7 @@ def show_run(run: Simulation) -> None:
 def _show_evidence(run: Simulation) -> None:
     """Print whether the evidence agrees, and what each item moves; nothing where none is used."""
     from xlmc.cli.printing import table
-    from xlmc.report.evidence_tables import ITEM_HEADS, item_rows, move_rows, trials_sentence
+    from xlmc.outputs.evidence_tables import ITEM_HEADS, item_rows, move_rows, trials_sentence
 
     found = run.agreement
     if found is None:
@@ -248,10 +248,10 @@ def _show_evidence(run: Simulation) -> None:
 
 def _show_scenarios(run: Simulation) -> None:
     """Print what each scenario changes and accepts, then a table for each forecast; nothing where they were not run."""
+    from xlmc.analysis.studies.scenario_answers import scenario_answers
     from xlmc.cli.printing import table
-    from xlmc.report.scenario_tables import SCENARIO_HEADS, answer_heads, answer_rows, scenario_rows
-    from xlmc.report.sheets.scenarios_sheet import scenario_sentences
-    from xlmc.studies.scenario_answers import scenario_answers
+    from xlmc.outputs.scenario_tables import SCENARIO_HEADS, answer_heads, answer_rows, scenario_rows
+    from xlmc.outputs.sheets.scenarios_sheet import scenario_sentences
 
     found = scenario_answers(run)
     if not found:
@@ -264,11 +264,11 @@ def _show_scenarios(run: Simulation) -> None:
 
 
 def _acceptance_sentence(run: Simulation) -> str:
-    from xlmc.report.summary import share_text
-    from xlmc.results.record.errors_met import rest_sentences
+    from xlmc.analysis.results.record.errors_met import rest_sentences
+    from xlmc.outputs.summary import share_text
 
     if run.rare is not None:
-        from xlmc.run.rare.account import probability_text
+        from xlmc.montecarlo.rare.account import probability_text
 
         return f"{run.accepted:,} accepted trials; a trial is accepted with probability {probability_text(run.rare)}"
     if any(errors.total() for errors in run.faults.values()) or run.model.forecast_filters:
@@ -280,8 +280,8 @@ def _acceptance_sentence(run: Simulation) -> str:
 
 
 def _discards(run: Simulation) -> list[tuple[str, ...]]:
-    from xlmc.report.summary import share_text
-    from xlmc.results.statements.in_words import discards_of, limits_text
+    from xlmc.analysis.results.statements.in_words import discards_of, limits_text
+    from xlmc.outputs.summary import share_text
 
     return [
         (found.filter.name, found.forecast, limits_text(found.filter), f"{found.trials:,}", share_text(found.share))
@@ -290,7 +290,7 @@ def _discards(run: Simulation) -> list[tuple[str, ...]]:
 
 
 def _rejections(run: Simulation) -> list[tuple[str, ...]]:
-    from xlmc.results.statements.in_words import limits_text
+    from xlmc.analysis.results.statements.in_words import limits_text
 
     counts = zip(run.model.filters, run.tally.rejected, run.tally.only, strict=True)
     return [(f.name, limits_text(f), f"{rejected:,}", f"{only:,}") for f, rejected, only in counts]

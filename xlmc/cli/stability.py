@@ -14,8 +14,8 @@ from xlmc.cli.terminal import paragraph, say, say_json
 from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
-    from xlmc.report.study_report import Block, StudyReport, Table
-    from xlmc.studies.stability import CellDigits, Finding, Stability
+    from xlmc.analysis.studies.stability import CellDigits, Finding, Stability
+    from xlmc.outputs.study_report import Block, StudyReport, Table
 
 __all__ = ["stability"]
 
@@ -46,11 +46,11 @@ def stability(
     quiet: bool,
 ) -> None:
     """Find where BOOK loses digits, or its numbers are not what they seem, within the ranges of its assumptions."""
+    from xlmc.analysis.studies import stability as room
     from xlmc.cli.printing import warnings
     from xlmc.cli.progress_bar import step_line
-    from xlmc.report.study_report import Files
-    from xlmc.run.loading import load
-    from xlmc.studies import stability as room
+    from xlmc.montecarlo.model.loading import load
+    from xlmc.outputs.study_report import Files
 
     model = load(book)
     files = Files(output, html, pdf, docx, [book], overwrite=overwrite)
@@ -110,7 +110,7 @@ def _show_cells(found: Stability, all_cells: bool) -> None:
 
 
 def _report(found: Stability, all_cells: bool) -> StudyReport:
-    from xlmc.report.study_report import StudyReport
+    from xlmc.outputs.study_report import StudyReport
 
     findings = [text for number, one in enumerate(found.findings, start=1) for text in _finding_texts(number, one)]
     blocks: list[Block] = [
@@ -142,7 +142,7 @@ def _finding_sentences(finding: Finding) -> Iterator[str]:
 
 
 def _cells(found: Stability, all_cells: bool) -> Table:
-    from xlmc.report.study_report import Table
+    from xlmc.outputs.study_report import Table
 
     model = found.run.model
     targets = {row.cell for row in model.forecasts} | {row.cell for row in model.filters}
@@ -202,7 +202,7 @@ def _as_json(found: Stability) -> dict[str, object]:
 
 
 def _finding_json(finding: Finding) -> dict[str, object]:
-    from xlmc.statistics.estimate import finite
+    from xlmc.montecarlo.statistics.estimate import finite
 
     return {
         "level": finding.level.name.lower(),
@@ -221,7 +221,7 @@ def _finding_json(finding: Finding) -> dict[str, object]:
 
 
 def _cell_json(cell: CellDigits) -> dict[str, object]:
-    from xlmc.statistics.estimate import finite
+    from xlmc.montecarlo.statistics.estimate import finite
 
     return {
         "cell": str(cell.cell),

@@ -11,9 +11,9 @@ import click
 from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
-    from xlmc.report.study_report import Block
-    from xlmc.statistics import Estimate
-    from xlmc.studies.comparison import Acceptance, Change, Difference
+    from xlmc.analysis.studies.comparison import Acceptance, Change, Difference
+    from xlmc.montecarlo.statistics import Estimate
+    from xlmc.outputs.study_report import Block
 
 __all__ = ["acceptance_json", "difference_json", "estimate_json", "show", "study_options"]
 
@@ -34,7 +34,7 @@ def study_options(command: Command) -> Command:
 def show(blocks: Iterable[Block]) -> None:
     """Print paragraphs, and tables with a line of space around them; curves are for files."""
     from xlmc.cli.printing import table
-    from xlmc.report.study_report import Table
+    from xlmc.outputs.study_report import Table
 
     spaced = True
     for each in blocks:
@@ -50,14 +50,14 @@ def show(blocks: Iterable[Block]) -> None:
 
 def estimate_json(estimate: Estimate) -> dict[str, float | None]:
     """Value and standard error."""
-    from xlmc.statistics.estimate import finite
+    from xlmc.montecarlo.statistics.estimate import finite
 
     return {"value": finite(estimate.value), "error": finite(estimate.error)}
 
 
 def difference_json(found: Difference) -> dict[str, object]:
     """The four numbers of a forecast in two runs, and the distances."""
-    from xlmc.statistics.estimate import finite
+    from xlmc.montecarlo.statistics.estimate import finite
 
     return {
         "mean": _change(found.mean),

@@ -15,7 +15,7 @@ from textwrap import fill
 from typing import Final, TextIO
 
 from xlmc.errors import WorkbookError
-from xlmc.workbook.printable import printable
+from xlmc.excel.workbook.printable import printable
 
 __all__ = ["encodable", "on_terminal", "paragraph", "prepare", "put", "say", "say_json", "width"]
 
@@ -156,7 +156,7 @@ def encodable(text: str, *, err: bool = False) -> str:
 
 def _without_infinities(value: object) -> object:
     """The value with null for a number that JSON cannot hold."""
-    from xlmc.statistics.estimate import finite
+    from xlmc.montecarlo.statistics.estimate import finite
 
     match value:
         case float():

@@ -12,8 +12,8 @@ from xlmc.cli.terminal import say_json
 from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
-    from xlmc.report.study_report import Block
-    from xlmc.studies.verify import CellCheck, Verification
+    from xlmc.analysis.studies.verify import CellCheck, Verification
+    from xlmc.outputs.study_report import Block
 
 __all__ = ["verify"]
 
@@ -38,13 +38,13 @@ def verify(
     as_json: bool,
 ) -> None:
     """Recompute the formulas of BOOK at the base case and compare with the values that Excel saved."""
-    from xlmc.definitions.definitions_reader import read_definitions
-    from xlmc.evaluation.engines import ENGINES
-    from xlmc.report.study_report import Files, StudyReport
-    from xlmc.run.labels import calculate_labels
-    from xlmc.studies.verify import Status
-    from xlmc.studies.verify import verify as check
-    from xlmc.workbook.reader import read_workbook
+    from xlmc.analysis.studies.verify import Status
+    from xlmc.analysis.studies.verify import verify as check
+    from xlmc.engine.engines import ENGINES
+    from xlmc.excel.workbook.reader import read_workbook
+    from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+    from xlmc.montecarlo.model.labels import calculate_labels
+    from xlmc.outputs.study_report import Files, StudyReport
 
     workbook = read_workbook(book)
     definitions = None if everything else read_definitions(calculate_labels(workbook), ENGINES)
@@ -69,7 +69,7 @@ def verify(
 
 
 def _as_json(found: Verification) -> dict[str, object]:
-    from xlmc.studies.verify import Status
+    from xlmc.analysis.studies.verify import Status
 
     counts = {status.value.replace(" ", "_"): found.count(status) for status in Status}
     listed = [_entry(cell) for cell in found.cells if cell.status is not Status.MATCHED]
@@ -97,8 +97,8 @@ def _plain(value: object) -> object:
 
 def _blocks(found: Verification, most: int) -> list[Block]:
     """What was found, with `most` differing cells."""
-    from xlmc.report.study_report import Table
-    from xlmc.studies.verify import Status, groups
+    from xlmc.analysis.studies.verify import Status, groups
+    from xlmc.outputs.study_report import Table
 
     counts = [f"{found.count(status):,} {status.value}" for status in Status if found.count(status)]
     blocks: list[Block] = [f"{len(found.cells):,} formula cells: {', '.join(counts) or 'nothing to check'}."]

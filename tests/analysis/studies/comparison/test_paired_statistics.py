@@ -1,0 +1,146 @@
+"""Differences of two runs over the same trials, and their errors.
+
+Coverage: the spread of a difference over 100 independent pairs of runs is known to 1/√(2·100) = 7 % of itself, and
+must agree with the mean of the errors stated to 4 times that and 10 % for what is only true of many trials.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from scipy.stats import ks_2samp, wasserstein_distance
+
+from xlmc.analysis.studies.comparison.differences import difference
+from xlmc.analysis.studies.comparison.paired_statistics import (
+    Accepted,
+    Pair,
+    mean_of,
+    quantile_of,
+    standard_deviation_of,
+)
+
+SAMPLES = arrays(np.float64, st.integers(2, 60), elements=st.floats(-1e6, 1e6).map(lambda x: round(x, 3)))
+
+
+def run_of(values, trials=None):
+    values = np.asarray(values, np.float64)
+    return Accepted.of(np.arange(values.size) if trials is None else np.asarray(trials), values)
+
+
+def both_ways(rng, n):
+    """Two runs that share two of three inputs; each accepts its own half of the trials or so."""
+    a, b, c = rng.normal(size=(3, n))
+    first, second = a + b, 0.9 * a + b + 0.5 * c + 0.1
+    mine, theirs = a > -0.5, a + 0.3 * c > -0.4
+    trials = np.arange(n)
+    return run_of(first[mine], trials[mine]), run_of(second[theirs], trials[theirs])
+
+
+STATISTICS = {
+    "mean": lambda d: d.mean.difference,
+    "SD": lambda d: d.standard_deviation.difference,
+    "low": lambda d: d.low.difference,
+    "high": lambda d: d.high.difference,
+    "kolmogorov": lambda d: d.kolmogorov,
+    "wasserstein": lambda d: d.wasserstein,
+}
+
+
+@pytest.fixture(scope="module")
+def many():
+    rng = np.random.default_rng(999)
+    return [difference(*both_ways(rng, 2000), 0.51) for _ in range(100)]
+
+
+@pytest.mark.parametrize("name", STATISTICS)
+def test_errors_are_the_spread_between_runs(many, name):
+    found = [STATISTICS[name](each) for each in many]
+    spread = np.std([each.value for each in found], ddof=1)
+    stated = np.mean([each.error for each in found])
+    few = 0.1 if name == "kolmogorov" else 0.0  # whose error is that of many trials
+    assert stated == pytest.approx(spread, rel=4 * 0.07 + few)
+
+
+@pytest.mark.parametrize("name", ["mean", "SD", "low", "high"])
+def test_common_draws_make_the_error_smaller_than_that_of_two_runs(many, name):
+    apart = {"mean": "mean", "SD": "standard_deviation", "low": "low", "high": "high"}[name]
+    changes = [getattr(each, apart) for each in many]
+    alone = np.mean([np.hypot(each.first.error, each.second.error) for each in changes])
+    assert np.mean([each.difference.error for each in changes]) < 0.9 * alone
+
+
+def test_runs_without_a_common_trial_have_the_errors_of_two_runs():
+    rng = np.random.default_rng(1)
+    first, second = run_of(rng.normal(size=500)), run_of(rng.normal(size=700), np.arange(700) + 500)
+    for statistic in (mean_of, standard_deviation_of, lambda run: quantile_of(run, 0.3)):
+        mine, theirs = statistic(first), statistic(second)
+        expected = np.hypot(mine.estimate.error, theirs.estimate.error)
+        assert Pair(first, second).difference(mine, theirs).error == pytest.approx(expected, rel=0.005)
+
+
+def test_a_shift_is_known_exactly():
+    values = np.random.default_rng(2).normal(size=1000)
+    found = difference(run_of(values), run_of(values + 0.25), 0.51)
+    for _, change in found.changes:
+        assert change.difference.error < 1e-12
+    assert found.mean.difference.value == pytest.approx(0.25, abs=1e-12)
+    assert found.standard_deviation.difference.value == pytest.approx(0.0, abs=1e-12)
+    assert found.low.difference.value == pytest.approx(0.25, abs=1e-12)
+    assert found.wasserstein.value == pytest.approx(0.25, abs=1e-12)
+    assert found.largest == pytest.approx(0.25, abs=1e-12)
+
+
+def test_a_quantile_that_no_trial_crosses_is_not_known_exactly():
+    rng = np.random.default_rng(3)
+    values = rng.normal(size=400)
+    found = difference(run_of(values), run_of(values + 1e-5 * rng.normal(size=400)), 0.51)
+    assert abs(found.low.difference.value) < 4 * found.low.difference.error
+    assert found.low.difference.error <= 1.2e-5
+
+
+@given(SAMPLES)
+def test_a_run_does_not_differ_from_itself(values):
+    found = difference(run_of(values), run_of(values), 0.51)
+    numbers = [change.difference for _, change in found.changes]
+    for estimate in (*numbers, found.kolmogorov, found.wasserstein):
+        assert estimate.value == 0.0
+        assert estimate.error in (0.0, None)
+        assert estimate.error == 0.0 or values.size < 30  # so few trials do not tell a quantile's error
+
+
+@given(SAMPLES, SAMPLES)
+def test_the_distances_are_those_of_scipy(first, second):
+    found = difference(run_of(first), run_of(second), 0.51)
+    assert found.kolmogorov.value == pytest.approx(ks_2samp(first, second, method="asymp").statistic, abs=1e-12)
+    assert found.wasserstein.value == pytest.approx(wasserstein_distance(first, second), rel=1e-9, abs=1e-9)
+
+
+@given(SAMPLES, SAMPLES)
+def test_the_other_way_round_is_the_negative(first, second):
+    there, back = difference(run_of(first), run_of(second), 0.51), difference(run_of(second), run_of(first), 0.51)
+    for (_, a), (_, b) in zip(there.changes, back.changes, strict=True):
+        assert a.difference.value == -b.difference.value
+        assert a.difference.error == pytest.approx(b.difference.error)
+
+
+@pytest.mark.parametrize("values", [[2.0] * 50, [0.0] * 20 + [1.0] * 80])
+def test_values_that_many_trials_share(values):
+    found = difference(run_of(values), run_of(np.array(values) + 1.0), 0.51)
+    for _, change in found.changes:
+        assert change.difference.error == 0.0
+    assert found.high.difference.value == 1.0
+
+
+def test_trials_without_a_number_are_left_out():
+    found = Accepted.of(np.array([3, 5, 8]), np.array([1.0, np.nan, 2.0]))
+    assert found.trials.tolist() == [3, 8]
+
+
+def test_no_trials_are_no_number_and_no_crash():
+    found = difference(run_of([]), run_of([1.0, 2.0, 3.0]), 0.51)
+    assert np.isnan(found.mean.difference.value)
+    assert found.mean.difference.error is None
+    assert np.isnan(found.wasserstein.value)

@@ -1,0 +1,21 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import xlmc
+
+EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
+
+
+@pytest.fixture(scope="session")
+def planar():
+    """The paper's case study: momentum, rotation, restitution filters."""
+    return xlmc.load(EXAMPLES / "intersection.xlsx")
+
+
+@pytest.fixture(scope="session")
+def momentum():
+    """The same crash without rotation."""
+    return xlmc.load(EXAMPLES / "intersection-momentum.xlsx")

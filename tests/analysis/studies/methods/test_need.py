@@ -1,0 +1,163 @@
+"""What a study may say of how far a method comes: nothing that its runs and theory do not know."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+from xlmc.analysis.studies.methods import recommendation, study
+from xlmc.analysis.studies.methods.curve import Rms, in_order, rms_of
+from xlmc.analysis.studies.methods.law import law
+from xlmc.analysis.studies.methods.need import choice, need, seconds_of, shortfall
+from xlmc.analysis.studies.methods.recommendation import parts_of
+from xlmc.analysis.studies.methods.study import LENGTHS, STEP, ladder_of
+
+CONSISTENT = ("mc", "lhs", "sobol", "grid")
+
+
+def with_errors(curve, change):
+    """The curve with other errors: `change` takes the place of a runs and its error."""
+    lengths = tuple(
+        replace(runs, errors={kind: change(place, each) for kind, each in runs.errors.items()})
+        for place, runs in enumerate(curve.lengths)
+    )
+    return replace(curve, lengths=lengths)
+
+
+def curve_of(found, key):
+    return next(curve for curve in (*found.once, *found.curves, *found.engines) if curve.method.key == key)
+
+
+@pytest.mark.parametrize("key", CONSISTENT)
+def test_no_noise_makes_a_method_that_converges_seem_not_to(small, key):
+    """Errors that grow with the trials, and a mean error as large as they: chance, whatever the runs look like."""
+
+    def grown(place, each):
+        value = abs(each.value) * 4.0**place
+        return Rms(value, value / 2, value, value / 4, each.n)
+
+    found = need(small, with_errors(curve_of(small, key), grown))
+    assert found.reaches == "yes"
+    assert np.isfinite(found.trials)
+    assert np.isfinite(found.seconds)
+
+
+def test_of_independent_trials_theory_counts_and_not_the_noise_of_few_runs(small):
+    """A fourth more or less error in every run would be half again as many trials; three runs cannot know that."""
+    plain = curve_of(small, "mc")
+    noisy = with_errors(plain, lambda _, each: replace(each, value=1.25 * each.value, spread=1.25 * each.spread))
+    assert need(small, noisy).trials == need(small, plain).trials
+
+
+def test_where_runs_contradict_theory_they_are_believed(small):
+    plain = curve_of(small, "mc")
+    far = with_errors(plain, lambda _, each: replace(each, spread=20.0 * each.spread, n=24))
+    assert need(small, far).trials > 50.0 * need(small, plain).trials
+
+
+def test_a_floor_is_found_where_there_is_one_and_left_open_where_runs_are_few(small):
+    curve = curve_of(small, "surrogate")
+    kind = ("Nissan impact speed", "mean")
+    tolerance, theory = small.tolerance(kind[0]), small.reference.theory(*kind, 1)
+
+    def law_with(mean_error, runs):
+        generator = np.random.default_rng(3)
+
+        def changed(place, _):
+            spread = theory / curve.lengths[place].budget ** 0.5
+            return rms_of(mean_error + spread * generator.standard_normal(runs))
+
+        return law(small, with_errors(curve, changed), kind)
+
+    # The longest runs have 144 accepted trials, and so an error of 8 tolerances by chance.
+    assert law_with(100.0 * tolerance, 24).floor_low > tolerance
+    open_ = law_with(0.0, 3)
+    assert open_.floor_low < tolerance < open_.floor_high
+    assert need(small, curve).reaches == "unknown"
+    assert any(said.startswith("These runs cannot tell whether Surrogate") for said in recommendation(small))
+
+
+def test_the_parts_of_a_miss_are_measured(small):
+    """Without filters the mean is 8.897 mph, with them 4.742 (2·10⁹ trials made independently of this project)."""
+    first = curve_of(small, "taylor-1")
+    found = replace(
+        shortfall(small, first), statistic="mean", error=first.lengths[0].errors["Nissan impact speed", "mean"].bias
+    )
+    parts = parts_of(small, found)
+    assert parts.filters == pytest.approx(8.897 - 4.742, abs=0.06)
+    assert parts.formulas == pytest.approx(-0.03, abs=0.03)
+    assert parts.filters + parts.formulas == pytest.approx(found.error)
+
+
+def test_filters_that_hardly_reject_are_not_blamed_for_curvature(book):
+    """y = x⁴, kept below all but a thousandth of its trials: the straight line is off because y is no straight line."""
+    model = book(
+        {"A1": 0.5, "B1": "=A1^4", "C1": "=A1"},
+        {"x": {"cell": "A1", "low": 0, "high": 1}},
+        {"y": "B1"},
+        {"not the last": {"cell": "C1", "below": 0.999}},
+    )
+    found = study(model, reference_trials=1 << 16, trials=1 << 10, replicates=2)
+    first = curve_of(found, "taylor-1")
+    parts = parts_of(found, shortfall(found, first))
+    assert abs(parts.formulas) > 20.0 * abs(parts.filters)
+    (said,) = [each for each in recommendation(found) if each.startswith("Taylor, first order misses")]
+    assert "because it takes every curve for straight" in said.split("; ")[-1]
+
+
+def test_a_forecast_that_crosses_zero_is_asked_for_no_more_than_another(book):
+    """The same forecast about 0 and about 1,000."""
+    needs = []
+    for middle in (0, 1_000):
+        model = book({"A1": 0.0, "B1": f"=A1+{middle}"}, {"x": {"cell": "A1", "low": -1, "high": 1}}, {"y": "B1"})
+        found = study(model, reference_trials=1 << 16, trials=1 << 10, replicates=2)
+        assert found.tolerance("y") == pytest.approx(0.01 * 1.8, rel=1e-3)
+        needs.append(need(found, curve_of(found, "mc")).trials)
+    assert needs[0] == pytest.approx(needs[1], rel=1e-3)
+    assert needs[0] < 20_000
+
+
+def test_an_answer_that_the_reference_cannot_judge_is_left_open(small):
+    first = curve_of(small, "taylor-1")
+    own = small.tolerance("Nissan impact speed")
+    near = with_errors(first, lambda _, each: Rms(0.9 * own, own, 0.9 * own, np.nan, 1))
+    judged = replace(small, once=tuple(near if curve is first else curve for curve in small.once))
+    assert shortfall(judged, near).reaches == "unknown"
+    assert any("cannot tell whether Taylor, first order is near enough" in said for said in recommendation(judged))
+
+
+def test_times_never_fall_as_runs_grow(small):
+    lengths = [
+        replace(runs, seconds=seconds) for runs, seconds in zip(small.curves[0].lengths, (3.0, 1.0, 2.0), strict=True)
+    ]
+    assert [runs.seconds for runs in in_order(lengths)] == [1.0, 1.0, 2.0]
+    curve = replace(small.curves[0], lengths=in_order(lengths))
+    times = [seconds_of(curve, trials) for trials in (100, 512, 1_000, 2_048, 5_000, 8_192, 20_000)]
+    assert times == sorted(times)
+
+
+def test_methods_within_a_fifth_or_a_tenth_of_a_second_tie(timed):
+    found = choice(timed)
+    least = min(each.seconds for each in found.needs.values() if each.usable)
+    for curve, each in found.needs.items():
+        if each.usable:
+            assert (curve in found.cheapest) == (each.seconds <= max(1.2 * least, least + 0.1))
+    assert found.chosen.method.key == "mc"
+    other = choice(replace(timed, accuracy=("0.001%", 1e-5, True)))
+    seconds = {curve.method.key: each.seconds for curve, each in other.needs.items() if each.usable}
+    assert 2.0 * min(seconds.values()) < seconds["mc"]
+    assert seconds[other.chosen.method.key] == min(seconds.values())
+
+
+def test_the_run_lengths_span_four_decades(book, monkeypatch):
+    """However slow the machine is just now."""
+    monkeypatch.setattr(import_module("xlmc.analysis.studies.methods.study"), "_LONGEST_RUN", np.inf)
+    model = book({"A1": 0.0, "B1": "=A1"}, {"x": {"cell": "A1", "low": -1, "high": 1}}, {"y": "B1"})
+    ladder = ladder_of(model, None, 1, 1.0)
+    assert ladder[0] == 128
+    assert len(ladder) == LENGTHS
+    assert ladder[-1] / ladder[0] == STEP ** (LENGTHS - 1) >= 10_000
+    assert ladder_of(model, 1 << 13, 1, 0.01) == (512, 2_048, 8_192)

@@ -1,0 +1,330 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from xlmc.analysis.studies.methods import STATISTICS, recommendation, study
+from xlmc.analysis.studies.methods.converged_reference import reference_of
+from xlmc.analysis.studies.methods.curve import rms_of, runs_of, slope_of
+from xlmc.analysis.studies.methods.need import need, reach_of, shortfall
+from xlmc.analysis.studies.methods.optimised import in_step
+from xlmc.analysis.studies.methods.sampled import MONTE_CARLO
+from xlmc.errors import SimulationError
+from xlmc.outputs.methods import methods_tables
+
+REPLICATES, TRIALS = 100, 8_192
+
+
+def straight_book(book):
+    """y = 2x + z without filters: Taylor's first order has its mean and SD exactly."""
+    return book(
+        {"A1": 0.5, "B1": 1.0, "C1": "=10+2*A1+B1"},
+        {
+            "x": {"cell": "A1", "distribution": "Normal", "mean": 0, "std_dev": 1},
+            "z": {"cell": "B1", "distribution": "Normal", "mean": 0, "std_dev": 1},
+        },
+        {"y": "C1"},
+    )
+
+
+@pytest.fixture
+def straight(book):
+    return straight_book(book)
+
+
+@pytest.fixture(scope="module")
+def reference(case_study):
+    return reference_of(case_study, 1 << 21, "mc", "jit", 3)
+
+
+def test_sampling_errors_are_what_theory_says(case_study, reference):
+    """100 runs know a root mean square to 7 %, the reference the density at a quantile to 8; 30 % is far more."""
+    results = [MONTE_CARLO.run(case_study, TRIALS, 1_000 + seed) for seed in range(REPLICATES)]
+    runs = runs_of(TRIALS, results, reference)
+    for forecast in case_study.forecasts:
+        for statistic in STATISTICS:
+            theory = reference.theory(forecast.name, statistic, TRIALS)
+            own = getattr(reference.errors[forecast.name], statistic)
+            assert runs.errors[forecast.name, statistic].value == pytest.approx(np.hypot(theory, own), rel=0.3)
+    share = reference.acceptance.value
+    assert runs.acceptance.value == pytest.approx((share * (1 - share) / TRIALS) ** 0.5, rel=0.3)
+
+
+def test_theory_is_that_of_the_independent_reference(reference):
+    """Theory of 131,072 trials for the filtered means, mph; SDs of two million trials are known to 0.7 %."""
+    for name, error in zip(reference.answers, (0.0154, 0.0295, 0.0367, 0.0417), strict=True):
+        assert reference.theory(name, "mean", 131_072) == pytest.approx(error, rel=0.03)
+
+
+def test_every_method_is_there(small):
+    keys = [curve.method.key for curve in small.every]
+    assert keys[:5] == ["corners", "optimised", "worst-case", "taylor-1", "taylor-2"]
+    assert keys[5:10] == ["mc", "lhs", "sobol", "grid", "surrogate"]
+    assert keys[10:] == ["mc/jit", "mc/formulas"]
+    assert small.absent == {}
+    assert small.ladder == (512, 2_048, 8_192)
+    assert [runs.settled for runs in small.curves[0].lengths] == [False, True, True]
+
+
+def test_what_every_method_tells(small):
+    for curve in small.every:
+        assert curve.lengths[-1].seconds > 0.0
+        assert curve.lengths[-1].evaluations >= 1
+        if curve.method.errors != "once":
+            assert all(np.isfinite(curve.lengths[-1].shares[each]) for each in STATISTICS)
+            assert curve.lengths[-1].acceptance is not None
+    grid = next(curve for curve in small.curves if curve.method.key == "grid")
+    assert grid.lengths[-1].effective > 0
+
+
+def test_an_engine_has_the_errors_of_its_trials(small):
+    plain = next(curve for curve in small.curves if curve.method.key == "mc")
+    for engine in small.engines:
+        for statistic in STATISTICS:
+            expected = plain.lengths[-1].shares[statistic]
+            assert engine.lengths[-1].shares[statistic] == pytest.approx(expected, rel=1e-3)
+    slow = small.engines[-1]
+    assert not slow.lengths[-1].measured
+    assert slow.lengths[-1].seconds == pytest.approx(4 * slow.lengths[-2].seconds)
+
+
+def test_what_cannot_be_seen_is_said(small):
+    text = "\n".join(recommendation(small))
+    assert "Taylor, first order misses the upper end of Nissan impact speed by 5.6 mph, 8" in text
+    assert "because it does not see the filters, which reject 98.2 % of the trials" in text
+    assert "Bounds answer another question" in text
+    assert "Recommended: " in text
+    assert "`xlmc simulate intersection.xlsx -n " in text
+
+
+def test_the_tables(small):
+    bounds = {row[0]: row[2:] for row in methods_tables.bounds_table(small).rows}
+    assert bounds["Chevrolet delta-V"][:2] == ("8.87 to 18.70", "8.85 to 15.88")
+    errors = {row[0]: row[1:] for row in methods_tables.error_table(small).rows}
+    assert [*errors] == [curve.method.name for curve in small.every if curve.answers]
+    assert errors["Monte Carlo"][0] == "8,192"
+    assert errors["Taylor, first order"][-1] == "never"
+    assert errors["Monte Carlo, engine formulas"][1].startswith("≈ ")
+    assert len(methods_tables.forecast_table(small).rows) == 4 * (1 + len(errors))
+    assert {row[0] for row in methods_tables.reference_table(small).rows} == set(small.varying)
+    said = dict(methods_tables.cannot_lines(small))
+    assert "does not see filters" in said["Taylor, second order"]
+
+
+def test_need_follows_the_square_root(small):
+    """Half the accuracy asked for is a fourth of the trials, where errors fall with their square root."""
+    plain = next(curve for curve in small.curves if curve.method.key == "mc")
+    found = need(small, plain)
+    assert found.statistic in STATISTICS
+    assert found.trials > small.ladder[-1]
+    assert found.seconds > 0.0
+    value, low, high = reach_of(small, plain, plain.lengths[-1], (found.forecast, found.statistic))
+    assert 1.0 < low < value < high
+
+
+def test_without_filters_the_differential_method_may_do(straight):
+    found = study(straight, accuracy="2%", reference_trials=1 << 16, trials=1 << 12, replicates=3)
+    assert found.reference.sampling == "sobol"
+    text = "\n".join(recommendation(found))
+    assert "Taylor, first order and Taylor, second order are near enough, and need no draws at all" in text
+    first = next(curve for curve in found.once if curve.method.key == "taylor-1")
+    assert shortfall(found, first).times < 1.0
+    sobol, plain = (next(c for c in found.curves if c.method.key == key) for key in ("sobol", "mc"))
+    assert sobol.lengths[-1].shares["mean"] < 0.2 * plain.lengths[-1].shares["mean"]
+
+
+@pytest.fixture(scope="module")
+def of_straight(book):
+    return study(straight_book(book), accuracy="0.8%", reference_trials=1 << 14, trials=1 << 10, replicates=2)
+
+
+def test_nothing_is_said_of_filters_where_there_are_none(of_straight):
+    found = of_straight
+    assert all("filters" not in said for _, said in methods_tables.cannot_lines(found))
+    assert dict(methods_tables.cannot_lines(found))["Taylor, first order"].startswith("takes every curve for straight")
+    assert not any(said.endswith(".") for _, said in methods_tables.cannot_lines(found))
+
+
+def test_independent_trials_are_carried_on_by_theory(of_straight):
+    """Eight times more exact is 64 times as many trials, however the slope of two runs of each length came out."""
+    found = of_straight
+    plain = next(curve for curve in found.curves if curve.method is MONTE_CARLO)
+    finer = replace(found, accuracy=("0.1%", 0.001, True))
+    assert need(finer, plain).trials == pytest.approx(64 * need(found, plain).trials)
+
+
+def test_ends_that_are_never_off_need_no_more_trials(book):
+    """24.5 % and 75.5 % of a die are 2 and 5 in all but a few runs in millions: no error is not an unknown one."""
+    die = {"cell": "A1", "distribution": "Discrete Uniform", "low": 1, "high": 6}
+    found = study(
+        book({"A1": 3, "B1": "=A1*2"}, {"die": die}, {"f": "B1"}),
+        reference_trials=1 << 14,
+        trials=1 << 13,
+        replicates=2,
+    )
+    plain = next(curve for curve in found.curves if curve.method is MONTE_CARLO)
+    assert plain.lengths[-1].errors["f", "low"].value == 0.0
+    assert np.isfinite(need(found, plain).trials)
+    assert not any("however many trials" in said for said in recommendation(found))
+
+
+def test_the_command_runs_what_is_recommended(book):
+    """A tenth of a thousandth of the range is far for independent trials, and near for Sobol points."""
+    uniform = {"low": -1, "high": 1}
+    model = book(
+        {"A1": 0.0, "A2": 0.0, "B1": "=IF(A1>0,10,0)+A2"},
+        {"x": {"cell": "A1", **uniform}, "z": {"cell": "A2", **uniform}},
+        {"y": "B1"},
+    )
+    found = study(model, accuracy="0.003%", reference_trials=1 << 18, trials=1 << 14, replicates=4)
+    (said,) = [paragraph for paragraph in recommendation(found) if paragraph.startswith("Recommended")]
+    assert said.startswith("Recommended: Scrambled Sobol")
+    assert "--sampling sobol -n " in said
+
+
+def test_errors_in_cells_are_warned_of(book):
+    model = book({"A1": 1.0, "B1": "=LN(A1)"}, {"a": {"cell": "A1", "low": -1, "high": 2}}, {"f": "B1"})
+    assert any("lost to errors in cells" in said for said in reference_of(model, 1 << 14, "mc", "numpy", 3).warnings)
+    assert (
+        "lost to errors in cells"
+        in recommendation(study(model, reference_trials=1 << 14, trials=1 << 10, replicates=2))[0]
+    )
+
+
+def test_accuracy_in_units(straight):
+    found = study(straight, accuracy="0.5", reference_trials=1 << 14, trials=1 << 10, replicates=2)
+    assert found.tolerance("y") == 0.5
+    said = recommendation(found)
+    assert said[0].startswith("Recommended: ")
+    assert "each known to within 0.5 in its units, in 95 of 100 runs" in said[1]
+    assert any("--precision 0.5 --precision-of mean,sd,range`" in each for each in said)
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ({"accuracy": "good"}, "is not a precision"),
+        ({"replicates": 1}, "1 replicates were asked for"),
+        ({"trials": 100}, "100 trials were asked for"),
+        ({"reference_trials": 10}, "10 reference trials were asked for"),
+        ({"seed": -1}, "the seed -1 is negative"),
+    ],
+)
+def test_what_cannot_be_meant(straight, asked, message):
+    with pytest.raises(SimulationError, match=message):
+        study(straight, **asked)
+
+
+def test_too_few_accepted(book):
+    model = book(
+        {"A1": 0.5, "B1": "=A1"},
+        {"a": {"cell": "A1", "low": 0, "high": 1}},
+        {"f": "B1"},
+        {"rare": {"cell": "A1", "above": 0.999}},
+    )
+    with pytest.raises(SimulationError, match="too few to measure methods with"):
+        study(model, reference_trials=2_048, trials=1_024, replicates=2)
+
+
+def test_a_forecast_whose_errors_cannot_be_squared(book):
+    model = book({"A1": 1e-200, "B1": "=1/A1"}, {"x": {"cell": "A1", "low": 1e-200, "high": 1e-190}}, {"y": "B1"})
+    with pytest.raises(SimulationError, match=r"'y' is beyond 1E150 in some trials"):
+        study(model, reference_trials=1 << 14, trials=1 << 10, replicates=2)
+
+
+def test_exact_numbers_of_the_reference_are_shown_exactly(book):
+    model = book({"A1": 1.5, "B1": "=A1*0+2.25"}, {"x": {"cell": "A1", "low": 1, "high": 2}}, {"y": "B1"})
+    found = study(model, reference_trials=1 << 14, trials=1 << 10, replicates=2)
+    assert methods_tables.reference_table(found).rows == (("y", "", "2.25 ± 0", "0 ± 0", "2.25 ± 0", "2.25 ± 0"),)
+
+
+def test_a_method_that_cannot_be_used_is_named(book):
+    model = book(
+        {"A1": 1.0, "B1": "=SIN(50*A1)"},
+        {"a": {"cell": "A1", "low": 0, "high": 1}},
+        {"f": "B1"},
+    )
+    found = study(model, reference_trials=1 << 14, trials=1 << 10, replicates=2)
+    assert "is a quadratic polynomial" in found.absent["Surrogate, exact filter"]
+
+
+def test_nothing_is_drawn(book):
+    with pytest.raises(SimulationError, match="so that every method gives the same"):
+        study(book({"A1": 1.0, "B1": "=A1"}, {}, {"f": "B1"}))
+
+
+def test_a_mean_that_does_not_converge_is_asked_of_no_method(book):
+    model = book({"A1": 0.5, "B1": "=1/A1"}, {"a": {"cell": "A1", "low": -1, "high": 1}}, {"f": "B1"})
+    found = study(model, reference_trials=1 << 17, trials=1 << 13, replicates=2)
+    assert found.reference.heavy == {"f": ("mean", "sd")}
+    said = recommendation(found)
+    assert "The mean and SD of f do not converge, as far as these trials show" in said[2]  # a lognormal may look so too
+    assert "more trials help no method" in said[2]
+    plain = next(curve for curve in found.curves if curve.method is MONTE_CARLO)
+    assert need(found, plain).statistic in ("low", "high")
+    assert np.isnan(plain.lengths[-1].shares["mean"])  # its error is no share of anything, and no slope is drawn of it
+    assert plain.lengths[-1].shares["low"] < 1.0
+
+
+def test_no_forecast(book):
+    with pytest.raises(SimulationError, match="has no forecast"):
+        study(book({"A1": 1.0}))
+
+
+def test_root_mean_squares():
+    errors = np.random.default_rng(1).normal(0.5, 2.0, 20_000)
+    found = rms_of([*errors, np.nan])
+    assert found.n == 20_000
+    assert found.value == pytest.approx((4 + 0.25) ** 0.5, rel=0.02)
+    assert found.bias == pytest.approx(0.5, abs=0.06)
+    assert rms_of(np.random.default_rng(1).normal(3.0, 1.0, 50)).value == pytest.approx(10**0.5, rel=0.1)
+    assert np.isnan(rms_of([np.nan]).value)
+
+
+def test_an_error_that_the_reference_explains_is_none_of_the_method():
+    """All runs are off by what the reference may be off by; a reference that is surer says that they are."""
+    errors = np.random.default_rng(1).normal(0.5, 0.1, 24)
+    assert rms_of(errors, 0.3).value == pytest.approx(0.1, rel=0.5)
+    assert rms_of(errors, 0.01).value == pytest.approx(0.51, rel=0.05)
+    assert rms_of([0.5], 0.3).interval == (0.0, pytest.approx(0.5 + 1.96 * 0.3, abs=1e-3))
+
+
+def test_the_interval_of_an_error_holds_it():
+    """95 % of 400 times, with 8 replicates of a normal error; the standard error of that share is 1.1 %."""
+    draws = np.random.default_rng(2).normal(0.0, 2.0, (400, 8))
+    held = [low <= 2.0 <= high for low, high in (rms_of(each).interval for each in draws)]
+    assert np.mean(held) == pytest.approx(0.95, abs=0.045)
+
+
+def test_slopes():
+    assert slope_of([1, 10, 100], [5, np.nan, 0.5]) == pytest.approx(-0.5)
+    assert np.isnan(slope_of([4, 4], [1, 2]))
+    assert np.isnan(slope_of([0.0030409, 0.003048, 0.003048], [0.0124, 0.0174, 0.0159])), "short runs all take as long"
+
+
+def test_searches_in_step_and_a_failure_among_them():
+    asked = []
+
+    def answer(questions):
+        asked.append(len(questions))
+        return [each + 1 for each in questions]
+
+    def climb(times):
+        def search(ask):
+            value = 0
+            for _ in range(times):
+                value = ask(value)
+            return value
+
+        return search
+
+    assert in_step([climb(3), climb(1), climb(0)], answer) == [3, 1, 0]
+    assert sum(asked) == 4
+
+    def broken(ask):
+        raise ValueError("broken")
+
+    with pytest.raises(ValueError, match="broken"):
+        in_step([climb(2), broken], answer)

@@ -1,0 +1,254 @@
+"""One small book a detector: what it says, and that it is silent where there is nothing to say."""
+
+from __future__ import annotations
+
+import pytest
+
+from xlmc.analysis.studies.stability import Level, stability
+from xlmc.excel.workbook.workbook import CellContent, Formula
+
+UNIFORM = {"x": {"cell": "A1", "low": 1, "high": 2}, "y": {"cell": "A2", "low": 1, "high": 2}}
+BASE = {"A1": 1.5, "A2": 1.5}
+
+
+@pytest.fixture(scope="session")
+def look(book):
+    """`look({"B1": "=…"}, x=(low, high))`: the findings of a book whose forecast is B1, by kind."""
+
+    def make(cells, filters=None, trials=20_000, **ranges):
+        given = {
+            name: {**one, **dict(zip(("low", "high"), ranges.get(name, (1, 2)), strict=True))}
+            for name, one in UNIFORM.items()
+        }
+        base = {one["cell"]: sum(ranges.get(name, (1, 2))) / 2 for name, one in UNIFORM.items()}
+        model = book(base | cells, given, {"f": "B1", "y": "A2"}, filters or {})
+        return stability(model, trials=trials, seed=5)
+
+    return make
+
+
+def kinds(found):
+    return [one.kind for one in found.findings]
+
+
+def only(found, kind):
+    (one,) = [finding for finding in found.findings if finding.kind == kind]
+    return one
+
+
+def test_a_sound_book_has_no_finding(look):
+    assert look({"B1": "=SQRT(A1^2+A2^2)*EXP(-A1)"}).findings == ()
+
+
+def test_a_difference_of_near_equals(look):
+    one = only(look({"C1": "=A1+1000000000", "B1": "=(C1-1000000000)*A2"}), "cancellation")
+    assert (str(one.cell), one.level) == ("S!B1", Level.DOUBTFUL)
+    assert "C1-1000000000 is a difference of nearly equal numbers" in one.what
+
+
+def test_digits_that_are_not_there(look):
+    found = look({"C1": "=A1+1E16", "B1": "=(C1-1E16)*A2"})
+    assert only(found, "cancellation").level is Level.WRONG
+    assert found.wrong
+    assert any("the digits of 'f' cannot be trusted" in warning for warning in found.run.warnings)
+
+
+def test_angles_subtracted_in_radians(look):
+    one = only(look({"B1": "=SIN(RADIANS(A1)-RADIANS(A2))"}, x=(271.0, 272.0), y=(270.9, 271.1)), "angles")
+    assert one.instead == "=SIN(RADIANS(A1-A2))"
+    assert "angles" not in kinds(look({"B1": "=SIN(RADIANS(A1)-RADIANS(A2))"}, x=(271.0, 272.0), y=(90.9, 91.1)))
+
+
+def test_a_quadrant_lost_in_some_trials(look):
+    one = only(look({"B1": "=ATAN(A2/A1)"}, x=(-1, 3)), "quadrant")
+    assert "in 2" in one.effect  # some quarter of the trials
+    assert one.where[0].name == "x"
+    assert one.where[0].high < 0
+    assert one.instead == "=ATAN2(A1,A2)"
+    assert one.level is Level.WRONG
+
+
+def test_what_is_the_same_a_whole_turn_on_is_not_lost_though_rounding_moves_it(look):
+    """Near 0, what rounding leaves of a whole turn is a large share of the sine."""
+    assert "quadrant" not in kinds(look({"B1": "=SIN(2*ATAN(A2/A1))"}, trials=2000, x=(-1, 1), y=(-1, 1)))
+
+
+@pytest.mark.parametrize("formula", ["=ATAN(A2/A1)", "=ATAN2(A1,A2)"])
+def test_no_quadrant_is_lost(look, formula):
+    assert "quadrant" not in kinds(look({"B1": formula}))
+
+
+@pytest.mark.parametrize(
+    "cells",
+    [
+        {"B1": "=IF(A1<0,PI(),0)+ATAN(A2/A1)"},
+        {"B1": "=IF(A1<0,ATAN(A2/A1)+PI(),ATAN(A2/A1))"},
+        {"B1": "=IF(A1>0,ATAN(A2/A1),IF(A1<0,ATAN(A2/A1)+PI()*SIGN(A2),PI()/2))"},
+        {"B1": "=MOD(DEGREES(ATAN(A2/A1))-30+180*(A1<0),360)"},
+        {"B1": "=DEGREES(ATAN(A2/A1))+90*(1-SIGN(A1))"},
+        {"B1": "=SIN(ATAN(A2/A1))*SIGN(A1)"},
+        {"B1": "=IF(C1=1,C2,C2+180)", "C1": "=IF(A1>0,1,2)", "C2": "=DEGREES(ATAN(C3))", "C3": "=A2/A1"},
+        {"B1": "=IF(A1+5<5,180,0)+DEGREES(ATAN(A2/A1))"},
+        {"B1": "=IF(A1>0,ATAN(A2/A1),0)"},
+        {"B1": "=TAN(ATAN(A2/A1))*A1"},
+    ],
+)
+def test_a_formula_that_minds_the_quadrant_itself(look, cells):
+    found = look({"D1": "=IF(A1<0,1,2)", **cells}, filters={"some": {"cell": "D1", "at_least": 0}}, x=(-1, 3))
+    assert "quadrant" not in kinds(found)
+
+
+def test_the_choice_that_mends_a_quadrant_is_no_jump(look):
+    assert "jump" not in kinds(look({"B1": "=IF(A1<0,ATAN(A2/A1)+PI(),ATAN(A2/A1))"}, x=(-1, 3)))
+    assert "jump" not in kinds(look({"B1": "=IF(A1<0,180,0)+DEGREES(ATAN(A2/A1))"}, x=(-1, 3)))
+
+
+def test_only_assumptions_that_a_cell_depends_on_are_named(look):
+    """Some fifteen trials of 3,000: of y, which has no part in it, they may well take up half."""
+    found = look({"B1": "=LN(A1-1.005)", "C1": "=A2*2"}, filters={"y": {"cell": "C1", "at_least": 0}})
+    assert [one.name for one in only(found, "edge").where] == ["x"]
+
+
+@pytest.mark.parametrize(
+    ("cells", "filters"),
+    [
+        ({"B1": "=ATAN(A2/A1)*IF(A1<0,1,2)"}, {}),
+        ({"B1": "=ATAN(A2/A1)+IF(A1<0,1,2)"}, {}),
+        ({"B1": "=ATAN(A2/A1)", "C1": "=A1+0"}, {"near": {"cell": "C1", "at_least": -0.5}}),
+        ({"B1": "=ATAN(A2/A1)"}, {"some": {"cell": "A1", "at_least": -0.5}}),
+        ({"B1": "=ATAN(C1)+IF(A1<0,1,2)", "C1": "=A2/A1"}, {}),
+        ({"B1": "=C1+IF(C1>9,1,2)", "C1": "=ATAN(A2/A1)"}, {"guarded": {"cell": "C2", "below": 9}}),
+    ],
+)
+def test_a_comparison_that_does_not_guard_the_arctangent_changes_nothing(look, cells, filters):
+    found = look({"C2": "=IF(A1<0,PI(),0)+ATAN(A2/A1)", **cells}, filters=filters, x=(-1, 3))
+    assert only(found, "quadrant").level is Level.WRONG
+
+
+@pytest.mark.parametrize(
+    ("formula", "what"),
+    [
+        ("=SQRT(A1-A2+0.9)", "SQRT takes 0 or more"),
+        ("=LN(A1-A2+0.9)", "LN takes above 0"),
+        ("=ASIN(A1-A2+0.1)", "ASIN takes -1 to 1"),
+    ],
+)
+def test_arguments_beyond_their_domain(look, formula, what):
+    one = only(look({"B1": formula}), "edge")
+    assert what in one.what
+    assert one.level is Level.DOUBTFUL
+    assert "the cell is an error in" in one.effect
+
+
+def test_an_argument_close_to_the_edge_of_its_domain(look):
+    one = only(look({"B1": "=SQRT(A1-1)"}), "edge")
+    assert one.level is Level.NOTE
+    assert one.where[0].name == "x"
+    assert one.where[0].low == 1
+
+
+def test_a_jump_and_a_bend(look):
+    one = only(look({"B1": "=IF(A1>1.5,A1+1,A1)"}), "jump")
+    assert "A1>1.5 changes within the ranges" in one.what
+    assert one.where[0].low < 1.5 < one.where[0].high
+    assert "jump" not in kinds(look({"B1": "=IF(A1>1.5,2*A1-1.5,A1)"}))
+    assert "jump" not in kinds(look({"B1": "=IF(A1>2.5,A1+1,A1)"}))
+
+
+def test_a_lookup_with_steps(look):
+    assert "a lookup finds 3 different cells" in only(look({"B1": "=VLOOKUP(A1,{0,1;1.3,4;1.6,9},2)"}), "jump").what
+
+
+def test_a_forecast_without_a_mean(look):
+    one = only(look({"B1": "=1/(A1-A2)"}), "tail")
+    assert one.level is Level.DOUBTFUL
+    assert "converge" in one.effect
+
+
+def test_a_quotient_in_a_filter_is_harmless_and_has_another_form(look):
+    found = look({"B1": "=A1*A2", "C1": "=A2/(A1-1.5)"}, filters={"e": {"cell": "C1", "at_least": 0, "below": 5}})
+    one = only(found, "tail")
+    assert one.level is Level.NOTE
+    assert one.instead == "=AND(A1-1.5<>0,A2*SIGN(A1-1.5)>=0,A2*SIGN(A1-1.5)<5*ABS(A1-1.5))"
+
+
+def test_filters_that_accept_almost_nothing(look):
+    found = look({"B1": "=A1*A2"}, filters={"big": {"cell": "B1", "above": 3.92}})
+    one = only(found, "filter")
+    assert one.level is Level.DOUBTFUL
+    assert "'big' rejects most" in one.what
+    none = look({"B1": "=A1*A2"}, filters={"big": {"cell": "B1", "above": 5}})
+    assert only(none, "filter").level is Level.WRONG
+    assert "there is no answer" in only(none, "filter").effect
+
+
+def test_an_answer_that_amplifies(look):
+    found = look({"B1": "=(A1-0.99*A1)/(A1-A2)"}, x=(1.0, 1.0001), y=(1.0002, 1.0003))
+    one = only(found, "amplification")
+    assert "when its assumptions change by 1 %" in one.what
+
+
+def test_functions_that_are_not_recomputed_are_named(look):
+    found = look({"B1": "=NORM.DIST(A1,A2,1,TRUE)+1E8*A1-1E8*A1"})
+    assert [(str(cell), functions) for cell, functions in found.unchecked] == [("S!B1", ("NORM.DIST",))]
+
+
+def test_arrays_whose_size_varies(look, monkeypatch):
+    """Such trials are worked out one by one: a few are enough here."""
+    monkeypatch.setattr("xlmc.analysis.studies.stability.case._PRIOR", 32)
+    monkeypatch.setattr("xlmc.analysis.studies.stability.case._ACCEPTED", 16)
+    monkeypatch.setattr("xlmc.montecarlo.simulation.simulate.BLOCK", 512)
+    dynamic = CellContent(None, Formula("SUM(FILTER(C1:C3,C1:C3>A1))+1E16-1E16", 1, 2, dynamic=True))
+    found = look({"B1": dynamic, "C1": 1.25, "C2": "=A1*1.1", "C3": "=A1/3+A2"}, trials=200)
+    assert only(found, "cancellation").level is Level.WRONG
+    assert found.run.warnings
+    assert found.unchecked
+
+
+def test_a_book_without_assumptions(book):
+    found = stability(book({"A1": 2.0, "B1": "=A1^2"}, {}, {"f": "B1"}), trials=100)
+    assert found.findings == ()
+
+
+def test_trials_apart_from_the_rest_are_no_heavy_tail(look):
+    """A jump of half a turn in a few trials: the direction is bounded, and its SD converges."""
+    assert "tail" not in kinds(look({"B1": "=IF(A1>1.99,180,0)+A2/100"}))
+
+
+def test_the_root_of_a_sum_of_squares_has_no_edge(look):
+    assert "edge" not in kinds(look({"B1": "=SQRT((A1-1.5)^2+(A2-1.5)^2)"}))
+
+
+def test_a_quadrant_lost_in_trials_that_no_filter_keeps(look):
+    found = look({"B1": "=ATAN(A2/A1)", "C1": "=A1*1"}, filters={"ahead": {"cell": "C1", "above": 0}}, x=(-1, 3))
+    assert only(found, "quadrant").level is Level.DOUBTFUL
+
+
+def test_a_divisor_that_no_assumption_changes(look):
+    """270° typed into a cell: its cosine is folded to -1.8e-16 before any trial, and yet 0."""
+    found = look({"A3": 270.0, "B1": "=(A1*COS(RADIANS(A3))+A2*SIN(RADIANS(2*A3)))/COS(RADIANS(A3))"})
+    one = only(found, "division")
+    assert one.level is Level.WRONG
+    assert "no error where the formula, computed exactly, has no value" in one.effect
+    assert "it divides by COS(RADIANS(A3))" in one.what
+    assert any("the digits of 'f' cannot be trusted" in warning for warning in found.run.warnings)
+
+
+def test_the_range_that_provokes_a_loss_is_told(look):
+    """x² is below 1e-6 throughout; what provokes the loss are the small x, not all of them."""
+    one = only(look({"B1": "=(1-COS(A1))/A1^2"}, x=(1e-7, 1e-3)), "cancellation")
+    assert one.where[0].high < 0.5e-3
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("formula", ["=SQRT(-A1)", '=IF(A1>1.5,"fast","slow")'])
+def test_a_forecast_without_a_number_anywhere(look, formula):
+    found = look({"B1": formula})
+    assert any("lost to errors" in warning for warning in found.run.warnings)
+
+
+def test_the_last_digits_of_zero_are_no_loss(look):
+    """0.3 - 0.1 - 0.2 is -2.8e-17 in doubles, and 0 exactly."""
+    found = look({"C1": "=0.3*A1-0.1*A1-0.2*A1", "B1": "=C1*3"})
+    assert found.findings == ()
+    assert [(one.rounding, one.excess) for one in found.cells if str(one.cell) == "S!B1"] == [(0.0, 0.0)]

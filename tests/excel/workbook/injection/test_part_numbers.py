@@ -1,0 +1,60 @@
+from __future__ import annotations
+
+import pytest
+
+from xlmc.excel.workbook.injection.part_numbers import free_names, free_table_name, quoted, rename_in_formula
+
+SHEETS = {"results": "Results (2)", "o'hara": "O'Hara (2)", "résumé": "Neu"}
+TABLES = {"trials": "Trials_2"}
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected"),
+    [
+        ("Results!$A$1:$B$2", "'Results (2)'!$A$1:$B$2"),
+        ("RESULTS!A1", "'Results (2)'!A1"),
+        ("'Results'!A1+results!A2", "'Results (2)'!A1+'Results (2)'!A2"),
+        ("'O''Hara'!A1", "'O''Hara (2)'!A1"),
+        ("Résumé!A1", "'Neu'!A1"),
+        ("SUM(Results!A1,Other!A1)", "SUM('Results (2)'!A1,Other!A1)"),
+        ("(Results!A1,Results!B1)", "('Results (2)'!A1,'Results (2)'!B1)"),
+        ('"Results!A1"&Results!A1', "\"Results!A1\"&'Results (2)'!A1"),
+        ('"say ""Results!"""', '"say ""Results!"""'),
+        ("[1]Results!A1", "[1]Results!A1"),
+        ("'[book.xlsx]Results'!A1", "'[book.xlsx]Results'!A1"),
+        ("MyResults!A1+Results2!A1", "MyResults!A1+Results2!A1"),
+        ("Results", "Results"),
+        ("#REF!A1", "#REF!A1"),
+        ("SUM(Trials[Speed])+Trials!A1", "SUM(Trials_2[Speed])+Trials!A1"),
+        ("MyTrials[Speed]", "MyTrials[Speed]"),
+        ("[#This Row]", "[#This Row]"),
+        ("", ""),
+    ],
+)
+def test_names_change_in_formulas(formula, expected):
+    assert rename_in_formula(formula, SHEETS, TABLES) == expected
+
+
+@pytest.mark.parametrize(
+    ("wanted", "taken", "found"),
+    [
+        (["Results", "Trials"], ["Scene"], ["Results", "Trials"]),
+        (["Results"], ["RESULTS"], ["Results (2)"]),
+        (["Results"], ["results", "Results (2)"], ["Results (3)"]),
+        (["Results", "Results (2)"], ["Results"], ["Results (2)", "Results (2) (2)"]),
+        (["x" * 31], ["X" * 31], ["x" * 27 + " (2)"]),
+    ],
+)
+def test_sheet_names_are_free(wanted, taken, found):
+    assert list(free_names(wanted, taken).items()) == list(zip(wanted, found, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("taken", "found"), [(set(), "Trials"), ({"trials"}, "Trials_2"), ({"trials", "trials_2"}, "Trials_3")]
+)
+def test_table_names_are_free(taken, found):
+    assert free_table_name("Trials", taken) == found
+
+
+def test_quoted():
+    assert quoted("O'Hara") == "'O''Hara'"

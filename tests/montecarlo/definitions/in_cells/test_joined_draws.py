@@ -1,0 +1,165 @@
+"""Copulas and partners of draws in cells: what is understood, what is refused and how, and what is drawn."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from openpyxl import Workbook
+from scipy import stats
+
+import xlmc
+from xlmc.errors import XlmcError
+
+TRIALS = 20_000
+TWO = {
+    "A1": "=RiskNormal(0,1,RiskCopula($K$1:$L$3,1))",
+    "A2": "=RiskExpon(1,RiskCopula($K$1:$L$3,2))",
+    "A3": '=RiskOutput("sum")+A1+A2',
+}
+CLAYTON = {"K1": "Pattern", "L1": "Clayton", "K2": "Theta", "L2": 2}
+T = {"K1": "t", "L1": None, "K2": 1, "K3": 0.5, "L3": 1, "M1": "Degrees of freedom", "N1": 3}
+
+
+@pytest.fixture
+def model(tmp_path):
+    def made(cells):
+        book = Workbook()
+        sheet = book.active
+        sheet.title = "S"
+        for address, value in cells.items():
+            sheet[address] = value
+        book.save(tmp_path / "book.xlsx")
+        return xlmc.load(tmp_path / "book.xlsx")
+
+    return made
+
+
+@pytest.mark.parametrize(
+    ("cells", "message", "tau"),
+    [
+        ({**TWO, **CLAYTON}, "the copula Clayton of theta 2", 0.5),
+        ({**TWO, **CLAYTON, "L1": "claytonRX"}, "the copula ClaytonRX of theta 2", -0.5),
+        ({**TWO, **CLAYTON, "L1": "Gumbel R"}, "the copula GumbelR of theta 2", 0.5),
+        ({**TWO, **CLAYTON, "L1": "Frank", "L2": "=3+2"}, "", 0.4567),
+        ({**TWO, "K1": "Gaussian", "K2": 1, "K3": 0.5, "L3": 1}, "the copula Gaussian", 1 / 3),
+        (
+            {
+                **{key: value.replace("$L$3", "$N$3") for key, value in TWO.items()},
+                **T,
+            },
+            "the copula t of df 3",
+            1 / 3,
+        ),
+    ],
+)
+def test_what_is_drawn(model, cells, message, tau):
+    """Kendall's tau, whose standard error is at most 2·√((1 − τ²)/n), and the margins."""
+    if cells.get("L2") == "=3+2":  # openpyxl saves no value, and the parameter of a copula is a saved number
+        with pytest.raises(XlmcError, match="The parameter of the copula has never been calculated"):
+            model(cells)
+        return
+    made = model(cells)
+    assert any(message in notice.message for notice in made.notices)
+    run = made.simulate(trials=TRIALS, seed=999)
+    first, second = run.inputs["S!A1#1"], run.inputs["S!A2#1"]
+    found = stats.kendalltau(first[:4000], second[:4000]).statistic
+    assert abs(found - tau) < 4 * 2 * math.sqrt((1 - tau**2) / 4000)
+    assert stats.kstest(first, stats.norm.cdf).pvalue > 1e-3
+    assert stats.kstest(second, stats.expon.cdf).pvalue > 1e-3
+    with pytest.raises(KeyError):
+        run.inputs["S!A3#1"]
+
+
+@pytest.mark.parametrize(
+    ("change", "where", "message"),
+    [
+        ({"L1": "Joe"}, "S!K1", "The range S!K1:L3 does not say which copula it is"),
+        ({"L2": None}, "S!L1", "has no Theta"),
+        ({"L2": -1}, "S!L1", "Theta (-1) of Clayton must be above 0, and at most 500"),
+        ({"L1": "Gumbel", "L2": 0.5}, "S!L1", "Theta (0.5) of Gumbel must be at least 1"),
+        ({"L1": "Gaussian"}, "S!L1", "has no matrix with 2 rows"),
+        ({"L1": "t"}, "S!L1", "has no degrees of freedom"),
+        ({"A2": "=RiskExpon(1,RiskCopula($K$1:$L$3,1))"}, "S!A2", "has a position of the copula"),
+        ({"A2": "=RiskExpon(1,RiskCopula($K$1:$L$3,0))"}, "S!A2", "position must be a whole number from 1"),
+        ({"A2": "=RiskExpon(1,RiskCopula(K1,2))"}, "S!A2", "first argument is not a range of cells"),
+        (
+            {
+                "A1": '=RiskNormal(0,1,RiskCopula($K$1:$L$3,1),RiskIndepC("x"))',
+                "A4": '=RiskNormal(0,1,RiskDepC("x",0.5))',
+                "A3": '=RiskOutput("sum")+A1+A2+A4',
+            },
+            "S!A1",
+            "is joined by a copula, and correlated in another way, too",
+        ),
+    ],
+)
+def test_what_is_refused(model, change, where, message):
+    with pytest.raises(XlmcError) as refused:
+        model({**TWO, **CLAYTON, **change})
+    assert message in str(refused.value)
+    assert where in str(refused.value)
+    assert refused.value.hint
+
+
+def test_the_record_has_the_correlation_of_each_pair(model):
+    from xlmc.analysis.results.record.definition_tables import correlations_met
+
+    (met,) = correlations_met(model({**TWO, **CLAYTON}).simulate(trials=TRIALS, seed=999))
+    assert str(met.row) == "S!L1"
+    assert met.asked == met.used == pytest.approx(0.6822, abs=2e-3)
+    assert abs(met.accepted.value - met.used) < 5 / math.sqrt(TRIALS)
+
+
+PARTNERS = {
+    "A1": '=RiskNormal(0,1,RiskIndepC("p"))',
+    "A2": '=RiskNormal(0,1,RiskDepC("P",0.8))',
+    "A3": '=RiskUniform(0,1,RiskDepC("p",-0.5))',
+    "A4": "=A1+A2+A3+RiskOutput()",
+}
+
+
+def test_partners(model):
+    """Both have their rank correlation with the first, and what follows from it with each other: no repair."""
+    made = model(PARTNERS)
+    assert not any("nearest" in notice.message for notice in made.notices)
+    inputs = made.simulate(trials=TRIALS, seed=999).inputs
+    columns = [inputs[f"S!A{row}#1"] for row in (1, 2, 3)]
+    found = stats.spearmanr(np.stack(columns, axis=1)).statistic
+    implied = 6 / math.pi * math.asin(2 * math.sin(math.pi / 6 * 0.8) * math.sin(math.pi / 6 * -0.5))
+    for (i, j), wanted in (((0, 1), 0.8), ((0, 2), -0.5), ((1, 2), implied)):
+        assert abs(found[i, j] - wanted) < 5 / math.sqrt(TRIALS)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"A1": "=RiskNormal(0,1)"}, "RiskIndepC('p') stands in 0 draws that vary, and must stand in one"),
+        ({"A2": '=RiskNormal(0,1,RiskDepC("p",1.5))'}, "Correlation (1.5) must lie between -1 and 1"),
+        ({"A2": "=RiskNormal(0,1,RiskDepC(A9,0.5))"}, "RiskDepC needs a text"),
+    ],
+)
+def test_mistakes_of_partners(model, change, message):
+    with pytest.raises(XlmcError) as refused:
+        model({**PARTNERS, **change})
+    assert message in str(refused.value)
+
+
+def test_a_coefficient_may_be_a_formula_that_was_never_calculated(model):
+    """In a matrix and of a partner; and one that varies by trial is refused."""
+    cells = {
+        "F1": 1, "F2": "=0.3+G1/2", "G2": 1, "G1": 0.6,
+        "A1": "=RiskNormal(0,1,RiskCorrmat(F1:G2,1))",
+        "A2": "=RiskNormal(0,1,RiskCorrmat(F1:G2,2))",
+        "B1": '=RiskNormal(0,1,RiskIndepC("p"))',
+        "B2": '=RiskNormal(0,1,RiskDepC("p",-G1/2))',
+        "A3": "=A1+A2+B1+B2+RiskOutput()",
+    }  # fmt: skip
+    inputs = model(cells).simulate(trials=TRIALS, seed=999).inputs
+    for column, wanted in (("A", 0.6), ("B", -0.3)):
+        found = stats.spearmanr(inputs[f"S!{column}1#1"], inputs[f"S!{column}2#1"]).statistic
+        assert abs(found - wanted) < 5 / math.sqrt(TRIALS)
+    for formula, message in (("=A1", "varies with an assumption"), ("=1+1", "Correlation (2) must lie between")):
+        with pytest.raises(XlmcError, match=message.replace("(", r"\(").replace(")", r"\)")):
+            model({**cells, "F2": formula})

@@ -1,0 +1,86 @@
+"""A normal quantity and a reading of it: what is kept is known exactly."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from xlmc.errors import DefinitionError
+from xlmc.montecarlo.simulation.simulate import simulate
+
+X = {"cell": "A1", "distribution": "Normal", "mean": 0, "std_dev": 1}
+READING = {"cell": "B1", "reading": 1, "error": "normal", "std_dev": 0.5}
+CELLS = {"A1": 0.0, "B1": "=A1*1", "C1": 2.0, "D1": "=A1+C1"}
+OTHERS = {"x": X, "c": {"cell": "C1", "low": 1, "high": 3}}
+FORECASTS = {"y": "B1", "sum": "D1"}
+
+
+@pytest.fixture(scope="module")
+def normal(book):
+    return book(CELLS, OTHERS, FORECASTS, evidence={"EDR": READING})
+
+
+def close(found, truth):
+    """Within four standard errors."""
+    return abs(found.value - truth) < 4 * found.error
+
+
+def test_a_normal_error_gives_the_known_posterior(normal):
+    """X ~ N(0, 1) and a reading of 1 with a standard deviation of 0.5: mean 0.8, SD √0.2, share √0.2·exp(-0.4)."""
+    run = normal.simulate(trials=400_000)
+    assert close(run.acceptance, 0.299776)
+    assert close(run["y"].mean, 0.8)
+    assert close(run["y"].standard_deviation, 0.447214)
+    assert close(run["sum"].mean, 2.8)
+
+
+def test_a_uniform_error_gives_the_known_posterior(book):
+    reading = {"cell": "B1", "reading": 1, "plus_minus": 0.5}
+    run = book(CELLS, OTHERS, FORECASTS, evidence={"EDR": reading}).simulate(trials=400_000)
+    assert close(run.acceptance, 0.241730)
+    assert close(run["y"].mean, 0.920645)
+
+
+def test_a_lognormal_error_gives_the_known_posterior(book):
+    """ln m ~ N(0, 0.5) and ln R = 0.5 with σ 0.5: ln m given R ~ N(0.25, 0.5/√2)."""
+    cells = {"A1": 0.0, "B1": "=EXP(A1/2)", "C1": "=IF(A1>-9,B1,-1)"}
+    reading = {"cell": "C1", "reading": float(np.exp(0.5)), "error": "lognormal", "std_dev": 0.5}
+    run = book(cells, {"x": X}, {"log": "A1"}, evidence={"damage": reading}).simulate(trials=200_000)
+    assert close(run["log"].mean, 0.5)  # x = 2·ln m
+    assert close(run["log"].standard_deviation, 0.5**0.5)
+
+
+def test_evidence_moves_no_draw_and_every_engine_keeps_the_same_trials(book, normal):
+    plain = book(CELLS, OTHERS, FORECASTS).simulate(trials=5_000)
+    both = {"video": {**READING, "reading": 2}, "EDR": READING}
+    for method in ("mc", "lhs", "sobol"):
+        one, two = normal.simulate(trials=5_000, sampling=method), None
+        assert list(one.inputs) == list(one.prior) == ["x", "c"]
+        if method == "mc":
+            assert all(np.array_equal(one.prior[name], plain.prior[name]) for name in plain.prior)
+            two = simulate(
+                book(CELLS, OTHERS, FORECASTS, evidence=both), trials=5_000
+            )  # which rejects, few as it keeps
+            assert set(two.trial_index) < set(one.trial_index)  # the number that EDR draws is its own
+            assert np.array_equal(one.trial_index, normal.simulate(trials=5_000, engine="jit").trial_index)
+            assert np.array_equal(one.inputs["c"], normal.simulate(trials=5_000, engine="jit").inputs["c"])
+
+
+def test_what_keeps_no_trial_without_its_chance_is_told_at_the_base_case(normal):
+    from xlmc.outputs.summary import base_case
+
+    found = base_case(normal.simulate(trials=200))
+    assert found.rejected_by == ()
+    assert found.forecasts == {"y": 0.0, "sum": 2.0}
+
+
+def test_a_reading_may_be_a_formula_but_not_one_of_an_assumption(book):
+    cells = {**CELLS, "E1": "=10/10", "F1": "=C1/2"}
+    run = book(cells, OTHERS, FORECASTS, evidence={"EDR": {**READING, "reading": "E1"}}).simulate(trials=5_000)
+    same = book(cells, OTHERS, FORECASTS, evidence={"EDR": READING}).simulate(trials=5_000)
+    assert np.array_equal(run.trial_index, same.trial_index)
+    with pytest.raises(DefinitionError, match="varies with an assumption") as raised:
+        book(cells, OTHERS, FORECASTS, evidence={"EDR": {**READING, "reading": "F1"}})
+    assert str(raised.value.where) == "S!F1"
+    with pytest.raises(DefinitionError, match="is 0: no reading is exact"):
+        book({**cells, "G1": "=1-1"}, OTHERS, FORECASTS, evidence={"EDR": {**READING, "std_dev": "G1"}})

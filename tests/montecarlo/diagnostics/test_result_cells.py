@@ -1,0 +1,531 @@
+"""Cells that show results of a run, filled in on writing: their values, their dependants', and nothing else."""
+
+from __future__ import annotations
+
+import math
+import re
+import zipfile
+from contextlib import closing
+
+import numpy as np
+import openpyxl
+import pytest
+import xlsxwriter
+from fewer_sheets import CHARTS, SENSITIVITY, leave_out
+
+import xlmc
+from xlmc.errors import ErrorCode, FormulaError
+from xlmc.excel.workbook.inject import original_hash
+from xlmc.excel.workbook.package import read_parts
+from xlmc.excel.workbook.reader import read_workbook
+from xlmc.excel.workbook.writer import package_bytes
+from xlmc.montecarlo.diagnostics.result_cells import filled_sheets
+
+FORMULAS = {
+    "A1": ("=_xll.RiskNormal(5,1)", 5.25),
+    "A2": ('=RiskOutput("x")+A1*2', 10.5),
+    "A3": ("=A1+1", 6.25),
+    "B1": ("=_xll.RiskMean(A2)", 0),
+    "B2": ("=B1*2+A1", 0),
+    "B3": ('=IF(B1>5,"a<b","")', ""),
+    "B4": ("=[1]!CB.GetForeStatFN(A2,5)", 0),
+    "B5": ("=RiskPercentile(A2,$D$1)", 0),
+    "B6": ("=RiskTarget(A2,10)", 0),
+    "B7": ("=CB.GetForeStatFN(A2,14)", 0),
+    "B8": ('=ROUND(RiskMax("X")-RiskMin("x")-RiskRange(A2),9)', 1),
+    "B9": ("=CB.GetForePercentFN(A2,90)-B5", 1),
+    "B10": ("=CB.GetCertaintyFN(A2,10)-100*B6", 1),
+    "B11": ("=RiskData(A2,3)", 0),
+    "B12": ('=RiskMean("no such")', 7),
+    "B13": ("=ISERROR(B12)", False),
+    "B14": ("=RiskStdDev(A2)^2-RiskVariance(A2)", 1),
+    "B15": ("=RiskPercentileD(A2,1-$D$1)-B5", 1),
+    "B16": ("=RiskTargetD(A2,10)+B6", 0),
+    "B17": ("=Unknown(B1)", 3),
+    "B18": ("=CB.GetForeStatFN(A2,1)", 0),
+    "B19": ("=_xll.CB.GetCertaintyFN(A2,10)", 0),
+}
+
+
+def build(path, formulas, extra=()):
+    with xlsxwriter.Workbook(path) as book:
+        sheet = book.add_worksheet("S")
+        other = book.add_worksheet("Other")
+        sheet.write("D1", 0.9)
+        for address, (formula, value) in formulas.items():
+            sheet.write_formula(address, formula, None, value)
+        other.write_formula("A1", "=S!B1+1", None, 0)
+        other.write_formula("A2", "=S!A1", None, 5.25)
+        for row, (formula, value) in enumerate(extra, start=3):
+            other.write_formula(row, 0, formula, None, value)
+    return path
+
+
+@pytest.fixture(scope="module")
+def filled(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("books")
+    source = build(folder / "book.xlsx", FORMULAS)
+    run = xlmc.load(source).simulate(trials=20_000, seed=999)
+    with pytest.MonkeyPatch.context() as patch:
+        leave_out(patch, *CHARTS, *SENSITIVITY)
+        run.save(folder / "out.xlsx")
+    return source, folder / "out.xlsx", run
+
+
+@pytest.fixture(scope="module")
+def saved(filled):
+    """What the result workbook shows: sheet -> address -> value."""
+    with closing(openpyxl.load_workbook(filled[1], data_only=True, read_only=True)) as book:
+        return {
+            name: {
+                cell.coordinate: cell.value for row in book[name].iter_rows() for cell in row if cell.value is not None
+            }
+            for name in ("S", "Other")
+        }
+
+
+def test_values(filled, saved):
+    _, _, run = filled
+    x = run["x"]
+    expected = {
+        "B1": x.mean.value,
+        "B2": 2 * x.mean.value + 5.25,
+        "B3": "a<b",
+        "B4": x.standard_deviation.value,
+        "B5": x.percentile(90).value,
+        "B6": 1 - x.probability_above(10).value,
+        "B7": "#NUM!",
+        "B8": 0,
+        "B9": 0,
+        "B10": 0,
+        "B11": x.values[2],
+        "B12": "#N/A",
+        "B13": True,
+        "B14": 0,
+        "B15": 0,
+        "B16": 1,
+        "B17": "#N/A",
+        "B18": 20_000,
+        "B19": 100 * (1 - x.probability_above(10).value),
+    }
+    for address, value in expected.items():
+        found = saved["S"][address]
+        assert found == (value if isinstance(value, str | bool) else pytest.approx(value, rel=1e-12, abs=1e-12)), (
+            address
+        )
+    assert abs(saved["S"]["B1"] - 10) < 5 * 2 / math.sqrt(20_000)
+
+
+def test_other_cells_keep_what_excel_saved(saved):
+    assert [saved["S"][address] for address in ("A1", "A2", "A3", "D1")] == [5.25, 10.5, 6.25, 0.9]
+    assert saved["Other"]["A2"] == 5.25
+    assert saved["Other"]["A1"] == saved["S"]["B1"] + 1
+
+
+def test_only_values_change(filled):
+    """Without the cached values of the filled cells, both sheets are the same bytes; so are all parts but five more."""
+    source, target, run = filled
+    before, after = (read_parts(path.read_bytes()) for path in (source, target))
+    kept = {"[Content_Types].xml", "xl/workbook.xml", "xl/_rels/workbook.xml.rels", "xl/styles.xml", "docProps/app.xml"}
+    sheets = {"xl/worksheets/sheet1.xml", "xl/worksheets/sheet2.xml"}
+    assert {name for name in before if after[name] != before[name]} <= kept | sheets
+    cells = {cell.a1 for cell in run.shown_results.cells}
+    for name in sheets:
+        assert _blanked(before[name], cells) == _blanked(after[name], cells)
+
+
+def _blanked(xml, cells):
+    for address in cells:
+        cell = rf'(<c r="{address}")(?: t="\w+")?(>.*?</f>)<v>.*?</v>'
+        xml = re.sub(cell.encode(), rb"\1\2", xml)
+    return xml
+
+
+def test_the_result_workbook_is_known_as_made_from_the_book(filled):
+    source, target, _ = filled
+    hashes = [original_hash(read_parts(path.read_bytes())) for path in (source, target)]
+    assert hashes[0] == hashes[1]
+
+
+def test_another_formula_is_another_workbook(filled, tmp_path):
+    source, _, _ = filled
+    changed = build(tmp_path / "changed.xlsx", {**FORMULAS, "A3": ("=A1+2", 6.25)})
+    assert original_hash(read_parts(changed.read_bytes())) != original_hash(read_parts(source.read_bytes()))
+
+
+def test_a_run_of_the_result_workbook_gives_the_same(filled, tmp_path):
+    _, target, run = filled
+    again = xlmc.load(target).simulate(trials=20_000, seed=999)
+    assert again["x"].mean == run["x"].mean
+    with pytest.MonkeyPatch.context() as patch:
+        leave_out(patch, *CHARTS, *SENSITIVITY)
+        again.save(tmp_path / "again.xlsx")
+    with zipfile.ZipFile(tmp_path / "again.xlsx") as once, zipfile.ZipFile(target) as first:
+        assert once.read("xl/worksheets/sheet1.xml") == first.read("xl/worksheets/sheet1.xml")
+
+
+def test_results_of_a_run_without_accepted_trials_are_not_available(tmp_path):
+    cells = {"A1": ("=RiskNormal(5,1)+RiskOutput()", 5), "A2": ("=RiskMean(A1)", 5), "A3": ("=A1/0+RiskOutput()", 0)}
+    cells["A4"] = ("=RiskMean(A3)", 1)
+    run = xlmc.load(build(tmp_path / "book.xlsx", cells)).simulate(trials=100)
+    values = {cell.a1: value for cell, value in run.shown_results.cells.items()}
+    assert values["A4"] is ErrorCode.NA
+    assert values["A2"] == run["S!A1"].mean.value
+
+
+INPUTS = {"A1": ("=RiskNormal(5,1)", 5), "A2": ("=A1*2+RiskUniform(0,1)+RiskOutput()", 10)}
+
+
+def test_results_of_an_assumption_are_those_of_its_accepted_draws(tmp_path):
+    cells = {"B1": ("=RiskMean(A1)", 5), "B2": ("=RiskPercentile(A1,0.9)", 5), "B3": ("=CB.GetForeStatFN(A1,1)", 5)}
+    run = xlmc.load(build(tmp_path / "book.xlsx", {**INPUTS, **cells})).simulate(trials=500)
+    draws = run.inputs["S!A1#1"]
+    assert draws.size == 500
+    values = {cell.a1: value for cell, value in run.shown_results.cells.items()}
+    assert values["B1"] == pytest.approx(draws.mean(), rel=1e-14)
+    assert values["B2"] == pytest.approx(np.percentile(draws, 90), rel=1e-14)
+    assert values["B3"] == 500
+
+
+def test_a_name_that_only_an_assumption_has_shows_nothing_and_is_named(tmp_path):
+    cells = {"A1": ('=RiskNormal(5,1,RiskName("Speed"))', 5), "B1": ('=RiskMean("Speed")', STALE)}
+    run = xlmc.load(build(tmp_path / "book.xlsx", {**INPUTS, **cells})).simulate(trials=500)
+    assert shown(run, tmp_path / "out.xlsx")["B1"] == "#N/A"
+    assert "no forecast is called so: nothing is shown" in " ".join(str(notice) for notice in run.notices)
+
+
+RELATIVE = {
+    "a mean": 'RiskNormal(INDIRECT("C1"),1)+RiskOutput()',
+    "a place that moves": 'RiskNormal(INDIRECT("R1C3",FALSE),1)+RiskOutput()',
+    "its own row": 'RiskNormal(INDIRECT("C"&ROW()),1)+RiskOutput()',
+    "its own sheet": "RiskNormal(IF(SHEET()=2,50,0),1)+RiskOutput()",
+    "within": 'RiskUniform(0,SUM(OFFSET(B1,0,1),INDIRECT("C1")))+RiskOutput()',
+}
+
+
+@pytest.mark.parametrize("formula", RELATIVE.values(), ids=RELATIVE)
+def test_an_argument_of_a_draw_may_look_for_its_cell_on_its_own_sheet(tmp_path, formula):
+    path = tmp_path / "book.xlsx"
+    with xlsxwriter.Workbook(path) as book:
+        book.add_worksheet("First").write("C1", -1000)
+        sheet = book.add_worksheet("S")
+        sheet.write_formula("A1", f"={formula}", None, 5)
+        sheet.write("C1", 50)
+    run = xlmc.load(path).simulate(trials=500)
+    assert 40 < run["S!A1"].mean.value < 60
+
+
+def test_an_array_formula_of_results_fills_its_area(tmp_path):
+    path = tmp_path / "book.xlsx"
+    with xlsxwriter.Workbook(path) as book:
+        sheet = book.add_worksheet("S")
+        sheet.write_formula("A1", "=RiskNormal(5,1)+RiskOutput()", None, 5)
+        sheet.write_array_formula("B1:B2", "{=RiskMean(A1)*{1;2}}", None, 0)
+        sheet.write_number("B2", 0)
+    run = xlmc.load(path).simulate(trials=1000)
+    run.save(tmp_path / "out.xlsx")
+    sheet = read_workbook(tmp_path / "out.xlsx").sheets["S"]
+    mean = run["S!A1"].mean.value
+    assert [sheet.cells[row, 2].value for row in (1, 2)] == pytest.approx([mean, 2 * mean], rel=1e-15)
+
+
+def test_a_book_without_such_cells_is_not_touched(tmp_path):
+    cells = {"A1": ("=RiskNormal(5,1)+RiskOutput()", 5)}
+    run = xlmc.load(build(tmp_path / "book.xlsx", cells)).simulate(trials=100)
+    assert run.shown_results.cells == {}
+
+
+# Cells that cannot be computed: they and all that depends on them show #N/A, and are named.
+
+STALE = 77.0
+
+
+def run_of(path, cells, **more):
+    return xlmc.load(build(path, {**MODEL, **cells}, **more)).simulate(trials=200)
+
+
+def shown(run, path):
+    """What the result workbook shows: address on the sheet S -> value; others as `Other!A1`.
+
+    Written without the result sheets, which say nothing of these; `filled` has them.
+    """
+    path.write_bytes(
+        package_bytes({**run.model.workbook.parts, **filled_sheets(run.model.workbook, run.shown_results)})
+    )
+    book = openpyxl.load_workbook(path, data_only=True)
+    found = {cell.coordinate: cell.value for row in book["S"].iter_rows() for cell in row}
+    return found | {f"Other!{c.coordinate}": c.value for row in book["Other"].iter_rows() for c in row}
+
+
+MODEL = {"A1": ("=RiskNormal(5,1)", 5), "A2": ("=A1*2+RiskOutput()", 10)}
+
+NOT_COMPUTED = {
+    "_xll.RiskCpk(A2,0.95,TRUE)": "RiskCpk is not computed by xlmc",
+    "RiskPPMLower(A1)": "RiskPPMLower is not computed by xlmc",
+    "RiskTheoMode(A1)": "RiskTheoMode is not computed by xlmc",
+    "RiskConvergenceLevel(A2)": "RiskConvergenceLevel is not computed by xlmc",
+    "RiskSimulationInfo(1)": "RiskSimulationInfo is not computed by xlmc",
+    "[1]!CB.GetAssumStatFN(A1,50)": "CB.GetAssumStatFN is not computed by xlmc",
+    "CB.GetForeFN(A1,1)": "CB.GetForeFN is not computed by xlmc",
+    "CB.GetDecVarFN(1)": "CB.GetDecVarFN is not computed by xlmc",
+    "CB.CheckDataFN()": "CB.CheckDataFN is not computed by xlmc",
+    "CB.NobodyKnowsFN(A2)": "the function CB.NOBODYKNOWSFN is not supported",
+    "RiskNobodyKnows(A2)": "the function RISKNOBODYKNOWS is not supported",
+    "IFERROR(RiskCpk(A2,0.95),1)": "RiskCpk is not computed by xlmc",
+    "RiskMean(A2)+RiskCpk(A2,0.95)": "RiskCpk is not computed by xlmc",
+    "RiskMean(A2)+RAND()": "the formula both draws and shows results of the run",
+    "RiskMean(A2,2)": "RiskMean asks for another simulation than the first",
+    "RiskData(A2,1,RiskTruncate(1,2))": "RiskData of a part of the values is not computed",
+    "CB.GetForeStatFN(A2,2,3)": "CB.GetForeStatFN has 1 arguments too many",
+    "RiskMean(A1:A2)": "RiskMean must name the cell of an output first",
+    "RiskPercentile(A2)": "RiskPercentile has 1 arguments",
+    "RiskMean([7]Elsewhere!A1)": "refers to another workbook",
+    "RiskMean(A2)+[7]Elsewhere!A1": "refers to another workbook",
+    "RiskMean(NoSuchName)": "there is no name 'NoSuchName'",
+}
+
+
+def test_what_xlmc_does_not_compute_shows_not_available_and_is_named(tmp_path):
+    """Cells of one reason are named together."""
+    of = {f"B{row}": formula for row, formula in enumerate(NOT_COMPUTED, 1)}
+    cells = {address: (f"={formula}", STALE) for address, formula in of.items()}
+    cells |= {"C1": ("=A1+A2", 15), "D2": ("=RiskMean(A2)", STALE)}
+    run = run_of(tmp_path / "book.xlsx", cells)
+    found = shown(run, tmp_path / "out.xlsx")
+    assert (found["C1"], found["D2"]) == (15, run["S!A2"].mean.value)
+    assert {address: found[address] for address in of} == dict.fromkeys(of, "#N/A")
+    assert {f"S!{address}" for address in of} == {str(each) for each in run.shown_results.missing if each.sheet == "S"}
+    [warning] = run.warnings
+    first = {reason: address for address, reason in reversed(list(zip(of, NOT_COMPUTED.values(), strict=True)))}
+    for reason, address in first.items():
+        assert reason in warning
+        assert re.search(rf"\bS!{address}\b", warning)
+        told = [each.message for each in run.model.notices if str(each.where) == f"S!{address}"]
+        assert len([message for message in told if "#N/A" in message and reason in message]) == 1
+    together = "RiskCpk is not computed by xlmc in S!B1, S!B12:B13: #N/A"
+    assert any(together in each.message for each in run.model.notices)
+
+
+DEPENDANTS = {
+    "plain": "S!B1+1",
+    "a range": "SUM(S!B1:B3)",
+    "through another cell": "A1*2",
+    "an error that is caught": "IFERROR(S!B1,0)",
+    "an error that is asked for": "ISERROR(S!B1)",
+    "a defined name": "Stale*2",
+    "a name of its own": "Own+1",
+    "a place that is looked for": 'INDIRECT("S!B"&1)',
+    "an offset": "OFFSET(S!A1,0,1)",
+    "what a cell holds": 'CELL("contents",S!B1)',
+    "a function nobody knows": "NoSuchFunction(S!B1)",
+    "another workbook": "S!$B$1+[7]Elsewhere!A1",
+    "another workbook, by a name": "Stale+[7]Elsewhere!A1",
+    "a clock": "S!B1+NOW()",
+    "a circle": "S!B1+Other!A20",
+}
+
+
+UNKNOWN = ("plain", "an error that is caught", "a name of its own", "a place that is looked for")
+"""Dependants that are tried with a function that nobody knows, too."""
+
+
+@pytest.mark.parametrize(
+    ("function", "formula"),
+    [
+        *(("RiskCpk(A2,0.95)", formula) for formula in DEPENDANTS.values()),
+        *(("NoSuchFunction(RiskMean(A2))", DEPENDANTS[name]) for name in UNKNOWN),
+    ],
+)
+def test_whatever_depends_on_such_a_cell_shows_not_available(tmp_path, formula, function):
+    path = tmp_path / "book.xlsx"
+    with xlsxwriter.Workbook(path) as book:
+        sheet, other = book.add_worksheet("S"), book.add_worksheet("Other")
+        book.define_name("Stale", "=S!$B$1")
+        book.define_name("Own", f"={function.replace('A2', 'S!$A$2')}")
+        for address, (text, value) in MODEL.items():
+            sheet.write_formula(address, text, None, value)
+        sheet.write_formula("B1", f"={function}", None, STALE)
+        other.write_formula("A1", "=S!B1", None, STALE)
+        other.write_formula("A20", f"={formula}", None, STALE)
+        other.write_formula("A21", "=A20&A20", None, "stale")
+        other.write_formula("A22", "=S!A2", None, 10)
+    run = xlmc.load(path).simulate(trials=200)
+    found = shown(run, tmp_path / "out.xlsx")
+    assert [found[address] for address in ("B1", "Other!A1", "Other!A20", "Other!A21")] == ["#N/A"] * 4
+    assert found["Other!A22"] == 10
+    [warning] = run.warnings
+    assert warning.startswith(f"{len(run.shown_results.missing)} cells of the workbook depend on the run")
+    assert "S!B1" in warning
+    assert {"S!B1", "Other!A1", "Other!A20", "Other!A21"} <= {str(cell) for cell in run.shown_results.missing}
+
+
+COMPUTED = {
+    "a place that is looked for": 'INDIRECT("S!B"&1)*2',
+    "an offset": "OFFSET(S!A1,0,1)*2",
+    "a defined name": "Shown*2",
+    "a name that holds the call": "Own*2",
+    "a name of that name": "Twice",
+}
+
+
+@pytest.mark.parametrize("formula", COMPUTED.values(), ids=COMPUTED)
+def test_results_are_followed_wherever_they_go(tmp_path, formula):
+    path = tmp_path / "book.xlsx"
+    with xlsxwriter.Workbook(path) as book:
+        sheet, other = book.add_worksheet("S"), book.add_worksheet("Other")
+        book.define_name("Shown", "=S!$B$1")
+        book.define_name("Own", "=RiskMean(S!$A$2)")
+        book.define_name("Twice", "=2*Own")
+        for address, (text, value) in MODEL.items():
+            sheet.write_formula(address, text, None, value)
+        sheet.write_formula("B1", "=RiskMean(A2)", None, STALE)
+        other.write_formula("A1", f"={formula}", None, STALE)
+        other.write_formula("A2", "=A1+1", None, STALE)
+        other.write_formula("A3", 'INDIRECT("S!A1")', None, 5)
+    run = xlmc.load(path).simulate(trials=200)
+    assert run.warnings == []
+    found, mean = shown(run, tmp_path / "out.xlsx"), run["S!A2"].mean.value
+    assert (found["Other!A1"], found["Other!A2"], found["Other!A3"]) == (2 * mean, 2 * mean + 1, 5)
+
+
+def test_a_name_that_draws_is_drawn(tmp_path):
+    """What a name stands for is no constant, though its cell holds no call."""
+    path = tmp_path / "book.xlsx"
+    with xlsxwriter.Workbook(path) as book:
+        book.define_name("Speed", "=RiskNormal(5,1)")
+        sheet = book.add_worksheet("S")
+        sheet.write_formula("A1", "=Speed*2+RiskOutput()", None, 10)
+    run = xlmc.load(path).simulate(trials=200)
+    assert [a.name for a in run.model.assumptions] == ["S!A1#1"]
+    assert run["S!A1"].standard_deviation.value > 1
+
+
+def test_an_array_formula_that_cannot_be_computed(tmp_path):
+    path = tmp_path / "book.xlsx"
+    with xlsxwriter.Workbook(path) as book:
+        sheet = book.add_worksheet("S")
+        book.add_worksheet("Other")
+        for address, (text, value) in MODEL.items():
+            sheet.write_formula(address, text, None, value)
+        sheet.write_array_formula("B1:B2", "{=RiskCpk(A2,0.95)*{1;2}}", None, STALE)
+        sheet.write_number("B2", STALE)
+        sheet.write_formula("C1", "=B2", None, STALE)
+        sheet.write_formula("D1", "=RiskMax(A2)", None, STALE)
+        sheet.write_dynamic_array_formula("E1:E2", "=SEQUENCE(ROUND(D1,0))", None, STALE)
+        sheet.write_number("E2", STALE)
+        sheet.write_formula("F1", "=SUM(E1:E2)", None, STALE)
+    run = xlmc.load(path).simulate(trials=200)
+    found = shown(run, tmp_path / "out.xlsx")
+    assert [found[address] for address in ("B1", "B2", "C1", "E1", "E2", "F1")] == ["#N/A"] * 6
+    assert found["D1"] == run["S!A2"].statistics.maximum.value
+    assert "S!E1 (spills into another area than when Excel saved it)" in run.warnings[0]
+
+
+def test_a_draw_that_xlmc_does_not_know_keeps_its_base_case(tmp_path):
+    """The run does not need it, and what Excel saved is the base case."""
+    run = run_of(tmp_path / "book.xlsx", {"B1": ("=RiskLaplace(1,2)", 1.5), "B2": ("=B1*2", 3)})
+    found = shown(run, tmp_path / "out.xlsx")
+    assert (found["B1"], found["B2"], run.warnings) == (1.5, 3, [])
+
+
+def test_the_fingerprint_of_the_original_stays(tmp_path):
+    run = run_of(tmp_path / "book.xlsx", {"B1": ("=RiskCpk(A2,0.95)", STALE), "B2": ("=B1*2", STALE)})
+    with pytest.MonkeyPatch.context() as patch:
+        leave_out(patch, *CHARTS, *SENSITIVITY)
+        run.save(tmp_path / "out.xlsx")
+    hashes = [original_hash(read_parts((tmp_path / name).read_bytes())) for name in ("book.xlsx", "out.xlsx")]
+    assert hashes[0] == hashes[1]
+
+
+def test_a_forecast_cannot_depend_on_such_a_cell(tmp_path):
+    cells = {"A3": ("=A1+B1+RiskOutput()", 1), "B1": ("=RiskCpk(A2,0.95)", STALE)}
+    with pytest.raises(FormulaError, match="S!B1: RiskCpk is not computed by xlmc"):
+        xlmc.load(build(tmp_path / "book.xlsx", {**MODEL, **cells}))
+
+
+# What-if data tables.
+
+FILLED = '<c r="{0}"><f t="dataTable" ref="D2:D3" dt2D="0" dtr="0" r1="{1}"/><v>77</v></c>'
+
+
+def with_table(path, cells, source="A1", header=("=A2", 10)):
+    """A book with a data table in D2:D3: the formula above it, values on its left, and cells that read it."""
+    plain = {"C2": ("=1", 1), "C3": ("=2", 2), "D2": ("=0", 77), "D3": ("=0", 77)}
+    build(path, {**MODEL, **plain, "D1": header, "E1": ("=SUM(D2:D3)", 154), **cells})
+    parts = read_parts(path.read_bytes())
+    xml = parts["xl/worksheets/sheet1.xml"].decode()
+    xml = re.sub(r'<c r="D2">.*?</c>', FILLED.format("D2", source), xml)
+    xml = re.sub(r'<c r="D3">.*?</c>', '<c r="D3"><v>77</v></c>', xml)
+    with zipfile.ZipFile(path, "w") as package:
+        for name, content in {**parts, "xl/worksheets/sheet1.xml": xml.encode()}.items():
+            package.writestr(name, content)
+    return path
+
+
+OF_THE_RUN = {
+    "its input is an assumption": {"cells": {"A1": ("=RiskNormal(5,1)", 5)}, "header": ("=7", 7)},
+    "its formula shows a result": {"source": "F1", "header": ("=RiskMean(A2)", 77)},
+    "its formula depends on a result": {"source": "F1", "header": ("=B1", 77), "cells": {"B1": ("=RiskMean(A2)", 77)}},
+    "its formula cannot be computed": {"source": "F1", "header": ("=RiskCpk(A2,0.9)", 77)},
+    "its formula looks for its cells, and there are results": {
+        "source": "F1",
+        "header": ('=INDIRECT("B1")', 10),
+        "cells": {"B1": ("=RiskMean(A2)", 77)},
+    },
+    "a value on its left shows a result": {"source": "F1", "header": ("=7", 7), "cells": {"C3": ("=RiskMax(A2)", 10)}},
+}
+
+VARYING = {
+    "its formula depends on a draw": {"source": "F1"},
+    "its formula draws": {"source": "F1", "header": ("=RiskNormal(1,2)+F1", 1)},
+    "its formula looks for its cells": {"source": "F1", "header": ('=INDIRECT("A2")', 10)},
+    "a value on its left depends on a draw": {"source": "F1", "header": ("=7", 7), "cells": {"C3": ("=A2", 10)}},
+}
+
+
+@pytest.mark.parametrize("made", OF_THE_RUN.values(), ids=OF_THE_RUN)
+def test_a_data_table_of_the_run_shows_not_available_and_is_named(tmp_path, made):
+    path = with_table(tmp_path / "book.xlsx", **{"cells": {}, **made})
+    run = xlmc.load(path).simulate(trials=200)
+    found = shown(run, tmp_path / "out.xlsx")
+    assert [found[address] for address in ("D2", "D3", "E1")] == ["#N/A"] * 3
+    [warning] = run.warnings
+    assert "S!D2:D3 (what-if data tables that depend on the run are not computed by xlmc)" in warning
+    assert "S!E1 (depends on such a cell)" in warning
+    [notice] = [notice for notice in run.model.notices if str(notice.where) == "S!D2:D3"]
+    assert "show #N/A" in notice.message
+    hashes = [original_hash(read_parts((tmp_path / name).read_bytes())) for name in ("book.xlsx", "out.xlsx")]
+    assert hashes[0] == hashes[1]
+
+
+def test_a_data_table_that_has_nothing_to_do_with_the_run_keeps_its_values(tmp_path):
+    run = xlmc.load(with_table(tmp_path / "book.xlsx", {}, "F1", ("=F1*2", 0))).simulate(trials=200)
+    found = shown(run, tmp_path / "out.xlsx")
+    assert [found[address] for address in ("D2", "D3", "E1")] == [77, 77, 154]
+    assert run.warnings == []
+    [notice] = [notice for notice in run.model.notices if str(notice.where) == "S!D2:D3"]
+    assert "kept at the values Excel last calculated" in notice.message
+
+
+@pytest.mark.parametrize("made", VARYING.values(), ids=VARYING)
+def test_a_data_table_over_what_varies_keeps_its_base_case_like_every_other_cell(tmp_path, made):
+    run = xlmc.load(with_table(tmp_path / "book.xlsx", **{"cells": {}, **made})).simulate(trials=200)
+    found = shown(run, tmp_path / "out.xlsx")
+    assert [found[address] for address in ("D2", "D3", "E1")] == [77, 77, 154]
+    assert run.warnings == []
+    [notice] = [notice for notice in run.model.notices if str(notice.where) == "S!D2:D3"]
+    assert "kept at the values Excel last calculated for the base case, and no forecast" in notice.message
+
+
+@pytest.mark.parametrize("made", (OF_THE_RUN | VARYING).values(), ids=OF_THE_RUN | VARYING)
+def test_a_forecast_cannot_depend_on_any_data_table_that_varies(tmp_path, made):
+    cells = {**made.get("cells", {}), "A5": ("=E1+A1+RiskOutput()", 1)}
+    with pytest.raises(FormulaError, match="what-if data tables that depend on the run are not computed"):
+        xlmc.load(with_table(tmp_path / "book.xlsx", **{**made, "cells": cells}))
+
+
+@pytest.mark.parametrize("answer", ["=E1+A1+RiskOutput()", "=D3+A1+RiskOutput()"])
+def test_a_forecast_cannot_depend_on_a_data_table_of_the_run(tmp_path, answer):
+    """Its cells hold no formulas, and so they would pass for constants."""
+    with pytest.raises(FormulaError, match="what-if data tables that depend on the run are not computed"):
+        xlmc.load(with_table(tmp_path / "book.xlsx", {"A5": (answer, 1)}))

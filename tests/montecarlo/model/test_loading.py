@@ -1,0 +1,91 @@
+"""Which filters are no tests, whatever the file holds as the value of their cells."""
+
+from __future__ import annotations
+
+import pytest
+
+from xlmc.montecarlo.model.loading import filter_faults
+
+INPUTS = {"speed": {"cell": "A1", "low": 0, "high": 2}, "mass": {"cell": "A2", "low": 1, "high": 3}}
+CELLS = {"A1": 0.75, "A2": 2.0, "B1": "=A1*A2"}
+
+
+def faults(book, formula, **limits):
+    model = book({**CELLS, "C1": formula}, INPUTS, {"answer": "B1"}, {"possible": {"cell": "C1", **limits}})
+    return [str(fault) for fault in filter_faults(model)]
+
+
+@pytest.mark.parametrize("saved", [None, 0.0, 1.0, True, 7.5, "a text"])
+@pytest.mark.parametrize(
+    ("formula", "held"),
+    [
+        ("=A1*2", "1.5 at the base case"),
+        ("=B1", "1.5 at the base case"),
+        ("=-A1", "-0.75 at the base case"),
+        ("=(A1>0)+(A2>0)", "2 at the base case"),
+        ("=ROUND(A1,0)*A2/2", "in a trial"),  # 1 at the base case
+        ("=A1-0.75", "in a trial"),  # 0 at the base case
+        ("=IF(A1>1,5,1)", "5 in a trial"),
+    ],
+)
+def test_a_quantity_without_a_limit_is_refused_whatever_was_saved(book, formula, held, saved):
+    (fault,) = faults(book, (formula, saved))
+    assert fault.startswith("S!C1: The filter 'possible' has no limit, and its cell is ")
+    assert held in fault
+    assert "neither TRUE nor FALSE. Fill in At least, At most, Above or Below" in fault
+
+
+@pytest.mark.parametrize("saved", [None, 0.0, 1.0, True, 7.5, "a text"])
+@pytest.mark.parametrize(
+    "formula",
+    [
+        "=A1<1",
+        "=IF(A1<1,1,0)",
+        "=(A1<1)*(A2>1)",
+        "=AND(A1<1,A2>1)",
+        "=--(A1<1)",
+        "=SIGN(A1)",
+        "=IFERROR(SQRT(A1-1)>0.5,FALSE)",
+        "=1/(A1-0.75)>0",
+        "=TRUE",
+    ],
+)
+def test_a_test_without_a_limit_is_kept_whatever_was_saved(book, formula, saved):
+    assert faults(book, (formula, saved)) == []
+
+
+@pytest.mark.parametrize("saved", [None, 0.0, 7.5, "a text"])
+def test_a_quantity_with_a_limit_is_kept(book, saved):
+    assert faults(book, ("=A1*2", saved), above=0) == []
+
+
+def test_a_text_is_refused_with_limits_too(book):
+    (fault,) = faults(book, '=IF(A1<1,"ok","no")', above=0)
+    assert fault.startswith("S!C1: The cell of the filter 'possible' is a text at the base case. Fill in At least")
+    (fault,) = faults(book, '=IF(A1<1,"ok","no")')
+    assert "is a text at the base case" in fault
+
+
+def test_a_saved_text_that_is_stale_is_no_mistake(book):
+    assert faults(book, ("=A1*2", "ok"), above=0) == []
+    assert faults(book, '=IF(A1<1,"",A1)', above=0) == []  # nothing, where there is nothing to test
+
+
+def test_without_a_base_case_trials_are_looked_at(book):
+    cells = {**CELLS, "A1": None, "C1": "=A1*2", "C2": "=A1<1"}
+    filters = {"possible": "C1", "slow": "C2"}
+    (fault,) = filter_faults(book(cells, INPUTS, {"answer": "B1"}, filters))
+    assert str(fault).startswith("S!C1: ")
+    assert "in a trial" in str(fault)
+
+
+def test_an_assumption_without_a_limit_is_refused(book):
+    (fault,) = filter_faults(book(CELLS, INPUTS, {"answer": "B1"}, {"possible": "A2"}))
+    assert "its cell is 2 at the base case" in str(fault)
+
+
+def test_looking_changes_no_run(book):
+    cells, filters = {**CELLS, "C1": "=A1<1"}, {"possible": "C1"}
+    plain, seen = (book(cells, INPUTS, {"answer": "B1"}, filters) for _ in range(2))
+    assert filter_faults(seen) == []
+    assert plain.simulate(500).forecasts["answer"].tobytes() == seen.simulate(500).forecasts["answer"].tobytes()

@@ -1,0 +1,134 @@
+from __future__ import annotations
+
+import pytest
+
+from xlmc.errors import DefinitionError, FormulaError
+from xlmc.excel.address import Cell
+from xlmc.excel.formula import formula_text
+from xlmc.montecarlo.definitions.definitions import Filter
+from xlmc.montecarlo.model.needed import filter_condition, find_needed
+
+CELLS = {"A1": 1.0, "A2": 2.0, "A3": 3.0, "A4": 4.0, "B1": "=A1+A2", "B2": "=A3*2", "B3": "=B2+A4", "C1": "=B1>0"}
+UNIT = {"low": 0, "high": 1}
+
+
+@pytest.fixture
+def scene(workbook, definitions):
+    def make(assumptions, forecasts=None, filters=None, cells=CELLS):
+        book = workbook(cells)
+        return find_needed(book, definitions(book, assumptions, forecasts or {}, filters or {}, {}))
+
+    return make
+
+
+def names(assumptions):
+    return [assumption.name for assumption in assumptions]
+
+
+def test_only_assumptions_that_something_needs_are_drawn(scene):
+    found = scene({name: {"cell": name, **UNIT} for name in ("A1", "A2", "A3", "A4")}, {"x": "B1"})
+    assert list(found.live) == ["A1", "A2"]
+    assert names(found.idle) == ["A3", "A4"]
+    assert [str(notice) for notice in found.notices()] == [
+        "S!A3: no forecast or filter needs the assumption 'A3'",
+        "S!A4: no forecast or filter needs the assumption 'A4'",
+    ]
+
+
+def test_filters_need_cells_too(scene):
+    assumptions = {name: {"cell": name, **UNIT} for name in ("A1", "A2", "A3")}
+    assert list(scene(assumptions, {}, {"f": "C1"}).live) == ["A1", "A2"]
+    assert list(scene(assumptions, {}, {"f": {"cell": "A1", "below": "B2"}}).live) == ["A1", "A3"]
+
+
+def test_frozen_assumptions_are_not_drawn(scene):
+    found = scene({"a": {"cell": "A1", "frozen": True, **UNIT}, "b": {"cell": "A2", **UNIT}}, {"x": "B1"})
+    assert list(found.live) == ["b"]
+    assert found.idle == ()
+    assert Cell("S", 1, 1) in found.graph.reached
+
+
+def test_parameters_need_cells_and_these_need_assumptions(scene):
+    assumptions = {
+        "last": {"cell": "A1", "low": "B3", "high": 99},
+        "first": {"cell": "A3", **UNIT},
+        "also": {"cell": "A4", "low": 0, "high": 1, "upper_cutoff": "A2"},
+        "idle": {"cell": "A9", "low": "A8", "high": 1},
+        "never": {"cell": "A8", **UNIT},
+    }
+    found = scene(assumptions, {"x": "A1"})
+    assert [list(stage) for stage in found.stages] == [["first", "also"], ["last"]]
+    assert names(found.idle) == ["idle", "never"]
+
+
+def test_stages_run_one_after_another(scene):
+    assumptions = {
+        "c": {"cell": "A3", "low": 0, "high": "A2"},
+        "b": {"cell": "A2", "low": 0, "high": "A1"},
+        "a": {"cell": "A1", **UNIT},
+    }
+    assert [list(stage) for stage in scene(assumptions, {"x": "A3"}).stages] == [["a"], ["b"], ["c"]]
+
+
+def test_a_parameter_of_known_cells_waits_for_nothing(scene):
+    assumptions = {"a": {"cell": "A1", "low": 0, "high": "D1"}, "b": {"cell": "A2", **UNIT}}
+    found = scene(assumptions, {"x": "B1"}, cells=CELLS | {"D1": "=D2*2", "D2": 5.0})
+    assert [list(stage) for stage in found.stages] == [["a", "b"]]
+
+
+@pytest.mark.parametrize(
+    ("assumptions", "circle", "where"),
+    [
+        (
+            {"a": {"cell": "A1", "low": 0, "high": "A2"}, "b": {"cell": "A2", "low": 0, "high": "A1"}},
+            "'a' → 'b' → 'a'",
+            "S!A1",
+        ),
+        (
+            {
+                "x": {"cell": "A4", "low": "A3", "high": 9},
+                "a": {"cell": "A1", "low": 0, "high": "D1"},
+                "b": {"cell": "A2", "low": 0, "high": "A1"},
+                "c": {"cell": "A3", "low": 0, "high": "A2"},
+            },
+            "'c' → 'b' → 'a' → 'c'",
+            "S!A3",
+        ),
+    ],
+)
+def test_assumptions_that_need_each_other(scene, assumptions, circle, where):
+    with pytest.raises(DefinitionError) as caught:
+        scene(assumptions, {"x": "B3", "y": "B1"}, cells=CELLS | {"D1": "=A3+1"})
+    error = caught.value
+    assert error.message == f"parameters of assumptions need each other in a circle: {circle}"
+    assert (error.where, error.hint) == (where, "give one of them parameters that are numbers")
+
+
+def test_an_assumption_that_needs_itself(scene):
+    """A model takes the base value in place of its own cell; what is left has the cell found while it is computed."""
+    with pytest.raises(DefinitionError) as caught:
+        scene({"a": {"cell": "A1", "low": 0, "high": "A1"}}, {"x": "B1"})
+    error = caught.value
+    assert error.message == "parameters of assumptions need each other in a circle: 'a' → 'a'"
+    hint = "refer to S!A1 in its parameters without OFFSET and INDIRECT, or type them as numbers"
+    assert (error.where, error.hint) == ("S!A1", hint)
+
+
+def test_a_needed_circle_of_cells_is_refused(scene):
+    with pytest.raises(FormulaError, match="S!D1 → S!D2 → S!D1"):
+        scene({"a": {"cell": "A1", **UNIT}}, {"x": "D1"}, cells={"A1": 1.0, "D1": "=D2", "D2": "=D1+A1"})
+
+
+@pytest.mark.parametrize(
+    ("limits", "asked"),
+    [
+        ({}, "((S!B1+0.0)<>0.0)"),
+        ({"at_least": 0.0}, "((S!B1+0.0)>=0.0)"),
+        ({"at_least": 0.0, "below": 1.0}, "AND(((S!B1+0.0)>=0.0),((S!B1+0.0)<1.0))"),
+        ({"above": -1.0, "at_most": 1.0}, "AND(((S!B1+0.0)<=1.0),((S!B1+0.0)>(-1.0)))"),
+        ({"at_most": Cell("S", 9, 3)}, "((S!B1+0.0)<=(S!C9+0.0))"),
+    ],
+)
+def test_what_a_filter_asks(limits, asked):
+    cell = Cell("S", 1, 2)
+    assert formula_text(filter_condition(Filter("f", cell, cell, **limits))) == asked

@@ -1,0 +1,166 @@
+"""Accepted trials of other origin say where the search did not look, and a part that it cannot describe is said."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.special import ndtr
+
+from xlmc.montecarlo.rare.account import RareAccount, probability_text
+from xlmc.montecarlo.rare.landscape import points_of
+from xlmc.montecarlo.rare.search import find, plain_uniforms
+from xlmc.montecarlo.rare.splitting import explore
+from xlmc.montecarlo.rare.strays import Evidence, Tempered, find_strays, plain_assumptions, pool, wide_assumptions
+from xlmc.montecarlo.statistics import Estimate
+
+NORMAL = {"distribution": "Normal", "mean": 0, "std_dev": 1}
+
+
+@pytest.mark.parametrize("dimensions", [1, 2, 8, 40])
+def test_widened_assumptions_cover_the_plain_ones(random, dimensions):
+    """Weights are bounded, since some trials are plain ones, and 1 on average, since both are densities."""
+    spread = wide_assumptions(dimensions)
+    assert spread.shares.sum() == pytest.approx(1.0)
+    weights = np.exp(spread.log_weights(spread.draw(30_000, random)))
+    assert weights.max() <= 1 / spread.shares[0] + 1e-9
+    assert abs(weights.mean() - 1.0) < 4.5 * weights.std() / np.sqrt(weights.size)
+
+
+def test_they_estimate_a_rare_share_whatever_was_found(random):
+    spread = wide_assumptions(3)
+    points = spread.draw(65_536, random)
+    found = Evidence.of(spread, 65_536, points[points[:, 1] > 4.75])
+    error = np.sqrt(np.exp(2 * found.logs).sum()) / found.trials
+    assert abs(found.mass - ndtr(-4.75)) < 4.5 * error < ndtr(-4.75)
+
+
+def test_plain_trials_are_found_again_by_their_numbers(book):
+    cells = {"A1": 1.0, "A2": 1.0, "A3": 1.0}
+    given = {
+        "a": {"cell": "A1", "low": 2, "high": 4},
+        "b": {"cell": "A2", **NORMAL},
+        "c": {"cell": "A3", **NORMAL},
+    }
+    filters = {"f": {"cell": "A1", "above": 3.99}, "g": {"cell": "A2", "above": 0}, "h": {"cell": "A3", "above": 0}}
+    model = book(cells, given, {"x": "A2"}, filters, {("b", "c"): 0.6})
+    run = model.simulate(20_000, seed=3)
+    points = points_of(plain_uniforms(model, 3, run.trial_index))
+    places = [a.name for group in model.groups for a in model.live if a.name in group.names] or ["b", "c"]
+    order = [*places, "a"]
+    assert 2 + 2 * ndtr(points[:, order.index("a")]) == pytest.approx(run.inputs["a"], abs=1e-9)
+    assert points[:, order.index("b")] == pytest.approx(run.inputs["b"], abs=1e-9)
+
+
+def two_parts(z):
+    """Two half spaces whose distances from acceptance have different scales; either has P(z > 4.75) of the trials."""
+    return np.maximum(0.0, np.minimum(4.75 - z[:, 0], 50.0 * (22.5625 - z[:, 1] * np.abs(z[:, 1]))))
+
+
+def test_a_part_whose_scale_is_another_is_not_lost():
+    """Splitting alone loses the second part with every seed."""
+    truth = 1 - (1 - ndtr(-4.75)) ** 2
+    random = [np.random.default_rng((21, 0, each)) for each in (0, 1)]
+    found = find(two_parts, lambda z: two_parts(z) == 0.0, 2, 1000, 10**8, *random)
+    points, acceptance = found.equalised.points, found.equalised.acceptance
+    assert abs(acceptance.value - truth) < 4.5 * acceptance.error < 0.1 * truth
+    assert abs(np.mean(points[:, 1] > 4.7) - 0.5) < 4.5 * np.sqrt(0.25 / 1000)
+
+
+def test_a_single_plain_trial_is_evidence_enough(random, monkeypatch):
+    """Without the widened assumptions, one accepted plain trial of the lost part leads to it."""
+    monkeypatch.setattr(
+        "xlmc.montecarlo.rare.search.wide_assumptions",
+        lambda dimensions: Tempered(np.ones(1), np.ones((1, dimensions))),
+    )
+    plain = Evidence.of(plain_assumptions(2), 10**6, np.array([[0.3, 4.8]]))
+    found = find(two_parts, lambda z: two_parts(z) == 0.0, 2, 500, 10**8, random, random, plain=[plain])
+    truth = 1 - (1 - ndtr(-4.75)) ** 2
+    assert abs(found.equalised.acceptance.value - truth) < 4.5 * found.equalised.acceptance.error
+
+
+def test_populations_about_a_point_fill_its_part(random):
+    found = explore(lambda z: np.maximum(0.0, 4.0 - z[:, 0]), np.array([[4.01, 2.5]]), np.ones(1), -10.0, random)
+    assert found.points.min(axis=0)[0] >= 4.0
+    assert abs(found.points[-1024:, 1].mean()) < 0.5
+    assert found.log_probability == -10.0
+
+
+def test_strays_are_what_a_proposal_hardly_comes_to(random):
+    proposal = Tempered(np.ones(1), np.array([[0.2, 1.0]]))
+    points = proposal.draw(1000, random) * 0.5
+    near, far = np.array([[0.1, 0.2]]), np.array([[3.0, 0.2]])
+    known = [Evidence.of(plain_assumptions(2), 1000, np.concatenate([near, far]))]
+    found = find_strays(proposal, known, points, np.ones(1000))
+    assert found.points.tolist() == far.tolist()
+    assert found.mass == pytest.approx(1e-3)
+    assert found.tells(0.05)
+    assert not found.tells(0.2)
+
+
+def test_pooled_weights_count_every_source(random):
+    """Half plain, half wide: each point is as likely as under the mean of both."""
+    wide = Tempered(np.ones(1), np.array([[3.0]]))
+    points = np.array([[0.0], [4.0]])
+    parts = [Evidence.of(plain_assumptions(1), 500, points[:1]), Evidence.of(wide, 500, points[1:])]
+    both = Tempered(np.full(2, 0.5), np.array([[1.0], [3.0]]))
+    assert pool(parts)[1] == pytest.approx(both.log_weights(points))
+
+
+ACCOUNT = RareAccount(
+    evaluations=2_000_000,
+    learning=800_000,
+    proposals=130_000,
+    proposals_accepted=60_000,
+    fresh=65_000,
+    kept=10_000,
+    acceptance=Estimate(1e-6, 4e-9, (0.99e-6, 1.01e-6), 65_000),
+    effective=30_000.0,
+    size=9_950.0,
+    searched=1.02e-6,
+    levels=9,
+    components=4,
+    directions=2,
+    dimensions=2,
+    lost=0,
+    plain=1_000_000,
+    plain_accepted=2,
+    checked=65_536,
+)
+
+
+@pytest.mark.parametrize(
+    ("searched", "explored", "ways", "warns"),
+    [
+        (2.1e-6, 0.0, 1, True),
+        (0.45e-6, 0.0, 1, True),
+        (0.45e-6, 0.8e-6, 1, False),  # known accepted trials led to the rest
+        (2.1e-6, 0.8e-6, 1, True),
+        (2.1e-6, 0.0, 4, False),  # each population is smaller
+        (4.1e-6, 0.0, 4, True),
+    ],
+)
+def test_splitting_and_drawing_may_differ_by_as_much_as_splitting_is_known(searched, explored, ways, warns):
+    found = replace(ACCOUNT, searched=searched, explored=explored, ways=ways)
+    assert bool(found.warnings) is warns
+
+
+def test_what_agrees_is_no_warning():
+    assert ACCOUNT.warnings == []
+    assert probability_text(ACCOUNT).startswith("(1.000")
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"missed": 4e-7}, "may add 4e-07"),
+        ({"plain_accepted": 9}, "9 were accepted, where 1 were to be expected"),
+    ],
+)
+def test_what_disagrees_is_known_from_below_only(changed, words):
+    found = replace(ACCOUNT, **changed)
+    (warning,) = found.warnings
+    assert words in warning
+    assert "at least 1e-06" in warning
+    assert probability_text(found).startswith("at least ")

@@ -1,0 +1,114 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from xlmc.montecarlo.statistics import Sample
+from xlmc.montecarlo.statistics.sample import positions_of
+
+EXAMPLES = settings(max_examples=50, deadline=None)
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+def test_values_must_be_finite_even_without_weight(bad):
+    with pytest.raises(ValueError, match="finite"):
+        Sample.of([1.0, bad])
+    with pytest.raises(ValueError, match="finite"):
+        Sample.of([1.0, bad], weights=[1.0, 0.0])
+
+
+@pytest.mark.parametrize("weights", [[1.0, -1.0], [1.0, np.nan], [1.0, np.inf]])
+def test_weights_must_be_finite_and_not_negative(weights):
+    with pytest.raises(ValueError, match="weights must be finite"):
+        Sample.of([1.0, 2.0], weights)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (([[1.0, 2.0]],), "one column"),
+        (([1.0, 2.0], [1.0]), "weights must match"),
+        (([1.0, 2.0], None, [1]), "replicate ids must match"),
+    ],
+)
+def test_shapes_must_match(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        Sample.of(*arguments)
+
+
+def test_sorts_and_carries_weights_and_replicates_along():
+    sample = Sample.of([3.0, 1.0, 2.0], [6.0, 2.0, 4.0], [7, 9, 7])
+    assert sample.x.tolist() == [1.0, 2.0, 3.0]
+    assert sample.w == pytest.approx([1 / 6, 1 / 3, 1 / 2])
+    assert sample.group.tolist() == [1, 0, 0]
+    assert sample.units == 2
+
+
+def test_leaves_the_callers_values_alone():
+    values = np.array([3.0, 1.0, 2.0])
+    Sample.of(values, np.ones(3))
+    assert values.tolist() == [3.0, 1.0, 2.0]
+
+
+def test_a_sample_is_its_own_sample():
+    sample = Sample.of([1.0, 2.0])
+    assert Sample.of(sample) is sample
+
+
+def test_trials_without_weight_are_left_out():
+    sample = Sample.of([1.0, 2.0, 3.0, 4.0], [0.0, 1.0, 3.0, 1e-40])
+    assert sample.x.tolist() == [2.0, 3.0]
+
+
+def test_no_weight_at_all_is_no_trial():
+    assert Sample.of([1.0, 2.0], [0.0, 0.0]).n == 0
+
+
+def test_effective_size_is_kishs():
+    assert Sample.of([1.0, 2.0, 3.0], [1.0, 2.0, 3.0]).effective == pytest.approx(36 / 14)
+    assert Sample.of([1.0, 2.0, 3.0], [5.0, 5.0, 5.0]).effective == pytest.approx(3)
+
+
+def test_weights_may_be_as_large_as_numbers_go():
+    assert Sample.of([1.0, 2.0], [1e308, 1e308]).w.tolist() == [0.5, 0.5]
+
+
+def test_many_replicates_are_joined_to_64_of_which_none_is_split():
+    ids = np.repeat(np.arange(400), 5)
+    sample = Sample.of(np.arange(2000.0), replicate=ids)
+    assert sample.groups == 64
+    assert all(np.unique(sample.group[ids == each]).size == 1 for each in range(400))
+
+
+def test_replicate_ids_need_not_count_from_zero():
+    assert Sample.of([1.0, 2.0, 3.0], replicate=[64, -5, 128]).groups == 3
+
+
+def test_amounts_are_summed_over_each_independent_unit():
+    amounts = np.array([1.0, 2.0, 4.0])
+    assert Sample.of([1.0, 2.0, 3.0], None, [7, 9, 7]).per_unit(amounts).tolist() == [5.0, 2.0]
+    assert Sample.of([1.0, 2.0, 3.0]).per_unit(amounts).tolist() == [1.0, 2.0, 4.0]
+
+
+def test_a_replicate_alone_has_weights_that_sum_to_1():
+    sample = Sample.of([1.0, 2.0, 3.0], [1.0, 1.0, 3.0], [0, 1, 1]).replicate(1)
+    assert sample.x.tolist() == [2.0, 3.0]
+    assert sample.w == pytest.approx([1 / 4, 3 / 4])
+    assert sample.group is None
+
+
+@EXAMPLES
+@given(st.lists(st.floats(1e-6, 1e6), min_size=2, max_size=40))
+def test_positions_run_from_0_to_1(weights):
+    positions = positions_of(np.array(weights))
+    assert positions[0] == 0.0
+    assert positions[-1] == 1.0
+    assert np.all(np.diff(positions) > -1e-15)
+
+
+@EXAMPLES
+@given(st.integers(2, 60))
+def test_equal_weights_stand_at_equal_distances(n):
+    assert positions_of(np.full(n, 0.3)) == pytest.approx(np.linspace(0, 1, n))

@@ -1,0 +1,80 @@
+from __future__ import annotations
+
+import asyncio
+import threading
+import time
+from contextlib import contextmanager
+
+import pytest
+from chromium_browser import Browser
+from live_books import Running
+from needed_programs import missing
+
+from xlmc.outputs.live.kept_scenarios import Keeper
+from xlmc.outputs.live.library import Library
+from xlmc.outputs.live.server import LiveServer, bound_socket
+
+
+@pytest.fixture(scope="session")
+def browser(tmp_path_factory):
+    """Gives a browser that answers."""
+    pytest.importorskip("selenium.webdriver")
+    if reason := missing("chromium", "chromedriver"):
+        pytest.skip(reason)
+    found = Browser(tmp_path_factory, requests=False)
+    yield found
+    found.quit()
+
+
+@pytest.fixture
+def chromium(browser):
+    """A browser that answers, or a skipped test where there is none; what it complained of is an error.
+
+    Afterwards it shows nothing: a window whose server has ended would ask for it until the session ends.
+    """
+    found = browser()
+    found.get_log("browser")
+    yield found
+    complaints = [entry["message"] for entry in found.get_log("browser")]
+    found.get("about:blank")
+    assert complaints == []
+
+
+@contextmanager
+def _servers(state):
+    """`run(book=…)`, `run(folder=…)`: a server that listens; all end at the end."""
+    started = []
+
+    def run(clock=time.monotonic, idle=600.0, **given):
+        library = Library(Keeper(state), **given)
+        server = LiveServer(bound_socket(0), library, idle=idle, clock=clock)
+        thread = threading.Thread(target=lambda: asyncio.run(server.serve()))
+        thread.start()
+        started.append((server, thread))
+        found = Running(server, library)
+        end = time.monotonic() + 120
+        while not server._server.started:
+            assert time.monotonic() < end
+            time.sleep(0.01)
+        return found
+
+    yield run
+    for server, _ in started:
+        server.end()
+    for _, thread in started:
+        thread.join(120)
+        assert not thread.is_alive()
+
+
+@pytest.fixture
+def running(tmp_path):
+    """`running(book=…)`, `running(folder=…)`: a server that listens."""
+    with _servers(tmp_path / "state") as run:
+        yield run
+
+
+@pytest.fixture(scope="module")
+def running_on(tmp_path_factory):
+    """As `running`, and it listens until the last test of the file."""
+    with _servers(tmp_path_factory.mktemp("state")) as run:
+        yield run

@@ -1,0 +1,411 @@
+"""The window in Chromium: every control is clicked, dragged, typed into and read, and by keys alone."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from xml.etree import ElementTree
+
+import openpyxl
+from live_books import simple, wide_book
+
+import xlmc
+from xlmc.montecarlo.definitions.scenarios import Held, Limits, Numbers
+from xlmc.montecarlo.model.applied_changes import applied
+
+FRICTION, DISTANCE = "Vehicle 1 friction on wet asphalt", "Vehicle 1 post-impact travel distance to rest"
+WIDTHS = ((1400, 1000), (1280, 900), (1024, 800), (768, 1024), (390, 844), (375, 812))
+LOOKED_AT = {
+    (1400, "charts"),
+    (1280, "matters"),
+    (1024, "pairs"),
+    (768, "tables"),
+    (390, "scenarios"),
+    (375, "studies"),
+}
+"""By axe, which takes three seconds a look."""
+
+EVIL = "<img src=x onerror=window.stolen=1>"
+
+AXE = next(
+    (
+        path
+        for folder in (Path(__file__).resolve().parents[3] / ".venv" / "validator", Path("/usr/share/nodejs"))
+        if (path := folder / "node_modules" / "axe-core" / "axe.min.js").exists()
+    ),
+    None,
+)
+"""`npm install --prefix .venv/validator axe-core@4.10.2` brings it."""
+
+
+class Page:
+    """The window of a server in the browser."""
+
+    def __init__(self, browser, server):
+        self.browser, self.server = browser, server
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+        browser.get(server.server.link)
+        self.loaded()
+
+    def run(self, script, *given):
+        return self.browser.execute_script(script, *given)
+
+    def until(self, condition):
+        """Wait for something: the page looks itself, which is cheaper than to be asked."""
+        found = self.browser.execute_async_script(
+            "const done = arguments[0], end = Date.now() + 100_000;"
+            f"const look = () => {{ if ({condition}) done(true); else if (Date.now() > end) done(false);"
+            " else setTimeout(look, 10); };"
+            "look();"
+        )
+        assert found, condition
+
+    def loaded(self):
+        """Wait for the first answer of a window that is being opened."""
+        end = time.monotonic() + 120
+        while not self.run("return document.body?.dataset.stage === 'rest' && Live.state !== undefined"):
+            assert time.monotonic() < end
+            time.sleep(0.03)
+
+    def at_rest(self, do):
+        """Do something that changes the state, and wait for its answer: each move has one, or a newer one has."""
+        before = int(self.run("return document.body.dataset.version"))
+        do()
+        self.until(
+            f"Number(document.body.dataset.version) > {before} && document.body.dataset.stage === 'rest'"
+            " && Live.state.version === Number(document.body.dataset.version) && Live.moves.size === 0"
+        )
+
+    def all(self, selector):
+        return self.browser.find_elements("css selector", selector)
+
+    def one(self, selector):
+        (found,) = self.all(selector)
+        return found
+
+    def of(self, selector, condition, *given):
+        """The first element that fits: one question to the browser, and not one for each element."""
+        found = self.run(
+            f"const [all, ...given] = arguments; "
+            f"return [...document.querySelectorAll(all)].find((each) => {condition})",
+            selector,
+            *given,
+        )
+        assert found is not None, (selector, given)
+        return found
+
+    def card(self, name):
+        return self.of("article.card", "each.ariaLabel === given[0]", name)
+
+    def slider(self, label):
+        return self.of("[role=slider]", "each.ariaLabel === given[0]", label)
+
+    def button(self, text, within="body"):
+        return self.of(f"{within} button", "each.checkVisibility() && each.innerText.trim() === given[0]", text)
+
+    def click(self, found):
+        """Press the mouse's button on the middle of it, where nothing else may lie."""
+        at = self.run(
+            "const [found] = arguments;"
+            "found.scrollIntoView({ block: 'center', behavior: 'instant' });"
+            "const { x, y, width, height } = found.getBoundingClientRect();"
+            "const at = { x: x + width / 2, y: y + height / 2 };"
+            "return found.contains(document.elementFromPoint(at.x, at.y)) ? at : null",
+            found,
+        )
+        assert at is not None, f"{found.get_attribute('outerHTML')} is hidden"
+        for kind in ("mouseMoved", "mousePressed", "mouseReleased"):
+            button = {} if kind == "mouseMoved" else {"button": "left", "clickCount": 1}
+            self.browser.execute_cdp_cmd("Input.dispatchMouseEvent", {"type": kind, **at, **button})
+
+    def type(self, box, text):
+        control, delete, enter = "\ue009", "\ue017", "\ue007"
+        self.run("arguments[0].scrollIntoView({block: 'center'})", box)
+        box.send_keys(control, "a", control, delete, text, enter)
+
+    def box(self, card, label):
+        fits = "given[0].contains(each) && each.closest('.number-box').innerText.trim().startsWith(given[1])"
+        return self.of(".number-box input", fits, card, label)
+
+    def tab(self, key):
+        self.click(self.one(f"#tab-{key}"))
+
+    @property
+    def stand(self):
+        return self.one("#stand").text
+
+    @property
+    def changes(self):
+        return self.run("return Live.state.changes")
+
+
+def accepted(book, *changes):
+    """What the line at the top says of a run of the workbook with changes."""
+    run = applied(xlmc.load(book), changes).simulate()
+    return f"{run.trials:,} trials, {run.accepted:,} accepted"
+
+
+def saved_svg(page, button):
+    """What a button saves."""
+    page.run("Copies.save = (blob) => blob.text().then((text) => { window.saved = text; })")
+    page.click(button)
+    page.until("window.saved")
+    return page.run("const { saved } = window; delete window.saved; return saved")
+
+
+def test_by_mouse(chromium, running, tmp_path):
+    from selenium.webdriver import ActionChains
+
+    case = wide_book(tmp_path / "case.xlsx", assumptions=6, forecasts=2, most=19.0)
+    page = Page(chromium, running(book=case))
+    assert "token" not in chromium.current_url
+    assert chromium.get_cookies() == [] or all(each["httpOnly"] for each in chromium.get_cookies())
+    assert accepted(case) in page.stand
+
+    knob = page.slider(f"High of {FRICTION}")
+    page.run("arguments[0].scrollIntoView({block: 'center'})", knob)
+    drag = ActionChains(chromium, duration=30).click_and_hold(knob).move_by_offset(12, 0).move_by_offset(12, 2)
+    page.at_rest(lambda: drag.release().perform())
+    high = float(knob.get_attribute("aria-valuenow"))
+    assert high > 0.8
+    assert accepted(case, Numbers(FRICTION, {"high": high})) in page.stand
+    said = page.all(".moved")[0].text
+    assert said.startswith("Answer 1: speed at the beginning: mean ")
+    assert " → " in said
+    assert "changed" in page.card(FRICTION).get_attribute("class")
+
+    page.at_rest(lambda: page.type(page.box(page.card(FRICTION), "High"), "0.9"))
+    assert page.changes == [f"{FRICTION}: High 0.8 → 0.9"]
+    switch = page.card(DISTANCE).find_element("css selector", "[role=switch]")
+    page.at_rest(lambda: page.click(switch))
+    page.at_rest(lambda: page.type(page.box(page.card(DISTANCE), "at"), "51"))
+    filters = page.card("Filter Plausible 1")
+    page.at_rest(lambda: page.type(page.box(filters, "At most"), "19.5"))
+    changes = (
+        Numbers(FRICTION, {"high": 0.9}),
+        Held(DISTANCE, 51.0),
+        Limits("Plausible 1", {"at_most": 19.5}),
+    )
+    assert accepted(case, *changes) in page.stand
+    assert "rejects " in filters.text
+
+    page.type(page.all(".boxes .share")[0], "90")
+    of_one = 100.0 / int(page.stand.partition(" trials, ")[2].split()[0].replace(",", ""))  # a range holds whole trials
+    assert abs(float(page.all(".certainty")[0].text.split()[0]) - 90.0) <= of_one
+    page.click(page.all(".views input[value=cumulative]")[0])
+    page.click(page.all(".line")[0])
+    page.all(".percentiles")[0].send_keys("5, 95\ue007")
+    page.click(page.all(".fit")[0])
+    page.until("document.querySelector('.fit').options.length > 2")
+
+    drawing = ElementTree.fromstring(saved_svg(page, page.button("Save SVG", ".forecast")))
+    parts = [each.tag.rpartition("}")[2] for each in drawing.iter()]
+    assert "image" not in parts
+    assert parts.count("path") > 8
+    texts = [each.text for each in drawing.iter() if each.tag.endswith("text")]
+    assert {"mph", "0", "Accepted trials, %"} & set(texts)
+    assert drawing.find("{http://www.w3.org/2000/svg}title").text.startswith("Chart of Answer 1")
+
+    page.tab("matters")
+    page.until("document.querySelectorAll('#panel-matters svg').length > 2")
+    page.tab("pairs")
+    page.until("document.querySelector('.pair-said').textContent.includes('rank correlation')")
+    page.tab("tables")
+    page.until("document.querySelectorAll('#panel-tables table').length > 5")
+    page.tab("scenarios")
+    page.one("#scenario-name").send_keys("dry road\ue007")
+    page.until("Live.state.scenarios.length === 1")
+    page.click(page.button("Compare all in one table"))
+    page.until("document.querySelectorAll('#panel-scenarios table').length > 2")
+    assert "dry road" in page.all("#panel-scenarios table")[0].text
+    assert page.stand.startswith("Done: ")
+    assert not page.one("#stop").is_displayed()
+    page.at_rest(lambda: page.click(page.button("All as in the workbook")))
+    assert accepted(case) in page.stand
+    shows = "return [...document.querySelectorAll('.scenarios button')].filter((each) => each.innerText === 'Show')"
+    page.at_rest(lambda: page.click(page.run(shows)[1]))
+    assert len(page.changes) == 4
+    chromium.refresh()
+    page.loaded()
+    assert len(page.changes) == 4
+    assert accepted(case, *changes) in page.stand
+
+    page.tab("studies")
+    before = case.read_bytes()
+    news = "document.querySelector('#news').textContent.includes('{}')"
+    page.click(page.button("JSON"))
+    page.until(news.format("case-dry road-results.json"))
+    page.click(page.button("A copy of the workbook"))
+    page.until(news.format("case-dry road.xlsx"))
+    page.click(page.button("The workbook itself …"))
+    assert chromium.switch_to.active_element.text == "Type them in"
+    page.click(page.button("Leave it"))
+    assert chromium.switch_to.active_element.text == "The workbook itself …"
+    assert case.read_bytes() == before
+    page.click(page.button("The workbook itself …"))
+    page.at_rest(lambda: page.click(page.button("Type them in")))
+    assert page.changes == []
+    assert case.with_name("case-before.xlsx").read_bytes() == before != case.read_bytes()
+    assert accepted(case) in page.stand
+    assert accepted(case.with_name("case-before.xlsx"), *changes) in page.stand
+    assert not page.button("A copy of the workbook").is_enabled()
+    page.click(page.button("JSON"))
+    page.until("document.querySelector('#news').textContent.includes('case-results.json')")
+    assert case.with_name("case-results.json").exists()
+    page.click(page.button("Verify against Excel"))
+    page.until("document.querySelector('#panel-studies [role=status]').textContent.startsWith('xlmc verify, ')")
+    assert page.one("#panel-studies pre").text
+
+
+def test_by_keys_alone(chromium, running, tmp_path):
+    from selenium.webdriver.common.keys import Keys
+
+    page = Page(chromium, running(book=simple(tmp_path / "case.xlsx")))
+
+    def press(*keys):
+        chromium.switch_to.active_element.send_keys(*keys)
+
+    def focus_on(fits, most=150):
+        """Press Tab until something fits; what the same call to the browser presses behind that does nothing."""
+        page.run(
+            f"window.reached = null; window.seeking?.abort(); window.seeking = new AbortController();"
+            "const { signal } = window.seeking;"
+            "document.addEventListener('focusin', ({ target: each }) => {"
+            f" if ({fits}) window.reached ??= each; }}, {{ signal }});"
+            "document.addEventListener('keydown', (event) => {"
+            " if (window.reached && event.key === 'Tab') event.preventDefault(); }, { capture: true, signal });"
+        )
+        for _ in range(most // 10):
+            press(Keys.TAB * 10)
+            if found := page.run("if (window.reached) window.seeking.abort(); return window.reached"):
+                return found
+        raise AssertionError("it cannot be reached by Tab")
+
+    page.run("document.body.tabIndex = -1; document.body.focus()")
+    knob = focus_on("each.role === 'slider' && each.ariaDisabled === 'false'")
+    before = float(knob.get_attribute("aria-valuenow"))
+    page.at_rest(lambda: press(Keys.ARROW_RIGHT))
+    assert float(knob.get_attribute("aria-valuenow")) > before
+    assert len(page.changes) == 1
+    page.at_rest(lambda: press(Keys.ARROW_LEFT))
+    assert page.changes == []
+    focus_on("each.matches('input[type=text]:enabled')")
+    page.at_rest(lambda: press(Keys.ARROW_UP))
+    assert len(page.changes) == 1
+    switch = focus_on("each.role === 'switch'")
+    page.at_rest(lambda: press(Keys.SPACE))
+    assert switch.is_selected()
+    page.at_rest(lambda: press(Keys.SPACE))
+    focus_on("each.role === 'tab'")
+    press(Keys.ARROW_RIGHT)
+    assert page.one("#tab-matters").get_attribute("aria-selected") == "true"
+    for _ in range(3):
+        press(Keys.ARROW_RIGHT)
+    assert page.one("#panel-scenarios").is_displayed()
+    focus_on("each.id === 'scenario-name'")
+    press("by keys", Keys.ENTER)
+    page.until("Live.state.scenarios.length === 1")
+    page.tab("charts")
+    focus_on("each.ariaLabel === 'Lower end of the range of Distance while responding'")
+    article = page.of(".forecast", "each.innerText.startsWith('Distance while responding')")
+    certainty = article.find_element("css selector", ".certainty")
+    low = float(certainty.get_attribute("data-low"))
+    press(Keys.ARROW_LEFT)
+    assert float(certainty.get_attribute("data-low")) < low
+
+
+def test_names_of_a_hostile_workbook_are_text_and_at_every_width_nothing_overflows(chromium, running, tmp_path):
+    book = openpyxl.load_workbook(simple(tmp_path / "case.xlsx"))
+    for sheet in book:
+        for table in sheet.tables.values():
+            if table.name in ("xlmc_assumptions", "xlmc_forecasts", "xlmc_filters"):
+                for row in list(sheet[table.ref])[1:]:
+                    row[0].value = f"{EVIL} {row[0].row}"
+    path = tmp_path / f"{EVIL.replace('/', '')}.xlsx"
+    book.save(path)
+    page = Page(chromium, running(book=path))
+    if AXE is not None:
+        chromium.execute_cdp_cmd("Runtime.evaluate", {"expression": AXE.read_text(encoding="utf-8")})
+    for width, height in WIDTHS:
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        chromium.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+        for tab in ("charts", "matters", "pairs", "tables", "scenarios", "studies"):
+            page.run("Live.right.choose(arguments[0])", tab)
+            if tab in ("matters", "tables"):
+                page.until(f"document.querySelectorAll('#panel-{tab} table').length")
+            fits, moving, unnamed = page.run(
+                "return [document.documentElement.scrollWidth <= innerWidth, document.getAnimations().length,"
+                " [...document.querySelectorAll('button, input, select, [role=slider], [role=tab]')]"
+                ".filter((each) => each.checkVisibility() && !each.textContent.trim() && !each.ariaLabel"
+                " && !each.labels?.length).map((each) => each.outerHTML)]"
+            )
+            assert fits, (width, tab)
+            assert moving == 0  # whoever wants less motion has it
+            assert unnamed == [], (width, tab)
+            if AXE is not None and (width, tab) in LOOKED_AT:
+                found = chromium.execute_async_script(
+                    "axe.run(document, {resultTypes: ['violations']}).then(({violations}) => "
+                    "arguments[0](violations.map(({id, nodes}) => [id, nodes.map(({html}) => html.slice(0, 200))])))"
+                )
+                assert found == [], (width, tab)
+    chromium.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    assert EVIL in page.one("#left").text
+    assert page.run("return window.stolen") is None
+    assert page.all("img") == []
+
+
+def test_a_workbook_with_sixty_assumptions_and_twelve_answers_stays_usable(chromium, running, tmp_path):
+    page = Page(chromium, running(book=wide_book(tmp_path / "wide.xlsx")))
+    for width, height in ((1400, 1000), (768, 1024), (375, 812)):
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        chromium.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+        assert page.run("return document.documentElement.scrollWidth <= innerWidth"), width
+        top = page.run("scrollTo(0, 0); return document.querySelector('canvas').getBoundingClientRect().top")
+        assert top < height * 0.9, width  # a chart is in sight, so that its handle is not moved blindly
+    chromium.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+    shown = "[...document.querySelectorAll('#assumptions .card')].filter((each) => each.checkVisibility()).length"
+    words, changed = page.all("#find input")
+    assert page.run(f"return {shown}") == 60
+    words.send_keys("vehicle 7 ")
+    assert page.run(f"return {shown}") == 3
+    assert page.one("#find [role=status]").text == "3 of 60"
+    name = "Vehicle 7 friction on wet asphalt"
+    page.at_rest(lambda: page.type(page.box(page.card(name), "High"), "0.9"))
+    words.clear()
+    page.run("arguments[0].value = ''; arguments[0].dispatchEvent(new Event('input'))", words)
+    page.click(changed)
+    assert page.run(f"return {shown}") == 1
+    page.click(changed)
+
+    assert page.one("#answer").text.startswith("Answer 1: speed at the beginning: ")
+    summary = page.one(".choosing summary")
+    assert summary.text == "Charts of 3 of 12 answers"
+    page.click(summary)
+    page.click(page.all(".which input")[11])
+    assert summary.text == "Charts of 4 of 12 answers"
+    page.until("document.querySelectorAll('.place').length === 4")
+    aside = page.one(".further summary")
+    assert aside.text == "16 sentences on answers without a chart"
+    page.click(aside)
+    assert "Answer 7: speed at the beginning" in page.one(".further").text
+
+
+def test_the_start_page_opens_what_is_there_and_what_is_dropped(chromium, running, tmp_path):
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    simple(folder / "mine.xlsx")
+    server = running(folder=folder)
+    chromium.get(server.server.link)
+    end = time.monotonic() + 120
+    while not (links := chromium.find_elements("css selector", "#books a")):
+        assert time.monotonic() < end
+    assert [each.text for each in links] == ["mine.xlsx"]
+    chromium.find_element("id", "file").send_keys(str(simple(tmp_path / "other.xlsx")))
+    while "/book/" not in chromium.current_url:
+        assert time.monotonic() < end
+        time.sleep(0.05)
+    while not chromium.execute_script("return document.body?.dataset.stage === 'rest'"):
+        assert time.monotonic() < end
+        time.sleep(0.05)
+    assert chromium.find_element("id", "book").text == "other.xlsx"

@@ -1,0 +1,146 @@
+"""The file beside the window: saved by rename, half-written, with a mistake; and what is written beside it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+
+import pytest
+from fewer_sheets import SHORT, keep_sheets, leave_out_fits
+from live_books import change, edited, small
+
+import xlmc
+
+
+@pytest.fixture
+def book(tmp_path):
+    return small(tmp_path / "case.xlsx")
+
+
+@pytest.fixture
+def soon_settled(monkeypatch):
+    """A file that cannot be read is taken for faulty after a tenth of a second, and not after two."""
+    monkeypatch.setattr("xlmc.outputs.live.desk._SETTLING", (0.0, 0.1))
+
+
+def saved_as_excel_does(source, book):
+    """Written under another name, and then renamed."""
+    waiting = book.with_name("~WRD0001.tmp")
+    shutil.copy(source, waiting)
+    os.replace(waiting, book)
+
+
+def first_number(state):
+    row = next(each for each in state["assumptions"] if each["status"] == "drawn")
+    return row["name"], row["numbers"][-1]
+
+
+def test_a_workbook_that_is_saved_is_run_again_and_what_changed_is_said(running, book, tmp_path):
+    server = running(book=book)
+    with server.window(server.library.only) as window:
+        name, number = first_number(window.next("state"))
+        before = window.next("rest")
+        value = number["value"] * 1.5  # far enough for a sentence of 5,000 trials to show it
+        other = edited(book, tmp_path / "other.xlsx", {(name, number["heading"]): value})
+        saved_as_excel_does(other, book)
+        news = window.next("news")
+        after = window.next("rest")
+        assert f"{name}: {number['heading']}" in news["text"]
+        assert after["sentences"] != before["sentences"]
+
+
+def test_a_half_written_or_faulty_workbook_leaves_the_last_good_answer(running, book, tmp_path, soon_settled):
+    server = running(book=book)
+    whole = book.read_bytes()
+    with server.window(server.library.only) as window:
+        name, number = first_number(window.next("state"))
+        window.next("rest")
+        book.write_bytes(whole[: len(whole) // 2])
+        trouble = window.next("trouble", lambda message: message["about"] == "book" and message["text"])
+        assert "case.xlsx" in trouble["text"]
+        source = small(tmp_path / "source.xlsx")
+        faulty = edited(source, tmp_path / "faulty.xlsx", {(name, number["heading"]): "much"})
+        saved_as_excel_does(faulty, book)
+        trouble = window.next("trouble", lambda message: message["about"] == "book" and "!" in message["text"])
+        assert number["heading"] in trouble["text"]
+        with server.window(server.library.only) as other:
+            assert other.next("rest")["sentences"]
+            assert other.next("trouble", lambda message: message["about"] == "book")["text"] == trouble["text"]
+        saved_as_excel_does(source, book)
+        assert window.next("trouble", lambda message: message["about"] == "book")["text"] == ""
+
+
+def test_a_workbook_that_cannot_be_read_at_first_is_shown_once_it_can(running, tmp_path, soon_settled):
+    book = tmp_path / "case.xlsx"
+    book.write_bytes(b"PK half")
+    server = running(book=book)
+    with server.window(server.library.only) as window:
+        assert window.next("trouble")["text"]
+        saved_as_excel_does(small(tmp_path / "source.xlsx"), book)
+        assert window.next("rest")["sentences"]
+
+
+def test_what_is_changed_outlives_the_window(running, book):
+    first = running(book=book)
+    with first.window(first.library.only) as window:
+        name, number = first_number(window.next("state"))
+        window.next("rest")
+        window.say("set", **change(name, number["key"], number["value"] * 1.01).fields)
+        window.next("rest", lambda message: message["version"] == 1)
+        window.say("keep", name="faster")
+        window.next("state", lambda message: message["scenarios"])
+        window.say("set", **change(name, number["key"], number["value"] * 1.02, seq=2).fields)
+        window.next("rest", lambda message: message["version"] == 2)
+    second = running(book=book)
+    with second.window(second.library.only) as window:
+        state = window.next("state")
+        assert [each["name"] for each in state["scenarios"]] == ["faster"]
+        assert state["offered"]
+        window.say("restore", take=True)
+        assert window.next("rest", lambda message: message["version"] == 1)
+        assert window.heard_last("state")["changes"] == state["offered"]
+
+
+def test_results_are_written_beside_the_workbook_and_changes_into_it(running, book, monkeypatch):
+    keep_sheets(monkeypatch, *SHORT)
+    leave_out_fits(monkeypatch)
+    server = running(book=book)
+    with server.window(server.library.only) as window:
+        name, number = first_number(window.next("state"))
+        window.next("rest")
+        for what, ending in (("book", ".xlsx"), ("page", ".html"), ("json", ".json"), ("run", ".xlmcrun")):
+            window.say("save", what=what)
+            text = window.next("news")["text"]
+            assert text == f"Written: {book.with_name(f'case-results{ending}')}"
+            assert book.with_name(f"case-results{ending}").exists()
+        kept = xlmc.open_run(book.with_name("case-results.xlmcrun"))
+        again = xlmc.load(book).simulate()
+        for forecast, values in again.forecasts.items():
+            assert kept.forecasts[forecast].tobytes() == values.tobytes()
+        window.say("set", **change(name, number["key"], number["value"] * 1.01).fields)
+        window.next("rest", lambda message: message["version"] == 1)
+        window.say("save", what="run")
+        assert window.next("news")["text"] == f"Written: {book.with_name('case-changed-results.xlmcrun')}"
+        window.say("save", what="into")
+        assert window.next("news")["text"].endswith("The workbook as it was: case-before.xlsx")
+        assert window.next("news", lambda message: "was saved" in message["text"])
+        assert window.heard_last("state")["changes"] == []
+
+
+def test_studies_are_asked_of_the_state_that_is_shown(running, book):
+    server = running(book=book)
+    with server.window(server.library.only) as window:
+        name, number = first_number(window.next("state"))
+        window.next("rest")
+        window.say("set", **change(name, number["key"], number["value"] * 1.5).fields)
+        window.next("rest", lambda message: message["version"] == 1)
+        window.say("study", what="screen", other="")
+        told = window.next("study", lambda message: message["state"] != "running", seconds=120.0)
+        assert told["of"].startswith(f"{name}: ")
+        assert told["state"] == "done"
+        window.say("study", what="verify", other="")
+        told = window.next("study")  # tests/outputs/live/test_browser.py waits for its end
+        assert (told["what"], told["state"], told["of"]) == ("verify", "running", "")
+        window.say("cancel")
+        assert window.next("study", lambda message: message["state"] != "running")["state"] == "cancelled"
+    assert [each.name for each in book.parent.glob("*.xlsx")] == ["case.xlsx"]

@@ -1,0 +1,322 @@
+"""Who may talk to the window: everything else is refused."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import shutil
+import socket
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+from committed_books import TEMPLATES
+from live_books import SIMPLE, change, small
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+
+from xlmc.errors import XlmcError
+from xlmc.excel.workbook.writer import TakenError
+from xlmc.outputs.live.guard import MOST_UPLOADED, Guard
+from xlmc.outputs.live.kept_scenarios import Keeper
+from xlmc.outputs.live.library import Library, Sample
+from xlmc.outputs.live.protocol import MOST_BYTES
+from xlmc.outputs.live.server import SCRIPTS, STYLES, bound_socket
+
+ELSEWHERE = "http://evil.example"
+
+
+@pytest.fixture
+def book(tmp_path):
+    return small(tmp_path / "<b>case & co.xlsx")
+
+
+@pytest.fixture(scope="module")
+def open_book(running_on, tmp_path_factory):
+    """One server for all tests that leave it as it was: to start and to end one takes a fifth of a second."""
+    return running_on(book=small(tmp_path_factory.mktemp("books") / "<b>case & co.xlsx"))
+
+
+def test_the_link_is_good_once_and_the_token_leaves_the_address(open_book):
+    token = open_book.server.link.partition("?")[2]
+    status, headers, body = open_book.ask(f"/?{token}")
+    assert status == 200
+    assert headers["set-cookie"].startswith(f"xlmc-{open_book.port}=")
+    assert {"HttpOnly", "SameSite=strict", "Path=/"} <= {*headers["set-cookie"].split("; ")}
+    assert "token" not in body
+    assert 'content="0;url=/"' in body
+    assert open_book.ask(f"/?{token}")[0] == 403
+    assert open_book.ask("/?token=")[0] == 403
+    cookie = headers["set-cookie"].partition(";")[0]
+    status, headers, _ = open_book.ask("/", Cookie=cookie)
+    assert (status, headers["location"]) == (303, f"/book/{open_book.library.only}")
+
+
+def test_without_the_cookie_nothing_is_shown(open_book):
+    for path in ("/", f"/book/{open_book.library.only}"):
+        for cookie in ("", f"{open_book.server.guard.cookie}=guess", "other=1"):
+            status, _, body = open_book.ask(path, Cookie=cookie)
+            assert status == 403
+            assert open_book.server.guard.page not in body
+
+
+def test_a_wrong_host_is_refused_everywhere(open_book):
+    for host in ("evil.example", f"evil.example:{open_book.port}", "127.0.0.1", f"127.0.0.1:{open_book.port + 1}", ""):
+        for path in ("/", f"/book/{open_book.library.only}", "/static/window.js"):
+            assert open_book.ask(path, host=host or " ", Cookie=open_book.cookie)[0] in (400, 421), (host, path)
+    assert open_book.ask("/static/window.js", host=f"localhost:{open_book.port}")[0] == 200
+
+
+def test_every_answer_has_a_strict_policy(open_book):
+    for path in ("/", f"/book/{open_book.library.only}", "/static/live.css", "/static/no.js", "/nowhere"):
+        _, headers, _ = open_book.ask(path, Cookie=open_book.cookie)
+        policy = headers["content-security-policy"]
+        assert "default-src 'none'" in policy
+        assert "script-src 'self';" in policy
+        assert "unsafe" not in policy
+        assert headers["x-content-type-options"] == "nosniff"
+        assert headers["referrer-policy"] == "no-referrer"
+        assert headers["cache-control"] == "no-store"
+
+
+def test_the_page_holds_names_as_text_and_loads_only_what_is_here(open_book):
+    status, headers, body = open_book.ask(f"/book/{open_book.library.only}", Cookie=open_book.cookie)
+    assert (status, headers["content-type"]) == (200, "text/html; charset=utf-8")
+    assert "<b>case" not in body
+    assert "&lt;b&gt;case &amp; co.xlsx" in body
+    assert "http" not in body.replace("http-equiv", "")
+    for name in (*SCRIPTS, *STYLES):
+        assert f"/static/{name}" in body
+        assert open_book.ask(f"/static/{name}")[0] == 200
+    for path in ("/static/..%2fwindow.html", "/static/../server.py", "/static/window.html", "/book/nothing"):
+        assert open_book.ask(path, Cookie=open_book.cookie)[0] == 404
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Origin": ELSEWHERE},
+        {"Origin": "null"},
+        {"Origin": None},
+        {"Cookie": None},
+        {"Cookie": "xlmc-1=guess"},
+        {"Host": "evil.example"},
+    ],
+)
+def test_a_websocket_from_elsewhere_is_refused(open_book, headers):
+    with pytest.raises(InvalidStatus) as refused, open_book.window(open_book.library.only, **headers):
+        pass
+    assert refused.value.response.status_code in (400, 403)
+
+
+@pytest.mark.parametrize(
+    "first",
+    [
+        json.dumps({"kind": "hello", "page": "guess"}),
+        json.dumps({"kind": "stop"}),
+        json.dumps({"kind": "hello"}),
+        "no json",
+        b"\x00",
+        "x" * (MOST_BYTES + 1),
+    ],
+    ids=["wrong token", "no hello", "no token", "no json", "bytes", "too long"],
+)
+def test_a_websocket_must_first_show_the_pages_token(open_book, first):
+    with open_book.window(open_book.library.only, hello=False) as window:
+        window.socket.send(first)
+        with pytest.raises(ConnectionClosed):
+            window.socket.recv(timeout=120)
+
+
+def test_what_no_page_says_ends_the_connection_and_nothing_else(open_book):
+    with open_book.window(open_book.library.only) as window, open_book.window(open_book.library.only) as other:
+        window.next("rest")
+        window.socket.send('{"kind": "set"}')
+        with pytest.raises(ConnectionClosed):
+            window.next("never")
+        assert other.next("rest")["sentences"]
+
+
+@pytest.mark.parametrize("missing", ["Cookie", "Origin", "X-Xlmc-Page"])
+def test_a_change_needs_cookie_origin_and_the_pages_token(open_book, missing):
+    for wrong in ({}, {missing: ELSEWHERE}):
+        headers = {name: value for name, value in open_book.own.items() if name != missing} | wrong
+        status, _, _ = open_book.ask("/drop?name=a.xlsx", "POST", b"PK", Content_Length="2", **headers)
+        assert status == 403
+    assert not list(open_book.library.keeper.dropped.parent.glob("dropped/*"))
+
+
+def test_a_gigabyte_is_refused_before_it_is_sent(open_book):
+    for size in (1 << 30, MOST_UPLOADED + 1):
+        status, _, body = open_book.ask("/drop?name=a.xlsx", "POST", b"PK", Content_Length=str(size), **open_book.own)
+        assert status == 413
+        assert "64 MB" in json.loads(body)["trouble"]
+    status, _, _ = open_book.ask(
+        "/drop?name=a.xlsx", "POST", b"0\r\n\r\n", Transfer_Encoding="chunked", **open_book.own
+    )
+    assert status == 413  # of no known length
+
+
+def test_a_workbook_that_is_dropped_is_opened(running, tmp_path):
+    server = running(folder=tmp_path)
+    data = small(tmp_path / "source.xlsx").read_bytes()
+    ask = {"method": "POST", "body": data, "Content_Length": str(len(data)), **server.own}
+    status, _, body = server.ask("/drop?name=..%2F..%2Fa%3Cb%3E.xlsx", **ask)
+    assert status == 200
+    key = json.loads(body)["open"].rpartition("/")[2]
+    path = server.library.path(key)
+    assert path.name == "a_b_.xlsx"
+    assert path.is_relative_to(server.library.keeper.dropped)
+    assert path.read_bytes() == data
+    with server.window(key) as window:
+        assert window.next("rest")["sentences"]
+    for name, sent in (("a.exe", data), ("a.xlsx", b"no zip")):
+        ask |= {"body": sent, "Content_Length": str(len(sent))}
+        status, _, body = server.ask(f"/drop?name={name}", **ask)
+        assert status == 400
+        assert "not an Excel workbook" in json.loads(body)["trouble"]
+
+
+def test_a_folder_shows_its_workbooks_and_no_link_leads_out(running, tmp_path):
+    folder, outside = tmp_path / "folder", tmp_path / "outside"
+    folder.mkdir()
+    outside.mkdir()
+    shutil.copy(SIMPLE, folder / "a.xlsx")
+    shutil.copy(SIMPLE, outside / "secret.xlsx")
+    (folder / "~$a.xlsx").write_bytes(b"lock")
+    (folder / "b.txt").write_text("text", encoding="utf-8")
+    (folder / "link.xlsx").symlink_to(outside / "secret.xlsx")
+    server = running(folder=folder)
+    assert [each["name"] for each in server.library.books()] == ["a.xlsx"]
+    key = server.library._add(folder / "a.xlsx")
+    assert server.ask(f"/book/{key}", Cookie=server.cookie)[0] == 200
+    (folder / "a.xlsx").unlink()
+    (folder / "a.xlsx").symlink_to(outside / "secret.xlsx")  # after it was listed
+    assert server.ask(f"/book/{key}", Cookie=server.cookie)[0] == 404
+    with pytest.raises(InvalidStatus), server.window(key):
+        pass
+
+
+def test_a_template_is_copied_and_never_over_a_file(tmp_path, monkeypatch):
+    sample = Sample("skid", "?", TEMPLATES["skid"])
+    library = Library(Keeper(tmp_path / "state"), folder=tmp_path, samples=[sample])
+    (tmp_path / "skid.xlsx").write_text("mine", encoding="utf-8")
+    (row,) = library.templates()
+    path = library.path(library.copy_template(row["key"]))
+    assert path.name == "skid-2.xlsx"
+    assert path.read_bytes() == TEMPLATES["skid"].read_bytes()
+    assert (tmp_path / "skid.xlsx").read_text(encoding="utf-8") == "mine"
+    with pytest.raises(XlmcError):
+        library.copy_template("nothing")
+    path.write_bytes(b"a person's")
+    monkeypatch.setattr(
+        "xlmc.outputs.live.library.unused_path", lambda _: path
+    )  # as if the file had come just after the look
+    with pytest.raises(TakenError, match="exists already"):
+        library.copy_template(row["key"])
+    assert path.read_bytes() == b"a person's"
+
+
+def test_two_windows_show_one_state_and_a_new_one_gets_it(running, book):
+    open_book = running(book=book)
+    key = open_book.library.only
+    with open_book.window(key) as first, open_book.window(key) as second:
+        name = first.next("state")["assumptions"][0]["name"]
+        number = first.heard[-1]["assumptions"][0]["numbers"][-1]
+        first.next("rest")
+        second.next("rest")
+        value = number["value"] * 1.01
+        first.say("set", **change(name, number["key"], value, held=True).fields)
+        moved = second.next("moved")
+        assert (moved["name"], moved["value"]) == (name, value)
+        first.say("set", **change(name, number["key"], value, seq=2).fields)
+        ended = [each.next("rest", lambda message: message["version"] == 2) for each in (first, second)]
+        assert ended[0] == ended[1]
+        with open_book.window(key) as third:
+            assert third.next("state")["changes"] == first.heard_last("state")["changes"] != []
+            assert third.next("rest") == ended[0]
+
+
+def test_a_hundred_changes_a_second_do_not_starve_it(running, book):
+    open_book = running(book=book)
+    with open_book.window(open_book.library.only) as window:
+        row = window.next("state")["assumptions"][0]
+        window.next("rest")
+        number, enough = row["numbers"][-1], threading.Event()
+
+        def move():
+            seq = 0
+            while not enough.wait(0.005):
+                seq += 1
+                value = number["value"] * (1 + seq % 200 / 10_000)
+                window.say("set", **change(row["name"], number["key"], value, held=True, seq=seq).fields)
+            return seq
+
+        with ThreadPoolExecutor(1) as pool:
+            moving = pool.submit(move)
+            try:
+                frames = [window.next("frame", lambda message: message["stage"] == "moving") for _ in range(3)]
+            finally:
+                enough.set()
+        assert [each["seq"] for each in frames] == sorted(each["seq"] for each in frames)
+        last = moving.result() + 1
+        window.say("set", **change(row["name"], number["key"], number["value"] * 1.03, seq=last).fields)
+        window.next("rest", lambda message: message["version"] == last)
+
+
+def test_it_ends_when_nobody_has_looked_for_a_while(running, book):
+    now = [0.0]
+    server = running(book=book, idle=0.5, clock=lambda: now[0])
+    with server.window(server.library.only) as window:
+        window.next("rest")
+        now[0] += 1.0
+        time.sleep(0.3)  # it looks every eighth of a second
+        assert server.ask("/static/window.js")[0] == 200
+    end = time.monotonic() + 120
+    while time.monotonic() < end:
+        now[0] += 1.0
+        try:
+            server.ask("/static/window.js")
+        except OSError:
+            return
+        time.sleep(0.1)
+    pytest.fail("it is still listening")
+
+
+def test_a_port_that_is_taken_is_told():
+    with bound_socket(0) as taken:
+        taken.listen()
+        with pytest.raises(XlmcError, match="--port"):
+            bound_socket(taken.getsockname()[1])
+
+
+def test_small_messages_are_sent_at_once():
+    """Else the second of two waits until the first is acknowledged, some 40 ms."""
+    found = []
+
+    async def connected(_, writer):
+        sent_at_once = writer.get_extra_info("socket").getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
+        found.append(bool(sent_at_once))
+        writer.close()
+
+    async def connect_once():
+        with bound_socket(0) as made:
+            async with await asyncio.start_server(connected, sock=made):
+                reader, writer = await asyncio.open_connection(*made.getsockname())
+                await reader.read()
+                writer.close()
+
+    asyncio.run(connect_once())
+    assert found == [True]
+
+
+def test_it_listens_on_the_loopback_address_alone(open_book):
+    assert open_book.server._socket.getsockname()[0] == "127.0.0.1"
+
+
+def test_secrets_are_long_and_all_different():
+    guards = [Guard(1), Guard(1)]
+    secrets = [text for each in guards for text in (each.secret, each.page, each.new_token(), each.new_token())]
+    assert len({*secrets}) == len(secrets)
+    assert min(map(len, secrets)) >= 40
+    assert not guards[0].exchange(guards[0].page)

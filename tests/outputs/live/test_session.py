@@ -1,0 +1,364 @@
+"""A session without sockets, files or threads: what it tells, and that its numbers are those of `xlmc simulate`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import openpyxl
+import pytest
+from live_books import CASE, change, edited, rows_of, settle, short_case, simple, small, type_in
+from openpyxl.worksheet.table import Table
+
+from xlmc.errors import XlmcError
+from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.simulation.simulate import simulate
+from xlmc.outputs.live.adjustments import Adjustments
+from xlmc.outputs.live.jobs import MOVING_TRIALS, Outcome, SupersededError
+from xlmc.outputs.live.protocol import Said, written
+from xlmc.outputs.live.session import Session
+from xlmc.outputs.live.window_book import filter_rows
+
+FRICTION = "Chevrolet post-impact deceleration"
+
+SCENARIOS = {
+    "ranges, wider, narrower and below zero": {
+        (FRICTION, "Low"): 0.7,
+        (FRICTION, "High"): 0.8,
+        ("Chevrolet impact centre y", "Low"): -18.0,
+        ("Chevrolet impact centre y", "High"): -9.5,
+        ("Chevrolet weight", "Low"): 6600.0,
+        ("Nissan weight", "High"): 3600.0,
+    },
+    "one value": {("Orientation of tangent", "Low"): 101.0, ("Orientation of tangent", "High"): 101.0},
+    "all of it": {
+        (FRICTION, "High"): 1.05,
+        ("Nissan weight", "Frozen"): True,
+        ("Chevrolet weight", "Frozen"): True,
+        ("Nissan impact speed", "Above"): 2.0,
+        ("Restitution, tangential", "At most"): 0.3,
+    },
+}
+KEYS = {"Low": "low", "High": "high", "Frozen": "frozen", "At most": "at_most", "Above": "above"}
+
+
+@pytest.fixture(scope="module")
+def case(tmp_path_factory):
+    """The case study with fewer trials: its file and its model."""
+    path = short_case(tmp_path_factory.mktemp("case") / "case.xlsx")
+    return path, load(path)
+
+
+def test_at_rest_the_numbers_are_those_of_simulate_with_the_same_numbers_in_the_workbook(case, tmp_path, monkeypatch):
+    monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", 1_000)  # which come before those at rest
+    path, model = case
+    session, typed, rows = Session(model), openpyxl.load_workbook(path), rows_of(model)
+    filters = {each.name for each in model.filters}
+    for name, changes in SCENARIOS.items():
+        session.receive(Said("reset", {"of": "assumption", "name": ""}))
+        for (row, heading), value in changes.items():
+            of = "filter" if row in filters else "assumption"
+            session.receive(change(row, KEYS[heading], value, of=of))
+        settle(session)
+        before = type_in(typed, rows, changes)
+        typed.save(tmp_path / "edited.xlsx")
+        for cell, value in before:
+            cell.value = value
+        expected = simulate(load(tmp_path / "edited.xlsx"))
+        assert session.rest.accepted == expected.accepted, name
+        for forecast, values in expected.forecasts.items():
+            assert session.rest.forecasts[forecast].tobytes() == values.tobytes(), (name, forecast)
+        assert session.rest.tally.rejected.tolist() == expected.tally.rejected.tolist(), name
+
+
+@pytest.mark.parametrize("way", ["", "rejection", "weights"])
+def test_evidence_is_used_as_simulate_uses_it(book, way, monkeypatch):
+    """Weights, asked for or chosen by the rule on the first trials: at rest and while a handle moves."""
+    monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", moving := 5_000)
+    evidence = {"edr": {"cell": "B1", "reading": 1.1, "error": "normal", "std_dev": 0.05}}
+    inputs = {"u": {"cell": "A1", "low": 0.0, "high": 1.0}, "v": {"cell": "A2", "low": 0.0, "high": 1.0}}
+    model = book({"A1": 0.5, "A2": 0.5, "B1": "=A1*A2"}, inputs, {"x": "B1", "y": "A1"}, {}, evidence=evidence)
+    settings = replace(model.definitions.settings, trials=10_000, evidence=way)
+    model = model.changed(model.workbook, replace(model.definitions, settings=settings))
+    session = Session(model)
+    for value in (1.0, 0.99):
+        session.receive(change("u", "high", value))
+        settle(session)
+        expected = simulate(session._models.at_rest(session.adjustments), evidence=None)
+        assert session.rest.settings == expected.settings
+        assert (expected.weighting is None) == (way == "rejection")
+        for name, values in expected.forecasts.items():
+            assert session.rest.forecasts[name].tobytes() == values.tobytes()
+            assert session.rest[name].mean == expected[name].mean
+    session.receive(change("u", "high", 0.98, held=True))
+    job = session.job()
+    outcome = job.run(lambda: True, lambda share: None, lambda: 0.0)
+    used = outcome.simulation.settings.evidence
+    assert used == expected.settings.evidence
+    state = session._models.at_rest(session.adjustments)
+    expected = simulate(state, trials=moving, sampling="mc", evidence=used)
+    for name, values in expected.forecasts.items():
+        assert outcome.simulation.forecasts[name].tobytes() == values.tobytes()
+    session.finish(job, outcome)
+    for tab in ("matters", "pairs", "tables"):
+        view = {"forecasts": ["x"], "tab": tab, "first": "x", "second": "v", "fits": True}
+        session.receive(Said("view", view))
+        for message in settle(session):
+            written(message)
+
+
+def test_while_a_handle_moves_a_run_of_fifty_thousand_trials_comes_first(case):
+    session = Session(case[1])
+    settle(session)
+    session.receive(change(FRICTION, "high", 0.9, held=True, seq=7))
+    job = session.job()
+    assert (job.stage, job.held) == ("moving", True)
+    (frame,) = session.finish(job, job.run(lambda: True, lambda share: None, lambda: 0.0))
+    assert (frame["stage"], frame["trials"], frame["seq"]) == ("moving", MOVING_TRIALS, 7)
+    assert frame["shapes"][FRICTION]["high"] == pytest.approx(0.9, abs=1e-3)
+    drawn = frame["forecasts"]["Chevrolet delta-V"]
+    assert sum(drawn["bins"]["counts"]) + drawn["bins"]["below"] + drawn["bins"]["above"] == frame["accepted"]
+    assert session.job().stage == "rest"
+
+
+def test_the_newest_is_done_and_what_is_older_is_given_up(case):
+    session = Session(case[1])
+    settle(session)
+    session.receive(change(FRICTION, "high", 0.9))
+    moving = session.job()
+    session.finish(moving, moving.run(lambda: True, lambda share: None, lambda: 0.0))
+    old = session.job()
+    session.receive(change(FRICTION, "high", 0.91))
+    assert not session.wanted(old)
+    with pytest.raises(SupersededError):
+        old.run(lambda: session.wanted(old), lambda share: None, lambda: 0.0)
+    settle(session)
+    assert session.adjustments.assumptions[FRICTION] == {"high": 0.91}
+    assert session.job() is None
+
+
+def test_a_stopped_run_is_not_begun_again_until_something_changes(case):
+    session = Session(case[1])
+    session.receive(Said("stop", {}))
+    assert session.job() is None
+    session.receive(change(FRICTION, "high", 0.9))
+    assert session.job() is not None
+
+
+def test_a_state_that_is_no_distribution_is_told_and_the_last_good_answer_stays(case):
+    session = Session(case[1])
+    settle(session)
+    before = session.rest
+    session.receive(change(FRICTION, "high", 0.1))
+    (trouble,) = settle(session)
+    assert trouble["kind"] == "trouble"
+    assert "above High" in trouble["text"]
+    assert "Inputs!" in trouble["text"]
+    assert session.rest is before
+    session.receive(change(FRICTION, "high", 0.9))
+    told = settle(session)
+    assert [each["text"] for each in told if each["kind"] == "trouble"] == [""]
+    assert session.rest is not before
+
+
+def test_a_value_of_the_workbook_is_no_change(case):
+    session = Session(case[1])
+    own = next(each for each in case[1].assumptions if each.name == FRICTION).parameters["high"]
+    session.receive(change(FRICTION, "high", 0.9))
+    assert session.adjustments
+    session.receive(change(FRICTION, "high", own))
+    assert not session.adjustments
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "value"),
+    [("no such", "high", 1.0), (FRICTION, "mean", 1.0), (FRICTION, "frozen", 1.0), (FRICTION, "high", True)],
+)
+def test_what_the_workbook_does_not_have_cannot_be_set(case, name, key, value):
+    with pytest.raises(XlmcError):
+        Session(case[1]).receive(change(name, key, value))
+
+
+def test_the_state_behind_and_the_difference_in_numbers(case):
+    session = Session(case[1])
+    settle(session)
+    told = session._last["frame "]["forecasts"]["Nissan delta-V"]
+    assert told["behind"] is None
+    session.receive(change(FRICTION, "high", 0.85))
+    settle(session)
+    told = session._last["frame "]["forecasts"]["Nissan delta-V"]
+    assert told["said"].startswith("Nissan delta-V: mean 22.9")
+    assert " → " in told["said"]
+    assert sum(told["behind"]["counts"]) <= told["behind"]["trials"] == session.behind.accepted
+    mean = {label: rest for label, *rest in told["beside"]}["Mean"]
+    assert mean[0].startswith(f"{session.rest['Nissan delta-V'].mean.value:.2f}"[:4])
+    assert mean[1].startswith(f"{session.behind['Nissan delta-V'].mean.value:.2f}"[:4])
+    session.receive(Said("pin", {}))
+    settle(session)
+    assert session._last["frame "]["forecasts"]["Nissan delta-V"]["behind"] is None
+
+
+def test_scenarios_are_kept_shown_and_dropped(case):
+    session = Session(case[1])
+    session.receive(change(FRICTION, "high", 0.85))
+    session.receive(Said("keep", {"name": " dry "}))
+    assert session.kept == {"dry": Adjustments({FRICTION: {"high": 0.85}})}
+    assert not session.unkept
+    session.receive(Said("show", {"name": ""}))
+    assert not session.adjustments
+    (state,) = session.receive(Said("show", {"name": "dry"})).all
+    assert state["shown"] == "dry"
+    assert state["changes"] == [f"{FRICTION}: High 0.95 → 0.85"]
+    session.receive(change(FRICTION, "high", 0.8))
+    assert session.shown == ""
+    assert session.unkept.assumptions == {FRICTION: {"high": 0.8}}
+    session.receive(Said("drop", {"name": "dry"}))
+    assert session.kept == {}
+    with pytest.raises(XlmcError):
+        session.receive(Said("show", {"name": "dry"}))
+
+
+def test_what_was_not_kept_is_offered(case):
+    lost = Adjustments().having("assumption", FRICTION, "high", 0.85).having("assumption", "gone", "high", 1.0)
+    session = Session(case[1], {}, lost)
+    (state,) = [each for each in session.greeting() if each["kind"] == "state"]
+    assert state["offered"] == [f"{FRICTION}: High 0.95 → 0.85"]
+    assert session.unkept.assumptions == {FRICTION: {"high": 0.85}}
+    session.receive(Said("restore", {"take": True}))
+    assert session.adjustments.assumptions == {FRICTION: {"high": 0.85}}
+
+
+def test_a_workbook_that_was_saved_keeps_what_was_moved_and_says_what_changed(tmp_path):
+    from xlmc.outputs.live.what_changed import what_changed
+
+    path = small(tmp_path / "case.xlsx")
+    model = load(path)
+    friction, _, distance = (each.name for each in model.assumptions)
+    session = Session(model)
+    session.receive(change(friction, "high", 0.85))
+    session.receive(change(distance, "high", 66.0))
+    settle(session)
+    saved = load(edited(path, tmp_path / "saved.xlsx", {(distance, "High"): 66.0, (friction, "Low"): 0.65}))
+    told = session.replace_book(saved, what_changed(model, saved))
+    (news,) = [each["text"] for each in told if each["kind"] == "news"]
+    assert f"{friction}: Low 0.6 → 0.65" in news
+    assert f"{distance}: High 60 → 66" in news
+    assert session.adjustments.assumptions == {friction: {"high": 0.85}}
+    settle(session)
+    now = next(each for each in session.rest.model.assumptions if each.name == friction)
+    assert (now.parameters["low"], now.parameters["high"]) == (0.65, 0.85)
+
+
+def test_all_tabs_are_made_of_the_run_at_rest(case):
+    session = Session(case[1])
+    names = [each.name for each in case[1].forecasts]
+    for tab, first, second in (("matters", "", ""), ("tables", "", ""), ("pairs", FRICTION, names[1])):
+        session.receive(
+            Said("view", {"forecasts": names[:1], "tab": tab, "first": first, "second": second, "fits": True})
+        )
+        *sketched, part = [each for each in settle(session) if each["kind"] == "part"]
+        assert {each["tab"] for each in (*sketched, part)} == {tab}
+        if tab == "pairs":
+            run = session.rest
+            assert part["pair"]["x"][:5] == run.inputs[FRICTION][:5].tolist()
+            assert part["pair"]["y"][:5] == run.forecasts[names[1]][:5].tolist()
+        else:
+            assert names[0] in part["html"]
+
+
+def test_what_matters_follows_while_a_handle_moves_unless_it_takes_long(case, monkeypatch):
+    monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", 1_000)
+    session = Session(case[1])
+    names = [each.name for each in case[1].forecasts]
+    session.receive(Said("view", {"forecasts": names, "tab": "matters", "first": "", "second": "", "fits": False}))
+    settle(session)
+    expected = ([0.01, ["moving", "sketch"]], [9.0, ["moving", "sketch"]], [9.0, ["moving"]])
+    for number, (seconds, stages) in enumerate(expected):
+        session.receive(change(FRICTION, "high", 0.9 + number / 100, held=True))
+        told = []
+        for stage in stages:
+            job = session.job()
+            assert job.stage == stage
+            clock = iter([0.0, seconds if stage == "sketch" else 0.0]).__next__
+            told += session.finish(job, job.run(lambda: True, lambda share: None, clock))
+        assert [each["tab"] for each in told if each["kind"] == "part"] == ["matters"] * stages.count("sketch")
+    assert session.job().stage == "rest"
+
+
+def test_all_that_is_told_is_json_without_numbers_that_are_none(tmp_path):
+    session = Session(load(simple(tmp_path / "case.xlsx")))
+    for message in (*session.greeting(), *settle(session), *session.greeting()):
+        written(message)
+    assert np.isfinite(session.rest.accepted)
+
+
+def test_all_scenarios_are_compared_in_one_table(case):
+    session = Session(case[1])
+    settle(session)
+    session.receive(change(FRICTION, "high", 0.85))
+    session.receive(Said("keep", {"name": "dry <b>road"}))
+    session.receive(Said("compare", {}))
+    (part,) = [each for each in settle(session) if each["kind"] == "part"]
+    assert part["tab"] == "scenarios"
+    assert "dry &lt;b&gt;road" in part["html"]
+    assert "as it is" in part["html"]
+    expected = simulate(session._models.at_rest(session.adjustments))
+    assert f"{expected.accepted:,}" in part["html"]
+
+
+def test_the_usual_variants_are_scenarios(case):
+    session = Session(case[1])
+    session.receive(Said("variants", {}))
+    names = [*session.kept]
+    assert names[:2] == ["every range half as wide", "every range one and a half times as wide"]
+    assert "Restitution, tangential at most 0.125 (half)" in names
+    narrow = session.kept["every range half as wide"].assumptions
+    assert narrow[FRICTION] == {"low": 0.6875, "high": 0.8625}
+    assert len(narrow) == len(case[1].live)
+
+
+def test_a_band_of_a_distribution_is_a_range_of_its_percentiles(case):
+    session = Session(case[1])
+    session.receive(change(FRICTION, "band_high", 50.0))
+    settle(session)
+    other = Session(case[1])
+    other.receive(change(FRICTION, "high", 0.775))
+    settle(other)
+    assert session.rest.inputs[FRICTION].max() < 0.775
+    drawn, expected = session.rest.inputs[FRICTION], other.rest.inputs[FRICTION]
+    assert np.allclose(drawn, expected, rtol=1e-12)
+
+
+def test_evidence_has_no_limit_to_be_moved(tmp_path):
+    """A uniform error keeps what lies between two numbers, but these come from the reading."""
+    book = openpyxl.load_workbook(CASE)
+    sheet = book.create_sheet("Readings")
+    for row in (["Name", "Cell", "Reading", "Error", "Plus or minus"], ["EDR", "=Model!D54", 12, "Uniform", 1]):
+        sheet.append(row)
+    sheet.add_table(Table(displayName="xlmc_evidence", ref="A1:E2"))
+    book.save(tmp_path / "evidence.xlsx")
+    model = load(tmp_path / "evidence.xlsx")
+    session = Session(model)
+    (row,) = (each for each in filter_rows(model, session.adjustments) if each["name"] == "EDR")
+    assert (row["limits"], row["keeps"]) == ([], "reads 12, uniform (Plus or minus 1): from 11 to 13")
+    with pytest.raises(XlmcError, match="no filter 'EDR' with 'at_most' to be set"):
+        session.receive(change("EDR", "at_most", 14.0, of="filter"))
+    session.receive(Said("variants", {}))
+    assert any("Restitution" in name for name in session.kept)
+    assert not any("EDR" in name for name in session.kept)
+
+
+def test_a_tab_that_fails_is_told_once_and_tried_again_with_the_next_state(case):
+    session = Session(case[1])
+    settle(session)
+    session.receive(Said("view", {"forecasts": [], "tab": "tables", "first": "", "second": "", "fits": False}))
+    told = []
+    while (job := session.job()) is not None:
+        failed = job.stage == "part"
+        told += session.finish(job, Outcome(problem="no") if failed else job.run(lambda: True, print, lambda: 0.0))
+        assert len(told) < 10
+    assert [each["text"] for each in told if each["kind"] == "trouble"] == ["no"]
+    session.receive(change(FRICTION, "high", 0.9))
+    told = settle(session)
+    assert [each["text"] for each in told if each["kind"] == "trouble" and each["about"] == "part"] == [""]
+    assert any(each["kind"] == "part" and each["tab"] == "tables" for each in told)

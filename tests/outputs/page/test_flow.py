@@ -1,0 +1,116 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from xlmc.montecarlo.statistics import Estimate, format_estimate
+from xlmc.outputs.page.element import Html
+from xlmc.outputs.page.flow import Flow, estimate_html, shown_html, shown_text
+from xlmc.outputs.sheets import cells, results_sheet, statistics_sheet
+from xlmc.outputs.sheets.cells import Shown, count
+
+
+def test_headings_paragraphs_and_tables_follow_each_other():
+    flow = Flow()
+    flow.title("Title", "below")
+    flow.heading("One & two")
+    flow.wide("Said.", "remark", 9)
+    flow.table(["Name", "Trials"], [[Shown("a", look="name"), count(1234)]])
+    assert flow.html.source == (
+        "<h2>Title</h2>"
+        '<p class="subtitle">below</p>'
+        "<h3>One &amp; two</h3>"
+        '<p class="remark">Said.</p>'
+        '<div class="wide-table"><table><thead><tr><th scope="col">Name</th><th scope="col" class="number">Trials</th>'
+        '</tr></thead><tbody><tr><th scope="row">a</th><td class="number"><data value="1234">1,234</data></td></tr>'
+        "</tbody></table></div>"
+    )
+
+
+def test_rows_that_are_spread_become_one_table():
+    flow = Flow()
+    flow.line([Shown("Filter", look="header left"), Shown("Cell", look="header left")], (0, 3), 8)
+    flow.line([Shown("f", look="name"), Shown("S!A1")], (0, 3), 8)
+    flow.wide("After.", "remark", 8)
+    source = flow.html.source
+    assert source.count("<table>") == 1
+    assert source.count("<tr>") == 2
+    assert source.endswith('<p class="remark">After.</p>')
+    assert flow.html.source == source
+
+
+def test_rows_of_another_length_begin_another_table():
+    flow = Flow()
+    flow.line([Shown("a"), Shown("b")], (0, 1), 1)
+    flow.line([Shown("c")], (0,), 1)
+    assert flow.html.source.count("<table>") == 2
+
+
+def test_a_sheets_writer_can_write_on_it(run):
+    for write in (results_sheet.write_results, statistics_sheet.write_statistics):
+        flow = Flow()
+        write(flow, run)
+        assert flow.html.source.count("<table>") >= 1
+        assert "area" in flow.html.source or "width" in flow.html.source
+
+
+def test_a_single_cell_is_a_paragraph():
+    flow = Flow()
+    flow.put(3, 0, Shown("nothing to draw", look="alarm"))
+    assert flow.html.source == '<p class="alarm">nothing to draw</p>'
+
+
+CASES = [
+    (cells.count(200_000), "200,000"),
+    (cells.count(7), "7"),
+    (Shown(None), ""),
+    (Shown("=1+1"), "=1+1"),
+    (Shown(1234.5678, "#,##0.00"), "1,234.57"),
+    (Shown(-1234.5678, "#,##0"), "-1,235"),
+    (Shown(0.01771, "0.000%"), "1.771 %"),
+    (Shown(0.25, "0%"), "25 %"),
+    (Shown(12345.678, "0.00"), "12345.68"),
+    (Shown(1.2345e-9, "0.00E+00"), "1.23e-09"),
+    (Shown(999), "999"),
+    (Shown(0.1), "0.1"),
+    (Shown(1 / 3), "0.333333333"),
+    (Shown(math.nan), cells.NONE),
+    (Shown(math.inf), "∞"),
+    (Shown(-math.inf), "−∞"),
+]
+
+
+@pytest.mark.parametrize(("shown", "text"), CASES, ids=lambda case: str(case))
+def test_a_cell_reads_as_on_the_sheet(shown, text):
+    assert shown_text(shown) == text
+
+
+def test_an_unknown_format_is_refused():
+    with pytest.raises(ValueError, match="yyyy"):
+        shown_text(Shown(1.0, "yyyy-mm-dd"))
+
+
+@given(st.floats(-999, 999), st.floats(1e-3, 9.4))
+def test_an_estimate_shows_the_digits_that_are_printed(value, error):
+    value_cell, error_cell = cells.estimate(Estimate(value, error))
+    assert f"{shown_text(value_cell)} ± {shown_text(error_cell)}" == format_estimate(value, error)
+
+
+@given(st.floats(allow_nan=False), st.floats(0.0, allow_nan=False))
+def test_every_format_of_an_estimate_is_known(value, error):
+    for cell in (*cells.estimate(Estimate(value, error)), *cells.share(Estimate(value, error))):
+        assert shown_text(cell)
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_a_number_carries_its_full_value(value):
+    found = shown_html(Shown(value)).source
+    assert float(found.partition('value="')[2].partition('"')[0]) == value
+
+
+def test_estimates():
+    assert estimate_html(Estimate(17.02134, 0.00231)).source == '<data value="17.02134">17.0213 ± 0.0023</data>'
+    assert estimate_html(Estimate(math.nan)) == Html(f"<span>{cells.NONE}</span>")

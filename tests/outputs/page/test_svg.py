@@ -1,0 +1,103 @@
+from __future__ import annotations
+
+import math
+import re
+from xml.etree import ElementTree
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from xlmc.outputs.page.svg import Bar, Line, bars, lines, scale_of
+
+
+def read(drawing):
+    return ElementTree.fromstring(drawing.source)
+
+
+def texts(root):
+    return [node.text for node in root.iter("text")]
+
+
+def test_bars_reach_from_zero_to_their_values():
+    root = read(
+        bars([Bar("a", ((0.0, 40.0, "dark"),), (38.0, 42.0)), Bar("b", ((0.0, -20.0, "light"),))], "T", "share")
+    )
+    first, second = root.iter("rect")
+    assert float(first.get("width")) == pytest.approx(2 * float(second.get("width")), abs=0.15)
+    assert float(second.get("x")) + float(second.get("width")) == pytest.approx(float(first.get("x")), abs=0.15)
+    assert (first.get("class"), second.get("class")) == ("dark", "light")
+    assert {"T", "share", "a", "b"} <= set(texts(root))
+    whiskers = [line for line in root.iter("line") if line.get("class") == "whisker"]
+    assert len(whiskers) == 3
+
+
+def test_a_tornado_bar_has_two_pieces():
+    root = read(bars([Bar("a", ((0.0, -1.0, "light"), (0.0, 2.0, "dark")))], "T", "change"))
+    low, high = root.iter("rect")
+    assert float(low.get("x")) < float(high.get("x"))
+
+
+def test_names_are_escaped_and_cut_where_they_have_no_room():
+    evil = "</text><script>alert(1)</script>" + "x" * 60
+    drawing = bars([Bar(evil, ())], evil, evil)
+    assert "<script" not in drawing.source
+    (name,) = [text for text in texts(read(drawing)) if text.endswith("…")]
+    assert evil.startswith(name[:-1])
+    assert read(drawing).get("aria-label") == f"{evil}: {evil}"
+
+
+def test_lines_go_through_their_points_and_end_in_a_number():
+    drawn = [
+        Line("one", ((0.0, 0.0, 0.0), (1.0, 2.0, 0.5))),
+        Line("two", ((0.0, 0.0, None), (0.5, math.nan, None), (1.0, -2.0, None))),
+    ]
+    root = read(lines(drawn, "T", "across", "upwards", 0.0))
+    paths = [re.findall(r"[ML][\d.]+ [\d.]+", path.get("d")) for path in root.iter("path")]
+    assert [len(path) for path in paths] == [2, 2]  # the point without a value is left out
+    first, second = ([float(part.split(" ")[1]) for part in path] for path in paths)
+    assert first[1] < first[0] == second[0] < second[1]
+    assert [node.text for node in root.iter("text") if node.get("class") == "number"] == ["1", "2"]
+    assert len([line for line in root.iter("line") if line.get("class") == "whisker"]) == 1
+    assert len(list(root.iter("circle"))) == 4
+
+
+@pytest.mark.parametrize("points", [(), ((0.0, math.nan, None),), ((1.0, 0.0, None),)])
+def test_lines_of_nothing_are_drawn(points):
+    assert read(lines([Line("a", points)], "T", "x", "y", 1.0)).tag == "svg"
+
+
+numbers = st.floats(-1e12, 1e12).filter(lambda x: x == 0 or abs(x) > 1e-12)
+
+
+@given(st.lists(numbers, min_size=1, max_size=8))
+def test_every_value_and_tick_stands_between_the_ends(values):
+    scale = scale_of(values, 100.0, 500.0)
+    assert all(100.0 - 1e-6 <= scale(value) <= 500.0 + 1e-6 for value in values)
+    assert all(100.0 - 1e-6 <= scale(tick) <= 500.0 + 1e-6 for tick in scale.ticks)
+    assert 1 <= len(scale.ticks) <= 7
+
+
+@pytest.mark.parametrize("values", [[], [math.nan], [math.inf, -math.inf], [0.0], [5.0, 5.0]])
+def test_what_has_no_width_is_given_one(values):
+    scale = scale_of(values, 0.0, 1.0)
+    assert scale.low < scale.high
+    assert scale.ticks
+
+
+@pytest.mark.parametrize(
+    ("values", "ticks"),
+    [
+        ([0.0, 71.0], [0.0, 20.0, 40.0, 60.0]),
+        ([-0.3, 0.2], [-0.3, -0.2, -0.1, 0.0, 0.1, 0.2]),
+        ([0.0, 3e-7], [0.0, 1e-7, 2e-7, 3e-7]),
+    ],
+)
+def test_ticks_are_round(values, ticks):
+    assert scale_of(values, 0.0, 1.0).ticks == ticks
+
+
+def test_it_may_run_upwards():
+    scale = scale_of([0.0, 10.0], 200.0, 20.0)
+    assert scale(0.0) > scale(5.0) > scale(10.0)
+    assert scale.text(-0.5) == "−0.5"

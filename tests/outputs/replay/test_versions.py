@@ -1,0 +1,101 @@
+"""Runs that another version of xlmc made."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import xlmc
+from xlmc.outputs.replay import versions
+from xlmc.outputs.replay.versions import RULES, Rule, install, rules_since
+
+REPOSITORY = Path(__file__).resolve().parents[3]
+
+
+@pytest.fixture
+def rules(monkeypatch):
+    said = tuple(
+        Rule(version, version, re.compile(met)) for version, met in (("0.3.0", "a"), ("0.10.0", "a"), ("9.0", "a"))
+    )
+    monkeypatch.setattr(versions, "RULES", said)
+    monkeypatch.setattr(versions, "__version__", "0.10.1")
+
+
+@pytest.mark.parametrize(
+    ("version", "contents", "expected"),
+    [
+        ("0.1.0", ["=a"], ["0.3.0", "0.10.0"]),
+        ("0.3.0", ["=b", "=a"], ["0.10.0"]),
+        ("0.10.0", ["=a"], []),
+        ("0.1.0", ["=b"], []),
+        ("0.1.0", [], []),
+        ("", ["=a"], ["0.3.0", "0.10.0"]),
+        ("0.3.0rc1", ["=a"], ["0.10.0"]),
+    ],
+)
+def test_rules_are_those_since_the_version_that_the_cells_may_meet(rules, version, contents, expected):
+    assert [rule.said for rule in rules_since(version, contents)] == expected
+
+
+def test_rules_are_in_the_order_of_versions_and_none_is_of_the_future():
+    numbers = [versions._parts(rule.since) for rule in RULES]
+    assert numbers == sorted(numbers)
+    assert numbers[-1] <= versions._parts(xlmc.__version__)
+
+
+@pytest.mark.parametrize(
+    ("said", "formula", "met"),
+    [
+        ("TRUNC", "=1+trunc(A1,2)", True),
+        ("TRUNC", "=MYTRUNC(A1)", False),
+        ("TRUNC", '="TRUNC"', False),
+        ("numbers below", "=EXP(A1)", True),
+        ("numbers below", "=A1*1E-200", True),
+        ("numbers below", "=A1*1E-3", False),
+        ("FORMULATEXT", "=_xlfn.FORMULATEXT(A1)", True),
+        ("functions that xlmc has no body for", "=_xlfn.FORECAST.ETS(A1,B1:B9,C1:C9)", True),
+        ("functions that xlmc has no body for", "=FORECAST(A1,B1:B9,C1:C9)", False),
+        ("a LAMBDA that is named like", "=Sum(A1)", True),
+        ("a LAMBDA that is named like", "=SUM(A1)", False),
+        ("a text that is a date", '="2020-01-01"+A1', True),
+        ("a text that is a date", '=IF(A1>1,"no. 5",A1)', False),
+        ("all cells of a dynamic array", "=SUM(_xlfn.ANCHORARRAY(A1))", True),
+    ],
+)
+def test_what_a_rule_concerns(said, formula, met):
+    [rule] = [rule for rule in RULES if rule.said.startswith(said)]
+    assert bool(rule.met.search(formula)) is met
+
+
+def test_every_version_before_this_one_has_its_commit():
+    changelog = (REPOSITORY / "CHANGELOG.md").read_text("utf-8")
+    newest, *earlier = re.findall(r"^## (\S+)$", changelog, re.MULTILINE)
+    assert newest == xlmc.__version__
+    assert sorted(earlier) == sorted(versions._COMMITS)
+
+
+@pytest.mark.parametrize("version", versions._COMMITS)
+def test_the_commit_of_a_version_has_it(version):
+    commit = versions._COMMITS[version]
+    shown = subprocess.run(
+        ["git", "-C", str(REPOSITORY), "show", f"{commit}:pyproject.toml"], capture_output=True, encoding="utf-8"
+    )
+    if shown.returncode:
+        pytest.skip("the history is not here")
+    assert f'version = "{version}"' in shown.stdout
+    assert commit in install(version)
+
+
+def test_a_rule_that_concerns_two_cells_together():
+    correlated = "assumptions that take few values"
+    for contents, expected in (
+        (["Yes-No", "Correlation"], True),
+        (["=RiskBernoulli(A1,RiskCorrmat(B1:C2,1))"], True),
+        (["Normal", "Correlation"], False),
+        (["Yes-No"], False),
+    ):
+        said = [rule.said for rule in rules_since("0.1.0", contents)]
+        assert any(each.startswith(correlated) for each in said) is expected

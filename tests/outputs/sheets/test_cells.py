@@ -1,0 +1,74 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from xlmc.montecarlo.statistics import Estimate, format_estimate, proportion
+from xlmc.outputs.sheets.cells import estimate, paired_format, share_format, spread_format
+
+PAIRED = [
+    (11.79946, 0.01256, "#,##0.000"),
+    (48211.3, 870.0, "#,##0"),
+    (70178.2, 12.3, "#,##0"),
+    (0.05403, 0.00051, "#,##0.00000"),
+    (-0.021, 0.013, "#,##0.000"),
+    (0.0, 0.3, "#,##0.00"),
+    (5.469e11, 2.177e9, "0.000E+00"),
+    (2.5e-7, 1.2e-9, "0.000E+00"),
+    (7.0, 0.0, "General"),
+    (math.nan, None, "General"),
+    (math.inf, None, "General"),
+    (17.02134, None, "#,##0.0000"),
+    (0.0, None, "General"),
+    (6760.846, 0.0023, "#,##0.000"),  # as many decimals as there is room for
+]
+
+
+@pytest.mark.parametrize(("value", "error", "expected"), PAIRED)
+def test_formats_of_a_value_beside_its_error(value, error, expected):
+    assert paired_format(Estimate(value, error)) == expected
+
+
+@given(st.floats(1e-2, 9e3), st.floats(1e-3, 1e2))
+def test_the_sheet_shows_the_digits_that_the_command_line_prints(value, error):
+    decimals = paired_format(Estimate(value, error)).partition(".")[2].count("0")
+    printed = format_estimate(value, error).split(" ")[0].partition(".")[2]
+    room = 9 - len(f"{value:,.0f}") - 1
+    assert decimals == min(len(printed), max(room, 0))
+
+
+@pytest.mark.parametrize(
+    ("estimate", "expected"),
+    [
+        (proportion(3542, 200_000), "0.000%"),
+        (proportion(0, 200_000), "0.00000%"),
+        (proportion(1, 2), "0%"),
+        (Estimate(math.nan), "0.00%"),
+    ],
+)
+def test_formats_of_shares(estimate, expected):
+    assert share_format(estimate) == expected
+
+
+@pytest.mark.parametrize(
+    ("spread", "expected"), [(200.0, "#,##0.0"), (0.35, "#,##0.0000"), (4e8, "0.000E+00"), (0.0, "General")]
+)
+def test_formats_of_single_trials_follow_their_spread(spread, expected):
+    assert spread_format(spread) == expected
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "expected"),
+    [
+        (1234567.7995, 0.00035, ("#,##0", "#,##0.00000")),
+        (45321.755034, 0.00002, ("#,##0.00", "0.0E+00")),
+        (6760.846, 0.0023, ("#,##0.000", "#,##0.000")),
+        (48211.3, 870.0, ("#,##0", "#,##0")),
+    ],
+)
+def test_an_error_is_never_shown_as_0(value, error, expected):
+    """A large value leaves no room for the decimals of a small error beside it."""
+    assert tuple(cell.format for cell in estimate(Estimate(value, error))) == expected

@@ -1,0 +1,119 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from xlmc.outputs.histogram import histogram
+
+RANDOM = np.random.default_rng(7)
+MANY = st.lists(st.floats(-1e9, 1e9), min_size=1, max_size=60).map(np.array)
+
+
+def test_no_values_give_no_histogram():
+    assert histogram(np.array([]), 0.0, 1.0) is None
+
+
+@given(MANY | st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=1, max_size=9).map(np.array))
+def test_every_trial_is_counted_once(values):
+    bins = histogram(values, float(np.sort(values)[values.size // 4]), float(values.max()))
+    total = bins.inside.sum() + bins.outside.sum() + bins.below + bins.above
+    assert total == values.size
+    assert (bins.inside >= 0).all()
+    assert bins.edges.size == bins.inside.size == bins.outside.size
+    assert bins.edges.size % bins.step == 0
+
+
+@given(MANY, st.floats(0.1, 10.0))
+def test_counts_are_those_of_a_plain_loop(values, share):
+    low, high = -share, share
+    bins = histogram(values, low, high)
+    for edge, upper, inside, outside in zip(bins.edges, bins.upper_edges, bins.inside, bins.outside, strict=True):
+        held = [v for v in values if edge <= v < upper]
+        assert inside == sum(low <= v <= high for v in held)
+        assert outside == len(held) - inside
+
+
+def test_the_inside_bars_hold_exactly_the_central_range():
+    values = RANDOM.normal(12.0, 0.7, 5001)
+    low, high = np.percentile(values, [24.5, 75.5])
+    bins = histogram(values, low, high)
+    assert bins.inside.sum() == np.count_nonzero((values >= low) & (values <= high))
+    straddling = (bins.edges < low) & (bins.upper_edges > low)
+    assert bins.inside[straddling].item() > 0
+    assert bins.outside[straddling].item() > 0
+
+
+@pytest.mark.parametrize(
+    ("values", "width", "fewest", "most"),
+    [
+        (RANDOM.normal(12.0, 0.7, 3500), 0.1, 35, 60),
+        (RANDOM.normal(12.0, 0.7, 1_000_000), 0.2, 30, 61),  # the range widens, the bins stay few
+        (RANDOM.uniform(-3.2, 3.2, 3500), 0.25, 25, 40),
+        (RANDOM.uniform(6661, 6861, 50), 10.0, 15, 30),
+        (RANDOM.exponential(1e-6, 2000), 2e-7, 30, 60),
+        (RANDOM.uniform(2e11, 2e12, 4000), 1e11, 15, 30),
+    ],
+)
+def test_widths_are_round_and_bins_neither_few_nor_many(values, width, fewest, most):
+    bins = histogram(values, *np.percentile(values, [24.5, 75.5]))
+    assert bins.width == width
+    assert fewest <= bins.edges.size <= most
+
+
+@given(MANY)
+def test_edges_are_multiples_of_a_round_width(values):
+    bins = histogram(values, 0.0, 1.0)
+    mantissa = float(f"{bins.width:e}".partition("e")[0])
+    assert mantissa in (1.0, 2.0, 2.5, 5.0)
+    multiples = bins.edges / bins.width
+    np.testing.assert_allclose(multiples, np.round(multiples), rtol=1e-9, atol=1e-6)
+    assert round(multiples[0]) % bins.step == 0
+
+
+def test_a_limit_at_a_round_number_lies_between_two_bins():
+    values = RANDOM.uniform(0.0, 0.25, 4000)
+    bins = histogram(values, 0.1, 0.2)
+    used = bins.edges[bins.inside + bins.outside > 0]
+    assert used[0] == 0.0
+    assert used[-1] + bins.width == pytest.approx(0.25)
+
+
+def test_whole_numbers_have_a_bar_each():
+    values = RANDOM.integers(0, 11, 500).astype(float)
+    bins = histogram(values, 2.0, 7.0)
+    assert bins.width == 1.0
+    counted = dict(zip(bins.edges, bins.inside + bins.outside, strict=True))
+    assert all(counted[k] == np.count_nonzero(values == k) for k in range(11))
+
+
+@pytest.mark.parametrize("value", [0.0, 7.0, -3.3e12, 4.2e-9])
+def test_a_constant_has_one_bar(value):
+    bins = histogram(np.full(10, value), value, value)
+    assert bins.inside.tolist().count(10) == 1
+    assert bins.inside.sum() == 10
+
+
+def test_far_outliers_are_counted_and_not_drawn():
+    values = np.concatenate([RANDOM.normal(0.0, 1.0, 3000), [1e6, 2e6], [-1e7]])
+    bins = histogram(values, -0.5, 0.5)
+    assert (bins.below, bins.above) == (1, 2)
+    assert bins.edges[0] > -10.0
+
+
+@pytest.mark.parametrize(
+    ("values", "labels"),
+    [
+        (np.linspace(9.6, 13.8, 3000), ["9.5", "10.0", "10.5", "11.0", "11.5", "12.0", "12.5", "13.0", "13.5"]),
+        (np.linspace(1.1e11, 5e11, 3000), ["1e+11", "1.5e+11", "2e+11", "2.5e+11"]),
+        (np.linspace(0.0, 0.00099, 3000), ["0.0000", "0.0001", "0.0002", "0.0003", "0.0004"]),
+        (np.linspace(0.0, 4.9e6, 3000), ["0", "1000000", "2000000", "3000000", "4000000"]),
+    ],
+)
+def test_labels_stand_at_round_lower_ends(values, labels):
+    bins = histogram(values, *np.percentile(values, [24.5, 75.5]))
+    shown = [(edge, text) for edge, text in zip(bins.edges, bins.labels, strict=True) if text]
+    assert all(float(text) == pytest.approx(edge) for edge, text in shown)
+    assert [text for _, text in shown][: len(labels)] == labels
+    assert len(shown) <= 12

@@ -1,0 +1,214 @@
+from __future__ import annotations
+
+import json
+import math
+import re
+
+import jsonschema
+import numpy as np
+import pytest
+
+import xlmc
+from xlmc.analysis.results.record import make_record
+from xlmc.analysis.results.statements import certainties, pairs_of, statements
+from xlmc.analysis.studies.sensitivity import sensitivities
+from xlmc.errors import WorkbookError
+from xlmc.montecarlo.statistics import Estimate
+from xlmc.outputs.json_document import (
+    NO_ERROR,
+    NO_VALUE,
+    SCHEMA,
+    STATISTICS,
+    UNBOUNDED,
+    document,
+    estimate_json,
+    save_json,
+)
+
+
+@pytest.fixture(scope="session")
+def validator():
+    schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator.check_schema(schema)
+    return jsonschema.Draft202012Validator(schema)
+
+
+@pytest.fixture(scope="session")
+def runs(run, none_accepted, one_accepted, make, small_book):
+    correlated = make.simulate(
+        {"A1": 0.5, "A2": 0.5, "B1": "=A1+A2"},
+        [make.uniform("a", "A1", 0.0, 1.0), make.uniform("b", "A2", 0.0, 1.0, base=0.5)],
+        [make.forecast("x", "B1", asked=(0.5, math.inf))],
+    )
+    model = xlmc.load(small_book)
+    return {
+        "a run": run,
+        "nothing accepted": none_accepted,
+        "one trial": one_accepted,
+        "no base case": correlated,
+        "errors in cells": model.simulate(),
+        "Latin hypercube": model.simulate(sampling="lhs"),
+        "until accepted": model.simulate(until_accepted=50),
+        "too few accepted": model.simulate(30, until_accepted=100),
+        "some draws": model.simulate(keep_inputs=10),
+    }
+
+
+KINDS = (
+    "a run",
+    "nothing accepted",
+    "one trial",
+    "no base case",
+    "errors in cells",
+    "Latin hypercube",
+    "until accepted",
+    "too few accepted",
+    "some draws",
+)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_document_keeps_to_its_schema(runs, validator, kind):
+    text = json.dumps(document(runs[kind], command="xlmc simulate"), allow_nan=False)
+    validator.validate(json.loads(text))
+
+
+def changes():
+    """What is wrong in a document: a path to it, and what stands there."""
+    return [
+        (("version",), 2),
+        (("forecasts", 0, "statistics", "mean", "value"), "12"),
+        (("forecasts", 0, "statistics", "mean", "value"), None),  # without a reason
+        (("forecasts", 0, "statistics", "mean", "reason"), "because"),  # without need
+        (("forecasts", 0, "statistics", "mode"), 3.0),
+        (("forecasts", 0, "trials"), -1),
+        (("forecasts", 0, "more"), 1),
+        (("filters", 0, "rejected"), 1.5),
+        (("trials", "ended_by"), "boredom"),
+        (("record", "run", "repeat"), ["xlmc"]),
+    ]
+
+
+@pytest.mark.parametrize(("path", "value"), changes())
+def test_the_schema_refuses_what_is_no_document(run, validator, path, value):
+    found = json.loads(json.dumps(document(run)))
+    inner = found
+    for key in path[:-1]:
+        inner = inner[key]
+    inner[path[-1]] = value
+    with pytest.raises(jsonschema.ValidationError):
+        validator.validate(found)
+
+
+def test_every_statistic_is_there_to_the_last_bit(run):
+    found = json.loads(json.dumps(document(run)))
+    for each in found["forecasts"]:
+        expected = run[each["name"]].statistics
+        assert each["trials"] == expected.trials
+        for name in STATISTICS:
+            assert_same(each["statistics"][name], getattr(expected, name))
+        assert [p["percent"] for p in each["percentiles"]] == list(expected.percentiles)
+        for percentile, estimate in zip(each["percentiles"], expected.percentiles.values(), strict=True):
+            assert_same(percentile, estimate)
+        for end, estimate in zip(("low", "high"), expected.central, strict=True):
+            assert_same(each["central_range"][end], estimate)
+        if each["certainty"] is not None:
+            assert_same(each["certainty"]["probability_above"], expected.probability_above)
+    assert [each["certainty"] is None for each in found["forecasts"]] == [False, True]
+    assert_same(found["trials"]["acceptance"], run.acceptance)
+
+
+def assert_same(told, estimate):
+    numbers = (estimate.value, estimate.error, *(estimate.interval or (None, None)))
+    for key, number in zip(("value", "error", "low", "high"), numbers, strict=True):
+        assert told[key] == (None if number is None or not math.isfinite(number) else number), key
+
+
+def test_the_filters_account_for_every_trial(run):
+    found = document(run)
+    assert found["trials"]["run"] == run.trials
+    rejected = {each["name"]: each for each in found["filters"]}
+    assert rejected["root"]["rejected"] == run.tally.rejected[0]
+    assert rejected["root"]["also_by"] == {"narrow": run.tally.together[0, 1]}
+    assert rejected["root"]["errors"] == sum(run.tally.errors[0].values()) > 0
+    assert rejected["narrow"]["because"] == "=measured"
+    by_any = sum(each["only"] for each in found["filters"]) + rejected["root"]["also_by"]["narrow"]
+    assert run.trials - run.accepted == by_any
+
+
+def test_assumptions_before_and_after(run):
+    drawn = {each["name"]: each for each in document(run)["assumptions"]}
+    assert [each["status"] for each in drawn.values()] == ["drawn", "drawn", "not needed", "frozen"]
+    width = drawn["width"]
+    assert width["prior"]["mean"]["value"] == pytest.approx(np.mean(run.prior["width"]), rel=1e-14)
+    assert width["accepted"]["mean"]["value"] == pytest.approx(np.mean(run.inputs["width"]), rel=1e-14)
+    assert drawn["idle"]["prior"] is drawn["held"]["accepted"] is None
+
+
+def test_the_record_is_the_record(run):
+    assert document(run, command="typed")["record"] == make_record(run, "typed").as_dict()
+
+
+def test_warnings_and_notices(none_accepted):
+    found = document(none_accepted)
+    assert found["warnings"] == none_accepted.warnings != []
+    assert [notice["message"] for notice in found["notices"]] == [n.message for n in none_accepted.notices]
+
+
+@pytest.mark.parametrize(
+    ("estimate", "reason"),
+    [
+        (Estimate(1.0, 0.5, (0.0, 2.0)), None),
+        (Estimate(math.nan), NO_VALUE),
+        (Estimate(math.inf, 1.0, (0.0, math.inf)), NO_VALUE),
+        (Estimate(1.0), NO_ERROR),
+        (Estimate(1.0, 0.5, (-math.inf, 2.0)), UNBOUNDED),
+        (Estimate(np.float64(1.0), np.float64(0.5), (np.float64(0.0), np.float64(2.0))), None),
+    ],
+)
+def test_what_is_no_number_is_null_with_a_reason(estimate, reason):
+    told = estimate_json(estimate)
+    json.dumps(told, allow_nan=False)
+    assert told.get("reason") == reason
+    assert (reason is not None) == (None in told.values())
+
+
+def test_it_is_written_whole_in_utf8(run, tmp_path):
+    path = tmp_path / "run.json"
+    assert save_json(run, path) == path
+    found = json.loads(path.read_text("utf-8"))
+    assert re.fullmatch(
+        json.loads(SCHEMA.read_text(encoding="utf-8"))["properties"]["seal"]["pattern"], found.pop("seal")
+    )
+    assert found == json.loads(json.dumps(document(run)))
+    before = path.read_bytes()
+    run.save_json(path)
+    assert path.read_bytes() == before
+
+
+@pytest.mark.parametrize("name", ["book.xlsx", "run", "no/run.json"])
+def test_where_it_cannot_be_written(run, tmp_path, name):
+    with pytest.raises(WorkbookError):
+        run.save_json(tmp_path / name)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_statements_certainties_pairs_and_sensitivities_are_those_of_python(run):
+    found = json.loads(json.dumps(document(run)))
+    assert found["statements"] == [{"forecast": s.forecast, "kind": s.kind, "text": s.text} for s in statements(run)]
+    for each, result in zip(found["forecasts"], run.results.values(), strict=True):
+        for told, certainty in zip(each["certainties"], certainties(result), strict=True):
+            assert (told["kind"], told["words"]) == (certainty.kind, certainty.words)
+            assert (told["low"] is None) == math.isinf(certainty.low)
+            assert_same(told["share"], certainty.share)
+    [told], [pair] = found["pairs"], pairs_of(run)
+    assert (told["first"], told["second"], told["limits"]) == ("area", "difference", list(pair.limits))
+    assert_same(told["correlation"], pair.correlation)
+    expected = sensitivities(run)
+    assert found["sensitivity"]["examined"] == expected.examined
+    for told, each in zip(found["sensitivity"]["forecasts"], expected.forecasts, strict=True):
+        assert [i["assumption"] for i in told["influences"]] == [i.assumption for i in each.influences] != []
+        assert_same(told["influences"][0]["rank_correlation"], each.influences[0].rank_correlation)
+        assert told["bars"][0]["answers"] == list(each.bars[0].answers)
+    for told, limit in zip(found["sensitivity"]["filter_limits"], expected.filter_limits, strict=True):
+        assert [point["limit"] for point in told["points"]] == [point.limit for point in limit.points]

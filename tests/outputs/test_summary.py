@@ -1,0 +1,158 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from xlmc.analysis.results.statements import statements
+from xlmc.montecarlo.statistics import Estimate, format_estimate, proportion
+from xlmc.outputs.summary import (
+    ERROR_SENTENCE,
+    base_case,
+    estimate_text,
+    percent,
+    range_heading,
+    share_text,
+    summarise,
+    summary_text,
+)
+
+
+def test_rows_are_the_simulations_own_numbers(run):
+    rows = summarise(run)
+    assert [row.name for row in rows] == ["area", "difference"]
+    area = rows[0]
+    found = run["area"].statistics
+    assert (area.mean, area.standard_deviation, (area.low, area.high)) == (
+        found.mean,
+        found.standard_deviation,
+        found.central,
+    )
+    assert (area.units, area.trials, area.share, area.base, area.threshold) == ("ft", run.accepted, 0.51, 16.0, 16.0)
+    assert area.above == run["area"].probability_above(16.0)
+    assert rows[1].above is None
+
+
+def test_the_text_prints_each_number_with_its_error(run):
+    headings, lines = summary_text(summarise(run))
+    assert headings == ["Forecast", "Units", "Mean", "SD", "51 % range", "Base case", "Threshold", "Above threshold"]
+    found = run["area"].statistics
+    low, high = (format_estimate(end.value, end.error) for end in found.central)
+    above = found.probability_above
+    assert lines[0] == [
+        "area",
+        "ft",
+        format_estimate(found.mean.value, found.mean.error),
+        format_estimate(found.standard_deviation.value, found.standard_deviation.error),
+        f"{low} to {high}",
+        "16",
+        "16",
+        f"{format_estimate(100 * above.value, 100 * above.error)} %",
+    ]
+    assert lines[1][-2:] == ["", ""]
+
+
+def test_columns_that_nothing_fills_are_left_out(none_accepted):
+    headings, lines = summary_text(summarise(none_accepted))
+    assert headings == ["Forecast", "Base case", "Threshold"]
+    assert lines == [["x", "1", "1"]]
+
+
+def test_different_ranges_are_told_apart(make):
+    run = make.simulate(
+        {"A1": 0.5, "B1": "=A1"},
+        [make.uniform("a", "A1", 0.0, 1.0, base=0.5)],
+        [make.forecast("x", "B1"), make.forecast("y", "A1", central=0.95)],
+    )
+    headings, lines = summary_text(summarise(run))
+    assert headings[-3:] == ["Central range", "Range", "Base case"]
+    assert [line[-2] for line in lines] == ["51 %", "95 %"]
+    assert range_heading(summarise(run)) == "Central range"
+
+
+@pytest.mark.parametrize(
+    ("share", "text"), [(0.51, "51 %"), (0.245, "24.5 %"), ((1 - 0.51) / 2, "24.5 %"), (1.0, "100 %")]
+)
+def test_shares_in_percent(share, text):
+    assert percent(share) == text
+
+
+@pytest.mark.parametrize(
+    ("found", "text"),
+    [
+        (proportion(0, 5), "0 %, at most 46 %"),
+        (proportion(5, 5), "100 %, at least 54 %"),
+        (proportion(0, 30_000), "0 %, at most 0.013 %"),
+        (proportion(1, 4), "25 ± 22 %"),
+        (Estimate(0.0), ""),
+    ],
+)
+def test_a_share_of_none_or_all_trials_says_how_far_off_it_may_be(found, text):
+    assert share_text(found) == text
+
+
+def test_no_number_is_no_text():
+    assert estimate_text(Estimate(math.nan)) == ""
+    assert estimate_text(Estimate(17.0213, 0.0023)) == "17.0213 ± 0.0023"
+
+
+def test_the_sentence_says_what_monte_carlo_error_is_not():
+    assert "not reconstruction error" in ERROR_SENTENCE
+
+
+def test_the_base_case_is_computed_with_frozen_cells_held(run):
+    found = base_case(run)
+    assert found.forecasts == {"area": 2.0 * 3.0 + 10.0, "difference": -1.0}
+    assert found.rejected_by == ()
+
+
+@pytest.mark.parametrize(
+    ("base", "rejected"),
+    [(0.5, ()), (5.0, ("small",)), (-1.0, ("root",)), (11.0, ("small", "tiny"))],
+)
+def test_filters_that_would_reject_the_base_case_are_named(make, base, rejected):
+    run = make.simulate(
+        {"A1": base, "B1": "=A1", "C1": "=SQRT(A1)", "C2": "=A1<10"},
+        [make.uniform("a", "A1", 0.0, 1.0, base=base)],
+        [make.forecast("x", "B1")],
+        [make.filter("small", "A1", at_most=2.0), make.filter("root", "C1"), make.filter("tiny", "C2")],
+        trials=10,
+    )
+    assert base_case(run).rejected_by == rejected
+
+
+def test_a_forecast_that_is_no_number_at_the_base_case_has_none(make):
+    run = make.simulate(
+        {"A1": 0.0, "B1": "=1/A1"}, [make.uniform("a", "A1", 0.0, 1.0, base=0.0)], [make.forecast("x", "B1")]
+    )
+    assert base_case(run).forecasts == {"x": None}
+
+
+def test_without_a_base_value_there_is_no_base_case(make):
+    run = make.simulate({"A1": None, "B1": "=A1"}, [make.uniform("a", "A1", 0.0, 1.0)], [make.forecast("x", "B1")])
+    assert base_case(run) is None
+
+
+def test_numbers_far_from_0_keep_the_digits_that_tell_them_apart(make):
+    """Thresholds, the base case, ranges without an error and constants: a date with a time, a coordinate."""
+    run = make.simulate(
+        {"A1": 45321.75, "B1": "=A1+0", "C1": "=1234567.8"},
+        [make.uniform("a", "A1", 45321.75, 45321.76, base=45321.75)],
+        [
+            make.forecast("x", "B1", central=0.9999999, threshold=45321.755, asked=(45321.7512, 45321.7588)),
+            make.forecast("c", "C1"),
+        ],
+    )
+    headings, (time, constant) = summary_text(summarise(run))
+    found = dict(zip(headings, time, strict=True))
+    assert found["Threshold"] == "45321.755"
+    assert found["Certainty of"] == "from 45321.7512 to 45321.7588"
+    assert found["Base case"] == "45321.75"
+    low, high = (float(end.split(" ")[0]) for end in found["Central range"].split(" to "))
+    assert (low, high) == pytest.approx((45321.75, 45321.76), abs=2e-5)
+    assert found["Range"] == "99.99999 %"
+    assert dict(zip(headings, constant, strict=True))["Mean"] == "1234567.8 ± 0"
+    said = [each.text for each in statements(run)]
+    assert any("P(x > 45321.755)" in each for each in said)
+    assert any("x from 45321.7512 to 45321.7588" in each for each in said)
+    assert any(each.startswith("c: 1,234,567.8 in all") for each in said)

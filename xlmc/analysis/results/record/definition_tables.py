@@ -1,0 +1,293 @@
+"""The record's tables of definitions, each row with its results in the run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+from xlmc.analysis.results.record.record_parts import RecordTable, Section, Value
+from xlmc.analysis.results.statements.in_words import (
+    cutoffs_text,
+    discards_of,
+    evidence_text,
+    limits_text,
+    notes_text,
+    parameters_text,
+    status,
+)
+from xlmc.excel.address import Cell
+from xlmc.montecarlo.model.correlating import CHANGED, drawn_correlation
+from xlmc.montecarlo.statistics import Estimate, rank_correlation
+from xlmc.montecarlo.statistics.estimate import finite
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.definitions.definitions import Filter
+    from xlmc.montecarlo.loop.forecast_result import ForecastResult
+    from xlmc.montecarlo.simulation.simulation import Simulation
+
+__all__ = [
+    "CorrelationMet",
+    "assumption_section",
+    "check_section",
+    "correlation_section",
+    "correlations_met",
+    "evidence_section",
+    "filter_section",
+    "forecast_filter_section",
+    "forecast_section",
+]
+
+
+_FORECAST = (
+    ("name", "Forecast"),
+    ("cell", "Cell"),
+    ("units", "Units"),
+    ("range_share", "Range"),
+    ("threshold", "Threshold"),
+    ("trials", "Trials"),
+    ("mean", "Mean"),
+    ("standard_deviation", "Standard deviation"),
+    ("low", "Range from"),
+    ("high", "to"),
+    ("notes", "Notes"),
+)
+_CERTAINTY = (("certainty_from", "Certainty from"), ("certainty_to", "to"), ("certainty", "Certainty"))
+"""Columns of forecasts where a range was asked for."""
+
+_FILTER = (
+    ("name", "Filter"),
+    ("cell", "Cell"),
+    ("limits", "Must be"),
+    ("because", "Because"),
+    ("rejected", "Rejected"),
+    ("only", "Rejected by it alone"),
+    ("errors", "Errors in it"),
+    ("notes", "Notes"),
+)
+_FORECAST_FILTER = (
+    ("name", "Filter"),
+    ("only_for", "Only for"),
+    ("cell", "Cell"),
+    ("limits", "Must be"),
+    ("because", "Because"),
+    ("discarded", "Discarded"),
+    ("notes", "Notes"),
+)
+_CHECK = (
+    ("name", "Check"),
+    ("cell", "Cell"),
+    ("base", "Base case"),
+    ("tried", "Trials"),
+    ("failed", "Failing"),
+    ("because", "Because"),
+    ("notes", "Notes"),
+)
+_EVIDENCE = (
+    ("name", "Evidence"),
+    ("cell", "Cell"),
+    ("reading", "Reading and error"),
+    ("source", "Source"),
+    ("kept", "Share kept alone"),
+    ("chance", "Chance of such a reading"),
+    ("verdict", "Verdict"),
+    ("notes", "Notes"),
+)
+_ASSUMPTION = (
+    ("name", "Assumption"),
+    ("cell", "Cell"),
+    ("status", "Status"),
+    ("distribution", "Distribution"),
+    ("parameters", "Parameters"),
+    ("cutoffs", "Cut off"),
+    ("base", "Base case"),
+    ("units", "Units"),
+    ("source", "Source"),
+    ("notes", "Notes"),
+)
+_CORRELATION = (
+    ("first", "First"),
+    ("second", "Second"),
+    ("rank_correlation", "Rank correlation"),
+    ("used", "Drawn with"),
+    ("accepted", "Accepted"),
+    ("accepted_error", "±"),
+    ("cell", "Row"),
+)
+
+
+def forecast_section(simulation: Simulation) -> Section:
+    """Every forecast with its main results at full precision, for a repeat to be compared with."""
+    results = simulation.results.values()
+    rows = tuple(_forecast_row(result) for result in results)
+    if not any(result.definition.asked for result in results):
+        return Section("forecasts", "Forecasts", table=RecordTable(_FORECAST, rows))
+    more = tuple(_certainty_cells(result) for result in results)
+    rows = tuple(row + cells for row, cells in zip(rows, more, strict=True))
+    return Section("forecasts", "Forecasts", table=RecordTable((*_FORECAST, *_CERTAINTY), rows))
+
+
+def _certainty_cells(result: ForecastResult) -> tuple[Value, ...]:
+    low, high = result.definition.asked or (None, None)
+    return finite(low), finite(high), None if result.certainty is None else finite(result.certainty.value)
+
+
+def _forecast_row(result: ForecastResult) -> tuple[Value, ...]:
+    definition, statistics = result.definition, result.statistics
+    estimates = (statistics.mean, statistics.standard_deviation, *statistics.central)
+    return (
+        definition.name,
+        str(definition.cell),
+        definition.units,
+        definition.central,
+        definition.threshold,
+        statistics.trials,
+        *(finite(estimate.value) for estimate in estimates),
+        notes_text(definition.notes),
+    )
+
+
+def filter_section(simulation: Simulation) -> Section:
+    """Every filter with its limits, its reason, and the trials it rejected."""
+    rows = tuple(_filter_row(simulation, *found) for found in enumerate(simulation.model.filters))
+    return Section("filters", "Filters", table=RecordTable(_FILTER, rows))
+
+
+def _filter_row(simulation: Simulation, index: int, filter_: Filter) -> tuple[Value, ...]:
+    tally = simulation.tally
+    return (
+        filter_.name,
+        str(filter_.cell),
+        limits_text(filter_),
+        filter_.because,
+        int(tally.rejected[index]),
+        int(tally.only[index]),
+        sum(tally.errors[index].values()),
+        notes_text(filter_.notes),
+    )
+
+
+def forecast_filter_section(simulation: Simulation) -> Section:
+    """Every filter of some forecasts only, a row for each of them, with the accepted trials that it discards."""
+    rows = tuple(
+        (
+            each.filter.name,
+            each.forecast,
+            str(each.filter.cell),
+            limits_text(each.filter),
+            each.filter.because,
+            each.trials,
+            notes_text(each.filter.notes),
+        )
+        for each in discards_of(simulation)
+    )
+    return Section("forecast_filters", "Filters for some forecasts only", table=RecordTable(_FORECAST_FILTER, rows))
+
+
+def evidence_section(simulation: Simulation) -> Section:
+    """Every row of `xlmc_evidence`, and what was found of those that are used."""
+    found = {} if simulation.agreement is None else {each.name: each for each in simulation.agreement.items}
+    rows = []
+    for each in simulation.model.evidence:
+        judged = found.get(each.name)
+        told: tuple[Value, ...] = (None, None, "not used")
+        if judged is not None:
+            told = finite(judged.alone.value), finite(judged.chance), judged.verdict.value
+        said = (each.name, str(each.cell), evidence_text(each), each.source)
+        rows.append((*said, *told, notes_text(each.notes)))
+    return Section("evidence", "Evidence", table=RecordTable(_EVIDENCE, tuple(rows)))
+
+
+def check_section(simulation: Simulation) -> Section:
+    """Every check with what its cell holds at the base case, and the accepted trials that fail it."""
+    rows = tuple(
+        (
+            check.name,
+            str(check.cell),
+            check.base.found,
+            check.trials,
+            check.failed,
+            check.because,
+            notes_text(check.base.definition.notes),
+        )
+        for check in simulation.checks
+    )
+    return Section("checks", "Checks", table=RecordTable(_CHECK, rows))
+
+
+def assumption_section(simulation: Simulation) -> Section:
+    """Every assumption, drawn or not."""
+    rows: list[tuple[Value, ...]] = []
+    for assumption in simulation.model.assumptions:
+        said = status(simulation.model, assumption.name, assumption.frozen), assumption.distribution
+        given = parameters_text(assumption), cutoffs_text(assumption.cutoffs), assumption.base
+        notes = assumption.units, assumption.source, notes_text(assumption.notes)
+        rows.append((assumption.name, str(assumption.cell), *said, *given, *notes))
+    return Section("assumptions", "Assumptions", table=RecordTable(_ASSUMPTION, tuple(rows)))
+
+
+def correlation_section(simulation: Simulation) -> Section:
+    """The rank correlations asked for, those drawn with, and those of the accepted trials."""
+    rows = tuple(
+        (
+            met.first,
+            met.second,
+            met.asked,
+            met.used,
+            None if met.accepted is None else finite(met.accepted.value),
+            None if met.accepted is None else finite(met.accepted.error),
+            None if met.row is None else str(met.row),
+        )
+        for met in correlations_met(simulation)
+    )
+    return Section("correlations", "Correlations", table=RecordTable(_CORRELATION, rows))
+
+
+@dataclass(frozen=True, slots=True)
+class CorrelationMet:
+    """A pair of assumptions.
+
+    Attributes:
+        asked: the rank correlation in its row, or that of its copula; 0 where it has neither.
+        row: its first cell, or that of the copula; None where a repair changed a pair that no row names.
+        used: the rank correlation that it was drawn with; None where one of the two was not drawn.
+        accepted: that of the accepted trials whose draws are kept; None where one of the two was not drawn, or where
+            trials are weighted.
+    """
+
+    first: str
+    second: str
+    asked: float
+    row: Cell | None
+    used: float | None = None
+    accepted: Estimate | None = None
+
+
+def correlations_met(simulation: Simulation) -> list[CorrelationMet]:
+    """The pairs in the order of the rows, then those that a repair changed without a row."""
+    model = simulation.model
+    pairs = [(c.first, c.second, c.number, c.row) for c in model.definitions.correlations]
+    return [_met(simulation, *pair) for pair in (*pairs, *_unnamed(simulation))]
+
+
+def _unnamed(simulation: Simulation) -> Iterator[tuple[str, str, float, Cell | None]]:
+    model = simulation.model
+    named = {frozenset((c.first, c.second)) for c in model.definitions.correlations}
+    for group in model.groups:
+        for first, second in combinations(group.names, 2):
+            found = drawn_correlation(model.groups, first, second)
+            if frozenset((first, second)) not in named and found is not None and abs(found) >= CHANGED:
+                yield first, second, 0.0 if group.where is None else found, group.where
+
+
+def _met(simulation: Simulation, first: str, second: str, asked: float, row: Cell | None) -> CorrelationMet:
+    drawn = drawn_correlation(simulation.model.groups, first, second)
+    if drawn is None:
+        return CorrelationMet(first, second, asked, row)
+    if simulation.weighting is not None:
+        return CorrelationMet(first, second, asked, row, drawn)
+    x, y = simulation.inputs[first], simulation.inputs[second]
+    replicate = simulation.replicate
+    accepted = rank_correlation(x, y, None if replicate is None else replicate[: x.size])
+    return CorrelationMet(first, second, asked, row, drawn, accepted)

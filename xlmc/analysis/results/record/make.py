@@ -1,0 +1,394 @@
+"""Make the record of a finished run."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import shlex
+from collections.abc import Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.analysis.results.record.definition_tables import (
+    assumption_section,
+    check_section,
+    correlation_section,
+    evidence_section,
+    filter_section,
+    forecast_filter_section,
+    forecast_section,
+)
+from xlmc.analysis.results.record.errors_met import errors_met
+from xlmc.analysis.results.record.needed_cells import cell_section, needed_contents, structure_section
+from xlmc.analysis.results.record.record_parts import Entry, Record, RecordTable, Section
+from xlmc.analysis.results.record.settings_table import settings_section
+from xlmc.analysis.results.statements.in_words import errors_text, generator_text, method_text
+from xlmc.excel.workbook.inject import original_hash
+from xlmc.montecarlo.columns import parts
+from xlmc.montecarlo.definitions.stopping import LIMIT
+from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.simulation.simulation import KEPT_INPUTS, ChangedFrom
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.rare.account import RareAccount
+    from xlmc.montecarlo.simulation.simulation import Simulation
+import platform
+from importlib.metadata import version
+
+from xlmc.engine.engines import ENGINES
+from xlmc.montecarlo.statistics.estimate import finite
+
+__all__ = ["LIBRARIES", "fingerprint", "make_record", "processor", "quoted_argument", "repeat_command", "versions"]
+
+LIBRARIES = ("numpy", "scipy", "formulas", "XlsxWriter", "openpyxl")
+
+
+def versions(engine: str = "numpy") -> dict[str, str]:
+    """Name -> version of xlmc, of Python and of the libraries a result depends on, those of its engine among them."""
+    from xlmc.montecarlo.loop.version import __version__
+
+    own = {"xlmc": __version__, "python": platform.python_version()}
+    return own | {name: _installed(name) for name in (*LIBRARIES, *filter(None, [ENGINES[engine].library]))}
+
+
+@cache
+def _installed(library: str) -> str:
+    """The version of a library, which is read from files only once in a process."""
+    return version(library)
+
+
+def processor() -> dict[str, str]:
+    """The kind of machine and the vector instructions NumPy found: its sine may differ between them in the last bit."""
+    import numpy
+
+    found: dict[str, list[str]] = numpy.show_config(mode="dicts")["SIMD Extensions"]  # type: ignore[assignment]
+    features = [*found.get("baseline", []), *found.get("found", [])]
+    return {
+        "machine": platform.machine(),
+        "system": platform.system(),
+        "vector_instructions": " ".join(features) or "none",
+    }
+
+
+CHANGED_FROM: Final = "changed"
+"""Key of the section on the workbook that the run's own was made of."""
+
+_FORMAT: Final = 2
+"""The format of the record: from 2 on it holds the settings and the cells that a run can be repeated and checked by."""
+
+_SHARES = {
+    "trials": "accepted trials divided by all trials; its 95 % interval is by Wilson's formula",
+    "accepted": "(N − 1)/(n − 1) for n trials until the N-th was accepted; its 95 % interval is exact",
+}
+"""How the share of accepted trials is estimated, by what ended the run."""
+
+_RARE_SHARE = "the mean weight of the trials drawn where accepted ones lie; its 95 % interval is that of its logarithm"
+_CONVENTIONS = (
+    ("percentiles", "Percentiles", "linear between trials, as Excel's PERCENTILE.INC"),
+    ("central_range", "Central range", "as many trials lie below it as above it; it is not the shortest such range"),
+    ("kurtosis", "Kurtosis", "3 for the normal distribution"),
+    ("mode", "Mode", "the half-sample mode (within the densest half, again and again); of counts the most frequent"),
+    ("errors", "Standard errors (±)", "Monte Carlo error alone"),
+    ("shares", "Intervals of shares", "95 %, by Wilson's formula; longer where a share rests on a few trials"),
+    ("trial_numbers", "Trial numbers", "counted from 0"),
+    ("logicals", "Logicals", "TRUE counts as 1, FALSE as 0"),
+)
+_LABELS = {
+    "python": "Python",
+    "numpy": "NumPy",
+    "scipy": "SciPy",
+    "machine": "Machine",
+    "system": "System",
+    "vector_instructions": "Vector instructions",
+}
+_PLAIN = re.compile(r"[\w.,:+@%/=-]+")
+_SAFE_IN_DOUBLE_QUOTES = re.compile(r'[^"\\$`!%\n]+')
+
+
+def make_record(simulation: Simulation, command: str | None = None) -> Record:
+    """The record of a run; the same run on the same machine has the same record.
+
+    Args:
+        simulation: the finished run.
+        command: what the person typed; None for a run from Python.
+    """
+    contents = needed_contents(simulation.model)
+    software, machine = _environment(simulation)
+    return Record(
+        (
+            _run(simulation, command),
+            _file(simulation),
+            *([] if simulation.changed_from is None else [_changed_from(simulation.changed_from)]),
+            _counts(simulation),
+            _end(simulation),
+            _sampling(simulation),
+            settings_section(simulation),
+            *([] if simulation.rare is None else [_rare(simulation.rare)]),
+            forecast_section(simulation),
+            filter_section(simulation),
+            *([forecast_filter_section(simulation)] if simulation.model.forecast_filters else []),
+            *([evidence_section(simulation)] if simulation.model.evidence else []),
+            *([check_section(simulation)] if simulation.checks else []),
+            assumption_section(simulation),
+            correlation_section(simulation),
+            _messages("warnings", "Warnings", simulation.warnings),
+            _messages("notices", "Notices", [str(notice) for notice in simulation.notices]),
+            _errors(simulation),
+            _conventions(simulation),
+            Section("software", "Software", _entries(software)),
+            Section("processor", "Processor", _entries(machine)),
+            structure_section(simulation.model, contents.values()),
+            cell_section(contents),
+        )
+    )
+
+
+def _environment(simulation: Simulation) -> tuple[Mapping[str, str], Mapping[str, str]]:
+    """The software and the processor of the run: those it was saved with, or those here."""
+    origin = simulation.origin
+    if origin is not None:
+        return origin.software, origin.processor
+    return versions(simulation.settings.engine), processor()
+
+
+def _run(simulation: Simulation, command: str | None) -> Section:
+    given = () if command is None else (Entry("command", "Command that was given", command),)
+    entries = (
+        Entry("repeat", "Command that repeats it", repeat_command(simulation)),
+        *given,
+        Entry("fingerprint", "SHA-256 of the accepted trials", fingerprint(simulation)),
+        Entry("format", "Format of this record", _FORMAT),
+    )
+    return Section("run", "This run", entries)
+
+
+def _file(simulation: Simulation) -> Section:
+    book = simulation.model.workbook
+    entries = (
+        Entry("name", "Name", book.name),
+        Entry("sha256", "SHA-256 of the file", book.sha256 or None),
+        # Result sheets do not change this one, so a result workbook can be checked against the book it came from.
+        Entry(
+            "original_sha256",
+            "SHA-256 of the file without result sheets",
+            original_hash(book.parts) if book.parts else None,
+        ),
+    )
+    return Section("file", "Workbook", entries)
+
+
+def _changed_from(found: ChangedFrom) -> Section:
+    """What the workbook of the run differs in from the one that it was made of."""
+    entries = (
+        Entry("name", "Workbook that was changed", found.name),
+        Entry("sha256", "SHA-256 of its file", found.sha256),
+    )
+    rows = tuple((change,) for change in found.changes)
+    return Section(CHANGED_FROM, "Changed from that workbook", entries, RecordTable((("change", "Change"),), rows))
+
+
+def changed_from_of(record: Record) -> ChangedFrom | None:
+    """What the run of a record says of the workbook that its own was made of; None where it says nothing."""
+    if CHANGED_FROM not in record:
+        return None
+    changes = tuple(str(row["change"]) for row in record.rows(CHANGED_FROM))
+    return ChangedFrom(str(record["changed.name"]), str(record["changed.sha256"]), changes)
+
+
+def _counts(simulation: Simulation) -> Section:
+    entries = (
+        Entry("trials", "Trials", simulation.trials),
+        Entry("accepted", "Accepted", simulation.accepted),
+        Entry("inputs_kept", "Accepted trials whose draws are kept", simulation.kept_inputs),
+        Entry("acceptance", "Share accepted", finite(simulation.acceptance.value)),
+        Entry("acceptance_error", "Its standard error", finite(simulation.acceptance.error)),
+        *_weight_entries(simulation),
+        Entry("error_trials", "Lost to errors", simulation.error_trials),
+        Entry("undecided", "Error in a filter, and no filter FALSE", simulation.tally.by_error),
+        Entry("invalid", "Draws whose parameters are not a distribution", sum(simulation.invalid.values())),
+    )
+    return Section("counts", "Trials", entries)
+
+
+def _weight_entries(simulation: Simulation) -> tuple[Entry, ...]:
+    """The weights that evidence gives the accepted trials, where they do not count alike."""
+    found = simulation.weighting
+    if found is None:
+        return ()
+    return (
+        Entry("effective", "Effective sample size", found.effective),
+        Entry("mean_weight", "Mean weight", found.mean),
+        Entry("largest_weight", "Largest weight", found.largest),
+    )
+
+
+def _end(simulation: Simulation) -> Section:
+    stopped, asked = simulation.stopped, simulation.settings.stopping
+    entries = (
+        Entry("by", "Ended by", stopped.by),
+        Entry("in_words", "In words", stopped.sentence),
+        Entry("goal", "Goal: go on until", stopped.goal),
+        Entry("reached", "Reached it", stopped.reached),
+        Entry("most_trials", "Trials at most", simulation.settings.trials),
+        Entry("time_limit", "Seconds at most", asked.seconds),
+        Entry("blocks", "Blocks of trials", -(-simulation.trials // simulation.block)),
+        Entry("share_accepted", "The share accepted is", _share_words(simulation)),
+    )
+    return Section("end", "What ended the run", entries)
+
+
+def _share_words(simulation: Simulation) -> str:
+    if simulation.rare is not None:
+        return _RARE_SHARE
+    return _SHARES.get(simulation.stopped.by, _SHARES["trials"])
+
+
+def _sampling(simulation: Simulation) -> Section:
+    settings, plan = simulation.settings, simulation.plan
+    replicates = (
+        Entry("asked", "Trials that were asked for", settings.trials),
+        Entry("replicates", "Independent replicates", plan.replicates),
+        Entry("replicate", "Trials in a replicate", plan.size),
+    )
+    entries = (
+        Entry("trials", "Trials", simulation.trials),
+        Entry("seed", "Seed", settings.seed),
+        Entry("method", "Method", settings.sampling),
+        Entry("method_in_words", "In words", method_text(simulation)),
+        *(replicates if plan.size else ()),
+        Entry("errors", "Errors come", errors_text(simulation)),
+        Entry("generator", "Generator", generator_text(simulation)),
+        *([Entry("dimensions", "Sobol dimensions", ", ".join(map(name_key, plan.order)))] if plan.order else []),
+        Entry("engine", "Engine", settings.engine),
+        Entry("block", "Trials in a block", simulation.block),
+    )
+    return Section("sampling", "Sampling", entries)
+
+
+def _rare(found: RareAccount) -> Section:
+    low, high = found.acceptance.interval or (None, None)
+    entries = (
+        Entry("in_words", "In words", found.sentence),
+        Entry("evaluations", "Trials evaluated in all", found.evaluations),
+        Entry("learning", "Of them, to learn where accepted ones lie", found.learning),
+        Entry("proposals", "Of them, drawn where accepted ones lie", found.proposals),
+        Entry("proposals_accepted", "Drawn there and accepted by the filters", found.proposals_accepted),
+        Entry("kept", "Kept, with equal weight", found.kept),
+        Entry("effective", "Effective sample size of the kept ones", finite(found.size)),
+        Entry("fresh", "Drawn after enough were kept, for the probability", found.fresh),
+        Entry("acceptance", "Probability that a trial is accepted", finite(found.acceptance.value)),
+        Entry("acceptance_low", "Its 95 % interval (by its logarithm), from", finite(low)),
+        Entry("acceptance_high", "to", finite(high)),
+        Entry("acceptance_effective", "Effective sample size behind it", finite(found.effective)),
+        Entry("searched", "The same probability by splitting, for comparison", finite(found.searched)),
+        Entry("ways", "Ways (sets of branches) searched separately", found.ways),
+        Entry("explored", "Probability of parts that splitting missed", finite(found.explored)),
+        Entry("at_least", "The probability is only a lower limit", found.at_least),
+        Entry("plain_accepted", "Plain trials before the search that were accepted", found.plain_accepted),
+        Entry("checked", "Trials from widened assumptions after the search", found.checked),
+        Entry("missed", "Probability of parts met but not described", finite(found.missed)),
+        Entry("levels", "Levels of the splitting", found.levels),
+        Entry("components", "Normal distributions in the mixture", found.components),
+        Entry("directions", "Directions in which it was learned", found.directions),
+        Entry("dimensions", "Assumptions that are drawn", found.dimensions),
+        *(
+            (Entry("solved", "Assumptions that the filters were solved for", ", ".join(found.solved)),)
+            if found.solved
+            else ()
+        ),
+        Entry("engine", "Engine of the search and of its trials", "numpy"),
+        Entry("lost", "Trials of the search with errors in cells", found.lost),
+        Entry("faulty", "Accepted trials with an error in a forecast", found.faulty),
+    )
+    return Section("rare", "Search for rare accepted trials", entries)
+
+
+def _errors(simulation: Simulation) -> Section:
+    columns = (("kind", "In a"), ("name", "Name"), ("cell", "Cell"), ("error", "Error"), ("trials", "Trials"))
+    rows = tuple((met.kind, met.name, str(met.cell), met.error, met.trials) for met in errors_met(simulation))
+    return Section("errors", "Errors in cells", table=RecordTable(columns, rows))
+
+
+def _conventions(simulation: Simulation) -> Section:
+    replicates = "of a sample: the mean square about the mean, and the squared error of the mean"
+    variance = replicates if simulation.plan.size else "of a sample: divided by n − 1, as Excel's VAR.S"
+    entries = [Entry(*convention) for convention in _CONVENTIONS]
+    entries.insert(2, Entry("variance", "Variance", variance))
+    return Section("conventions", "Conventions", tuple(entries))
+
+
+def _messages(key: str, title: str, messages: Sequence[str]) -> Section:
+    rows = tuple((message,) for message in messages)
+    return Section(key, title, table=RecordTable((("message", "Message"),), rows))
+
+
+def _entries(found: Mapping[str, str]) -> tuple[Entry, ...]:
+    return tuple(Entry(key, _LABELS.get(key, key), text) for key, text in found.items())
+
+
+def fingerprint(simulation: Simulation) -> str:
+    """SHA-256 (lower-case hex) of the accepted trials: indices, then inputs, then forecasts, in the workbook's order.
+
+    Inputs are those of the first 1,048,576 accepted trials, or what the run kept of them. Indices are 8-byte
+    little-endian integers, the rest IEEE doubles, little-endian; every missing number is the same NaN.
+    """
+    digest = hashlib.sha256()
+    for part in parts(simulation.trial_index):
+        digest.update(part.astype("<i8", copy=False).data)
+    for values in simulation.inputs.values():
+        _update(digest, values[:KEPT_INPUTS])
+    for values in simulation.forecasts.values():
+        _update(digest, values)
+    return digest.hexdigest()
+
+
+def _update(digest: hashlib._Hash, values: NDArray[np.float64]) -> None:
+    for part in parts(values):
+        digest.update(np.where(np.isnan(part), np.nan, part).astype("<f8", copy=False).data)
+
+
+def repeat_command(simulation: Simulation) -> str:
+    """What to type, in the workbook's folder, to get the same numbers: `xlmc simulate book.xlsx --trials … --seed …`.
+
+    A run that ended with an accepted trial it waited for is repeated as that, any other by its number of trials. Other
+    settings are named where they differ from the workbook's own, which the repeat reads again. Of a changed copy, which
+    may stand in no file, it is said how to make one.
+    """
+    settings, own = simulation.settings, simulation.model.definitions.settings
+    book, changed = simulation.model.workbook.name, simulation.changed_from
+    first = ""
+    if changed is not None:
+        book = f"COPY{Path(book).suffix}"
+        first = f"type the changes that this record lists into a copy of {changed.name}, and then: "
+    options = [*_length(simulation), f"--seed {settings.seed}"]
+    if settings.sampling != own.sampling:
+        options.append(f"--sampling {settings.sampling}")
+    if settings.stopping.rare is not None and simulation.stopped.by in ("accepted", "search"):
+        options.append(f"--rare {settings.stopping.rare}")
+    if settings.engine != own.engine:
+        options.append(f"--engine {settings.engine}")
+    if settings.scenarios:
+        options.append("--scenarios")
+    return " ".join([f"{first}xlmc simulate", quoted_argument(f"./{book}" if book.startswith("-") else book), *options])
+
+
+def _length(simulation: Simulation) -> list[str]:
+    settings = simulation.settings
+    if simulation.stopped.by == "search" or getattr(simulation, "rare", None) is not None:
+        limit = [] if settings.trials == LIMIT else [f"--trials {settings.trials}"]
+        return [*limit, f"--until-accepted {settings.stopping.accepted}"]
+    if simulation.stopped.by != "accepted":
+        return [f"--trials {simulation.trials}"]
+    limit = [f"--trials {simulation.trials}"] if simulation.trials > LIMIT else []
+    return [*limit, f"--until-accepted {simulation.accepted}"]
+
+
+def quoted_argument(text: str) -> str:
+    """The text as one argument of a command: in double quotes, which every shell knows, or else as POSIX quotes."""
+    if _PLAIN.fullmatch(text):
+        return text
+    return f'"{text}"' if _SAFE_IN_DOUBLE_QUOTES.fullmatch(text) else shlex.quote(text)

@@ -1,0 +1,121 @@
+"""The settings of a run in the record, exactly, and read back."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import astuple, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, get_type_hints
+
+from xlmc.analysis.results.record.record_parts import Entry, Record, Section, Value
+from xlmc.errors import WorkbookError, XlmcError
+from xlmc.montecarlo.definitions.definitions import Settings
+from xlmc.montecarlo.definitions.stopping import GOALS, Goal, Stopping, only_one
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.simulation.simulation import Simulation
+
+__all__ = ["FLOAT64", "in_float32", "recorded_settings", "settings_section"]
+
+FLOAT64: Final = "float64"
+"""The arithmetic of all runs; those of xlmc 0.3.0 and before could also be computed in float32."""
+
+
+def in_float32(version: str, where: Path | None = None) -> WorkbookError:
+    """The refusal of a run that was computed in float32.
+
+    Args:
+        version: the xlmc that made it; empty where it is not known.
+        where: the file, where the caller does not name it.
+    """
+    made = f"xlmc {version}" if version else "An older xlmc"
+    message = f"{made} computed this run with 32-bit numbers (float32), and this version computes with 64-bit ones only"
+    return WorkbookError(message, where=where, hint=f"Open or repeat it with {made.replace('An', 'an', 1)}")
+
+
+def settings_section(simulation: Simulation) -> Section:
+    """What the run was asked to do, each setting so that it reads back as the same one."""
+    settings, asked = simulation.settings, simulation.settings.stopping
+    entries = (
+        Entry("trials", "Trials at most", settings.trials),
+        Entry("seed", "Seed", str(settings.seed)),  # as text: a worksheet's numbers have 15 to 17 digits
+        Entry("sampling", "Sampling", settings.sampling),
+        Entry("engine", "Engine", settings.engine),
+        Entry("lognorm", "RiskLognorm is that of", settings.lognorm or None),
+        *([Entry("evidence", "Evidence by", settings.evidence)] if settings.evidence else []),
+        *(entry for kind in GOALS.values() for entry in _goal_entries(kind, asked.goal)),
+        Entry(
+            "for", "Of these forecasts", json.dumps(asked.forecasts, ensure_ascii=False) if asked.forecasts else None
+        ),
+        Entry("time_limit", "Seconds at most", asked.seconds),
+        Entry("rare", "Search for rare trials", asked.rare),
+        *([Entry("scenarios", "Scenarios are run, too", True)] if settings.scenarios else []),
+    )
+    return Section("settings", "Settings", entries)
+
+
+def _goal_entries(kind: type[Goal], asked: Goal | None) -> Iterator[Entry]:
+    """An entry for every field of a goal, empty where another was asked for."""
+    values = astuple(asked) if isinstance(asked, kind) else [None] * len(kind.labels)
+    for (key, label), value in zip(kind.labels, values, strict=True):
+        yield Entry(key, label, ",".join(value) if isinstance(value, tuple) else value)
+
+
+def recorded_settings(record: Record) -> Settings:
+    """The settings of a recorded run.
+
+    Raises:
+        KeyError: the record does not hold them.
+        WorkbookError: they cannot be read, or the run was computed in float32.
+    """
+    section = {entry.key: entry.value for entry in record.section("settings").entries}
+    if section.get("arithmetic", FLOAT64) != FLOAT64:
+        software = {entry.key: entry.value for entry in record.section("software").entries}
+        raise in_float32(str(software.get("xlmc", "")))
+    try:
+        return Settings(
+            trials=_whole(section["trials"]),
+            seed=int(str(section["seed"])),
+            sampling=str(section["sampling"]),
+            engine=str(section["engine"]),
+            lognorm=str(section["lognorm"] or ""),
+            scenarios=bool(section.get("scenarios")),
+            stopping=_stopping(section),
+            evidence=str(section.get("evidence") or ""),
+        )
+    except (TypeError, ValueError, XlmcError) as error:
+        hint = "The record was edited: use a copy of the result workbook as xlmc wrote it"
+        raise WorkbookError(f"the settings in the record cannot be read ({error})", hint=hint) from error
+
+
+def _stopping(section: dict[str, Value]) -> Stopping:
+    goals = [_goal(kind, section) for kind in GOALS.values() if section.get(kind.labels[0][0]) is not None]
+    forecasts = tuple(str(name) for name in json.loads(str(section["for"] or "[]")))
+    seconds = section["time_limit"]
+    return Stopping(
+        goal=only_one(goals),
+        forecasts=forecasts,
+        seconds=None if seconds is None else float(seconds),
+        rare=None if section["rare"] is None else str(section["rare"]),
+    )
+
+
+def _goal(kind: type[Goal], section: dict[str, Value]) -> Goal:
+    hints = get_type_hints(kind)
+    values = zip(fields(kind), kind.labels, strict=True)
+    return kind(*(_READERS.get(hints[field.name], _list)(section[key]) for field, (key, _) in values))
+
+
+def _list(value: Value) -> tuple[str, ...]:
+    return tuple(str(value).split(","))
+
+
+def _whole(value: Value) -> int:
+    if not isinstance(value, int | float) or value != int(value):
+        raise ValueError(f"{value!r} is not a whole number")
+    return int(value)
+
+
+_READERS: Final[dict[Any, Callable[[Any], Any]]] = {int: _whole, float: float, bool: bool, str: str}
+"""The type of a goal's field -> what reads its entry; lists of texts stand with commas."""

@@ -1,0 +1,132 @@
+"""Save a finished run in a file."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.analysis.results.record.make import processor, versions
+from xlmc.analysis.results.saved.archive import RUN, SUFFIX, WORKBOOK, column_header, column_parts, write_entries
+from xlmc.analysis.results.saved.run_json import FORMAT, VERSION, settings_document, tally_document
+from xlmc.errors import SimulationError, WorkbookError
+from xlmc.excel.workbook.seal import blank_seal, seal_file
+from xlmc.excel.workbook.target import Target
+from xlmc.excel.workbook.writer import whole_file
+from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.simulation.simulation import Origin
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.simulation.simulation import Simulation
+
+__all__ = ["check_run_path", "keep"]
+
+
+class _Column(NamedTuple):
+    """A column to save: `trial`, `input`, `prior` or `forecast`, and whose."""
+
+    kind: str
+    name: str
+    type: str
+    values: NDArray[Any]
+
+
+def keep(simulation: Simulation, path: Path, *, overwrite: bool = False) -> Path:
+    """Save the run: the workbook it was made from, its settings and counts, and its columns.
+
+    The same run gives the same bytes. Columns on disk are copied a part at a time.
+
+    Args:
+        simulation: the finished run.
+        path: where to, ending in `.xlmcrun`; an untouched saved run of the same workbook is replaced.
+        overwrite: replace any other file too.
+
+    Returns:
+        The path.
+
+    Raises:
+        TakenError: the file is not ours to replace.
+        WorkbookError: the file cannot be written, or has another ending.
+        SimulationError: the workbook was not read from a file.
+    """
+    check_run_path(path)
+    if not simulation.model.workbook.data:
+        message = "the run cannot be saved: its workbook was not read from a file"
+        raise SimulationError(message, hint="read it with xlmc.load")
+    target = Target(path, simulation.model.workbook.name, overwrite, read=[simulation.model.path])
+    target.check()
+    with whole_file(path, target.check) as file:
+        write_entries(file, _entries(simulation), blank_seal(target.book))
+        seal_file(file, target.book)
+    return path
+
+
+def check_run_path(path: Path) -> None:
+    """Refuse a name that is not that of a saved run.
+
+    Raises:
+        WorkbookError: the name does not end in `.xlmcrun`.
+    """
+    if path.suffix.casefold() != SUFFIX:
+        hint = f"Name it {path.stem + SUFFIX!r}"
+        raise WorkbookError(f"a saved run must end in {SUFFIX}", where=path, hint=hint)
+
+
+def _entries(simulation: Simulation) -> Iterator[tuple[str, int, Iterator[bytes]]]:
+    """Name, size and bytes of every entry; the last one holds the checksums of the others."""
+    data = simulation.model.workbook.data
+    yield WORKBOOK, len(data), iter([data])
+    listed: list[dict[str, Any]] = []
+    for number, column in enumerate(_columns(simulation)):
+        digest = hashlib.sha256()
+        entry, count = f"columns/{number}.npy", column.values.size
+        size = len(column_header(count, column.type)) + count * np.dtype(column.type).itemsize
+        yield entry, size, column_parts(column.values, column.type, digest)
+        about = {"kind": column.kind, "name": column.name, "type": column.type, "count": count}
+        listed.append({**about, "entry": entry, "sha256": digest.hexdigest()})
+    document = json.dumps(_document(simulation, listed), ensure_ascii=False, allow_nan=False, indent=1).encode()
+    yield RUN, len(document), iter([document])
+
+
+def _columns(simulation: Simulation) -> Iterator[_Column]:
+    yield _Column("trial", "", "<i8", simulation.trial_index)
+    for kind, columns in (
+        ("input", simulation.inputs),
+        ("prior", simulation.prior),
+        ("forecast", simulation.forecasts),
+    ):
+        for name in columns:
+            yield _Column(kind, name, "<f8", columns[name])
+
+
+def _document(simulation: Simulation, columns: list[dict[str, Any]]) -> dict[str, Any]:
+    model, origin, changed = simulation.model, _origin(simulation), simulation.changed_from
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "workbook": {"name": model.workbook.name, "sha256": model.workbook.sha256},
+        "settings": settings_document(simulation.settings),
+        "order": [name_key(name) for name in simulation.plan.order],
+        "block": simulation.block,
+        "trials": simulation.trials,
+        "error_trials": simulation.error_trials,
+        "tally": tally_document(simulation.tally),
+        "invalid": dict(sorted((name_key(name), count) for name, count in simulation.invalid.items())),
+        "faults": {name: dict(sorted(faults.items())) for name, faults in simulation.faults.items()},
+        "discards": {name: dict(discards) for name, discards in simulation.discards.items()},
+        "stopped": asdict(simulation.stopped),
+        "rare": None if simulation.rare is None else asdict(simulation.rare),
+        "origin": {"software": dict(origin.software), "processor": dict(origin.processor)},
+        **({} if changed is None else {"changed_from": asdict(changed)}),
+        "columns": columns,
+    }
+
+
+def _origin(simulation: Simulation) -> Origin:
+    return simulation.origin or Origin(versions(simulation.settings.engine), processor())

@@ -1,0 +1,275 @@
+"""Open a saved run as the same `Simulation`, without simulating again."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import zipfile
+from collections import Counter
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.analysis.results.record.settings_table import FLOAT64, in_float32
+from xlmc.analysis.results.saved.archive import AGAIN, DAMAGE, RUN, WORKBOOK, Package, open_package, read_column
+from xlmc.analysis.results.saved.run_json import (
+    FORMAT,
+    VERSION,
+    build,
+    changed_from_of,
+    counts,
+    mapping,
+    origin_of,
+    rare_of,
+    require,
+    settings_of,
+    stopped_of,
+    tally_of,
+    texts,
+    whole,
+)
+from xlmc.errors import SimulationError, WorkbookError, XlmcError
+from xlmc.excel.workbook.package import LIMITS
+from xlmc.excel.workbook.reader import read_workbook
+from xlmc.montecarlo.columns import ColumnStore, parts
+from xlmc.montecarlo.diagnostics.weighing import weighing
+from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.model.forecast_filters import filters_by_forecast
+from xlmc.montecarlo.model.loading import build_model
+from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
+from xlmc.montecarlo.simulation.simulation import Simulation
+
+__all__ = ["is_saved_run", "open_run"]
+
+_LARGEST_DOCUMENT: Final = 64 << 20
+_KINDS: Final = {"trial": "<i8", "input": "<f8", "prior": "<f8", "forecast": "<f8"}
+
+Document = Mapping[str, Any]
+Column = NDArray[Any]
+
+
+def is_saved_run(path: Path) -> bool:
+    """Whether the file looks like a saved run, whatever its name."""
+    if not path.is_file() or not zipfile.is_zipfile(path):
+        return False
+    try:
+        with zipfile.ZipFile(path) as package:
+            return RUN in package.namelist()
+    except DAMAGE:
+        return False
+
+
+def open_run(path: str | Path) -> Simulation:
+    """The run that was saved in a file, with the model of its workbook: every statistic is the same to the last bit.
+
+    Columns go into memory, or, where they are large together, into temporary files.
+
+    Raises:
+        WorkbookError: the file cannot be read, is no saved run, or is damaged.
+        XlmcError: this xlmc refuses its workbook.
+    """
+    path = Path(path)
+    with open_package(path) as package:
+        found = _document(package, path)
+        model = _model(package, found, path)
+        try:
+            if settings_of(found["settings"]).evidence == "weights":
+                model = weighing(model)
+            columns = _Columns(found["columns"], model, path)
+            columns.read(package)
+            return _simulation(found, model, columns)
+        except (KeyError, ValueError, SimulationError) as error:
+            raise _damage_error(path, error) from error
+
+
+def _document(package: Package, path: Path) -> Document:
+    if package.size(RUN) > _LARGEST_DOCUMENT:
+        raise WorkbookError(f"{RUN} in the saved run is larger than any that xlmc writes", where=path, hint=AGAIN)
+    with package.reading(RUN) as entry:
+        data = entry.read()
+    try:
+        found = mapping(json.loads(data), "its format")
+        require(found.get("format") == FORMAT, "its format")
+        whole(found.get("version"), "its version")
+    except (ValueError, RecursionError) as error:
+        raise _damage_error(path, error) from error
+    if not 1 <= found["version"] <= VERSION:
+        message = f"the saved run is of version {found['version']}, and this xlmc reads versions 1 to {VERSION}"
+        raise WorkbookError(message, where=path, hint="Install the xlmc that it was saved with")
+    return _in_float64(dict(found), path)
+
+
+def _in_float64(found: dict[str, Any], path: Path) -> Document:
+    """The document, without the arithmetic of the run.
+
+    Raises:
+        WorkbookError: it was computed in float32.
+    """
+    settings, origin = (found.get(name) for name in ("settings", "origin"))
+    if isinstance(settings, dict) and settings.pop("arithmetic", FLOAT64) != FLOAT64:
+        software = origin.get("software") if isinstance(origin, dict) else None
+        raise in_float32(str(software.get("xlmc", "")) if isinstance(software, dict) else "", path)
+    return found
+
+
+def _model(package: Package, found: Document, path: Path) -> Model:
+    try:
+        about = build(_Book, found["workbook"], "its workbook")
+    except (KeyError, ValueError) as error:
+        raise _damage_error(path, error) from error
+    name = Path(about.name).name
+    if package.size(WORKBOOK) > LIMITS.total:
+        raise WorkbookError(f"its workbook is larger than {LIMITS.total >> 20} MB", where=path, hint=AGAIN)
+    with package.reading(WORKBOOK) as entry:
+        data = entry.read()
+    if hashlib.sha256(data).hexdigest() != about.sha256:
+        raise WorkbookError("the workbook in the saved run is not the one that was run", where=path, hint=AGAIN)
+    return build_model(read_workbook(data, name), Path(name))
+
+
+@dataclass(frozen=True, slots=True)
+class _Book:
+    """What the document says of the workbook."""
+
+    name: str
+    sha256: str
+
+
+@dataclass(frozen=True, slots=True)
+class _Column:
+    """What the document says of a column."""
+
+    kind: str
+    name: str
+    type: str
+    count: int
+    entry: str
+    sha256: str
+
+
+class _Columns:
+    """The columns of a saved run, as the document lists them.
+
+    Raises:
+        ValueError: they are not those of the model.
+    """
+
+    def __init__(self, found: object, model: Model, path: Path) -> None:
+        require(isinstance(found, list), "its columns")
+        assert isinstance(found, list)
+        listed = [build(_Column, each, "a column") for each in found]
+        self._listed, self._path = listed, path
+        self._names = {kind: [each.name for each in listed if each.kind == kind] for kind in _KINDS}
+        live = [a.name for a in model.live]
+        require(self._names["trial"] == [""], "its list of trials")
+        require(
+            self._names["input"] == self._names["prior"] == live, "its assumptions, which this xlmc reads otherwise"
+        )
+        require(self._names["forecast"] == [f.name for f in model.forecasts], "its forecasts, which are read otherwise")
+        require(len(listed) == sum(map(len, self._names.values())), "a column of a kind that there is not")
+        types: dict[Hashable, np.dtype[Any]] = {
+            self._key(each): np.dtype(_KINDS[each.kind]).newbyteorder("=") for each in listed
+        }
+        self._keeper = ColumnStore(types)
+
+    @staticmethod
+    def _key(about: _Column) -> tuple[str, str]:
+        return about.kind, about.name
+
+    def read(self, package: Package) -> None:
+        """Copy every column out of the package, and check it."""
+        lengths: dict[str, set[int]] = {kind: set() for kind in _KINDS}
+        for about in self._listed:
+            lengths[about.kind].add(whole(about.count, "the length of a column"))
+            digest = hashlib.sha256()
+            with package.reading(about.entry) as entry:
+                for part in read_column(entry, _KINDS[about.kind], about.count, about.entry, digest):
+                    self._keeper.add(self._key(about), part)
+                    self._keeper.settle()
+            require(digest.hexdigest() == about.sha256, f"the column {about.entry}: its SHA-256 is another")
+        accepted = lengths["trial"]
+        require(all(len(found) <= 1 for found in lengths.values()), "columns of different lengths")
+        require(
+            lengths["forecast"] <= accepted and max(lengths["input"], default=0) <= max(accepted), "too long columns"
+        )
+
+    def of(self, kind: str) -> Mapping[str, Column]:
+        """The columns of a kind by name, in their order."""
+        return self._keeper.columns({name: (kind, name) for name in self._names[kind]})
+
+
+def _simulation(found: Document, model: Model, columns: _Columns) -> Simulation:
+    settings, spelt = settings_of(found["settings"]), {name_key(name): name for name in model.draws}
+    order, invalid = texts(found["order"], "its order of dimensions"), counts(found["invalid"], "its invalid draws")
+    require(set(order) <= spelt.keys(), "its order of dimensions")
+    require(set(invalid) <= spelt.keys(), "its invalid draws")
+    plan = replace(SamplingPlan.of(settings.sampling, settings.trials), order=tuple(map(spelt.__getitem__, order)))
+    trials = whole(found["trials"], "its number of trials")
+    require(1 <= trials <= plan.trials, "its number of trials")
+    index = columns.of("trial")[""]
+    rare = rare_of(found["rare"])
+    _check_index(index, trials if rare is None else rare.kept)
+    forecasts, faults = columns.of("forecast"), mapping(found["faults"], "its faults")
+    for name in forecasts:
+        require(not _holds_infinity(forecasts[name]), f"the forecast {name!r}")
+    inputs, prior = columns.of("input"), columns.of("prior")
+    for name in inputs:
+        require(not _holds_infinity(inputs[name]) and not _holds_infinity(prior[name]), f"the draws of {name!r}")
+    return Simulation(
+        model=model,
+        settings=settings,
+        plan=plan,
+        block=max(1, whole(found["block"], "the size of its blocks")),
+        trials=trials,
+        trial_index=index,
+        inputs=inputs,
+        prior=prior,
+        forecasts=forecasts,
+        faults={name: counts(faults[name], f"the faults of {name!r}") for name in forecasts},
+        tally=tally_of(found["tally"], len(model.filters), trials),
+        invalid=Counter({spelt[name]: count for name, count in invalid.items()}),
+        error_trials=whole(found["error_trials"], "its number of trials with errors"),
+        stopped=stopped_of(found["stopped"]),
+        rare=rare,
+        origin=origin_of(found["origin"]),
+        changed_from=changed_from_of(found.get("changed_from")),
+        discards=_discards(found.get("discards", {}), model),
+    )
+
+
+def _discards(found: object, model: Model) -> dict[str, Counter[str]]:
+    """The counts of filters of some forecasts only; runs saved before there were any have none."""
+    given = mapping(found, "its discarded trials")
+    own = filters_by_forecast(model.forecasts, model.forecast_filters)
+    names = {
+        forecast.name: [model.forecast_filters[index].name for index in indices]
+        for forecast, indices in zip(model.forecasts, own, strict=True)
+        if indices
+    }
+    require(set(given) == set(names), "its discarded trials")
+    read = {name: counts(given[name], "its discarded trials") for name in given}
+    require(all(set(read[name]) == set(filters) for name, filters in names.items()), "its discarded trials")
+    return read
+
+
+def _holds_infinity(column: Column) -> bool:
+    return any(bool(np.isinf(part).any()) for part in parts(column))
+
+
+def _check_index(index: Column, trials: int) -> None:
+    """Refuse trial numbers that do not ascend, or that the run does not have."""
+    last = -1
+    for part in parts(index):
+        require(bool(part[0] > last) and bool(np.all(np.diff(part) > 0)), "its trial numbers")
+        last = int(part[-1])
+    require(last < trials, "its trial numbers")
+
+
+def _damage_error(path: Path, error: Exception) -> XlmcError:
+    reason = f"it lacks {error.args[0]!r}" if isinstance(error, KeyError) else str(error)
+    return WorkbookError(f"the saved run is damaged: {reason}", where=path, hint=AGAIN)

@@ -1,0 +1,233 @@
+"""Definitions, and the sampling of a run, in words: those of the record, the result sheets and `xlmc check`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from xlmc.excel.address import Cell
+from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, DataRange, Filter, Parameter
+from xlmc.montecarlo.definitions.evidence import ERRORS, SIZES, Evidence, Within
+from xlmc.montecarlo.definitions.scenarios import (
+    Band,
+    Change,
+    Drawn,
+    Held,
+    Limits,
+    Numbers,
+    Range,
+    Scenario,
+    Tabulated,
+    Typed,
+)
+from xlmc.montecarlo.definitions.tables.table_rows import as_text
+from xlmc.montecarlo.distributions.parameters import show
+from xlmc.montecarlo.sampling.sampling_methods import GENERATOR, METHODS
+from xlmc.montecarlo.statistics import Estimate, proportion
+from xlmc.montecarlo.statistics.sample import MOST_GROUPS
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.simulation.simulation import Simulation
+
+__all__ = [
+    "REJECTED_SENTENCE",
+    "UNWEIGHTED",
+    "Discarded",
+    "changes_text",
+    "cutoffs_text",
+    "discards_of",
+    "distribution_text",
+    "errors_text",
+    "evidence_text",
+    "generator_text",
+    "limits_text",
+    "method_text",
+    "notes_text",
+    "number_text",
+    "parameters_text",
+    "sampling_sentence",
+    "status",
+]
+
+
+UNWEIGHTED: Final = (
+    "Weighted results leave out what needs trials of equal weight: what the answers depend on, filter limits, "
+    "forecasts two at a time, ranges of your own on the sheet Certainty, and rank correlations of accepted trials."
+)
+"""What results by weights do not hold."""
+
+REJECTED_SENTENCE: Final = (
+    "The ± of the trials that a filter rejects is that of independent trials; the error of these samples is hardly "
+    "ever larger."
+)
+"""The note where shares are shown whose errors are not computed from the replicates."""
+
+
+def number_text(value: Parameter) -> str:
+    """The shortest text that reads back as the same number: `0.95`, `6661`; or the cell that holds it."""
+    return str(value) if isinstance(value, Cell) else repr(float(value)).removesuffix(".0")
+
+
+def parameters_text(assumption: Assumption) -> str:
+    """`Low 6661, High 6861`; `Data Inputs!Q2:R9` for a distribution built from data."""
+    parts = []
+    for key, heading in assumption.headings.items():
+        if key not in CUTOFFS:
+            parts.append(f"{heading} {number_text(assumption.given[key])}")
+    if assumption.data is not None:
+        parts.append(_data_text(assumption.data))
+    return ", ".join(parts)
+
+
+def _data_text(data: DataRange) -> str:
+    weights = ", cumulative weights" * data.cumulative
+    bandwidth = "" if data.bandwidth is None else f", Bandwidth {number_text(data.bandwidth)}"
+    return f"Data {data.text or data.area}{weights}{bandwidth}"
+
+
+def cutoffs_text(cutoffs: Mapping[str, Parameter]) -> str:
+    """`below 0.5, above 0.9`: what is cut off; empty where nothing is."""
+    sides = {"lower_cutoff": "below", "upper_cutoff": "above"}
+    return ", ".join(f"{sides[key]} {number_text(cutoff)}" for key, cutoff in cutoffs.items())
+
+
+def distribution_text(assumption: Assumption) -> str:
+    """`Normal: Mean 0.77, Std dev 0.05; cut off below 0.6`."""
+    cutoffs = cutoffs_text(assumption.cutoffs)
+    ending = f"; cut off {cutoffs}" if cutoffs else ""
+    return f"{assumption.distribution}: {parameters_text(assumption)}{ending}"
+
+
+def limits_text(filter_: Filter) -> str:
+    """`at least 0 and below 1`; `TRUE` where the filter has no limits; what evidence says, where it is some."""
+    if filter_.evidence is not None:
+        return evidence_text(filter_.evidence)
+    limits = (
+        ("at least", filter_.at_least),
+        ("above", filter_.above),
+        ("at most", filter_.at_most),
+        ("below", filter_.below),
+    )
+    return " and ".join(f"{relation} {number_text(bound)}" for relation, bound in limits if bound is not None) or "TRUE"
+
+
+@dataclass(frozen=True, slots=True)
+class Discarded:
+    """What a filter of some forecasts only discards for one of them: so many of the accepted trials."""
+
+    filter: Filter
+    forecast: str
+    trials: int
+    share: Estimate
+
+
+def discards_of(simulation: Simulation) -> list[Discarded]:
+    """What such filters discard, filter by filter, forecast by forecast."""
+    found = []
+    for filter_ in simulation.model.forecast_filters:
+        for name in filter_.only_for:
+            trials = simulation.discards[name][filter_.name]
+            found.append(Discarded(filter_, name, trials, proportion(trials, simulation.accepted)))
+    return found
+
+
+def evidence_text(evidence: Evidence) -> str:
+    """`reads 12, normal (Std dev 0.6)`; `reads 12, instrument (Percent 10): from 10.9091 to 13.3333`."""
+    if not evidence.used or evidence.reading is None:
+        return f"not used: {evidence.unused}"
+    known = None if any(evidence.cells) else evidence.law
+    sizes = ", ".join(f"{SIZES[key]} {number_text(value)}" for key, value in evidence.sizes.items())
+    kept = ""
+    if isinstance(known, Within):
+        ends = [("from", known.low), ("to", known.high)]
+        kept = ": " + " ".join(f"{word} {end:.6g}" for word, end in ends if end is not None)
+    given, weights = f" ({sizes})" if sizes else "", ", as weights" if evidence.weighed else ""
+    return f"reads {number_text(evidence.reading)}, {ERRORS[evidence.error].lower()}{given}{kept}{weights}"
+
+
+def changes_text(scenario: Scenario) -> str:
+    """What a scenario changes: `Friction from 0.6 to 0.8; Restitution at most 0.5; Inputs!D28 = -20`."""
+    return "; ".join(map(_change_text, scenario.changes)) or "nothing"
+
+
+def _change_text(change: Change) -> str:
+    match change:
+        case Held(name, None):
+            return f"{name} frozen"
+        case Held(name, value):
+            return f"{name} = {_plain_number(value)}"
+        case Drawn(name):
+            return f"{name} drawn"
+        case Range(name, low, high):
+            ends = [("from", low), ("to", high)] if None not in (low, high) else [("at least", low), ("at most", high)]
+            return " ".join([name, *(f"{word} {_plain_number(end)}" for word, end in ends if end is not None)])
+        case Band(name, low, high):
+            return f"{name} from P{show(low)} to P{show(high)}"
+        case Numbers(name, values) | Limits(name, values):
+            words = (
+                f"{key.replace('_', ' ')} {_plain_number(value)}" for key, value in values.items() if value is not None
+            )
+            return f"{name} {' and '.join(words) or 'without ' + ', '.join(key.replace('_', ' ') for key in values)}"
+        case Tabulated(number, values):
+            return f"value {number} of RiskSimtable: {values}"
+        case Typed(cell, value, _, named):
+            return (
+                f"{named or cell} = {_plain_number(value) if isinstance(value, float) else as_text(value) or 'nothing'}"
+            )
+
+
+def _plain_number(value: float | None) -> str:
+    return "" if value is None else number_text(value)
+
+
+def notes_text(notes: Mapping[str, str]) -> str:
+    """The table's other columns: `Symbol: w1; Cell name: w_1`."""
+    return "; ".join(f"{heading}: {text}" for heading, text in notes.items())
+
+
+def status(model: Model, name: str, frozen: bool) -> str:
+    """What a run does with the assumption: `drawn`, `frozen`, or `not needed` by any forecast or filter."""
+    if frozen:
+        return "frozen"
+    return "drawn" if name in model.draws else "not needed"
+
+
+def method_text(simulation: Simulation) -> str:
+    """`Latin hypercube: 16 independent replicates of 12,500 trials`."""
+    plan = simulation.plan
+    if simulation.rare is not None:
+        return f"{METHODS[plan.method].name}: {simulation.rare.method}"
+    if not plan.size:
+        return f"{METHODS[plan.method].name}: independent trials"
+    asked = simulation.settings.trials
+    more = "" if asked == plan.trials else f", whole ones, for the {asked:,} trials that were asked for"
+    return f"{METHODS[plan.method].name}: {plan.replicates} independent replicates of {plan.size:,} trials{more}"
+
+
+def errors_text(simulation: Simulation) -> str:
+    """What the standard errors and intervals are made from."""
+    plan = simulation.plan
+    if not plan.size:
+        return "from the spread of the trials"
+    groups = min(plan.replicates, MOST_GROUPS)
+    what = "replicates" if groups == plan.replicates else f"{groups} groups of replicates"
+    return f"from the differences between {what}, with Student's t of {groups - 1} degrees of freedom"
+
+
+def sampling_sentence(simulation: Simulation) -> str:
+    """How the run was sampled and where its errors come from, in one sentence."""
+    done = "" if simulation.rare is None else f" {simulation.rare.sentence}"
+    weighting = simulation.weighting
+    weighed = "" if weighting is None else f" {weighting.sentence}. {UNWEIGHTED}"
+    if simulation.model.chances:
+        weighed = " Evidence with a normal error keeps a trial by chance, so those kept count alike (rejection)."
+    return f"{method_text(simulation)}; errors come {errors_text(simulation)}.{done}{weighed}"
+
+
+def generator_text(simulation: Simulation) -> str:
+    """The source of the random numbers, in words."""
+    if simulation.rare is not None:
+        return f"{GENERATOR}, seeded by (seed, purpose): a stream to learn with, and one to draw the trials with"
+    return METHODS[simulation.plan.method].generator

@@ -1,0 +1,326 @@
+"""Two books of one scene over the same trials: whether the simpler one is enough, and if not, why.
+
+Where each answers from inputs that the other has not, neither is simpler: see `rivalry`. A book may also be compared
+with itself, as it is and with an assumption drawn from what another book answers: see `feeding`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from math import ceil, inf
+
+from xlmc.analysis.studies.comparison.causes import Inputs, Step, Variations, cause_of, inputs_of, steps_between
+from xlmc.analysis.studies.comparison.differences import Acceptance, Difference, acceptance, difference
+from xlmc.analysis.studies.comparison.feeding import fed_model
+from xlmc.analysis.studies.comparison.paired_statistics import Accepted
+from xlmc.analysis.studies.comparison.rivalry import Rivalry, rivalry
+from xlmc.analysis.studies.comparison.tolerances import (
+    Judgement,
+    Tolerances,
+    Verdict,
+    chance_of,
+    factor_between,
+    in_tolerances,
+    judge,
+    read_tolerances,
+)
+from xlmc.analysis.studies.comparison.variations import with_plain_sampling
+from xlmc.errors import SimulationError
+from xlmc.montecarlo import statistics
+from xlmc.montecarlo.definitions.definitions import Forecast
+from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.simulation.simulate import simulate
+from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.statistics import Estimate
+
+__all__ = ["Cause", "Comparison", "ForecastComparison", "compare"]
+
+
+@dataclass(frozen=True, slots=True)
+class Cause:
+    """Why a forecast differs.
+
+    Attributes:
+        steps: what, taken out of the books, brings the difference within the tolerance; empty where nothing does.
+        number: the name of the number that then differs most, measured in its tolerance.
+        left: its difference.
+    """
+
+    steps: tuple[Step, ...]
+    number: str
+    left: Estimate
+
+
+@dataclass(frozen=True, slots=True)
+class ForecastComparison:
+    """A forecast of the first book and its counterpart in the second, in the first one's unit.
+
+    Attributes:
+        factor: by which the second's numbers were multiplied, to be in the first's unit.
+        tolerance: in that unit; `stated` where it was asked for, else a tenth of the standard deviation.
+        limits: number -> its tolerance; that of P(> threshold) is a share.
+        cause: where the difference is beyond the tolerance.
+        rivalry: where each book answers from inputs that the other has not; None where one of them has all.
+    """
+
+    first: Forecast
+    second: Forecast
+    factor: float
+    tolerance: float
+    stated: bool
+    limits: Mapping[str, float]
+    difference: Difference
+    judgement: Judgement
+    cause: Cause | None
+    rivalry: Rivalry | None = None
+
+    @property
+    def apart(self) -> bool:
+        """Whether the books are two models of this answer, and their answers are not the same within the tolerance."""
+        return self.rivalry is not None and self.judgement.verdict is not Verdict.WITHIN
+
+    @property
+    def same_in_every_trial(self) -> bool:
+        """In every trial that both books accept they give one number, to 1e-9 of it."""
+        size = abs(self.difference.mean.first.value) + self.difference.standard_deviation.first.value
+        return self.difference.largest <= 1e-9 * size
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Two books of one scene over the same trials.
+
+    Attributes:
+        first, second: the runs.
+        simpler: 0 or 1, the book that draws fewer assumptions, or else needs fewer cells, or has fewer filters; None
+            where they are alike in all three.
+        acceptance: what either accepts.
+        inputs: the assumptions and filters they share, and those they do not.
+        forecasts: the pairs.
+        unpaired: for either book, the forecasts without a counterpart.
+        runs: how many were made.
+        source: the run of the book whose answers feed the second, which is the first with other draws; None elsewhere.
+    """
+
+    first: Simulation
+    second: Simulation
+    simpler: int | None
+    acceptance: Acceptance
+    inputs: Inputs
+    forecasts: tuple[ForecastComparison, ...]
+    unpaired: tuple[tuple[str, ...], tuple[str, ...]]
+    runs: int
+    source: Simulation | None = None
+
+    def of(self, verdict: Verdict) -> tuple[ForecastComparison, ...]:
+        """The forecasts of which this is the verdict, but for those of which the books are rival models."""
+        return tuple(each for each in self.forecasts if each.judgement.verdict is verdict and not each.apart)
+
+    @property
+    def rivals(self) -> tuple[ForecastComparison, ...]:
+        """The forecasts of which the books are two models that do not give the same answer within the tolerance."""
+        return tuple(each for each in self.forecasts if each.apart)
+
+    @property
+    def trials_needed(self) -> int | None:
+        """About how many trials would decide what is undecided; None where no number would."""
+        times = max((each.judgement.times for each in self.of(Verdict.UNDECIDED)), default=1.0)
+        return None if times == inf else ceil(times * self.first.trials)
+
+
+def compare(
+    first: Model,
+    second: Model,
+    tolerance: Iterable[str] | str = (),
+    *,
+    pairs: Mapping[str, str] | None = None,
+    feeds: Mapping[str, str] | None = None,
+    trials: int | None = None,
+    seed: int | None = None,
+    engine: str | None = None,
+    jobs: int = 1,
+    chance: float | None = None,
+    causes: bool = True,
+    told: Callable[[str], None] | None = None,
+) -> Comparison:
+    """Run two books of one scene over the same trials, and judge whether their answers agree.
+
+    An assumption of the same name takes the same random numbers in both. Forecasts are paired by name. The trials are
+    plain Monte Carlo, whatever the books' settings say.
+
+    Args:
+        first: a book; numbers are given in its units.
+        second: the other; either may be the simpler.
+        tolerance: `0.5`, `0.5 mph`, `10 %` (of the forecast's SD in the first book), `Name=0.5 mph`; a tenth of the SD
+            where none is stated. It holds for mean, SD and both ends of the central range.
+        pairs: further pairs, name in the first -> name in the second.
+        feeds: asks instead whether the first book needs the second: assumption of the first -> forecast of the second.
+            The first book is compared with itself, these assumptions drawn from what the second book answers.
+        trials: of each run; by default the larger of the books' own settings.
+        seed: of each run; by default the first book's.
+        engine: as in `Model.simulate`.
+        jobs: as in `Model.simulate`.
+        chance: the change of P(forecast > threshold) that counts as none, in percentage points; by default a tenth of
+            it or of its complement, and a tenth of a point at least. The threshold is the first book's; that of the
+            second where the first has none.
+        causes: look for the cause of what differs; each step is a further run.
+        told: called before every run with what it is for.
+
+    Raises:
+        SimulationError: no forecast has a counterpart, a pair has units of two kinds, or an argument is out of its
+            range.
+    """
+    first, second = with_plain_sampling(first), with_plain_sampling(second)
+    trials = trials or max(model.definitions.settings.trials for model in (first, second))
+    seed = first.definitions.settings.seed if seed is None else seed
+    made = 0
+
+    def run(model: Model, purpose: str, keep_inputs: int = 0) -> Simulation:
+        nonlocal made
+        made += 1
+        if told is not None:
+            told(purpose)
+        return simulate(model, trials=trials, seed=seed, engine=engine, jobs=jobs, keep_inputs=keep_inputs)
+
+    source = None
+    if feeds:
+        if pairs:
+            raise SimulationError("a book that feeds another is not paired with it", hint="leave the pairs out")
+        source = run(second, second.path.name)
+        second = fed_model(first, source, feeds)
+    matched = _match_forecasts(first, second, pairs or {})
+    factors = [_factor(*pair) for pair in matched]
+    stated = read_tolerances([tolerance] if isinstance(tolerance, str) else tolerance, [mine for mine, _ in matched])
+    books = run(first, first.path.name), run(second, second.path.name)
+    inputs = inputs_of(*books)
+    search = _Search(books, inputs, Variations(*books, run), chance_of(chance), causes and source is None)
+    forecasts = tuple(
+        search.compare_pair(mine, theirs, factor, stated)
+        for (mine, theirs), factor in zip(matched, factors, strict=True)
+    )
+    return Comparison(
+        first=books[0],
+        second=books[1],
+        simpler=_simpler(first, second) if source is None else 0,
+        acceptance=acceptance(*books),
+        inputs=inputs,
+        forecasts=forecasts,
+        unpaired=_unpaired_forecasts(first, second, matched),
+        runs=made,
+        source=source,
+    )
+
+
+class _Search:
+    """Differences of two books, as they are and with steps taken."""
+
+    def __init__(
+        self,
+        books: tuple[Simulation, Simulation],
+        inputs: Inputs,
+        variations: Variations,
+        chance: float | None,
+        causes: bool,
+    ) -> None:
+        self._books, self._variations, self._chance = books, variations, chance
+        self._steps = steps_between(inputs, *books) if causes else ()
+        self._causes = causes
+
+    def compare_pair(self, mine: Forecast, theirs: Forecast, factor: float, stated: Tolerances) -> ForecastComparison:
+        deviation = statistics.standard_deviation(_accepted_trials(self._books[0], mine, 1.0).sample).value
+        tolerance, was_stated = stated.of(mine, deviation)
+        found = self._difference((), mine, theirs, factor)
+        limits = found.tolerances(tolerance, self._chance)
+        judgement = judge({name: (change.difference, limits[name]) for name, change in found.changes})
+        rivals, cause = self._rivalry(mine, theirs, factor), None
+        if judgement.verdict is Verdict.BEYOND and self._causes and rivals is None:
+            cause = self._cause(mine, theirs, factor, limits)
+        return ForecastComparison(mine, theirs, factor, tolerance, was_stated, limits, found, judgement, cause, rivals)
+
+    def _rivalry(self, mine: Forecast, theirs: Forecast, factor: float) -> Rivalry | None:
+        first, second = self._books
+        answers = _accepted_trials(first, mine, 1.0), _accepted_trials(second, theirs, factor)
+        return rivalry(self._books, (mine, theirs), answers)
+
+    def _difference(self, steps: Iterable[Step], mine: Forecast, theirs: Forecast, factor: float) -> Difference:
+        first, second = self._variations.pair(steps)
+        return difference(
+            _accepted_trials(first, mine, 1.0),
+            _accepted_trials(second, theirs, factor),
+            mine.central,
+            _threshold(mine, theirs, factor),
+        )
+
+    def _cause(self, mine: Forecast, theirs: Forecast, factor: float, limits: Mapping[str, float]) -> Cause:
+        def largest(steps: Iterable[Step]) -> tuple[float, str, Estimate]:
+            changes = self._difference(steps, mine, theirs, factor).changes
+            sizes = [(in_tolerances(c.difference, limits[name]), name, c.difference) for name, c in changes]
+            return max(sizes, key=lambda size: size[0])
+
+        steps = cause_of(self._steps, lambda taken: largest(taken)[0])
+        _, number, left = largest(steps)
+        return Cause(steps, number, left)
+
+
+def _threshold(mine: Forecast, theirs: Forecast, factor: float) -> float | None:
+    if mine.threshold is not None or theirs.threshold is None:
+        return mine.threshold
+    return theirs.threshold * factor
+
+
+def _accepted_trials(run: Simulation, forecast: Forecast, factor: float) -> Accepted:
+    return Accepted.of(run.trial_index, run.forecasts[forecast.name] * factor)
+
+
+def _match_forecasts(first: Model, second: Model, pairs: Mapping[str, str]) -> list[tuple[Forecast, Forecast]]:
+    """The forecasts of the first book with their counterparts, in its order.
+
+    Raises:
+        SimulationError: a pair names a forecast that is not there, or there are no pairs at all.
+    """
+    mine, theirs = ({name_key(f.name): f for f in model.forecasts} for model in (first, second))
+    given = {name_key(a): name_key(b) for a, b in pairs.items()}
+    for held, names, model in ((mine, pairs.keys(), first), (theirs, pairs.values(), second)):
+        for name in names:
+            if name_key(name) not in held:
+                hint = f"there are {', '.join(repr(f.name) for f in model.forecasts)}"
+                raise SimulationError(f"there is no forecast {name.strip()!r}", where=model.path.name, hint=hint)
+    taken = set(given.values())
+    given |= {key: key for key in mine if key in theirs and key not in given and key not in taken}
+    if not given:
+        hint = "pair them by hand: --pair 'name in the first=name in the second'"
+        raise SimulationError("no forecast has the same name in both books", hint=hint)
+    return [(forecast, theirs[given[key]]) for key, forecast in mine.items() if key in given]
+
+
+def _factor(mine: Forecast, theirs: Forecast) -> float:
+    """The factor that converts the second book's numbers.
+
+    Raises:
+        SimulationError: the units are not of one kind.
+    """
+    factor = factor_between(theirs.units, mine.units)
+    if factor is None:
+        units = " and ".join(repr(f.units) if f.units else "no unit" for f in (mine, theirs))
+        message = f"the forecasts {mine.name!r} and {theirs.name!r} have the units {units}, which cannot be converted"
+        raise SimulationError(message, where=mine.cell, hint="give both the same Units, or such as mph, km/h, ft/s, m")
+    return factor
+
+
+def _unpaired_forecasts(
+    first: Model, second: Model, matched: Sequence[tuple[Forecast, Forecast]]
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    mine, theirs = {a.name for a, _ in matched}, {b.name for _, b in matched}
+    return (
+        tuple(f.name for f in first.forecasts if f.name not in mine),
+        tuple(f.name for f in second.forecasts if f.name not in theirs),
+    )
+
+
+def _simpler(first: Model, second: Model) -> int | None:
+    mine, theirs = (
+        (len(model.live), len(model.needed.graph.formulas), len(model.filters)) for model in (first, second)
+    )
+    return None if mine == theirs else int(theirs < mine)

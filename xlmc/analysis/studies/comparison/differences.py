@@ -1,0 +1,204 @@
+"""Two runs over the same trials: how far their answers lie apart, each number with the error of the difference.
+
+Two distances of the whole distributions are among them. Neither can be negative, so that two runs of one model with
+trials of their own lie apart, too, by about the error.
+
+**Kolmogorov's distance** D = max |G(x) − F(x)| is the largest difference of the two distribution functions (Smirnov
+1939 for two samples). Its error is that of G − F where the maximum lies (Raghavachari 1973).
+
+**Wasserstein's distance** W₁ = ∫ |G(x) − F(x)| dx, in the forecast's unit, is the least mean distance by which the
+trials of one run must be moved to lie as those of the other (Kantorovich 1942; this form Vallender 1974). It is the
+difference of the means of a potential whose slope is the sign of F − G, and its error is that of this difference (del
+Barrio, Giné & Matrán 1999).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.analysis.studies.comparison.paired_statistics import (
+    Accepted,
+    Pair,
+    Statistic,
+    mean_of,
+    quantile_of,
+    share_above,
+    standard_deviation_of,
+)
+from xlmc.analysis.studies.comparison.tolerances import chance_tolerance
+from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.statistics import Estimate
+from xlmc.montecarlo.statistics.estimate import with_error
+
+__all__ = ["Acceptance", "Change", "Difference", "acceptance", "difference"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """One statistic in two runs.
+
+    Attributes:
+        first, second: in either run.
+        difference: second less first, with its own error: the runs share their draws, so it is mostly smaller than the
+            errors of the two.
+    """
+
+    first: Estimate
+    second: Estimate
+    difference: Estimate
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """A forecast in two runs, in the first one's unit.
+
+    Attributes:
+        share: of the trials, held by the central range from `low` to `high`.
+        threshold: of the forecast; None where it has none.
+        above: P(> threshold); None where there is none.
+        kolmogorov, wasserstein: distances of the two distributions, as above.
+        largest: the largest difference in a trial that both accept; nan where there is none.
+    """
+
+    mean: Change
+    standard_deviation: Change
+    low: Change
+    high: Change
+    share: float
+    kolmogorov: Estimate
+    wasserstein: Estimate
+    largest: float
+    threshold: float | None = None
+    above: Change | None = None
+
+    @property
+    def changes(self) -> Iterator[tuple[str, Change]]:
+        """The numbers that an answer is judged by, each with its name: four, and the probability where one is asked."""
+        yield "mean", self.mean
+        yield "SD", self.standard_deviation
+        yield "lower end", self.low
+        yield "upper end", self.high
+        if self.above is not None:
+            yield f"P(> {self.threshold:.15g})", self.above
+
+    def tolerances(self, tolerance: float, chance: float | None) -> Mapping[str, float]:
+        """Number -> its tolerance.
+
+        Args:
+            tolerance: of mean, SD and central range, in the forecast's unit.
+            chance: of the probability; None for `chance_tolerance` of it.
+        """
+        found = dict.fromkeys((name for name, _ in self.changes), tolerance)
+        if self.above is not None:
+            found[f"P(> {self.threshold:.15g})"] = (
+                chance_tolerance(self.above.first.value) if chance is None else chance
+            )
+        return found
+
+
+@dataclass(frozen=True, slots=True)
+class Acceptance:
+    """What two runs over the same trials accept.
+
+    Attributes:
+        both, first_only, second_only: trials.
+        relative: second over first, less 1.
+    """
+
+    both: int
+    first_only: int
+    second_only: int
+    first: Estimate
+    second: Estimate
+    relative: Estimate
+
+
+def acceptance(first: Simulation, second: Simulation) -> Acceptance:
+    """Compare what is accepted; the error of the ratio comes from the trials that one run alone accepts."""
+    both = int(np.intersect1d(first.trial_index, second.trial_index, assume_unique=True).size)
+    mine, theirs = first.accepted - both, second.accepted - both
+    return Acceptance(both, mine, theirs, first.acceptance, second.acceptance, _relative(both, mine, theirs))
+
+
+def _relative(both: int, mine: int, theirs: int) -> Estimate:
+    """(both + theirs)/(both + mine) − 1; its error by the delta method, never less than that of one trial more."""
+    first, second = both + mine, both + theirs
+    if not first:
+        return Estimate(np.nan)
+    if not second:
+        return Estimate(-1.0, 1.0 / first, n=first)
+    ratio = second / first
+    square = mine / first**2 + theirs / second**2 + both * (1.0 / second - 1.0 / first) ** 2
+    return Estimate(ratio - 1.0, max(ratio * square**0.5, 1.0 / first), n=first)
+
+
+def difference(first: Accepted, second: Accepted, share: float, threshold: float | None = None) -> Difference:
+    """Compare a forecast in two runs over the same trials.
+
+    Args:
+        first: the accepted trials of one run.
+        second: those of the other, in the same unit.
+        share: of the trials, held by the central range.
+        threshold: what P(> threshold) is compared for; None for no such number.
+    """
+    pair = Pair(first, second)
+    tail = (1.0 - share) / 2.0
+
+    def change(mine: Statistic, theirs: Statistic) -> Change:
+        return Change(mine.estimate, theirs.estimate, pair.difference(mine, theirs))
+
+    return Difference(
+        mean=change(mean_of(first), mean_of(second)),
+        standard_deviation=change(standard_deviation_of(first), standard_deviation_of(second)),
+        low=change(quantile_of(first, tail), quantile_of(second, tail)),
+        high=change(quantile_of(first, 1.0 - tail), quantile_of(second, 1.0 - tail)),
+        share=share,
+        kolmogorov=_kolmogorov(pair),
+        wasserstein=_wasserstein(pair),
+        largest=float(np.abs(pair.apart).max()) if pair.apart.size else float("nan"),
+        threshold=threshold,
+        above=None if threshold is None else change(share_above(first, threshold), share_above(second, threshold)),
+    )
+
+
+def _kolmogorov(pair: Pair) -> Estimate:
+    """The largest difference of the distribution functions, 0 to 1."""
+    first, second, n = pair.first, pair.second, _fewest(pair)
+    if n == 0:
+        return Estimate(np.nan)
+    points = np.union1d(first.sample.x, second.sample.x)
+    gaps = _share_below(second.sample.x, points) - _share_below(first.sample.x, points)
+    most = int(np.argmax(np.abs(gaps)))
+    pulls = [
+        ((run.values <= points[most]) - _share_below(run.sample.x, points[most])) / run.m for run in (first, second)
+    ]
+    return with_error(abs(float(gaps[most])), pair.error(*pulls), n - 1.0, 0.95, n)
+
+
+def _wasserstein(pair: Pair) -> Estimate:
+    """The area between the distribution functions, in the unit of the values."""
+    first, second, n = pair.first, pair.second, _fewest(pair)
+    if n == 0:
+        return Estimate(np.nan)
+    points = np.union1d(first.sample.x, second.sample.x)
+    gaps = (_share_below(second.sample.x, points) - _share_below(first.sample.x, points))[:-1]
+    widths = np.diff(points)
+    potential = np.concatenate([[0.0], -np.cumsum(np.sign(gaps) * widths)])
+    held = [potential[np.searchsorted(points, run.values)] for run in (first, second)]
+    pulls = [(g - g.mean()) / g.size for g in held]
+    return with_error(float(np.sum(np.abs(gaps) * widths)), pair.error(*pulls), n - 1.0, 0.95, n)
+
+
+def _fewest(pair: Pair) -> int:
+    return min(pair.first.m, pair.second.m)
+
+
+def _share_below(ascending: Floats, points: Floats) -> Floats:
+    """The share of the values that are not above each point."""
+    return np.asarray(np.searchsorted(ascending, points, side="right") / ascending.size)

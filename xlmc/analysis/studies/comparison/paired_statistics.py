@@ -1,0 +1,201 @@
+"""How far each accepted trial pulls a statistic: from this come the errors of differences between runs.
+
+A statistic's error is the root of the sum of its squared influences, one an independent trial (Hampel 1974; the
+infinitesimal jackknife). Where two runs share their trials, a trial that both accept pulls both, and the error of
+the difference is the root of the sum of squares of the differences of these pulls: what the runs have in common then
+cancels, however many trials only one of the runs accepts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.montecarlo import statistics
+from xlmc.montecarlo.statistics import Estimate, Sample
+from xlmc.montecarlo.statistics.estimate import with_error
+
+__all__ = [
+    "Accepted",
+    "Influence",
+    "Pair",
+    "Statistic",
+    "mean_of",
+    "quantile_of",
+    "range_of",
+    "share_above",
+    "standard_deviation_of",
+]
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Accepted:
+    """The accepted trials of one run in which a forecast is a number.
+
+    Attributes:
+        trials: `(m,)` their indices, ascending.
+        values: `(m,)` the forecast.
+    """
+
+    trials: NDArray[np.int64]
+    values: Floats
+
+    @classmethod
+    def of(cls, trials: NDArray[np.int64], values: Floats) -> Accepted:
+        """Leave out the trials in which the forecast is no number, NaN."""
+        known = ~np.isnan(values)
+        return cls(np.asarray(trials)[known], np.asarray(values)[known])
+
+    @cached_property
+    def sample(self) -> Sample:
+        """The values in ascending order."""
+        return Sample.of(self.values)
+
+    @property
+    def m(self) -> int:
+        return int(self.values.size)
+
+
+@dataclass(frozen=True)
+class Influence:
+    """How far each accepted trial pulls a statistic.
+
+    Attributes:
+        pulls: `(m,)` in the statistic's unit; they sum to about 0.
+        spacing: the statistic moves in steps of this size, where it has steps; 0 where it has none.
+    """
+
+    pulls: Floats
+    spacing: float = 0.0
+
+
+@dataclass(frozen=True)
+class Statistic:
+    """A statistic of one run: its estimate and the influence of the trials; None where they are too few for one."""
+
+    estimate: Estimate
+    influence: Influence | None
+
+
+def mean_of(run: Accepted) -> Statistic:
+    """The mean; a trial pulls it by (x − mean)/m."""
+    found = statistics.mean(run.sample)
+    if found.error is None:
+        return Statistic(found, None)
+    return Statistic(found, Influence((run.values - found.value) / run.m))
+
+
+def standard_deviation_of(run: Accepted) -> Statistic:
+    """The standard deviation; a trial pulls it by ((x − mean)² − s²)/(2 s m)."""
+    found = statistics.standard_deviation(run.sample)
+    if found.error is None:
+        return Statistic(found, None)
+    if found.value == 0.0:
+        return Statistic(found, Influence(np.zeros(run.m)))
+    z = (run.values - statistics.mean(run.sample).value) / found.value
+    return Statistic(found, Influence((z * z - 1.0) * (found.value / (2.0 * run.m))))
+
+
+def share_above(run: Accepted, threshold: float) -> Statistic:
+    """The share p of trials above a threshold; a trial pulls it by ([x > threshold] − p)/m."""
+    above = run.values > threshold
+    if run.m < 2:
+        return Statistic(Estimate(float(above.mean()) if run.m else np.nan), None)
+    found = statistics.proportion(int(above.sum()), run.m)
+    return Statistic(found, Influence((above - float(above.mean())) / run.m))
+
+
+def quantile_of(run: Accepted, p: float) -> Statistic:
+    """The quantile q at p; a trial pulls it by (p − [x ≤ q])/(m f(q)), in steps of 1/(m f(q)).
+
+    The density f(q) is the one that gives the quantile's own standard error, which comes from order statistics.
+    """
+    found = statistics.percentile(run.sample, 100.0 * p)
+    if found.error is None:
+        return Statistic(found, None)
+    below = run.values <= found.value
+    if below.all():  # the quantile is the largest value, which many trials have: the first of them count as below
+        below[np.argsort(run.values, kind="stable")[max(1, int(p * run.m)) :]] = False
+    share = float(below.mean())
+    step = found.error / (run.m * share * (1.0 - share)) ** 0.5
+    return Statistic(found, Influence((share - below) * step, step))
+
+
+def range_of(run: Accepted, share: float) -> Statistic:
+    """The width of the central range that holds a share of the trials: its ends pull in opposite directions."""
+    low, high = (quantile_of(run, (1.0 + side * share) / 2.0) for side in (-1.0, 1.0))
+    width = high.estimate.value - low.estimate.value
+    if low.influence is None or high.influence is None:
+        return Statistic(Estimate(width, n=run.m), None)
+    pulls = high.influence.pulls - low.influence.pulls
+    found = with_error(width, float(np.sum(pulls * pulls)) ** 0.5, run.m - 1.0, 0.95, run.m)
+    return Statistic(found, Influence(pulls, max(low.influence.spacing, high.influence.spacing)))
+
+
+class Pair:
+    """Two runs over the same trials, (seed, index) by (seed, index).
+
+    Attributes:
+        both: `(c, 2)` rows, in the first and in the second, of the trials that both accept.
+        only: the rows of those that only the first accepts, and of those that only the second does.
+
+    Args:
+        first: the accepted trials of one run.
+        second: those of the other.
+        size: trials in a replicate, within which they depend on each other; 0 where the trials are independent.
+        replicates: how many there are.
+    """
+
+    def __init__(self, first: Accepted, second: Accepted, size: int = 0, replicates: int = 0) -> None:
+        self.first, self.second, self._size, self._replicates = first, second, size, replicates
+        _, mine, theirs = np.intersect1d(first.trials, second.trials, assume_unique=True, return_indices=True)
+        self.both: tuple[Indices, Indices] = (mine, theirs)
+        self.only: tuple[Indices, Indices] = (_others(mine, first.m), _others(theirs, second.m))
+
+    @cached_property
+    def apart(self) -> Floats:
+        """`(c,)` second less first, in the trials that both accept."""
+        mine, theirs = self.both
+        return np.asarray(self.second.values[theirs] - self.first.values[mine])
+
+    def difference(self, first: Statistic, second: Statistic) -> Estimate:
+        """The second's statistic less the first's, with the error of the difference.
+
+        A quantile moves in steps. Where hardly a trial crosses it, the influences say nothing, and the error is taken
+        to be one step, or the spread of the paired differences where that is smaller.
+        """
+        value, n = second.estimate.value - first.estimate.value, min(self.first.m, self.second.m)
+        if first.influence is None or second.influence is None:
+            return Estimate(value, n=n)
+        error = self.error(first.influence.pulls, second.influence.pulls)
+        step = max(first.influence.spacing, second.influence.spacing)
+        if step and self.apart.size:
+            error = max(error, min(step, float(self.apart.std())))
+        units = min(n, self._replicates) if self._size else n
+        return with_error(value, error, units - 1.0, 0.95, n)
+
+    def error(self, first: Floats, second: Floats) -> float:
+        """The standard error of a difference, from the pulls `(m,)` on either side."""
+        if self._size:
+            sums = self._by_replicate(self.second.trials, second) - self._by_replicate(self.first.trials, first)
+            return float((np.sum(sums * sums) * sums.size / max(sums.size - 1, 1)) ** 0.5)
+        (mine, theirs), (mine_only, theirs_only) = self.both, self.only
+        n = min(self.first.m, self.second.m)
+        parts = second[theirs] - first[mine], first[mine_only], second[theirs_only]
+        return float((sum(float(np.sum(part * part)) for part in parts) * n / max(n - 1, 1)) ** 0.5)
+
+    def _by_replicate(self, trials: NDArray[np.int64], pulls: Floats) -> Floats:
+        """`(replicates,)` the sums of the pulls."""
+        return np.asarray(np.bincount(trials // self._size, pulls, self._replicates), np.float64)
+
+
+def _others(rows: Indices, m: int) -> Indices:
+    left = np.ones(m, bool)
+    left[rows] = False
+    return np.flatnonzero(left)

@@ -1,0 +1,85 @@
+"""The same workbook with a definition changed: assumptions held, filters left out. The file stays as it is.
+
+Every assumption has a random stream of its own, so a variation draws the same numbers for all that it still draws
+(a correlated group counts as one).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+
+from xlmc.errors import SimulationError
+from xlmc.montecarlo.definitions.definitions import Assumption
+from xlmc.montecarlo.definitions.stopping import NO_GOAL
+from xlmc.montecarlo.model.model import Model
+
+__all__ = ["with_changes", "with_plain_sampling"]
+
+
+def with_changes(
+    model: Model,
+    *,
+    frozen: Collection[str] = (),
+    without: Collection[str] = (),
+    drawn_as: Mapping[str, Assumption] | None = None,
+    held_at: Mapping[str, float] | None = None,
+) -> Model:
+    """A model with changed definitions, and without the book's checks: these move no number of a run.
+
+    Args:
+        model: stays as it is.
+        frozen: names of the assumptions to hold at their base values.
+        without: names of the filters to leave out.
+        drawn_as: name of an assumption -> the one whose distribution it takes.
+        held_at: name of an assumption to hold -> the value to hold it at, instead of its base value.
+
+    Raises:
+        SimulationError: an assumption to hold has no base value.
+    """
+    definitions = replace(
+        model.definitions,
+        assumptions=tuple(_assumption(a, frozen, drawn_as or {}, held_at or {}) for a in model.assumptions),
+        filters=tuple(f for f in model.filters if f.name not in without),
+        checks=(),
+    )
+    return Model(model.workbook, definitions, model.path)
+
+
+def with_plain_sampling(model: Model) -> Model:
+    """The model with plain Monte Carlo for its sampling, and runs of a given length.
+
+    Differences are judged from trials that are independent, the same trials of each model.
+    """
+    settings = model.definitions.settings
+    plain = replace(settings, sampling="mc", stopping=NO_GOAL)
+    if settings == plain:
+        return model
+    definitions = replace(model.definitions, settings=plain)
+    return Model(model.workbook, definitions, model.path)
+
+
+def _assumption(
+    assumption: Assumption,
+    frozen: Collection[str],
+    drawn_as: Mapping[str, Assumption],
+    held_at: Mapping[str, float],
+) -> Assumption:
+    name = assumption.name
+    if name in held_at:
+        return replace(assumption, frozen=True, base=held_at[name])
+    if name in frozen:
+        if assumption.base is None:
+            message = f"the assumption {name!r} has no base value to be held at"
+            raise SimulationError(message, where=assumption.cell, hint="type one into its cell")
+        return replace(assumption, frozen=True)
+    if name in drawn_as:
+        other = drawn_as[name]
+        return replace(
+            assumption,
+            distribution=other.distribution,
+            given=other.given,
+            own_family=other.own_family,
+            data=other.data,
+        )
+    return assumption

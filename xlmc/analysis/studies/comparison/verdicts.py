@@ -1,0 +1,264 @@
+"""What a comparison or a screening found, in sentences."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+import numpy as np
+
+from xlmc.analysis.studies.comparison.comparison import Cause, Comparison, ForecastComparison
+from xlmc.analysis.studies.comparison.cost import Cost
+from xlmc.analysis.studies.comparison.differences import Change
+from xlmc.analysis.studies.comparison.rivalry import Rivalry, RivalVerdict
+from xlmc.analysis.studies.comparison.tolerances import Judgement, Verdict
+from xlmc.montecarlo.statistics import Estimate, format_estimate
+
+__all__ = ["amount", "book_names", "inputs_text", "is_chance", "points", "undecided_text", "verdict_text"]
+
+
+def book_names(comparison: Comparison) -> tuple[str, str]:
+    """What to call the two books: their file names, or their paths where the names are the same."""
+    first, second = comparison.first.model.path, comparison.second.model.path
+    return (str(first), str(second)) if first.name == second.name else (first.name, second.name)
+
+
+def verdict_text(comparison: Comparison) -> list[str]:
+    """The verdict, a sentence or two for each kind of it."""
+    books = book_names(comparison)
+    return [
+        *_enough(comparison, books),
+        *_rivals(comparison.rivals, books),
+        *(_too_little(comparison, each, books) for each in comparison.of(Verdict.BEYOND)),
+        *_undecided_text(comparison),
+    ]
+
+
+def _subject(comparison: Comparison, books: tuple[str, str]) -> str:
+    if comparison.source is not None:
+        return f"{books[0]} without {comparison.source.model.path.name}"
+    return "" if comparison.simpler is None else f"The simpler model, {books[comparison.simpler]},"
+
+
+def _enough(comparison: Comparison, books: tuple[str, str]) -> Iterator[str]:
+    within = comparison.of(Verdict.WITHIN)
+    if not within:
+        return
+    names = _join_names([f"{_name(each)} to {_tolerance(each)}" for each in within])
+    subject = _subject(comparison, books)
+    yield f"{subject} is enough for {names}." if subject else f"The two books agree for {names}."
+
+
+def _too_little(comparison: Comparison, each: ForecastComparison, books: tuple[str, str]) -> str:
+    change = dict(each.difference.changes)[each.judgement.largest]
+    number = _differs(each, each.judgement.largest, change.difference)
+    subject = _subject(comparison, books)
+    verdict = f"{subject} is not enough for" if subject else "The two books do not agree for"
+    because = "" if each.cause is None else f"{', ' * bool(each.cause.steps)}{_because(each.cause, each, books)}"
+    ending = _trial_by_trial(each, comparison.acceptance.both)
+    return f"{verdict} {_name(each)} to {_tolerance(each)}: {number}{because}.{ending}"
+
+
+def _rivals(each: Sequence[ForecastComparison], books: tuple[str, str]) -> Iterator[str]:
+    """Two models of one scene: which tells more, in one sentence for all answers, and one for each."""
+    found = [(one, one.rivalry) for one in each if one.rivalry is not None]
+    if len(found) > 1:
+        yield _rivals_summary([rivals for _, rivals in found], books)
+    yield from (_rival(one, rivals, books) for one, rivals in found)
+
+
+def _rivals_summary(found: Sequence[Rivalry], books: tuple[str, str]) -> str:
+    counts = {side: sum(rivals.sharper == side for rivals in found) for side in (0, 1)}
+    more = [f"{books[side]} tells more of {count}" for side, count in counts.items() if count]
+    worst = max((rivals.agreement for rivals in found), key=list(RivalVerdict).index)
+    tells = _join_names(more) if more else "neither tells more of any, as far as these trials say"
+    return f"Each book computes {len(found)} answers from inputs that the other has not: {tells}; {_ALL_AGREE[worst]}."
+
+
+_ALL_AGREE = {
+    RivalVerdict.AGREE: "all agree",
+    RivalVerdict.TOO_FEW: "of some, too few trials say whether they agree",
+    RivalVerdict.STRAINED: "some are strained",
+    RivalVerdict.CONTRADICT: "some contradict each other",
+}
+
+
+def _rival(each: ForecastComparison, found: Rivalry, books: tuple[str, str]) -> str:
+    """Which of two models tells more of an answer, and whether they agree."""
+    if books[0] == books[1]:  # one book that answers twice
+        books = (repr(each.first.name), repr(each.second.name))
+    deviations, widths = (_spreads(spread, each.first.units) for spread in (found.deviation, found.width))
+    share = f"{100 * each.difference.share:.3g} % range"
+    if found.sharper is not None:
+        mine, theirs = found.sharper, 1 - found.sharper
+        name, sizes = (share, widths) if found.by_range else ("standard deviation", deviations)
+        tells = f"{books[mine]} tells more, with a {name} of {sizes[mine]} against {sizes[theirs]} of {books[theirs]}"
+    elif found.contrary:
+        tells = (
+            f"neither tells more: standard deviations of {_join_names(deviations)}, but {share}s of "
+            f"{_join_names(widths)}; look at the percentiles"
+        )
+    else:
+        tells = f"neither tells more, as far as these trials say: standard deviations of {_join_names(deviations)}"
+    return f"{_name(each)}: {tells}. {_AGREE[found.agreement].format(chance=_chance_text(found))}"
+
+
+def _spreads(spread: Change, units: str) -> list[str]:
+    return [f"{format_estimate(e.value, e.error)} {units}".rstrip() for e in (spread.first, spread.second)]
+
+
+_AGREE = {
+    RivalVerdict.AGREE: "The two answers agree.",
+    RivalVerdict.STRAINED: "The two answers are strained: {chance}.",
+    RivalVerdict.CONTRADICT: "The two answers contradict each other: {chance}. A range, or a model, is wrong.",
+    RivalVerdict.TOO_FEW: "Too few trials are accepted by both to say whether the answers agree.",
+}
+
+
+def _chance_text(found: Rivalry) -> str:
+    if not found.chance:
+        return f"in all {found.both:,} trials that both accept they differ in one direction"
+    return f"a difference as far from 0 as theirs, or farther, has a chance of {100 * found.chance:.2g} %"
+
+
+_WHY = {
+    "filter": ("the filter {names} of {book} moves it", "the filters {names} of {book} move it"),
+    "evidence": ("the evidence {names} of {book} moves it", "the evidence {names} of {book} moves it"),
+    "assumption": ("only {book} draws {names}", "only {book} draws {names}"),
+    "distribution": ("{names} is drawn differently", "{names} are drawn differently"),
+}
+_WITHOUT = {
+    "filter": "without {it}",
+    "evidence": "without {it}",
+    "assumption": "with {it} held at the base value",
+    "distribution": "drawn alike",
+}
+
+
+def _because(cause: Cause, each: ForecastComparison, books: tuple[str, str]) -> str:
+    left = _differs(each, cause.number, cause.left)
+    if not cause.steps:
+        return (
+            ". No filter, drawn assumption or distribution in which the books differ explains this: the cause is in "
+            "the formulas or in values that are held"
+        )
+    reasons, remedies = [], []
+    for kind, why in _WHY.items():
+        for side in (0, 1):
+            names = [repr(s.name) for s in cause.steps if s.word == kind and s.side == side]
+            if names:
+                reasons.append(why[len(names) > 1].format(names=_join_names(names), book=books[side]))
+                remedy = _WITHOUT[kind].format(it="it" if len(names) == 1 else "them")
+                remedies.append(remedy)
+    return f"because {_join_names(reasons)}; {_join_names(list(dict.fromkeys(remedies)))} {left}"
+
+
+def _trial_by_trial(each: ForecastComparison, both: int) -> str:
+    if each.same_in_every_trial:
+        same = f"In each of the {both:,} trials that both accept they give the same number"
+        return f" {same}: they differ only in which trials they accept."
+    return ""
+
+
+def _undecided_text(comparison: Comparison) -> Iterator[str]:
+    for each in comparison.of(Verdict.UNDECIDED):
+        change = dict(each.difference.changes)[each.judgement.largest]
+        start = f"Undecided for {_name(each)} at {comparison.first.trials:,} trials"
+        if math.isnan(change.difference.value) or change.difference.error is None:
+            yield f"{start}: {_too_few(comparison, each)}."
+            continue
+        number = _differs(each, each.judgement.largest, change.difference)
+        more = _more(each.judgement, comparison)
+        yield f"{start}: {number}, which is too near to the tolerance of {_tolerance(each)}; {more}."
+
+
+def _too_few(comparison: Comparison, each: ForecastComparison) -> str:
+    runs = ((comparison.first, each.first.name), (comparison.second, each.second.name))
+    for book, (run, name) in zip(book_names(comparison), runs, strict=True):
+        numbers = int(np.count_nonzero(~np.isnan(run.forecasts[name])))
+        if numbers < run.accepted and numbers < _ENOUGH:
+            count = "none" if not numbers else f"only {numbers}"
+            return f"it is a number in {count} of the {run.accepted:,} trials that {book} accepts"
+    return "too few of them are accepted"
+
+
+_ENOUGH: Final = 100
+"""The fewest numbers that are enough to know an error."""
+
+
+def _more(judgement: Judgement, comparison: Comparison) -> str:
+    if math.isinf(judgement.times):
+        return (
+            "the difference is as large as the tolerance, and no number of trials will decide: state another tolerance"
+        )
+    return f"about {_two_digits(judgement.times * comparison.first.trials)} trials would decide"
+
+
+def _two_digits(trials: float) -> str:
+    """Rounded up, for the number is a guess: 10,423,263 -> 11,000,000."""
+    step = math.pow(10.0, max(0, math.floor(math.log10(trials)) - 1))
+    return f"{math.ceil(trials / step) * step:,.0f}"
+
+
+def inputs_text(comparison: Comparison) -> list[str]:
+    """Which assumptions and filters the books share, and which they do not."""
+    inputs, books = comparison.inputs, book_names(comparison)
+    alike = len(inputs.alike)
+    lines = [f"{alike} assumption{' is' if alike == 1 else 's are'} drawn alike in both books."]
+    lines += [f"{u.name!r} is not the same: {u.first} | {u.second}." for u in (*inputs.unlike, *inputs.held)]
+    for book, drawn, filters, unpaired in zip(books, inputs.drawn, inputs.filters, comparison.unpaired, strict=True):
+        for what, names in (("Drawn", drawn), ("Filters", filters), ("Forecasts", unpaired)):
+            if names:
+                lines.append(f"{what} only in {book}: {'; '.join(names)}.")
+    return lines
+
+
+def undecided_text(cost: Cost, trials: int) -> str:
+    """A change that is undecided, and what would decide it: `Weight (about 260,000 trials would decide)`."""
+    names = ", ".join(cost.names)
+    if cost.lost:
+        return f"{names} ({_join_names([repr(name) for name in cost.lost])} is then hardly ever a number)"
+    if cost.judgement.blind:
+        return f"{names} (too few trials are accepted)"
+    if math.isinf(cost.judgement.times):
+        return f"{names} (as large as the tolerance)"
+    return f"{names} (about {_two_digits(cost.judgement.times * trials)} trials would decide)"
+
+
+def _name(each: ForecastComparison) -> str:
+    same = each.first.name.casefold() == each.second.name.casefold()
+    return each.first.name if same else f"{each.first.name} ({each.second.name})"
+
+
+def _tolerance(each: ForecastComparison) -> str:
+    chances = [f"{number} to {points(limit)}" for number, limit in each.limits.items() if is_chance(number)]
+    return " and ".join([f"{each.tolerance:.4g} {each.first.units}".rstrip(), *chances])
+
+
+def _differs(each: ForecastComparison, number: str, difference: Estimate) -> str:
+    return f"{'' if is_chance(number) else 'the '}{number} differs by {amount(number, difference, each.first.units)}"
+
+
+def is_chance(number: str) -> bool:
+    """Whether a number is the probability P(> threshold)."""
+    return number.startswith("P(")
+
+
+def points(share: float) -> str:
+    """A difference of probabilities: `1.2 points`."""
+    return f"{100 * share:.3g} point{'s' * (share != 0.01)}"
+
+
+def amount(number: str, estimate: Estimate, units: str) -> str:
+    """A number, or a difference of it, with its error: of a probability in percentage points."""
+    if math.isnan(estimate.value):
+        return "no number"
+    if is_chance(number):
+        scaled = None if estimate.error is None else 100 * estimate.error
+        return f"{format_estimate(100 * estimate.value, scaled)} points"
+    return f"{format_estimate(estimate.value, estimate.error)} {units}".rstrip()
+
+
+def _join_names(names: Sequence[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -1,0 +1,202 @@
+"""The truth that methods are measured against: one long run, with its own standard errors."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.analysis.studies.methods.answer import Answer, Extreme, extremes_of
+from xlmc.errors import SimulationError
+from xlmc.montecarlo import statistics
+from xlmc.montecarlo.definitions.definitions import Forecast
+from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.simulation.simulate import simulate
+from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.statistics import Estimate, Sample
+from xlmc.montecarlo.statistics.heavy_tails import heavy_tail
+
+__all__ = ["Reference", "fastest_engine", "reference_of", "reference_size", "unfiltered_of"]
+
+_MOST_REFERENCE: Final = 1 << 25
+_LEAST: Final = 1 << 14
+_MOST_ACCEPTED: Final = 1 << 22
+"""Sorting more trials than these costs more than they add."""
+
+_LARGEST: Final = 1e150
+
+_UNFILTERED: Final = 1 << 20
+
+_PROBE: Final = 65_536
+
+_ROUNDING: Final = 1e-12
+"""A standard deviation that is smaller beside the mean is none."""
+
+_NORMAL_WIDTH: Final = 3.289707
+"""The width from the 5 % to the 95 % quantile of a normal distribution, in standard deviations."""
+
+_WATCHED: Final = 256
+"""Accepted trials whose draws are kept: the watch for lost digits looks at so many."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reference:
+    """A converged run.
+
+    Attributes:
+        trials, accepted: how many it ran, and how many were accepted.
+        sampling, engine, seed: Sobol points where no filter rejects anything, or else independent trials.
+        seconds: how long it took.
+        answers: forecast -> its numbers.
+        errors: forecast -> their standard errors.
+        single: forecast -> the standard errors that one independent accepted trial would have; over the square root of
+            their number, they are what theory says of a run by Monte Carlo.
+        widths: forecast -> from its 5 % to its 95 % quantile: what accuracies are relative to. Where these are one
+            number, the same of a normal distribution with its standard deviation.
+        acceptance: the share of accepted trials.
+        heavy: forecast -> attributes of `Answer` that do not converge, because its tail is too heavy.
+        warnings: why its answers must not be used as they are.
+        extremes: its lowest and highest accepted trials.
+    """
+
+    trials: int
+    accepted: int
+    sampling: str
+    engine: str
+    seed: int
+    seconds: float
+    answers: Mapping[str, Answer]
+    errors: Mapping[str, Answer]
+    single: Mapping[str, Answer]
+    widths: Mapping[str, float]
+    acceptance: Estimate
+    warnings: tuple[str, ...] = ()
+    heavy: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    extremes: tuple[Extreme, ...] = ()
+
+    def theory(self, forecast: str, statistic: str, trials: int) -> float:
+        """The standard error of one number of a forecast in a run of so many independent trials."""
+        return float(getattr(self.single[forecast], statistic)) / float(np.sqrt(trials * self.acceptance.value))
+
+
+def fastest_engine(model: Model) -> str:
+    """`jit` where it is installed and knows the model, or else `numpy`."""
+    try:
+        model.program("jit")
+    except SimulationError:
+        return "numpy"
+    return "jit"
+
+
+def reference_size(model: Model, engine: str, seed: int, seconds: float) -> tuple[int, str]:
+    """How many trials take about so many seconds, a power of two, and by which sampling."""
+    run = partial(simulate, model, seed=seed, engine=engine, sampling="mc", keep_inputs=0)
+    run(trials=_PROBE // 16)  # compiles what must be compiled
+    started = time.perf_counter()
+    probe = run(trials=_PROBE)
+    rate = _PROBE / (time.perf_counter() - started)
+    most = min(_MOST_REFERENCE, int(rate * seconds), int(_MOST_ACCEPTED * _PROBE / max(probe.accepted, 1)))
+    size = 1 << (max(most, _LEAST).bit_length() - 1)
+    return size, "sobol" if probe.accepted == probe.trials else "mc"
+
+
+def reference_of(model: Model, trials: int, sampling: str, engine: str, seed: int) -> Reference:
+    """Run the reference.
+
+    Raises:
+        SimulationError: fewer than 100 trials are accepted, or a forecast is too large for its errors to be squared.
+    """
+    started = time.perf_counter()
+    run = simulate(model, trials=trials, seed=seed, sampling=sampling, engine=engine, keep_inputs=_WATCHED)
+    if run.accepted < 100:
+        message = (
+            f"the filters accept {run.accepted} of {run.trials:,} reference trials, too few to measure methods with"
+        )
+        raise SimulationError(
+            message, hint="give more reference trials, or see whether the filters contradict the inputs"
+        )
+    for forecast in model.forecasts:
+        if np.max(np.abs(run[forecast.name].sample.x), initial=0.0) > _LARGEST:
+            message = f"the forecast {forecast.name!r} is beyond 1E150 in some trials: its errors cannot be squared"
+            raise SimulationError(message, where=forecast.cell, hint="give it in larger units")
+    numbers = {f.name: _numbers(run, f) for f in model.forecasts}
+    return Reference(
+        trials=run.trials,
+        accepted=run.accepted,
+        sampling=sampling,
+        engine=engine,
+        seed=seed,
+        seconds=time.perf_counter() - started,
+        answers={name: found[0] for name, found in numbers.items()},
+        errors={name: found[1] for name, found in numbers.items()},
+        single={name: found[2] for name, found in numbers.items()},
+        widths={f.name: _width(run[f.name].sample, numbers[f.name][0]) for f in model.forecasts},
+        acceptance=run.acceptance,
+        warnings=tuple(run.warnings),
+        extremes=extremes_of(run.forecasts, run.trial_index, seed, run.plan),
+        heavy={f.name: lost for f in model.forecasts if (lost := _lost(run[f.name].sample.x))},
+    )
+
+
+def unfiltered_of(model: Model, reference: Reference) -> Reference | None:
+    """The forecasts without the filters, by a run of up to 1,048,576 trials.
+
+    None where no filter rejects anything, or where forecasts are no numbers in trials that the filters reject: then
+    there is no such answer.
+    """
+    if not model.filters or reference.accepted == reference.trials:
+        return None
+    free = Model(model.workbook, replace(model.definitions, filters=(), checks=()), model.path)
+    trials = min(reference.trials, _UNFILTERED)
+    try:
+        found = reference_of(free, trials, "mc", reference.engine, reference.seed)
+    except SimulationError:
+        return None
+    return None if found.warnings or found.heavy else found
+
+
+def _width(sample: Sample, answer: Answer) -> float:
+    """The width from the 5 % to the 95 % quantile; 0 where a forecast does not vary."""
+    if sample.n < 2 or not answer.sd > _ROUNDING * abs(answer.mean):
+        return 0.0
+    low, high = sample.quantile(np.array([0.05, 0.95]))
+    return float(high - low) if high > low else _NORMAL_WIDTH * answer.sd
+
+
+def _lost(x: NDArray[np.float64]) -> tuple[str, ...]:
+    """The statistics of a forecast that do not converge."""
+    found = heavy_tail(x)
+    if found is None:
+        return ()
+    index, error = found
+    return ("mean", "sd") if index - 2 * error <= 1.0 else ("sd",)
+
+
+def _numbers(run: Simulation, forecast: Forecast) -> tuple[Answer, Answer, Answer]:
+    sample = run[forecast.name].sample
+    if sample.n < 2:
+        return Answer(), Answer(), Answer()
+    independent = sample if sample.group is None else Sample(sample.x)
+    root = float(np.sqrt(sample.n))
+    return (
+        Answer(*(each.value for each in _estimates(sample, forecast.central))),
+        Answer(*(_error(each) for each in _estimates(sample, forecast.central))),
+        Answer(*(_error(each) * root for each in _estimates(independent, forecast.central))),
+    )
+
+
+def _estimates(sample: Sample, central: float) -> tuple[Estimate, ...]:
+    return (
+        statistics.mean(sample),
+        statistics.standard_deviation(sample),
+        *statistics.central_interval(sample, central),
+    )
+
+
+def _error(estimate: Estimate) -> float:
+    return np.nan if estimate.error is None else estimate.error

@@ -1,0 +1,207 @@
+"""How many trials and seconds each method needs for an accuracy, and which method to choose.
+
+Of a method that gives its answer once, the question is whether that answer is near enough.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Final, Literal
+
+import numpy as np
+
+from xlmc.analysis.studies.methods.answer import STATISTICS
+from xlmc.analysis.studies.methods.curve import NORMAL_95, Curve, Runs
+from xlmc.analysis.studies.methods.law import CONFIDENCE, law
+from xlmc.analysis.studies.methods.sampled import MONTE_CARLO
+from xlmc.analysis.studies.methods.study import Study
+
+__all__ = ["NO_TIME", "Choice", "Need", "Shortfall", "Verdict", "choice", "need", "reach_of", "seconds_of", "shortfall"]
+
+Verdict = Literal["yes", "no", "unknown"]
+
+_LEAST_PART: Final = 0.25
+
+_TIE: Final = 1.2
+"""Methods whose seconds are within this factor of the least are a tie: clocks and fits tell no more."""
+
+NO_TIME: Final = 0.1
+"""A difference of fewer seconds does not matter."""
+
+_NO_MATTER: Final = 2.0
+"""A method must be faster by this factor to be chosen instead of Monte Carlo."""
+
+_SOON: Final = 5.0
+"""A run that takes no longer is chosen whatever is faster."""
+
+
+@dataclass(frozen=True, slots=True)
+class Need:
+    """What a method needs.
+
+    Attributes:
+        trials: about; infinite where more of them would not do.
+        seconds: likewise.
+        forecast, statistic: whose accuracy needs the most.
+        beyond: how many times as many trials as the longest measured runs had; below 1 where it is between them.
+        reaches: whether the method reaches the accuracy at all, as far as the runs can tell.
+        floor: the error that 95 of 100 runs of any length stay within, in tolerances; 0 for a method that converges.
+    """
+
+    trials: float
+    seconds: float
+    forecast: str
+    statistic: str
+    beyond: float
+    reaches: Verdict = "yes"
+    floor: float = 0.0
+
+    @property
+    def usable(self) -> bool:
+        """Whether it can be recommended."""
+        return self.reaches == "yes" and bool(np.isfinite(self.seconds))
+
+
+@dataclass(frozen=True, slots=True)
+class Shortfall:
+    """The number that an answer given once misses by the most.
+
+    Attributes:
+        error: in the forecast's units, with its sign.
+        own: the standard error of the reference, likewise.
+        times: the error over what was asked for; infinite where the method gives no number.
+        reaches: whether it is near enough, as far as the reference can tell.
+    """
+
+    forecast: str
+    statistic: str
+    error: float
+    own: float
+    times: float
+    reaches: Verdict
+
+
+def _asked_kinds(study: Study) -> list[tuple[str, str]]:
+    """The statistics that converge: forecast and attribute of `Answer`."""
+    return [(name, each) for name in study.varying for each in STATISTICS if study.converges(name, each)]
+
+
+def need(study: Study, curve: Curve) -> Need:
+    """What a method that draws needs, for 95 of 100 runs to keep the accuracy in every number of every forecast."""
+    longest = float(curve.lengths[-1].budget)
+    worst = Need(0.0, 0.0, "", "mean", 0.0)
+    for kind in _asked_kinds(study):
+        tolerance = study.tolerance(kind[0])
+        found = law(study, curve, kind)
+        reaches = _verdict(found.floor_low, found.floor_high, tolerance)
+        trials = np.inf if reaches == "no" else found.trials(tolerance)
+        rank = (("yes", "unknown", "no").index(reaches), trials)
+        if rank > (("yes", "unknown", "no").index(worst.reaches), worst.trials) or not worst.forecast:
+            floor = found.floor / tolerance if tolerance > 0.0 else np.inf
+            worst = Need(trials, seconds_of(curve, trials), *kind, trials / longest, reaches, floor)
+    if worst.reaches == "yes" and not np.isfinite(worst.trials):
+        worst = replace(worst, reaches="unknown")
+    return _agreeing(study, curve, worst)
+
+
+def _agreeing(study: Study, curve: Curve, found: Need) -> Need:
+    """The need of an engine, which is off in every run by what its arithmetic rounds differently."""
+    for name in study.varying:
+        off = curve.apart * study.reference.answers[name].sd
+        tolerance = study.tolerance(name)
+        if off > tolerance:
+            return Need(np.inf, np.inf, name, "mean", np.inf, "no", off / tolerance)
+    return found
+
+
+def _verdict(low: float, high: float, tolerance: float) -> Verdict:
+    """Whether an error between these bounds is within a tolerance."""
+    return "no" if low > tolerance else "yes" if high <= tolerance else "unknown"
+
+
+def shortfall(study: Study, curve: Curve) -> Shortfall:
+    """The worst number of an answer that was given once; one that is surely not good enough comes first."""
+    order = ("yes", "unknown", "no")
+    return max(_shortfalls(study, curve), key=lambda each: (order.index(each.reaches), each.times))
+
+
+def _shortfalls(study: Study, curve: Curve) -> Iterator[Shortfall]:
+    """Every number; the reference's error counts for as many comparisons as there are numbers and such methods."""
+    from scipy.special import ndtri
+
+    kinds = _asked_kinds(study)
+    chances = max(len(kinds) * len([each for each in study.once if each.answers]), 1)
+    wide = float(-ndtri((1.0 - CONFIDENCE) / 2.0 / chances))
+    for kind in kinds:
+        error = curve.lengths[-1].errors[kind]
+        tolerance = study.tolerance(kind[0])
+        if not np.isfinite(error.value):
+            yield Shortfall(*kind, np.nan, error.error, np.inf, "no")
+            continue
+        own = wide * float(np.nan_to_num(error.error))
+        reaches = _verdict(error.value - own, error.value + own, tolerance)
+        yield Shortfall(*kind, error.bias, error.error, error.value / tolerance, reaches)
+
+
+def reach_of(study: Study, curve: Curve, runs: Runs, kind: tuple[str, str]) -> tuple[float, float, float]:
+    """What 95 of 100 runs of one length keep within in one number, and the 95 % bounds of that, over the tolerance.
+
+    Of an answer that was given once: its error, and the bounds that the reference's error leaves.
+    """
+    error, tolerance = runs.errors[kind], study.tolerance(kind[0])
+    wide = (1.0 if curve in study.once else NORMAL_95) / tolerance
+    low, high = error.interval
+    return wide * error.value, wide * low, wide * high
+
+
+def seconds_of(curve: Curve, trials: float) -> float:
+    """A run of so many trials: between measured run lengths in proportion, and beyond them as between the last two.
+
+    A trial is taken to cost at least a quarter of the longest run's average: runs that are shorter than a block of
+    trials all take the same time, and do not show what a trial costs.
+    """
+    timed = [runs for runs in curve.lengths if np.isfinite(runs.seconds)]
+    if not timed or not np.isfinite(trials):
+        return np.inf
+    budgets = np.array([float(runs.budget) for runs in timed])
+    seconds = np.array([runs.seconds for runs in timed])
+    if trials <= budgets[-1]:
+        return float(np.interp(trials, budgets, seconds))
+    each = float(seconds[-1] / budgets[-1])
+    if budgets.size > 1:
+        each = max(float((seconds[-1] - seconds[-2]) / (budgets[-1] - budgets[-2])), _LEAST_PART * each)
+    return float(seconds[-1]) + each * (trials - float(budgets[-1]))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Choice:
+    """Methods that draw, for one accuracy.
+
+    Attributes:
+        chosen: what to use; None where no method reaches the accuracy, as for a tolerance of zero.
+        needs: what each method needs.
+        cheapest: the method of the least seconds, and those that tie with it, the least first.
+    """
+
+    chosen: Curve | None
+    needs: Mapping[Curve, Need]
+    cheapest: tuple[Curve, ...]
+
+
+def choice(study: Study, accuracy: tuple[str, float, bool] | None = None) -> Choice:
+    """Choose for the accuracy of a study, or for another one.
+
+    Monte Carlo, whose trials are independent and whose errors come out of the run itself, unless that takes more than
+    five seconds and another method takes less than half.
+    """
+    asked = study if accuracy is None else replace(study, accuracy=accuracy)
+    needs = {curve: need(asked, curve) for curve in (*study.curves, *study.engines)}
+    usable = sorted((curve for curve, found in needs.items() if found.usable), key=lambda curve: needs[curve].seconds)
+    if not usable:
+        return Choice(None, needs, ())
+    least = needs[usable[0]].seconds
+    cheapest = tuple(c for c in usable if needs[c].seconds <= max(_TIE * least, least + NO_TIME))
+    plain = next((curve for curve in usable if curve.method.key == MONTE_CARLO.key), usable[0])
+    slow = needs[plain].seconds > _SOON and needs[plain].seconds > _NO_MATTER * least
+    return Choice(usable[0] if slow else plain, needs, cheapest)

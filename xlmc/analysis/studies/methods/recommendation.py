@@ -1,0 +1,299 @@
+"""Which method to use, in words, for the accuracy that was asked for, and why the answers of other methods are off.
+
+The error of an answer that was given once has two parts, measured apart: its distance from the answer without filters,
+which the method made of the formulas alone, and the distance from there to the answer with them, which it cannot see.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from xlmc.analysis.studies.methods.answer import percent_words, rounded_text, seconds_text, statistic_words, trials_text
+from xlmc.analysis.studies.methods.curve import Curve
+from xlmc.analysis.studies.methods.need import NO_TIME, Choice, Need, Shortfall, choice, shortfall
+from xlmc.analysis.studies.methods.sampled import MONTE_CARLO, Sampled
+from xlmc.analysis.studies.methods.study import Study
+
+__all__ = ["Parts", "parts_of", "recommendation"]
+
+_FAR: Final = 64.0
+"""If errors are carried on to more than this many times the measured runs, a sentence says so."""
+
+_ERROR_WORDS: Final = (
+    "All errors here are those of computing the answer, measured against the reference; none says whether the model "
+    "fits the crash, or whether the ranges of the assumptions are right."
+)
+
+_BEYOND: Final = 3.0
+"""Standard errors from which on a part counts as measured."""
+
+_LEFT_OUT: Final = {
+    "taylor-1": "it takes every curve for straight and every answer for normally distributed",
+    "taylor-2": "over these ranges the formulas are more than quadratic polynomials",
+}
+_ELSE: Final = "it leaves something out of the formulas"
+
+
+def recommendation(study: Study) -> list[str]:
+    """Paragraphs: what to use, why, what else would do, and what the others cannot."""
+    warned = [f"Warning: {warning}; the answers must not be used as they are." for warning in study.reference.warnings]
+    return [*warned, *_paragraphs(study)]
+
+
+def _paragraphs(study: Study) -> list[str]:
+    if not study.varying:
+        numbers = any(np.isfinite(answer.mean) for answer in study.reference.answers.values())
+        return [
+            "No forecast varies: there is nothing to compute with any method."
+            if numbers
+            else "No forecast is a number in more than one trial: there is nothing to compute with any method."
+        ]
+    found = choice(study)
+    once = [(curve, shortfall(study, curve)) for curve in study.once if curve.answers]
+    verdict, *others = _drawing_text(study, found)
+    said = [verdict, _accuracy_text(study), *_heavy_text(study), *others, *_once_text(once)]
+    said += [_never_text(study, curve, each) for curve, each in found.needs.items() if each.reaches == "no"]
+    said += [_unknown_text(curve, each) for curve, each in found.needs.items() if each.reaches == "unknown"]
+    said += [_missed_text(study, curve, each) for curve, each in once if each.reaches == "no"]
+    said += [_undecided_text(study, curve, each) for curve, each in once if each.reaches == "unknown"]
+    said += _bounds_text(study)
+    return [*said, _ERROR_WORDS]
+
+
+def _accuracy_text(study: Study) -> str:
+    text, _, relative = study.accuracy
+    what = f"{text} of its 5–95 % range" if relative else f"{text} in its units"
+    numbers = "mean, standard deviation and both ends of the central range of every forecast"
+    said = f"Asked for: {numbers}, each known to within {what}, in 95 of 100 runs."
+    if relative:
+        said += (
+            " The 5–95 % range of a forecast is what nine tenths of its accepted trials lie in: "
+            f"{'; '.join(_range(study, name) for name in study.varying)}."
+        )
+    return said
+
+
+def _range(study: Study, name: str) -> str:
+    units = next((f" {f.units}" for f in study.model.forecasts if f.name == name and f.units), "")
+    return f"{name} {study.reference.widths[name]:.3g}{units} wide"
+
+
+def _heavy_text(study: Study) -> list[str]:
+    """The statistics that no method can find."""
+    return [
+        f"The {' and '.join(map(statistic_words, lost))} of {name} {'do' if len(lost) > 1 else 'does'} not converge, "
+        "as far as these trials show, because its tail is too heavy: more trials help no method. All else "
+        "leaves this out; report percentiles."
+        for name, lost in study.reference.heavy.items()
+        if name in study.varying
+    ]
+
+
+def _drawing_text(study: Study, found: Choice) -> list[str]:
+    if found.chosen is None:
+        return ["No method that draws reaches this accuracy: ask for an accuracy above 0."]
+    chosen, wanted = found.chosen, found.needs[found.chosen]
+    said = (
+        f"Recommended: {chosen.method.name}, about {trials_text(wanted.trials)} trials, "
+        f"{seconds_text(wanted.seconds)}; the {statistic_words(wanted.statistic)} of {wanted.forecast} needs the most. "
+        f"{_saving(found)}"
+    )
+    if wanted.beyond > _FAR:
+        said += (
+            f" That is {wanted.beyond:,.0f} times as many trials as the longest measured runs had; it is computed from "
+            "how their errors fall."
+        )
+    others = sorted(
+        (curve for curve, each in found.needs.items() if curve is not chosen and each.usable),
+        key=lambda curve: found.needs[curve].seconds,
+    )
+    rest = "; ".join(
+        f"{curve.method.name} {trials_text(found.needs[curve].trials)} trials, "
+        f"{seconds_text(found.needs[curve].seconds)}"
+        for curve in others
+    )
+    return [f"{said} {_command(study, chosen, wanted)}", *([f"The others would need: {rest}."] if rest else [])]
+
+
+def _saving(found: Choice) -> str:
+    """What the clock alone would choose."""
+    assert found.chosen is not None
+    least = found.cheapest[0]
+    if found.chosen in found.cheapest:
+        saved = found.needs[found.chosen].seconds - found.needs[least].seconds
+        if saved <= NO_TIME:
+            return "No other method saves a tenth of a second."
+        return f"{_names([c for c in found.cheapest if c is not found.chosen])} take the same time within 20 %."
+    tied = [curve for curve in found.cheapest if curve is not least]
+    said = f"By the clock alone {least.method.name} is cheapest, {seconds_text(found.needs[least].seconds)}"
+    if tied:
+        said += f", and {_names(tied)} take the same time within 20 % or a tenth of a second"
+    saved = found.needs[found.chosen].seconds - found.needs[least].seconds
+    why = "" if _same_trials(least, found.chosen) else ", and gives up independent trials"
+    return f"{said}: it saves {seconds_text(saved)}{why}."
+
+
+def _same_trials(curve: Curve, chosen: Curve) -> bool:
+    methods = curve.method, chosen.method
+    return all(isinstance(each, Sampled) and each.method == MONTE_CARLO.method for each in methods)
+
+
+def _names(curves: Sequence[Curve]) -> str:
+    names = [curve.method.name for curve in curves]
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def _command(study: Study, curve: Curve, wanted: Need) -> str:
+    method = curve.method
+    if not isinstance(method, Sampled):
+        call = f"xlmc.analysis.studies.methods.{type(method).__name__}().run(model, {wanted.trials:.0f}, seed=1)"
+        return f"It runs from Python: `{call}`."
+    text, _, relative = study.accuracy
+    options = [
+        f"--{name} {chosen}"
+        for name, chosen, usual in (
+            ("sampling", method.method, MONTE_CARLO.method),
+            ("engine", method.engine, MONTE_CARLO.engine),
+        )
+        if chosen != usual
+    ]
+    command = " ".join(["xlmc simulate", study.model.workbook.name, *options])
+    if relative:
+        return f"`{command} -n {_upwards(wanted.trials)}` runs it, and prints what each number is known to."
+    numbers = "range" if study.reference.heavy else "mean,sd,range"
+    command += f" --precision {text.replace(' ', '')} --precision-of {numbers}"
+    return f"`{command}` goes on until the run's own errors say that the accuracy is reached."
+
+
+def _upwards(trials: float) -> int:
+    """Two significant digits, never fewer trials than that.
+
+    >>> _upwards(383_000.0)
+    390000
+    """
+    size = int(10 ** max(len(f"{trials:.0f}") - 2, 0))
+    return math.ceil(trials / size) * size
+
+
+def _once_text(once: Sequence[tuple[Curve, Shortfall]]) -> list[str]:
+    enough = [curve for curve, found in once if found.reaches == "yes"]
+    if not enough:
+        return []
+    verbs = ("is", "needs") if len(enough) == 1 else ("are", "need")
+    return [f"{_names(enough)} {verbs[0]} near enough, and {verbs[1]} no draws at all."]
+
+
+def _never_text(study: Study, curve: Curve, found: Need) -> str:
+    off = found.floor * study.tolerance(found.forecast)
+    units = next((f" {f.units}" for f in study.model.forecasts if f.name == found.forecast and f.units), "")
+    return (
+        f"{curve.method.name} never reaches it: the {statistic_words(found.statistic)} of {found.forecast} stays off "
+        f"by about {rounded_text(off)}{units}, {rounded_text(found.floor)} times what was asked for, however many "
+        "trials it runs."
+    )
+
+
+def _unknown_text(curve: Curve, found: Need) -> str:
+    if curve.method.errors != "floor":
+        return (
+            f"These runs cannot tell what {curve.method.name} needs: too few of them gave a number for the "
+            f"{statistic_words(found.statistic)} of {found.forecast}. Longer runs can."
+        )
+    return (
+        f"These runs cannot tell whether {curve.method.name} reaches it: more trials do not remove all of its error, "
+        f"and only more and longer runs can show whether what is left of it in the {statistic_words(found.statistic)} "
+        f"of {found.forecast} is small enough."
+    )
+
+
+def _undecided_text(study: Study, curve: Curve, found: Shortfall) -> str:
+    units = next((f" {f.units}" for f in study.model.forecasts if f.name == found.forecast and f.units), "")
+    return (
+        f"This reference cannot tell whether {curve.method.name} is near enough: it is off by "
+        f"{rounded_text(abs(found.error))} ± {rounded_text(found.own)}{units} in the "
+        f"{statistic_words(found.statistic)} of {found.forecast}, where "
+        f"{rounded_text(study.tolerance(found.forecast))}{units} was asked for. More --reference-trials can."
+    )
+
+
+def _bounds_text(study: Study) -> list[str]:
+    curves = [curve for curve in study.once if curve.ranges]
+    widths = []
+    for curve in curves:
+        ratios = [
+            (most - least) / (answer.high - answer.low)
+            for name, (least, most) in curve.ranges.items()
+            if name in study.varying and (answer := study.reference.answers[name]).high > answer.low
+        ]
+        if ratios:
+            low, high = f"{min(ratios):.1f}", f"{max(ratios):.1f}"
+            widths.append(f"{curve.method.name} {low}" + (f" to {high}" if high != low else ""))
+    if not widths:
+        return []
+    return [
+        "Bounds answer another question, what is possible and not what is likely. Their widths, in central ranges: "
+        f"{'; '.join(widths)}."
+    ]
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """The parts of an error, in the forecast's units, with its sign.
+
+    Attributes:
+        filters: what the filters do, which the method does not see.
+        formulas: what it leaves out of the formulas.
+        error: the standard error of each of them.
+    """
+
+    filters: float
+    formulas: float
+    error: float
+
+
+def parts_of(study: Study, found: Shortfall) -> Parts | None:
+    """The parts of an error; None where there are no filters that reject anything, or no answer without them."""
+    if study.unfiltered is None:
+        return None
+    free, own = study.unfiltered.answers[found.forecast], study.unfiltered.errors[found.forecast]
+    truth = study.reference.answers[found.forecast]
+    filters = float(getattr(free, found.statistic)) - float(getattr(truth, found.statistic))
+    error = float(np.nan_to_num(getattr(own, found.statistic)))
+    return Parts(filters, found.error - filters, float(np.hypot(error, np.nan_to_num(found.own))))
+
+
+def _missed_text(study: Study, curve: Curve, found: Shortfall) -> str:
+    """What a method misses by the most, and why, in a sentence or two."""
+    if not np.isfinite(found.times):
+        return f"{curve.method.name} has no number for {found.forecast}."
+    units = next((f" {f.units}" for f in study.model.forecasts if f.name == found.forecast and f.units), "")
+    share = abs(found.error) / study.reference.widths[found.forecast]
+    text = (
+        f"{curve.method.name} misses the {statistic_words(found.statistic)} of {found.forecast} by "
+        f"{rounded_text(abs(found.error))}{units}, {percent_words(share)} of its 5–95 % range"
+    )
+    why = _LEFT_OUT.get(curve.method.key, _ELSE)
+    rejected = 1.0 - study.reference.acceptance.value
+    if not study.model.filters or rejected == 0.0:
+        return f"{text}: {why}."
+    seen = f"it does not see the filters, which reject {percent_words(rejected)} of the trials"
+    parts = parts_of(study, found)
+    if parts is None:
+        return (
+            f"{text}. {seen[0].upper()}{seen[1:]}; and {why}. No answer without filters is known that would tell the "
+            "two parts from each other."
+        )
+    filters = _part(parts.filters, parts, units, f"because {seen}", "for the filters, which it does not see")
+    formulas = _part(parts.formulas, parts, units, f"because {why}", "for what it leaves out of the formulas")
+    return f"{text}. Measured apart: {filters}; {formulas}."
+
+
+def _part(value: float, parts: Parts, units: str, because: str, otherwise: str) -> str:
+    if abs(value) <= _BEYOND * parts.error:
+        return f"no more than chance (±{rounded_text(_BEYOND * parts.error)}{units}) {otherwise}"
+    return f"{'+' if value > 0.0 else '−'}{rounded_text(abs(value))}{units} {because}"

@@ -1,0 +1,387 @@
+"""Run all methods on one workbook, and measure what each costs and how far it is from a converged reference."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from statistics import median
+from typing import Any, Final
+
+import numpy as np
+
+from xlmc.analysis.studies.methods.answer import STATISTICS, Answer, Extreme, Method, MethodResult
+from xlmc.analysis.studies.methods.converged_reference import (
+    Reference,
+    fastest_engine,
+    reference_of,
+    reference_size,
+    unfiltered_of,
+)
+from xlmc.analysis.studies.methods.corners import Corners
+from xlmc.analysis.studies.methods.curve import Curve, Runs, in_order, runs_of
+from xlmc.analysis.studies.methods.differential import FirstOrder, SecondOrder, WorstCase
+from xlmc.analysis.studies.methods.importance_grid import ImportanceGrid
+from xlmc.analysis.studies.methods.optimised import Optimised, widen_bounds
+from xlmc.analysis.studies.methods.sampled import ENGINE_VARIANTS, MONTE_CARLO, SAMPLERS, Sampled
+from xlmc.analysis.studies.methods.surrogate import Surrogate
+from xlmc.errors import SimulationError
+from xlmc.montecarlo.definitions.amounts import as_tolerance
+from xlmc.montecarlo.model.model import Model
+
+__all__ = ["ACCURACY", "LENGTHS", "REPLICATES", "STEP", "Study", "ladder_of", "quick_settings", "study"]
+
+ACCURACY: Final = "1%"
+REPLICATES: Final = 24
+"""This number of runs of each length gives a root mean square error to 15 %."""
+
+STEP: Final = 4
+"""The trials of each run length over those of the next shorter one."""
+
+LENGTHS: Final = 8
+"""Run lengths: the longest has 16,384 times the trials of the shortest, four decades."""
+
+_SHORTEST: Final = 128
+_FEWEST_ACCEPTED: Final = 4.0
+"""Accepted trials of the shortest runs, about."""
+
+ONCE: Final[tuple[Method, ...]] = (Corners(), Optimised(), WorstCase(), FirstOrder(), SecondOrder())
+DRAWN: Final[tuple[Method, ...]] = (*SAMPLERS, ImportanceGrid(), Surrogate())
+
+_REFERENCE_SECONDS: Final = 8.0
+_LONGEST_RUN: Final = 2.5
+"""Seconds of a run by Monte Carlo: longer ones are not measured."""
+
+_APART: Final = 1_000_000
+"""Between the seeds of the runs of one length and those of the next: runs of different lengths share no trials."""
+
+SLOW: Final = "formulas"
+
+_RUNS_SECONDS, _LEAST_RUNS = 4.0, 6
+"""Seconds for one method and run length, where the number of runs is not given."""
+
+_CLOCKED: Final = 3
+"""Runs of an engine of each length: only their seconds matter, because their errors are those of Monte Carlo."""
+
+_FEW: Final = 8
+"""Trials that the slow reference engine is timed by."""
+
+_PATIENCE: Final = 1.0
+"""Seconds of a run that is too long to be repeated."""
+
+Told = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Study:
+    """What was measured.
+
+    Attributes:
+        model: the workbook.
+        seed: of the reference; the replicates have others.
+        accuracy: what is asked of the answers, as typed, the number, and whether it is a share of each number.
+        reference: what errors are measured against.
+        unfiltered: the same without the filters; None where they reject nothing, or where there is no such answer.
+        ladder: trials of the runs of methods that draw.
+        replicates: the most runs of each length.
+        once: the methods that give one answer, the cheapest idea first.
+        curves: the methods that draw.
+        engines: the same trials as Monte Carlo's, computed by other engines.
+        absent: method -> why it could not be used.
+    """
+
+    model: Model
+    seed: int
+    accuracy: tuple[str, float, bool]
+    reference: Reference
+    unfiltered: Reference | None
+    ladder: tuple[int, ...]
+    replicates: int
+    once: tuple[Curve, ...]
+    curves: tuple[Curve, ...]
+    engines: tuple[Curve, ...]
+    absent: Mapping[str, str]
+
+    @property
+    def every(self) -> tuple[Curve, ...]:
+        return (*self.once, *self.curves, *self.engines)
+
+    @property
+    def varying(self) -> tuple[str, ...]:
+        """The forecasts that vary; every method gives the others exactly."""
+        return tuple(name for name, width in self.reference.widths.items() if width > 0.0)
+
+    def converges(self, forecast: str, statistic: str) -> bool:
+        """Whether a statistic of a forecast converges: the forecast varies, and its tail is not too heavy."""
+        return forecast in self.varying and statistic not in self.reference.heavy.get(forecast, ())
+
+    def tolerance(self, forecast: str) -> float:
+        """The error asked for, in the forecast's units."""
+        _, value, relative = self.accuracy
+        return value * self.reference.widths[forecast] if relative else value
+
+
+def study(
+    model: Model,
+    *,
+    accuracy: str = ACCURACY,
+    reference_trials: int | None = None,
+    trials: int | None = None,
+    replicates: int | None = None,
+    patience: float | None = None,
+    seed: int | None = None,
+    told: Told | None = None,
+) -> Study:
+    """Measure every method on a workbook.
+
+    Args:
+        model: the workbook.
+        accuracy: of mean, standard deviation and both ends of the central range, that 95 of 100 runs keep: `1%` of
+            each forecast's 5–95 % range, or a number in the forecasts' units.
+        reference_trials: by default a power of two of them, up to 33,554,432, that takes about eight seconds.
+        trials: of the longest runs; by default 16,384 times those of the shortest, or what takes two seconds.
+        replicates: runs of each length, 2 or more; by default 24, or as many as take a method four seconds, 6 at least.
+        patience: seconds after which one method is not run again at one length, after six runs at least; by default
+            four, or as long as it takes where `replicates` is given.
+        seed: of the reference; by default the workbook's.
+        told: called with what is being measured.
+
+    Raises:
+        SimulationError: an argument is out of its range, or the reference accepts too few trials.
+    """
+    wanted = (accuracy.strip(), *as_tolerance(accuracy))
+    own = model.definitions.settings.seed if seed is None else seed
+    _check(own, replicates, trials, reference_trials, model)
+    tell = told or (lambda _: None)
+    engine = fastest_engine(model)
+    tell("how fast the workbook is")
+    size, sampling = reference_size(model, engine, own, _REFERENCE_SECONDS)
+    size = reference_trials or size
+    tell(f"the reference, {size:,} trials")
+    reference = reference_of(model, size, sampling, engine, own)
+    unfiltered = unfiltered_of(model, reference)
+    ladder = ladder_of(model, trials, own, reference.acceptance.value)
+    if patience is None:
+        patience = _RUNS_SECONDS if replicates is None else np.inf
+    measuring = _Measuring(model, reference, ladder, replicates or REPLICATES, patience, own, tell)
+    once = measuring.once(ONCE)
+    found = measuring.run_drawn(DRAWN, [each for each in ENGINE_VARIANTS if each.engine != SLOW])
+    curves = tuple(curve for curve in found if curve.method in DRAWN)
+    engines = tuple(curve for curve in found if curve.method not in DRAWN)
+    once = tuple(measuring.widen(curve) if curve.ends else curve for curve in once)
+    for variant in ENGINE_VARIANTS:
+        if variant.engine == SLOW:
+            engines += measuring.time_slow(variant, next(curve for curve in curves if curve.method is MONTE_CARLO))
+    most = replicates or REPLICATES
+    return Study(
+        model, own, wanted, reference, unfiltered, ladder, most, once, curves, engines, measuring.absent
+    )  # fmt: skip
+
+
+def quick_settings(given: Mapping[str, Any]) -> dict[str, Any]:
+    """The arguments that `--quick` gives to `study` beside the given ones: few and short runs."""
+    usual = {"reference_trials": 1 << 20, "trials": 1 << 17, **given}
+    return usual if "replicates" in given else {**usual, "replicates": 8, "patience": 0.5}
+
+
+def ladder_of(model: Model, most: int | None, seed: int, acceptance: float) -> tuple[int, ...]:
+    """Trials of the runs, the fewest first: three lengths at least.
+
+    The shortest have about four accepted trials, or 128 trials. Where `most` is not given, the longest have 16,384
+    times as many, or as many as Monte Carlo computes in two and a half seconds.
+    """
+    shortest = max(_SHORTEST, 1 << math.ceil(math.log2(_FEWEST_ACCEPTED / max(acceptance, 1e-9))))
+    if most is not None:
+        lengths = [most // STEP**k for k in range(LENGTHS) if k < 3 or most // STEP**k >= shortest]
+        return tuple(dict.fromkeys(max(each, 16) for each in reversed(lengths)))
+    found = [shortest, shortest * STEP, shortest * STEP**2]
+    while len(found) < LENGTHS:
+        seconds = min(MONTE_CARLO.run(model, found[-1], seed).seconds for _ in range(2))
+        if seconds * STEP > _LONGEST_RUN:
+            break
+        found.append(found[-1] * STEP)
+    return tuple(found)
+
+
+def _check(seed: int, replicates: int | None, trials: int | None, reference: int | None, model: Model) -> None:
+    if not model.forecasts:
+        raise SimulationError("the workbook has no forecast", hint="add one to the table xlmc_forecasts")
+    if not model.live:
+        message = "no assumption that the forecasts or filters need is drawn, so that every method gives the same"
+        raise SimulationError(message, hint="give the table xlmc_assumptions a range that a forecast depends on")
+    if model.chances:
+        named = ", ".join(repr(each.name) for each in model.filters if each.evidence and each.evidence.bell)
+        message = f"the methods that draw no trials cannot use evidence with a normal or lognormal error: {named}"
+        raise SimulationError(message, hint="switch it off under Use in xlmc_evidence, or give it a uniform error")
+    if model.forecast_filters:
+        named = ", ".join(repr(each.name) for each in model.forecast_filters)
+        message = f"the methods that draw no trials cannot use filters of some forecasts only: {named}"
+        raise SimulationError(message, hint="take their forecasts out of a copy of the workbook, or empty Only for")
+    if seed < 0:
+        raise SimulationError(f"the seed {seed} is negative", hint="give a whole number from 0 up")
+    if replicates is not None and replicates < 2:
+        raise SimulationError(f"{replicates} replicates were asked for", hint="give 2 or more; 24 are usual")
+    for what, given, least in (("trials", trials, 1_024), ("reference trials", reference, 1_024)):
+        if given is not None and given < least:
+            raise SimulationError(f"{given:,} {what} were asked for", hint=f"give {least:,} or more")
+
+
+class _Measuring:
+    """The runs of one study."""
+
+    def __init__(
+        self,
+        model: Model,
+        reference: Reference,
+        ladder: Sequence[int],
+        replicates: int,
+        patience: float,
+        seed: int,
+        tell: Told,
+    ) -> None:
+        self._model, self._reference, self._ladder = model, reference, ladder
+        self._replicates, self._patience = replicates, patience
+        self._seed, self._tell = seed, tell
+        self._extremes: dict[str, dict[str, Extreme]] = {}
+        self.absent: dict[str, str] = {}
+
+    def once(self, methods: Sequence[Method]) -> tuple[Curve, ...]:
+        """Run the methods that give one answer; twice, so that the second run shows what they cost."""
+        found = []
+        for method in methods:
+            self._tell(method.name)
+            first = self._try(method, self._ladder[-1])
+            if first is None:
+                continue
+            again = method.run(self._model, self._ladder[-1], self._seed) if first.seconds < _PATIENCE else first
+            result = replace(again, seconds=min(first.seconds, again.seconds))
+            runs = runs_of(result.evaluations, [result], self._reference)
+            ranges = {name: (a.least, a.most) for name, a in result.answers.items() if np.isfinite(a.least)}
+            setup = max(0.0, first.seconds - again.seconds)
+            found.append(Curve(method, (runs,), setup, result.remarks, ranges, ends=result.ends))
+        return tuple(found)
+
+    def widen(self, curve: Curve) -> Curve:
+        """Bounds by optimisation, no narrower than what any run has drawn."""
+        extremes = [*self._reference.extremes, *(each for ends in self._extremes.values() for each in ends.values())]
+        wider, ends = widen_bounds(self._model, self._seed, curve.ranges, extremes)
+        if not ends:
+            return curve
+        ranges = {
+            name: (float(np.fmin(least, a.least)), float(np.fmax(most, a.most)))
+            for name, (least, most) in curve.ranges.items()
+            for a in (wider.get(name, Answer()),)
+        }
+        names = ", ".join(f"{end} {name}" for name, end in ends)
+        said = f"searched again from drawn trials that lie farther out: {names}"
+        return replace(curve, ranges=ranges, ends={**curve.ends, **ends}, remarks=(*curve.remarks, said))
+
+    def run_drawn(self, methods: Sequence[Method], engines: Sequence[Sampled]) -> tuple[Curve, ...]:
+        """Run the methods that draw, and the engines, which compute again the trials of the first of these.
+
+        They take turns, run length after run length, so that other work of the machine slows all of them alike.
+        """
+        firsts = {method.key: self._try(method, self._ladder[0]) for method in (*methods, *engines)}
+        able = [method for method in (*methods, *engines) if firsts[method.key] is not None]
+        results: dict[tuple[str, int], list[MethodResult]] = {(m.key, b): [] for m in able for b in self._ladder}
+        for replicate in range(self._replicates):
+            self._tell(
+                f"runs of {self._ladder[0]:,} to {self._ladder[-1]:,} trials, {replicate + 1} of {self._replicates}"
+            )
+            for number, budget in enumerate(self._ladder):
+                seed = self._seed + 1 + number * _APART + replicate
+                for method in able:
+                    known = results[method.key, budget]
+                    if not self._enough(known, method in engines):
+                        known.append(self._run(method, budget, seed))
+        found = {m.key: self._curve(m, firsts[m.key], results) for m in able if m not in engines}
+        same = [self._engine_curve(e, firsts[e.key], results, found[MONTE_CARLO.key]) for e in engines if e in able]
+        return (*found.values(), *same)
+
+    def _enough(self, known: Sequence[MethodResult], engine: bool) -> bool:
+        """Whether there are enough runs of one method and length: as many as wanted, or as their time allows."""
+        if engine and len(known) >= _CLOCKED:
+            return True
+        return len(known) >= _LEAST_RUNS and sum(result.seconds for result in known) > self._patience
+
+    def _run(self, method: Method, budget: int, seed: int) -> MethodResult:
+        """One run of a method; one that fails because it has too few accepted trials counts as failed."""
+        try:
+            found = method.run(self._model, budget, seed)
+            for each in found.extremes:
+                self._remember(each)
+            return replace(found, extremes=())
+        except SimulationError as error:
+            nothing = {forecast.name: Answer() for forecast in self._model.forecasts}
+            return MethodResult(np.nan, budget, nothing, remarks=(str(error),))
+
+    def _remember(self, each: Extreme) -> None:
+        """The outermost trial of all runs, for each end of each forecast."""
+        ends = self._extremes.setdefault(each.forecast, {})
+        sign = 1.0 if each.end == "least" else -1.0
+        if each.end not in ends or sign * each.value < sign * ends[each.end].value:
+            ends[each.end] = each
+
+    def _curve(
+        self, method: Method, first: MethodResult | None, results: Mapping[tuple[str, int], list[MethodResult]]
+    ) -> Curve:
+        lengths = in_order([runs_of(budget, results[method.key, budget], self._reference) for budget in self._ladder])
+        remarks = results[method.key, self._ladder[-1]][-1].remarks
+        return Curve(method, lengths, _setup(first, lengths[0]), remarks, {})
+
+    def _engine_curve(
+        self,
+        engine: Sampled,
+        first: MethodResult | None,
+        results: Mapping[tuple[str, int], list[MethodResult]],
+        plain: Curve,
+    ) -> Curve:
+        """The errors of the trials, which are those of `plain`, with the seconds of an engine."""
+        lengths = []
+        for runs in plain.lengths:
+            timed = [result.seconds for result in results[engine.key, runs.budget]]
+            lengths.append(replace(runs, seconds=min(timed), usual=median(timed)))
+        ordered = in_order(lengths)
+        apart = max(
+            self._apart(results[engine.key, budget], results[MONTE_CARLO.key, budget]) for budget in self._ladder
+        )
+        said = f"answers at the same trials differ from those of numpy by {apart:.1g} SD at the most"
+        return Curve(engine, ordered, _setup(first, ordered[0]), (said,), {}, apart)
+
+    def time_slow(self, engine: Sampled, numpy: Curve) -> tuple[Curve, ...]:
+        """An engine that is too slow for runs of any length: its time is worked out from a few trials."""
+        self._tell(engine.name)
+        first = self._try(engine, _FEW)
+        if first is None:
+            return ()
+        again = engine.run(self._model, _FEW, self._seed).seconds
+        each = again / _FEW
+        lengths = tuple(
+            replace(r, seconds=each * r.budget, usual=each * r.budget, measured=False) for r in numpy.lengths
+        )  # fmt: skip
+        said = f"the same trials as {numpy.method.name}; time worked out from {_FEW} of them"
+        return (Curve(engine, lengths, max(0.0, first.seconds - again), (said,), {}),)
+
+    def _try(self, method: Method, budget: int) -> MethodResult | None:
+        """A method's first run; None, and why, where it cannot be used."""
+        try:
+            return method.run(self._model, budget, self._seed)
+        except SimulationError as error:
+            self.absent[method.name] = str(error)
+            return None
+
+    def _apart(self, found: Sequence[MethodResult], numpy: Sequence[MethodResult]) -> float:
+        """How far an engine's answers are from those of `numpy` at the same trials, in standard deviations."""
+        apart = [
+            abs(getattr(answer, statistic) - getattr(other.answers[name], statistic)) / self._reference.answers[name].sd
+            for one, other in zip(found, numpy, strict=False)
+            for name, answer in one.answers.items()
+            for statistic in STATISTICS
+            if self._reference.widths[name] > 0.0
+        ]
+        return max((each for each in apart if np.isfinite(each)), default=0.0)
+
+
+def _setup(first: MethodResult | None, runs: Runs) -> float:
+    """Seconds of a first run beyond those of the next ones."""
+    return 0.0 if first is None else float(np.nan_to_num(max(0.0, first.seconds - runs.seconds)))

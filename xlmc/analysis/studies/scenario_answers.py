@@ -1,0 +1,304 @@
+"""The answers of a workbook's scenarios beside its own, over the same random numbers.
+
+Each assumption has its own random stream, so a scenario draws the same uniform numbers as the workbook itself, trial by
+trial. What both have in common cancels in a difference, and its standard error, which comes from the differences trial
+by trial, is smaller than those of the two numbers (paired, as in `comparison.paired_statistics`). Of Latin hypercubes
+and Sobol points whole replicates are compared. Trials that a search for rare ones found belong to no common draw: there
+the errors of two numbers add up as those of independent ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from math import hypot
+from typing import Final
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.analysis.studies.comparison.paired_statistics import (
+    Accepted,
+    Pair,
+    Statistic,
+    mean_of,
+    quantile_of,
+    share_above,
+)
+from xlmc.errors import DefinitionError, SimulationError, XlmcError
+from xlmc.montecarlo.definitions.definitions import Forecast
+from xlmc.montecarlo.definitions.scenarios import Scenario
+from xlmc.montecarlo.definitions.stopping import stopping
+from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.model.applied_changes import applied
+from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.sampling.sampling_methods import METHODS
+from xlmc.montecarlo.simulation.simulate import simulate
+from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.statistics import Estimate
+from xlmc.montecarlo.statistics.estimate import with_error
+
+__all__ = ["ForecastAnswer", "ScenarioAnswers", "model_of", "models_of", "scenario_answers", "scenario_named"]
+
+
+@dataclass(frozen=True, slots=True)
+class ForecastAnswer:
+    """A forecast in one state of the workbook, in its units.
+
+    Attributes:
+        low, high: the ends of its central range.
+        above: P(> threshold); None where it has no threshold.
+        differences: `mean`, `low`, `high`, `above` -> this less the workbook's own; empty for the workbook itself. A
+            scenario may have another threshold or central range: the numbers that stand there are compared.
+    """
+
+    forecast: Forecast
+    mean: Estimate
+    low: Estimate
+    high: Estimate
+    above: Estimate | None
+    differences: Mapping[str, Estimate]
+
+    @property
+    def title(self) -> str:
+        """`Speed, mph`, above its table."""
+        return ", ".join(filter(None, (self.forecast.name, self.forecast.units)))
+
+
+@dataclass(frozen=True, slots=True)
+class ScenarioAnswers:
+    """The answers of a scenario, or of the workbook itself.
+
+    Attributes:
+        scenario: None for the workbook itself.
+        run: its run.
+        acceptance: the share of accepted trials.
+        acceptance_difference: less the workbook's own; None for the workbook itself.
+        forecasts: in the order of the workbook.
+        paired: whether differences are errors of pairs.
+    """
+
+    scenario: Scenario | None
+    run: Simulation
+    acceptance: Estimate
+    acceptance_difference: Estimate | None
+    forecasts: tuple[ForecastAnswer, ...]
+    paired: bool
+
+    @property
+    def name(self) -> str:
+        """The scenario's name; `as it is` for the workbook itself."""
+        return "as it is" if self.scenario is None else self.scenario.name
+
+    @property
+    def warnings(self) -> list[str]:
+        """Why its answers must not be used as they are."""
+        return self.run.warnings
+
+
+_FOUND: Final[WeakKeyDictionary[Simulation, tuple[ScenarioAnswers, ...]]] = WeakKeyDictionary()
+"""Terminal, sheets, page and JSON of one run want the same."""
+
+
+def scenario_answers(
+    run: Simulation, *, jobs: int = 1, told: Callable[[str], None] | None = None
+) -> tuple[ScenarioAnswers, ...]:
+    """The answers of the workbook itself, then of each scenario; none where the run was made without them.
+
+    A scenario is run with the settings of the run: until as many trials are accepted, where the run waited for these,
+    else for as many trials.
+
+    Args:
+        run: of the workbook itself.
+        jobs: threads or processes.
+        told: called before every run with what it is for.
+
+    Raises:
+        DefinitionError, FormulaError: a scenario is not possible.
+    """
+    if not run.settings.scenarios:
+        return ()
+    if run not in _FOUND:
+        _FOUND[run] = tuple(_answers(run, jobs, told))
+    return _FOUND[run]
+
+
+def models_of(model: Model) -> dict[str, Model]:
+    """Name of a scenario -> the model of the workbook in it.
+
+    Raises:
+        DefinitionError: there is none, or one is not possible.
+        FormulaError: a cell cannot be computed in one.
+    """
+    scenarios = model.definitions.scenarios
+    if not scenarios:
+        hint = "Add a table named xlmc_scenarios: a row for each scenario, a column for each thing that it changes"
+        raise DefinitionError("The workbook defines no scenario", where=model.workbook.name, hint=hint)
+    return {scenario.name: model_of(model, scenario) for scenario in scenarios}
+
+
+def model_of(model: Model, scenario: Scenario | str) -> Model:
+    """The model of the workbook in a scenario, given itself or by its name.
+
+    Raises:
+        SimulationError: there is no scenario of this name.
+        DefinitionError, FormulaError: it is not possible.
+    """
+    scenario = scenario_named(model, scenario)
+    try:
+        found = applied(model, scenario.changes)
+        if [each.name for each in found.forecasts] != [each.name for each in model.forecasts]:
+            hint = "a scenario asks for the same forecasts as the workbook: change something else"
+            raise DefinitionError("other forecasts would be asked for", hint=hint)
+        return found
+    except XlmcError as error:
+        message = f"In the scenario {scenario.name!r}: {error.message}"
+        where = scenario.row if error.where is None else error.where
+        raise type(error)(message, where=where, hint=error.hint) from error
+
+
+def scenario_named(model: Model, scenario: Scenario | str) -> Scenario:
+    """The scenario of this name, or itself.
+
+    Raises:
+        SimulationError: there is no scenario of this name.
+    """
+    if not isinstance(scenario, str):
+        return scenario
+    known = {name_key(each.name): each for each in model.definitions.scenarios}
+    if name_key(scenario) not in known:
+        names = ", ".join(repr(each.name) for each in known.values())
+        hint = f"there are {names}" if names else "the workbook has no table xlmc_scenarios"
+        raise SimulationError(f"there is no scenario {scenario!r}", where=model.workbook.name, hint=hint)
+    return known[name_key(scenario)]
+
+
+def _answers(run: Simulation, jobs: int, told: Callable[[str], None] | None) -> Iterator[ScenarioAnswers]:
+    models = models_of(run.model)
+    yield _of(run, None, run)
+    for scenario in run.model.definitions.scenarios:
+        if told is not None:
+            told(scenario.name)
+        yield _of(_run(models[scenario.name], run, jobs), scenario, run)
+
+
+def _run(model: Model, base: Simulation, jobs: int) -> Simulation:
+    settings = base.settings
+    waited = base.stopped.by in ("accepted", "search")
+    whole = waited or not METHODS[settings.sampling].independent
+    goal = settings.stopping.accepted if waited else None
+    return simulate(
+        model,
+        trials=settings.trials if whole else base.trials,
+        seed=settings.seed,
+        stopping=stopping(until_accepted=goal, rare=settings.stopping.rare if waited else None),
+        engine=settings.engine,
+        sampling=settings.sampling,
+        jobs=jobs,
+        keep_inputs=0,
+    )
+
+
+def _of(run: Simulation, scenario: Scenario | None, base: Simulation) -> ScenarioAnswers:
+    paired = _share_trials(run, base)
+    return ScenarioAnswers(
+        scenario=scenario,
+        run=run,
+        acceptance=run.acceptance,
+        acceptance_difference=None if scenario is None else _acceptance_difference(base, run, paired=paired),
+        forecasts=tuple(_forecast(run, base, each, scenario is not None, paired) for each in run.model.forecasts),
+        paired=paired,
+    )
+
+
+def _share_trials(first: Simulation, second: Simulation) -> bool:
+    """Whether trials, or replicates, of the same number were drawn from the same uniforms."""
+    plain = first.rare is None and second.rare is None
+    return plain and first.plan.size == second.plan.size
+
+
+def _forecast(run: Simulation, base: Simulation, forecast: Forecast, differs: bool, paired: bool) -> ForecastAnswer:
+    result = run.results[forecast.name]
+    low, high = result.central()
+    above = None if forecast.threshold is None else result.probability_above(forecast.threshold)
+    found = {"mean": result.mean, "low": low, "high": high} | ({} if above is None else {"above": above})
+    changes = _differences(run, base, forecast, found, paired=paired) if differs else {}
+    return ForecastAnswer(forecast, result.mean, low, high, above, changes)
+
+
+def _differences(
+    run: Simulation, base: Simulation, forecast: Forecast, found: Mapping[str, Estimate], *, paired: bool
+) -> dict[str, Estimate]:
+    """The difference of each number from the workbook's own."""
+    own = base.results[forecast.name]
+    low, high = own.central()
+    theirs = {"mean": own.mean, "low": low, "high": high}
+    if own.definition.threshold is not None:
+        theirs["above"] = own.probability_above(own.definition.threshold)
+    both = [key for key in found if key in theirs]
+    if not paired:
+        return {key: _independent(theirs[key], found[key]) for key in both}
+    first, second = (Accepted.of(each.trial_index, each.forecasts[forecast.name]) for each in (base, run))
+    pair = Pair(first, second, run.plan.size, max(base.plan.replicates, run.plan.replicates))
+    before, after = _statistics(own.definition), _statistics(forecast)
+    return {key: pair.difference(before[key](first), after[key](second)) for key in both}
+
+
+def _statistics(forecast: Forecast) -> dict[str, Callable[[Accepted], Statistic]]:
+    tail = (1.0 - forecast.central) / 2.0
+    threshold = forecast.threshold
+    return {
+        "mean": mean_of,
+        "low": lambda run: quantile_of(run, tail),
+        "high": lambda run: quantile_of(run, 1.0 - tail),
+        "above": lambda run: share_above(run, np.inf if threshold is None else threshold),
+    }
+
+
+def _independent(first: Estimate, second: Estimate) -> Estimate:
+    value = second.value - first.value
+    if first.error is None or second.error is None:
+        return Estimate(value, n=min(first.n, second.n))
+    n = min(first.n, second.n)
+    return with_error(value, hypot(first.error, second.error), n - 1.0, 0.95, n)
+
+
+def _acceptance_difference(first: Simulation, second: Simulation, *, paired: bool) -> Estimate:
+    """The second's share of accepted trials less the first's."""
+    mine, theirs = first.acceptance, second.acceptance
+    if not paired or mine.error is None or theirs.error is None:
+        return _independent(mine, theirs)
+    size = first.plan.size or 1
+    count = -(-max(first.trials, second.trials) // size)
+    if first.plan.size:
+        units = _pulls(second, count, size) - _pulls(first, count, size)
+        square = float(np.sum(units * units)) * count / max(count - 1, 1)
+    else:
+        square = _square_of_trials(first, second)
+    n = min(first.trials, second.trials)
+    return with_error(theirs.value - mine.value, square**0.5, (count if first.plan.size else n) - 1.0, 0.95, n)
+
+
+def _pulls(run: Simulation, count: int, size: int) -> NDArray[np.float64]:
+    """`(count,)` how far each replicate pulls the share of accepted trials."""
+    share = run.accepted / run.trials
+    accepted = np.bincount(run.trial_index // size, minlength=count)
+    return np.asarray((accepted - share * size) / run.trials)
+
+
+def _square_of_trials(first: Simulation, second: Simulation) -> float:
+    """The sum of the squared differences of the pulls of single trials; of the longer run the last have no partner.
+
+    A trial pulls the share p of n trials by (1 - p)/n where it is accepted, and by -p/n where it is not.
+    """
+    shorter, longer = sorted((first, second), key=lambda run: run.trials)
+    n, more = shorter.trials, longer.trials - shorter.trials
+    p, q = shorter.accepted / shorter.trials, longer.accepted / longer.trials
+    within = longer.trial_index[longer.trial_index < n]
+    both = int(np.intersect1d(shorter.trial_index, within, assume_unique=True).size)
+    a, b, m = shorter.accepted - both, within.size - both, longer.trials
+    in_both = {(1, 1): both, (1, 0): a, (0, 1): b, (0, 0): n - both - a - b}
+    square = sum(count * ((i - p) / n - (j - q) / m) ** 2 for (i, j), count in in_both.items())
+    late = longer.accepted - within.size
+    return float(square + late * ((1 - q) / m) ** 2 + (more - late) * (q / m) ** 2)

@@ -1,0 +1,407 @@
+"""What a book could do without: assumptions that may be held at their base values, filters that decide nothing.
+
+1. **Ranked** by what the accepted trials of one run already tell: those whose draw lies nearest to the base value (a
+   fifth of the prior) are what a run with the assumption held there would accept, but for the width of the fifth and
+   for correlations. How far their mean, SD and central range lie from those of all accepted trials, and their share of
+   the accepted from a fifth, is the expected cost.
+2. **Verified**, each by a run of its own with the assumption held and the same draws of all others.
+3. **Together**: the cheapest that are within the tolerance, as many as still are when held at once. The end is one run
+   with all of them held; costs are not added up.
+4. **Filters**, in the same way, on top of it: left out one by one, then together. The cells that only they need are not
+   needed any more.
+5. **At the ends**, if asked: each assumption that may be held at its base value is held at both ends of its range. If
+   no answer moves then, either, it need not be known better: no other model, and no measurement, has to give it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.analysis.studies.comparison.cost import Cost
+from xlmc.analysis.studies.comparison.differences import acceptance, difference
+from xlmc.analysis.studies.comparison.paired_statistics import Accepted
+from xlmc.analysis.studies.comparison.tolerances import (
+    Tolerances,
+    Verdict,
+    chance_of,
+    chance_tolerance,
+    in_tolerances,
+    judge,
+    read_tolerances,
+)
+from xlmc.analysis.studies.comparison.variations import with_changes, with_plain_sampling
+from xlmc.errors import SimulationError
+from xlmc.excel.address import Cell
+from xlmc.montecarlo import statistics
+from xlmc.montecarlo.definitions.definitions import Assumption, Forecast
+from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.simulation.simulate import simulate
+from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.statistics import Estimate
+
+__all__ = ["ACCEPTANCE_TOLERANCE", "ENDS", "AtEnds", "Cost", "Expected", "Screening", "screen"]
+
+ACCEPTANCE_TOLERANCE: Final = 0.1
+"""The change of the share of accepted trials, as a share of it, that counts as none."""
+
+SLICE: Final = 0.2
+"""The part of the prior around the base value: wide enough to hold trials, narrow enough to represent the value."""
+
+ENDS: Final = (0.025, 0.975)
+"""Percentiles of an assumption that stand for the ends of its range."""
+
+_FEWEST: Final = 2
+"""Values of a forecast: a standard deviation takes so many."""
+
+Floats = NDArray[np.float64]
+Told = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Expected:
+    """The expected cost of holding an assumption, measured in tolerances, from the accepted trials near its base."""
+
+    name: str
+    size: float
+
+
+@dataclass(frozen=True, slots=True)
+class AtEnds:
+    """An assumption held at either end of its range.
+
+    Attributes:
+        values: the ends, its percentiles `ENDS`.
+        costs: of holding it there.
+    """
+
+    name: str
+    values: tuple[float, float]
+    costs: tuple[Cost, Cost]
+
+    @property
+    def free(self) -> bool:
+        """Whether the answers stay within the tolerances at both ends."""
+        return all(cost.judgement.verdict is Verdict.WITHIN for cost in self.costs)
+
+
+@dataclass(frozen=True, slots=True)
+class Screening:
+    """What a book could do without.
+
+    Attributes:
+        run: the book as it is.
+        tolerances: forecast -> the tolerance in its unit, and whether it was stated.
+        chance: the tolerance of P(> threshold) as it was stated; None for that of `chance_tolerance`.
+        acceptance_tolerance: relative.
+        idle: assumptions that no forecast or filter needs.
+        baseless: assumptions without a base value, which cannot be held.
+        valueless: forecasts that are a number in fewer than two accepted trials, which judge nothing.
+        unasked: forecasts that were not to judge.
+        expected: the cheap ranking, the cheapest first.
+        single: each assumption held alone, in that order.
+        joint: those that may be held together, in one run; None where there are none.
+        sets: the sets asked for, each held at once.
+        filters: each filter left out, with the assumptions of `joint` held.
+        reduced: those assumptions held and the filters left out that may be, in one run; None where no filter may.
+        constant: formula cells that then do not vary any more.
+        dropped: formula cells that are needed no more once the filters are left out.
+        cells: how many formula cells the book as it is needs.
+        varying: how many then vary.
+        runs: how many were made.
+        ends: those of `single` that are within the tolerance, held at either end; None where that was not asked.
+    """
+
+    run: Simulation
+    tolerances: Mapping[str, tuple[float, bool]]
+    chance: float | None
+    acceptance_tolerance: float
+    idle: tuple[str, ...]
+    baseless: tuple[str, ...]
+    valueless: tuple[str, ...]
+    unasked: tuple[str, ...]
+    expected: tuple[Expected, ...]
+    single: tuple[Cost, ...]
+    joint: Cost | None
+    sets: tuple[Cost, ...]
+    filters: tuple[Cost, ...]
+    reduced: Cost | None
+    constant: tuple[Cell, ...]
+    dropped: tuple[Cell, ...]
+    cells: int
+    varying: int
+    runs: int
+    ends: tuple[AtEnds, ...] | None = None
+
+    @property
+    def only_alone(self) -> tuple[str, ...]:
+        """Assumptions that may be held alone, but were left out of `joint`."""
+        joint = self.joint.names if self.joint else ()
+        alone = (cost.names[0] for cost in self.single if cost.judgement.verdict is Verdict.WITHIN)
+        return tuple(name for name in alone if name not in joint)
+
+    @property
+    def undecided(self) -> tuple[Cost, ...]:
+        """The changes of which these trials cannot say whether they are within the tolerance."""
+        every = (*self.single, *self.filters)
+        return tuple(cost for cost in every if cost.judgement.verdict is Verdict.UNDECIDED)
+
+
+def screen(
+    model: Model,
+    tolerance: Iterable[str] | str = (),
+    *,
+    chance: float | None = None,
+    acceptance_tolerance: float = ACCEPTANCE_TOLERANCE,
+    sets: Iterable[str] = (),
+    judged_by: Iterable[str] = (),
+    ends: bool = False,
+    trials: int | None = None,
+    seed: int | None = None,
+    engine: str | None = None,
+    jobs: int = 1,
+    told: Told | None = None,
+) -> Screening:
+    """Find which assumptions may be held, and which filters left out, without moving an answer beyond the tolerance.
+
+    The model and its workbook stay as they are. The trials are plain Monte Carlo, whatever its settings say.
+
+    Args:
+        model: to screen.
+        tolerance: `0.5`, `0.5 mph`, `10 %` (of the forecast's SD), `Name=0.5 mph`; a tenth of the SD where none is
+            stated. It holds for mean, SD and both ends of the central range.
+        chance: the change of P(forecast > its threshold) that counts as none, in percentage points; by default a tenth
+            of it or of its complement, and a tenth of a point at least.
+        acceptance_tolerance: the relative change of the share of accepted trials that counts as none.
+        sets: names of assumptions to hold at once, joined by commas, `*` for any letters.
+        judged_by: names of the forecasts that count, in the same form; all where there are none.
+        ends: also hold each assumption that may be held at both ends of its range.
+        trials: of every run; as in `Model.simulate`, like what follows.
+        seed: of every run.
+        engine: of every run.
+        jobs: of every run.
+        told: called before every run with what it is for.
+
+    Raises:
+        SimulationError: an argument is out of its range, no name fits a set, or fewer than two trials are accepted, or
+            give a number for any forecast.
+    """
+    if not acceptance_tolerance > 0.0:
+        message = f"the tolerance of the acceptance is {acceptance_tolerance:g}"
+        raise SimulationError(message, hint="give a positive number, such as 0.1 for a tenth")
+    stated = read_tolerances([tolerance] if isinstance(tolerance, str) else tolerance, model.forecasts)
+    wanted = [_names_of(pattern, [a.name for a in model.live], "assumption that is drawn") for pattern in sets]
+    asked = [name for text in judged_by for name in _names_of(text, [f.name for f in model.forecasts], "forecast")]
+    tell = told or (lambda _: None)
+    tell("the book as it is")
+    run = simulate(with_plain_sampling(model), trials=trials, seed=seed, engine=engine, jobs=jobs)
+    if run.accepted < 2:
+        message = f"{run.accepted} of {run.trials:,} trials were accepted, too few to compare anything with"
+        raise SimulationError(message, hint="run more trials, or see whether the filters contradict the assumptions")
+    screened = _Screen(run, stated, chance_of(chance), acceptance_tolerance, engine, jobs, tell, asked)
+    return screened.screening(wanted, ends=ends)
+
+
+class _Screen:
+    """The runs of one screening."""
+
+    def __init__(
+        self,
+        run: Simulation,
+        stated: Tolerances,
+        chance: float | None,
+        acceptance_tolerance: float,
+        engine: str | None,
+        jobs: int,
+        tell: Told,
+        asked: Sequence[str],
+    ) -> None:
+        self._run, self._chance, self._acceptance_tolerance = run, chance, acceptance_tolerance
+        self._engine, self._jobs, self._tell = engine, jobs, tell
+        self._accepted = {f.name: Accepted.of(run.trial_index, run.forecasts[f.name]) for f in run.model.forecasts}
+        wanted = [f for f in run.model.forecasts if not asked or f.name in asked]
+        self._unasked = tuple(f.name for f in run.model.forecasts if f not in wanted)
+        self._judged = [f for f in wanted if self._accepted[f.name].m >= _FEWEST]
+        self._valueless = tuple(f.name for f in wanted if f not in self._judged)
+        if not self._judged:
+            message = "no forecast is a number in two accepted trials or more"
+            raise SimulationError(message, hint="xlmc simulate tells in which cells the trials are lost to errors")
+        self._tolerances = {f.name: stated.of(f, _deviation(self._accepted[f.name])) for f in self._judged}
+        self._runs = 1
+
+    def screening(self, sets: Sequence[tuple[str, ...]], *, ends: bool) -> Screening:
+        model = self._run.model
+        held = [a for a in model.live if a.base is not None]
+        expected = sorted((Expected(a.name, self._expect_cost(a)) for a in held), key=lambda each: each.size)
+        single = tuple(self._hold([each.name]) for each in expected)
+        joint = self._together(single, self._hold)
+        frozen = joint.names if joint else ()
+
+        def left_out(names: Sequence[str]) -> Cost:
+            return self._cost(names, frozen, names, f"without {_names_text(names)}")
+
+        filters = tuple(left_out([f.name]) for f in model.filters)
+        reduced = self._together(filters, left_out)
+        alone = [cost.names[0] for cost in single if cost.judgement.verdict is Verdict.WITHIN]
+        at_ends = tuple(self._at_ends(name) for name in alone) if ends else None
+        before = model.needed.graph
+        after = with_changes(model, frozen=frozen, without=reduced.names if reduced else ()).needed.graph
+        return Screening(
+            run=self._run,
+            tolerances=self._tolerances,
+            chance=self._chance,
+            acceptance_tolerance=self._acceptance_tolerance,
+            idle=tuple(a.name for a in model.needed.idle),
+            valueless=self._valueless,
+            unasked=self._unasked,
+            baseless=tuple(a.name for a in model.live if a.base is None),
+            expected=tuple(expected),
+            single=single,
+            joint=joint,
+            sets=tuple(self._hold(names) for names in sets),
+            filters=filters,
+            reduced=reduced,
+            constant=tuple(c for c in sorted(after.formulas) if c in before.varying and c not in after.varying),
+            dropped=tuple(cell for cell in sorted(before.formulas) if cell not in after.formulas),
+            cells=len(before.formulas),
+            varying=sum(cell in after.varying for cell in after.formulas),
+            runs=self._runs,
+            ends=at_ends,
+        )
+
+    def _at_ends(self, name: str) -> AtEnds:
+        low, high = (float(end) for end in np.quantile(self._run.prior[name], ENDS, method="inverted_cdf"))
+        costs = tuple(
+            self._cost([name], [name], (), f"{name} held at {value:.4g}", {name: value}) for value in (low, high)
+        )
+        return AtEnds(name, (low, high), (costs[0], costs[1]))
+
+    def _hold(self, names: Sequence[str]) -> Cost:
+        return self._cost(names, names, (), f"{_names_text(names)} held")
+
+    def _cost(
+        self,
+        names: Sequence[str],
+        frozen: Sequence[str],
+        without: Sequence[str],
+        purpose: str,
+        held_at: Mapping[str, float] | None = None,
+    ) -> Cost:
+        """Run the book with a change, over the same trials."""
+        self._tell(purpose)
+        self._runs += 1
+        model = with_changes(self._run.model, frozen=frozen, without=without, held_at=held_at)
+        settings = self._run.settings
+        run = simulate(
+            model, trials=settings.trials, seed=settings.seed, engine=self._engine, jobs=self._jobs, keep_inputs=0
+        )
+        return self._compare(tuple(names), run)
+
+    def _compare(self, names: tuple[str, ...], run: Simulation) -> Cost:
+        accepted = acceptance(self._run, run)
+        found = {
+            f.name: difference(
+                self._accepted[f.name], Accepted.of(run.trial_index, run.forecasts[f.name]), f.central, f.threshold
+            )
+            for f in self._judged
+        }
+        limits = {name: each.tolerances(self._tolerances[name][0], self._chance) for name, each in found.items()}
+        sizes = {
+            f"{name}, {number}": (change.difference, limits[name][number])
+            for name, each in found.items()
+            for number, change in each.changes
+        }
+        sizes["acceptance"] = accepted.relative, self._acceptance_tolerance
+        size = max(in_tolerances(*each) for each in sizes.values())
+        return Cost(names, accepted, found, judge(sizes), size)
+
+    def _together(self, single: Sequence[Cost], changed: Callable[[Sequence[str]], Cost]) -> Cost | None:
+        """As many of the changes that are within alone as are within together, the cheapest first.
+
+        The longest list of the cheapest by halving, then each of the others on top of it.
+        """
+        alone = sorted((c for c in single if c.judgement.verdict is Verdict.WITHIN), key=lambda cost: cost.size)
+        if not alone:
+            return None
+        names = [cost.names[0] for cost in alone]
+        best, low, high = alone[0], 1, len(names)
+        length = high
+        while low < high:
+            cost = changed(names[:length])
+            if cost.judgement.verdict is Verdict.WITHIN:
+                best, low = cost, length
+            else:
+                high = length - 1
+            length = (low + high + 1) // 2
+        for name in names[low + 1 :]:  # the one after the longest list is known not to fit
+            cost = changed([*best.names, name])
+            if cost.judgement.verdict is Verdict.WITHIN:
+                best = cost
+        return best
+
+    def _expect_cost(self, assumption: Assumption) -> float:
+        """The expected cost of holding an assumption, from the accepted trials near its base value."""
+        drawn, prior = self._run.inputs[assumption.name], self._run.prior[assumption.name]
+        base = assumption.base or 0.0
+        width = float(np.quantile(np.abs(prior - base), SLICE))
+        near = np.abs(drawn - base) <= width
+        if np.count_nonzero(near) < 2:
+            return float("inf")
+        share = float(near.mean() / np.mean(np.abs(prior - base) <= width))
+        sizes = [abs(share - 1.0) / self._acceptance_tolerance]
+        for forecast in self._judged:
+            values, tolerance = self._run.forecasts[forecast.name][: drawn.size], self._tolerances[forecast.name][0]
+            sizes.append(_largest_move(values, near, forecast, tolerance, self._chance))
+        return max(sizes)
+
+
+def _largest_move(
+    values: Floats, near: NDArray[np.bool_], forecast: Forecast, tolerance: float, chance: float | None
+) -> float:
+    """The largest move of mean, SD, central range and P(> threshold) from all values to those near, in tolerances."""
+    known = ~np.isnan(values)
+    every, some = values[known], values[known & near]
+    if some.size < 2:
+        return float("inf")
+    tails = [(1.0 - forecast.central) / 2.0, (1.0 + forecast.central) / 2.0]
+    moves = [
+        some.mean() - every.mean(),
+        some.std() - every.std(),
+        *(np.quantile(some, tails) - np.quantile(every, tails)),
+    ]
+    sizes = [in_tolerances(Estimate(float(move)), tolerance) for move in moves]
+    if forecast.threshold is not None:
+        before, after = (float(np.mean(x > forecast.threshold)) for x in (every, some))
+        limit = chance_tolerance(before) if chance is None else chance
+        sizes.append(in_tolerances(Estimate(after - before), limit))
+    return max(sizes)
+
+
+def _deviation(accepted: Accepted) -> float:
+    return statistics.standard_deviation(accepted.sample).value
+
+
+def _names_text(names: Sequence[str]) -> str:
+    return names[0] if len(names) == 1 else f"{len(names)} at once"
+
+
+def _names_of(text: str, known: Sequence[str], kind: str) -> tuple[str, ...]:
+    """The known names that a list of patterns fits.
+
+    Raises:
+        SimulationError: a pattern fits none.
+    """
+    found: dict[str, None] = {}
+    for pattern in text.split(","):
+        fitting = [name for name in known if fnmatchcase(name_key(name), name_key(pattern))]
+        if not fitting:
+            hint = f"there are {', '.join(map(repr, known))}"
+            raise SimulationError(f"no {kind} has the name {pattern.strip()!r}", hint=hint)
+        found |= dict.fromkeys(fitting)
+    return tuple(found)

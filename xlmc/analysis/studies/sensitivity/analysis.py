@@ -1,0 +1,94 @@
+"""The whole sensitivity analysis of a run: what its answers depend on."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from xlmc.analysis.studies.sensitivity.influences import influences, ranked_assumptions
+from xlmc.analysis.studies.sensitivity.limit_trials import TriedLimit, limit_trials
+from xlmc.analysis.studies.sensitivity.measures import FilterLimit, ForecastSensitivity, Influence, Sensitivities
+from xlmc.analysis.studies.sensitivity.moved_limit import moved_limit
+from xlmc.analysis.studies.sensitivity.one_at_a_time import one_at_a_time
+from xlmc.analysis.studies.sensitivity.pick_and_freeze import SobolRun, pick_and_freeze, why_not
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.simulation.simulation import Simulation
+
+__all__ = ["sensitivities"]
+
+_MOST_LIMITS: Final = 40
+_MOST_LIMIT_FORECASTS: Final = 12
+"""The most limits; more would make no readable charts, and take long."""
+
+_WORDS: Final = {">=": "at least", "<=": "at most", ">": "above", "<": "below"}
+_FOUND: Final[WeakKeyDictionary[Simulation, Sensitivities]] = WeakKeyDictionary()
+"""Sheets, page and JSON of one run want the same."""
+
+
+def sensitivities(simulation: Simulation) -> Sensitivities:
+    """What the answers of a finished run depend on. Nothing random is in it but the run's own draws."""
+    if simulation not in _FOUND:
+        _FOUND[simulation] = _analyse(simulation)
+    return _FOUND[simulation]
+
+
+def _analyse(simulation: Simulation) -> Sensitivities:
+    model = simulation.model
+    assumptions = ranked_assumptions(simulation)
+    found = influences(simulation, assumptions)
+    moves = one_at_a_time(model, assumptions)
+    reason = why_not(simulation) if assumptions else "Sobol indices are not given: no assumption is drawn"
+    sobol = (
+        SobolRun(0, {}) if reason else pick_and_freeze(model, assumptions, simulation.trials, simulation.settings.seed)
+    )
+    limits = limit_trials(simulation, _MOST_LIMITS, _MOST_LIMIT_FORECASTS)
+    return Sensitivities(
+        accepted=simulation.accepted,
+        examined=max((each.trials for each in found), default=0),
+        forecasts=tuple(
+            ForecastSensitivity(
+                forecast=forecast.name,
+                units=forecast.units,
+                trials=each.trials,
+                influences=tuple(_with_sobol(influence, sobol, index) for influence in each.found),
+                base=moves.base[index],
+                bars=moves.bars[index],
+            )
+            for index, (forecast, each) in enumerate(zip(model.forecasts, found, strict=True))
+        ),
+        omitted=len(model.live) - len(assumptions),
+        medians=moves.medians,
+        sobol_reason=reason,
+        sobol_trials=sobol.pairs,
+        filter_limits=tuple(_move_limit(simulation, tried) for tried in limits.tried),
+        omitted_limits=limits.omitted,
+        varying_limits=limits.varying,
+    )
+
+
+def _with_sobol(influence: Influence, run: SobolRun, forecast: int) -> Influence:
+    if influence.assumption not in run.indices:
+        return influence
+    first, total = run.indices[influence.assumption][forecast]
+    return replace(influence, first_order=first, total=total)
+
+
+def _move_limit(simulation: Simulation, tried: TriedLimit) -> FilterLimit:
+    forecasts = simulation.model.forecasts[:_MOST_LIMIT_FORECASTS]
+    names, shares = [f.name for f in forecasts], [f.central for f in forecasts]
+    with np.errstate(over="ignore", invalid="ignore"):  # forecasts near the largest double have no slope
+        points, slopes = moved_limit(tried.trials, tried.grid, names, shares) if tried.grid else ((), ())
+    return FilterLimit(
+        filter=tried.limit.filter.name,
+        cell=str(tried.limit.filter.cell),
+        relation=_WORDS[tried.limit.relation],
+        limit=tried.trials.limit,
+        points=points,
+        slopes=slopes,
+        trials=tried.trials.trials,
+        loosened_trials=tried.trials.loosened,
+    )

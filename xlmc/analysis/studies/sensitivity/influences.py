@@ -1,0 +1,168 @@
+"""Every assumption against every forecast, on the accepted trials: all, or so many that every error is small enough.
+
+Of independent trials the first ones are examined; of a Latin hypercube or Sobol run the first ones of each of its first
+replicates, because later ones of a Sobol replicate fill the gaps that earlier ones left and are no sample alone.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.analysis.studies.sensitivity.given_data import (
+    contributions,
+    dependence,
+    dependence_floor,
+    explained_floor,
+    explained_share,
+    rank_correlation,
+    shares,
+    standardise,
+)
+from xlmc.analysis.studies.sensitivity.measures import Influence
+from xlmc.analysis.studies.sensitivity.pull_errors import Units
+from xlmc.analysis.studies.sensitivity.ranked import Ranked
+from xlmc.montecarlo.columns import picked
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.simulation.simulation import Simulation
+
+__all__ = ["MOST_ASSUMPTIONS", "Influences", "influences", "ranked_assumptions"]
+
+MOST_ASSUMPTIONS: Final = 200
+"""Examined closely; of more, those that explain most of some forecast in a first look."""
+
+Floats = NDArray[np.float64]
+Ids = NDArray[np.int64]
+_MOST_TRIALS: Final = 1 << 13
+"""The most trials; they give a rank correlation to 0.011."""
+
+_LEAST_TRIALS: Final = 20
+"""Fewer say nothing of an influence."""
+
+_COARSE_TRIALS: Final = 1 << 10
+"""The trials of a first look at very many assumptions; they give a rank correlation to 0.03."""
+
+_FEWEST = 1 << 11
+_VALUES = 1 << 20
+"""Trials times pairs of an assumption and a forecast: some 0.05 s of work."""
+
+_REPLICATES = 32
+
+
+@dataclass(frozen=True)
+class Influences:
+    """The influence of every assumption on one forecast, by the variance explained; `trials` are those it is a number
+    in.
+    """
+
+    trials: int
+    found: tuple[Influence, ...]
+
+
+def ranked_assumptions(simulation: Simulation) -> list[str]:
+    """The live assumptions to examine closely: all in their order, or of very many the most influential first."""
+    live = [a.name for a in simulation.model.live]
+    if len(live) <= MOST_ASSUMPTIONS:
+        return live
+    rows, _ = _examined_rows(simulation, _COARSE_TRIALS)
+    forecasts = [_read(simulation.forecasts[f.name], rows) for f in simulation.model.forecasts]
+    if rows.size < _LEAST_TRIALS:
+        return live[:MOST_ASSUMPTIONS]
+    columns = [standardise(np.where(np.isnan(y), np.nanmean(y), y)) for y in forecasts if not np.isnan(y).all()]
+    z = np.array([column for column in columns if column is not None])
+    if not z.size:
+        return live[:MOST_ASSUMPTIONS]
+    scores = [float(shares(Ranked.of(_read(simulation.inputs[name], rows)), z).max()) for name in live]
+    first = np.argsort(-np.asarray(scores), kind="stable")[:MOST_ASSUMPTIONS]
+    return [live[index] for index in first]
+
+
+def influences(simulation: Simulation, assumptions: Sequence[str]) -> list[Influences]:
+    """The influences of the assumptions of these names on every forecast, in the order of the workbook."""
+    forecasts = simulation.model.forecasts
+    rows, replicate = _examined_rows(simulation, _trials_for(len(assumptions) * len(forecasts)))
+    draws = [_read(simulation.inputs[name], rows) for name in assumptions]
+    units = {a.name: a.units for a in simulation.model.live}
+    named = [(name, units[name]) for name in assumptions]
+    tables: dict[bytes, _Table] = {}
+    found = []
+    for forecast in forecasts:
+        y = _read(simulation.forecasts[forecast.name], rows)
+        known = ~np.isnan(y)
+        key = known.tobytes()
+        if key not in tables:
+            tables[key] = _Table.of(draws, replicate, known)
+        found.append(tables[key].influences(named, y[known]))
+    return found
+
+
+def _read(column: Floats, rows: NDArray[np.intp]) -> Floats:
+    """Read these rows of a column into memory."""
+    return picked(column, rows) if rows.size else np.empty(0)
+
+
+@dataclass(frozen=True)
+class _Table:
+    """The draws of the trials in which a forecast is a number, each column ranked once for all forecasts like it."""
+
+    columns: list[Ranked]
+    units: Units
+
+    @classmethod
+    def of(cls, draws: Sequence[Floats], replicate: Ids | None, known: NDArray[np.bool_]) -> _Table:
+        units = Units.of(int(np.count_nonzero(known)), None if replicate is None else replicate[known])
+        enough = units.n >= _LEAST_TRIALS
+        return cls([Ranked.of(column[known]) for column in draws] if enough else [], units)
+
+    def influences(self, named: Sequence[tuple[str, str]], y: Floats) -> Influences:
+        """The influences of the assumptions with these names and units on one forecast."""
+        if not self.columns or not (ranked := Ranked.of(y)).varies:
+            return Influences(int(y.size), ())
+        correlations = [rank_correlation(x, ranked, self.units) for x in self.columns]
+        parts = zip(named, self.columns, correlations, contributions(correlations), strict=True)
+        found = [
+            Influence(
+                assumption=name,
+                units=units,
+                rank_correlation=correlation,
+                contribution=contribution,
+                explained=explained_share(x, y, self.units),
+                explained_floor=explained_floor(x, len(named)),
+                dependence=dependence(x, ranked, self.units),
+                dependence_floor=dependence_floor(x, len(named)),
+            )
+            for (name, units), x, correlation, contribution in parts
+        ]
+        return Influences(int(y.size), tuple(sorted(found, key=_by_share)))
+
+
+def _by_share(influence: Influence) -> tuple[float, float]:
+    share = influence.explained.value
+    return (1.0 if math.isnan(share) else -share), -abs(influence.rank_correlation.value)
+
+
+def _trials_for(pairs: int) -> int:
+    """How many trials to examine, at most, for so many pairs of an assumption and a forecast."""
+    return min(_MOST_TRIALS, max(_FEWEST, _VALUES // max(pairs, 1)))
+
+
+def _examined_rows(simulation: Simulation, most: int) -> tuple[NDArray[np.intp], NDArray[np.int64] | None]:
+    """The rows of at most `most` accepted trials with known draws, ascending, and their replicates, if any."""
+    kept = simulation.kept_inputs if simulation.model.live else 0
+    if not simulation.plan.size:
+        return np.arange(min(kept, most)), None
+    replicate = simulation.plan.replicate_of(np.asarray(simulation.trial_index[:kept]))
+    assert replicate is not None
+    starts = np.flatnonzero(np.diff(replicate, prepend=-1))
+    ends = np.append(starts[1:], replicate.size)
+    chosen = min(_REPLICATES, starts.size)
+    each = max(most // max(chosen, 1), 1)
+    parts = [np.arange(start, min(end, start + each)) for start, end in zip(starts[:chosen], ends, strict=False)]
+    rows = np.concatenate(parts) if parts else np.empty(0, np.intp)
+    return rows, replicate[rows]

@@ -1,0 +1,104 @@
+"""Tornado and spider: one assumption moved at a time, all others at their base values.
+
+The model is evaluated, nothing is drawn: there is no noise, and there are no probabilities. An assumption is put at
+each of `PERCENTS` of its own distribution, before filtering and whatever it is correlated with, so that a case may be
+one that the filters would reject; that is marked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.analysis.studies.sensitivity.measures import PERCENTS, Bar
+from xlmc.montecarlo.statistics.estimate import finite
+
+if TYPE_CHECKING:
+    from xlmc.engine.engine import Column
+    from xlmc.montecarlo.model.model import Model
+
+__all__ = ["OneAtATime", "one_at_a_time"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class OneAtATime:
+    """Tornado and spider of every forecast.
+
+    Attributes:
+        base: one a forecast, in the order of the workbook; None where it is no number.
+        bars: one list a forecast, the widest first.
+        medians: assumptions without a base value, held at their median.
+    """
+
+    base: tuple[float | None, ...]
+    bars: tuple[tuple[Bar, ...], ...]
+    medians: tuple[str, ...]
+
+
+def one_at_a_time(model: Model, assumptions: Sequence[str]) -> OneAtATime:
+    """Move each of the live assumptions of these names."""
+    quantiles = model.quantiles([*(percent / 100.0 for percent in PERCENTS), 0.5])
+    base = {a.name: float(quantiles[a.name][-1]) if a.base is None else float(a.base) for a in model.live}
+    units = {a.name: a.units for a in model.live}
+    moved = {name: quantiles[name][:-1] for name in assumptions}
+    answers, rejected = _evaluate(model, base, moved)
+    bars = []
+    for each in answers:
+        made = [
+            _bar(name, units[name], base[name], moved[name], each[cases], rejected[cases])
+            for index, name in enumerate(assumptions)
+            for cases in [slice(1 + index * len(PERCENTS), 1 + (index + 1) * len(PERCENTS))]
+        ]
+        bars.append(tuple(sorted(made, key=lambda bar: -bar.span)))
+    return OneAtATime(
+        base=tuple(finite(each[0]) for each in answers),
+        bars=tuple(bars),
+        medians=tuple(a.name for a in model.live if a.base is None),
+    )
+
+
+def _evaluate(model: Model, base: dict[str, float], moved: dict[str, Floats]) -> tuple[list[Floats], Floats]:
+    """The base case and every move, one after another: one `(cases,)` a forecast, and whether the filters reject."""
+    cases = 1 + len(moved) * len(PERCENTS)
+    starts = {name: 1 + index * len(PERCENTS) for index, name in enumerate(moved)}
+    program = model.program("numpy")
+    block = min(cases, program.largest_block)
+    evaluator = program.evaluator(block)
+    answers: list[list[Floats]] = []
+    rejected = []
+    for first in range(0, cases, block):
+        n = min(block, cases - first)
+        columns = {name: np.full(n, value) for name, value in base.items()} | model.certain(n)
+        for name, start in starts.items():
+            rows = np.arange(start, start + len(PERCENTS)) - first
+            inside = (rows >= 0) & (rows < n)
+            columns[name][rows[inside]] = moved[name][inside]
+        filters = evaluator.filters(columns, n)
+        rejected.append(np.logical_or.reduce([np.zeros(n, bool), *(_fails(column) for column in filters)]))
+        answers.append([column.as_floats() for column in evaluator.forecasts(np.arange(n))])
+    return [np.concatenate(parts) for parts in zip(*answers, strict=True)], np.concatenate(rejected)
+
+
+def _bar(assumption: str, units: str, base: float, inputs: Floats, answers: Floats, rejected: Floats) -> Bar:
+    known = bool(np.isfinite(answers).all())
+    before, after = answers[:-1], answers[1:]
+    return Bar(
+        assumption=assumption,
+        units=units,
+        base=base,
+        inputs=tuple(inputs.tolist()),
+        answers=tuple(finite(answer) for answer in answers),
+        rejected=tuple(bool(each) for each in rejected),
+        monotonic=bool((after >= before).all() or (after <= before).all()) if known else None,
+    )
+
+
+def _fails(column: Column) -> NDArray[np.bool_]:
+    fails = column.values == 0
+    return np.asarray(fails if column.codes is None else fails | (column.codes > 0))

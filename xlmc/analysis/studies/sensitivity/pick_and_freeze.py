@@ -1,0 +1,147 @@
+"""Sobol's indices of a model by pick and freeze: where they are right to give, and each with its standard error.
+
+Two independent sets of trials, A and B; ABᵢ is A with assumption i taken from B. With answers a, b and c of these, each
+`(n,)`, and v the variance of a and b,
+
+    first order   Sᵢ = 1 − mean((b − c)²) / 2v        (Jansen 1999)
+    total         Tᵢ = mean((a − c)²) / 2v            (Jansen 1999, Saltelli et al. 2010)
+
+Sᵢ is the share of the variance that assumption i explains alone, Tᵢ what would be left on average if all others were
+known. They hold for independent assumptions and trials that no filter rejects.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.analysis.studies.sensitivity.pull_errors import Units
+from xlmc.montecarlo.loop.blocks import portions
+from xlmc.montecarlo.statistics import Estimate
+
+if TYPE_CHECKING:
+    from xlmc.engine.engine import Evaluator
+    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.simulation.simulation import Simulation
+
+__all__ = ["SobolRun", "pick_and_freeze", "sobol_indices", "why_not"]
+
+_MOST_PAIRS: Final = 1 << 13
+_LEAST_PAIRS: Final = 1 << 8
+_LEAST_EVALUATED, _MOST_EVALUATED = 1 << 15, 1 << 17
+_INSTEAD: Final = "What each assumption explains is given instead"
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SobolRun:
+    """Sobol indices of a model.
+
+    Attributes:
+        pairs: of independent trials.
+        indices: assumption -> one (first order, total) a forecast, in the order of the workbook.
+    """
+
+    pairs: int
+    indices: Mapping[str, tuple[tuple[Estimate, Estimate], ...]]
+
+
+def why_not(simulation: Simulation) -> str:
+    """Why Sobol indices would mislead; empty where they would not."""
+    model = simulation.model
+    if simulation.accepted < simulation.trials:
+        return (
+            "Sobol indices are not given: the filters reject trials, and among the accepted ones the assumptions are "
+            f"no longer independent, so that the variance cannot be divided among them. {_INSTEAD}"
+        )
+    if model.groups:
+        return (
+            "Sobol indices are not given: assumptions are correlated, so that the variance cannot be divided among "
+            f"them. {_INSTEAD}"
+        )
+    if len(model.needed.stages) > 1:
+        return (
+            "Sobol indices are not given: parameters of assumptions depend on other assumptions, so that these are not "
+            f"independent. {_INSTEAD}"
+        )
+    return ""
+
+
+def pick_and_freeze(model: Model, assumptions: Sequence[str], trials: int, seed: int) -> SobolRun:
+    """The indices of a model without correlations, whatever its filters; of very many assumptions, of the first ones.
+
+    Args:
+        model: to evaluate.
+        assumptions: names of live ones, of which the indices are wanted.
+        trials: of the run; no more than half as many are evaluated, but some at least.
+        seed: of the run. The trials are its first ones by Monte Carlo, and those that follow them.
+    """
+    evaluations = max(_LEAST_EVALUATED, min(_MOST_EVALUATED, trials // 2))
+    chosen = assumptions[: max(evaluations // _LEAST_PAIRS - 2, 1)]
+    pairs = min(_MOST_PAIRS, evaluations // (len(chosen) + 2))
+    program = model.program("numpy")
+    block = min(pairs, program.largest_block)
+    first, second = _draws(model, seed, 0, pairs, block), _draws(model, seed, pairs, pairs, block)
+    evaluator = program.evaluator(block)
+    a, b = (_answers(evaluator, draws, pairs, block) for draws in (first, second))
+    found = {}
+    for name in chosen:
+        c = _answers(evaluator, {**first, name: second[name]}, pairs, block)
+        found[name] = tuple(sobol_indices(*answers) for answers in zip(a, b, c, strict=True))
+    return SobolRun(pairs, found)
+
+
+def _draws(model: Model, seed: int, start: int, count: int, block: int) -> dict[str, Floats]:
+    """`(count,)` draws of independent trials from `start` on."""
+    sampler = model.sampler(seed, block)
+    drawn = {name: np.empty(count) for name in model.draws}
+    for first in range(0, count, block):
+        part = sampler.draw(start + first)
+        for name, values in drawn.items():
+            values[first : first + block] = part[name][: count - first]
+    return drawn
+
+
+def _answers(evaluator: Evaluator, draws: Mapping[str, Floats], count: int, block: int) -> list[Floats]:
+    """`(count,)` a forecast, NaN where it is no number."""
+    found: list[list[Floats]] = []
+    for trials, part in portions(draws, count, block):
+        n = trials.stop - trials.start
+        evaluator.filters(part, n)
+        found.append([column.as_floats() for column in evaluator.forecasts(np.arange(n))])
+    return [np.concatenate(columns) for columns in zip(*found, strict=True)]
+
+
+def sobol_indices(a: Floats, b: Floats, c: Floats) -> tuple[Estimate, Estimate]:
+    """First-order and total index from the answers `(n,)` of A, B and ABᵢ; nan where they do not vary.
+
+    Pairs in which one of the answers is no number (NaN) are left out.
+    """
+    known = ~(np.isnan(a) | np.isnan(b) | np.isnan(c))
+    a, b, c = a[known], b[known], c[known]
+    units = Units(int(a.size))
+    if units.n < 2:
+        return Estimate(math.nan, n=units.n), Estimate(math.nan, n=units.n)
+    largest = max(float(np.max(np.abs(a))), float(np.max(np.abs(b)))) or 1.0
+    a, b, c = a / largest, b / largest, c / largest  # first, so that sums and squares cannot overflow
+    middle = 0.5 * (a.mean() + b.mean())
+    scale = max(float(np.max(np.abs(a - middle))), float(np.max(np.abs(b - middle))))
+    if not scale > 1e-12:
+        return Estimate(math.nan, n=units.n), Estimate(math.nan, n=units.n)
+    a, b, c = (a - middle) / scale, (b - middle) / scale, (c - middle) / scale
+    squares = a * a + b * b  # of mean 2v
+    first, total = (_share((each - c) ** 2, squares, units) for each in (b, a))
+    alone = units.estimate(1.0 - first.value, first.error if first.error is not None else math.nan)
+    return alone, total
+
+
+def _share(part: Floats, whole: Floats, units: Units) -> Estimate:
+    """mean(part)/mean(whole), with the error of a ratio."""
+    size = float(whole.mean())
+    value = float(part.mean()) / size
+    return units.estimate(value, units.error((part - value * whole) / size))

@@ -1,0 +1,318 @@
+"""The evidence: trials of a run, their values, what rounding does to these, and some of them with 50 digits.
+
+Letters: n trials, the base case and the ends of the ranges first; k assumptions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.analysis.studies.derivatives import derivatives
+from xlmc.analysis.studies.stability.digit_findings import Where
+from xlmc.analysis.studies.stability.formula_trees import Trees
+from xlmc.engine.engine import Target
+from xlmc.engine.graph.nodes import Apply, Input, uses
+from xlmc.engine.passes.derivatives import Derivatives
+from xlmc.engine.passes.exact import Exact, as_double
+from xlmc.engine.passes.random_rounding import (
+    DOUBLE,
+    RandomRounding,
+    closure,
+    evaluate,
+    formula_of,
+    numbers_of,
+    term_sizes,
+)
+from xlmc.excel.address import Cell
+from xlmc.excel.functions.values import Value
+from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.needed import filter_condition
+from xlmc.montecarlo.simulation.simulation import Simulation
+
+__all__ = ["RELATIONS", "Case"]
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+_REPLICAS: Final = 6
+"""Evaluations with random rounding: their root mean square is known to a third of itself."""
+
+RELATIONS: Final = frozenset({"<", "<=", ">", ">=", "=", "<>"})
+
+_PRIOR: Final = 2048
+_ACCEPTED: Final = 1024
+_FEWEST_OF_EITHER: Final = 64
+"""Trials as drawn, and accepted ones; and how few there may be of each in a large book."""
+
+_BYTES: Final = 1 << 29
+"""Bytes for the values of all nodes, and the derivatives of all cells: they limit the number of trials."""
+
+
+class Case:
+    """What is known of a model from a run of it.
+
+    Args:
+        model: the workbook.
+        run: accepted trials and draws of it.
+        seed: of the random rounding.
+    """
+
+    def __init__(self, model: Model, run: Simulation, seed: int = 0) -> None:
+        self.model, self.run, self._seed = model, run, seed
+        self.trees = Trees(model)
+        self.lowering, self.dag = model.lowering, model.lowering.dag
+        self.cells = [cell for cell in self.lowering.graph.formulas if cell not in self.lowering.inputs]
+        targets = [*(f.cell for f in model.forecasts), *(f.cell for f in model.filters)]
+        self.node = {cell: self.lowering.cell(cell) for cell in (*self.cells, *targets)}
+        self.names = [a.name for a in model.live]
+        self.conditions = [
+            self.lowering.target(Target(filter_condition(f, certain=True), f.cell)) for f in model.filters
+        ]
+        self.nodes = closure(self.dag, [*self.node.values(), *self.conditions])
+        self._exact = Exact(self.dag, self.nodes)
+        self._known: dict[int, dict[int, Any]] = {}
+        self._inherent: dict[Cell, Floats] = {}
+
+    @cached_property
+    def draws(self) -> dict[str, Floats]:
+        """Assumption -> `(n,)`."""
+        if not self.names:
+            return {}
+        special = self._special()
+        prior = np.column_stack([self.run.prior[a.name][: self._room(_PRIOR)] for a in self.model.live])
+        accepted = np.column_stack([self.run.inputs[a.name][: self._room(_ACCEPTED)] for a in self.model.live])
+        rows = np.concatenate([special, prior, accepted])
+        rows = rows[np.isfinite(rows).all(axis=1)]
+        return {name: np.ascontiguousarray(column) for name, column in zip(self.names, rows.T, strict=True)}
+
+    def _room(self, trials: int) -> int:
+        """How many trials of so many there is room for."""
+        each = 24 * len(self.nodes) + 8 * len(self.cells) * (2 * len(self.names) + 1)
+        share = _BYTES / (each * (_PRIOR + _ACCEPTED))
+        return trials if share >= 1 else max(_FEWEST_OF_EITHER, int(share * trials))
+
+    def _special(self) -> Floats:
+        """The base case, and each assumption at either end of its range with the others at their base."""
+        prior = [self.run.prior[a.name] for a in self.model.live]
+        base = np.array([_base(a.base, draws) for a, draws in zip(self.model.live, prior, strict=True)])
+        rows = [base]
+        for index, assumption in enumerate(self.model.live):
+            ends = [assumption.parameters.get(key) for key in ("low", "high", "minimum", "maximum")]
+            numbers_ = [float(end) for end in ends if isinstance(end, int | float)]
+            for end in {*numbers_, float(np.nanmin(prior[index])), float(np.nanmax(prior[index]))}:
+                row = base.copy()
+                row[index] = end
+                rows.append(row)
+        return np.array(rows)
+
+    @cached_property
+    def special(self) -> int:
+        """How many of the trials are the base case and ends of ranges."""
+        return len(self._special()) if self.names else 0
+
+    @cached_property
+    def first_accepted(self) -> int:
+        """The index of the first accepted trial; the trials before it are of all that were drawn."""
+        kept = min(self.run.kept_inputs, self.run.accepted, self._room(_ACCEPTED))
+        return self.n - kept if self.names else self.n
+
+    @property
+    def n(self) -> int:
+        return next((draws.size for draws in self.draws.values()), 1)
+
+    @cached_property
+    def values(self) -> dict[int, Value]:
+        """Node -> its values."""
+        return evaluate(self.dag, self.nodes, self.draws)
+
+    @cached_property
+    def errors(self) -> dict[int, Floats]:
+        """Node of a cell -> the size of its error by rounding, `(n,)`, in the root mean square of the replicas."""
+        return self._spread(lambda replica: {"rounding": RandomRounding((self._seed, replica))})
+
+    def _spread(self, how: Callable[[int], dict[str, RandomRounding]]) -> dict[int, Floats]:
+        """The root mean square of what differs in evaluations that move something."""
+        squares: dict[int, Floats] = {}
+        for replica in range(_REPLICAS):
+            found = evaluate(self.dag, self.nodes, self.draws, **how(replica))
+            for node in {*self.node.values()}:
+                off = numbers_of(found[node], self.n) - self.number(node)
+                squares[node] = squares.get(node, 0.0) + np.where(np.isnan(off), 0.0, off) ** 2
+        return {node: np.sqrt(square / _REPLICAS) for node, square in squares.items()}
+
+    def number(self, node: int) -> Floats:
+        """A node's numbers, `(n,)`; NaN where it has none."""
+        return numbers_of(self.values[node], self.n)
+
+    @cached_property
+    def users(self) -> dict[int, list[int]]:
+        """Node -> the nodes that use it."""
+        found: dict[int, list[int]] = {}
+        for node in self.nodes:
+            for part in uses(formula_of(self.dag, node)):
+                found.setdefault(part, []).append(node)
+        return found
+
+    @cached_property
+    def comparisons(self) -> list[int]:
+        """The nodes that compare."""
+        formulas = ((node, formula_of(self.dag, node)) for node in self.nodes)
+        return [node for node, formula in formulas if isinstance(formula, Apply) and formula.function.name in RELATIONS]
+
+    def after(self, *nodes: int) -> list[int]:
+        """The nodes that follow from some, each after those that it needs."""
+        found: set[int] = set()
+        open_ = list(nodes)
+        while open_:
+            new = [user for user in self.users.get(open_.pop(), ()) if user not in found]
+            found.update(new)
+            open_ += new
+        return sorted(found, key=self._order.__getitem__)
+
+    @cached_property
+    def _order(self) -> dict[int, int]:
+        return {node: at for at, node in enumerate(self.nodes)}
+
+    @cached_property
+    def derivatives(self) -> Derivatives:
+        """The derivatives of every needed cell."""
+        return derivatives(self.model, self.draws, cells=self.cells)
+
+    @cached_property
+    def of_inputs(self) -> dict[int, Floats]:
+        """Node of a cell -> by how much it moves with the last digit of assumptions and typed numbers, `(n,)`."""
+        found = self._spread(lambda replica: {"of_inputs": RandomRounding((self._seed, _REPLICAS, replica), _MOVE)})
+        return {node: spread * (2 * DOUBLE / _MOVE) for node, spread in found.items()}
+
+    @cached_property
+    def term_sizes(self) -> dict[int, float]:
+        """Node -> the largest number added or subtracted on the way to it."""
+        return term_sizes(self.dag, self.nodes, self.values)
+
+    def inherent(self, cell: Cell) -> Floats:
+        """The error that rounding the assumptions, and the result, would bring alone, `(n,)`; NaN where unknown."""
+        if cell not in self._inherent:
+            gradient = self.derivatives.cells[cell].gradient
+            moved: Floats = np.nansum(np.abs(gradient * self.derivatives.points), axis=1)
+            node = self.node[cell]
+            self._inherent[cell] = np.fmax(DOUBLE * (moved + np.abs(self.number(node))), self.of_inputs[node])
+        return self._inherent[cell]
+
+    def scale(self, cell: Cell) -> float:
+        """The width of a cell's central range, or its size where it hardly varies; 1 for 0."""
+        found = self.number(self.node[cell])[self.special :]
+        found = found[np.isfinite(found)]
+        if not found.size:
+            return 1.0
+        low, middle, high = np.quantile(found, [0.245, 0.5, 0.755])
+        size = float(high - low)
+        if size <= 1e-9 * abs(middle):
+            size = abs(float(middle))
+        return size or 1.0
+
+    def exact(self, node: int, trial: int) -> Any:
+        """A node's value in a trial with 50 digits."""
+        if trial not in self._known:
+            self._known[trial] = self._exact.trial({key: float(draws[trial]) for key, draws in self.draws.items()})
+        return self._known[trial][node]
+
+    def exact_number(self, node: int, trial: int) -> float:
+        """The same as a double; NaN where it is no number."""
+        return as_double(self.exact(node, trial))
+
+    @property
+    def recomputed(self) -> int:
+        return len(self._known)
+
+    @property
+    def unchecked(self) -> set[int]:
+        """The nodes of functions that were not computed with 50 digits."""
+        return self._exact.unchecked
+
+    def where(self, trials: Bools, node: int, most: int = 2) -> tuple[Where, ...]:
+        """The assumptions whose ranges tell the trials from others: those that they take up least of.
+
+        An assumption is named only where the node depends on it, and where so many trials, drawn by chance, would
+        hardly ever lie so close together in its range.
+
+        Args:
+            trials: which.
+            node: the one that it happens to.
+            most: assumptions to name.
+        """
+        among = trials[self.special :]
+        count, drawn = int(among.sum()), self.n - self.special
+        if count < _FEWEST or count == drawn:
+            return ()
+        needed = self.inputs_of(node)
+        shares = []
+        for number, assumption in enumerate(self.model.live):
+            draws = self.draws[assumption.name][self.special :]
+            here = draws[among]
+            share = float(np.mean((draws >= here.min()) & (draws <= here.max())))
+            width = float(draws.max() - draws.min())
+            if assumption.name in needed and width > 0 and _by_chance(share, count) * len(needed) < _RARELY:
+                told = self.draws[assumption.name][trials]
+                shares.append((float(here.max() - here.min()) / width, number, assumption, told))
+        shares.sort(key=lambda each: each[:2])
+        named = [each for each in shares if each[0] < _TELLING][:most]
+        return tuple(
+            Where(assumption.name, float(here.min()), float(here.max()), assumption.units or "")
+            for _, _, assumption, here in named
+        )
+
+    def inputs_of(self, node: int) -> set[str]:
+        """The names of the assumptions that a node depends on."""
+        formulas = (formula_of(self.dag, part) for part in closure(self.dag, [node]))
+        return {formula.name for formula in formulas if isinstance(formula, Input)}
+
+    def upstream(self, cell: Cell) -> set[Cell]:
+        """The cells that a cell needs, itself among them."""
+        needs = self.lowering.graph.needs
+        found: set[Cell] = set()
+        open_ = [cell]
+        while open_:
+            node = open_.pop()
+            if node not in found:
+                found.add(node)
+                open_ += needs.get(node, ())
+        return found
+
+    def forecasts_of(self, cells: Iterable[Cell]) -> list[str]:
+        """The forecasts and filters that a cell reaches."""
+        wanted = set(cells)
+        found = []
+        rows = [(row.cell, row.name) for row in self.model.forecasts]
+        rows += [(row.cell, row.name) for row in self.model.filters]
+        for cell, name in rows:
+            if wanted & self.upstream(cell) and name not in found:
+                found.append(name)
+        return found
+
+
+_MOVE: Final = 2.0**-30
+"""The share by which inputs are moved: far more than the roundings on the way."""
+
+_FEWEST: Final = 5
+"""Trials that take up little of some range for no reason."""
+
+_TELLING: Final = 0.5
+"""A share of an assumption's range: if trials cover more than that, the finding has nothing to do with it."""
+
+
+_RARELY: Final = 1e-3
+
+
+def _by_chance(share: float, count: int) -> float:
+    """The probability that so many trials lie within a share of the range by chance (David and Nagaraja 2003, §2.3)."""
+    return count * share ** (count - 1) - (count - 1) * share**count
+
+
+def _base(base: object, draws: Floats) -> float:
+    known = isinstance(base, int | float) and not isinstance(base, bool)
+    return float(base) if known else float(np.nanmedian(draws))  # type: ignore[arg-type]  # a number, then

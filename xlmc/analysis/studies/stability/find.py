@@ -1,0 +1,102 @@
+"""Search a workbook for digits that are wrong, and for numbers that do not mean what they seem to mean."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Final
+
+from xlmc.analysis.studies.stability.case import Case
+from xlmc.analysis.studies.stability.detectors import (
+    amplifying_forecasts,
+    domain_edges,
+    heavy_tails,
+    jumps,
+    narrow_filters,
+    rounded_angles,
+)
+from xlmc.analysis.studies.stability.digit_findings import Finding, Level, Stability
+from xlmc.analysis.studies.stability.quadrant import lost_quadrants
+from xlmc.analysis.studies.stability.rounding_errors import cell_digits, lost_digits
+from xlmc.engine.graph.nodes import Apply
+from xlmc.engine.passes.derivatives.sweep import owners
+from xlmc.montecarlo.simulation.simulate import simulate
+from xlmc.montecarlo.simulation.simulation import Simulation
+
+if TYPE_CHECKING:
+    from xlmc.excel.address import Cell
+    from xlmc.montecarlo.model.model import Model
+
+__all__ = ["stability"]
+
+Told = Callable[[str], None]
+
+_DETECTORS: Final[Mapping[str, Callable[[Case], Iterable[Finding]]]] = {
+    "lost quadrants": lost_quadrants,
+    "lost digits": lost_digits,
+    "heavy tails": heavy_tails,
+    "narrow filters": narrow_filters,
+    "edges of domains": domain_edges,
+    "jumps": jumps,
+    "angles": rounded_angles,
+    "amplification": amplifying_forecasts,
+}
+"""What is looked for -> what finds it."""
+
+
+def stability(
+    model: Model,
+    *,
+    trials: int | None = None,
+    seed: int | None = None,
+    jobs: int = 1,
+    told: Told | None = None,
+) -> Stability:
+    """Look through the cells that a model needs.
+
+    Args:
+        model: the workbook.
+        trials: of the run that is looked at; by default the book's own.
+        seed: of it.
+        jobs: threads or processes.
+        told: called with what is being done.
+
+    Raises:
+        SimulationError: an argument is out of its range.
+    """
+    tell = told or (lambda _: None)
+    tell("a run")
+    run: Simulation = simulate(model, trials=trials, seed=seed, jobs=jobs)
+    case = Case(model, run, run.settings.seed)
+    found: list[Finding] = []
+    for name, detector in _DETECTORS.items():
+        tell(name)
+        found += detector(case)
+    tell("what every cell amplifies")
+    cells = tuple(cell_digits(case))
+    ranked = sorted(_first_causes(case, found), key=lambda finding: (finding.level, -finding.size))
+    return Stability(run, tuple(ranked), cells, _unchecked_functions(case), case.n, case.recomputed)
+
+
+_OF_DIGITS: Final = frozenset({"division", "cancellation", "rounding"})
+_OF_NUMBERS: Final = frozenset({"tail", "amplification"})
+
+
+def _first_causes(case: Case, findings: Iterable[Finding]) -> list[Finding]:
+    """The findings without those on numbers whose digits are wrong anyway."""
+    found = list(findings)
+    lost = [one.cell for one in found if one.level is Level.WRONG and one.kind in _OF_DIGITS]
+    reached = {cell for cell in (one.cell for one in found) if any(part in case.upstream(cell) for part in lost)}
+    return [one for one in found if one.kind not in _OF_NUMBERS or one.cell not in reached]
+
+
+def _unchecked_functions(case: Case) -> tuple[tuple[Cell, tuple[str, ...]], ...]:
+    """The cells that hold functions which were not computed with 50 digits."""
+    whose = owners(case.lowering)
+    found: dict[Cell, list[str]] = {}
+    for node in sorted(case.unchecked):
+        formula = case.dag.nodes[node]
+        if isinstance(formula, Apply) and node in whose:
+            names = found.setdefault(whose[node], [])
+            if formula.function.name not in names:
+                names.append(formula.function.name)
+    return tuple((cell, tuple(names)) for cell, names in found.items())

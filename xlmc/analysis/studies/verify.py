@@ -1,0 +1,199 @@
+"""Recompute a workbook's formulas and compare with the values that Excel saved: an audit, and our conformance test."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Final
+
+from xlmc.engine.graph.lower import Lowering, lower_until_complete
+from xlmc.errors import ErrorCode
+from xlmc.excel.address import Cell
+from xlmc.excel.formula import Resolver, build_graph
+from xlmc.excel.formula.shape import shown_formula
+from xlmc.excel.workbook.workbook import CellValue, Workbook
+from xlmc.montecarlo.definitions.definitions import Definitions
+from xlmc.montecarlo.definitions.in_cells.calls import holds_call
+from xlmc.montecarlo.model.needed import targets_of
+
+__all__ = ["TOLERANCE", "CellCheck", "Status", "Verification", "verify"]
+
+TOLERANCE: Final = 1e-9
+"""Relative difference up to which two numbers match: with 0 nothing but 0 does."""
+
+
+_PERIODIC: Final = frozenset({"SIN", "COS", "TAN"})
+_PI_CUT: Final = 2.0**-65
+"""How much of itself, at most, the processor that 32-bit Excel computes with puts an angle wrong, its pi being cut."""
+
+
+NOT_COMPARABLE: Final = "draws at random or shows results of a simulation, so there is no one value to compare"
+
+
+class Status(Enum):
+    """What came of a formula cell."""
+
+    MATCHED = "matched"
+    DIFFERING = "differing"
+    UNSUPPORTED = "unsupported"
+    NOT_CACHED = "not cached"
+    VOLATILE = "volatile"
+
+
+@dataclass(frozen=True, slots=True)
+class CellCheck:
+    """One formula cell; of an array formula the first cell that does not match, if there is one.
+
+    Attributes:
+        formula: that of the cell, as Excel shows it: with its `=`.
+        expected: what Excel saved.
+        got: what xlmc computes; None where it computes nothing.
+        reason: why it is unsupported, or cannot be compared.
+        anchor: the cell that holds the formula, where that is another.
+    """
+
+    cell: Cell
+    formula: str
+    status: Status
+    expected: CellValue
+    got: object = None
+    reason: str = ""
+    anchor: Cell | None = None
+
+    @property
+    def difference(self) -> float | None:
+        """Relative difference of two numbers; None where one is none."""
+        if not _is_number(self.expected) or not _is_number(self.got):
+            return None
+        return _relative(float(self.expected), float(self.got))  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True, slots=True)
+class Verification:
+    """The formula cells of a workbook, checked."""
+
+    cells: tuple[CellCheck, ...]
+
+    def count(self, status: Status) -> int:
+        """How many cells have that status."""
+        return sum(cell.status is status for cell in self.cells)
+
+    def of(self, status: Status) -> list[CellCheck]:
+        """The cells that have that status."""
+        return [cell for cell in self.cells if cell.status is status]
+
+
+def verify(workbook: Workbook, definitions: Definitions | None = None) -> Verification:
+    """Recompute formula cells at their base values, each from what Excel saved in the cells it needs.
+
+    Args:
+        workbook: to check.
+        definitions: checks only what its forecasts and filters need; every formula cell when None.
+    """
+    wanted = (
+        _all_formulas(workbook)
+        if definitions is None
+        else targets_of(definitions.forecasts, (*definitions.filters, *definitions.forecast_filters))
+    )
+    lowering = _lower(workbook, wanted)
+    checked = sorted(wanted if definitions is None else lowering.graph.formulas)
+    return Verification(tuple(_check(lowering, cell) for cell in checked if _has_formula(workbook, cell)))
+
+
+def _lower(workbook: Workbook, wanted: Sequence[Cell]) -> Lowering:
+    resolver = Resolver(workbook, strict=False)
+
+    def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
+        return Lowering(build_graph(resolver, wanted, frozenset(), more=more, strict=False), {}, {}, audit=True)
+
+    return lower_until_complete(lower)
+
+
+def _all_formulas(workbook: Workbook) -> list[Cell]:
+    return [
+        Cell(sheet.name, row, column)
+        for sheet in workbook.sheets.values()
+        for (row, column), content in sheet.cells.items()
+        if content.formula is not None
+    ]
+
+
+def _has_formula(workbook: Workbook, cell: Cell) -> bool:
+    return workbook.content(cell).formula is not None
+
+
+def _check(lowering: Lowering, cell: Cell) -> CellCheck:
+    check = _check_cell(lowering, cell)
+    others = _filled_by(lowering, cell) if check.status is Status.MATCHED else ()
+    return next((found for found in others if found.status is Status.DIFFERING), check)
+
+
+def _filled_by(lowering: Lowering, anchor: Cell) -> Iterator[CellCheck]:
+    """The other cells that an array formula fills, as far as Excel saved a value there."""
+    workbook = lowering.graph.workbook
+    formula = workbook.content(anchor).formula
+    for cell in formula.array.cells() if formula is not None and formula.array is not None else ():
+        expected = workbook.content(cell)
+        if cell == anchor or expected.value is None or expected.formula is not None:
+            continue
+        value = lowering.filled(cell, anchor)
+        if formula is not None and value is not None:
+            got = value.objects().ravel()[0]
+            status = Status.MATCHED if _same(expected.value, got) else Status.DIFFERING
+            yield CellCheck(cell, shown_formula(formula, anchor), status, expected.value, got, anchor=anchor)
+
+
+def _check_cell(lowering: Lowering, cell: Cell) -> CellCheck:
+    content = lowering.graph.workbook.content(cell)
+    text, shown = ("", "") if content.formula is None else (content.formula.text, shown_formula(content.formula, cell))
+
+    def check(status: Status, got: object = None, reason: str = "") -> CellCheck:
+        return CellCheck(cell, shown, status, content.value, got, reason)
+
+    if holds_call(text):
+        return check(Status.VOLATILE, reason=NOT_COMPARABLE)
+    fault = lowering.faults.get(cell)
+    if fault is not None:
+        return check(Status.UNSUPPORTED, reason=fault.message)
+    value = lowering.value(cell)
+    if value is None:
+        return check(Status.VOLATILE)
+    got = value.objects().ravel()[0]
+    if content.value is None:
+        return check(Status.NOT_CACHED, got)
+    same = _same(content.value, got) or _is_sine_of_32_bits(lowering, cell, content.value, got)
+    return check(Status.MATCHED if same else Status.DIFFERING, got)
+
+
+def _same(expected: CellValue, got: object) -> bool:
+    if _is_number(expected) and _is_number(got):
+        return _relative(float(expected), float(got)) <= TOLERANCE  # type: ignore[arg-type]
+    if isinstance(expected, str) and got is None:
+        return expected == ""
+    return type(expected) is type(got) and expected == got
+
+
+def _is_sine_of_32_bits(lowering: Lowering, cell: Cell, expected: CellValue, got: object) -> bool:
+    """Whether a formula ends with a sine, cosine or tangent that differs no more than 32-bit Excel's cut pi does."""
+    step = lowering.last_step(cell)
+    if step is None or step[0] not in _PERIODIC or not (_is_number(expected) and _is_number(got)):
+        return False
+    (angle,) = step[1]
+    return abs(float(expected) - float(got)) <= abs(float(angle.numbers[0])) * _PI_CUT  # type: ignore[arg-type]
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool | ErrorCode)
+
+
+def _relative(expected: float, got: float) -> float:
+    return abs(expected - got) / max(abs(expected), abs(got), 5e-324)
+
+
+def groups(cells: Iterable[CellCheck]) -> list[tuple[str, Sequence[CellCheck]]]:
+    """Cells by reason, the most frequent first."""
+    found: dict[str, list[CellCheck]] = {}
+    for cell in cells:
+        found.setdefault(cell.reason, []).append(cell)
+    return sorted(found.items(), key=lambda item: -len(item[1]))

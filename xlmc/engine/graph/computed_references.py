@@ -1,0 +1,398 @@
+"""References that are worked out while a formula is lowered: OFFSET, INDIRECT, INDEX, and choices between references.
+
+Their arguments must be known by then. What they lead to may lie outside the graph of needed cells, which cannot know it
+beforehand; `NotYetNeeded` then asks for a wider graph.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Final
+
+from xlmc.engine.graph.called_functions import check_count
+from xlmc.engine.graph.lowering import Scope, Thunk, TreeLowering
+from xlmc.errors import ErrorCode, FormulaError
+from xlmc.excel.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of
+from xlmc.excel.formula import ir, parse
+from xlmc.excel.functions.budget import ask_for_reading
+from xlmc.excel.functions.values import Codes
+
+__all__ = [
+    "REFERENCES",
+    "NoReference",
+    "NotYetNeeded",
+    "areas_of",
+    "cut",
+    "join_areas",
+    "many_numbers",
+    "of_one_cell",
+    "require",
+]
+
+Arguments = tuple[ir.Expression, ...]
+
+_NOT_ONE_CELL: Final = ir.ErrorLiteral(ErrorCode.VALUE)
+_CHOOSING: Final = ("IF", "CHOOSE")
+
+_STEP: Final = r"\[-?[0-9]{1,7}\]|[0-9]{1,7}"
+_R1C1: Final = re.compile(rf"(?P<row>R(?P<r>{_STEP})?)?(?P<column>C(?P<c>{_STEP})?)?", re.IGNORECASE)
+"""Matches a cell as Excel's other style writes it, `R2C[-1]`, a whole row, `R2`, or a whole column."""
+
+
+class NotYetNeeded(Exception):  # noqa: N818 - it asks for more; nothing is wrong
+    """A reference leads to cells that the graph does not hold yet."""
+
+    def __init__(self, cells: Iterable[Cell]) -> None:
+        super().__init__()
+        self.cells = frozenset(cells)
+
+
+def areas_of(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
+    """The areas that a tree refers to; None where it is no reference.
+
+    Raises:
+        NotYetNeeded, NoReference: see the classes.
+        FormulaError: the reference depends on a value that varies.
+    """
+    match tree:
+        case Cell(sheet, row, column):
+            return [Area(sheet, row, column, row, column)]
+        case Area():
+            return [tree]
+        case ir.Binary(",", _, _):
+            return _union(lowering, tree, scope)
+        case ir.Binary(":" | " " as operator, left, right):
+            return _combine(lowering, operator, left, right, scope)
+        case ir.Call(name, arguments) if name in REFERENCES:
+            check_count(name, arguments)
+            return REFERENCES[name](lowering, arguments, scope)
+        case ir.Variable(name):
+            bound = scope.variables.get(name)
+            return areas_of(lowering, bound.tree, bound.scope) if isinstance(bound, Thunk) else None
+        case _:
+            return None
+
+
+def _union(lowering: TreeLowering, tree: ir.Binary, scope: Scope) -> list[Area] | None:
+    first, rest = ir.chain(tree)
+    found = [areas_of(lowering, part, scope) for part in (first, *(part for _, part in rest))]
+    return None if any(areas is None for areas in found) else [area for areas in found for area in areas or ()]
+
+
+def join_areas(areas: Sequence[Area]) -> ir.Expression:
+    """The tree of areas joined by commas."""
+    tree: ir.Expression = areas[0]
+    for area in areas[1:]:
+        tree = ir.Binary(",", tree, area)
+    return tree
+
+
+def _combine(
+    lowering: TreeLowering, operator: str, left: ir.Expression, right: ir.Expression, scope: Scope
+) -> list[Area] | None:
+    found = _end(lowering, left, scope), _end(lowering, right, scope)
+    if operator == ":" and any(_may_be_picked(part, areas) for part, areas in zip((left, right), found, strict=True)):
+        hint = "TAKE and DROP give as much of a range as a value that varies says"
+        raise FormulaError("an end of a range must be fixed: no value that varies may change it", hint=hint)
+    a, b = ([area.whole for area in areas] if areas else [] for areas in found)
+    if len(a) != 1 or len(b) != 1 or a[0].sheet != b[0].sheet:
+        raise FormulaError(f"the two sides of {operator!r} are not areas of one sheet")
+    tops, lefts = (a[0].top, b[0].top), (a[0].left, b[0].left)
+    bottoms, rights = (a[0].bottom, b[0].bottom), (a[0].right, b[0].right)
+    if operator == " ":
+        return [cut(lowering, _intersect(Area(a[0].sheet, max(tops), max(lefts), min(bottoms), min(rights))))]
+    return [cut(lowering, Area(a[0].sheet, min(tops), min(lefts), max(bottoms), max(rights)))]
+
+
+def _end(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
+    """The areas that one side refers to; INDEX of single numbers refers to a cell in array formulas, too."""
+    if scope.array and isinstance(tree, ir.Call) and tree.name == "INDEX":
+        numbers = [number for number in tree.arguments[1:] if not isinstance(number, ir.Missing)]
+        if all(lowering.dag.sizes[lowering.lower(number, scope.inside())] is None for number in numbers):
+            scope = replace(scope, of_array=False, around=False)
+    return areas_of(lowering, tree, scope)
+
+
+def _may_be_picked(end: ir.Expression, areas: list[Area] | None) -> bool:
+    """Whether an end of a range is picked by a function, and may vary."""
+    return areas is None and isinstance(end, ir.Call) and end.name in REFERENCES
+
+
+def _intersect(area: Area) -> Area:
+    """The cells that two areas share."""
+    if area.top > area.bottom or area.left > area.right:
+        raise NoReference(ErrorCode.NULL)
+    return area
+
+
+def cut(lowering: TreeLowering, area: Area) -> Area:
+    """The area, up to the last filled cell where it goes on far beyond it, once everything in it is lowered."""
+    return require(lowering, lowering.resolver.to_the_last_cell(area.whole))
+
+
+def require(lowering: TreeLowering, area: Area) -> Area:
+    """The area, once everything in it is lowered."""
+    ask_for_reading(area.rows, area.columns)
+    missing = [cell for cell in area.cells() if lowering.awaits(cell)]
+    if missing:
+        raise NotYetNeeded(missing)
+    return area
+
+
+class NoReference(Exception):  # noqa: N818 - it is Excel's error, as a value
+    """What should lead to cells is an error: `#REF!` off the sheet, or that of an argument.
+
+    Attributes:
+        code: the error.
+    """
+
+    def __init__(self, code: ErrorCode = ErrorCode.REF) -> None:
+        super().__init__(code)
+        self.code = code
+
+
+def _stop_at_error(errors: Codes) -> None:
+    """Pass on the error of an argument that is one."""
+    if errors.any():
+        raise NoReference(ErrorCode(int(errors.flat[0])))
+
+
+def _whole_number(lowering: TreeLowering, tree: ir.Expression, scope: Scope, function: str) -> int | None:
+    """A known argument, cut to a whole number; None where it is left out."""
+    if isinstance(tree, ir.Missing):
+        return None
+    node = lowering.lower(tree, scope.inside())
+    if lowering.dag.sizes[node] not in (None, (1, 1)) and scope.array:
+        raise FormulaError(f"{function} leads to several ranges at once")
+    known = lowering.lookup_constant(lowering.first_cell(node))
+    if known is None:
+        hint = "INDEX or a lookup function does the same with arguments that vary"
+        raise FormulaError(f"{function} depends on a value that varies; where it leads must be fixed", hint=hint)
+    numbers, errors = known.to_numbers()
+    _stop_at_error(errors)
+    return int(numbers[0])
+
+
+def _offset(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
+    base = areas_of(lowering, arguments[0], scope)
+    if base is None or len(base) != 1:
+        raise FormulaError("OFFSET starts from a reference to one area")
+    numbers = [_whole_number(lowering, argument, scope, "OFFSET") for argument in arguments[1:]]
+    down, right = (numbers[0] or 0), (numbers[1] or 0)
+    height = numbers[2] if len(numbers) > 2 and numbers[2] is not None else base[0].whole.rows
+    width = numbers[3] if len(numbers) > 3 and numbers[3] is not None else base[0].whole.columns
+    top, left = base[0].top + down, base[0].left + right
+    if not height or not width:
+        raise NoReference
+    rows, columns = _span(top, height), _span(left, width)
+    reached = _on_the_sheet(Area(base[0].sheet, rows[0], columns[0], rows[1], columns[1]))
+    return [cut(lowering, reached)]
+
+
+def _span(start: int, count: int) -> tuple[int, int]:
+    """First and last; a negative count goes backwards."""
+    end = start + count - (1 if count > 0 else -1)
+    return min(start, end), max(start, end)
+
+
+def _on_the_sheet(area: Area) -> Area:
+    if area.top < 1 or area.left < 1 or area.bottom > MAX_ROW or area.right > MAX_COLUMN:
+        raise NoReference
+    return area
+
+
+def _indirect(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
+    known = lowering.lookup_constant(lowering.first_cell(lowering.lower(arguments[0], scope)))
+    if known is None:
+        raise FormulaError("INDIRECT depends on a value that varies; where it leads must be fixed")
+    texts, errors = known.to_texts()
+    _stop_at_error(errors)
+    a1 = len(arguments) < 2 or _is_true(lowering, arguments[1], scope)
+    tree = _read(lowering, str(texts[0])) if a1 else _read_r1c1(lowering, str(texts[0]), scope.cell)
+    over_sheets = isinstance(tree, ir.Reference) and tree.last_sheet is not None  # which Excel does not read from texts
+    found = None if tree is None or over_sheets else _resolve(lowering, tree, scope)
+    if found is None:
+        raise NoReference
+    return [require(lowering, area) for area in found]
+
+
+def _is_true(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:
+    """A known logical argument."""
+    known = lowering.lookup_constant(lowering.first_cell(lowering.lower(tree, scope)))
+    if known is None:
+        raise FormulaError("INDIRECT depends on a value that varies; where it leads must be fixed")
+    logicals, errors = known.to_logicals()
+    _stop_at_error(errors)
+    return bool(logicals[0])
+
+
+def _read(lowering: TreeLowering, text: str) -> ir.Expression | None:
+    try:
+        return parse(text)
+    except FormulaError:
+        return None
+
+
+def _resolve(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
+    """What a text refers to; None where it is no reference."""
+    try:
+        return areas_of(lowering, lowering.resolver.tree(tree, host_of(scope.cell)), scope)
+    except FormulaError:
+        return None
+
+
+def _read_r1c1(lowering: TreeLowering, text: str, host: Cell) -> ir.Expression | None:
+    """The reference `R1C1`, `Data!R[1]C:R3C` or `C2`; names and tables are written as in the usual style."""
+    sheet, _, place = text.strip().rpartition("!")
+    corners = [_r1c1_corner(end, host) for end in place.split(":")]
+    first, last = corners[0], corners[-1]
+    if first is not None and last is not None and len(corners) <= 2 and _go_together(first, last):
+        unquoted = sheet[1:-1].replace("''", "'") if sheet.startswith("'") and sheet.endswith("'") else sheet
+        return ir.Reference(first, last, sheet=unquoted or None)
+    tree = _read(lowering, text)
+    return tree if isinstance(tree, ir.Name | ir.TableReference) else None
+
+
+def _go_together(first: ir.Corner, last: ir.Corner) -> bool:
+    """Whether both are cells, both whole rows or both whole columns."""
+    return (first.row is None, first.column is None) == (last.row is None, last.column is None)
+
+
+def _r1c1_corner(text: str, host: Cell) -> ir.Corner | None:
+    found = _R1C1.fullmatch(text)
+    if found is None or not text:
+        return None
+    row = _step(found["r"], host.row) if found["row"] else None
+    column = _step(found["c"], host.column) if found["column"] else None
+    return ir.Corner(row, column, True, True)
+
+
+def _step(text: str | None, base: int) -> int:
+    if text is None:
+        return base
+    return base + int(text[1:-1]) if text.startswith("[") else int(text)
+
+
+def many_numbers(lowering: TreeLowering, numbers: Arguments, scope: Scope) -> bool:
+    """Whether INDEX is given several numbers at once; of numbers in braces a plain formula takes the first."""
+    computed = [tree for tree in numbers if not isinstance(tree, ir.Array | ir.Missing)]
+    return any(lowering.dag.sizes[lowering.lower(tree, scope.plainly())] is not None for tree in computed)
+
+
+def _index(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
+    """INDEX of a reference of a known row and column; None leaves it to the function of values.
+
+    Raises:
+        NoReference: the cell lies outside, or one number is given for several rows and columns: what is a row of an
+            array is `#REF!` of a reference.
+    """
+    areas = areas_of(lowering, arguments[0], scope)
+    if areas and len(arguments) == 2 and areas[0].whole.rows > 1 and areas[0].whole.columns > 1:
+        raise NoReference
+    if areas is None or scope.array or many_numbers(lowering, arguments[1:], scope):
+        return None
+    try:
+        plain = scope.plainly()
+        numbers = [_whole_number(lowering, argument, plain, "INDEX") or 0 for argument in arguments[1:]]
+    except FormulaError:
+        return None
+    which = numbers[2] if len(numbers) > 2 else 1
+    if any(number < 0 for number in numbers) or which == 0:
+        raise NoReference(ErrorCode.VALUE)
+    if which > len(areas):
+        raise NoReference
+    area = areas[which - 1].whole
+    if len(numbers) == 1:
+        row, column = (1, numbers[0]) if area.rows == 1 else (numbers[0], 1)
+    else:
+        row, column = numbers[:2]
+    if row > area.rows or column > area.columns:
+        raise NoReference
+    top, bottom = (area.top, area.bottom) if row == 0 else (area.top + row - 1,) * 2
+    left, right = (area.left, area.right) if column == 0 else (area.left + column - 1,) * 2
+    return [cut(lowering, Area(area.sheet, top, left, bottom, right))]
+
+
+def _choose(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
+    """CHOOSE of references; None where the choice is not known."""
+    if not any(isinstance(part, Cell | Area | ir.Call) for part in arguments[1:]):
+        return None
+    known = lowering.lookup_constant(lowering.lower(arguments[0], scope.plainly()))
+    if known is None or not known.plain:
+        return None
+    which = int(known.numbers[0])
+    return areas_of(lowering, arguments[which], scope.branch()) if 0 < which < len(arguments) else None
+
+
+def _if(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
+    node = lowering.lower(arguments[0], scope.plainly()) if len(arguments) > 1 else None
+    condition = None if node is None else lowering.lookup_condition(node)
+    if condition is None or (not condition and len(arguments) < 3):
+        return None
+    return areas_of(lowering, arguments[1 if condition else 2], scope.branch())
+
+
+def _spill(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
+    """`A1#`: the range that the file declares for the dynamic array in A1; None where its size varies, or is another,
+    or where the file holds none of its values.
+
+    Raises:
+        NoReference: nothing spills from there.
+    """
+    areas = areas_of(lowering, arguments[0], scope)
+    if not areas:
+        raise NoReference
+    cell = Cell(areas[0].sheet, areas[0].top, areas[0].left)
+    formula = lowering.graph.workbook.content(cell).formula
+    if formula is None or not formula.dynamic or formula.array is None:
+        raise NoReference
+    size = lowering.dag.sizes[lowering.array(cell)] or (1, 1)
+    declared = formula.array.rows, formula.array.columns
+    in_file = all(lowering.graph.workbook.content(cell).value is not None for cell in formula.array.cells())
+    taken = in_file and (size == declared or lowering.is_saved(cell))
+    return [require(lowering, formula.array)] if taken else None
+
+
+REFERENCES: Mapping[str, Callable[[TreeLowering, Arguments, Scope], list[Area] | None]] = {
+    "OFFSET": _offset,
+    "INDIRECT": _indirect,
+    "INDEX": _index,
+    "IF": _if,
+    "CHOOSE": _choose,
+    "ANCHORARRAY": _spill,
+}
+
+
+def of_one_cell(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> ir.Expression:
+    """The argument with `#VALUE!` for every range of several cells that it may give; arrays stay as they are.
+
+    Args:
+        lowering: of the workbook.
+        tree: the argument.
+        scope: of the argument.
+    """
+    match tree:
+        case ir.Call(name, (test, *branches)) if name in _CHOOSING:
+            check_count(name, tree.arguments)
+            if lowering.dag.sizes[lowering.lower(test, scope.inside())] is not None:
+                return tree  # a condition of many cells gives an array
+            return ir.Call(name, (test, *(of_one_cell(lowering, part, scope) for part in branches)))
+        case Area() | ir.Binary(",") | ir.Binary(":") | ir.Binary(" ") | ir.Variable():
+            return _NOT_ONE_CELL if _is_many_cells(lowering, tree, scope) else tree
+        case ir.Call(name) if name in REFERENCES:
+            return (
+                _NOT_ONE_CELL if _is_many_cells(lowering, tree, replace(scope, of_array=False, around=False)) else tree
+            )
+        case _:
+            return tree
+
+
+def _is_many_cells(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:
+    """Whether a tree refers to more cells than one."""
+    try:
+        areas = areas_of(lowering, tree, scope)
+    except NoReference:
+        return False
+    return areas is not None and sum(area.whole.rows * area.whole.columns for area in areas) > 1

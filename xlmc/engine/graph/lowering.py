@@ -1,0 +1,308 @@
+"""What the parts of the lowering share: the scope of a tree, the calls of LAMBDAs, and what each part may ask for.
+
+Each part (choices, references, LAMBDAs, …) is given a `TreeLowering`; the whole one is made of the parts, in `lower`.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+from xlmc.engine.graph.builder import NodeBuilder
+from xlmc.errors import FormulaError
+from xlmc.excel.address import Area, Cell
+from xlmc.excel.formula import Graph, Resolver, ir
+from xlmc.excel.functions import Function
+from xlmc.excel.functions.budget import CallCount
+from xlmc.excel.functions.registry import Ranges
+
+__all__ = [
+    "DEEPEST_CALLS",
+    "Callee",
+    "Closure",
+    "Fork",
+    "LambdaCalls",
+    "Native",
+    "RecursiveLambda",
+    "Scope",
+    "Thunk",
+    "TooDeepError",
+    "TreeLowering",
+]
+
+_MOST_WRITTEN_OUT: Final = 1_000
+"""Calls of a LAMBDA by itself within one call that are written out."""
+
+
+DEEPEST_CALLS: Final = 60
+"""Calls within calls that are written out."""
+
+
+class TreeLowering(NodeBuilder, ABC):
+    """Lowers trees to nodes.
+
+    Attributes:
+        graph: the needed cells, in dependency order.
+        calls: of LAMBDAs, which must not be too many.
+        lambda_calls: the calls of LAMBDAs that are being lowered.
+    """
+
+    graph: Graph
+    calls: CallCount
+    lambda_calls: LambdaCalls
+
+    @abstractmethod
+    def lower(self, tree: ir.Expression, scope: Scope) -> int:
+        """The node of a tree."""
+
+    @abstractmethod
+    def call_by_name(self, name: str, arguments: tuple[ir.Expression, ...], scope: Scope) -> int:
+        """The node of a function of values."""
+
+    @abstractmethod
+    def whole(self, tree: ir.Expression, scope: Scope) -> list[int]:
+        """An argument that may be a range: ranges whole, joined areas one by one, anything else as it computes."""
+
+    @abstractmethod
+    def range(self, area: Area) -> int:
+        """The node of all cells of an area, which are looked up once.
+
+        Raises:
+            TooLargeError: they are too many.
+        """
+
+    @abstractmethod
+    def cell(self, cell: Cell) -> int:
+        """The node of a cell's value."""
+
+    @abstractmethod
+    def array(self, cell: Cell) -> int:
+        """The node of all that an array formula in a cell gives."""
+
+    @abstractmethod
+    def spill(self, cell: Cell) -> int:
+        """The node of the cells that an array formula fills; a cell shows 0 for an empty value."""
+
+    @abstractmethod
+    def is_saved(self, cell: Cell) -> bool:
+        """Whether formulas see what Excel saved in a formula's cell, rather than what it gives."""
+
+    @abstractmethod
+    def awaits(self, cell: Cell) -> bool:
+        """Whether a cell must still be lowered before a formula can refer to it."""
+
+    @property
+    @abstractmethod
+    def resolver(self) -> Resolver:
+        """Reads the references in texts."""
+
+
+@dataclass(eq=False)
+class Thunk:
+    """A tree that a variable stands for, in the scope it was written in."""
+
+    tree: ir.Expression
+    scope: Scope
+    known: dict[tuple[bool, bool, bool], int] = field(default_factory=dict)
+    """The node of a cell for each way to take ranges (see `Scope.taking`), once the cell was lowered."""
+    callee: Callee | None = None
+    """The function that it gives, once it was called."""
+
+
+@dataclass(frozen=True, eq=False)
+class Closure:
+    """A LAMBDA with the scope it was written in."""
+
+    function: ir.Lambda
+    scope: Scope
+
+    def takes(self, count: int) -> bool:
+        """Whether it may be called with so many arguments."""
+        most = len(self.function.parameters)
+        return most - self.function.optional <= count <= most
+
+    def inside(self, arguments: Sequence[int | Thunk | Closure], caller: Scope) -> Scope:
+        """The scope of its calculation in a call."""
+        left_out = [Thunk(ir.Missing(), self.scope)] * (len(self.function.parameters) - len(arguments))
+        given = dict(zip(self.function.parameters, (*arguments, *left_out), strict=True))
+        return replace(self.scope.bound(given).seen_from(caller), depth=caller.depth + 1)
+
+
+@dataclass(frozen=True)
+class Native:
+    """A function of Excel, given as a value."""
+
+    name: str
+
+
+@dataclass(frozen=True, eq=False)
+class Fork:
+    """One of two functions, by a condition that varies."""
+
+    condition: int
+    yes: Callee
+    no: Callee
+
+
+Callee = Closure | Native | Fork
+"""What can be called."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scope:
+    """The place of a tree in the workbook.
+
+    Attributes:
+        cell: whose formula it is in.
+        of_array: whether it is an array formula, in which ranges are taken cell by cell everywhere; a plain formula
+            takes the cell of a range that stands beside it.
+        around: whether a function around the tree has it taken cell by cell also in a plain formula.
+        whole: whether a range that is all of the tree, or a branch of a choice that is, is wanted whole.
+        variables: name -> a node, a tree to be lowered in its scope, or a LAMBDA.
+        depth: how many LAMBDAs are being called.
+    """
+
+    cell: Cell
+    of_array: bool = False
+    around: bool = False
+    whole: bool = False
+    variables: Mapping[str, int | Thunk | Closure] = field(default_factory=dict)
+    depth: int = 0
+
+    @property
+    def array(self) -> bool:
+        """Whether ranges are taken cell by cell."""
+        return self.of_array or self.around
+
+    @property
+    def taking(self) -> tuple[bool, bool, bool]:
+        """The three flags that decide how ranges are taken."""
+        return self.of_array, self.around, self.whole
+
+    def over_arrays(self) -> Scope:
+        """The same scope, but with ranges taken cell by cell."""
+        return self if self.array else replace(self, around=True, whole=False)
+
+    def plainly(self) -> Scope:
+        """The same scope, but with ranges taken as in the formula, whatever the function around the tree wants."""
+        return replace(self, around=False, whole=False) if self.around or self.whole else self
+
+    def inside(self) -> Scope:
+        """The scope of a part of the tree."""
+        return replace(self, whole=False) if self.whole else self
+
+    def wanted_whole(self) -> Scope:
+        """The same scope, but with a range that is all of the tree wanted whole."""
+        return self if self.whole else replace(self, whole=True)
+
+    def branch(self) -> Scope:
+        """The scope of a choice's branch: a range there is whole where the choice is wanted whole or cell by cell."""
+        return replace(self, around=False, whole=self.whole or self.around) if self.around else self
+
+    def of(self, ranges: Ranges) -> Scope:
+        """The scope of an argument that takes ranges so."""
+        if ranges is Ranges.CELLS:
+            return self.over_arrays()
+        return self if ranges in (Ranges.AROUND, Ranges.ONE_CELL) else self.plainly()
+
+    def seen_from(self, user: Scope) -> Scope:
+        """The same scope, but with ranges taken, and as deep, as in the scope `user` that uses a variable of it."""
+        return replace(self, of_array=user.of_array, around=user.around, whole=user.whole, depth=user.depth)
+
+    def bound(self, variables: Mapping[str, int | Thunk | Closure]) -> Scope:
+        """The same scope with more variables."""
+        return replace(self, variables={**self.variables, **variables})
+
+    def defining(self, name: str, tree: ir.Expression) -> Scope:
+        """The same scope with a variable whose tree may name the variable itself."""
+        variables = dict(self.variables)
+        inner = replace(self, variables=variables)
+        variables[name] = Thunk(tree, inner)
+        return inner
+
+
+class TooDeepError(FormulaError):
+    """Calls within calls are too many to be written out.
+
+    Attributes:
+        repeated: the LAMBDAs among them that call themselves.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(f"LAMBDAs call each other more than {DEEPEST_CALLS} deep", hint="use REDUCE or SCAN")
+        self.repeated: set[Closure] = set()
+
+
+@dataclass(eq=False, slots=True)
+class RecursiveLambda:
+    """A LAMBDA that calls itself, lowered on its own.
+
+    Attributes:
+        parameters: the nodes that stand for its parameters.
+        itself: stands for its calls within itself.
+        function: for all other calls; None until it is lowered.
+        taken: the nodes that it takes from outside.
+    """
+
+    parameters: list[int]
+    itself: Function
+    function: Function | None = None
+    taken: tuple[int, ...] = ()
+
+
+class LambdaCalls:
+    """The LAMBDAs of a workbook that are being called, and those that were lowered on their own.
+
+    Attributes:
+        recursive: what decides on its body -> a LAMBDA that was lowered on its own.
+    """
+
+    def __init__(self) -> None:
+        self._calls: Counter[Closure] = Counter()
+        self._made: Counter[Closure] = Counter()
+        self._open: Counter[Closure] = Counter()
+        self.recursive: dict[object, RecursiveLambda] = {}
+
+    def is_open(self, function: Closure) -> bool:
+        """Whether the LAMBDA is being lowered on its own."""
+        return self._open[function] > 0
+
+    def is_called(self, function: Closure) -> bool:
+        """Whether a call of the LAMBDA is being written out."""
+        return self._calls[function] > 0
+
+    @contextmanager
+    def calling(self, function: Closure) -> Iterator[None]:
+        """Count a call while it is written out."""
+        self._calls[function] += 1
+        self._made[function] += 1
+        try:
+            if self._made[function] > _MOST_WRITTEN_OUT:
+                raise TooDeepError
+            yield
+        except TooDeepError as error:
+            if self._calls[function] > 1:
+                error.repeated.add(function)
+            raise
+        finally:
+            self._calls[function] -= 1
+            if not self._calls[function]:
+                del self._made[function]
+
+    @contextmanager
+    def opening(self, function: Closure) -> Iterator[None]:
+        """Mark a LAMBDA while it is lowered on its own."""
+        self._open[function] += 1
+        try:
+            yield
+        finally:
+            self._open[function] -= 1
+
+    @property
+    def any_open(self) -> bool:
+        """Whether any LAMBDA is being lowered on its own."""
+        return any(self._open.values())

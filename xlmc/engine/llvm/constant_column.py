@@ -1,0 +1,32 @@
+"""Constant doubles that stand in a module, for instructions that read the one at an index."""
+
+from __future__ import annotations
+
+from hashlib import sha256
+from typing import Any
+
+from llvmlite import ir
+
+from xlmc.engine.llvm.loop_rules import Emitter
+from xlmc.excel.functions.values import Floats
+
+__all__ = ["ConstantColumn"]
+
+
+class ConstantColumn:
+    """Numbers, `(k,)`, kept once in a module."""
+
+    def __init__(self, body: Emitter, numbers: Floats) -> None:
+        self._builder = body.builder
+        type_ = ir.ArrayType(body.real, numbers.size)
+        name = f"column.{sha256(numbers.tobytes()).hexdigest()[:32]}"
+        known = body.builder.module.globals
+        if name not in known:
+            held = ir.GlobalVariable(body.builder.module, type_, name)
+            held.linkage, held.global_constant = "internal", True
+            held.initializer = ir.Constant(type_, [ir.Constant(body.real, float(number)) for number in numbers])
+        self._held = known[name]
+
+    def at(self, index: Any) -> Any:
+        """The double at an index."""
+        return self._builder.load(self._builder.gep(self._held, [index.type(0), index]))

@@ -1,0 +1,1 @@
+"""The engine `formulas`: slow, independent, for comparison."""

@@ -1,0 +1,1 @@
+"""Workbooks and what their formulas mean: this layer works alone."""

@@ -1,0 +1,179 @@
+"""What must be unique in a workbook, and what is free there: names of sheets, of parts and of tables.
+
+Also how formulas write the names of sheets and how these are changed in them, and which parts a part leads to.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import count
+
+from xlmc.excel.workbook.package import relationships
+from xlmc.excel.workbook.safe_xml import tree
+
+__all__ = [
+    "TableNumbers",
+    "free_names",
+    "free_part_names",
+    "free_table_name",
+    "free_tables",
+    "quoted",
+    "reached",
+    "rename_in_formula",
+]
+
+_LONGEST = 31  # characters in a sheet name, Excel's limit
+
+_TOKEN = re.compile(
+    r"""
+    (?P<text>"(?:[^"]|"")*")            # "text", which may look like a reference
+  | '(?P<quoted>(?:[^']|'')*)'!         # 'My sheet'!
+  | (?<![\w.\]\#])(?P<bare>[\w.\\]+)!   # Sheet!, but neither [1]Sheet! of another workbook nor #REF!
+  | (?<![\w.\]])(?P<table>[\w.\\]+)(?=\[)   # Table[
+    """,
+    re.VERBOSE,
+)
+
+
+def free_names(wanted: Sequence[str], taken: Collection[str]) -> dict[str, str]:
+    """A sheet name for each one wanted: itself, or `Results (2)` where the workbook has a sheet of that name."""
+    used = {name.casefold() for name in taken}
+    found: dict[str, str] = {}
+    for name in wanted:
+        found[name] = next(candidate for candidate in _numbered(name) if candidate.casefold() not in used)
+        used.add(found[name].casefold())
+    return found
+
+
+def free_table_name(wanted: str, taken: Collection[str]) -> str:
+    """The table name itself, or `Trials_2`. `taken` holds folded names of tables and of defined names alike."""
+    candidates = (wanted if number == 1 else f"{wanted}_{number}" for number in count(1))
+    return next(candidate for candidate in candidates if candidate.casefold() not in taken)
+
+
+def quoted(name: str) -> str:
+    """The name as a formula may always write it: `O'Hara -> 'O''Hara'`."""
+    return "'" + name.replace("'", "''") + "'"
+
+
+def rename_in_formula(formula: str, sheets: Mapping[str, str], tables: Mapping[str, str]) -> str:
+    """The formula with sheets and tables called by their new names; strings and other workbooks' sheets stay.
+
+    Keys of both mappings are folded old names.
+    """
+
+    def new(match: re.Match[str]) -> str:
+        if match["text"] is not None:
+            return match[0]
+        if match["table"] is not None:
+            return tables.get(match["table"].casefold(), match[0])
+        name = match["bare"] if match["quoted"] is None else match["quoted"].replace("''", "'")
+        changed = sheets.get(name.casefold())
+        return match[0] if changed is None else f"{quoted(changed)}!"
+
+    return _TOKEN.sub(new, formula)
+
+
+def _numbered(name: str) -> Iterator[str]:
+    yield name
+    for number in count(2):
+        suffix = f" ({number})"
+        yield name[: _LONGEST - len(suffix)] + suffix
+
+
+def reached(parts: Mapping[str, bytes], *starts: str) -> list[str]:
+    """The parts themselves and all they lead to, nearest first, each once. `""` is the package, and not in the list.
+
+    Raises:
+        WorkbookError: a rels part is not XML.
+    """
+    found = dict.fromkeys(starts)
+    queue = list(starts)
+    for part in queue:
+        new = [target for target in _pointed_to(parts, part) if target not in found]
+        found |= dict.fromkeys(new)
+        queue += new
+    return [part for part in found if part]
+
+
+def _pointed_to(parts: Mapping[str, bytes], part: str) -> list[str]:
+    """The parts in this package that one part points to, each once.
+
+    Raises:
+        WorkbookError: the rels part is not XML.
+    """
+    targets = (rel.target for rel in relationships(parts, part).values() if not rel.external)
+    return list(dict.fromkeys(target for target in targets if target in parts))
+
+
+_NUMBERED = re.compile(r"(.*?)([0-9]*)(\.[^./]*)?", re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True)
+class TableNumbers:
+    """New ids of tables by the part that holds them, and new names, where they change, by folded old name."""
+
+    ids: Mapping[str, int] = field(default_factory=dict)
+    names: Mapping[str, str] = field(default_factory=dict)
+
+
+def free_part_names(wanted: Iterable[str], taken: Iterable[str]) -> dict[str, str]:
+    """New part names by old, numbered on from those taken: `xl/charts/chart1.xml -> xl/charts/chart7.xml`.
+
+    Part names differ by more than case, and a picture's number is used once whatever its format.
+    """
+    last: dict[str, int] = {}
+    for name in taken:
+        stem, number, _ = _split(name)
+        last[stem.casefold()] = max(last.get(stem.casefold(), 0), number)
+    found = {}
+    for name in wanted:
+        stem, _, extension = _split(name)
+        number = last[stem.casefold()] = last.get(stem.casefold(), 0) + 1
+        found[name] = f"{stem}{number}{extension}"
+    return found
+
+
+def free_tables(
+    built: Mapping[str, bytes], parts: Mapping[str, bytes], workbook: str, names: Collection[str]
+) -> TableNumbers:
+    """Ids and names for the built tables that no table of the user's has.
+
+    Args:
+        built: the built parts that hold tables.
+        parts: the user's parts.
+        workbook: the user's workbook part.
+        names: the user's defined names, which tables must not share.
+
+    Raises:
+        WorkbookError: a table of the user's is not XML.
+    """
+    present = list(_tables(parts, workbook))
+    last = max((int(table.get("id", "")) for table in present if table.get("id", "").isdecimal()), default=0)
+    taken = {name.casefold() for name in names} | {table.get("displayName", "").casefold() for table in present}
+    ids, changed = {}, {}
+    for part, xml in built.items():
+        last += 1
+        ids[part] = last
+        name = tree(xml, part).attrib["displayName"]
+        free = free_table_name(name, taken)
+        taken.add(free.casefold())
+        if free != name:
+            changed[name.casefold()] = free
+    return TableNumbers(ids, changed)
+
+
+def _tables(parts: Mapping[str, bytes], workbook: str) -> Iterator[Mapping[str, str]]:
+    """The attributes of every table of the workbook."""
+    for sheet in _pointed_to(parts, workbook):
+        for rel in relationships(parts, sheet).values():
+            if rel.kind == "table" and rel.target in parts:
+                yield tree(parts[rel.target], rel.target).attrib
+
+
+def _split(name: str) -> tuple[str, int, str]:
+    match = _NUMBERED.fullmatch(name)
+    assert match is not None  # the pattern takes any text
+    return match[1], int(match[2] or 0), match[3] or ""

@@ -1,0 +1,228 @@
+"""Add the styles of a built workbook to those of the user's, whose own keep their numbers.
+
+A cell's style is a number: its index in `cellXfs`, an entry of which again gives indices in `fonts`, `fills`,
+`borders` and a number format. In each of these lists an entry is found, or added behind the others. What the user's
+workbook has already is used again, so repeated runs add nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from xlmc.excel.workbook.injection.splice import MAIN, Element, SplicedXml, parse_spans, render
+
+__all__ = [
+    "StyleMap",
+    "merge_styles",
+    "same_styles",
+]
+
+_PARTS_OF_A_STYLE = {"fontId": "fonts", "fillId": "fills", "borderId": "borders"}
+_FLAGS = {"numFmtId": "applyNumberFormat", "fontId": "applyFont", "fillId": "applyFill", "borderId": "applyBorder"}
+
+
+@dataclass(frozen=True, slots=True)
+class StyleMap:
+    """New numbers by old: `cells` for a cell's, row's or column's style, `differential` for `dxfId`."""
+
+    cells: tuple[int, ...]
+    differential: tuple[int, ...]
+
+
+def same_styles(styles: bytes) -> StyleMap:
+    """The map for a workbook that takes over the built styles as they are."""
+    root = parse_spans(styles, "styles")
+    sizes = (len(_style_entries(root, "cellXfs")), len(_style_entries(root, "dxfs")))
+    return StyleMap(*(tuple(range(size)) for size in sizes))
+
+
+def merge_styles(styles: bytes, part: str, built: bytes) -> tuple[bytes, StyleMap]:
+    """The user's styles part with the built styles added, and where they now are.
+
+    Raises:
+        WorkbookError: the styles part is not XML.
+    """
+    document, source = SplicedXml(styles, part), parse_spans(built, "styles of the result sheets")
+    formats = _NumberFormats(document, source)
+    lists = {name: _StyleList(document, name) for name in (*_PARTS_OF_A_STYLE.values(), "cellXfs", "dxfs")}
+    indices = {name: _indices(lists[name], source) for name in _PARTS_OF_A_STYLE.values()}
+    normal = _normal(document.root)
+    cells = [_cell_style(style, indices, formats, normal) for style in _style_entries(source, "cellXfs")]
+    differential = [_differential(style, formats) for style in _style_entries(source, "dxfs")]
+    found = StyleMap(
+        cells=tuple(lists["cellXfs"].index_of(entry) for entry in cells),
+        differential=tuple(lists["dxfs"].index_of(entry) for entry in differential),
+    )
+    for numbered in (formats.list, *lists.values()):  # in the schema's order
+        numbered.write()
+    return document.result(), found
+
+
+def _indices(numbered: _StyleList, source: Element) -> list[int]:
+    return [numbered.index_of(_StyleEntry.of(entry)) for entry in _style_entries(source, numbered.name)]
+
+
+@dataclass(frozen=True, slots=True)
+class _Normal:
+    """The user's style `Normal`: its index (None in a part without styles) and its attributes."""
+
+    index: str | None
+    attributes: Mapping[str, str]
+
+
+def _normal(root: Element) -> _Normal:
+    styles = _style_entries(root, "cellStyleXfs")
+    # Its name is in the user's language; its built-in number is not.
+    named = [style for style in _style_entries(root, "cellStyles") if style.attributes.get("builtinId") == "0"]
+    index = named[0].attributes.get("xfId", "0") if named else "0"
+    if not index.isdecimal() or int(index) >= len(styles):
+        return _Normal(None, {})
+    return _Normal(index, styles[int(index)].attributes)
+
+
+def _cell_style(
+    built: Element, indices: Mapping[str, list[int]], formats: _NumberFormats, normal: _Normal
+) -> _StyleEntry:
+    """A built cell style in the user's numbers, resting on the user's Normal and saying where it departs from it."""
+    entry = _StyleEntry.of(built)
+    attributes = dict(entry.attributes)
+    attributes["numFmtId"] = formats.number(attributes["numFmtId"])
+    for name, numbered in _PARTS_OF_A_STYLE.items():
+        attributes[name] = str(indices[numbered][int(attributes[name])])
+    del attributes["xfId"]
+    if normal.index is not None:
+        attributes["xfId"] = normal.index
+    differs = (flag for name, flag in _FLAGS.items() if attributes[name] != normal.attributes.get(name, "0"))
+    return _StyleEntry(entry.local, attributes | dict.fromkeys(differs, "1"), entry.children)
+
+
+def _differential(built: Element, formats: _NumberFormats) -> _StyleEntry:
+    """A built conditional style with its number format in the user's numbers."""
+    entry = _StyleEntry.of(built)
+    return _StyleEntry(entry.local, entry.attributes, tuple(_renumbered(child, formats) for child in entry.children))
+
+
+def _renumbered(child: _StyleEntry, formats: _NumberFormats) -> _StyleEntry:
+    if child.local != "numFmt":
+        return child
+    number = formats.number(child.attributes["numFmtId"], child.attributes["formatCode"])
+    return _StyleEntry(child.local, {**child.attributes, "numFmtId": number})
+
+
+_ORDER = ("numFmts", "fonts", "fills", "borders", "cellStyleXfs", "cellXfs", "cellStyles", "dxfs", "tableStyles")
+"""The order the schema wants; whatever else there may be stands behind them."""
+
+_FIRST_CUSTOM_FORMAT = 164
+
+
+@dataclass(frozen=True)
+class _StyleEntry:
+    """An element of a styles part: free of prefixes, so that it can be compared and written anywhere."""
+
+    local: str
+    attributes: Mapping[str, str]
+    children: tuple[_StyleEntry, ...] = ()
+
+    @classmethod
+    def of(cls, element: Element) -> _StyleEntry:
+        children = tuple(cls.of(child) for child in element.children)
+        # An extension keeps its full name, so that it is never taken for one of the schema's own elements.
+        return cls(element.local if element.namespace == MAIN else element.name, element.attributes, children)
+
+    def key(self) -> tuple[object, ...]:
+        """Equal for entries that say the same."""
+        return (self.local, tuple(sorted(self.attributes.items())), tuple(child.key() for child in self.children))
+
+    def text(self, prefix: str) -> str:
+        """The entry as XML with that prefix (and its colon) on every element.
+
+        Raises:
+            ValueError: the entry has an extension, which a built workbook's styles must not.
+        """
+        if " " in self.local:
+            raise ValueError(f"no way to carry over {self.local!r} in a style")
+        content = "".join(child.text(prefix) for child in self.children)
+        return render(prefix + self.local, self.attributes, content or None).decode()
+
+
+class _StyleList:
+    """One numbered list of the user's styles part: entries there already, and new ones behind them."""
+
+    def __init__(self, document: SplicedXml, name: str) -> None:
+        self.name = name
+        self._document = document
+        self._element = document.root.find(name)
+        self._new: list[_StyleEntry] = []
+        entries = _style_entries(document.root, name)
+        self._size = len(entries)
+        self._known = {_StyleEntry.of(entry).key(): index for index, entry in enumerate(entries)}
+
+    def index_of(self, entry: _StyleEntry) -> int:
+        """The index of the entry, which is added if it is new."""
+        index = self._known.setdefault(entry.key(), self._size)
+        if index == self._size:
+            self._new.append(entry)
+            self._size += 1
+        return index
+
+    def write(self) -> None:
+        """Splice the new entries in, in a list of their own where the part has none."""
+        if not self._new:
+            return
+        root = self._document.root
+        prefix = self._document.prefix(root)
+        content = "".join(entry.text(prefix) for entry in self._new)
+        if self._element is not None:
+            self._document.append(self._element, content.encode())
+            self._document.set(self._element, "count", self._size)
+            return
+        self._insert(root, render(prefix + self.name, {"count": self._size}, content))
+
+    def _insert(self, root: Element, fragment: bytes) -> None:
+        earlier = _ORDER[: _ORDER.index(self.name)]
+        own = (child for child in root.children if child.namespace == root.namespace)
+        behind = next((child for child in own if child.local not in earlier), None)
+        if behind is None:
+            self._document.append(root, fragment)
+        else:
+            self._document.before(behind, fragment)
+
+
+class _NumberFormats:
+    """Number formats: built-in ones keep their number, others are found by their code or get a free number."""
+
+    def __init__(self, document: SplicedXml, source: Element) -> None:
+        self.list = _StyleList(document, "numFmts")
+        root = document.root
+        self._codes = {e.attributes["numFmtId"]: _code(e) for e in _style_entries(source, "numFmts")}
+        self._numbers = {_code(e): _number(e) for e in _style_entries(root, "numFmts")}
+        # A style may name a format that nothing defines; defining it now would change the user's cells.
+        used = [_number(e) for name in ("numFmts", "cellXfs", "cellStyleXfs") for e in _style_entries(root, name)]
+        self._next = max([_FIRST_CUSTOM_FORMAT - 1, *used]) + 1
+
+    def number(self, built: str, code: str | None = None) -> str:
+        """The number of a built workbook's format; `code` where the format says it itself."""
+        if int(built) < _FIRST_CUSTOM_FORMAT:
+            return built
+        code = code or self._codes[built]
+        if code not in self._numbers:
+            self._numbers[code] = self._next
+            self.list.index_of(_StyleEntry("numFmt", {"numFmtId": str(self._next), "formatCode": code}))
+            self._next += 1
+        return str(self._numbers[code])
+
+
+def _style_entries(root: Element, name: str) -> list[Element]:
+    """The entries of one list of a styles part, in order; none where there is no such list."""
+    holder = root.find(name)
+    return [child for child in holder.children if child.namespace == root.namespace] if holder else []
+
+
+def _number(entry: Element) -> int:
+    text = entry.attributes.get("numFmtId", "")
+    return int(text) if text.isdecimal() else 0
+
+
+def _code(entry: Element) -> str:
+    return entry.attributes.get("formatCode", "")

@@ -1,0 +1,160 @@
+"""Worksheets that are parsed when first asked for: a book of twenty costs only those a model needs."""
+
+from __future__ import annotations
+
+from collections import ChainMap
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from copy import copy
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING, TypeVar
+
+from xlmc.errors import WorkbookError
+from xlmc.excel.address import Cell
+from xlmc.excel.workbook.safe_xml import is_true, shared_strings, tree
+from xlmc.excel.workbook.sheet import CellContext, parse_sheet
+from xlmc.excel.workbook.structure import Structure
+from xlmc.excel.workbook.workbook import CellContent, CellValue, DataTable, Sheet, Workbook
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+__all__ = ["LazySheets", "dynamic_array_marks", "naming_file", "with_values"]
+
+_T = TypeVar("_T")
+
+
+class LazySheets(Mapping[str, Sheet]):
+    """Worksheets by name, in tab order.
+
+    Args:
+        file: the name of the file, for messages.
+        parts: of its package.
+        structure: of its workbook part.
+
+    Looking a sheet up raises `WorkbookError` where its part is damaged.
+    """
+
+    def __init__(self, file: str, parts: Mapping[str, bytes], structure: Structure) -> None:
+        self._file = file
+        self._parts = parts
+        self._structure = structure
+        self._entries = {entry.name: entry for entry in structure.worksheets}
+        self._parsed: dict[str, Sheet] = {}
+
+    def __getitem__(self, name: str) -> Sheet:
+        if name not in self._parsed:
+            entry = self._entries[name]
+            with naming_file(self._file):
+                self._parsed[name] = parse_sheet(self._parts[entry.part], entry, self._context)
+        return self._parsed[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._entries
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._entries)
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    def __repr__(self) -> str:
+        return f"<sheets {', '.join(self._entries)}>"
+
+    def with_sheets(self, changed: Mapping[str, Sheet]) -> LazySheets:
+        """The same worksheets, but for those of these names."""
+        found = copy(self)
+        found._parsed = {**self._parsed, **changed}
+        return found
+
+    def data_tables(self) -> Iterable[DataTable]:
+        """All what-if data tables; parses no sheet that cannot hold one.
+
+        Raises:
+            WorkbookError: a sheet that may hold one is damaged.
+        """
+        suspects = [entry.name for entry in self._entries.values() if _may_hold_data_table(self._parts[entry.part])]
+        return [table for name in suspects for table in self[name].data_tables]
+
+    def mentioning(self, words: Iterable[bytes]) -> Iterator[str]:
+        """The names of the sheets whose part holds one of these words, in small letters, whatever its case there."""
+        for entry in self._entries.values():
+            xml = self._parts[entry.part].lower()
+            if b"\0" in xml[:4] or any(word in xml for word in words):  # zero bytes: an encoding of its own
+                yield entry.name
+
+    @cached_property
+    def _context(self) -> CellContext:
+        return CellContext(
+            strings=self._read("sharedStrings", shared_strings) or (),
+            dynamic_marks=self._read("sheetMetadata", dynamic_array_marks) or frozenset(),
+            date1904=self._structure.date1904,
+        )
+
+    def _read(self, kind: str, reader: Callable[[bytes, str], _T]) -> _T | None:
+        part = self._structure.target(kind)
+        return None if part is None or part not in self._parts else reader(self._parts[part], part)
+
+
+def _may_hold_data_table(xml: bytes) -> bool:
+    # XML without zero bytes at its start is in an encoding that writes ASCII as it is.
+    return b"dataTable" in xml or b"\0" in xml[:4]
+
+
+_DYNAMIC = "XLDAPR"
+
+
+def dynamic_array_marks(xml: bytes, part: str) -> frozenset[str]:
+    """The values of `cm` that mark a dynamic-array formula.
+
+    `cm` counts cell metadata from 1; each names records (`rc`) of a type `t`, counted from 1, with a value `v`,
+    counted from 0, among that type's own.
+
+    Raises:
+        WorkbookError: the part is not XML.
+    """
+    root = tree(xml, part)
+    types = [element.get("name") for element in root.findall("{*}metadataTypes/{*}metadataType")]
+    spilling = _spilling_records(root)
+    wanted = {(str(types.index(_DYNAMIC) + 1), str(v)) for v in spilling} if _DYNAMIC in types else set()
+    return frozenset(
+        str(number)
+        for number, block in enumerate(root.findall("{*}cellMetadata/{*}bk"), 1)
+        if any((record.get("t"), record.get("v")) in wanted for record in block.findall("{*}rc"))
+    )
+
+
+def _spilling_records(root: Element) -> list[int]:
+    future = next((found for found in root.findall("{*}futureMetadata") if found.get("name") == _DYNAMIC), ())
+    return [number for number, block in enumerate(future) if _spills(block)]
+
+
+def _spills(block: Element) -> bool:
+    return any(is_true(found.get("fDynamic")) for found in block.iterfind(".//{*}dynamicArrayProperties"))
+
+
+@contextmanager
+def naming_file(file: str) -> Iterator[None]:
+    """Let errors from within that do not say where they are name `file`."""
+    try:
+        yield
+    except WorkbookError as error:
+        if error.where is not None:
+            raise
+        raise WorkbookError(error.message, where=file, hint=error.hint) from error
+
+
+def with_values(workbook: Workbook, values: Mapping[Cell, CellValue]) -> Workbook:
+    """The workbook with these values typed into its cells. No file holds it: it has no parts and no fingerprint.
+
+    Its `origin` are the parts of the file, in whose drawings Crystal Ball hides definitions.
+    """
+    typed: dict[str, dict[tuple[int, int], CellContent]] = {}
+    for cell, value in values.items():
+        typed.setdefault(cell.sheet, {})[cell[1:]] = CellContent(value)
+    sheets = workbook.sheets
+    changed = {name: replace(sheets[name], cells={**sheets[name].cells, **cells}) for name, cells in typed.items()}
+    # A ChainMap reads a sheet when it is looked up, and nobody writes to this one.
+    more = sheets.with_sheets(changed) if isinstance(sheets, LazySheets) else ChainMap(changed, sheets)  # type: ignore[arg-type]
+    return replace(workbook, sheets=more, parts={}, origin=workbook.parts or workbook.origin, sha256="", data=b"")

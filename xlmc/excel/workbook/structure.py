@@ -1,0 +1,192 @@
+"""The workbook part, with its sheets, defined names and calculation settings; and the tables of its worksheets."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from xlmc.errors import Notice, WorkbookError
+from xlmc.excel.address import Area, Cell, parse_address
+from xlmc.excel.workbook.package import SAVE_AS, Relationship, relationships
+from xlmc.excel.workbook.printable import printable
+from xlmc.excel.workbook.safe_xml import REPAIR, attribute, decode, is_true, tree, whole_number
+from xlmc.excel.workbook.workbook import DefinedName, Table
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+__all__ = ["SheetEntry", "Structure", "area_of", "read_structure", "read_table", "tables_of"]
+
+
+@dataclass(frozen=True, slots=True)
+class SheetEntry:
+    """One tab. `kind` is `worksheet`, or that of a sheet without cells (`chartsheet`, …)."""
+
+    name: str
+    part: str
+    kind: str
+    visible: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Structure:
+    """What the workbook part says.
+
+    Attributes:
+        part: its name.
+        relationships: its pointers to sheets, shared strings and the rest, by id.
+        sheets: all tabs in order, also those without cells.
+        strays: notices of names that belong to no sheet and are left out of `names`.
+        calculation: the attributes of `calcPr`.
+        links: the parts of linked workbooks, in the order in which formulas number them.
+    """
+
+    part: str
+    relationships: Mapping[str, Relationship]
+    sheets: tuple[SheetEntry, ...]
+    names: tuple[DefinedName, ...]
+    strays: tuple[Notice, ...]
+    date1904: bool
+    calculation: Mapping[str, str]
+    links: tuple[str, ...] = ()
+
+    @property
+    def worksheets(self) -> tuple[SheetEntry, ...]:
+        return tuple(sheet for sheet in self.sheets if sheet.kind == "worksheet")
+
+    def target(self, kind: str) -> str | None:
+        """The part that the workbook's first relationship of that kind points to."""
+        return next((found.target for found in self.relationships.values() if found.kind == kind), None)
+
+
+def read_structure(parts: Mapping[str, bytes]) -> Structure:
+    """Find and read the workbook part.
+
+    Raises:
+        WorkbookError: there is none, or it is damaged.
+    """
+    part = _workbook_part(parts)
+    root = tree(parts[part], part)
+    rels = relationships(parts, part)
+    sheets = tuple(_sheet_entry(element, rels, parts) for element in root.findall("{*}sheets/{*}sheet"))
+    _check_distinct(sheets)
+    names = [_defined_name(element, sheets) for element in root.findall("{*}definedNames/{*}definedName")]
+    properties, calculation = root.find("{*}workbookPr"), root.find("{*}calcPr")
+    return Structure(
+        part=part,
+        relationships=rels,
+        sheets=sheets,
+        names=tuple(name for name in names if isinstance(name, DefinedName)),
+        strays=tuple(name for name in names if isinstance(name, Notice)),
+        date1904=properties is not None and is_true(properties.get("date1904")),
+        calculation={} if calculation is None else calculation.attrib,
+        links=tuple(_links(root, rels)),
+    )
+
+
+def _links(root: Element, rels: Mapping[str, Relationship]) -> Iterator[str]:
+    for element in root.findall("{*}externalReferences/{*}externalReference"):
+        rel = rels.get(attribute(element, "id") or "")
+        yield "" if rel is None or rel.kind != "externalLink" else rel.target
+
+
+def _workbook_part(parts: Mapping[str, bytes]) -> str:
+    found = next((rel.target for rel in relationships(parts).values() if rel.kind == "officeDocument"), None)
+    if found is None:
+        raise WorkbookError("the file is a zip, but not an Excel workbook", hint=SAVE_AS)
+    if found not in parts:
+        raise WorkbookError(f"the file lacks its workbook part ({found})", hint=REPAIR)
+    if found.lower().endswith(".bin"):
+        raise WorkbookError("the file is a binary workbook (.xlsb)", hint=SAVE_AS)
+    if not tree(parts[found], found).tag.endswith("}workbook"):
+        raise WorkbookError("the file is an Office document, but not a workbook", hint=SAVE_AS)
+    return found
+
+
+def _sheet_entry(element: Element, rels: Mapping[str, Relationship], parts: Mapping[str, bytes]) -> SheetEntry:
+    name = decode(element.get("name", ""))
+    if "\n" in name or "\t" in name or printable(name) != name:
+        hint = "Rename it in Excel, with letters and digits alone"
+        raise WorkbookError(
+            f"the name of the sheet {printable(name)!r} holds a character that steers a screen", hint=hint
+        )
+    rel = rels.get(attribute(element, "id") or "")
+    if rel is None or rel.target not in parts:
+        raise WorkbookError(f"the sheet {name!r} is missing from the file", hint=REPAIR)
+    return SheetEntry(name, rel.target, rel.kind, element.get("state", "visible") == "visible")
+
+
+def _check_distinct(sheets: tuple[SheetEntry, ...]) -> None:
+    names = Counter(sheet.name.casefold() for sheet in sheets)
+    parts = Counter(sheet.part for sheet in sheets)
+    for sheet in sheets:
+        if names[sheet.name.casefold()] > 1 or parts[sheet.part] > 1:
+            raise WorkbookError(f"the sheet {sheet.name!r} is in the file twice", hint=REPAIR)
+
+
+def _defined_name(element: Element, sheets: tuple[SheetEntry, ...]) -> DefinedName | Notice:
+    """A name, or a notice where it belongs to a tab that does not exist. `localSheetId` counts all tabs from 0."""
+    name, text = decode(element.get("name", "")), decode(element.text or "")
+    if "localSheetId" not in element.attrib:
+        return DefinedName(name, text)
+    position = whole_number(element.get("localSheetId"))
+    if position is None or position >= len(sheets):
+        return Notice(f"the defined name {name!r} belongs to a sheet that does not exist and is left out")
+    return DefinedName(name, text, sheets[position].name)
+
+
+def area_of(reference: str | None, sheet: str, what: str) -> Area:
+    """The area `reference` names on `sheet`; a single cell is an area of one.
+
+    Raises:
+        WorkbookError: there is no reference, or it is none; `what` says whose it is.
+    """
+    try:
+        found = parse_address(reference or "", sheet)
+    except ValueError as error:
+        raise WorkbookError(f"{what} of sheet {sheet!r} has no valid range: {error}", hint=REPAIR) from None
+    if isinstance(found, Cell):
+        return Area(sheet, found.row, found.column, found.row, found.column)
+    return found
+
+
+def tables_of(parts: Mapping[str, bytes], sheet_part: str, sheet: str) -> Iterator[Table]:
+    """The tables on one worksheet.
+
+    Raises:
+        WorkbookError: a table part is missing or damaged.
+    """
+    for rel in relationships(parts, sheet_part).values():
+        if rel.kind == "table":
+            if rel.target not in parts:
+                raise WorkbookError(f"a table of sheet {sheet!r} is missing from the file", hint=REPAIR)
+            yield read_table(parts[rel.target], rel.target, sheet)
+
+
+def read_table(xml: bytes, part: str, sheet: str) -> Table:
+    """One table part.
+
+    Raises:
+        WorkbookError: the part is damaged, or its columns or rows do not fit its range.
+    """
+    root = tree(xml, part)
+    name = decode(root.get("displayName", root.get("name", "")))
+    columns = tuple(decode(column.get("name", "")) for column in root.findall("{*}tableColumns/{*}tableColumn"))
+    area = area_of(root.get("ref"), sheet, f"the table {name!r}")
+    header, totals = (whole_number(root.get(key, default)) for key, default in _ROWS)
+    if header is None or totals is None or header + totals > area.rows or len(columns) != area.columns:
+        raise WorkbookError(f"the table {name!r} of sheet {sheet!r} does not fit its range {area.a1}", hint=REPAIR)
+    return Table(name, area, columns, header, totals, _filtered(root, sheet, name))
+
+
+def _filtered(root: Element, sheet: str, name: str) -> Area | None:
+    """The range of its filter; None where no column of it has a condition."""
+    element = root.find("{*}autoFilter")
+    if element is None or not any(len(column) for column in element.findall("{*}filterColumn")):
+        return None
+    return area_of(element.get("ref"), sheet, f"the filter of the table {name!r}")
+
+
+_ROWS = (("headerRowCount", "1"), ("totalsRowCount", "0"))

@@ -1,0 +1,248 @@
+"""What xlmc knows of a workbook: cells with formulas and cached values, names, tables. No file is touched here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from xlmc.errors import ErrorCode, Notice
+from xlmc.excel.address import Area, Cell
+
+__all__ = [
+    "CellContent",
+    "CellValue",
+    "DataTable",
+    "DefinedName",
+    "Formula",
+    "LinkedBook",
+    "Sheet",
+    "Table",
+    "Workbook",
+]
+
+CellValue = float | bool | str | ErrorCode | None
+"""A number, a logical, a text, an error or nothing, as a cell holds it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Formula:
+    """A cell's formula as the file holds it.
+
+    Attributes:
+        text: the formula without its leading `=`.
+        row, column: the cell `text` is written for. A shared formula's children carry their master's text and position,
+            and mean it shifted to themselves.
+        array: the area an array formula (`t="array"`) fills; None for a plain formula.
+        dynamic: a dynamic-array formula (`cm` names the XLDAPR metadata): it spills.
+    """
+
+    text: str
+    row: int
+    column: int
+    array: Area | None = None
+    dynamic: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class CellContent:
+    """One cell: its value (typed in, or as Excel cached it) and its formula, if any."""
+
+    value: CellValue = None
+    formula: Formula | None = None
+
+    @property
+    def is_blank(self) -> bool:
+        """Whether the cell looks empty: no value and no formula, or a text of blanks."""
+        if isinstance(self.value, str):
+            return not self.value.strip()
+        return self.value is None and self.formula is None
+
+    @property
+    def is_uncalculated(self) -> bool:
+        """Whether the cell has a formula of its own, and the file does not say what it gives."""
+        return self.formula is not None and self.formula.array is None and self.value is None
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """One worksheet. `cells` holds only what the file holds; everything else is blank.
+
+    Attributes:
+        hidden_rows: hidden by hand or by a filter; the file marks both alike.
+        filtered: the rows, with the heading, of each filter that leaves rows out.
+        data_tables: Excel's what-if tables on it.
+    """
+
+    name: str
+    part: str
+    cells: Mapping[tuple[int, int], CellContent]
+    merged: tuple[Area, ...] = ()
+    visible: bool = True
+    hidden_rows: frozenset[int] = frozenset()
+    filtered: tuple[Area, ...] = ()
+    data_tables: tuple[DataTable, ...] = ()
+
+    @property
+    def arrays(self) -> dict[Cell, Area]:
+        """The cell of each array formula -> the area that it fills."""
+        formulas = ((at, content.formula) for at, content in self.cells.items() if content.formula is not None)
+        return {Cell(self.name, *at): formula.array for at, formula in formulas if formula.array is not None}
+
+
+@dataclass(frozen=True, slots=True)
+class DefinedName:
+    """A defined name. `sheet` is None for the whole workbook; `text` is what it stands for, without `=`."""
+
+    name: str
+    text: str
+    sheet: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class LinkedBook:
+    """What Excel stored of another workbook when it last read it.
+
+    Attributes:
+        file: its name, without a folder.
+        sheets: with the cells that were read, under their names as formulas write them: `[1]Prices`.
+        names: with what they stand for in that workbook; `sheet` is such a name, too.
+    """
+
+    file: str
+    sheets: Mapping[str, Sheet]
+    names: tuple[DefinedName, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """An Excel table. `area` includes header and totals rows, `filtered` is that of a filter that leaves rows out."""
+
+    name: str
+    area: Area
+    columns: tuple[str, ...]
+    header_rows: int = 1
+    totals_rows: int = 0
+    filtered: Area | None = None
+
+    @property
+    def body(self) -> Area:
+        """The data rows."""
+        a = self.area
+        return Area(a.sheet, a.top + self.header_rows, a.left, a.bottom - self.totals_rows, a.right)
+
+
+@dataclass(frozen=True, slots=True)
+class DataTable:
+    """A what-if data table, `{=TABLE(A1,B1)}`: an area that Excel fills by putting values into its input cells.
+
+    Attributes:
+        area: the cells that it fills; no formula of their own stands in them.
+        inputs: the cells that it puts values into; none of one that was deleted.
+        two_inputs: one value from the row above and one from the column on the left, for the formula in the corner.
+    """
+
+    area: Area
+    inputs: tuple[Cell, ...] = ()
+    two_inputs: bool = False
+
+    def margins(self) -> Iterator[Cell]:
+        """The cells above it and on its left: the formulas it computes, and the values that it puts in."""
+        above, left = self.area.top - 1, self.area.left - 1
+        if self.two_inputs and above and left:
+            yield Cell(self.area.sheet, above, left)
+        for column in range(self.area.left, self.area.right + 1) if above else ():
+            yield Cell(self.area.sheet, above, column)
+        for row in range(self.area.top, self.area.bottom + 1) if left else ():
+            yield Cell(self.area.sheet, row, left)
+
+
+@dataclass(frozen=True)
+class Workbook:
+    """A workbook as read: nothing evaluated, nothing changed.
+
+    Attributes:
+        sheets: worksheets in tab order, by name as written.
+        data_tables: the what-if tables of all sheets.
+        links: to other workbooks, as formulas write them (`[1]`), with the values that Excel stored.
+        macintosh: last saved by Excel for the Macintosh, whose CHAR and CODE use its own character set.
+        may_be_stale: saved values may be older than the formulas: calculation is manual, or Excel has yet to do it.
+        parts: every part of the zip package in its order, name -> bytes, as in the file.
+        origin: the parts of the file that it was read from, where values have been typed since and it has no `parts`.
+        sha256: of the file.
+        data: the file itself, byte for byte; empty where there is none.
+    """
+
+    name: str
+    sheets: Mapping[str, Sheet]
+    names: tuple[DefinedName, ...] = ()
+    tables: tuple[Table, ...] = ()
+    data_tables: tuple[DataTable, ...] = ()
+    links: Mapping[str, LinkedBook] = field(default_factory=dict)
+    date1904: bool = False
+    macintosh: bool = False
+    may_be_stale: bool = False
+    notices: tuple[Notice, ...] = ()
+    parts: Mapping[str, bytes] = field(default_factory=dict, repr=False)
+    origin: Mapping[str, bytes] = field(default_factory=dict, repr=False)
+    sha256: str = ""
+    data: bytes = field(default=b"", repr=False)
+
+    @cached_property
+    def _folded(self) -> dict[str, str]:
+        return {name.casefold(): name for name in self.sheets}
+
+    @cached_property
+    def _cells(self) -> dict[str, Mapping[tuple[int, int], CellContent]]:
+        return {}
+
+    @cached_property
+    def _tables(self) -> dict[str, Table]:
+        return {table.name.casefold(): table for table in self.tables}
+
+    @cached_property
+    def _names(self) -> dict[tuple[str | None, str], DefinedName]:
+        return {(n.sheet and n.sheet.casefold(), n.name.casefold()): n for n in self.names}
+
+    def sheet_named(self, name: str) -> Sheet | None:
+        """The sheet of that name, whatever its case."""
+        found = self._folded.get(name.casefold())
+        return None if found is None else self.sheets[found]
+
+    def filtered_rows(self, sheet: Sheet) -> frozenset[int]:
+        """The hidden rows within a filter of the sheet or of a table: Excel takes all of these for filtered."""
+        tables = (table.filtered for table in self.tables)
+        areas = [*sheet.filtered, *(area for area in tables if area is not None and area.sheet == sheet.name)]
+        below = [range(area.top + 1, area.bottom + 1) for area in areas]
+        return frozenset(row for row in sheet.hidden_rows if any(row in rows for rows in below))
+
+    def table_named(self, name: str) -> Table | None:
+        """The table of that name, whatever its case."""
+        return self._tables.get(name.casefold())
+
+    def defined_name(self, name: str, sheet: str | None = None) -> DefinedName | None:
+        """The name as `sheet` sees it: its own first, then the workbook's."""
+        if sheet is not None:
+            local = self._names.get((sheet.casefold(), name.casefold()))
+            if local is not None:
+                return local
+        return self._names.get((None, name.casefold()))
+
+    def sheet_of(self, cell: Cell | Area) -> Sheet | None:
+        """The sheet that a resolved cell or area stands on, one of a linked workbook among them."""
+        found = self.sheets.get(cell.sheet)
+        if found is None and cell.sheet.startswith("["):
+            book = cell.sheet[: cell.sheet.find("]") + 1]
+            found = self.links[book].sheets.get(cell.sheet) if book in self.links else None
+        return found
+
+    def content(self, cell: Cell) -> CellContent:
+        """What the cell holds; blank where the file holds nothing or has no such sheet."""
+        cells = self._cells.get(cell.sheet)
+        if cells is None:
+            sheet = self.sheet_of(cell)
+            self._cells[cell.sheet] = cells = {} if sheet is None else sheet.cells
+        return cells.get(cell[1:], _BLANK)
+
+
+_BLANK = CellContent()

@@ -1,5 +1,0 @@
-"""Excel's functions: `registry` holds one row each, the modules beside it one category each, `families` all of them."""
-
-from xlmc.functions.registry import Function, Kind
-
-__all__ = ["Function", "Kind"]

@@ -1,0 +1,1 @@
+"""What a simulation is: definitions, distributions, draws, the loop over trials, statistics."""

@@ -1,0 +1,23 @@
+"""Columns too long for memory: flat files in the temporary folder, read through the page cache.
+
+Flat files rather than Parquet: they need no further library, any rank of a column can be read where it stands, and a
+column is an ordinary array to whoever reads it. Parquet is a format to hand results on in, not to work in.
+"""
+
+from xlmc.montecarlo.columns.column_store import Columns, ColumnStore, Folder, on_disk, release, room_on_disk
+from xlmc.montecarlo.columns.passes import PART, ascending, numbers, pairwise_sum, parts, picked
+
+__all__ = [
+    "PART",
+    "ColumnStore",
+    "Columns",
+    "Folder",
+    "ascending",
+    "numbers",
+    "on_disk",
+    "pairwise_sum",
+    "parts",
+    "picked",
+    "release",
+    "room_on_disk",
+]

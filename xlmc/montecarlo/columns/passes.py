@@ -1,0 +1,127 @@
+"""Passes over long columns, a part at a time, so that memory stays flat; and sorting in the same manner.
+
+A column that does not fit in memory is sorted in runs of 4 M values, which are written and then merged piece by piece.
+Splitters are every k-th value of the runs, so chosen that at most two runs' worth of values lies strictly between
+two of them (sampling at regular intervals: Shi & Schaeffer 1992); each such piece is gathered from all runs, sorted and
+written. Values equal to a splitter are only counted, so that ties cannot make a piece large.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.montecarlo.columns.column_store import Folder, on_disk, release
+
+__all__ = ["PART", "ascending", "numbers", "pairwise_sum", "parts", "picked"]
+
+PART = 65_536
+"""Values looked at together: a few arrays of so many fit in the processor's cache."""
+
+_PICKED = 512
+
+
+def parts(values: NDArray[Any], size: int = PART) -> Iterator[NDArray[Any]]:
+    """The column in order, `size` values at a time; take what you keep before the next part."""
+    for start in range(0, values.size, size):
+        yield values[start : start + size]
+        release(values)
+
+
+def pairwise_sum(term: Callable[[slice], NDArray[np.float64]], n: int) -> float:
+    """The sum of n terms, which are made for a slice of them at a time.
+
+    To the bit what `np.sum` gives for all of them in one array: it halves at the same terms.
+    """
+    return float(_between(term, 0, n))
+
+
+def _between(term: Callable[[slice], NDArray[np.float64]], start: int, stop: int) -> np.float64:
+    n = stop - start
+    if n <= PART:
+        found: np.float64 = np.add.reduce(term(slice(start, stop)))
+        return found
+    half = n // 2
+    half -= half % 8  # as NumPy, which sums in eights
+    return _between(term, start, start + half) + _between(term, start + half, stop)
+
+
+def picked(values: NDArray[Any], indices: NDArray[np.intp]) -> NDArray[Any]:
+    """The values at `(m,)` indices, in memory of their own."""
+    if not on_disk(values):
+        return np.asarray(values[indices])
+    found = np.empty(indices.size, values.dtype)
+    for start in range(0, indices.size, _PICKED):
+        here = slice(start, start + _PICKED)
+        found[here] = values[indices[here]]
+        release(values)
+    return found
+
+
+def numbers(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """`(n,)` values without NaN, in their order: the column itself where it has none; on disk where it was on disk."""
+    if not any(np.isnan(part).any() for part in parts(values)):
+        return values
+    if not on_disk(values):
+        return values[~np.isnan(values)]
+    folder = Folder()
+    for part in parts(values):
+        folder.append("numbers", [part[~np.isnan(part)]])
+    return folder.array("numbers", values.dtype)
+
+
+RUN = 1 << 22
+"""Values sorted together."""
+
+
+def ascending(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """`(n,)` values without NaN in ascending order: in memory, or on disk where they were on disk.
+
+    Raises:
+        SimulationError: there is no room on the disk.
+    """
+    if not on_disk(values):
+        return np.sort(values)
+    folder = Folder()
+    for part in parts(values, RUN):
+        folder.append("runs", [np.sort(part)])
+    runs = folder.array("runs", values.dtype)
+    if values.size <= RUN:
+        return runs
+    _merge(folder, [runs[start : start + RUN] for start in range(0, runs.size, RUN)])
+    folder.remove("runs")
+    return folder.array("merged", values.dtype)
+
+
+def _merge(folder: Folder, runs: list[NDArray[np.float64]]) -> None:
+    """Write the values of all ascending runs in ascending order."""
+    splitters = _splitters(runs)
+    before = np.array([np.searchsorted(run, splitters, side="left") for run in runs])
+    after = np.array([np.searchsorted(run, splitters, side="right") for run in runs])
+    release(runs[0])
+    first, last = np.zeros((len(runs), 1), np.intp), np.array([[run.size] for run in runs])
+    begins, ends = np.hstack([first, after]), np.hstack([before, last])
+    for index in range(splitters.size + 1):
+        piece = np.concatenate([run[b:e] for run, b, e in zip(runs, begins[:, index], ends[:, index], strict=True)])
+        release(runs[0])
+        piece.sort()
+        folder.append("merged", [piece])
+        if index < splitters.size:
+            ties = int((after[:, index] - before[:, index]).sum())
+            _repeat(folder, splitters[index], ties)
+
+
+def _splitters(runs: list[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """Ascending values, no two equal."""
+    k = len(runs)
+    step = -(-runs[0].size // k)
+    candidates = np.sort(np.concatenate([run[::step] for run in runs]))
+    return np.unique(candidates[::k])
+
+
+def _repeat(folder: Folder, value: np.float64, count: int) -> None:
+    full = np.full(min(count, PART), value)
+    folder.append("merged", (full[: min(PART, count - start)] for start in range(0, count, PART)))

@@ -1,0 +1,33 @@
+"""Which cells get their value from something: a formula, an array formula that reaches them, or a draw."""
+
+from __future__ import annotations
+
+from collections.abc import Container
+
+from xlmc.excel.address import Cell
+from xlmc.excel.formula.graph import Spills
+from xlmc.excel.workbook.workbook import Workbook
+
+__all__ = ["Computed"]
+
+
+class Computed:
+    """Knows of each cell of a workbook what gives it its value.
+
+    Args:
+        workbook: whose cells are asked about.
+        drawn: the assumption cells; it may grow.
+    """
+
+    def __init__(self, workbook: Workbook, drawn: Container[Cell]) -> None:
+        self._workbook = workbook
+        self._drawn = drawn
+        self._spills = Spills(workbook)
+
+    def by_formula(self, cell: Cell) -> bool:
+        """Whether a formula does: its own, or an array formula of another cell that fills it."""
+        return self._workbook.content(cell).formula is not None or self._spills.anchor(cell) is not None
+
+    def at_all(self, cell: Cell) -> bool:
+        """Whether anything does; otherwise the cell is a constant."""
+        return cell in self._drawn or self.by_formula(cell)

@@ -1,0 +1,294 @@
+"""Assumptions, forecasts, filters, checks, correlations and settings: what a workbook asks of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.errors import DefinitionError, FormulaError, Notice
+from xlmc.excel.address import Area, Cell, InFormula
+from xlmc.excel.formula.ir import Expression
+from xlmc.montecarlo.definitions.evidence import Evidence
+from xlmc.montecarlo.definitions.scenarios import Scenario
+from xlmc.montecarlo.definitions.stopping import NO_GOAL, Stopping
+from xlmc.montecarlo.distributions import FAMILIES, Family
+from xlmc.montecarlo.sampling.draws import Draw
+
+__all__ = [
+    "CUTOFFS",
+    "DIALOG",
+    "Assumption",
+    "Check",
+    "Copula",
+    "Correlation",
+    "DataRange",
+    "Definitions",
+    "Filter",
+    "Forecast",
+    "Parameter",
+    "Settings",
+]
+
+Parameter = float | Cell
+"""A number, or the cell that holds it because that cell holds a formula (it may then vary with other assumptions)."""
+
+
+DIALOG: Final = "Crystal Ball"
+"""The source, and the note, of what a dialog of Crystal Ball defines."""
+
+CUTOFFS: Final = {"lower_cutoff": "Lower cutoff", "upper_cutoff": "Upper cutoff"}
+"""Key of a cutoff -> its heading."""
+
+
+@dataclass(frozen=True, slots=True)
+class DataRange:
+    """The data that a distribution is made from.
+
+    Attributes:
+        area: where they stand.
+        rows: what stands there, row by row; None in a blank cell.
+        cumulative: their weights are sums of those up to their row.
+        bandwidth: of a smoothed distribution, where it is given.
+        text: what they are, for people, where that is more than the area.
+    """
+
+    area: Area
+    rows: tuple[tuple[Parameter | None, ...], ...]
+    cumulative: bool = False
+    bandwidth: Parameter | None = None
+    text: str = ""
+
+    @property
+    def cells(self) -> Iterator[Cell]:
+        """The cells that hold formulas."""
+        for value in (*(value for row in self.rows for value in row), self.bandwidth):
+            if isinstance(value, Cell):
+                yield value
+
+
+@dataclass(frozen=True, slots=True)
+class Assumption:
+    """An uncertain input: its cell, its distribution, and why.
+
+    Attributes:
+        distribution: the family's name as `xlmc.montecarlo.distributions.FAMILIES` spells it.
+        given: key of a parameter of the family (`low`, `high`, …) or of a cutoff -> value. A parameter that is left out
+            has its default, and a cutoff that is left out cuts nothing off.
+        base: the cell's own value, the base case.
+        frozen: held at `base`, not drawn.
+        row: where it is defined.
+        notes: the table's other columns, echoed in the record.
+        own_family: built for this row; None where `FAMILIES` has it, or where a cell of the data awaits calculation.
+        data: what the distribution is built from; None for one that has parameters alone.
+        call: the call of a formula that a row of a table stands for; None elsewhere.
+        checked: how it is drawn by the numbers that the row held as it was read, which are a distribution; None where
+            one was not known then. A run checks all numbers that are not these, whoever gives them.
+    """
+
+    name: str
+    cell: Cell
+    distribution: str
+    given: Mapping[str, Parameter]
+    row: Cell
+    base: float | None = None
+    units: str = ""
+    source: str = ""
+    frozen: bool = False
+    notes: Mapping[str, str] = field(default_factory=dict)
+    own_family: Family | None = None
+    data: DataRange | None = None
+    call: InFormula | None = None
+    checked: Draw | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def family(self) -> Family:
+        """What it is drawn from, given the parameters."""
+        return FAMILIES[self.distribution] if self.own_family is None else self.own_family
+
+    @property
+    def parameters(self) -> dict[str, Parameter]:
+        """Key of each parameter that is given -> value."""
+        return {key: value for key, value in self.given.items() if key not in CUTOFFS}
+
+    @property
+    def cutoffs(self) -> dict[str, Parameter]:
+        """Key of each cutoff that is given -> value."""
+        return {key: self.given[key] for key in CUTOFFS if key in self.given}
+
+    @property
+    def headings(self) -> dict[str, str]:
+        """Key of each parameter and cutoff that is given -> its heading, in the family's order."""
+        every = {spec.key: spec.heading for spec in self.family.parameters} | CUTOFFS
+        return {key: heading for key, heading in every.items() if key in self.given}
+
+    @property
+    def formulas(self) -> dict[str, Cell]:
+        """Key of a parameter or cutoff that a formula computes -> the formula's cell."""
+        return {key: value for key, value in self.given.items() if isinstance(value, Cell)}
+
+    def with_numbers(self, numbers: Mapping[str, Parameter | None]) -> Assumption:
+        """The assumption with these parameters and cutoffs instead of its own; None takes a cutoff away."""
+        given = {key: value for key, value in {**self.given, **numbers}.items() if value is not None}
+        return replace(self, given=given)
+
+    @property
+    def cells(self) -> tuple[Cell, ...]:
+        """The cells whose formulas compute its data, parameters and cutoffs."""
+        return (*(() if self.data is None else self.data.cells), *self.formulas.values())
+
+
+@dataclass(frozen=True, slots=True)
+class Forecast:
+    """An answer.
+
+    Attributes:
+        central: the share of its central range.
+        threshold: to report P(> threshold) for.
+        asked: both ends of a range, which belong to it, to report its certainty for; infinite where it has none.
+    """
+
+    name: str
+    cell: Cell
+    row: Cell
+    units: str = ""
+    central: float = 0.51
+    threshold: float | None = None
+    notes: Mapping[str, str] = field(default_factory=dict)
+    asked: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Filter:
+    """What makes a trial physically possible. With no limit at all the cell itself must be TRUE.
+
+    Attributes:
+        evidence: the row of `xlmc_evidence` that it comes from, which then says what it keeps; None for a row of
+            `xlmc_filters`.
+        only_for: names of the forecasts that it discards trials for; empty where it rejects them for all.
+    """
+
+    name: str
+    cell: Cell
+    row: Cell
+    at_least: Parameter | None = None
+    at_most: Parameter | None = None
+    above: Parameter | None = None
+    below: Parameter | None = None
+    because: str = ""
+    notes: Mapping[str, str] = field(default_factory=dict)
+    evidence: Evidence | None = None
+    only_for: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """What must be TRUE wherever the model is used: at the base case, and in the accepted trials. It rejects nothing.
+
+    Attributes:
+        because: what it means when the cell is not TRUE, and where to look.
+    """
+
+    name: str
+    cell: Cell
+    row: Cell
+    because: str = ""
+    notes: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Correlation:
+    """A Spearman rank correlation between two assumptions, by name as defined; of a model, `value` is a number."""
+
+    first: str
+    second: str
+    value: Parameter
+    row: Cell
+
+    @property
+    def number(self) -> float:
+        """The coefficient, which is a number once a model has been made."""
+        assert not isinstance(self.value, Cell), "the formula of a correlation has not been computed"
+        return self.value
+
+
+@dataclass(frozen=True, slots=True)
+class Copula:
+    """How assumptions are joined beside rank correlations.
+
+    Attributes:
+        kind: `Gaussian`, `t`, `Clayton`, `Gumbel` or `Frank`; where there are trials, what these are of.
+        names: of the assumptions, in order.
+        row: the cell that names its kind.
+        parameter: theta, or the degrees of freedom of t; None for Gaussian.
+        matrix: of Gaussian and t, the correlations of the underlying variables, `(k, k)`; empty for others.
+        turned: which assumptions are turned over, as those of ClaytonR are.
+        trials: `(k, m)` values that stand together, one of which the assumptions take in each trial.
+    """
+
+    kind: str
+    names: tuple[str, ...]
+    row: Cell
+    parameter: float | None = None
+    matrix: tuple[tuple[float, ...], ...] = ()
+    turned: tuple[bool, ...] = ()
+    trials: NDArray[np.float64] | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What a run is a function of, beside the workbook itself.
+
+    Attributes:
+        trials: how many; at most, where `stopping` has a goal or a time.
+        stopping: what else ends the run.
+        evidence: how evidence whose error is no limit is used: one of `EVIDENCE_WAYS`; empty where nothing is said, or
+            where a run has no such evidence.
+        lognorm: whose `RiskLognorm` is meant, `@RISK` (also where it is empty) or `XLRisk`.
+        scenarios: whether the workbook's scenarios are run, too, and compared with it.
+    """
+
+    trials: int = 200_000
+    seed: int = 999
+    sampling: str = "mc"
+    engine: str = "numpy"
+    stopping: Stopping = NO_GOAL
+    lognorm: str = ""
+    scenarios: bool = False
+    evidence: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Definitions:
+    """Everything that a workbook asks of a run.
+
+    `problems` are the mistakes found, each with its cell; a run is refused while there are any. `rewritten` are the
+    formulas in which calls stand for assumptions (`=10+RiskNormal(5,1)`), with assumptions instead of the calls, or why
+    a cell cannot be computed; `results` are the cells that show results of the run, each with its formula. The cells
+    `unavailable` should, or belong to a what-if table of the run, and cannot be computed, each with the reason.
+    `evidence` are the rows of `xlmc_evidence`; those that are used are also among `filters`. `refused` says why
+    forecasts that the workbook asks for cannot be computed, and what else was lost, while the others can be run;
+    `left_out` are these forecasts and what filters of theirs. `forecast_filters` are filters of some forecasts only,
+    which are not among `filters`.
+    """
+
+    assumptions: tuple[Assumption, ...] = ()
+    forecasts: tuple[Forecast, ...] = ()
+    filters: tuple[Filter, ...] = ()
+    correlations: tuple[Correlation, ...] = ()
+    copulas: tuple[Copula, ...] = ()
+    settings: Settings = Settings()
+    notices: tuple[Notice, ...] = ()
+    problems: tuple[DefinitionError, ...] = ()
+    rewritten: Mapping[Cell, Expression | FormulaError] = field(default_factory=dict)
+    results: Mapping[Cell, Expression] = field(default_factory=dict)
+    unavailable: Mapping[Cell, str] = field(default_factory=dict)
+    checks: tuple[Check, ...] = ()
+    evidence: tuple[Evidence, ...] = ()
+    refused: tuple[DefinitionError, ...] = ()
+    forecast_filters: tuple[Filter, ...] = ()
+    scenarios: tuple[Scenario, ...] = ()
+    left_out: tuple[Forecast | Filter, ...] = ()

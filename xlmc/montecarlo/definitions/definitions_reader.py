@@ -1,0 +1,239 @@
+"""Everything a workbook asks of a run, read from its reserved tables and from calls in its cells."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
+from typing import Final
+
+from xlmc.errors import DefinitionError
+from xlmc.excel.workbook.workbook import Workbook
+from xlmc.montecarlo.definitions.computed import Computed
+from xlmc.montecarlo.definitions.crystal_ball.dialogs import FromDialogs, read_dialogs
+from xlmc.montecarlo.definitions.crystal_ball.lost_data import remark_on_lost_data
+from xlmc.montecarlo.definitions.crystal_ball.precision_control import with_precision
+from xlmc.montecarlo.definitions.crystal_ball.refused import refused_forecasts, refused_rows
+from xlmc.montecarlo.definitions.definitions import (
+    Correlation,
+    Definitions,
+    Filter,
+    Forecast,
+    Settings,
+)
+from xlmc.montecarlo.definitions.in_cells.calls import InCells, in_cell_forecasts, read_in_cells
+from xlmc.montecarlo.definitions.in_cells.joined_draws import in_cell_copulas, in_cell_correlations
+from xlmc.montecarlo.definitions.in_cells.stand_ins import simtable_scenarios
+from xlmc.montecarlo.definitions.problems import Findings
+from xlmc.montecarlo.definitions.tables.assumptions import read_assumptions
+from xlmc.montecarlo.definitions.tables.correlations import read_correlations
+from xlmc.montecarlo.definitions.tables.evidence_rows import as_filter, read_evidence
+from xlmc.montecarlo.definitions.tables.filters import read_checks, read_filters
+from xlmc.montecarlo.definitions.tables.forecasts import read_forecasts
+from xlmc.montecarlo.definitions.tables.identity import Claims
+from xlmc.montecarlo.definitions.tables.reserved_tables import CONVERTED, DefinitionTable, definition_tables
+from xlmc.montecarlo.definitions.tables.scenario_rows import read_scenarios
+from xlmc.montecarlo.definitions.tables.settings import read_settings
+from xlmc.montecarlo.definitions.tables.table_rows import holds_rows
+from xlmc.montecarlo.definitions.unavailable import (
+    TABLE_REASON,
+    TablesOfRun,
+    faults_of,
+    remark_on_tables,
+    remark_on_unavailable,
+    tables_of_run,
+)
+from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
+
+__all__ = ["read_definitions"]
+
+SAVE_AGAIN: Final = "Open the workbook in Excel with Crystal Ball, and save it again"
+
+
+def read_definitions(workbook: Workbook, engines: Collection[str], tabulated: int = 1) -> Definitions:
+    """What the tables `xlmc_assumptions`, `xlmc_forecasts`, … of a workbook say, and calls such as `RiskNormal`.
+
+    Nothing is raised for a mistake in them: all mistakes are in `problems`, each with its cell and what to do.
+
+    Args:
+        workbook: that was read.
+        engines: the names that its setting Engine may have.
+        tabulated: which of its values every `RiskSimtable` gives, from 1.
+    """
+    findings = Findings()
+    tables = definition_tables(workbook, findings)
+    uncertain, answers, tests = Claims("assumption"), Claims("forecast"), Claims("filter")
+    settings, central, said = read_settings(workbook, tables["xlmc_settings"], engines, findings)
+    computed = Computed(workbook, drawn=uncertain.cells)
+    assumptions = read_assumptions(workbook, tables["xlmc_assumptions"], computed, uncertain, findings)
+    forecasts = read_forecasts(workbook, tables["xlmc_forecasts"], computed, central, answers, findings)
+    filters = read_filters(workbook, tables["xlmc_filters"], computed, tests, findings)
+    evidence = read_evidence(workbook, tables["xlmc_evidence"], computed, filters, findings)
+    filters = *filters, *(as_filter(each) for each in evidence if each.used)
+    checks = read_checks(workbook, tables["xlmc_checks"], computed, Claims("check"), findings)
+    if tables[CONVERTED]:
+        refused_cells = refused_rows(workbook, tables[CONVERTED], uncertain.cells, findings)
+        dialogs = FromDialogs(rewritten={**refused_cells}, stored=True)
+    else:
+        dialogs = read_dialogs(workbook, computed, central, uncertain, answers, findings)
+    calls = read_in_cells(workbook, computed, settings.lognorm or "@RISK", uncertain, findings, tabulated)
+    if not dialogs.stored:
+        remark_on_lost_data(workbook, bool(calls or any(tables.values())), findings)
+    if not (dialogs or calls or any(tables.values())):
+        remark_on_tables(workbook.data_tables, TablesOfRun(), findings)
+        if not findings.problems:
+            _say_how_to_begin(workbook, findings)
+        return Definitions(notices=tuple(findings.notices), problems=tuple(findings.problems))
+
+    names = {key: name for key, (name, _) in uncertain.names.items()}
+    assumptions = *assumptions, *dialogs.assumptions, *calls.assumptions
+    frozen = [each.name for each in assumptions if each.frozen]
+    correlations = read_correlations(workbook, tables["xlmc_correlations"], names, frozen, findings)
+    correlations = *correlations, *_take_pairs(correlations, dialogs.correlations, findings)
+    more = in_cell_correlations(workbook, calls.assumptions, calls.draws, correlations, findings)
+    copulas = in_cell_copulas(workbook, calls.assumptions, calls.draws, (*correlations, *more), findings)
+    forecasts = *forecasts, *dialogs.forecasts, *in_cell_forecasts(calls, computed, central, answers, findings)
+    filters, own = _by_reach(filters, dialogs.filters, forecasts, findings)
+    _remark_on_calls(calls, settings, findings)
+    drawn = {each.cell for each in assumptions if not each.frozen}
+    what_if = tables_of_run(workbook, drawn, calls.shown.keys() | calls.unavailable.keys(), calls.rewritten)
+    remark_on_tables(workbook.data_tables, what_if, findings)
+    unavailable = {**calls.unavailable, **dict.fromkeys(faults_of(workbook, what_if.stale), TABLE_REASON)}
+    remark_on_unavailable(calls.unavailable, findings)
+    rewritten = {**dialogs.rewritten, **calls.rewritten, **faults_of(workbook, what_if.varying)}
+    asked = forecasts
+    refused = tuple(DefinitionError(damage, where=workbook.name, hint=SAVE_AGAIN) for damage in dialogs.damages)
+    if dialogs.refused:
+        found = refused_forecasts(workbook, dialogs.refused, rewritten, assumptions, forecasts, filters, own, findings)
+        refused = *refused, *found.values()
+        forecasts = tuple(each for each in forecasts if each.name not in found)
+    if refused and not forecasts:
+        findings.problems += refused
+    own, left_out = _parted(own, asked, forecasts)
+    settings = with_precision(settings, said, dialogs.precisions, forecasts, findings)
+    if not (calls.assumptions or dialogs.assumptions):
+        _refuse_no_assumption(workbook, calls, tables["xlmc_assumptions"], findings)
+    if calls and not (forecasts or tables["xlmc_forecasts"] or refused):
+        _say_how_to_mark(workbook, findings)
+    elif not (forecasts or refused):
+        _refuse_none(workbook, "forecast", tables["xlmc_forecasts"], findings)
+    scenarios = tuple(simtable_scenarios(calls.simtables, findings))
+    if tables["xlmc_scenarios"]:
+        scenarios = *read_scenarios(workbook, tables, assumptions, (*filters, *own), findings), *scenarios
+    return Definitions(
+        assumptions=assumptions,
+        forecasts=forecasts,
+        filters=filters,
+        correlations=(*correlations, *more),
+        copulas=copulas,
+        settings=settings,
+        notices=tuple(findings.notices),
+        problems=tuple(findings.problems),
+        rewritten=rewritten,
+        results=calls.shown,
+        unavailable=unavailable,
+        checks=checks,
+        evidence=evidence,
+        refused=refused,
+        scenarios=scenarios,
+        forecast_filters=own,
+        left_out=left_out,
+    )
+
+
+def _remark_on_calls(calls: InCells, settings: Settings, findings: Findings) -> None:
+    for name, cell in calls.idle.items():
+        findings.notice(f"{name} has no effect: every draw has its own stream, by its name and the run's seed", cell)
+    if calls.lognorms and not settings.lognorm:
+        message = (
+            "RiskLognorm is read as @RISK's: its numbers are the mean and standard deviation of the draw. XLRisk means "
+            "those of the logarithm: for that, set Lognorm to XLRisk in the table xlmc_settings"
+        )
+        findings.notice(message, calls.lognorms[0])
+
+
+def _take_pairs(taken: Sequence[Correlation], more: Iterable[Correlation], findings: Findings) -> Iterator[Correlation]:
+    """The correlations of dialogs that no row of a table is about."""
+    rows = {frozenset((row.first, row.second)): row for row in taken}
+    for each in more:
+        row = rows.get(frozenset((each.first, each.second)))
+        if row is None:
+            yield each
+        else:
+            message = f"{each.first!r} and {each.second!r} are correlated by this row and by Crystal Ball ({each.row})"
+            findings.problem(message, row.row, "Keep one of them")
+
+
+def _by_reach(
+    filters: Iterable[Filter], of_dialogs: Iterable[Filter], forecasts: Sequence[Forecast], findings: Findings
+) -> tuple[tuple[Filter, ...], tuple[Filter, ...]]:
+    """The filters of all forecasts, and those of some only, with these forecasts as they are called."""
+    names = {name_key(each.name): each.name for each in forecasts}
+    everywhere: list[Filter] = []
+    own: list[Filter] = []
+    for each in (*filters, *of_dialogs):
+        unknown = [name for name in each.only_for if name_key(name) not in names]
+        if unknown:
+            hint = did_you_mean(unknown[0], names.values()) if names else "Define the forecast first"
+            findings.problem(f"Only for names {unknown[0]!r}, and no forecast is called so", each.row, hint)
+        elif each.only_for:
+            called = dict.fromkeys(names[name_key(name)] for name in each.only_for)
+            own.append(replace(each, only_for=tuple(called)))
+        else:
+            everywhere.append(each)
+    return tuple(everywhere), tuple(own)
+
+
+def _parted(
+    own: Iterable[Filter], every: Iterable[Forecast], left: Sequence[Forecast]
+) -> tuple[tuple[Filter, ...], tuple[Forecast | Filter, ...]]:
+    """The filters of some forecasts only, of those that can be run; the other forecasts, and filters of theirs."""
+    names = {each.name for each in left}
+    kept: list[Filter] = []
+    out: list[Forecast | Filter] = [each for each in every if each.name not in names]
+    for each in own:
+        for found, wanted in ((kept, True), (out, False)):
+            of = tuple(name for name in each.only_for if (name in names) == wanted)
+            if of:
+                found.append(replace(each, only_for=of))
+    return tuple(kept), tuple(out)
+
+
+def _refuse_no_assumption(
+    workbook: Workbook, calls: InCells, tables: list[DefinitionTable], findings: Findings
+) -> None:
+    """Say why no cell draws, where calls were meant to."""
+    refused = [error for error in calls.refused if not any(error.where == known.where for known in findings.problems)]
+    if any(holds_rows(workbook, table) for table in tables):
+        return
+    findings.problems += [DefinitionError(error.message, where=error.where, hint=error.hint) for error in refused]
+    if not any(calls.refused):
+        _refuse_none(workbook, "assumption", tables, findings)
+
+
+def _say_how_to_mark(workbook: Workbook, findings: Findings) -> None:
+    if findings.problems:
+        return  # the answer may be in a cell that cannot be read
+    findings.problem(
+        "The workbook draws at random, and marks no cell as an answer",
+        workbook.name,
+        'Write RiskOutput("its name")+ in front of the formula of the answer, or list it in a table xlmc_forecasts',
+    )
+
+
+def _say_how_to_begin(workbook: Workbook, findings: Findings) -> None:
+    findings.problem(
+        "The workbook holds no xlmc tables, so there is nothing to run",
+        workbook.name,
+        "Insert ▸ Table, then name it xlmc_assumptions, xlmc_forecasts or xlmc_filters under Table Design;"
+        " or start from a template with xlmc new",
+    )
+
+
+def _refuse_none(workbook: Workbook, what: str, tables: list[DefinitionTable], findings: Findings) -> None:
+    """Without a forecast there is no answer, and without an assumption it does not vary."""
+    if any(holds_rows(workbook, table) for table in tables):
+        return
+    if tables:
+        findings.problem(f"The table {tables[0].table.name} holds no {what}", tables[0].where, "Fill in a row")
+    else:
+        findings.problem(f"The workbook defines no {what}", workbook.name, f"Add a table named xlmc_{what}s")

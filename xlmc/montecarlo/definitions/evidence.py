@@ -1,0 +1,224 @@
+"""Evidence: a measured number, its error, and the cell that says what the model has in its place.
+
+The error of a reading is a law: a chance density of the reading, given what the model's quantity is. Letters: m the
+model's quantity, R the reading, z the distance of the two in standard deviations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.excel.address import Cell, InFormula
+from xlmc.excel.formula import ir
+
+__all__ = ["ERRORS", "SIZES", "Bell", "Evidence", "Law", "Within"]
+
+Floats = NDArray[np.float64]
+
+ERRORS: Final = {
+    "uniform": "Uniform",
+    "instrument": "Instrument",
+    "normal": "Normal",
+    "lognormal": "Lognormal",
+    "at least": "At least",
+    "at most": "At most",
+}
+"""Kinds of error, and how they are written."""
+
+SIZES: Final = {
+    "plus_minus": "Plus or minus",
+    "std_dev": "Std dev",
+    "percent": "Percent",
+    "resolution": "Resolution",
+}
+"""What says how large an error is, and the headings."""
+
+_FARTHEST: Final = 39.0
+"""Standard deviations beyond which exp(-z²/2) is 0 in double precision."""
+
+
+@dataclass(frozen=True, slots=True)
+class Within:
+    """A reading that is equally likely anywhere within a tolerance of what is measured: |R - m| ≤ share·|m| + width.
+
+    Attributes:
+        reading: R.
+        share, width: of the tolerance; it may grow with m.
+        sides: whether m may be too low, too high: one-sided evidence bounds one side alone.
+    """
+
+    reading: float
+    share: float
+    width: float
+    sides: tuple[bool, bool] = (True, True)
+
+    @property
+    def low(self) -> float | None:
+        """The least m that is kept; None where there is none."""
+        if not self.sides[0]:
+            return None
+        rest = self.reading - self.width
+        return rest / (1.0 + self.share) if rest >= 0.0 else rest / (1.0 - self.share)
+
+    @property
+    def high(self) -> float | None:
+        """The largest m that is kept; None where there is none."""
+        if not self.sides[1]:
+            return None
+        rest = self.reading + self.width
+        return rest / (1.0 - self.share) if rest >= 0.0 else rest / (1.0 + self.share)
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether it bounds m on one side alone."""
+        return not all(self.sides)
+
+    def beyond(self, m: Floats) -> Floats:
+        """`(n,)` by how many tolerances m lies beyond the limits: 0 within, infinite for a tolerance of 0."""
+        low = -np.inf if self.low is None else self.low
+        high = np.inf if self.high is None else self.high
+        outside = np.maximum(np.maximum(low - m, m - high), 0.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = outside / (self.share * np.abs(m) + self.width)
+        return np.where(outside > 0.0, found, 0.0)
+
+    def log_weight(self, m: Floats) -> Floats:
+        """`(n,)` 0 where m is kept, -inf where it is not."""
+        return np.where(self.beyond(m) > 0.0, -np.inf, 0.0)
+
+    def reached(self, m: Floats) -> Floats:
+        """`(n,)` the chance that another reading of m would have been at most R."""
+        tolerance = self.share * np.abs(m) + self.width
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = (self.reading - m + tolerance) / (2.0 * tolerance)
+        return np.where(tolerance > 0.0, np.clip(found, 0.0, 1.0), m <= self.reading)
+
+
+@dataclass(frozen=True, slots=True)
+class Bell:
+    """A reading with a normal error: z = (R - m)/σ; or with a lognormal one: z = ln(R/m)/σ.
+
+    Attributes:
+        reading: R.
+        sigma: σ, in the units of the reading, or of the logarithm.
+    """
+
+    reading: float
+    sigma: float
+    logarithmic: bool = False
+
+    def z(self, m: Floats) -> Floats:
+        """`(n,)`; infinite where m has no logarithm."""
+        if not self.logarithmic:
+            return (self.reading - m) / self.sigma
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(m > 0.0, np.log(self.reading / m) / self.sigma, np.inf)
+
+    def log_weight(self, m: Floats) -> Floats:
+        """`(n,)` -z²/2, the logarithm of the chance that a trial is kept."""
+        z = self.z(m)
+        with np.errstate(over="ignore"):
+            return np.where(np.abs(z) <= _FARTHEST, -0.5 * z * z, -np.inf)
+
+    def reached(self, m: Floats) -> Floats:
+        """`(n,)` the chance that another reading of m would have been at most R."""
+        from scipy.special import ndtr
+
+        return np.asarray(ndtr(self.z(m)))
+
+    def tree_of_square(self, cell: Cell) -> ir.Expression:
+        """z² as a formula of the model's cell."""
+        m, reading = ir.Binary("+", cell, ir.Number(0.0)), ir.Number(self.reading)
+        apart: ir.Expression = ir.Binary("-", reading, m)
+        if self.logarithmic:
+            apart = ir.Call("LN", (ir.Binary("/", reading, m),))
+        z = ir.Binary("/", apart, ir.Number(self.sigma))
+        return ir.Binary("*", z, z)
+
+
+Law = Within | Bell
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """A row of `xlmc_evidence`.
+
+    Attributes:
+        cell: what the model has in place of the reading.
+        reading: the measured number; None where none was entered, or where the row is not used.
+        error: a key of `ERRORS`.
+        sizes: key of `SIZES` -> number or cell, of those that are filled in.
+        unused: why it does not count, in words; empty where it does.
+        weighed: a run weights its trials by it, where its error is no limit, instead of rejecting some.
+        notes: the table's other columns.
+    """
+
+    name: str
+    cell: Cell
+    row: Cell
+    reading: float | Cell | None
+    error: str
+    sizes: Mapping[str, float | Cell] = field(default_factory=dict)
+    source: str = ""
+    unused: str = ""
+    notes: Mapping[str, str] = field(default_factory=dict)
+    weighed: bool = False
+
+    @property
+    def used(self) -> bool:
+        """Whether it counts; one that does not is only listed."""
+        return not self.unused
+
+    @property
+    def cells(self) -> Iterator[Cell]:
+        """The cells whose formulas compute its numbers."""
+        for value in (self.reading, *self.sizes.values()):
+            if isinstance(value, Cell):
+                yield value
+
+    @property
+    def law(self) -> Law:
+        """The reading and its error as a law of probability; all its numbers must be known."""
+        reading, sizes = self.reading, self.sizes
+        assert isinstance(reading, float)
+        assert not any(isinstance(each, Cell) for each in sizes.values())
+        given = {key: float(value) for key, value in sizes.items()}  # type: ignore[arg-type]  # numbers, as asserted
+        share, width = given.get("percent", 0.0) / 100.0, given.get("plus_minus", given.get("resolution", 0.0))
+        match self.error:
+            case "normal":
+                return Bell(reading, given.get("std_dev", share * abs(reading)))
+            case "lognormal":
+                return Bell(reading, given.get("std_dev", share), logarithmic=True)
+            case "uniform":
+                return Within(reading, 0.0, given.get("plus_minus", share * abs(reading)))
+            case "at least":
+                return Within(reading, share, width, (True, False))
+            case "at most":
+                return Within(reading, share, width, (False, True))
+        return Within(reading, share, width)
+
+    @property
+    def bell(self) -> Bell | None:
+        """The law of the reading's error; None where the evidence is a limit."""
+        law = self.law if self.error in ("normal", "lognormal") else None
+        return law if isinstance(law, Bell) else None
+
+    @property
+    def by_chance(self) -> bool:
+        """Whether a uniform number decides if it keeps a trial."""
+        return self.bell is not None and not self.weighed
+
+    @property
+    def chance(self) -> InFormula:
+        """Stands for the uniform number that decides whether a trial is kept, where its law is no limit."""
+        return InFormula.of(self.cell, f"evidence {self.name}")
+
+    @property
+    def stream(self) -> str:
+        """The name of that number's random stream, which no assumption can have."""
+        return f"evidence\x1f{self.name.strip().casefold()}"

@@ -1,0 +1,258 @@
+"""Calls in cells that stand for assumptions: `=10+RiskNormal(5,1)*2`, `=CB.Uniform(0,1)`, `=NORM.INV(RAND(),5,1)`.
+
+Each call is an assumption of its own, named `Sheet!Cell#k` for the k-th call of the cell, from the left and from 1, or
+as it names itself. In the formula a cell of its own stands instead of the call; an argument that is an expression
+becomes such a cell, too. So the rest of a run sees nothing but assumptions and formulas.
+
+Formulas also mark answers, by `RiskOutput` or by a cell that shows results of theirs, and `RiskCorrmat` names matrices
+of rank correlations.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+from xlmc.errors import DefinitionError, FormulaError
+from xlmc.excel.address import Cell
+from xlmc.excel.formula import Resolver, ir
+from xlmc.excel.workbook.lazy_sheets import LazySheets
+from xlmc.excel.workbook.workbook import Formula, Workbook
+from xlmc.montecarlo.definitions.computed import Computed
+from xlmc.montecarlo.definitions.definitions import Assumption, Forecast
+from xlmc.montecarlo.definitions.in_cells.reading import CellDraw, CellReading, Output
+from xlmc.montecarlo.definitions.in_cells.result_functions import ResultCall, mentions_result
+from xlmc.montecarlo.definitions.problems import Findings
+from xlmc.montecarlo.definitions.tables.identity import Claims
+from xlmc.montecarlo.distributions.spelling import name_key
+
+__all__ = ["InCells", "holds_call", "in_cell_forecasts", "read_in_cells"]
+
+_CALL: Final = re.compile(r"(?<![\w.])(?:_xl\w+\.)*(?:RAND|RANDBETWEEN|RANDARRAY|Risk\w+|CB\.\w+)\s*\(", re.IGNORECASE)
+_OUTPUT: Final = re.compile(r"RiskOutput\s*\(", re.IGNORECASE)
+_TEXTS: Final = re.compile(r'"(?:[^"]|"")*"')
+_MARKS: Final = (b"rand", b"risk", b"cb.")
+
+
+def holds_call(text: str) -> bool:
+    """Whether a formula holds a call that draws, shows results, or belongs to Crystal Ball or @RISK."""
+    return _CALL.search(_without_texts(text)) is not None
+
+
+def _without_texts(text: str) -> str:
+    return _TEXTS.sub('""', text)
+
+
+@dataclass(slots=True)
+class InCells:
+    """What the calls in cells say.
+
+    Attributes:
+        assumptions: in the order of sheets, rows and columns.
+        outputs: the cells that are marked as outputs, by their cell.
+        rewritten: the formulas with assumptions instead of calls; or why a cell cannot be computed.
+        draws: name of an assumption -> what its call says beside the distribution.
+        results: the cells that show results -> what they ask for.
+        shown: the cells that show results, or numbers of distributions -> their formula, with the latter.
+        unavailable: the cells that should show results and cannot -> why.
+        idle: property functions without an effect -> the first cell that has one.
+        lognorms: the cells with `RiskLognorm`.
+        simtables: the cells with `RiskSimtable` -> the values of each.
+        taken: the calls that rows of a table stand for.
+    """
+
+    assumptions: list[Assumption] = field(default_factory=list)
+    outputs: dict[Cell, Output] = field(default_factory=dict)
+    rewritten: dict[Cell, ir.Expression | FormulaError] = field(default_factory=dict)
+    draws: dict[str, CellDraw] = field(default_factory=dict)
+    results: dict[Cell, list[ResultCall]] = field(default_factory=dict)
+    shown: dict[Cell, ir.Expression] = field(default_factory=dict)
+    unavailable: dict[Cell, str] = field(default_factory=dict)
+    idle: dict[str, Cell] = field(default_factory=dict)
+    lognorms: list[Cell] = field(default_factory=list)
+    simtables: dict[Cell, list[tuple[ir.Expression, ...]]] = field(default_factory=dict)
+    taken: set[Cell] = field(default_factory=set)
+
+    def __bool__(self) -> bool:
+        return bool(self.rewritten)
+
+    @property
+    def refused(self) -> Iterator[FormulaError]:
+        """Why cells that show no results cannot be computed."""
+        for cell, found in self.rewritten.items():
+            if isinstance(found, FormulaError) and cell not in self.results and cell not in self.unavailable:
+                yield found
+
+
+def read_in_cells(
+    workbook: Workbook,
+    computed: Computed,
+    lognorm: str,
+    claims: Claims,
+    findings: Findings,
+    tabulated: int = 1,
+) -> InCells:
+    """Every call in the formulas of a workbook.
+
+    Args:
+        workbook: to look through.
+        computed: which cells something gives a value.
+        lognorm: whose `RiskLognorm` is meant, `@RISK` or `XLRisk`.
+        claims: takes the names of assumptions; those of the tables are taken, and so are the calls that rows stand for.
+        findings: takes remarks, and the rows that stand for a call that is not there.
+        tabulated: which of its values every `RiskSimtable` gives, from 1.
+    """
+    found = InCells()
+    resolver = Resolver(workbook, claims.cells)
+    bases: dict[Cell, float | None] = {}
+    rows = {call: cell for call, (_, cell) in claims.calls.items()}
+    for cell, formula in _suspects(workbook):
+        reading = CellReading(workbook, computed, lognorm, bases, cell, rows, tabulated)
+        try:
+            found.rewritten[cell] = reading.rewrite(resolver.formula(cell, formula))
+            _take(reading, found, claims, findings)
+        except (FormulaError, DefinitionError) as error:
+            found.rewritten[cell] = refused = _about(error, cell, formula)
+            if _OUTPUT.search(formula.text) and not reading.asked:  # others are reported if anything needs the cell
+                findings.problems.append(DefinitionError(refused.message, where=cell, hint=refused.hint))
+            if reading.unavailable or (not reading.asked and mentions_result(_without_texts(formula.text))):
+                found.unavailable[cell] = reading.unavailable or refused.message
+        if reading.asked:
+            found.results[cell] = reading.asked
+        if reading.shown is not None and (reading.asked or not isinstance(found.rewritten[cell], FormulaError)):
+            found.shown[cell] = reading.shown
+    for call, (name, cell) in claims.calls.items():
+        if call not in found.taken:
+            message = f"the row {name!r} replaces the call {call}, and there is no such call"
+            findings.problem(message, claims.cells[cell], "Correct Call in and Call, or clear both")
+    return found
+
+
+def _take(reading: CellReading, found: InCells, claims: Claims, findings: Findings) -> None:
+    """Add what one cell says."""
+    host = reading.host
+    found.rewritten |= reading.trees
+    found.taken |= reading.taken
+    for position in sorted(reading.draws):
+        draw = reading.draws[position]
+        assumption = replace(draw.assumption, name=_free_name(draw.assumption, claims, findings))
+        found.assumptions.append(assumption)
+        found.draws[assumption.name] = draw
+    for name in reading.idle:
+        found.idle.setdefault(name, host)
+    if reading.output is not None:
+        found.outputs[host] = reading.output
+    if reading.has_lognorm:
+        found.lognorms.append(host)
+    if reading.simtables:
+        found.simtables[host] = reading.simtables
+
+
+def _free_name(assumption: Assumption, claims: Claims, findings: Findings) -> str:
+    """The draw's own name, followed by its cell where another draw has that name."""
+    name = assumption.name
+    if name_key(name) in claims.names:
+        name = f"{name} ({assumption.cell})"
+        message = f"another assumption is called {assumption.name!r}; this one is called {name!r}"
+        findings.notice(message, assumption.row)
+    return claims.take_name(name, assumption.row)
+
+
+def _about(error: FormulaError | DefinitionError, cell: Cell, formula: Formula) -> FormulaError:
+    """The error with this cell as its location; one about a cell that the formula names says so."""
+    if isinstance(error, FormulaError):
+        text = formula.text if error.text is None else error.text
+        return FormulaError(error.message, where=cell, hint=error.hint, text=text, span=error.span)
+    return FormulaError(f"{error.message} ({error.where})", where=cell, hint=error.hint, text=formula.text)
+
+
+def _suspects(workbook: Workbook) -> Iterator[tuple[Cell, Formula]]:
+    """The formula cells that hold calls, sheet by sheet, row by row; sheets that cannot hold one are not parsed.
+
+    A cell also holds a call by a defined name that stands for one.
+    """
+    sheets, named = workbook.sheets, _names_of_calls(workbook)
+    words = [*_MARKS, *(name.encode() for name in named)]
+    names: Iterable[str] = sheets
+    if isinstance(sheets, LazySheets) and all(word.isascii() for word in words):
+        names = sheets.mentioning(words)
+    any_name = _any_of(named)
+    for name in names:
+        formulas = {at: content.formula for at, content in sheets[name].cells.items() if content.formula is not None}
+        for at in sorted(formulas):
+            formula = formulas[at]
+            if holds_call(formula.text) or (any_name and any_name.search(formula.text)):
+                yield Cell(name, *at), formula
+
+
+def _names_of_calls(workbook: Workbook) -> set[str]:
+    """The defined names, in small letters, that stand for calls, also by other names."""
+    found: set[str] = set()
+    while True:
+        any_name = _any_of(found)
+        more = {
+            name.name.lower()
+            for name in workbook.names
+            if holds_call(name.text) or (any_name and any_name.search(name.text))
+        }
+        if more <= found:
+            return found
+        found |= more
+
+
+def _any_of(names: Collection[str]) -> re.Pattern[str] | None:
+    """Finds any of these names in a formula."""
+    if not names:
+        return None
+    return re.compile(rf"(?<![\w.\\])(?:{'|'.join(map(re.escape, sorted(names)))})(?![\w.])", re.IGNORECASE)
+
+
+def in_cell_forecasts(
+    found: InCells, computed: Computed, central: float, claims: Claims, findings: Findings
+) -> list[Forecast]:
+    """The cells with `RiskOutput`, then those of which `RiskMean(B9)` and its like show results.
+
+    Args:
+        found: the calls of the workbook.
+        computed: which cells something gives a value.
+        central: the share of the central range.
+        claims: takes their names and cells; the rows of tables have taken theirs.
+        findings: takes remarks.
+    """
+    outputs = [
+        Forecast(_take_forecast(output.name or str(cell), cell, claims, findings), cell, cell, output.units, central)
+        for cell, output in found.outputs.items()
+        if cell not in claims.cells
+    ]
+    shown = []
+    for cell, asked in found.results.items():
+        for each in asked:
+            for of in each.forecasts:
+                if isinstance(of, str):
+                    _remark_on_name(of, each.function, cell, claims, findings)
+                elif not computed.at_all(of):
+                    message = f"{each.function} asks for results of {of}, which nothing computes: nothing is shown"
+                    findings.notice(message, cell)
+                elif of not in claims.cells:
+                    message = f"{of} is taken for a forecast, because {each.function} shows results of it"
+                    findings.notice(message, cell)
+                    name = _take_forecast(str(of), of, claims, findings)
+                    shown.append(Forecast(name, of, cell, central=central))
+    return [*outputs, *shown]
+
+
+def _take_forecast(name: str, cell: Cell, claims: Claims, findings: Findings) -> str:
+    """Take the cell, and the name, with its cell behind it where another has that name."""
+    claims.take_cell(cell, cell)
+    if name_key(name) in claims.names:
+        findings.notice(f"another forecast is called {name!r}; this one is called '{name} ({cell})'", cell)
+        name = f"{name} ({cell})"
+    return claims.take_name(name, cell)
+
+
+def _remark_on_name(name: str, function: str, cell: Cell, claims: Claims, findings: Findings) -> None:
+    if name_key(name) not in claims.names:
+        message = f"{function} asks for results of {name!r}, and no forecast is called so: nothing is shown"
+        findings.notice(message, cell)

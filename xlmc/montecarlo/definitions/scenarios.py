@@ -1,0 +1,118 @@
+"""A scenario: a name, and what is other than in the workbook. Assumptions, filters and cells, changed one by one.
+
+To change a table's row is to type other numbers into its cells. These classes only say what to change;
+`xlmc.montecarlo.model.applied_changes.applied` gives the model that the workbook would have then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from xlmc.excel.address import Cell
+from xlmc.excel.workbook.workbook import CellValue
+
+__all__ = ["Band", "Change", "Drawn", "Held", "Limits", "Numbers", "Range", "Scenario", "Tabulated", "Typed"]
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """An assumption is not drawn: it is held at a value, or at its cell's own where that is None."""
+
+    assumption: str
+    value: float | None = None
+    where: Cell | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Drawn:
+    """An assumption that the workbook holds frozen is drawn."""
+
+    assumption: str
+    where: Cell | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """An assumption lies from `low` to `high`; an end that is None stays as it is.
+
+    A distribution with the parameters `low` and `high` gets these; any other is cut off there.
+    """
+
+    assumption: str
+    low: float | None
+    high: float | None
+    where: Cell | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Band:
+    """An assumption is confined to a band of its distribution, such as its lowest tenth: from 0 to 10 percent."""
+
+    assumption: str
+    low: float
+    high: float
+    where: Cell | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Numbers:
+    """An assumption has other parameters or cutoffs: key -> number; None takes a cutoff away."""
+
+    assumption: str
+    values: Mapping[str, float | None]
+    where: Cell | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """A filter has other limits: `at_least`, `at_most`, `above`, `below` -> number; None takes the limit away."""
+
+    filter: str
+    values: Mapping[str, float | None]
+    where: Cell | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Typed:
+    """Something else is typed into a cell; into that of a drawn assumption, another base value.
+
+    Attributes:
+        named: what a person calls the cell; empty for its address.
+    """
+
+    cell: Cell
+    value: CellValue
+    where: Cell | None = None
+    named: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Tabulated:
+    """Every `RiskSimtable` gives another of its values: the first, the second, …
+
+    Attributes:
+        values: in words, such as `S!B2 20`.
+    """
+
+    number: int
+    values: str = ""
+    where: Cell | None = None
+
+
+Change = Held | Drawn | Range | Band | Numbers | Limits | Typed | Tabulated
+"""One change. `where` is the cell that asks for it, for messages; None where a program does."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scenario:
+    """A named set of changes.
+
+    Attributes:
+        row: where it is defined; None where a program made it.
+    """
+
+    name: str
+    changes: tuple[Change, ...]
+    note: str = ""
+    row: Cell | None = None

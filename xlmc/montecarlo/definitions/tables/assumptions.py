@@ -1,0 +1,304 @@
+"""The rows of `xlmc_assumptions`: uncertain inputs, each cell read and the rules of its distribution checked."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+
+from xlmc.errors import DefinitionError
+from xlmc.excel.address import Cell, InFormula
+from xlmc.excel.workbook.workbook import Workbook
+from xlmc.montecarlo.definitions.cell_references import cell_of_reference, formula_at
+from xlmc.montecarlo.definitions.computed import Computed
+from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Parameter
+from xlmc.montecarlo.definitions.problems import Findings
+from xlmc.montecarlo.definitions.tables.data import OPTIONS, cached_data_family, given_data, refuse_options
+from xlmc.montecarlo.definitions.tables.identity import Claims, identify
+from xlmc.montecarlo.definitions.tables.reserved_tables import DefinitionTable
+from xlmc.montecarlo.definitions.tables.table_rows import (
+    Row,
+    logical,
+    number_in,
+    optional_text,
+    parameter,
+    required_text,
+    rows_of,
+    static_value,
+)
+from xlmc.montecarlo.distributions import FAMILIES, Family, ParameterSpec, family_named
+from xlmc.montecarlo.distributions.by_percentiles import by_percentiles
+from xlmc.montecarlo.distributions.parameters import show
+from xlmc.montecarlo.distributions.spelling import plain
+from xlmc.montecarlo.sampling.draws import Draw
+
+__all__ = ["PARAMETERS", "is_percentile", "read_assumptions"]
+
+_OURS = (heading for family in FAMILIES.values() for spec in family.parameters for heading in spec.headings)
+
+PARAMETERS = tuple(dict.fromkeys((*_OURS, "Data")))
+"""Every column that means a parameter of some distribution, beside percentiles: filled in, it is no note."""
+
+_LIMITS = frozenset({"low", "minimum", "min", "high", "maximum", "max"})
+
+_FIXED = ("Name", "Value", "Cell", "Distribution", *CUTOFFS.values(), "Units", "Source", "Frozen", "Call in", "Call")
+_KNOWN = (*_FIXED, *PARAMETERS, *OPTIONS)
+
+_HEADING = re.compile(r"p(\d{1,3}(?:\.\d+)?)")
+
+
+def read_assumptions(
+    workbook: Workbook, tables: Iterable[DefinitionTable], computed: Computed, claims: Claims, findings: Findings
+) -> tuple[Assumption, ...]:
+    """The assumptions without a mistake, in the order of the rows.
+
+    Args:
+        workbook: where they are read.
+        tables: the tables that hold them.
+        computed: which cells have formulas; an assumption must not.
+        claims: takes their names and cells.
+        findings: takes mistakes and remarks.
+    """
+    tables = tuple(tables)
+    percentiles = (written for table in tables for written, _ in table.columns.values() if is_percentile(written))
+    known = (*_KNOWN, *percentiles)
+    rows = rows_of(workbook, tables, ("Name",), known, findings)
+    found = []
+    for row in rows:
+        with findings.recording():
+            found.append(_assumption(row, known, computed, claims, findings))
+    return tuple(filter(None, found))
+
+
+def _assumption(
+    row: Row, known: tuple[str, ...], computed: Computed, claims: Claims, findings: Findings
+) -> Assumption | None:
+    """The assumption of a row; None where the findings have a problem of it.
+
+    Raises:
+        DefinitionError: its numbers break a rule of its distribution.
+    """
+    before = len(findings.problems)
+    call = findings.attempt(_call, row)
+    identity = identify(row, claims, findings)
+    frozen = findings.attempt(logical, row, "Frozen") or False
+    base = None if identity is None else findings.attempt(_base, row.workbook, computed, identity[1], frozen, findings)
+    kind = findings.attempt(_family, row)
+    given: dict[str, Parameter] = {}
+    family = data = None
+    if kind is not None:
+        refuse_options(row, kind, findings)
+        given = _given(row, kind, findings)
+        data = None if kind.data is None else findings.attempt(given_data, row, kind, computed, findings)
+        family = kind if data is None else findings.attempt(cached_data_family, data, kind, row.workbook)
+    units = findings.attempt(optional_text, row, "Units") or ""
+    source = findings.attempt(optional_text, row, "Source") or ""
+    if len(findings.problems) > before or not (identity and kind):
+        return None
+    name, cell = identity
+    checked = None if family is None else _checked(name, family, given, row)
+    if call is not None:
+        claims.take_call(call, name, cell)
+    if checked is not None and not frozen:
+        _remark_on_range(checked, row, base, cell, findings)
+    return Assumption(
+        name=name,
+        cell=cell,
+        distribution=kind.name,
+        given=given,
+        row=row.where,
+        base=base,
+        units=units,
+        source=source,
+        frozen=frozen,
+        notes=row.notes(known),
+        own_family=None if family is FAMILIES[kind.name] else family,
+        data=data,
+        call=call,
+        checked=checked,
+    )
+
+
+def _call(row: Row) -> InFormula | None:
+    """The call of a formula that the row stands for; None where it stands for none.
+
+    Raises:
+        DefinitionError: the row says the cell of the call or its number alone, or has no Value.
+    """
+    if not (row.filled("Call in") or row.filled("Call")):
+        return None
+    missing = next((heading for heading in ("Value", "Call in", "Call") if not row.has(heading)), None)
+    missing = missing or next((heading for heading in ("Call in", "Call") if not row.filled(heading)), None)
+    if missing is not None:
+        message = f"a row that replaces a call needs {missing}"
+        hint = "Fill in Call in with the call's cell, such as =Model!B7, and Call with its number in the formula"
+        raise DefinitionError(message, where=row.where, hint=hint)
+    where, content = row.cell("Call in"), row.content("Call in")
+    if content.formula is None:
+        message = "Call in holds no formula"
+        raise DefinitionError(message, where=where, hint="Write a formula that is one reference, such as =Model!B7")
+    cell = cell_of_reference(row.workbook, formula_at(content.formula, where), where.sheet, where)
+    return InFormula.of(cell, required_text(row, "Call"))
+
+
+def _family(row: Row) -> Family:
+    typed = optional_text(row, "Distribution")
+    family = family_named(typed, where=row.cell("Distribution")) if typed else FAMILIES["Uniform"]
+    return _with_percentiles(row, family)
+
+
+def _base(workbook: Workbook, computed: Computed, cell: Cell, frozen: bool, findings: Findings) -> float | None:
+    """The assumption cell's own value; None, with a notice, where it is blank.
+
+    Raises:
+        DefinitionError: the cell holds a formula or anything but a number, or is blank and frozen.
+    """
+    content = workbook.content(cell)
+    if computed.by_formula(cell):
+        message = "The assumption cell holds a formula, which every draw would overwrite"
+        raise DefinitionError(
+            message, where=cell, hint="Replace the formula by its value (Copy, Paste Special ▸ Values)"
+        )
+    if not content.is_blank:
+        return number_in("The assumption cell", content, cell)
+    if frozen:
+        message = "The assumption is frozen, and its cell is blank"
+        raise DefinitionError(message, where=cell, hint="Type the value to hold it at")
+    findings.notice("The assumption cell is blank, so there is no base case", cell)
+    return None
+
+
+def _given(row: Row, family: Family, findings: Findings) -> dict[str, Parameter]:
+    """The family's parameters and the cutoffs in this row by key; every mistake is recorded on its own."""
+    found: dict[str, Parameter] = {
+        spec.key: spec.default
+        for spec in family.parameters
+        if spec.default is not None and not any(map(row.filled, spec.headings))
+    }
+    required = (spec for spec in family.parameters if spec.key not in found)
+    headings = {spec.key: findings.attempt(_heading_of, row, family, spec) for spec in required}
+    headings |= {key: heading for key, heading in CUTOFFS.items() if row.filled(heading)}
+    for key, heading in headings.items():
+        if heading is None:
+            continue
+        with findings.recording():
+            if (value := parameter(row, heading)) is not None:
+                found[key] = value
+    _refuse_unused(row, family, findings)
+    return found
+
+
+def _cell_of(row: Row, family: Family, key: str) -> Cell:
+    """The cell that gives a parameter or a cutoff; the row's first cell for one that is left to its default."""
+    headings = next((spec.headings for spec in family.parameters if spec.key == key), (CUTOFFS.get(key, ""),))
+    return next((row.cell(heading) for heading in headings if row.filled(heading)), row.where)
+
+
+def _checked(name: str, family: Family, given: Mapping[str, Parameter], row: Row) -> Draw | None:
+    """Check the rules of the family on the numbers as they are now, typed in or as Excel cached them.
+
+    A run checks dynamic ones in every trial.
+
+    Returns:
+        How these are drawn; None where one is not known.
+
+    Raises:
+        DefinitionError: a rule is broken; it names the cell of the parameter to look at first.
+    """
+    numbers = {**given}
+    for key, cell in given.items():
+        if isinstance(cell, Cell):
+            saved = static_value(cell, row.workbook)
+            if saved is None:
+                return None
+            numbers[key] = saved
+    draw = Draw.of(name, family, numbers)
+    if (fault := draw.fault()) is not None:
+        raise DefinitionError(fault.message, where=_cell_of(row, family, fault.key), hint=fault.hint)
+    return draw
+
+
+def _remark_on_range(draw: Draw, row: Row, base: float | None, cell: Cell, findings: Findings) -> None:
+    """Point out what is allowed but may be a slip: a constant, a base case that could never be drawn.
+
+    Args:
+        draw: the assumption, by numbers.
+        row: that defines it.
+        base: the base case, if there is any.
+        cell: of the assumption.
+        findings: takes the remarks.
+    """
+    family, (low, high) = draw.family, map(float, draw.distribution.support())
+    if low == high:
+        both = "Low and High are both" if {"low", "high"} <= {*family.keys} else "Every draw is"
+        where = _cell_of(row, family, family.keys[0]) if family.keys else cell
+        findings.notice(f"{both} {show(low)}: the assumption does not vary", where)
+    if base is not None and not low <= base <= high:
+        reach = f"{show(low)} to {show(high)}"
+        findings.notice(f"The base case ({show(base)}) lies outside the distribution ({reach})", cell)
+
+
+def _heading_of(row: Row, family: Family, spec: ParameterSpec) -> str:
+    """The one column that gives the parameter in this row.
+
+    Raises:
+        DefinitionError: none does, or two do.
+    """
+    filled = [heading for heading in spec.headings if row.filled(heading)]
+    if len(filled) > 1:
+        message = f"{spec.heading} is given twice, as {row.heading(filled[0])} and as {row.heading(filled[1])}"
+        raise DefinitionError(message, where=row.cell(filled[1]), hint="Clear one of them")
+    if filled:
+        return filled[0]
+    present = [heading for heading in spec.headings if row.has(heading)]
+    if present:
+        message = f"{family.name} needs {row.heading(present[0])}, and this cell is blank"
+        raise DefinitionError(message, where=row.cell(present[0]), hint="Type a number, or a formula that gives one")
+    message = f"{family.name} needs {spec.heading}, and the table has no such column"
+    raise DefinitionError(message, where=row.where, hint=f"Add a column {spec.heading}")
+
+
+def _refuse_unused(row: Row, family: Family, findings: Findings) -> None:
+    """A number that is silently ignored would mislead: whoever gives a Normal a Low believes that it ends there."""
+    used = {plain(heading) for spec in family.parameters for heading in spec.headings}
+    used |= {plain("Data")} if family.data else set()
+    for heading in (*PARAMETERS, *filter(is_percentile, row.headings)):
+        if plain(heading) in used or not row.filled(heading):
+            continue
+        hint = "Clear the cell, or choose a distribution that has this parameter"
+        if plain(heading) in _LIMITS:
+            hint = "Clear the cell; to cut the distribution off, use Lower cutoff and Upper cutoff"
+        findings.problem(f"{family.name} has no {row.heading(heading)}", row.cell(heading), hint)
+
+
+def is_percentile(heading: str) -> bool:
+    """Whether a column of that name holds percentiles."""
+    return _HEADING.fullmatch(plain(heading)) is not None
+
+
+def _with_percentiles(row: Row, family: Family) -> Family:
+    """The family with the row's percentiles instead of the parameters that it leaves blank; itself without any.
+
+    Raises:
+        DefinitionError: the row has more or fewer percentiles than blank parameters, or one outside 0 to 100.
+    """
+    headings = [heading for heading in row.headings if is_percentile(heading) and row.filled(heading)]
+    if not (headings and family.roles):
+        return family
+    percents = [_percent(row, heading) for heading in headings]
+    blank = [spec for spec in family.parameters if not any(row.filled(heading) for heading in spec.headings)]
+    try:
+        return by_percentiles(family, {*family.keys} - {spec.key for spec in blank}, percents)
+    except ValueError:
+        left = ", ".join(spec.heading for spec in blank) or "no parameter"
+        message = f"{family.name} leaves {left} blank, and gives {', '.join(map(row.heading, headings))}"
+        hint = "Give one percentile for each parameter that is left blank"
+        raise DefinitionError(message, where=row.cell(headings[-1]), hint=hint) from None
+
+
+def _percent(row: Row, heading: str) -> float:
+    match = _HEADING.fullmatch(plain(heading))
+    percent = float(match[1]) if match else 0.0
+    if not 0 < percent < 100:
+        message = f"{row.heading(heading)} is not a percentile"
+        raise DefinitionError(message, where=row.cell(heading), hint="Percentiles lie above P0 and below P100")
+    return percent

@@ -1,0 +1,70 @@
+"""Which cells of a workbook hold what a change is about, and what they would hold after it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from xlmc.excel.address import Cell, InFormula
+from xlmc.excel.workbook.workbook import CellValue, Workbook
+from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Filter, Parameter
+from xlmc.montecarlo.definitions.problems import Findings
+from xlmc.montecarlo.definitions.tables.filters import LIMITS
+from xlmc.montecarlo.definitions.tables.reserved_tables import definition_tables
+from xlmc.montecarlo.definitions.tables.table_rows import Row
+
+__all__ = ["NO_TABLE", "cells_that_change"]
+
+NO_TABLE = "of a table"
+
+
+def cells_that_change(
+    workbook: Workbook, old: Assumption | Filter, new: Assumption | Filter
+) -> tuple[dict[Cell, CellValue], list[str]]:
+    """The cells to be typed into, so that a row says what `new` says in place of `old`.
+
+    Returns:
+        Cell -> what it would hold, None for nothing; and the headings of the columns that the table lacks. What is in
+        no table, as a draw in a cell, has no cells: that is `NO_TABLE`.
+    """
+    row = _row_of(workbook, old.row)
+    if row is None or isinstance(old.cell, InFormula):
+        return {}, [NO_TABLE]
+    found: dict[Cell, CellValue] = {}
+    lacking: list[str] = []
+    for headings, value in _columns(old, new):
+        heading = next(filter(row.filled, headings), None) or next(filter(row.has, headings), None)
+        if heading is not None:
+            found[row.cell(heading)] = value
+        elif value is not None and value is not False:
+            lacking.append(headings[0])
+    if isinstance(old, Assumption) and isinstance(new, Assumption) and old.base != new.base:
+        found[old.cell] = new.base
+    return found, lacking
+
+
+def _row_of(workbook: Workbook, first: Cell) -> Row | None:
+    tables = (each for kind in definition_tables(workbook, Findings()).values() for each in kind)
+    table = next((each for each in tables if first in each.table.area), None)
+    return None if table is None else Row(workbook, table, first.row)
+
+
+def _columns(old: Assumption | Filter, new: Assumption | Filter) -> Iterator[tuple[tuple[str, ...], CellValue]]:
+    """The headings of each column that says something else, and what it says."""
+    if isinstance(old, Assumption) and isinstance(new, Assumption):
+        if old.frozen != new.frozen:
+            yield ("Frozen",), new.frozen
+        for spec in old.family.parameters:
+            if old.parameters[spec.key] != new.parameters[spec.key]:
+                yield spec.headings, _number(new.parameters[spec.key])
+        for key, heading in CUTOFFS.items():
+            if old.cutoffs.get(key) != new.cutoffs.get(key):
+                yield (heading,), _number(new.cutoffs.get(key))
+    elif isinstance(old, Filter) and isinstance(new, Filter):
+        for key, heading in LIMITS.items():
+            if getattr(old, key) != getattr(new, key):
+                yield (heading,), _number(getattr(new, key))
+
+
+def _number(given: Parameter | None) -> float | None:
+    assert not isinstance(given, Cell), "a change gives a number"
+    return given

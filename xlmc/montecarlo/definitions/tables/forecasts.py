@@ -1,0 +1,103 @@
+"""The rows of `xlmc_forecasts`: the answers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from xlmc.errors import DefinitionError
+from xlmc.excel.address import Cell
+from xlmc.excel.workbook.workbook import Workbook
+from xlmc.montecarlo.definitions.computed import Computed
+from xlmc.montecarlo.definitions.definitions import Forecast
+from xlmc.montecarlo.definitions.problems import Findings
+from xlmc.montecarlo.definitions.tables.identity import Claims, identify
+from xlmc.montecarlo.definitions.tables.reserved_tables import DefinitionTable
+from xlmc.montecarlo.definitions.tables.table_rows import Row, central_share, number, number_in, optional_text, rows_of
+from xlmc.montecarlo.distributions.parameters import show
+
+__all__ = ["read_forecasts"]
+
+_KNOWN = ("Name", "Value", "Cell", "Units", "Range %", "Threshold", "Certainty from", "Certainty to")
+
+
+def read_forecasts(
+    workbook: Workbook,
+    tables: Iterable[DefinitionTable],
+    computed: Computed,
+    central: float,
+    claims: Claims,
+    findings: Findings,
+) -> tuple[Forecast, ...]:
+    """The forecasts without a mistake, in the order of the rows.
+
+    Args:
+        workbook: where they are read.
+        tables: the tables that hold them.
+        computed: which cells something gives a value; a forecast should be one.
+        central: the share of the central range where a row gives none.
+        claims: takes their names and cells.
+        findings: takes mistakes and remarks.
+    """
+    rows = rows_of(workbook, tables, ("Name",), _KNOWN, findings)
+    found = [_forecast(row, computed, central, claims, findings) for row in rows]
+    return tuple(each for each in found if each is not None)
+
+
+def _forecast(row: Row, computed: Computed, central: float, claims: Claims, findings: Findings) -> Forecast | None:
+    before = len(findings.problems)
+    identity = identify(row, claims, findings)
+    if identity and not computed.at_all(identity[1]):
+        findings.attempt(_remark_on_constant, row.workbook, identity[1], findings)
+    share = findings.attempt(_central, row, findings)
+    threshold = findings.attempt(number, row, "Threshold")
+    asked = findings.attempt(_asked, row)
+    units = findings.attempt(optional_text, row, "Units") or ""
+    if len(findings.problems) > before or not identity:
+        return None
+    name, cell = identity
+    return Forecast(
+        name=name,
+        cell=cell,
+        row=row.where,
+        units=units,
+        central=central if share is None else share,
+        threshold=threshold,
+        notes=row.notes(_KNOWN),
+        asked=asked,
+    )
+
+
+def _asked(row: Row) -> tuple[float, float] | None:
+    """The range whose certainty is to be reported; a blank end is no limit, and two are no range.
+
+    Raises:
+        DefinitionError: an end is no number, or the range ends below its beginning.
+    """
+    low, high = number(row, "Certainty from"), number(row, "Certainty to")
+    if low is None and high is None:
+        return None
+    ends = -math.inf if low is None else low, math.inf if high is None else high
+    if ends[0] > ends[1]:
+        message = f"The range of the certainty begins at {show(ends[0])} and ends at {show(ends[1])}"
+        raise DefinitionError(message, where=row.cell("Certainty from"), hint="Exchange the two numbers")
+    return ends
+
+
+def _central(row: Row, findings: Findings) -> float | None:
+    value = number(row, "Range %")
+    return None if value is None else central_share(row.heading("Range %"), value, row.cell("Range %"), findings)
+
+
+def _remark_on_constant(workbook: Workbook, cell: Cell, findings: Findings) -> None:
+    """Remark on a forecast that no formula computes.
+
+    Raises:
+        DefinitionError: its cell is blank, or holds text or an error.
+    """
+    content = workbook.content(cell)
+    if content.is_blank:
+        raise DefinitionError("The forecast cell is blank", where=cell, hint="Point to the cell with the result")
+    if not isinstance(content.value, bool):
+        number_in("The forecast cell", content, cell)
+    findings.notice("The forecast is a constant: it does not depend on anything", cell)

@@ -1,0 +1,294 @@
+"""The rows of `xlmc_settings`: trials, seed and the like, and when the run ends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from functools import partial
+from typing import Any, NamedTuple, TypeVar
+
+from xlmc.errors import DefinitionError, SimulationError
+from xlmc.excel.workbook.workbook import Workbook
+from xlmc.montecarlo.definitions.amounts import as_seconds, typed_whole_number
+from xlmc.montecarlo.definitions.definitions import Settings
+from xlmc.montecarlo.definitions.evidence_ways import EVIDENCE_WAYS
+from xlmc.montecarlo.definitions.problems import Findings
+from xlmc.montecarlo.definitions.stopping import GOALS, LIMIT, MOST_TRIALS, NO_GOAL, RARE, Option, Stopping, stopping
+from xlmc.montecarlo.definitions.tables.reserved_tables import DefinitionTable
+from xlmc.montecarlo.definitions.tables.table_rows import Row, as_text, central_share, number_in, required_text, rows_of
+from xlmc.montecarlo.distributions.parameters import show
+from xlmc.montecarlo.distributions.spelling import did_you_mean, plain
+from xlmc.montecarlo.sampling.sampling_methods import METHODS
+
+__all__ = ["LEAST_PERCENT", "read_settings"]
+
+_DEFAULT_CENTRAL = 0.51
+"""The share of the central range where neither the forecast nor the settings give one: the paper's 51 %."""
+
+_LARGEST_SEED = 10**15  # a worksheet holds no more digits
+_KNOWN = ("Setting", "Value")
+_LOGNORMS = ("@RISK", "XLRisk")
+
+_Reader = Callable[[Row, Findings], Any]
+
+T = TypeVar("T")
+
+LEAST_PERCENT = 0.1
+"""A precision in percent below this is most likely a number in a cell of percent format."""
+
+_OTHERS = {"Precision %": "precision", "Rare": "rare", "Look at": "forecasts", "Time limit": "time_limit"}
+"""Setting -> what `stopping` calls it, of those that are no option of a goal."""
+
+
+class _Setting(NamedTuple):
+    """A setting as people write it, and what reads its row."""
+
+    name: str
+    read: _Reader
+
+
+def read_settings(
+    workbook: Workbook, tables: list[DefinitionTable], engines: Collection[str], findings: Findings
+) -> tuple[Settings, float, frozenset[str]]:
+    """The settings; the share of the central range for forecasts that give none; and what is set, by plain names.
+
+    Mistakes leave the default.
+
+    Args:
+        workbook: that holds them.
+        tables: of settings; there should be one at most.
+        engines: the names that the setting Engine may have.
+        findings: gets the mistakes.
+    """
+    settings = _settings(engines)
+    for extra in tables[1:]:
+        message = f"{tables[0].table.name} and {extra.table.name} both hold settings"
+        findings.problem(message, extra.where, "Keep one table, and delete the one that came with a copied sheet")
+    values: dict[str, Any] = {}
+    for row in rows_of(workbook, tables[:1], _KNOWN, _KNOWN, findings):
+        findings.attempt(_take, row, values, settings, findings)
+    said = frozenset(values)
+    central = values.pop("range%", None)
+    ends = _read_stopping(tables, values, findings)
+    if ends.has_goal:
+        values.setdefault("trials", LIMIT)
+    return (
+        Settings(**{key: value for key, value in values.items() if value is not None}, stopping=ends),
+        _DEFAULT_CENTRAL if central is None else central,
+        said,
+    )
+
+
+def _take(row: Row, values: dict[str, Any], settings: Mapping[str, _Setting], findings: Findings) -> None:
+    """Add the row's setting to `values`, by its plain name.
+
+    Raises:
+        DefinitionError: there is no such setting, it is set twice or its value is wrong.
+    """
+    typed = required_text(row, "Setting")
+    key, where = plain(typed), row.cell("Setting")
+    if key not in settings:
+        hint = did_you_mean(typed, (setting.name for setting in settings.values()))
+        raise DefinitionError(f"There is no setting {typed!r}", where=where, hint=hint)
+    if key in values:
+        raise DefinitionError(f"{typed} is set twice", where=where, hint="Keep one of the two rows")
+    values[key] = None  # a setting whose value is wrong is set all the same
+    if not row.filled("Value"):
+        message = f"{typed} has no value"
+        raise DefinitionError(message, where=row.cell("Value"), hint="Fill in Value, or delete the row")
+    values[key] = settings[key].read(row, findings)
+
+
+def _trials(row: Row, _findings: Findings) -> int:
+    return _whole_number(row, "Trials", 1, MOST_TRIALS)
+
+
+def _seed(row: Row, _findings: Findings) -> int:
+    return _whole_number(row, "Seed", 0, _LARGEST_SEED)
+
+
+def _sampling(row: Row, _findings: Findings) -> str:
+    typed = required_text(row, "Value")
+    known = {name: method.key for method in METHODS.values() for name in (method.key, *method.also)}
+    if plain(typed) not in known:
+        *keys, last = METHODS
+        hint = f"Use {', '.join(keys)} or {last}"
+        raise DefinitionError(f"There is no sampling method {typed!r}", where=row.cell("Value"), hint=hint)
+    return known[plain(typed)]
+
+
+def _engine(engines: Collection[str], row: Row, _findings: Findings) -> str:
+    typed = required_text(row, "Value")
+    if plain(typed) not in engines:
+        message = f"There is no engine {typed!r}"
+        raise DefinitionError(message, where=row.cell("Value"), hint=did_you_mean(typed, engines))
+    return plain(typed)
+
+
+def _lognorm(row: Row, _findings: Findings) -> str:
+    typed = required_text(row, "Value")
+    found = {plain(name): name for name in _LOGNORMS}.get(plain(typed))
+    if found is None:
+        hint = "Use @RISK (mean and std dev of the draw) or XLRisk (of its logarithm)"
+        raise DefinitionError(f"There is no RiskLognorm of a program {typed!r}", where=row.cell("Value"), hint=hint)
+    return found
+
+
+def _evidence(row: Row, _findings: Findings) -> str:
+    return _way(row, "use evidence", EVIDENCE_WAYS)
+
+
+def _arithmetic(row: Row, _findings: Findings) -> None:
+    """A row of earlier books, which could ask for float32."""
+    typed = required_text(row, "Value")
+    if plain(typed) != "float64":
+        message = f"There is no arithmetic {typed!r}: xlmc computes in float64"
+        raise DefinitionError(message, where=row.cell("Value"), hint="Delete the row")
+
+
+def _range(row: Row, findings: Findings) -> float:
+    return central_share("Range %", _number_of(row, "Range %"), row.cell("Value"), findings)
+
+
+def _settings(engines: Collection[str]) -> dict[str, _Setting]:
+    """Plain name -> the setting."""
+    readers: dict[str, _Reader] = {
+        "Trials": _trials,
+        "Seed": _seed,
+        "Sampling": _sampling,
+        "Engine": partial(_engine, engines),
+        "Arithmetic": _arithmetic,
+        "Range %": _range,
+        **_stopping_settings(),
+        "Lognorm": _lognorm,
+        "Evidence": _evidence,
+    }
+    return {plain(name): _Setting(name, read) for name, read in readers.items()}
+
+
+def _number_of(row: Row, name: str) -> float:
+    """The number in the row's Value.
+
+    Raises:
+        DefinitionError: there is something else in it.
+    """
+    return number_in(name, row.content("Value"), row.cell("Value"))
+
+
+def _whole_number(row: Row, name: str, least: int, most: int) -> int:
+    """The whole number in the row's Value, also as a text like `200,000` or `200k`.
+
+    Raises:
+        DefinitionError: there is something else in it, or a number outside `least` … `most`.
+    """
+    written = _whole_number_as_text(row, name)
+    value = _number_of(row, name) if written is None else written
+    if not least <= value <= most or value != int(value):
+        message = f"{name} must be a whole number from {least:,} to {most:,}, not {show(value)}"
+        raise DefinitionError(message, where=row.cell("Value"), hint="Correct the number")
+    return int(value)
+
+
+def _whole_number_as_text(row: Row, name: str) -> int | None:
+    """What is written in a cell of text; None where the cell holds something else."""
+    text = row.content("Value").value
+    if not isinstance(text, str):
+        return None
+    found = typed_whole_number(text)
+    if found is None:
+        message = f"{name} is {as_text(text)!r}, which is not a whole number"
+        raise DefinitionError(message, where=row.cell("Value"), hint="Type it like 200000, 200,000, 2e5 or 200k")
+    return found
+
+
+def _stopping_settings() -> dict[str, Callable[[Row, Findings], Any]]:
+    """Setting -> reader of its row: what `stopping` takes."""
+    options = {option.setting: partial(_option, option) for option in _options()}
+    return options | {
+        "Precision": _precision,
+        "Precision %": _percent,
+        "Rare": _rare,
+        "Look at": _names,
+        "Time limit": _seconds,
+    }
+
+
+def _read_stopping(tables: list[DefinitionTable], values: dict[str, Any], findings: Findings) -> Stopping:
+    """What the settings say of the end of the run, taken out of `values`; a mistake is reported for the whole table."""
+    given = {name: values.pop(plain(name)) for name in _stopping_settings() if plain(name) in values}
+    if any(value is None for value in given.values()):  # a mistake that was reported before
+        return NO_GOAL
+    try:
+        if "Precision %" in given and "Precision" in given:
+            raise SimulationError("Precision and Precision % are both set", hint="Keep one of the two rows")
+        arguments = {option.setting: option.name for option in _options()} | _OTHERS
+        return stopping(**{arguments[name]: value for name, value in given.items()})
+    except SimulationError as error:
+        findings.problem(error.message, tables[0].where, error.hint or "")
+        return NO_GOAL
+
+
+def _options() -> list[Option]:
+    return [option for goal in GOALS.values() for option in goal.options]
+
+
+def _option(option: Option, row: Row, _findings: Findings) -> Any:
+    if isinstance(option.takes, tuple):
+        return _whole_number(row, option.setting, *option.takes)
+    given = required_text(row, "Value") if option.takes is str else _number_of(row, option.setting)
+    _as_written(row, option.read, given)
+    return given
+
+
+def _precision(row: Row, _findings: Findings) -> float:
+    value = _number_of(row, "Precision")
+    if value <= 0:
+        message = f"Precision must be above 0, not {show(value)}"
+        raise DefinitionError(message, where=row.cell("Value"), hint="Correct the number")
+    return value
+
+
+def _percent(row: Row, findings: Findings) -> str:
+    """A cell in percent format holds 0.01 for 1 %: what could be meant so is refused or told."""
+    value, where = _number_of(row, "Precision %"), row.cell("Value")
+    if value < LEAST_PERCENT:
+        message = f"Precision % must be {LEAST_PERCENT} or more, not {show(value)}"
+        raise DefinitionError(message, where=where, hint="Type 1 for 1 %, in a cell without percent format")
+    if value < 1:
+        findings.notice(f"Precision % {show(value)} is read as {show(value)} %", where)
+    return f"{value!r}%"
+
+
+def _names(row: Row, _findings: Findings) -> tuple[str, ...]:
+    return tuple(name.strip() for name in required_text(row, "Value").split(";") if name.strip())
+
+
+def _seconds(row: Row, _findings: Findings) -> float:
+    content = row.content("Value")
+    given = content.value if isinstance(content.value, str) else _number_of(row, "Time limit")
+    if not isinstance(given, str) and given < 1:
+        message = f"Time limit must be 1 second or more, not {show(given)}"
+        raise DefinitionError(
+            message, where=row.cell("Value"), hint="Type seconds, or a text such as 5m; not a clock time"
+        )
+    return _as_written(row, as_seconds, given)
+
+
+def _rare(row: Row, _findings: Findings) -> str:
+    return _way(row, "look for rare trials", RARE)
+
+
+def _way(row: Row, purpose: str, ways: Collection[str]) -> str:
+    """The one of the ways that was typed, in any case."""
+    typed = required_text(row, "Value")
+    if plain(typed) not in ways:
+        message = f"{typed!r} is not a way to {purpose}"
+        raise DefinitionError(message, where=row.cell("Value"), hint=f"Use {', '.join(ways)}")
+    return plain(typed)
+
+
+def _as_written(row: Row, read: Callable[[Any], T], given: object) -> T:
+    """What is read from the value; a fault names the cell."""
+    try:
+        return read(given)
+    except SimulationError as error:
+        raise DefinitionError(error.message, where=row.cell("Value"), hint=error.hint) from error

@@ -1,0 +1,1 @@
+"""What a run says of itself: evidence and its weights, digits, directions, errors by cell, result cells."""

@@ -1,0 +1,210 @@
+"""One forecast's accepted trials, their statistics, and what a person should hear of those with long tails."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.errors import Notice
+from xlmc.montecarlo import statistics
+from xlmc.montecarlo.columns import numbers
+from xlmc.montecarlo.definitions.definitions import Forecast
+from xlmc.montecarlo.model.plain_words import list_of
+from xlmc.montecarlo.statistics import Description, Estimate, Sample, errors_from_trials, too_short
+
+__all__ = ["FARTHEST_PART", "TELLING", "ForecastResult", "Replicates", "interval_notices", "tail_notices"]
+
+TELLING: Final = 1_000
+"""Accepted trials from which on a single one can make up little of a variance, if there is one."""
+
+FARTHEST_PART: Final = 0.1
+"""If one trial has more than this part of the sum of squares, mean and standard deviation depend on it."""
+
+LEAST_BEYOND: Final = 10.0
+"""Effective trials that must lie beyond a quantile, if it is to be given where trials are weighted."""
+
+_MOST_NAMED: Final = 4
+
+_OF_TAILS = (
+    "Of a ratio whose denominator passes 0 they do not exist, whatever their errors say: use the median and "
+    "percentiles, which do"
+)
+
+Floats = NDArray[np.float64]
+Replicates = NDArray[np.int64]
+
+
+class ForecastResult:
+    """One forecast's accepted trials and their statistics. Estimates carry their standard error.
+
+    Attributes:
+        faults: error, `text` or `blank` -> accepted trials in which it is none.
+        discards: filter of its own -> accepted trials that it discards.
+    """
+
+    def __init__(
+        self,
+        definition: Forecast,
+        column: Callable[[], Floats],
+        faults: Counter[str],
+        replicate: Callable[[], Replicates | None] = lambda: None,
+        discards: Counter[str] | None = None,
+        weights: Callable[[], Floats | None] = lambda: None,
+    ) -> None:
+        self.definition, self.faults = definition, faults
+        self.discards: Counter[str] = Counter() if discards is None else discards
+        self._column, self._replicate, self._weights = column, replicate, weights
+
+    @cached_property
+    def values(self) -> Floats:
+        """`(m,)` accepted trials in which it is a number, in their order."""
+        return numbers(self._column())
+
+    @cached_property
+    def sample(self) -> Sample:
+        """The same in ascending order with their weights and replicates, from which the statistics come."""
+        replicate, weights, column = self._replicate(), self._weights(), self._column()
+        known = None if replicate is None and weights is None else ~np.isnan(column)
+        return Sample.of(
+            self.values,
+            None if weights is None else weights[known],
+            None if replicate is None else replicate[known],
+        )
+
+    @property
+    def column(self) -> Floats:
+        """`(m,)` all accepted trials; NaN where it is no number."""
+        return self._column()
+
+    def between(self, low: float, high: float) -> ForecastResult:
+        """The part of the values from one number to another, both included."""
+
+        def part() -> Floats:
+            column = self._column()
+            return np.where((column >= low) & (column <= high), column, np.nan)
+
+        return ForecastResult(self.definition, part, Counter(), self._replicate)
+
+    def mean_interval(self, confidence: float) -> tuple[float, float] | None:
+        """Both ends of the interval that holds the mean with this probability; None where the trials are too few."""
+        return statistics.mean(self.sample, confidence=confidence).interval
+
+    def __repr__(self) -> str:
+        return f"<{self.definition.name}: {self.values.size} accepted trials>"
+
+    @cached_property
+    def statistics(self) -> Description:
+        """Every statistic at once; trials with hardly any weight, which a sample leaves out, are counted, too."""
+        d = self.definition
+        found = statistics.describe(self.sample, central=d.central, threshold=d.threshold)
+        if self.sample.w is None:
+            return found
+        low, high = found.central
+        tail = (1.0 - d.central) / 2.0
+        return replace(
+            found,
+            trials=int(self.values.size),
+            median=self._where_told(found.median, 0.5),
+            percentiles={key: self._where_told(each, key / 100.0) for key, each in found.percentiles.items()},
+            central=(self._where_told(low, tail), self._where_told(high, tail)),
+        )
+
+    def _where_told(self, found: Estimate, share: float) -> Estimate:
+        """A quantile; nan where trials are weighted and too few lie beyond it in effect."""
+        few = self.sample.w is not None and self.sample.effective * min(share, 1.0 - share) < LEAST_BEYOND
+        return Estimate(math.nan, n=found.n) if few else found
+
+    @property
+    def mean(self) -> Estimate:
+        return statistics.mean(self.sample)
+
+    @property
+    def median(self) -> Estimate:
+        return self._where_told(statistics.median(self.sample), 0.5)
+
+    @property
+    def standard_deviation(self) -> Estimate:
+        return statistics.standard_deviation(self.sample)
+
+    def percentile(self, percent: float) -> Estimate:
+        """The value that `percent` (0 to 100) of the trials do not exceed, as Excel's PERCENTILE.INC."""
+        return self._where_told(statistics.percentile(self.sample, percent), percent / 100.0)
+
+    def central(self, share: float | None = None) -> tuple[Estimate, Estimate]:
+        """Both ends of the central range that holds `share` of the trials; the forecast's own share by default."""
+        share = self.definition.central if share is None else share
+        low, high = statistics.central_interval(self.sample, share)
+        return self._where_told(low, (1.0 - share) / 2.0), self._where_told(high, (1.0 - share) / 2.0)
+
+    @cached_property
+    def certainty(self) -> Estimate | None:
+        """The share of the trials in the range that was asked for; None where none was, or no trial has a number."""
+        asked = self.definition.asked
+        return None if asked is None or not self.sample.n else statistics.probability_between(self.sample, *asked)
+
+    def probability_above(self, threshold: float) -> Estimate:
+        """P(forecast > threshold)."""
+        return statistics.probability_above(self.sample, threshold)
+
+
+def tail_notices(samples: Mapping[str, Sample], method: str) -> list[Notice]:
+    """What a person should hear of forecasts with long tails.
+
+    Args:
+        samples: forecast -> its accepted trials.
+        method: the sampling method in words.
+    """
+    hanging = {name: part for name, sample in samples.items() if sample.n >= TELLING and (part := _farthest(sample))}
+    messages = (
+        f"the mean and the standard deviation of {name!r} depend on a single trial, {part}. {_OF_TAILS}"
+        for name, part in hanging.items()
+    )
+    others = {name: sample for name, sample in samples.items() if name not in hanging}
+    return [*map(Notice, messages), *interval_notices(others, method)]
+
+
+def interval_notices(samples: Mapping[str, Sample], method: str) -> list[Notice]:
+    """Which numbers have an interval that may be too short, and which the error of independent trials.
+
+    Args:
+        samples: forecast -> its accepted trials.
+        method: the sampling method in words.
+    """
+    found = []
+    if short := _named(samples, too_short):
+        found.append(
+            f"the interval of {short} may be too short: a few trials far out in the tail decide such a number, and "
+            "more of their kind may be missing. More trials help; percentiles and shares have intervals that hold"
+        )
+    if plain := _named(samples, _only_from_trials):
+        found.append(
+            f"the error of {plain} is that of independent trials: a few trials far out in the tail decide such a "
+            f"number, and the replicates are too few to show its error. By {method} it may vary less than that"
+        )
+    return [Notice(message) for message in found]
+
+
+def _only_from_trials(sample: Sample) -> list[str]:
+    """Of a number whose interval may be too short it is not said that it may vary less."""
+    short = too_short(sample)
+    return [number for number in errors_from_trials(sample) if number not in short]
+
+
+def _named(samples: Mapping[str, Sample], concerned: Callable[[Sample], list[str]]) -> str:
+    """The numbers in words, such as "the mean of 'x' and the standard deviation of 'y'"; empty where there is none."""
+    numbers = [f"the {number} of {name!r}" for name, sample in samples.items() for number in concerned(sample)]
+    more = [f"{len(numbers) - _MOST_NAMED} more"] if len(numbers) > _MOST_NAMED else []
+    return list_of([*numbers[:_MOST_NAMED], *more]) if numbers else ""
+
+
+def _farthest(sample: Sample) -> str:
+    """The part of the farthest trial, in words; empty where no trial has too large a part."""
+    part = statistics.farthest_part(sample)
+    return f"which makes up {part:.0%} of the variance of {sample.n:,}" if part > FARTHEST_PART else ""

@@ -1,0 +1,1 @@
+"""What was understood of a workbook, compiled: needed cells, draws, correlations, changes."""

@@ -1,0 +1,102 @@
+"""What formulas of the definition tables give, where the file does not say it, or says what may be older.
+
+A program that writes a workbook without calculating it leaves the value of `=B4&" weight"` out, as openpyxl does, or
+writes a 0, as XlsxWriter does. Excel fills it in when it opens the file, unless calculation is manual; xlmc does here.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import ChainMap
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import replace
+
+from xlmc.engine.graph.lower import lower_cells
+from xlmc.errors import ErrorCode, FormulaError, Notice
+from xlmc.excel.address import Cell
+from xlmc.excel.formula import Resolver
+from xlmc.excel.workbook.workbook import CellContent, CellValue, Table, Workbook
+from xlmc.montecarlo.definitions.tables.table_rows import as_text
+
+__all__ = ["calculate_labels", "calculated_texts"]
+
+_TABLES = "xlmc"
+_POINTS = ("cell", "data")
+"""The columns whose formulas say which cells are meant, and hold no text."""
+_OF_VALUES = ("xlmc_settings", "xlmc_case")
+"""Tables in which the column Value holds what is said; in others it holds the cell that is meant."""
+
+
+def calculate_labels(workbook: Workbook) -> Workbook:
+    """The workbook with the texts of its tables `xlmc_…` calculated where the file has none; itself if it has all.
+
+    Where saved values may be older than the formulas, those of these tables are calculated again, whatever they are.
+    What differs from the saved value is told of.
+    """
+    tables = [table for table in workbook.tables if table.name.casefold().startswith(_TABLES)]
+    missing = [cell for table in tables for cell in _body(table, _POINTS) if workbook.content(cell).is_uncalculated]
+    found: dict[Cell, CellValue] = {**calculated_texts(workbook, missing)} if missing else {}
+    stale = _stale_values(workbook, tables) if workbook.may_be_stale else {}
+    if not (missing or stale):
+        return workbook
+    written: dict[str, dict[tuple[int, int], CellContent]] = {}
+    for cell, value in {**found, **stale}.items():
+        at = cell.row, cell.column
+        written.setdefault(cell.sheet, {})[at] = replace(workbook.sheets[cell.sheet].cells[at], value=value)
+    sheets = ((name, workbook.sheets[name], cells) for name, cells in written.items())
+    calculated = {name: replace(sheet, cells={**sheet.cells, **cells}) for name, sheet, cells in sheets}
+    notices = [_notice(cell, workbook.content(cell).value, value) for cell, value in stale.items()]
+    # A ChainMap reads a sheet when it is looked up, and nobody writes to this one: mypy wants a mapping to write to.
+    chained = ChainMap(calculated, workbook.sheets)  # type: ignore[arg-type]
+    return replace(workbook, sheets=chained, notices=(*workbook.notices, *notices))
+
+
+def _stale_values(workbook: Workbook, tables: Iterable[Table]) -> dict[Cell, CellValue]:
+    """What formulas of the tables give that is not what the file says, but for those that are forecasts or filters."""
+    cells: list[Cell] = []
+    for table in tables:
+        skipped = _POINTS if table.name.casefold().startswith(_OF_VALUES) else (*_POINTS, "value")
+        for cell in _body(table, skipped):
+            content = workbook.content(cell)
+            if content.formula is not None and content.value is not None:
+                cells.append(cell)
+    found = _calculated(workbook, cells) if cells else {}
+    return {cell: value for cell, value in found.items() if _differs(workbook.content(cell).value, value)}
+
+
+def _differs(saved: CellValue, found: CellValue) -> bool:
+    if isinstance(saved, float) and isinstance(found, float):
+        return not math.isclose(saved, found, rel_tol=1e-9, abs_tol=1e-300)
+    return type(saved) is not type(found) or saved != found
+
+
+def _notice(cell: Cell, saved: CellValue, found: CellValue) -> Notice:
+    shown = [repr(value) if isinstance(value, str) else as_text(value) for value in (saved, found)]
+    message = f"the file says {shown[0]}, but the formula gives {shown[1]}, which is used"
+    return Notice(f"{message}: let Excel calculate the workbook, and save it", cell)
+
+
+def calculated_texts(workbook: Workbook, cells: Collection[Cell]) -> dict[Cell, str]:
+    """What the formulas of cells give where that is a text; a cell that cannot be calculated is left out."""
+    return {cell: value for cell, value in _calculated(workbook, cells).items() if isinstance(value, str)}
+
+
+def _calculated(workbook: Workbook, cells: Collection[Cell]) -> dict[Cell, CellValue]:
+    """What the formulas of cells give; a cell that gives an error or cannot be calculated is left out."""
+    try:
+        lowering = lower_cells(Resolver(workbook), [*cells], {}, {})
+    except FormulaError:
+        if len(cells) == 1:
+            return {}
+        return {found: value for cell in cells for found, value in _calculated(workbook, [cell]).items()}
+    values = {cell: lowering.value(cell) for cell in cells if not lowering.is_saved(cell)}
+    held = {cell: value.objects().ravel()[0] for cell, value in values.items() if value is not None}
+    return {cell: value for cell, value in held.items() if not isinstance(value, ErrorCode)}
+
+
+def _body(table: Table, skipped: Collection[str]) -> Iterator[Cell]:
+    """The cells of a table but for those of some columns."""
+    area = table.body
+    for column, heading in enumerate(table.columns, area.left):
+        if heading.strip().casefold() not in skipped:
+            yield from (Cell(area.sheet, row, column) for row in range(area.top, area.bottom + 1))

@@ -1,0 +1,130 @@
+"""Read a workbook and build its model; look whether its filters can be ones.
+
+The cell of a filter without a limit must be a test, TRUE or FALSE, and what the cell computes to says whether it is. It
+is computed, not read: a file may hold no saved values, or stale ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from xlmc.engine.engine import TEXT_RESULT, Column, Target
+from xlmc.engine.engines import ENGINES
+from xlmc.engine.numpy.numpy_engine import NumpyProgram
+from xlmc.errors import DefinitionError
+from xlmc.excel.address import Cell
+from xlmc.excel.formula import ir
+from xlmc.excel.workbook.reader import read_workbook
+from xlmc.excel.workbook.workbook import Workbook
+from xlmc.montecarlo.definitions.definitions import Filter
+from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+from xlmc.montecarlo.definitions.tables.filters import LIMIT_HINT
+from xlmc.montecarlo.distributions.parameters import show
+from xlmc.montecarlo.model.labels import calculate_labels
+from xlmc.montecarlo.model.model import Model, paused_collection
+from xlmc.montecarlo.model.needed import filter_limits
+
+__all__ = ["build_model", "filter_faults", "load"]
+
+_DRAWN: Final = 64
+"""Trials that are looked at beside the base case, in which a quantity may happen to be 0 or 1."""
+
+
+def load(path: str | Path) -> Model:
+    """Read a workbook and compile what its forecasts and filters need.
+
+    Raises:
+        WorkbookError: the file cannot be read.
+        DefinitionError, FormulaError: as for `build_model`.
+    """
+    with paused_collection():
+        return build_model(read_workbook(path), Path(path))
+
+
+def build_model(workbook: Workbook, path: Path, tabulated: int = 1) -> Model:
+    """The model of a workbook that was read.
+
+    Args:
+        workbook: that was read.
+        path: where it is.
+        tabulated: which of its values every `RiskSimtable` gives, from 1.
+
+    Raises:
+        DefinitionError: a definition is not what it must be; all faulty ones are listed.
+        FormulaError: a needed cell cannot be computed.
+    """
+    with paused_collection():
+        workbook = calculate_labels(workbook)
+        definitions = read_definitions(workbook, ENGINES, tabulated)
+        if definitions.problems:
+            raise _joined(definitions.problems)
+        model = Model(workbook, definitions, path)
+        if faults := filter_faults(model):
+            raise _joined(faults)
+        return model
+
+
+def _joined(problems: Sequence[DefinitionError]) -> DefinitionError:
+    return problems[0] if len(problems) == 1 else DefinitionError("\n".join(str(p) for p in problems).rstrip("."))
+
+
+def filter_faults(model: Model) -> list[DefinitionError]:
+    """The filters whose cells are no tests, each with its cell: a quantity without a limit, a text.
+
+    The base case is looked at, where there is one; then, for quantities, some trials.
+    """
+    every = (*model.filters, *model.forecast_filters)
+    rows = [each for each in every if each.evidence is None or filter_limits(each)]
+    filters = [each for each in rows if not filter_limits(each) or _may_be_text(model, each)]
+    if not filters:
+        return []
+    targets = [target for each in filters for target in (Target(each.cell, each.cell), _length(each))]
+    drawn = frozenset(a.name for a in model.live)
+    evaluator = NumpyProgram.of(model.lowering, targets, [], drawn).evaluator(_DRAWN)
+    base = {name: np.full(1, np.nan if base is None else base) for name, base in model.bases.items()}
+    base |= model.certain(1)
+    found = dict(_faults(filters, evaluator.filters(base, 1), "at the base case", texts=True))
+    if any(not filter_limits(each) and each.cell not in found for each in filters):
+        columns = evaluator.filters(model.sampler(0, _DRAWN).draw(0), _DRAWN)
+        found = {**dict(_faults(filters, columns, "in a trial", texts=False)), **found}
+    return [found[each.cell] for each in filters if each.cell in found]
+
+
+def _may_be_text(model: Model, filter_: Filter) -> bool:
+    """Whether the file does not say that the cell holds a number."""
+    saved = model.workbook.content(filter_.cell).value
+    return saved is None or isinstance(saved, str)
+
+
+def _length(filter_: Filter) -> Target:
+    """How many characters its cell has; what stands for nothing, `=IF(A1>0,A1,"")`, is no mistake."""
+    return Target(ir.Call("LEN", (filter_.cell,)), filter_.cell)
+
+
+def _faults(
+    filters: Sequence[Filter], columns: Sequence[Column], when: str, *, texts: bool
+) -> Iterator[tuple[Cell, DefinitionError]]:
+    """The cell of each filter that is no test, and the message.
+
+    Args:
+        filters: those that are looked at.
+        columns: the value of each one's cell, and the length of that.
+        when: in words.
+        texts: whether a text is a mistake.
+    """
+    for filter_, column, length in zip(filters, columns[::2], columns[1::2], strict=True):
+        codes = np.zeros(column.values.size, np.uint8) if column.codes is None else column.codes
+        numbers = np.asarray(column.values, np.float64)
+        quantities = numbers[(codes == 0) & (numbers != 0.0) & (numbers != 1.0)]
+        if texts and np.any((codes == TEXT_RESULT) & (np.asarray(length.values, np.float64) > 0)):
+            message = f"The cell of the filter {filter_.name!r} is a text {when}"
+        elif quantities.size and not filter_limits(filter_):
+            held = f"{show(float(quantities[0]))} {when}"
+            message = f"The filter {filter_.name!r} has no limit, and its cell is {held}, neither TRUE nor FALSE"
+        else:
+            continue
+        yield filter_.cell, DefinitionError(message, where=filter_.cell, hint=LIMIT_HINT)

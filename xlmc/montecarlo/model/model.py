@@ -1,0 +1,491 @@
+"""A workbook that was read and compiled: ready to be sampled and evaluated."""
+
+from __future__ import annotations
+
+import gc
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from copy import copy
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from xlmc.engine.engine import Evaluator, Program, Target
+from xlmc.engine.engines import ENGINES
+from xlmc.engine.graph.lower import Lowering, lower_until_complete
+from xlmc.engine.numpy.numpy_engine import NumpyProgram
+from xlmc.engine.passes.bounds import Bounds, NodeBounds
+from xlmc.errors import Notice, SimulationError
+from xlmc.excel.address import Cell
+from xlmc.excel.workbook.workbook import Workbook
+from xlmc.montecarlo.definitions.definitions import Assumption, Definitions
+from xlmc.montecarlo.definitions.evidence import Evidence
+from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.model.correlating import (
+    copula_groups,
+    copula_notices,
+    correlated_groups,
+    repair_notices,
+    tie_notices,
+)
+from xlmc.montecarlo.model.draw_binding import draw_of, dynamic_parameters, with_numbers
+from xlmc.montecarlo.model.forecast_filters import (
+    FilteringEvaluator,
+    FilteringProgram,
+    conditions_of,
+    filters_by_forecast,
+)
+from xlmc.montecarlo.model.model_notices import example_notices, heavy_notices, still_notices
+from xlmc.montecarlo.model.needed import (
+    Needed,
+    chances_of,
+    definitions_of_checks,
+    drawing_order,
+    filter_condition,
+    find_needed,
+    refuse_without_base,
+    targets_of,
+)
+from xlmc.montecarlo.sampling.draws import CorrelatedGroup, Draw, DrawStage, Filler, Sampler
+from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
+
+__all__ = ["Model", "lower_needed", "paused_collection"]
+
+_MOST_GROWN: Final = 4
+"""Nodes that changed limits of filters may have added, as a multiple of the first ones, before all are made anew."""
+
+
+@contextmanager
+def paused_collection() -> Iterator[None]:
+    """Make no search for garbage meanwhile.
+
+    Loading a large book makes millions of small objects, none of which is garbage; a search would walk all of them
+    again and again.
+    """
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
+
+
+def lower_needed(workbook: Workbook, definitions: Definitions) -> tuple[Needed, Lowering]:
+    """What the forecasts and filters need, and its nodes.
+
+    Raises:
+        FormulaError, DefinitionError: as for `load`.
+    """
+    definitions = replace(definitions, assumptions=(*definitions.assumptions, *chances_of(definitions.filters)))
+    inputs = {a.cell: a.name for a in definitions.assumptions if not a.frozen}
+    held = {a.cell: a.base for a in definitions.assumptions if a.frozen and a.base is not None}
+    found: list[Needed] = []
+
+    def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
+        found.append(find_needed(workbook, definitions, more))
+        return Lowering(found[-1].graph, inputs, held)
+
+    lowering = lower_until_complete(lower)
+    lowering.refuse_cells_beyond()
+    needed = found[-1]
+    if lowering.led_to:
+        named = {a.name: a for a in definitions.assumptions}
+        live = [named[name] for name in needed.live]  # in this order, on which correlated draws depend
+        needed = replace(needed, stages=drawing_order(needed.graph, live, lowering.led_to))
+    return needed, lowering
+
+
+@dataclass(frozen=True, slots=True)
+class _Compiled:
+    """A program, and the least and largest draws, by name of the assumption, that it was compiled for."""
+
+    program: Program
+    ends: Mapping[str, Bounds]
+
+
+def _hull(first: Mapping[str, Bounds], second: Mapping[str, Bounds]) -> dict[str, Bounds]:
+    """The ends that hold the draws of two models, and more where a range was moved; none where one of them has none."""
+    return {name: _wider(ends, second[name]) for name, ends in first.items() if name in second}
+
+
+def _wider(first: Bounds, second: Bounds) -> Bounds:
+    """Bounds that hold both; those of a range that was moved twice as wide, as it will be moved again.
+
+    They stay on their side of 0, which roots and divisors depend on.
+    """
+    low, high = min(first[0], second[0]), max(first[1], second[1])
+    if (low, high) == first:
+        return first
+    lowest, highest = low - (high - low), high + (high - low)
+    return max(lowest, 0.0) if low >= 0.0 else lowest, min(highest, 0.0) if high <= 0.0 else highest
+
+
+def _asks_for_the_same(old: Definitions, new: Definitions, live: Collection[str]) -> bool:
+    """Whether two definitions ask for the same cells, so that only numbers can be others.
+
+    Args:
+        old: of a workbook.
+        new: of the same one, changed.
+        live: names of the assumptions that the old ones draw.
+    """
+    if (old.forecasts, old.checks, old.forecast_filters) != (new.forecasts, new.checks, new.forecast_filters):
+        return False
+    if old.rewritten is not new.rewritten:
+        return False
+    if len(old.assumptions) != len(new.assumptions) or len(old.filters) != len(new.filters):
+        return False
+    pairs = zip(old.assumptions, new.assumptions, strict=True)
+    if any(a is not b and _cells_of(a, live) != _cells_of(b, live) for a, b in pairs):
+        return False
+    return all(targets_of((), (a,)) == targets_of((), (b,)) for a, b in zip(old.filters, new.filters, strict=True))
+
+
+def _cells_of(assumption: Assumption, live: Collection[str]) -> tuple[object, ...]:
+    """What of an assumption the nodes depend on; the base value of one that is drawn is not among it."""
+    held = None if assumption.name in live else assumption.base
+    return assumption.name, assumption.cell, assumption.frozen, assumption.formulas, assumption.data, held
+
+
+def _lower_checks(workbook: Workbook, definitions: Definitions, live: Collection[str]) -> Lowering:
+    """The nodes of the checks, apart from those of the run, which they must not change.
+
+    Raises:
+        FormulaError, DefinitionError: a check cannot be computed.
+    """
+    asked = definitions_of_checks(definitions, live)
+    needed, lowering = lower_needed(workbook, asked)
+    refuse_without_base(definitions.checks, needed, asked)
+    for check in definitions.checks:
+        lowering.target(Target(check.cell, check.cell))
+    return lowering
+
+
+class Model:
+    """A workbook's assumptions, forecasts and filters, and the function that computes them.
+
+    Attributes:
+        workbook, definitions, path: what it was made from.
+        assumptions, forecasts, filters, checks: as defined.
+        forecast_filters: filters of some forecasts only, as defined.
+        live: the assumptions that are drawn: needed and not frozen.
+        bases: name of each live assumption -> its base value; None where its cell is blank.
+        chances: what decides which trials are kept by evidence whose error is no limit; drawn as assumptions are.
+        draws: name of a live assumption or a chance -> how it is drawn.
+        lowering: the nodes of the needed cells.
+        groups: of correlated ones among them.
+        notices: what the person should know.
+    """
+
+    def __init__(self, workbook: Workbook, definitions: Definitions, path: Path) -> None:
+        given, definitions = definitions, with_numbers(workbook, definitions)
+        self._folded = definitions is not given
+        self.workbook, self.path = workbook, path
+        self.needed, self.lowering = lower_needed(workbook, definitions)
+        self._nodes = len(self.lowering.dag.nodes)
+        self._programs: dict[str, _Compiled] = {}
+        self._define(definitions, {})
+        self._check_targets()
+        self._checks = _lower_checks(workbook, definitions, frozenset(self.needed.live)) if self.checks else None
+        self._take_notices()
+
+    def _define(self, definitions: Definitions, known: Mapping[str, Draw]) -> None:
+        """Take the definitions; `known` are the draws of assumptions that are as they were, by name."""
+        self.definitions = definitions
+        self.assumptions, self.forecasts = definitions.assumptions, definitions.forecasts
+        self.filters, self.checks = definitions.filters, definitions.checks
+        self.forecast_filters = definitions.forecast_filters
+        self.chances = chances_of(self.filters)
+        named, chances = {a.name: a for a in (*self.assumptions, *self.chances)}, {a.name for a in self.chances}
+        live: list[Assumption] = []
+        draws: dict[str, Draw] = {}
+        found: dict[str, Bounds] = {}
+        for name in self.needed.live:
+            draws[name] = draw = known.get(name) or draw_of(named[name], self.lowering)
+            if (ends := draw.support()) is not None:
+                found[name] = ends
+            if name not in chances:
+                live.append(named[name])
+        self.live: tuple[Assumption, ...] = tuple(live)
+        self.bases: Mapping[str, float | None] = {a.name: a.base for a in live}
+        self.draws: Mapping[str, Draw] = draws
+        self._ends = found
+        rows = definitions.correlations
+        tied = {name for row in rows for name in (row.first, row.second)}
+        self._correlated = {name: draw for name, draw in self.draws.items() if name in tied}
+        self.groups: tuple[CorrelatedGroup, ...] = (
+            *correlated_groups(rows, self._correlated),
+            *copula_groups(definitions.copulas, self.draws.keys()),
+        )
+
+    def _take_notices(self) -> None:
+        rows = self.definitions.correlations
+        self.notices: tuple[Notice, ...] = (
+            *self.workbook.notices,
+            *self.definitions.notices,
+            *self.needed.notices(frozenset() if self._checks is None else self._checks.graph.reached),
+            *self.lowering.notices,
+            *tie_notices(self.groups, rows, self._correlated),
+            *repair_notices(self.groups, rows),
+            *copula_notices(self.groups, self.definitions.copulas),
+            *still_notices(self.needed, self._moving(), self.forecasts),
+            *heavy_notices(a for a in self.live if not self.draws[a.name].has_mean),
+            *example_notices(self._sources()),
+        )
+
+    def changed(self, workbook: Workbook, definitions: Definitions) -> Self:
+        """The model with other definitions. What they leave as it was is not computed again.
+
+        Where only numbers are others (parameters and cutoffs of drawn assumptions, correlations, limits of filters), no
+        formula is looked at: the new model shares the nodes with this one, and the programs that hold for both. As
+        both may add to the nodes, ask models that share them from one thread at a time.
+
+        Args:
+            workbook: the same in all cells that the forecasts, filters and checks read.
+            definitions: those of this model, changed.
+
+        Raises:
+            DefinitionError: numbers are not a distribution, or assumptions need each other in a circle.
+            FormulaError: a cell that is needed now cannot be computed.
+        """
+        own = self.definitions
+        if len(self.lowering.dag.nodes) > (1 + _MOST_GROWN) * self._nodes:
+            self._make_anew()
+        if not _asks_for_the_same(own, definitions, frozenset(self.needed.live)):
+            found = type(self)(workbook, definitions, self.path)
+            found._folded = self._folded
+            return found
+        found = copy(self)
+        found.workbook = workbook
+        same = {old.name for old, new in zip(own.assumptions, definitions.assumptions, strict=True) if old is new}
+        found._define(definitions, {name: draw for name, draw in self.draws.items() if name in same})
+        if found.filter_targets != self.filter_targets:
+            found._programs = {}
+            found._check_targets()
+        found._take_notices()
+        return found
+
+    def _make_anew(self) -> None:
+        """Leave the nodes that changed limits added to the models that have them, and go on with nodes of one's own."""
+        folded = self._folded
+        self.__dict__.update(type(self)(self.workbook, self.definitions, self.path).__dict__)
+        self._folded = folded
+
+    def _sources(self) -> list[tuple[str, Cell, str]]:
+        """What is needed of assumptions and filters, the row of each, and its source or reason."""
+        idle = {a.name for a in self.needed.idle}
+        found = [(f"{a.name!r}", a.row, a.source) for a in self.assumptions if a.name not in idle]
+        filters = (*self.filters, *self.forecast_filters)
+        return found + [(f"{each.name!r} (a filter)", each.row, each.because) for each in filters]
+
+    def _moving(self) -> set[Cell]:
+        """The cells of the live assumptions whose range has more than one value, as far as it is known."""
+        still = {name for name, (low, high) in self._ends.items() if low >= high}
+        return {a.cell for a in self.live if a.name not in still}
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        """The rows of `xlmc_evidence`, with numbers where they are used; those that are not used among them."""
+        used = {each.name: each.evidence for each in self.filters if each.evidence is not None}
+        found = (each if not each.used else used.get(each.name) for each in self.definitions.evidence)
+        return tuple(each for each in found if each is not None)
+
+    def certain(self, n: int) -> dict[str, NDArray[np.float64]]:
+        """Name of each chance -> `(n,)` the number that keeps every trial, for whoever draws the assumptions alone."""
+        return {a.name: np.zeros(n) for a in self.chances}
+
+    @property
+    def read(self) -> frozenset[Cell]:
+        """Every cell that the forecasts, filters and checks read, blank cells of ranges among them."""
+        return self.lowering.read | (frozenset() if self._checks is None else self._checks.read)
+
+    def reads_elsewhere(self, cells: Collection[Cell]) -> bool:
+        """Whether anything but the rows of tables may read one of these cells, which are of such rows."""
+        if not cells:
+            return False
+        own = {a.cell for a in self.assumptions}
+        calls = bool(self.definitions.rewritten)  # whose arguments may be cells that were read as numbers
+        return calls or self._folded or not (self.read - own).isdisjoint(cells)
+
+    @property
+    def saved(self) -> frozenset[Cell]:
+        """The cells among them that xlmc cannot compute, and that hold what Excel saved."""
+        return frozenset(self.lowering.saved)
+
+    @property
+    def fallible(self) -> frozenset[str]:
+        """Names of the assumptions whose draws may be errors: their parameters vary."""
+        return frozenset(name for stage in self.needed.stages[1:] for name in stage)
+
+    def function(self, inputs: Mapping[str, ArrayLike]) -> dict[str, NDArray[np.float64]]:
+        """The workbook as a function: values of every live assumption in, every forecast out. Filters are not asked.
+
+        Args:
+            inputs: name of the assumption -> `(n,)` or a number.
+
+        Returns:
+            Name of the forecast -> `(n,)`; NaN where the cell is an error, a text or blank.
+
+        Raises:
+            SimulationError: an assumption is missing, unknown or frozen, or the values are of different lengths.
+        """
+        full, n = self.points(inputs)
+        if n == 0:
+            return {forecast.name: np.empty(0) for forecast in self.forecasts}
+        needed = frozenset(a.name for a in self.live)
+        evaluator = NumpyProgram.of(self.lowering, self._forecast_targets, [], needed).evaluator(n)
+        columns = evaluator.filters(full, n)
+        return {f.name: column.as_floats() for f, column in zip(self.forecasts, columns, strict=True)}
+
+    def points(self, inputs: Mapping[str, ArrayLike]) -> tuple[dict[str, NDArray[np.float64]], int]:
+        """Values of every live assumption as engines take them: name -> `(n,)`, in the order of `live`, and `n`.
+
+        Args:
+            inputs: name of the assumption -> `(n,)` or a number.
+
+        Raises:
+            SimulationError: an assumption is missing, unknown or frozen, or the values are of different lengths.
+        """
+        spelt = self._spelt(inputs)
+        given = {spelt[name]: np.asarray(values, np.float64) for name, values in inputs.items()}
+        sizes = {values.size for values in given.values() if values.ndim} - {1} or {1}
+        if len(sizes) > 1 or any(values.ndim > 1 for values in given.values()):
+            hint = "give lists of the same length"
+            raise SimulationError("an assumption takes one number or one list of numbers", hint=hint)
+        (n,) = sizes
+        return {a.name: np.ascontiguousarray(np.broadcast_to(given[a.name], (n,))) for a in self.live}, n
+
+    def _spelt(self, names: Iterable[str]) -> dict[str, str]:
+        """Names of all live assumptions, as somebody typed them -> as defined.
+
+        Raises:
+            SimulationError: one is missing, unknown or frozen.
+        """
+        known, found = {name_key(a.name): a for a in self.assumptions}, dict[str, str]()
+        for name in names:
+            assumption = known.get(name_key(name))
+            if assumption is None:
+                hint = f"choose from {', '.join(repr(a.name) for a in self.live)}"
+                raise SimulationError(f"there is no assumption {name!r}", hint=hint)
+            if assumption.frozen:
+                raise SimulationError(f"the assumption {name!r} is frozen", hint="it is held at its cell's own value")
+            found[name] = assumption.name
+        if missing := [a.name for a in self.live if a.name not in found.values()]:
+            raise SimulationError(f"no values for the assumption {missing[0]!r}", hint="give every live assumption")
+        return found
+
+    def program(self, engine: str) -> Program:
+        """The filters and forecasts, compiled for an engine once.
+
+        Raises:
+            SimulationError: there is no such engine, or a library that it needs is missing.
+            FormulaError: it has no such formulas.
+        """
+        if engine not in ENGINES:
+            raise SimulationError(f"there is no engine {engine!r}", hint=f"choose one of {', '.join(ENGINES)}")
+        row, known, ends = ENGINES[engine], self._programs.get(engine), self._ends
+        if known is not None and known.ends != ends:
+            ends = _hull(known.ends, ends)
+        if known is None or (row.bounded and known.ends != ends):
+            parts = self.lowering, self.filter_targets, self.answer_targets, self.fallible
+            more = {"bounds": NodeBounds(self.lowering.dag, ends)} if row.bounded else {}
+            with paused_collection():
+                known = self._programs[engine] = _Compiled(self._filtering(row.load()(*parts, **more)), ends)
+        return known.program
+
+    def evaluator(self, targets: Sequence[Target], block: int) -> Evaluator:
+        """What computes such targets too, all of them in every trial, for blocks of up to `block` trials."""
+        return NumpyProgram.of(self.lowering, targets, [], self.fallible).evaluator(block)
+
+    def sampler(
+        self,
+        seed: int,
+        block: int,
+        engine: str = "numpy",
+        plan: SamplingPlan | None = None,
+        filler: Filler | None = None,
+    ) -> Sampler:
+        """The draws, block by block; for one thread. They are the same for every engine; by default independent.
+
+        With a filler, its uniforms are taken instead of the seed's.
+        """
+        draws = self.draws.__getitem__
+        stages = [DrawStage(tuple(map(draws, names)), dynamic=i > 0) for i, names in enumerate(self.needed.stages)]
+        parameters = [dynamic_parameters(stage.draws, self.lowering, block) for stage in stages[1:]]
+        return Sampler(seed, stages, self.groups, parameters, block, plan, filler or ENGINES[engine].filler)
+
+    def quantiles(self, probabilities: ArrayLike) -> dict[str, NDArray[np.float64]]:
+        """The quantiles of every live assumption, before filtering and whatever it is correlated with.
+
+        Where parameters vary, they are those with all other assumptions at their base values, or at their medians where
+        they have none.
+
+        Args:
+            probabilities: `(q,)`, between 0 and 1.
+
+        Returns:
+            Name of the assumption -> `(q,)`; NaN where the parameters are not a distribution.
+        """
+        wanted = np.atleast_1d(np.asarray(probabilities, np.float64))
+        held: dict[str, NDArray[np.float64]] = {}
+        found: dict[str, NDArray[np.float64]] = {}
+        for number, names in enumerate(self.needed.stages):
+            varying: Mapping[Cell, NDArray[np.float64]] = {}
+            if number:  # no chance: its parameters are numbers
+                varying = dynamic_parameters([self.draws[name] for name in names], self.lowering, 1)(held, 1)
+            for name in (name for name in names if name in self.bases):
+                values, base = np.append(wanted, 0.5), self.bases[name]
+                values = self.draws[name].percentiles(values, varying)
+                found[name] = values[:-1]
+                held[name] = values[-1:] if base is None else np.full(1, base)
+        return found
+
+    def program_of(self, filters: Sequence[Target]) -> Program:
+        """Other targets instead of the filters, and the forecasts, compiled for the engine `numpy`."""
+        return self._filtering(NumpyProgram.of(self.lowering, filters, self.answer_targets, self.fallible))
+
+    def _filtering(self, program: Program) -> Program:
+        """The program that discards trials of forecasts with filters of their own, where there are any."""
+        if not self.forecast_filters:
+            return program
+        return FilteringProgram(program, filters_by_forecast(self.forecasts, self.forecast_filters))
+
+    def filtered(self, evaluator: Evaluator) -> Evaluator:
+        """An evaluator of the targets of answers that discards trials of forecasts with filters of their own."""
+        if not self.forecast_filters:
+            return evaluator
+        return FilteringEvaluator(evaluator, filters_by_forecast(self.forecasts, self.forecast_filters))
+
+    def check_program(self) -> Program:
+        """The cells of the checks as filters, a function of the live assumptions; others stand at their base values."""
+        assert self._checks is not None, "the workbook has no checks"
+        targets = [Target(check.cell, check.cell) for check in self.checks]
+        return NumpyProgram.of(self._checks, targets, [], self.fallible)
+
+    @property
+    def checked(self) -> tuple[Assumption, ...]:
+        """The live assumptions that the checks need."""
+        reached = frozenset() if self._checks is None else self._checks.graph.reached
+        return tuple(a for a in self.live if a.cell in reached)
+
+    @property
+    def filter_targets(self) -> list[Target]:
+        """What the filters ask, 1 where it holds."""
+        return [Target(filter_condition(filter_), filter_.cell) for filter_ in self.filters]
+
+    @property
+    def _forecast_targets(self) -> list[Target]:
+        return [Target(forecast.cell, forecast.cell) for forecast in self.forecasts]
+
+    @property
+    def answer_targets(self) -> list[Target]:
+        """The forecasts, and what their own filters ask."""
+        return [*self._forecast_targets, *conditions_of(self.forecast_filters)]
+
+    def _check_targets(self) -> None:
+        """Lower every target once, so that a fault is reported when the workbook is loaded."""
+        for target in (*self.filter_targets, *self.answer_targets):
+            self.lowering.target(target)

@@ -1,0 +1,266 @@
+"""A model as a landscape over independent standard normals: how far a point is from being an accepted trial.
+
+Each drawn assumption has a normal, whatever its distribution: its uniform is what the normal distribution leaves below.
+Correlations, cutoffs, whole numbers and parameters that vary follow from the uniforms, as in any run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.engine.engine import Column
+from xlmc.montecarlo.model.needed import filter_condition
+from xlmc.montecarlo.rare.shortfall import Leaf, Shortfall, leaves, lengths, measure, shortfall
+from xlmc.montecarlo.rare.splitting import Distance
+from xlmc.montecarlo.rare.ways import ways_of
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.sampling.streams import Stream
+
+__all__ = ["OUTSIDE", "Drawing", "GivenUniforms", "Landscape", "points_of", "uniforms_of"]
+
+Floats = NDArray[np.float64]
+
+SCALING_TRIALS: Final = 16_384
+"""Draws whose distances, the median of each, all distances are measured by."""
+
+OUTSIDE: Final = 1e3
+"""A number above the logarithm of any distance."""
+
+_LARGEST: Final = 1.0 - 2.0**-53
+_LEAST: Final = 2.0**-54
+
+
+def uniforms_of(points: Floats) -> Floats:
+    """The uniforms, in [0, 1), of standard normals."""
+    from scipy.special import ndtr
+
+    return np.asarray(np.minimum(ndtr(points), _LARGEST))
+
+
+def points_of(uniforms: Floats) -> Floats:
+    """The standard normals of uniforms."""
+    from scipy.special import ndtri
+
+    return np.asarray(ndtri(np.maximum(uniforms, _LEAST)))
+
+
+class GivenUniforms:
+    """Uniforms that are given, instead of a seed's streams.
+
+    Attributes:
+        uniforms: (n, d) to draw from next; trial `start` of a block takes row `start`.
+    """
+
+    def __init__(self) -> None:
+        self.uniforms = np.empty((0, 0))
+
+    def filler(
+        self, _streams: Sequence[Stream], maps: Sequence[tuple[float, float]], rows: Floats
+    ) -> Callable[[int], None]:
+        """See `sampling.draws.Filler`."""
+
+        def fill(start: int) -> None:
+            given = self.uniforms[start : start + rows.shape[1]]
+            for row, column, (offset, factor) in zip(rows, given.T, maps, strict=True):
+                row[: len(given)] = offset + factor * column
+                row[len(given) :] = offset + factor * 0.5  # a block is drawn whole, and cut
+
+        return fill
+
+
+class Drawing:
+    """Draws of the assumptions at given uniforms; for one thread.
+
+    Attributes:
+        block: trials at a time, at most.
+        row_of: name of an assumption -> its row among the uniforms.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self.block = model.program("numpy").largest_block
+        self._given = GivenUniforms()
+        self._sampler = model.sampler(0, self.block, filler=self._given.filler)
+        self.row_of = self._sampler.row_of
+        self._fallible = model.fallible
+
+    def draw_at(self, uniforms: Floats) -> tuple[dict[str, Floats], int, NDArray[np.bool_]]:
+        """The draws at (n, d) uniforms, up to a block of them, how many they are, and where none is an error."""
+        self._given.uniforms = uniforms
+        n = len(uniforms)
+        draws = {name: values[:n] for name, values in self._sampler.draw(0).items()}
+        valid = np.ones(n, bool)
+        for name in self._fallible:
+            valid &= ~np.isnan(draws[name])
+        return draws, n, valid
+
+
+class Landscape:
+    """For one thread. What is asked of points is asked of their uniforms by the methods that end in `_at`.
+
+    Args:
+        model: with at least one filter and one drawn assumption.
+        random: for the draws that the distances are scaled by.
+
+    Attributes:
+        dimensions: of its points.
+        evaluations: trials evaluated so far.
+        lost: of them, those in which a filter or a draw is an error.
+    """
+
+    def __init__(self, model: Model, random: np.random.Generator) -> None:
+        formulas = model.needed.graph.formulas
+        self.dimensions = len(model.draws)
+        self._filters = [shortfall(filter_condition(f), f.cell, formulas) for f in model.filters]
+        self._ways = ways_of(model, self._filters)
+        gates = [gate for way in self._ways for gate in way]
+        self._leaves = list(dict.fromkeys(leaf for each in (*self._filters, *gates) for leaf in leaves(each)))
+        targets = [*model.filter_targets, *(leaf.holds for leaf in self._leaves)]
+        gauged = [leaf for leaf in self._leaves if leaf.gap is not None]
+        self._gaps = {leaf: len(targets) + i for i, leaf in enumerate(gauged)}
+        targets += [leaf.gap for leaf in self._gaps if leaf.gap is not None]
+        self._drawing = Drawing(model)
+        self._block = self._drawing.block
+        self._evaluator = model.evaluator(targets, self._block)
+        self._deciding = model.program("numpy").evaluator(self._block)
+        self.evaluations = self.lost = 0
+        self._scales = self._usual(uniforms_of(random.standard_normal((SCALING_TRIALS, self.dimensions))))
+
+    @property
+    def asked(self) -> Sequence[Shortfall]:
+        """What the filters ask."""
+        return self._filters
+
+    def uniforms(self, points: Floats) -> Floats:
+        """(n, d) of points: see `uniforms_of`."""
+        return uniforms_of(points)
+
+    def points(self, uniforms: Floats) -> Floats:
+        """(n, d) of uniforms: see `points_of`."""
+        return points_of(uniforms)
+
+    def distance(self, points: Floats) -> Floats:
+        """(n,) of (n, d) points: 0 where they are accepted, infinite where a filter cannot decide."""
+        return self.distance_at(uniforms_of(points))
+
+    def distance_at(self, uniforms: Floats) -> Floats:
+        """The same of (n, d) uniforms."""
+        parts = [np.maximum.reduce(list(each)) for each in self._of_filters(uniforms)]
+        return np.concatenate([*parts, np.empty(0)])
+
+    def accepts(self, points: Floats) -> NDArray[np.bool_]:
+        """(n,) whether they are accepted."""
+        return self.accepts_at(uniforms_of(points))
+
+    def accepts_at(self, uniforms: Floats) -> NDArray[np.bool_]:
+        """The same of (n, d) uniforms."""
+        parts = [np.empty(0, bool)]
+        for start in range(0, len(uniforms), self._block):
+            draws, n, accepted = self._drawing.draw_at(uniforms[start : start + self._block])
+            columns = self._deciding.filters(draws, n)
+            self._count(columns, ~accepted)
+            for column in columns:
+                accepted &= column.values != 0
+                if column.codes is not None:
+                    accepted &= column.codes == 0
+            parts.append(accepted)
+        return np.concatenate(parts)
+
+    def by_filter(self, points: Floats) -> list[Floats]:
+        """For each filter, (n,) how far points are from what it asks."""
+        return self.by_filter_at(uniforms_of(points))
+
+    def by_filter_at(self, uniforms: Floats) -> list[Floats]:
+        """The same of (n, d) uniforms."""
+        return [np.concatenate(parts) for parts in zip(*self._of_filters(uniforms), strict=True)]
+
+    def _of_filters(self, uniforms: Floats) -> Iterator[list[Floats]]:
+        for columns, invalid in self._columns(uniforms):
+            yield self._asked(columns, invalid, self._scaled(columns))
+
+    def _scaled(self, columns: Sequence[Column]) -> dict[Leaf, Floats]:
+        return {leaf: found / self._scales[leaf] for leaf, found in self._lengths(columns).items()}
+
+    def _asked(
+        self, columns: Sequence[Column], invalid: NDArray[np.bool_], scaled: Mapping[Leaf, Floats]
+    ) -> list[Floats]:
+        """For each filter, (n,) how far a block's trials are from what it asks."""
+        return [
+            _exact(measure(each, scaled), column, invalid) for each, column in zip(self._filters, columns, strict=False)
+        ]
+
+    @property
+    def ways(self) -> list[Distance]:
+        """The distances of each way to be accepted, 0 where a trial is accepted in this way; together they are all."""
+        return [partial(_of_points, each) for each in self.ways_at]
+
+    @property
+    def ways_at(self) -> list[Distance]:
+        """The same of (n, d) uniforms."""
+        if len(self._ways) < 2:
+            return [self.distance_at]
+        return [partial(self._in_way, way) for way in self._ways]
+
+    def _in_way(self, way: Sequence[Shortfall], uniforms: Floats) -> Floats:
+        """(n,) the distance in a way; outside of it, the distance from that way, and above any within."""
+        parts = [np.empty(0)]
+        for columns, invalid in self._columns(uniforms):
+            scaled = self._scaled(columns)
+            within = np.log1p(np.maximum.reduce(self._asked(columns, invalid, scaled)))
+            outside = np.maximum.reduce([measure(gate, scaled) for gate in way])
+            parts.append(np.where(outside > 0.0, OUTSIDE + np.log1p(outside), within))
+        return np.concatenate(parts)
+
+    def _columns(self, uniforms: Floats) -> Iterator[tuple[list[Column], NDArray[np.bool_]]]:
+        """Block by block, every target, and where a draw is an error."""
+        for start in range(0, len(uniforms), self._block):
+            draws, n, valid = self._drawing.draw_at(uniforms[start : start + self._block])
+            columns = self._evaluator.filters(draws, n)
+            self._count(columns[: len(self._filters)], ~valid)
+            yield columns, ~valid
+
+    def _count(self, filters: Sequence[Column], invalid: NDArray[np.bool_]) -> None:
+        lost = invalid.copy()
+        for column in filters:
+            if column.codes is not None:
+                lost |= column.codes > 0
+        self.evaluations += lost.size
+        self.lost += int(np.count_nonzero(lost))
+
+    def _lengths(self, columns: Sequence[Column]) -> dict[Leaf, Floats]:
+        first = len(self._filters)
+        return {
+            leaf: lengths(columns[first + i], columns[self._gaps[leaf]] if leaf in self._gaps else None)
+            for i, leaf in enumerate(self._leaves)
+        }
+
+    def _usual(self, uniforms: Floats) -> dict[Leaf, float]:
+        """The median length of every comparison where it fails."""
+        parts = [list(self._lengths(columns).values()) for columns, _ in self._columns(uniforms)]
+        found = [_median(np.concatenate(each)) for each in zip(*parts, strict=True)]
+        return dict(zip(self._leaves, found, strict=True))
+
+
+def _of_points(distance: Distance, points: Floats) -> Floats:
+    return distance(uniforms_of(points))
+
+
+def _median(found: Floats) -> float:
+    failing = found[(found > 0.0) & np.isfinite(found)]
+    return float(np.median(failing)) if failing.size else 1.0
+
+
+def _exact(found: Floats, column: Column, invalid: NDArray[np.bool_]) -> Floats:
+    """What the filter itself says has the last word."""
+    holds = column.values != 0
+    found = np.where(holds, 0.0, np.maximum(found, np.finfo(np.float64).tiny))
+    if column.codes is not None:
+        found[column.codes > 0] = np.inf
+    found[invalid] = np.inf
+    return found

@@ -1,0 +1,294 @@
+"""From a model to accepted trials where these are rare: the search, its trials as blocks, and the account of it."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.montecarlo.loop.blocks import Block, ModelRunner, Task
+from xlmc.montecarlo.rare.account import RareAccount
+from xlmc.montecarlo.rare.equalising import Accepts, Equalised, equalise
+from xlmc.montecarlo.rare.landscape import GivenUniforms, Landscape
+from xlmc.montecarlo.rare.layered import Ground, Layered, ground_of
+from xlmc.montecarlo.rare.learning import Learned, Round, Say, count_on, learn, learn_again, search_on
+from xlmc.montecarlo.rare.splitting import Distance
+from xlmc.montecarlo.rare.strays import Evidence, Tempered, plain_assumptions, wide_assumptions
+from xlmc.montecarlo.sampling.sampling_methods import METHODS
+from xlmc.montecarlo.statistics.estimate import Estimate, with_relative_error
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.definitions.definitions import Settings
+    from xlmc.montecarlo.model.model import Model
+
+__all__ = ["Found", "Search", "accepted_blocks", "find", "plain_uniforms", "search"]
+
+_AGAIN: Final = 3
+"""Times that a proposal is learnt anew because a trial was much heavier than any known."""
+
+_SURVEY: Final = 65_536
+"""Trials from the widened assumptions, before and after."""
+
+_BATCH: Final = 8_192
+"""Trials of a survey that are drawn at a time."""
+
+_LOOKED_AT: Final = 32
+"""A survey takes at most one in this many of the limit's trials."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Found:
+    """What came of it.
+
+    Attributes:
+        learned: what the search found.
+        used: the round whose proposal the trials come from; None where there is none to draw from.
+        equalised: the trials; None likewise.
+        checked: trials that were drawn from the widened assumptions afterwards.
+        strays: accepted trials of other origin that the proposal hardly ever comes to.
+        evaluations: trials that all this took.
+    """
+
+    learned: Learned
+    used: Round | None
+    equalised: Equalised | None
+    evaluations: int
+    checked: int = 0
+    strays: Evidence | None = None
+
+
+def find(
+    distance: Distance,
+    accepts: Accepts,
+    dimensions: int,
+    wanted: int,
+    most: int,
+    learning: np.random.Generator,
+    drawing: np.random.Generator,
+    say: Say = lambda _: None,
+    plain: Sequence[Evidence] = (),
+    ways: Sequence[Distance] = (),
+) -> Found:
+    """Draw `wanted` accepted trials of equal weight.
+
+    Args:
+        distance: 0 where a point of `dimensions` standard normals is accepted.
+        accepts: where that is so; it may be faster.
+        dimensions: of the points.
+        wanted: trials.
+        most: evaluations, of which learning takes what it needs.
+        learning: random numbers to learn with.
+        drawing: others, to draw the trials with: what they come from must not have served to learn.
+        say: called with the evaluations so far.
+        plain: trials from before the search.
+        ways: see `learn`.
+    """
+    spread, checked, trials = wide_assumptions(dimensions), 0, min(_SURVEY, most // _LOOKED_AT)
+    first = _survey(accepts, spread, trials, learning)
+    before = first.trials
+    learned = learn(distance, dimensions, learning, count_on(before, say), most - before, (*plain, first), ways)
+    for tries_left in range(_AGAIN, -1, -1):
+        used, done = learned.best, learned.evaluations + before
+        if used is None or wanted > used.rate * (most - done):
+            return Found(learned, None, None, done, checked)
+        drawn = equalise(
+            accepts,
+            used.proposal,
+            used.envelope,
+            learned.unevenness(used),
+            wanted,
+            most - done,
+            drawing,
+            count_on(done, say),
+            surprises=tries_left > 0,
+        )
+        if drawn.surprise is not None:
+            before += drawn.proposals
+            learned = learn_again(distance, learned, drawn.surprise, learning, count_on(before, say), most - before)
+            continue
+        check = _survey(accepts, spread, trials, drawing)
+        checked += check.trials
+        missed = learned.strays(used.proposal, (*plain, check))
+        if not tries_left or not missed.tells(drawn.acceptance.value):
+            break
+        before += drawn.proposals + check.trials
+        learned = search_on(distance, learned, missed, learning, count_on(before, say), most - before)
+    return Found(learned, used, drawn, done + drawn.proposals + check.trials, checked, missed)
+
+
+def _survey(accepts: Accepts, spread: Tempered, trials: int, random: np.random.Generator) -> Evidence:
+    """Trials from the widened assumptions."""
+    found = list[Floats]()
+    for start in range(0, trials, _BATCH):
+        points = spread.draw(min(_BATCH, trials - start), random)
+        found.append(points[accepts(points)])
+    return Evidence.of(spread, trials, np.concatenate(found))
+
+
+Floats = NDArray[np.float64]
+
+_PURPOSE: Final = "rare acceptance: "
+
+_PART: Final = 16
+_LEAST_PART: Final = 1 << 25
+"""The part of the limit of trials that a search may take, and the trials that it may take in any case: what is
+described well needs far less, and what is not is known by then."""
+
+_MOST_PLAIN: Final = 4_096
+"""Accepted plain trials that are looked at: the first of them."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Search:
+    """What came of a search.
+
+    Attributes:
+        uniforms: (m, d) of accepted trials of equal weight; none where it failed.
+        account: None likewise.
+        failure: why there are none, in words without a full stop.
+        evaluations: trials that it took.
+    """
+
+    uniforms: Floats
+    account: RareAccount | None
+    failure: str
+    evaluations: int
+
+
+def search(
+    model: Model, settings: Settings, plain: int, accepted: NDArray[np.int64], say: Callable[[int], None]
+) -> Search:
+    """Look for as many accepted trials as the settings ask for; a pure function of the model and these.
+
+    Args:
+        model: with filters and drawn assumptions.
+        settings: of the run.
+        plain: trials that were run before, which count towards the limit.
+        accepted: (k,) the numbers of those among them that were accepted.
+        say: called with the evaluations so far.
+    """
+    learning, drawing = _random(settings.seed, "learning"), _random(settings.seed, "drawing")
+    landscape = ground_of(model, Landscape(model, learning), _random(settings.seed, "layers"))
+    wanted, most = settings.stopping.accepted or 0, _most(settings.trials, plain)
+    independent = METHODS[settings.sampling].independent
+    evidence = [_plain(model, settings, plain, accepted, landscape)] if independent else []
+    found = find(
+        landscape.distance,
+        landscape.accepts,
+        landscape.dimensions,
+        wanted,
+        most,
+        learning,
+        drawing,
+        say,
+        evidence,
+        landscape.ways,
+    )
+    drawn = found.equalised
+    if drawn is None or found.used is None or len(drawn.points) < wanted:
+        failure = _failure(model, landscape, found, wanted, settings.trials - plain - most)
+        return Search(np.empty((0, landscape.dimensions)), None, failure, landscape.evaluations)
+    proposal = found.used.proposal
+    account = RareAccount(
+        evaluations=plain + landscape.evaluations,
+        learning=landscape.evaluations - drawn.proposals - found.checked,
+        proposals=drawn.proposals,
+        proposals_accepted=drawn.accepted,
+        fresh=drawn.fresh,
+        kept=len(drawn.points),
+        acceptance=_acceptance(drawn, found.strays),
+        effective=drawn.effective,
+        size=drawn.size,
+        searched=found.learned.searched,
+        explored=found.learned.explored,
+        levels=max(len(each.levels) for each in found.learned.descents),
+        components=proposal.mixture.shares.size,
+        directions=proposal.directions,
+        dimensions=landscape.dimensions,
+        lost=landscape.lost,
+        plain=plain,
+        plain_accepted=accepted.size,
+        checked=found.checked,
+        ways=len(landscape.ways),
+        missed=0.0 if found.strays is None else found.strays.mass,
+        solved=tuple(layer.name for layer in landscape.layers) if isinstance(landscape, Layered) else (),
+    )
+    return Search(landscape.uniforms(drawn.points), account, "", landscape.evaluations)
+
+
+def _most(limit: int, plain: int) -> int:
+    """Trials that a search may take."""
+    return min(limit - plain, max(limit // _PART, _LEAST_PART))
+
+
+def _plain(model: Model, settings: Settings, trials: int, accepted: NDArray[np.int64], landscape: Ground) -> Evidence:
+    """The plain trials, or the first of them where many were accepted."""
+    few = accepted[:_MOST_PLAIN]
+    counted = int(few[-1]) + 1 if few.size < accepted.size else trials
+    points = landscape.points(plain_uniforms(model, settings.seed, few))
+    return Evidence.of(plain_assumptions(landscape.dimensions), counted, points[landscape.accepts(points)])
+
+
+def _acceptance(drawn: Equalised, strays: Evidence | None) -> Estimate:
+    """The probability of acceptance, with the mass of what the proposal hardly ever comes to as a further error."""
+    found = drawn.acceptance
+    if strays is None or not len(strays.points) or found.error is None or found.n is None:
+        return found
+    error = math.hypot(found.error, strays.mass)
+    return with_relative_error(found.value, error, drawn.effective - 1.0, 0.95, found.n)
+
+
+def _random(seed: int, purpose: str) -> np.random.Generator:
+    """Random numbers that no other part of a run uses."""
+    words = np.frombuffer(hashlib.sha256(f"{_PURPOSE}{purpose}".encode()).digest(), dtype="<u4").tolist()
+    return np.random.Generator(np.random.PCG64DXSM(np.random.SeedSequence(seed, spawn_key=words)))
+
+
+def _failure(model: Model, landscape: Ground, found: Found, wanted: int, left: int) -> str:
+    """Why there are no trials, in words."""
+    reached = [each for each in found.learned.descents if each.reached]
+    if not reached:
+        nearest = np.stack([each.nearest for each in found.learned.descents])
+        index = int(np.argmin(landscape.distance(nearest)))
+        lengths = landscape.by_filter(nearest[index : index + 1])
+        names = [repr(f.name) for f, (length,) in zip(model.filters, lengths, strict=True) if length > 0.0]
+        return (
+            f"a search of {found.evaluations:,} trials found none that the filters accept: the nearest one still "
+            f"fails {' and '.join(names)}, so the filters contradict each other or the assumptions, or accept less "
+            "than one trial in 10¹⁵"
+        )
+    share = f"about {found.learned.probability:.1g} of all trials are accepted"
+    if found.used is None and found.learned.best is None:
+        return f"a search of {found.evaluations:,} trials found that {share}, but could not describe where they lie"
+    more = f"the part of the limit (-n) that a search may take, one in {_PART}" if left else "the limit (-n)"
+    return (
+        f"a search of {found.evaluations:,} trials found that {share}, described badly where they lie, and gave up, "
+        f"as {wanted:,} of them would take more than {more},"
+    )
+
+
+def accepted_blocks(model: Model, uniforms: Floats, block: int, wants_inputs: Callable[[], bool]) -> Iterator[Block]:
+    """The trials at accepted uniforms, evaluated and filtered like any others: no filter is taken for granted."""
+    given = GivenUniforms()
+    given.uniforms = uniforms
+    sampler = model.sampler(0, block, filler=given.filler)
+    evaluator = model.program("numpy").evaluator(block)
+    runner = ModelRunner(sampler, evaluator, block, len(model.forecasts), model.fallible)
+    for start in range(0, len(uniforms), block):
+        count = min(block, len(uniforms) - start)
+        yield runner.run(Task(start, count, prior=False, inputs=wants_inputs()))
+
+
+def plain_uniforms(model: Model, seed: int, accepted: NDArray[np.int64]) -> Floats:
+    """(k, d) the uniforms of plain trials with these numbers, (k,)."""
+    streams = model.sampler(seed, 1).streams
+    uniforms = np.empty((len(streams), accepted.size))
+    for row, stream in zip(uniforms, streams, strict=True):
+        for index, trial in enumerate(accepted.tolist()):
+            stream.uniforms(trial, row[index : index + 1])
+    return uniforms.T

@@ -1,0 +1,1 @@
+"""A run from its model to its results."""

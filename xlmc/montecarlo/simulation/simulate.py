@@ -1,0 +1,340 @@
+"""Runs a model: its blocks over threads, processes or a cluster, put together in block order."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Callable, Generator, Hashable, Iterator, Mapping
+from contextlib import closing
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.engine.engine import Room
+from xlmc.errors import SimulationError
+from xlmc.montecarlo.columns import ColumnStore
+from xlmc.montecarlo.definitions.stopping import LIMIT, MOST_TRIALS, NO_GOAL, Stopping
+from xlmc.montecarlo.diagnostics.checking import LEAST_CHECKED
+from xlmc.montecarlo.diagnostics.weighing import chosen_way, weighing
+from xlmc.montecarlo.loop.blocks import Block, FilterTally, ModelRunner, Task
+from xlmc.montecarlo.loop.disk_needed import disk_needed
+from xlmc.montecarlo.loop.scheduling.run_spec import model_runner
+from xlmc.montecarlo.loop.scheduling.worker_pool import WorkerPool
+from xlmc.montecarlo.loop.sobol_order import plan_sampling
+from xlmc.montecarlo.loop.stopping import (
+    Interruption,
+    Progress,
+    ProgressTracker,
+    Stopped,
+    Watch,
+    chosen_rule,
+    may_end_early,
+    refuse_other_sampling,
+)
+from xlmc.montecarlo.model.forecast_filters import discards_by_name
+from xlmc.montecarlo.rare.rare_switch import rare_switch
+from xlmc.montecarlo.sampling.sampling_methods import METHODS
+from xlmc.montecarlo.simulation.simulation import KEPT_INPUTS, Simulation
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.definitions.definitions import Settings
+    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.rare.search import Search
+    from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
+
+__all__ = ["BLOCK", "PRIOR_TRIALS", "OnProgress", "simulate"]
+
+BLOCK: Final = 32_768
+"""Trials evaluated at once, where the engine does not want fewer: enough that the calls cost little beside the
+arithmetic, few enough for the cache."""
+
+_TOGETHER: Final = 2_048
+"""Short runs are computed in multiples of so many trials: a chunk of native code, and many more than a processor takes
+in one instruction, so that the last bit of a trial does not depend on how many follow it."""
+
+PRIOR_TRIALS: Final = 65_536
+"""Trials whose draws are all kept, accepted or not, to show the prior."""
+
+OnProgress = Callable[[Progress], None]
+
+
+def simulate(
+    model: Model,
+    *,
+    trials: int | None = None,
+    seed: int | None = None,
+    stopping: Stopping = NO_GOAL,
+    engine: str | None = None,
+    sampling: str | None = None,
+    scenarios: bool = False,
+    jobs: int = 1,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    keep_inputs: int | None = KEPT_INPUTS,
+    keep_interrupted: bool = False,
+    progress: OnProgress | None = None,
+    tell: Callable[[str], None] | None = None,
+    evidence: str | None = "rejection",
+    own_runner: ModelRunner | None = None,
+    pieces: int = BLOCK,
+) -> Simulation:
+    """Run a model; see `Model.simulate`.
+
+    With `evidence`, one of `EVIDENCE_WAYS`, the workbook is not asked how evidence is used; None asks it. A runner that
+    is given, of this model, seed and sampling method, runs the blocks. A run of a given number of trials is computed in
+    pieces of at most `pieces` trials, a power of two, for who wants `progress` more often: its numbers are the same.
+    """
+    settings = _settings(model, trials, seed, engine, sampling, stopping)
+    settings = replace(settings, scenarios=scenarios)
+    settings = replace(settings, evidence=settings.evidence if evidence is None else evidence)
+    settings = replace(settings, evidence=chosen_way(model, settings))
+    if settings.evidence == "weights":
+        model, keep_inputs = weighing(model), None  # weights are computed from the draws
+    largest = model.program(settings.engine).largest_block if own_runner is None else own_runner.block
+    plan = plan_sampling(model, settings)
+    rule, looks = chosen_rule(settings.stopping, model.forecasts), rare_switch(model, settings)
+    watch = Watch(rule, plan.trials, settings.stopping.seconds, time.monotonic)
+    teller = None if progress is None else ProgressTracker([forecast.name for forecast in model.forecasts])
+    pool = WorkerPool(jobs, scheduler, workers)
+    if keep_inputs is not None and keep_inputs < 0:
+        raise SimulationError(
+            f"the draws of {keep_inputs} trials were asked for", hint="give 0 or more, or None for all"
+        )
+    block = min(BLOCK, largest)
+    piece = block if settings.stopping.asked else min(block, pieces)
+    computed = min(piece, -(-plan.trials // _TOGETHER) * _TOGETHER)  # a short run computes no whole block
+    most_inputs = plan.trials if keep_inputs is None else keep_inputs
+    if model.checks:
+        most_inputs = max(most_inputs, LEAST_CHECKED)
+    gathered = _Gathered(model, block, piece, most_inputs, plan.trials)
+
+    def runner() -> ModelRunner:
+        if own_runner is not None:
+            return own_runner
+        return model_runner(model, model.program(settings.engine), settings.engine, settings.seed, computed, plan)
+
+    def blocks_of(tasks: Iterator[Task]) -> Generator[Block, None, None]:
+        if own_runner is not None:
+            return (own_runner.borrow(task, gathered.room) for task in tasks)
+        return pool.blocks(model, model.program(settings.engine), settings, plan, computed, tasks, gathered.room)
+
+    needed = disk_needed(model, settings.stopping, plan.trials, piece, most_inputs, runner)
+    if needed is not None:
+        needed.check()
+        if tell is not None:
+            tell(needed.sentence())
+
+    def task(start: int, trials: int) -> Task:
+        return Task(start, trials, start < PRIOR_TRIALS, gathered.wants_inputs)
+
+    tasks = (task(start, min(piece, plan.trials - start)) for start in range(0, plan.trials, piece))
+    stopped: Stopped | None = None
+    with Interruption(wanted=keep_interrupted and may_end_early(settings.sampling)) as interruption:
+        with closing(blocks_of(tasks)) as blocks:
+            while stopped is None and not looks.should_search(gathered.trials, gathered.accepted):
+                finished = next(blocks)
+                counting = finished.trials if looks.certain else watch.counting(finished)
+                if counting < finished.trials:
+                    finished = runner().run(task(gathered.trials, counting))
+                gathered.add(finished)
+                interruption.keeping = True
+                stopped = watch.after(finished, gathered.forecast, interrupted=interruption.asked)
+                if looks.certain and stopped is not None and stopped.by == "accepted":
+                    stopped = None
+                if progress is not None and teller is not None:
+                    progress(teller.after(finished, watch.share))
+        if stopped is not None:
+            return gathered.simulation(settings, plan, stopped)
+        found = _searched(model, settings, gathered.trials, gathered.accepted_trials, watch, interruption, progress)
+    if isinstance(found, Stopped):
+        return gathered.simulation(settings, plan, found)
+    return _with_search(gathered.simulation(settings, plan, watch.goal_reached), found, most_inputs)
+
+
+class _EndedError(Exception):
+    """Ctrl-C or the time limit stopped a search."""
+
+    def __init__(self, stopped: Stopped) -> None:
+        super().__init__(stopped.because)
+        self.stopped = stopped
+
+
+def _searched(
+    model: Model,
+    settings: Settings,
+    plain: int,
+    accepted: NDArray[np.int64],
+    watch: Watch,
+    interruption: Interruption,
+    progress: OnProgress | None,
+) -> Search | Stopped:
+    """Accepted trials from a search, or what ended it before it had any."""
+
+    def say(evaluations: int) -> None:
+        if progress is not None:
+            progress(Progress(plain + evaluations, 0, watch.share, {}, searching=True))
+        ended = watch.meanwhile(interrupted=interruption.asked)
+        if ended is not None:
+            raise _EndedError(ended)
+
+    from xlmc.montecarlo.rare.search import search
+
+    try:
+        found = search(model, settings, plain, accepted, say)
+    except _EndedError as ended:
+        return ended.stopped
+    return found if found.account is not None else Stopped("search", found.failure, watch.goal_reached.goal)
+
+
+def _with_search(plain: Simulation, found: Search, most_inputs: int) -> Simulation:
+    """The run with the trials that were found, instead of those few that plain trials had left."""
+    from xlmc.montecarlo.rare.search import accepted_blocks
+
+    assert found.account is not None
+    model, block = plain.model, plain.model.program("numpy").largest_block
+    gathered = _Gathered(model, block, block, most_inputs, len(found.uniforms))
+    for each in accepted_blocks(model, found.uniforms, block, lambda: gathered.wants_inputs):
+        gathered.add(each)
+    drawn = gathered.simulation(plain.settings, plain.plan, plain.stopped)
+    return replace(
+        plain,
+        trial_index=drawn.trial_index,
+        inputs=drawn.inputs,
+        forecasts=drawn.forecasts,
+        faults=drawn.faults,
+        discards=drawn.discards,
+        rare=replace(found.account, kept=gathered.accepted, faulty=gathered.lost),
+    )
+
+
+def _settings(
+    model: Model,
+    trials: int | None,
+    seed: int | None,
+    engine: str | None,
+    sampling: str | None,
+    stopping: Stopping,
+) -> Settings:
+    given = {"trials": trials, "seed": seed, "engine": engine, "sampling": sampling}
+    settings = replace(model.definitions.settings, **{k: v for k, v in given.items() if v is not None})  # type: ignore[arg-type]
+    if trials is not None or stopping.has_goal:
+        settings = replace(settings, trials=LIMIT if trials is None else trials, stopping=stopping)
+    else:
+        own = settings.stopping
+        seconds = own.seconds if stopping.seconds is None else stopping.seconds
+        settings = replace(settings, stopping=replace(own, seconds=seconds, rare=stopping.rare or own.rare))
+    if settings.sampling not in METHODS:
+        message = f"there is no sampling method {settings.sampling!r}"
+        raise SimulationError(message, hint=f"choose one of {', '.join(METHODS)}")
+    refuse_other_sampling(settings.sampling, settings.stopping)
+    if not 1 <= settings.trials <= MOST_TRIALS:
+        raise SimulationError(f"{settings.trials} trials were asked for", hint=f"give 1 to {MOST_TRIALS:,}")
+    if settings.seed < 0:
+        raise SimulationError(f"the seed {settings.seed} is negative", hint="give a whole number from 0 up")
+    return settings
+
+
+class _Gathered:
+    """The blocks so far: the counts of all trials, and the columns of the accepted ones."""
+
+    def __init__(self, model: Model, block: int, piece: int, keep_inputs: int, trials: int) -> None:
+        self._model, self._block, self._piece, self._keep_inputs = model, block, piece, keep_inputs
+        real, whole = np.dtype(np.float64), np.dtype(np.int64)
+        self._inputs = {name: ("input", name) for name in model.draws}
+        self._prior = {name: ("prior", name) for name in model.draws}
+        self._forecasts = {f.name: ("forecast", number) for number, f in enumerate(model.forecasts)}
+        columns = (*self._inputs.values(), *self._prior.values(), *self._forecasts.values())
+        expected: dict[Hashable, int] = {("trial", 0): trials, **dict.fromkeys(self._forecasts.values(), trials)}
+        expected |= dict.fromkeys(self._inputs.values(), min(keep_inputs + piece, trials))
+        expected |= dict.fromkeys(self._prior.values(), min(PRIOR_TRIALS, trials))
+        types: dict[Hashable, np.dtype[Any]] = {("trial", 0): whole, **dict.fromkeys(columns, real)}
+        self._keeper = ColumnStore(types, expected, filled=not model.filters)
+        self._prior_trials, self._prior_is_inputs = 0, True
+        self._tally = FilterTally.empty(len(model.filters))
+        self._invalid: Counter[str] = Counter()
+        self._faults: list[Counter[str]] = [Counter() for _ in model.forecasts]
+        self._discards: list[Counter[int]] = [Counter() for _ in model.forecasts]
+        self.trials = self.accepted = self.lost = 0
+
+    @property
+    def wants_inputs(self) -> bool:
+        """Whether there are accepted trials still to come whose draws are kept."""
+        return self.accepted < self._keep_inputs
+
+    def add(self, block: Block) -> None:
+        self._keep(block)
+        self._tally.add(block.tally)
+        self._invalid.update(block.invalid)
+        for mine, theirs in zip(self._faults, block.faults, strict=True):
+            mine.update(theirs)
+        for discarded, more in zip(self._discards, block.discards, strict=False):
+            discarded.update(more)
+        self.trials += block.trials
+        self.accepted += block.accepted.size
+        self.lost += block.lost
+
+    def _keep(self, block: Block) -> None:
+        self._keeper.add(("trial", 0), block.accepted)
+        room = max(0, self._keep_inputs - self.accepted)
+        for name, values in block.draws.items():
+            self._keeper.add(("input", name), values[:room])
+        if block.prior is not None:
+            self._keep_prior(block, block.prior, room)
+        for number, values in enumerate(block.forecasts):
+            self._keeper.add(("forecast", number), values)
+        self._keeper.settle()
+
+    def _keep_prior(self, block: Block, prior: Mapping[str, NDArray[np.float64]], room: int) -> None:
+        """Keep the draws of all trials; as long as every trial is accepted they are the draws that are kept anyway."""
+        if self._prior_is_inputs and (prior is not block.draws or room < block.trials):
+            self._prior_is_inputs = False
+            if self._prior_trials:
+                for name, values in self._prior_columns(self._inputs).items():
+                    self._keeper.add(self._prior[name], values)
+        if not self._prior_is_inputs:
+            for name, values in prior.items():
+                self._keeper.add(("prior", name), values)
+        self._prior_trials += block.trials
+
+    def _prior_columns(self, keys: Mapping[str, Hashable]) -> Mapping[str, NDArray[np.float64]]:
+        return self._keeper.columns(keys, self._prior_trials)
+
+    def room(self) -> Room:
+        """The memory that the next block's columns go to."""
+        room, inputs = self._keeper.room, self._inputs.values() if self.wants_inputs else ()
+        return Room(
+            room(("trial", 0), self._piece),
+            {name: room((kind, name), self._piece) for kind, name in inputs},
+            [room(key, self._piece) for key in self._forecasts.values()],
+        )
+
+    @property
+    def accepted_trials(self) -> NDArray[np.int64]:
+        """`(m,)` the numbers of the accepted trials so far."""
+        return self._keeper.columns({"trial": ("trial", 0)})["trial"]
+
+    def forecast(self, number: int) -> NDArray[np.float64]:
+        """A forecast's accepted trials so far, `(m,)`, NaN where it has no number."""
+        return self._keeper.columns({"": ("forecast", number)})[""]
+
+    def simulation(self, settings: Settings, plan: SamplingPlan, stopped: Stopped) -> Simulation:
+        prior = self._inputs if self._prior_is_inputs else self._prior
+        return Simulation(
+            model=self._model,
+            settings=settings,
+            plan=plan,
+            block=self._block,
+            trials=self.trials,
+            trial_index=self.accepted_trials,
+            inputs=self._keeper.columns({a.name: self._inputs[a.name] for a in self._model.live}),
+            prior=self._prior_columns({a.name: prior[a.name] for a in self._model.live}),
+            forecasts=self._keeper.columns(self._forecasts),
+            faults={f.name: counts for f, counts in zip(self._model.forecasts, self._faults, strict=True)},
+            tally=self._tally,
+            invalid=self._invalid,
+            error_trials=self.lost,
+            discards=discards_by_name(self._model.forecasts, self._model.forecast_filters, self._discards),
+            stopped=stopped,
+        )

@@ -1,0 +1,375 @@
+"""The result of a run: accepted trials, counts, statistics."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.errors import Notice, SimulationError
+from xlmc.montecarlo import statistics
+from xlmc.montecarlo.columns import parts
+from xlmc.montecarlo.definitions.definitions import Settings
+from xlmc.montecarlo.diagnostics.agreement import Agreement, agreement
+from xlmc.montecarlo.diagnostics.cell_errors import Root, error_roots
+from xlmc.montecarlo.diagnostics.checking import CheckResult, check_results
+from xlmc.montecarlo.diagnostics.digit_watch import lost_digits
+from xlmc.montecarlo.diagnostics.directions import direction_notices
+from xlmc.montecarlo.diagnostics.result_cells import RunFacts, ShownResults, shown_results
+from xlmc.montecarlo.diagnostics.weighing import Weighting, weighting_of
+from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.loop.blocks import FilterTally
+from xlmc.montecarlo.loop.forecast_result import ForecastResult, Replicates, tail_notices
+from xlmc.montecarlo.loop.stopping import Stopped
+from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
+from xlmc.montecarlo.model.plain_words import list_of
+from xlmc.montecarlo.sampling.sampling_methods import METHODS
+from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
+from xlmc.montecarlo.statistics import Estimate
+from xlmc.montecarlo.statistics.sample import MOST_GROUPS
+
+if TYPE_CHECKING:
+    import pandas
+
+    from xlmc.excel.address import Cell
+    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.rare.account import RareAccount
+
+__all__ = [
+    "ERROR_SHARE",
+    "KEPT_INPUTS",
+    "TRIAL",
+    "ChangedFrom",
+    "Origin",
+    "Simulation",
+    "assumption_heading",
+    "forecast_heading",
+    "weight_heading",
+]
+
+ERROR_SHARE: Final = 0.001
+"""If a larger share of the trials is lost to errors, the answer must not be used as it is."""
+
+TRIAL: Final = "Trial"
+"""The heading of the trials' numbers in tables of trials."""
+
+KEPT_INPUTS: Final = 1 << 20
+"""Accepted trials whose draws are kept, unless asked otherwise: more than a sheet has rows."""
+
+LEAST_ACCEPTED: Final = 10
+"""Accepted trials for each replicate that errors come from, on average, if they are to be trusted: docs/sampling.md."""
+
+FEW: Final = 100
+"""Accepted trials below which the interval of a standard deviation may be too short: docs/stress.md."""
+
+Floats = NDArray[np.float64]
+
+_OF_FEW = (
+    "Intervals of percentiles and of shares hold with few trials too; those of the mean of a skewed forecast, of the "
+    "standard deviation, the skewness, the kurtosis and the coefficient of variation can then be too short: "
+    "--until-accepted 1000, say, goes on until there are more"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """The software and the processor of a saved run.
+
+    Attributes:
+        software: name -> version.
+        processor: what it was, for people and for comparing.
+    """
+
+    software: Mapping[str, str]
+    processor: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class ChangedFrom:
+    """The workbook that the run's own was made of, by typing a changed state into a copy of it.
+
+    Attributes:
+        name: of the workbook.
+        sha256: of its file.
+        changes: what differs from it, in words, one a phrase.
+    """
+
+    name: str
+    sha256: str
+    changes: tuple[str, ...]
+
+    @property
+    def sentence(self) -> str:
+        """What must be said before the answers."""
+        changed = "; ".join(self.changes)
+        return f"These are not results of {self.name} as it is, but of a copy with changes: {changed}."
+
+
+def _trials(count: int) -> str:
+    return "1 trial was" if count == 1 else f"{count:,} trials were"
+
+
+@dataclass(frozen=True, eq=False)
+class Simulation:
+    """A finished run. Of a large one the columns lie in temporary files, as read-only arrays, for as long as it lives.
+
+    Attributes:
+        model, settings, block: what it is a function of.
+        plan: the sampling method, and how it divides the trials into replicates.
+        trials: how many were run; where accepted ones are rare, drawn plainly, which the counts are of.
+        trial_index: `(m,)` the accepted ones, counted from 0; where they are rare, in the order they were drawn in.
+        inputs: assumption -> its accepted draws, `(m,)`, or of the first accepted trials where not all were asked for.
+        prior: assumption -> its draws before filtering, of the first trials.
+        forecasts: forecast -> `(m,)`, NaN where it has no number.
+        faults: forecast -> fault -> accepted trials in which it has no number.
+        tally: what the filters rejected.
+        invalid: assumption -> trials in which its parameters were no distribution.
+        error_trials: trials lost to errors: undecided by a filter, drawn from no distribution, or accepted without a
+            number in some forecast. Each counts once.
+        stopped: what ended it.
+        origin: where it was made, if it was saved and opened again; None for one that was made here.
+        discards: forecast with filters of its own -> filter -> accepted trials that it discards for it alone; a trial
+            that several discard counts for the first.
+        rare: where the accepted trials come from, where that is a learned proposal; None with plain trials.
+        changed_from: where its workbook is a changed copy of another one that a person knows; None elsewhere.
+    """
+
+    model: Model
+    settings: Settings
+    plan: SamplingPlan
+    block: int
+    trials: int
+    trial_index: NDArray[np.int64]
+    inputs: Mapping[str, Floats]
+    prior: Mapping[str, Floats]
+    forecasts: Mapping[str, Floats]
+    faults: Mapping[str, Counter[str]]
+    tally: FilterTally
+    invalid: Counter[str]
+    error_trials: int
+    stopped: Stopped = ALL_TRIALS
+    origin: Origin | None = None
+    rare: RareAccount | None = None
+    discards: Mapping[str, Counter[str]] = field(default_factory=dict)
+    changed_from: ChangedFrom | None = None
+
+    def __getitem__(self, name: str) -> ForecastResult:
+        """The result of a forecast, by name whatever its case.
+
+        Raises:
+            KeyError: there is no such forecast.
+        """
+        for definition in self.model.forecasts:
+            if name_key(definition.name) == name_key(name):
+                return self.results[definition.name]
+        raise KeyError(f"there is no forecast {name!r}; there are {', '.join(map(repr, self.forecasts))}")
+
+    def __repr__(self) -> str:
+        if self.rare is not None:
+            return f"<Simulation: {self.accepted} accepted trials, found in {self.rare.evaluations} evaluations>"
+        return f"<Simulation: {self.accepted} of {self.trials} trials accepted>"
+
+    @cached_property
+    def results(self) -> dict[str, ForecastResult]:
+        """Every forecast's result, in the order of the workbook."""
+        return {
+            f.name: ForecastResult(
+                f,
+                partial(self.forecasts.__getitem__, f.name),
+                self.faults[f.name],
+                lambda: self.replicate,
+                self.discards.get(f.name, Counter()),
+                lambda: None if self.weighting is None else self.weighting.weights,
+            )
+            for f in self.model.forecasts
+        }
+
+    @cached_property
+    def weighting(self) -> Weighting | None:
+        """The weights of the accepted trials; None where they count alike."""
+        return weighting_of(self.model, self.inputs)
+
+    @property
+    def replicate(self) -> Replicates | None:
+        """`(m,)` the replicate of each accepted trial; None where the trials themselves are independent."""
+        return self.plan.replicate_of(self.trial_index)
+
+    @property
+    def accepted(self) -> int:
+        return int(self.trial_index.size)
+
+    @property
+    def evaluated(self) -> int:
+        """Trials that were computed in all: the plain ones, and those of a search."""
+        return self.trials if self.rare is None else self.rare.evaluations
+
+    @property
+    def acceptance(self) -> Estimate:
+        """The share of accepted trials; the trials may have gone on until there were enough."""
+        if self.rare is not None:
+            return self.rare.acceptance
+        if self.stopped.by == "accepted":
+            return statistics.inverse_proportion(self.accepted, self.trials)
+        if not self.plan.size:
+            return statistics.proportion(self.accepted, self.trials)
+        sizes = np.full(-(-self.trials // self.plan.size), self.plan.size)
+        sizes[-1] -= sizes.sum() - self.trials
+        return statistics.replicated_proportion(self.accepted_by_replicate, sizes)
+
+    @cached_property
+    def accepted_by_replicate(self) -> Replicates:
+        """How many trials each replicate has accepted; of none where the trials themselves are independent."""
+        count = -(-self.trials // self.plan.size) if self.plan.size else 0
+        found = np.zeros(count, np.int64)
+        for part in parts(self.trial_index) if count else ():
+            found += np.bincount(part // self.plan.size, minlength=count)
+        return found
+
+    @property
+    def notices(self) -> tuple[Notice, ...]:
+        """What the person should know of the model and of this run."""
+        return (*self.model.notices, *self.notices_of_run)
+
+    @cached_property
+    def notices_of_run(self) -> tuple[Notice, ...]:
+        """What the person should know of this run alone."""
+        found: list[Notice] = []
+        effective = self.accepted if self.weighting is None else round(self.weighting.effective)
+        if not self.plan.replicates and 0 < effective < FEW:
+            few = f"only {_trials(self.accepted)} accepted" if self.weighting is None else ""
+            few = few or f"the accepted trials say as much as {effective} trials of equal weight"
+            found.append(Notice(f"{few[0].upper()}{few[1:]}. {_OF_FEW}"))
+        samples = {name: result.sample for name, result in self.results.items()}
+        found += [Notice(f"{each[0].upper()}{each[1:]}") for each in self.agreement.remarks] if self.agreement else []
+        found += direction_notices(self.results.values())
+        return (*found, *tail_notices(samples, METHODS[self.plan.method].name))
+
+    @property
+    def warnings(self) -> list[str]:
+        """Why the answer must not be used as it is; empty when it may be."""
+        found = []
+        if self.accepted == 0 and self.stopped.by != "search":
+            most = self.acceptance.interval
+            fewer = "" if most is None else f", or accept fewer than {most[1]:.2g} of the trials"
+            found.append(f"no trial was accepted: the filters contradict the assumptions{fewer}{self._by_itself}")
+        if not self.stopped.reached and not self.stopped.interrupted:
+            found.append(self.stopped.sentence)
+        if self.error_trials > ERROR_SHARE * self.trials:
+            share = self.error_trials / self.trials
+            found.append(f"{self.error_trials:,} trials ({share:.2%}) were lost to errors in cells")
+        failing = [warning for check in self.checks for warning in check.warnings]
+        if self.agreement is not None and self.agreement.conflicts:
+            failing.append(self.agreement.sentence)
+        rare = () if self.rare is None else self.rare.warnings
+        missing = [self.shown_results.warning] if self.shown_results.warning else []
+        return [*self.refused, *failing, *found, *self._sparse(), *self._lost_digits, *rare, *missing]
+
+    @property
+    def _by_itself(self) -> str:
+        """Which filters reject all trials, in words after others; or that none does by itself."""
+        counts = zip(self.model.filters, self.tally.rejected, strict=True)
+        names = [repr(each.name) for each, rejected in counts if rejected >= self.trials]
+        if names:
+            rejects, itself = ("rejects", "itself") if len(names) == 1 else ("reject", "themselves")
+            return f". {list_of(names)} {rejects} all trials by {itself}"
+        return ". No filter rejects all trials by itself"
+
+    @property
+    def refused(self) -> list[str]:
+        """The warnings that concern only a forecast without an answer: the answers of others may be used."""
+        return [str(each).rstrip(".") for each in self.model.definitions.refused]
+
+    @cached_property
+    def shown_results(self) -> ShownResults:
+        """What the workbook's own cells show of this run, `=RiskMean(B9)` and all that depends on it."""
+        asked = self.model.definitions
+        if not (asked.results or asked.unavailable):
+            return ShownResults()
+        run = RunFacts(self.trials, self.plan.trials, self.model.assumptions, self.model.draws)
+        return shown_results(self.model.workbook, asked.results, asked.unavailable, self.results.values(), run)
+
+    @cached_property
+    def error_roots(self) -> dict[Cell, Root]:
+        """Cell of a forecast or filter that was an error in some trials -> the cell it comes from, and its error."""
+        cells = [f.cell for f, errors in zip(self.model.filters, self.tally.errors, strict=True) if errors.total()]
+        cells += [f.cell for f in self.model.forecasts if self.faults[f.name].total()]
+        return error_roots(self.model, cells, (self.prior, self.inputs)) if cells else {}
+
+    @cached_property
+    def checks(self) -> tuple[CheckResult, ...]:
+        """The workbook's checks at the base case and in the accepted trials; evaluated when they are first asked."""
+        return check_results(self.model, self.inputs, self.accepted)
+
+    @cached_property
+    def agreement(self) -> Agreement | None:
+        """Whether the evidence agrees with the model and with itself; None where none is used."""
+        return agreement(self.model, self.settings.seed, self.evaluated)
+
+    @cached_property
+    def _lost_digits(self) -> list[str]:
+        """Which forecasts have no digits; looked for when it is first asked."""
+        return lost_digits(self.model, self.inputs)
+
+    def _sparse(self) -> list[str]:
+        """Whether too few trials were accepted in a replicate for the errors to be told from the replicates."""
+        groups = min(self.plan.replicates, MOST_GROUPS)
+        if not 0 < self.accepted < LEAST_ACCEPTED * groups:
+            return []
+        return [
+            f"only {self.accepted:,} trials were accepted in {self.plan.replicates:,} replicates, fewer than "
+            f"{LEAST_ACCEPTED * groups:,}, so errors and intervals are not to be trusted: run more trials, or sample "
+            f"by {METHODS['mc'].name}"
+        ]
+
+    @property
+    def kept_inputs(self) -> int:
+        """The number of accepted trials, from the first on, whose draws are kept."""
+        return next((int(values.size) for values in self.inputs.values()), self.accepted)
+
+    def frame(self, *, inputs: bool = True) -> pandas.DataFrame:
+        """Accepted trials, one a row, indexed by trial: assumptions, then forecasts.
+
+        An assumption with the name of a forecast is called `name (assumption)`; what is called `Trial`, as the
+        index is, `Trial (assumption)` or `Trial (forecast)`.
+
+        Args:
+            inputs: with the assumptions.
+
+        Raises:
+            SimulationError: not all draws were kept.
+        """
+        import pandas
+
+        if inputs and self.kept_inputs < self.accepted:
+            message = f"the draws of {self.kept_inputs:,} of {self.accepted:,} accepted trials were kept"
+            raise SimulationError(message, hint="use frame(inputs=False), or simulate(…, keep_inputs=None)")
+        columns = {forecast_heading(name): values for name, values in self.forecasts.items()}
+        if inputs:
+            drawn = {assumption_heading(name, self.forecasts): values for name, values in self.inputs.items()}
+            columns = drawn | columns
+        return pandas.DataFrame(columns, index=pandas.Index(self.trial_index, name=TRIAL))
+
+
+def forecast_heading(name: str) -> str:
+    """What a forecast is called in a table of trials, in which no two columns may have one name."""
+    return f"{name} (forecast)" if name == TRIAL else name
+
+
+def assumption_heading(name: str, forecasts: Collection[str]) -> str:
+    """What an assumption is called there.
+
+    Args:
+        name: of the assumption.
+        forecasts: the names of all forecasts.
+    """
+    return f"{name} (assumption)" if name == TRIAL or name in forecasts else name
+
+
+def weight_heading(others: Collection[str]) -> str:
+    """What the weights of trials are called there, beside columns with these names."""
+    return "Weight" if "Weight" not in others else "Weight of the trial"

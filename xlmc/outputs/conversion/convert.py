@@ -1,0 +1,134 @@
+"""A workbook with its definitions as tables, written beside it; the same accepted trials, bit for bit.
+
+All parts of the workbook stay as they are, but for those that any new sheet extends. Before the file is written it is
+read again and run beside the old one: what would give other trials is never written.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import chain, count
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from xlmc.errors import DefinitionError, FormulaError, WorkbookError
+from xlmc.excel.address import InFormula
+from xlmc.excel.workbook.inject import inject, remove_result_sheets
+from xlmc.excel.workbook.reader import read_workbook
+from xlmc.excel.workbook.structure import read_structure
+from xlmc.excel.workbook.target import Target
+from xlmc.excel.workbook.workbook import Workbook
+from xlmc.excel.workbook.writer import package_bytes, write_workbook
+from xlmc.montecarlo.definitions.definitions import Definitions
+from xlmc.montecarlo.definitions.new_tables import NewTable, new_tables
+from xlmc.montecarlo.model.loading import build_model
+from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.simulation.simulate import simulate
+from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.outputs.conversion.converted_sheet import SHEET, Left, built_sheet
+
+__all__ = ["Converted", "convert"]
+
+_TRIALS: Final = 4_096
+"""Trials that both workbooks are run for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Converted:
+    """What was written.
+
+    Attributes:
+        path: where.
+        tables: on the new sheet.
+        left: what could not be converted.
+    """
+
+    path: Path
+    tables: tuple[NewTable, ...]
+    left: tuple[Left, ...]
+
+
+def convert(model: Model, path: Path, *, overwrite: bool = False) -> Converted:
+    """Write the workbook with its definitions as tables.
+
+    Args:
+        model: of the workbook.
+        path: where to.
+        overwrite: replace any file that is there.
+
+    Raises:
+        TakenError: the file is not ours to replace, or is the workbook itself.
+        WorkbookError: there is nothing to convert, or the file cannot be written.
+        DefinitionError: the new workbook would not be right.
+    """
+    target = Target(path, "", overwrite, read=[model.path])
+    target.check()
+    workbook, definitions = model.workbook, model.definitions
+    tables = tuple(new_tables(workbook, definitions))
+    left = tuple(_left(workbook, definitions, tables))
+    if not tables:
+        hint = "It can be run as it is"
+        raise WorkbookError("all that the workbook defines is in xlmc's tables already", where=model.path, hint=hint)
+    parts = inject(
+        remove_result_sheets(workbook.parts),
+        built_sheet(tables, left, _free_name(workbook)),
+        replace=False,
+        marked=False,
+    )
+    data = package_bytes(parts)
+    _compare(model, build_model(read_workbook(data, path.name), path))
+    write_workbook(path, data, target.check)
+    return Converted(path, tables, left)
+
+
+def _free_name(workbook: Workbook) -> str:
+    """A name that no sheet has, so that formulas on the new sheet mean the workbook's own sheets."""
+    taken = {entry.name.casefold() for entry in read_structure(workbook.parts).sheets}
+    return next(name for name in chain([SHEET], (f"{SHEET} {n}" for n in count(2))) if name not in taken)
+
+
+def _left(workbook: Workbook, definitions: Definitions, tables: tuple[NewTable, ...]) -> Iterator[Left]:
+    """What stays where it is, and is read from there or refused."""
+    done = {row.call for table in tables for row in table.rows if row.call is not None}
+    for each in definitions.assumptions:
+        if isinstance(each.cell, InFormula) and each.cell not in done:
+            was = each.notes.get("Call", "")
+            yield Left("assumption", each.name, str(each.cell), was, "its call, as before: no row can say it")
+    for cell, why in definitions.rewritten.items():
+        if isinstance(why, FormulaError) and not isinstance(cell, InFormula) and cell not in definitions.results:
+            constant = workbook.content(cell).formula is None
+            yield Left("cell", "", str(cell), "", why.message, cell if constant else None)
+    settings = [row.name for table in tables if table.kind == "xlmc_settings" for row in table.rows]
+    if settings and definitions.settings.stopping.has_goal and "Precision of" not in settings:
+        yield Left("setting", "Precision", "", "precision control", "nothing: no row can say it; --precision can")
+    for refused in definitions.refused:
+        yield Left("refused", "", str(refused.where or ""), "", refused.message)
+
+
+def _compare(old: Model, new: Model) -> None:
+    """Run both.
+
+    Raises:
+        DefinitionError: a trial differs.
+    """
+    one, other = (simulate(each, trials=_TRIALS, sampling="mc", engine="numpy") for each in (old, new))
+    different = _difference(one, other)
+    if different:
+        hint = "Leave the workbook as it is, which runs, and tell the authors of xlmc"
+        raise DefinitionError(f"the converted workbook would draw {different} otherwise", where=old.path, hint=hint)
+
+
+def _difference(one: Simulation, other: Simulation) -> str:
+    """The first thing that differs between two runs; empty where they are the same to the last bit."""
+    if not np.array_equal(one.trial_index, other.trial_index):
+        return "the accepted trials"
+    for columns, others in ((one.inputs, other.inputs), (one.forecasts, other.forecasts)):
+        if columns.keys() != others.keys():
+            return ", ".join(sorted(columns.keys() ^ others.keys()))
+        for name, values in columns.items():
+            if not np.array_equal(values, others[name], equal_nan=True):
+                return repr(name)
+    return "" if one.discards == other.discards else "what filters discard"

@@ -1,0 +1,118 @@
+"""The document of a run: what is asked for is checked, and the sections are put together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+from xlmc.analysis.results.record import make_record
+from xlmc.errors import SimulationError
+from xlmc.excel.workbook.printable import label
+from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.outputs.case_fields import case_of
+from xlmc.outputs.document.parts import Block, Document, Heading
+from xlmc.outputs.document.report_sections import SECTIONS, Material
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.simulation.simulation import Simulation
+
+__all__ = ["PAPERS", "Wanted", "build", "check_wanted", "check_wanted_of"]
+
+PAPERS: Final = ("letter", "a4")
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What a report is to hold.
+
+    Attributes:
+        case: fields of the case, which win over those of the table `xlmc_case`.
+        sections: names of sections; empty for all.
+        forecasts: names of forecasts, whatever their case; empty for all.
+        paper: of the pages: `letter` or `a4`.
+    """
+
+    case: Mapping[str, str] = field(default_factory=dict)
+    sections: Sequence[str] = ()
+    forecasts: Sequence[str] = ()
+    paper: str = "letter"
+
+
+def check_wanted(wanted: Wanted) -> None:
+    """Refuse, before a long run, what no report has.
+
+    Raises:
+        SimulationError: there is no such section or paper.
+    """
+    for name in wanted.sections:
+        if name not in SECTIONS:
+            raise SimulationError(f"a report has no section {label(name)!r}", hint=f"choose from {', '.join(SECTIONS)}")
+    if wanted.paper not in PAPERS:
+        raise SimulationError(f"there is no paper {label(wanted.paper)!r}", hint=f"choose from {', '.join(PAPERS)}")
+
+
+def check_wanted_of(wanted: Wanted, model: Model) -> None:
+    """Refuse, before a long run, what the report of this workbook cannot hold.
+
+    Raises:
+        DefinitionError: the table `xlmc_case` is not what it must be.
+        SimulationError: there is no such forecast, section or paper.
+    """
+    check_wanted(wanted)
+    case_of(model.workbook, wanted.case)
+    _forecasts(wanted, model)
+
+
+def build(simulation: Simulation, wanted: Wanted, *, command: str | None = None) -> Document:
+    """The report of a run; the same run and the same wishes give the same document.
+
+    Args:
+        simulation: the finished run.
+        wanted: what it is to hold.
+        command: what the person typed, for the record.
+
+    Raises:
+        DefinitionError: the table `xlmc_case` is not what it must be.
+        SimulationError: there is no such forecast, section or paper.
+    """
+    check_wanted(wanted)
+    workbook = simulation.model.workbook
+    case = case_of(workbook, wanted.case)
+    material = Material(simulation, make_record(simulation, command), _forecasts(wanted, simulation.model))
+    blocks: list[Block] = []
+    for name, (heading, make) in SECTIONS.items():
+        found = list(make(material)) if not wanted.sections or name in wanted.sections else []
+        blocks += [Heading(heading), *found] if found else []
+    title = case["Title"] or f"Results of {workbook.name}"
+    number = case["Case number"]
+    cover = [(name, text) for name, text in case.fields.items() if name != "Title"]
+    cover += [("Workbook", workbook.name), ("SHA-256 of the workbook", workbook.sha256)]
+    cover += [("Trials", f"{simulation.evaluated:,}, of which {simulation.accepted:,} were accepted")]
+    cover += [("Seed", f"{simulation.settings.seed}")]
+    return Document(
+        title=title,
+        author=case["Analyst"],
+        dated=case.dated,
+        head=f"Case {number}" if number else title,
+        foot=f"{workbook.name}, seed {simulation.settings.seed}",
+        cover=tuple(cover),
+        blocks=tuple(blocks),
+        paper=wanted.paper,
+    )
+
+
+def _forecasts(wanted: Wanted, model: Model) -> tuple[str, ...]:
+    """The names of the forecasts that are wanted, as the workbook spells them.
+
+    Raises:
+        SimulationError: there is no such forecast.
+    """
+    known = {name_key(each.name): each.name for each in model.forecasts}
+    for name in wanted.forecasts:
+        if name_key(name) not in known:
+            hint = f"choose from {', '.join(map(repr, known.values()))}"
+            raise SimulationError(f"there is no forecast {label(name)!r}", hint=hint)
+    keys = {name_key(name) for name in wanted.forecasts}
+    return tuple(name for key, name in known.items() if not keys or key in keys)

@@ -1,0 +1,212 @@
+"""A document as a Word file that can be edited: headings, tables with a heading row, captions, numbered pages.
+
+The same document gives the same bytes: the parts are packed without a clock, and the properties hold the case's date.
+"""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from datetime import UTC, datetime, time
+from typing import Any, Final
+
+from xlmc.excel.workbook.printable import printable
+from xlmc.excel.workbook.writer import package_bytes
+from xlmc.outputs.document.parts import (
+    Bullets,
+    Code,
+    Content,
+    Document,
+    Drawing,
+    Figure,
+    Heading,
+    Paragraph,
+    Table,
+)
+from xlmc.outputs.document.typst_writer import UNDATED, pictures
+
+__all__ = ["docx_bytes"]
+
+_SIZES: Final = {"letter": (215.9, 279.4), "a4": (210.0, 297.0)}
+"""Width and height of a page, in millimetres."""
+
+_MARGIN: Final = 22.0
+_INK: Final = (0x1F, 0x30, 0x44)
+_LONGEST: Final = 255
+"""Characters of a property of the file, the format's limit."""
+
+_BODY, _SMALL, _CELL = 10.5, 9.0, 8.5
+
+
+def docx_bytes(drawn: Document) -> bytes:
+    """The document as a Word file.
+
+    Raises:
+        SimulationError: a picture holds a character that no font has.
+    """
+    return package_bytes(_parts(_Writer(drawn).written()))
+
+
+class _Writer:
+    """A Word file as it is written, from the top down."""
+
+    def __init__(self, drawn: Document) -> None:
+        import docx
+
+        self._drawn = drawn
+        self._file = docx.Document()
+        self._pictures = iter(pictures(drawn.drawings))
+        width, _ = _SIZES[drawn.paper]
+        self._room = width - 2 * _MARGIN
+
+    def written(self) -> Any:
+        """Write all of it."""
+        self._set_up()
+        self._cover()
+        for block, after in self._drawn.with_next:
+            match block:
+                case Heading(text, level):
+                    self._file.add_heading(printable(text), level)
+                case Paragraph(text, look):
+                    self._paragraph(
+                        text, _SMALL if look == "small" else _BODY, bold=look == "warning"
+                    ).paragraph_format.keep_with_next = isinstance(after, Table | Figure)
+                case Bullets(texts, look):
+                    for text in texts:
+                        run = self._file.add_paragraph(style="List Bullet").add_run(printable(text))
+                        run.font.size = _points(_SMALL if look == "small" else _BODY)
+                case Code(text):
+                    run = self._file.add_paragraph().add_run(printable(text))
+                    run.font.name = "Courier New"
+                    run.font.size = _points(_SMALL)
+                case Figure(drawing, caption):
+                    paragraph = self._file.add_paragraph()
+                    paragraph.paragraph_format.keep_with_next = True
+                    self._picture(paragraph, drawing)
+                    self._caption(caption)
+                case Table():
+                    self._caption(block.caption, before=True)
+                    self._table(block)
+        return self._file
+
+    def _set_up(self) -> None:
+        from docx.oxml.ns import qn
+        from docx.shared import Mm, RGBColor
+
+        drawn, file = self._drawn, self._file
+        properties = file.core_properties
+        author = printable(drawn.author)[:_LONGEST]
+        properties.title, properties.author = printable(drawn.title)[:_LONGEST], author
+        properties.comments, properties.language = "", "en"
+        properties.last_modified_by = author
+        properties.created = properties.modified = datetime.combine(drawn.dated or UNDATED, time(), UTC).replace(
+            tzinfo=None
+        )
+        for name, size in {"Normal": _BODY, "Caption": _SMALL, "Title": 24, "Heading 1": 15, "Heading 2": 12}.items():
+            style = file.styles[name]
+            style.font.name, style.font.size = "Times New Roman", _points(size)
+            style.font.color.rgb = RGBColor(*_INK)
+            fonts = style.element.get_or_add_rPr().get_or_add_rFonts()
+            for theme in ("asciiTheme", "hAnsiTheme", "eastAsiaTheme", "cstheme"):
+                fonts.attrib.pop(qn(f"w:{theme}"), None)
+        file.styles["Caption"].font.bold = False
+        section = file.sections[0]
+        section.page_width, section.page_height = map(Mm, _SIZES[drawn.paper])
+        section.left_margin = section.right_margin = section.top_margin = section.bottom_margin = Mm(_MARGIN)
+        head = section.header.paragraphs[0]
+        head.add_run(printable(drawn.head)).font.size = _points(_CELL)
+        foot = section.footer.paragraphs[0]
+        foot.paragraph_format.tab_stops.clear_all()
+        foot.add_run(f"{printable(drawn.foot)}   Page ").font.size = _points(_CELL)
+        _field(foot, "PAGE")
+        foot.add_run(" of ").font.size = _points(_CELL)
+        _field(foot, "NUMPAGES")
+
+    def _cover(self) -> None:
+        self._file.add_heading(printable(self._drawn.title), 0)
+        for label, said in self._drawn.cover:
+            paragraph = self._file.add_paragraph()
+            paragraph.add_run(f"{printable(label)}: ").bold = True
+            paragraph.add_run(printable(said))
+
+    def _paragraph(self, text: str, size: float, *, bold: bool = False) -> Any:
+        made = self._file.add_paragraph()
+        run = made.add_run(printable(text))
+        run.font.size, run.bold = _points(size), bold or None
+        return made
+
+    def _caption(self, text: str, *, before: bool = False) -> None:
+        paragraph = self._file.add_paragraph(printable(text), style="Caption")
+        paragraph.paragraph_format.keep_with_next = before
+
+    def _picture(self, paragraph: Any, drawing: Drawing) -> None:
+        from docx.shared import Mm
+
+        shape = paragraph.add_run().add_picture(io.BytesIO(next(self._pictures)), width=Mm(drawing.width))
+        shape._inline.docPr.set("descr", printable(drawing.said))
+        for side in ("distT", "distB", "distL", "distR"):  # or LibreOffice leaves 3 mm beside it
+            shape._inline.set(side, "0")
+
+    def _table(self, table: Table) -> None:
+        from docx.shared import Mm
+
+        made = self._file.add_table(rows=1 + len(table.rows), cols=len(table.heads))
+        made.style = "Table Grid"
+        made.autofit = False
+        whole = sum(table.widths)
+        widths = [Mm(self._room * width / whole) for width in table.widths]
+        for column, width in zip(made.columns, widths, strict=True):
+            column.width = width
+        for number, (row, contents) in enumerate(zip(made.rows, (table.heads, *table.rows), strict=True)):
+            _keep_whole(row, repeated=number == 0)
+            for index, (cell, content) in enumerate(zip(row.cells, contents, strict=True)):
+                cell.width = widths[index]
+                self._cell(cell.paragraphs[0], content, bold=number == 0, right=index in table.right)
+        self._file.add_paragraph().paragraph_format.space_after = _points(2)
+
+    def _cell(self, paragraph: Any, content: Content, *, bold: bool, right: bool) -> None:
+        from docx.enum.text import WD_ALIGN_PARAGRAPH
+
+        paragraph.paragraph_format.space_after = _points(0)
+        if right:
+            paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT
+        if isinstance(content, Drawing):
+            self._picture(paragraph, content)
+        else:
+            run = paragraph.add_run(printable(content))
+            run.font.size, run.bold = _points(_CELL), bold or None
+
+
+def _points(size: float) -> Any:
+    from docx.shared import Pt
+
+    return Pt(size)
+
+
+def _field(paragraph: Any, instruction: str) -> None:
+    """Add a field that Word fills in, such as the number of the page."""
+    from docx.oxml import OxmlElement
+    from docx.oxml.ns import qn
+
+    field = OxmlElement("w:fldSimple")
+    field.set(qn("w:instr"), instruction)
+    paragraph._p.append(field)
+    run = paragraph.add_run("1")  # until it is filled in
+    run.font.size = _points(_CELL)
+    field.append(run._r)
+
+
+def _keep_whole(row: Any, *, repeated: bool) -> None:
+    """Keep a row on one page; a row of headings stands on top of every page of its table."""
+    from docx.oxml import OxmlElement
+
+    properties = row._tr.get_or_add_trPr()
+    for tag in ("w:cantSplit", *(["w:tblHeader"] if repeated else [])):
+        properties.append(OxmlElement(tag))
+
+
+def _parts(file: Any) -> dict[str, bytes]:
+    saved = io.BytesIO()
+    file.save(saved)
+    with zipfile.ZipFile(saved) as package:
+        return {name: package.read(name) for name in package.namelist()}

@@ -1,0 +1,65 @@
+"""The equations that a workbook prints beside its cells, with their sources."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from xlmc.excel.address import Cell
+from xlmc.excel.workbook.workbook import CellContent, Sheet, Workbook
+from xlmc.montecarlo.definitions.tables.table_rows import as_text
+from xlmc.montecarlo.model.labels import calculated_texts
+from xlmc.montecarlo.model.model import Model
+
+__all__ = ["Equation", "equations_of"]
+
+_HEADS = ("quantity", "symbol", "equation", "source")
+_NEEDED = frozenset({"quantity", "equation"})
+_COLUMNS = 40
+"""How far to the right a heading is looked for."""
+
+
+class Equation(NamedTuple):
+    """One row: what is computed, its symbol, the equation where that is from; texts may be empty."""
+
+    quantity: str
+    symbol: str
+    equation: str
+    source: str
+
+
+def equations_of(model: Model) -> list[Equation]:
+    """The equations of the cells that the answers need, where a sheet has the columns Quantity and Equation.
+
+    A row counts if one of its cells is a forecast or a filter, or is read by one.
+    """
+    found: list[Equation] = []
+    needed: dict[str, set[int]] = {}
+    asked = {each.cell for each in model.forecasts} | {each.cell for each in model.filters}
+    for cell in model.lowering.read | asked:
+        needed.setdefault(cell.sheet, set()).add(cell.row)
+    for name, sheet in model.workbook.sheets.items():
+        if name in needed:
+            found += _of_sheet(model.workbook, sheet, needed[name])
+    return found
+
+
+def _of_sheet(workbook: Workbook, sheet: Sheet, needed: set[int]) -> Iterator[Equation]:
+    cells: Mapping[tuple[int, int], CellContent] = sheet.cells
+    heads: dict[int, dict[str, int]] = {}
+    for (row, column), content in cells.items():
+        head = as_text(content.value).casefold() if isinstance(content.value, str) else ""
+        if head in _HEADS and column <= _COLUMNS:
+            heads.setdefault(row, {}).setdefault(head, column)
+    starts = sorted(row for row, found in heads.items() if found.keys() >= _NEEDED)
+    if not starts:
+        return
+    below = {row: heads[max(above)] for row in sorted(needed) if (above := [start for start in starts if start < row])}
+    spots = [(row, at) for row, columns in below.items() for at in columns.values() if (row, at) in cells]
+    missing = [Cell(sheet.name, *spot) for spot in spots if cells[spot].is_uncalculated]
+    calculated = {cell[1:]: text for cell, text in calculated_texts(workbook, missing).items()} if missing else {}
+    said = {spot: calculated.get(spot) or as_text(cells[spot].value) for spot in spots}
+    for row, columns in below.items():
+        texts = {head: said.get((row, at), "") for head, at in columns.items()}
+        if texts["equation"]:
+            yield Equation(texts["quantity"], texts.get("symbol", ""), texts["equation"], texts.get("source", ""))

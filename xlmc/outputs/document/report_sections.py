@@ -1,0 +1,458 @@
+"""The sections of a report: each makes its blocks from a run. `SECTIONS` lists them in their order."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+from xlmc.analysis.results.record.definition_tables import correlations_met
+from xlmc.analysis.results.statements import MEANING, statements
+from xlmc.analysis.results.statements.in_words import (
+    REJECTED_SENTENCE,
+    discards_of,
+    distribution_text,
+    evidence_text,
+    limits_text,
+    sampling_sentence,
+    status,
+)
+from xlmc.analysis.studies.scenario_answers import scenario_answers
+from xlmc.analysis.studies.sensitivity import sensitivities
+from xlmc.analysis.studies.sensitivity.measures import noise
+from xlmc.montecarlo.diagnostics.checking import checks_sentence
+from xlmc.montecarlo.distributions.parameters import show
+from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
+from xlmc.montecarlo.statistics import proportion
+from xlmc.outputs.document.drawings import before_and_after, forecast_drawing, influence_drawing
+from xlmc.outputs.document.equations import equations_of
+from xlmc.outputs.document.glossary import GLOSSARY, WORDS_OF_EVIDENCE, WORDS_OF_SCENARIOS
+from xlmc.outputs.document.parts import Block, Bullets, Code, Content, Drawing, Figure, Paragraph, Table
+from xlmc.outputs.document.scene_drawing import scene_drawing
+from xlmc.outputs.evidence_tables import ITEM_HEADS, MOVES_MEANING, item_rows, move_rows, trials_sentence
+from xlmc.outputs.evidence_tables import MEANING as MEANING_OF_EVIDENCE
+from xlmc.outputs.filter_effect import filter_effect_of, shapes_of
+from xlmc.outputs.histogram import figures_of
+from xlmc.outputs.scenario_tables import SCENARIO_HEADS, answer_heads, answer_rows, scenario_rows
+from xlmc.outputs.sheets.results_sheet import base_sentences, opening_sentences, range_sentences
+from xlmc.outputs.sheets.scenarios_sheet import scenario_sentences, scenario_warnings
+from xlmc.outputs.summary import (
+    ERROR_SENTENCE,
+    SummaryRow,
+    base_text,
+    central_text,
+    estimate_text,
+    percent,
+    question,
+    range_heading,
+    share_text,
+    summarise,
+)
+
+if TYPE_CHECKING:
+    from xlmc.analysis.results.record import Record
+    from xlmc.analysis.studies.sensitivity import ForecastSensitivity
+    from xlmc.montecarlo.definitions.definitions import Assumption
+    from xlmc.montecarlo.simulation.simulation import Simulation
+
+__all__ = ["SECTIONS", "Material"]
+
+_MOST_BARS, _MOST_OF_MANY = 6, 4
+_FEW: Final = 4
+"""Forecasts whose figures are large, two a page; those of more stand three a page, and their influences in a table."""
+_LARGE, _SMALL = 160.0, 100.0
+"""Widths of the figures of forecasts, in millimetres."""
+_NONE: Final = "–"
+
+
+@dataclass
+class Material:
+    """What sections are made from.
+
+    Attributes:
+        simulation: the finished run.
+        record: its record.
+        forecasts: the names of those that the report is about, in the order of the workbook.
+        figures, tables: how many have been numbered so far.
+    """
+
+    simulation: Simulation
+    record: Record
+    forecasts: tuple[str, ...]
+    figures: int = field(default=0)
+    tables: int = field(default=0)
+
+    def figure(self, drawing: Drawing, caption: str) -> Figure:
+        """A figure with the next number."""
+        self.figures += 1
+        return Figure(drawing, f"Figure {self.figures}. {caption}")
+
+    def table(
+        self,
+        caption: str,
+        heads: Sequence[str],
+        rows: Sequence[Sequence[Content]],
+        widths: Sequence[float],
+        right: Sequence[int] = (),
+    ) -> Table:
+        """A table with the next number."""
+        self.tables += 1
+        return Table(
+            f"Table {self.tables}. {caption}", tuple(heads), tuple(map(tuple, rows)), tuple(widths), frozenset(right)
+        )
+
+
+def _answer(material: Material) -> Iterator[Block]:
+    simulation = material.simulation
+    for sentence in opening_sentences(simulation):
+        yield Paragraph(sentence, "warning")
+    yield Paragraph("".join(said.text for said in question(simulation)))
+    told = [each for each in statements(simulation) if each.forecast in material.forecasts]
+    yield Bullets(tuple(f"{each.text}." for each in told))
+    yield Paragraph(MEANING, "small")
+    rows = [row for row in summarise(simulation) if row.name in material.forecasts]
+    yield _answers(material, rows)
+    yield Paragraph(ERROR_SENTENCE, "small")
+    ended = [] if simulation.stopped == ALL_TRIALS else [f"The run ended when {simulation.stopped.sentence}."]
+    remarks = (sampling_sentence(simulation), *range_sentences(rows), *base_sentences(simulation), *ended)
+    yield Paragraph(" ".join(remarks), "small")
+
+
+def _answers(material: Material, rows: Sequence[SummaryRow]) -> Table:
+    thresholds = any(row.threshold is not None for row in rows)
+    mixed = len({row.share for row in rows}) > 1
+    heads = ["Forecast", "Units", "Mean", "Standard deviation", f"{range_heading(rows)} from", "to", "Base case"]
+    heads += ["Range holds"] * mixed + ["Threshold", "Above threshold"] * thresholds
+    widths = [2.4, 0.9, 1.6, 1.6, 1.6, 1.6, 1.1, *[1.0] * mixed, *[1.3, 1.5] * thresholds]
+    lines = []
+    for row in rows:
+        line = [row.name, row.units, *map(estimate_text, (row.mean, row.standard_deviation, row.low, row.high))]
+        line.append(base_text(row))
+        if mixed:
+            line.append(percent(row.share))
+        if thresholds:
+            line.append("" if row.threshold is None else show(row.threshold))
+            line.append("" if row.above is None else share_text(row.above))
+        lines.append(line)
+    caption = "The answers, from the accepted trials; each number with its standard error."
+    return material.table(caption, heads, lines, widths, range(2, len(heads)))
+
+
+def _scene(material: Material) -> Iterator[Block]:
+    drawn = scene_drawing(material.simulation.model.workbook)
+    if drawn is not None:
+        yield material.figure(
+            drawn,
+            "The base case as the chart on the workbook's sheet Scene draws it, with the numbers that were stored in "
+            "the chart when the workbook was last saved.",
+        )
+
+
+def _forecasts(material: Material) -> Iterator[Block]:
+    simulation = material.simulation
+    width = _LARGE if len(material.forecasts) <= _FEW else _SMALL
+    for figure in figures_of(simulation):
+        row, bins = figure.answer, figure.bins
+        if row.name not in material.forecasts:
+            continue
+        units = f" {row.units}" if row.units else ""
+        caption = (
+            f"{figure.name}. Above, the accepted trials per {bins.width:g}{units}; below, the share of them that "
+            f"is not above each value. Dark: the central {percent(row.share)} of {row.trials:,} accepted trials, from "
+            f"{central_text(row)}{units}. Vertical line: the mean, "
+            f"{estimate_text(row.mean)}{units}."
+        )
+        if bins.counted < row.trials:
+            caption += f" Trials are weighted: the figure shows {bins.counted:,} trials of equal weight in their place."
+        if bins.below or bins.above:
+            caption += f" Not drawn: {bins.below:,} trials below and {bins.above:,} above."
+        yield material.figure(forecast_drawing(figure, simulation.results[row.name], width), caption)
+
+
+def _filters(material: Material) -> Iterator[Block]:
+    simulation = material.simulation
+    if simulation.model.filters:
+        yield from _rejections(material)
+    if not simulation.model.forecast_filters:
+        return
+    yield Paragraph(
+        "Some filters concern some forecasts only. They reject no trial: such a forecast counts the accepted trials "
+        "that its filters keep, and all other forecasts count them all."
+    )
+    lines = [
+        (
+            each.filter.name,
+            each.forecast,
+            limits_text(each.filter),
+            each.filter.because or _NONE,
+            f"{each.trials:,}",
+            share_text(each.share),
+        )
+        for each in discards_of(simulation)
+    ]
+    heads = ("Filter", "Only for", "Must be", "Because", "Discarded trials", "Share")
+    yield material.table(
+        "Filters for some forecasts only, and the accepted trials that they discard.",
+        heads,
+        lines,
+        (2, 1.7, 1.5, 2.5, 1.1, 1.7),
+        (4, 5),
+    )
+
+
+def _rejections(material: Material) -> Iterator[Block]:
+    simulation = material.simulation
+    tally, filters = simulation.tally, simulation.model.filters
+    yield Paragraph(
+        f"A trial is accepted when all filters hold. Of {simulation.trials:,} trials, "
+        f"{simulation.accepted:,} were accepted ({share_text(simulation.acceptance)})."
+        if simulation.rare is None
+        else f"A trial is accepted when all filters hold. Rejected trials are counted among the first "
+        f"{simulation.trials:,}, drawn before the search for accepted ones began."
+    )
+    lines = [
+        (
+            f"{number}. {each.name}",
+            limits_text(each),
+            each.because or _NONE,
+            f"{int(tally.rejected[number - 1]):,}",
+            share_text(proportion(int(tally.rejected[number - 1]), simulation.trials)),
+            f"{int(tally.only[number - 1]):,}",
+        )
+        for number, each in enumerate(filters, 1)
+    ]
+    heads = ("Filter", "Must be", "Because", "Rejected trials", "Share", "Only by it")
+    yield material.table(
+        "The filters and how many trials each rejected.", heads, lines, (2, 1.5, 3.2, 1.1, 1.7, 1.1), (3, 4, 5)
+    )
+    if simulation.plan.size:
+        yield Paragraph(REJECTED_SENTENCE, "small")
+
+
+def _evidence(material: Material) -> Iterator[Block]:
+    found = material.simulation.agreement
+    if found is None:
+        return
+    look = "warning" if found.conflicts else "text"
+    yield Paragraph(f"{found.sentence[0].upper()}{found.sentence[1:]}.", look)
+    remarks = tuple(f"{each[0].upper()}{each[1:]}." for each in found.remarks if each != found.sentence)
+    if remarks:
+        yield Bullets(remarks)
+    widths = (1.7, 2.2, 1.3, 1.3, 1.3, 1.1, 0.7, 1.3)
+    yield material.table(
+        "The evidence, each item alone and with the others.", ITEM_HEADS, item_rows(found), widths, range(2, 7)
+    )
+    yield Paragraph(f"{trials_sentence(found)} {MEANING_OF_EVIDENCE}", "small")
+    names = [each for each in found.found.forecasts if each in material.forecasts]
+    for first in range(0, len(names), _FEW):
+        shown = names[first : first + _FEW]
+        heads = ("With", "Effective trials", *shown)
+        caption = "What each item of evidence moves: the means of the forecasts."
+        wide = (1.8, 1.0, *[1.5] * len(shown))
+        yield material.table(caption, heads, move_rows(found, shown), wide, range(1, len(heads)))
+    yield Paragraph(MOVES_MEANING, "small")
+    lines = [(each.name, evidence_text(each), each.source or _NONE) for each in material.simulation.model.evidence]
+    yield material.table("The readings and their sources.", ("Evidence", "Reading", "Source"), lines, (2, 3, 4))
+
+
+def _scenarios(material: Material) -> Iterator[Block]:
+    found = scenario_answers(material.simulation)
+    if not found:
+        return
+    for warning in scenario_warnings(found):
+        yield Paragraph(warning, "warning")
+    yield Paragraph("The workbook was run again with other contents in some of its cells. “As it is” is this report.")
+    rows = scenario_rows(found)
+    caption = "What each scenario changes, and how many trials are accepted."
+    yield material.table(caption, SCENARIO_HEADS, rows, (1.7, 1, 1.6, 1.5, 3.6), (1, 2, 3))
+    for index, each in enumerate(found[0].forecasts):
+        if each.forecast.name not in material.forecasts:
+            continue
+        heads = answer_heads(found, index)
+        widths = (1.8, *[1.4] * (len(heads) - 1))
+        caption = f"{each.title}: the workbook as it is, and the scenarios."
+        yield material.table(caption, heads, answer_rows(found, index), widths, range(1, len(heads)))
+    yield Paragraph(" ".join(scenario_sentences(found)), "small")
+
+
+def _assumptions(material: Material) -> Iterator[Block]:
+    simulation = material.simulation
+    yield Paragraph(
+        "Filters keep only the combinations that agree with the evidence. So an assumption that the evidence bears on "
+        "is distributed differently among the accepted trials, although its range is the same. In the pictures, the "
+        "draws before filtering are pale, and the line is the accepted ones."
+    )
+    rows: list[Sequence[Content]] = [_assumption_row(simulation, each) for each in simulation.model.assumptions]
+    heads = (
+        "Assumption",
+        "Distribution and source",
+        "Mean, before and accepted",
+        "SD, before and accepted",
+        "Picture",
+    )
+    yield material.table("The assumptions before and after filtering.", heads, rows, (1.9, 2.9, 1.9, 1.7, 1.95))
+    early = max((values.size for values in simulation.prior.values()), default=0)
+    said = f"Before filtering: the first {early:,} trials. ± is the standard error."
+    if simulation.kept_inputs < simulation.accepted:
+        said += f" Accepted: the first {simulation.kept_inputs:,} of {simulation.accepted:,} accepted trials."
+    yield Paragraph(said, "small")
+    met = correlations_met(simulation)
+    if met:
+        lines = [
+            (
+                pair.first,
+                pair.second,
+                _NONE if pair.asked is None else show(pair.asked),
+                _NONE if pair.used is None else f"{pair.used:.6g}",
+                _NONE if pair.accepted is None else estimate_text(pair.accepted),
+            )
+            for pair in met
+        ]
+        heads = ("First", "Second", "Asked for", "Drawn with", "Accepted")
+        yield material.table("Rank correlations of assumptions.", heads, lines, (3, 3, 1, 1, 1.5), (2, 3, 4))
+
+
+def _assumption_row(simulation: Simulation, each: Assumption) -> list[Content]:
+    name = f"{each.name}, {each.units}" if each.units else each.name
+    words = f"{distribution_text(each)}. {each.source}".strip()
+    found = filter_effect_of(simulation, each.name)
+    if found is None:
+        base = "" if each.base is None else f"{each.base:.9g}"
+        return [name, words, f"{status(simulation.model, each.name, each.frozen)}: {base}", _NONE, _NONE]
+    both = (found.prior, found.accepted)
+    drawing = before_and_after(each.name, shapes_of(simulation, each.name))
+    return [
+        name,
+        words,
+        "\n".join(estimate_text(marginal.mean) for marginal in both),
+        "\n".join(estimate_text(marginal.standard_deviation) for marginal in both),
+        drawing or _NONE,
+    ]
+
+
+def _sensitivity(material: Material) -> Iterator[Block]:
+    if material.simulation.weighting is not None:
+        return
+    found = sensitivities(material.simulation)
+    shown = [each for each in found.forecasts if each.forecast in material.forecasts]
+    if not shown:
+        return
+    yield Paragraph(
+        "Variance explained: how much of the forecast's variance would vanish, on average, if the assumption's true "
+        "value were known. It is found from the accepted trials; shares need not add up to 100 %. “Noise” means: no "
+        "more than chance alone would show. The rank correlation says whether the forecast rises (above 0) or falls "
+        "with the assumption. No sensitivity says whether the model fits the crash."
+    )
+    lines: list[tuple[str, ...]] = []
+    most = _MOST_BARS if len(shown) <= _FEW else _MOST_OF_MANY
+    for each in shown:
+        if each.influences and len(shown) <= _FEW:
+            caption = f"What {each.forecast} depends on most."
+            yield material.figure(influence_drawing(each, most), caption)
+        lines += _influence_rows(each, most)
+    if lines:
+        heads = ("Forecast", "Assumption", "Variance explained", "Rank correlation")
+        caption = f"The assumptions that each forecast depends on most, {most} at most."
+        yield material.table(caption, heads, lines, (2, 3, 1.5, 1.5), (2, 3))
+
+
+def _influence_rows(found: ForecastSensitivity, most: int) -> Iterator[tuple[str, ...]]:
+    if not found.influences:
+        yield found.forecast, "No assumption moves it, or there are too few trials to tell.", _NONE, _NONE
+    for index, (each, weak) in enumerate(zip(found.influences[:most], noise(found), strict=False)):
+        rank = "noise" if weak.correlation else estimate_text(each.rank_correlation)
+        yield (
+            "" if index else found.forecast,
+            each.assumption,
+            "noise" if weak.explained else share_text(each.explained),
+            rank if rank and not math.isnan(each.rank_correlation.value) else _NONE,
+        )
+
+
+def _checks(material: Material) -> Iterator[Block]:
+    checks = material.simulation.checks
+    if not checks:
+        return
+    yield Paragraph(f"{checks_sentence(checks)}. A check rejects no trial.")
+    lines = [
+        (
+            each.name,
+            _NONE if each.base.found is None else str(each.base.found),
+            f"{each.failed:,}",
+            each.because or _NONE,
+        )
+        for each in checks
+    ]
+    heads = ("Check", "Base case", "Trials failing", "What it means if it fails")
+    yield material.table("The physics checks: each cell must be TRUE.", heads, lines, (2.6, 0.9, 0.9, 4.6), (2,))
+
+
+def _equations(material: Material) -> Iterator[Block]:
+    found = equations_of(material.simulation.model)
+    if not found:
+        return
+    yield Paragraph(
+        "The equations as the workbook prints them beside the cells that the answers need, with the source that it "
+        "names. xlmc computes the cells' formulas, not these texts."
+    )
+    heads = ("Quantity", "Symbol", "Equation", "Source")
+    yield material.table("The equations.", heads, [tuple(each) for each in found], (2.6, 0.9, 4.4, 1.8))
+
+
+def _notices(material: Material) -> Iterator[Block]:
+    if material.simulation.notices:
+        yield Bullets(tuple(f"{notice}" for notice in material.simulation.notices))
+
+
+def _repeat(material: Material) -> Iterator[Block]:
+    record = material.record
+    yield Paragraph(
+        "The same workbook with the same seed and the same software gives the same numbers. With xlmc installed, type:"
+    )
+    yield Code(str(record["run.repeat"]))
+    yield Paragraph("The fingerprint of the accepted trials, a SHA-256, is then:")
+    yield Code(str(record["run.fingerprint"]))
+    software = [(str(entry.label), str(entry.value)) for entry in record.section("software").entries]
+    machine = [(str(entry.label), str(entry.value)) for entry in record.section("processor").entries]
+    lines = [
+        ("Workbook", str(record["file.name"])),
+        ("SHA-256 of the workbook", str(record["file.sha256"])),
+        ("Seed", str(record["settings.seed"])),
+        ("Trials", f"{record['counts.trials']:,}"),
+        ("Accepted trials", f"{record['counts.accepted']:,}"),
+        ("Sampling", str(record["sampling.method_in_words"])),
+        ("Generator", str(record["sampling.generator"])),
+        ("Engine", str(record["sampling.engine"])),
+        *software,
+        *(each for each in machine if len(each[1]) < 60),
+    ]
+    yield material.table("What the numbers depend on.", ("What", "Value"), lines, (1.6, 5))
+
+
+def _glossary(material: Material) -> Iterator[Block]:
+    simulation = material.simulation
+    words = [
+        *GLOSSARY,
+        *(WORDS_OF_EVIDENCE if simulation.agreement is not None else ()),
+        *(WORDS_OF_SCENARIOS if simulation.settings.scenarios else ()),
+    ]
+    yield Bullets(tuple(f"{word}: {meaning}" for word, meaning in words), "small")
+
+
+SECTIONS: Final[dict[str, tuple[str, Callable[[Material], Iterator[Block]]]]] = {
+    "answer": ("The question and the answer", _answer),
+    "scene": ("The scene", _scene),
+    "forecasts": ("The forecasts", _forecasts),
+    "filters": ("Filters: what a possible crash must meet", _filters),
+    "evidence": ("Evidence, and whether it agrees", _evidence),
+    "scenarios": ("Scenarios: the answers if something is changed", _scenarios),
+    "assumptions": ("Assumptions", _assumptions),
+    "sensitivity": ("What the answers depend on", _sensitivity),
+    "checks": ("Physics checks", _checks),
+    "equations": ("Equations", _equations),
+    "notices": ("Notices", _notices),
+    "repeat": ("How to repeat this", _repeat),
+    "glossary": ("Words", _glossary),
+}
+"""Name -> heading, and what makes the section's blocks; a section without blocks is left out, with its heading."""

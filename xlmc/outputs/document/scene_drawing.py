@@ -1,0 +1,143 @@
+"""The scene as the workbook draws it: the chart of points and lines on its sheet Scene.
+
+The points are those that the program that saved the workbook stored in the chart, so they are those of its base case.
+Axes of the same units have the same scale, so that angles and lengths are right.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, replace
+from typing import Final
+from xml.etree.ElementTree import Element
+
+from xlmc.excel.workbook.safe_xml import tree
+from xlmc.excel.workbook.workbook import Workbook
+from xlmc.outputs.document.drawings import drawing, line_to, path_of, text_at
+from xlmc.outputs.document.parts import Drawing
+from xlmc.outputs.page.svg import Scale, scale_of
+from xlmc.outputs.sheets.styles import GRID, INK
+
+__all__ = ["scene_drawing"]
+
+_CHART: Final = re.compile(r"xl/charts/chart\d+\.xml")
+_SHEET: Final = re.compile(r"'?scene'?!", re.IGNORECASE)
+_COLOUR: Final = re.compile("[0-9A-Fa-f]{6}")
+_MOST_SERIES, _MOST_POINTS = 40, 2_000
+"""What a scene has at most; a chart with more is another kind of picture, and is not drawn."""
+_WIDTH, _HIGHEST, _LOWEST = 400.0, 330.0, 90.0
+_LEFT, _TOP = 44.0, 10.0
+
+_Points = list[tuple[float, float]]
+
+
+@dataclass(frozen=True, slots=True)
+class _Line:
+    """A named line of the chart, or a mark where it has one point only."""
+
+    name: str
+    points: _Points
+    colour: str
+    dashed: bool
+
+
+def scene_drawing(workbook: Workbook) -> Drawing | None:
+    """The first chart of the sheet Scene; None where the workbook has none.
+
+    Raises:
+        WorkbookError: the part of a chart is no XML.
+    """
+    for part in sorted(name for name in workbook.parts if _CHART.fullmatch(name)):
+        root = tree(workbook.parts[part], part)
+        lines = [line for line in map(_line, root.iterfind(".//{*}scatterChart/{*}ser")) if line is not None]
+        if lines and len(lines) <= _MOST_SERIES:
+            return _drawn(lines, [_words(axis) for axis in root.iterfind(".//{*}valAx/{*}title")])
+    return None
+
+
+def _line(series: Element) -> _Line | None:
+    """A series of points on the sheet; None where it is on another, holds too much, or is not shown."""
+    where = [said.text or "" for said in series.iterfind("./*/{*}numRef/{*}f")]
+    if len(where) != 2 or not all(map(_SHEET.match, where)):
+        return None
+    x, y = (_numbers(series.find(f"{{*}}{axis}")) for axis in ("xVal", "yVal"))
+    shown = series.find("{*}spPr")
+    outline = None if shown is None else shown.find("{*}ln")
+    if outline is not None and outline.find("{*}noFill") is not None:
+        return None
+    points = [(x[index], y[index]) for index in sorted(x.keys() & y.keys())]
+    if not points or len(points) > _MOST_POINTS:
+        return None
+    colour = None if outline is None else outline.find("{*}solidFill/{*}srgbClr")
+    value = "" if colour is None else colour.get("val", "")
+    dashed = outline is not None and outline.find("{*}prstDash") is not None
+    name = series.find("{*}tx")
+    return _Line("" if name is None else _words(name), points, f"#{value}" if _COLOUR.fullmatch(value) else INK, dashed)
+
+
+def _words(element: Element) -> str:
+    """The text of a title or of a name; where a name is a reference, what the program has stored of it."""
+    return " ".join(said.text.strip() for tag in ("t", "v") for said in element.iterfind(f".//{{*}}{tag}") if said.text)
+
+
+def _numbers(axis: Element | None) -> dict[int, float]:
+    """The stored numbers by their place; those that are none are left out."""
+    found = {}
+    for point in () if axis is None else axis.iterfind(".//{*}numCache/{*}pt"):
+        said = point.find("{*}v")
+        try:
+            index, value = int(point.get("idx", "")), float((said.text if said is not None else None) or "")
+        except ValueError:
+            continue
+        if math.isfinite(value) and abs(value) < 1e9:
+            found[index] = value
+    return found
+
+
+def _widened(scale: Scale, least: float) -> Scale:
+    """The scale with room above and below, so that it reaches over so much at least."""
+    room = (least - (scale.high - scale.low)) / 2
+    return scale if room <= 0 else scale_of([scale.low - room, scale.high + room], 0.0, 1.0, most=4)
+
+
+def _with_step(scale: Scale, step: float) -> Scale:
+    """The scale with a coarser step, where that leaves it two ticks."""
+    coarser = replace(scale, step=step)
+    return coarser if len(coarser.ticks) > 1 else scale
+
+
+def _drawn(lines: list[_Line], axes: list[str]) -> Drawing:
+    points = [point for line in lines for point in line.points]
+    across = scale_of([x for x, _ in points], 0.0, 1.0)
+    up = scale_of([y for _, y in points], 0.0, 1.0)
+    wide, high = (_WIDTH - _LEFT) / (across.high - across.low), _HIGHEST / (up.high - up.low)
+    if len({title.rpartition(",")[2].strip() for title in axes}) == 1:
+        wide = high = min(wide, high)
+        up = _widened(up, _LOWEST / high)
+        step = max(across.step, up.step)
+        across, up = _with_step(across, step), _with_step(up, step)
+    right, bottom = _LEFT + wide * (across.high - across.low), _TOP + high * (up.high - up.low)
+    x = Scale(across.low, across.high, _LEFT, right, across.step)
+    y = Scale(up.low, up.high, bottom, _TOP, up.step)
+    found = []
+    for tick in x.ticks:
+        found += [line_to(x(tick), _TOP, x(tick), bottom, GRID), text_at(x(tick), bottom + 14, x.text(tick))]
+    for tick in y.ticks:
+        found += [line_to(_LEFT, y(tick), right, y(tick), GRID)]
+        found.append(text_at(_LEFT - 6, y(tick) + 4, y.text(tick), anchor="end"))
+    for number, line in enumerate(lines):
+        drawn = [(x(a), y(b)) for a, b in line.points]
+        if len(drawn) == 1:
+            (a, b) = drawn[0]
+            drawn = [(a - 3, b), (a + 3, b), (a, b), (a, b - 3), (a, b + 3)]
+        found.append(path_of(drawn, line.colour, 1.8, dashed=line.dashed))
+        row = _TOP + 8 + 16 * number
+        found.append(line_to(right + 14, row, right + 36, row, line.colour, 1.8, dashed=line.dashed))
+        found.append(text_at(right + 42, row + 4, line.name[:40], anchor="start"))
+    if len(axes) == 2:
+        found.append(text_at((_LEFT + right) / 2, bottom + 30, axes[0]))
+        found.append(text_at(10, (_TOP + bottom) / 2, axes[1], turned=True))
+    height = max(bottom + 38, _TOP + 16 * len(lines) + 10)
+    said = f"The scene, with {', '.join(line.name for line in lines)}"
+    return drawing(found, right + 220, height, said, 160.0)

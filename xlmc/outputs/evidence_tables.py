@@ -1,0 +1,89 @@
+"""Evidence in tables of text: for the terminal and the document to hand over."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+from xlmc.analysis.results.statements.in_words import evidence_text
+from xlmc.outputs.summary import estimate_text, share_text
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.diagnostics.agreement import Agreement, Answer, ItemAgreement
+
+__all__ = [
+    "ITEM_HEADS",
+    "MEANING",
+    "MOVES_MEANING",
+    "item_rows",
+    "move_rows",
+    "trials_sentence",
+]
+
+ITEM_HEADS: Final = (
+    "Evidence",
+    "Reading",
+    "Keeps alone",
+    "Given the others",
+    "Ratio",
+    "Chance of such a reading",
+    "z of best trial",
+    "Verdict",
+)
+
+MEANING: Final = (
+    "Shares are shares of the trials that pass all other filters. Chance: that of a reading as far from the model as "
+    "this one, or farther, given its error and the other evidence. Below 1 % an item is strained; below 0.1 %, or if "
+    "it lies beyond all trials, it is inconsistent. z of best trial: standard deviations from the reading to the "
+    "trial that agrees best with all evidence. It does not count against an item that it keeps few trials."
+)
+
+MOVES_MEANING: Final = (
+    "Each trial counts with the chance that the evidence keeps it. Effective trials: the number of trials of equal "
+    "weight that would say as much; the standard errors come from them."
+)
+
+_NONE: Final = "–"
+
+
+def trials_sentence(found: Agreement) -> str:
+    """What the evidence is judged by."""
+    return f"Judged by {found.trials:,} trials of the same seed, of which {found.past:,} pass all other filters."
+
+
+def _share(item: ItemAgreement, given: bool) -> str:
+    return share_text(item.given_others if given else item.alone) or _NONE
+
+
+def item_rows(found: Agreement) -> list[tuple[str, ...]]:
+    """A row for each item, under `ITEM_HEADS`."""
+    several = len(found.items) > 1
+    return [
+        (
+            each.name,
+            evidence_text(each.evidence),
+            _share(each, given=False),
+            _share(each, given=True) if several else _NONE,
+            (estimate_text(each.ratio) or _NONE) if several else _NONE,
+            each.chance_text or _NONE,
+            _NONE if each.best_z is None else f"{each.best_z:.2g}",
+            each.verdict.value,
+        )
+        for each in found.items
+    ]
+
+
+def move_rows(found: Agreement, forecasts: Sequence[str]) -> list[tuple[str, ...]]:
+    """A row for each set of items: which, how many effective trials, and the mean of each of these forecasts."""
+    rows: dict[str, list[Answer]] = {}
+    for each in found.answers:
+        if each.forecast in forecasts:
+            rows.setdefault(each.used, []).append(each)
+    return [
+        (
+            used,
+            f"{max(each.effective for each in answers):,.0f}",
+            *(estimate_text(each.mean) or _NONE for each in answers),
+        )
+        for used, answers in rows.items()
+    ]

@@ -1,0 +1,278 @@
+"""Trials counted in bins of a round width, for a chart with readable numbers.
+
+**Width.** Freedman and Diaconis, 2·IQR·n^(−1/3), made round (1, 2, 2.5 or 5 times a power of ten) downwards, but no
+more than 60 bins over the range shown and about 10 at least; 1 where all trials are whole numbers that allow it. Bins
+begin at multiples of their width, so that a limit such as 0 or 0.25 falls between two bins, not into one, and hold
+their lower end but not their upper.
+
+**Range shown.** All trials, unless some lie more than five interquartile ranges outside the quartiles; those are not
+drawn, for they would leave the rest in one bar, but counted as below and above.
+
+**Central range.** Its ends fall where they fall. Each bin's trials are counted inside and outside it apart, so a bin
+that straddles an end is shown as both, and the inside parts add up to exactly the trials of the range.
+
+A `Figure` is the histogram of a forecast with its title and caption, as sheet, page and picture draw it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.montecarlo.columns import parts, release
+from xlmc.montecarlo.statistics.sample import Sample, Values
+from xlmc.outputs.summary import SummaryRow, central_text, estimate_text, percent, summarise
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.simulation.simulation import Simulation
+
+__all__ = ["Figure", "Histogram", "figures_of", "histogram", "multiples", "varying"]
+
+Floats = NDArray[np.float64]
+
+_FEWEST, _MOST = 10, 60
+_ROUND = (1.0, 2.0, 2.5, 5.0)
+_ROUND_LABELS = (1.0, 2.0, 5.0)
+_STEPS = (1, 2, 4, 5, 10, 20)
+_MOST_LABELS, _FEWEST_LABELS = 12, 4
+_LINE, _POWER = 84, 7
+"""Characters that an axis has room for, and of a label with a power of ten."""
+
+_FENCE, _VAST = 5.0, 1e300
+_MOST_DECIMALS, _LONGEST = 6, 1e7
+"""A label with more decimals, or of a larger number, has a power of ten."""
+
+_FINEST = 1e-9
+"""The narrowest bin, as a share of the largest value: a finer one would show rounding."""
+
+
+@dataclass(frozen=True, slots=True)
+class Histogram:
+    """Counts of trials in `b` bins of equal width.
+
+    Attributes:
+        edges: `(b,)` lower ends.
+        inside, outside: `(b,)` trials inside and outside the central range.
+        below, above: trials that are not drawn.
+        step: bins from one label to the next; the first bin has one.
+        decimals: of the width.
+    """
+
+    edges: Floats
+    width: float
+    inside: NDArray[np.int64]
+    outside: NDArray[np.int64]
+    below: int
+    above: int
+    step: int
+    decimals: int
+
+    @property
+    def counted(self) -> int:
+        """All trials, those that are not drawn among them; of weighted ones, as many as carry as much."""
+        return int(self.inside.sum() + self.outside.sum()) + self.below + self.above
+
+    @property
+    def upper_edges(self) -> Floats:
+        return multiples(self.width, round(float(self.edges[0] / self.width)) + 1, self.edges.size)
+
+    @property
+    def labels(self) -> list[str]:
+        """The lower end in text for every `step`-th bin, nothing for the others."""
+        decimals = _decimals(self.width * self.step)
+        return ["" if i % self.step else self._text(edge, decimals) for i, edge in enumerate(self.edges)]
+
+    @property
+    def last_label(self) -> str:
+        """The upper end of the last bin in text; bins fill whole steps, so that it is due a label."""
+        return self._text(float(self.upper_edges[-1]), _decimals(self.width * self.step))
+
+    @property
+    def edge_format(self) -> str:
+        """The Excel number format that writes edges in full, if there is room."""
+        if not self._short:
+            return "General"
+        return "0" + ("." + "0" * self.decimals if self.decimals else "")
+
+    def _text(self, edge: float, decimals: int) -> str:
+        return f"{edge:.{decimals}f}" if self._short else f"{edge:.4g}"
+
+    @property
+    def _short(self) -> bool:
+        return self.decimals <= _MOST_DECIMALS and bool(np.max(np.abs(self.upper_edges)) < _LONGEST)
+
+
+def histogram(values: Values, low: float, high: float) -> Histogram | None:
+    """Count finite values `(n,)`, or a `Sample` of them, apart for those in [low, high]; None where there are none.
+
+    Of weighted trials as many are counted as carry as much.
+    """
+    x = Sample.of(values).even
+    if x.size == 0:
+        return None
+    first, last = _shown(x)
+    width = _width(x, first, last)
+    start, stop = math.floor(first / width), math.floor(last / width) + 1
+    step = _step(width, start, stop)
+    start, stop = step * math.floor(start / step), step * math.ceil(stop / step)
+    edges = multiples(width, start, stop - start + 1)
+    reached = np.searchsorted(x, edges, side="left")
+    central = reached.clip(np.searchsorted(x, low, side="left"), np.searchsorted(x, high, side="right"))
+    release(x)
+    inside = np.diff(central)
+    return Histogram(
+        edges=edges[:-1],
+        width=width,
+        inside=inside,
+        outside=np.diff(reached) - inside,
+        below=int(reached[0]),
+        above=int(x.size - reached[-1]),
+        step=step,
+        decimals=_decimals(width),
+    )
+
+
+def _shown(x: Floats) -> tuple[float, float]:
+    """The smallest and largest of ascending values inside the fences."""
+    lower, upper = _quartiles(x)
+    reach = _FENCE * (upper - lower)
+    if reach == 0.0:
+        return _sane(x[0]), _sane(x[-1])
+    first = np.searchsorted(x, lower - reach, side="left")
+    last = np.searchsorted(x, upper + reach, side="right") - 1
+    if last < first:  # all of them vast
+        return _sane(x[0]), _sane(x[-1])
+    return _sane(x[first]), _sane(x[last])
+
+
+def _sane(value: float) -> float:
+    return float(min(max(value, -_VAST), _VAST))
+
+
+def _quartiles(x: Floats) -> tuple[float, float]:
+    """The quartiles of ascending values, by straight lines between them."""
+    lower, upper = Sample(x).quantile(np.array([0.25, 0.75]))
+    return _sane(lower), _sane(upper)
+
+
+def _width(x: Floats, first: float, last: float) -> float:
+    span, largest = last - first, max(abs(first), abs(last))
+    if span <= max(_FINEST * largest, 1.0 / _VAST):
+        return _round_below(0.01 * largest) if largest > 1.0 / _VAST else 1.0
+    if span <= _MOST and all(bool(np.all(part == np.floor(part))) for part in parts(x)):
+        return 1.0
+    lower, upper = _quartiles(x)
+    wanted = min(2.0 * (upper - lower) * x.size ** (-1.0 / 3.0), span / _FEWEST)
+    width = _round_below(max(wanted, span / _MOST))
+    return width if span <= _MOST * width else _round_above(width)
+
+
+def _round_below(width: float) -> float:
+    """The largest round number that is no larger."""
+    return _scale(max(factor for factor in _ROUND if factor <= _mantissa(width)), width)
+
+
+def _round_above(width: float) -> float:
+    """The smallest round number that is larger."""
+    return _scale(min(factor for factor in (*_ROUND, 10.0) if factor > _mantissa(width)), width)
+
+
+def _mantissa(number: float) -> float:
+    return float(f"{number:.6e}".partition("e")[0])
+
+
+def _scale(factor: float, like: float) -> float:
+    return float(f"{factor}e{f'{like:.6e}'.partition('e')[2]}")  # 0.1, not 0.1 and a rounding error
+
+
+def _step(width: float, first: int, last: int) -> int:
+    """The fewest bins from one label to the next that keep labels round and apart; bins are these multiples."""
+    for step in _STEPS:
+        most = min(_MOST_LABELS, max(_FEWEST_LABELS, _LINE // (_longest_label(width, step, first, last) + 2)))
+        if last - first <= step * most and _mantissa(width * step) in _ROUND_LABELS:
+            return step
+    return _STEPS[-1]
+
+
+def _longest_label(width: float, step: int, first: int, last: int) -> int:
+    """Characters of the longest edge, or as many as a power of ten takes."""
+    largest = max(abs(first), abs(last)) * width
+    if _decimals(width) > _MOST_DECIMALS or largest >= _LONGEST:
+        return _POWER
+    return len(f"{-largest if first < 0 else largest:.{_decimals(width * step)}f}")
+
+
+def multiples(width: float, first: int, count: int) -> Floats:
+    """(count,) multiples of a round width, as people write them: 0.3, not 0.30000000000000004."""
+    return np.array([float(f"{multiple * width:.13g}") for multiple in range(first, first + count)])
+
+
+def _decimals(width: float) -> int:
+    """Decimals that write a round width in full: 0.25 -> 2, 10 -> 0."""
+    mantissa, _, exponent = f"{width:.2e}".partition("e")
+    return max(len(mantissa.rstrip("0").partition(".")[2]) - int(exponent), 0)
+
+
+_LONGEST_NAME = 90
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A forecast to draw; `number` counts from 1."""
+
+    number: int
+    answer: SummaryRow
+    bins: Histogram
+
+    @property
+    def name(self) -> str:
+        """The forecast's name, as long as a chart has room for."""
+        name = self.answer.name
+        return name if len(name) <= _LONGEST_NAME else f"{name[: _LONGEST_NAME - 1]}…"
+
+    @property
+    def axis(self) -> str:
+        """What stands below the bars: the units, and what a bar covers."""
+        bars = f"bars {self.bins.width:g} wide, each labelled at its lower end"
+        return f"{self.answer.units} ({bars})" if self.answer.units else f"B{bars[1:]}"
+
+    @property
+    def caption(self) -> str:
+        """What the figure shows, in words."""
+        row, bins = self.answer, self.bins
+        units = f" {row.units}" if row.units else ""
+        text = (
+            f"Figure {self.number}. {self.name}: mean {estimate_text(row.mean)}{units}; the central "
+            f"{percent(row.share)} of {row.trials:,} accepted trials lie from {central_text(row)}{units}."
+        )
+        if bins.counted < row.trials:
+            text += f" Trials are weighted: the chart shows {bins.counted:,} trials of equal weight in their place."
+        if bins.below or bins.above:
+            text += f" Not drawn: {bins.below:,} trials below and {bins.above:,} above."
+        return text
+
+
+def figures_of(simulation: Simulation, names: Collection[str] | None = None) -> list[Figure]:
+    """Every forecast that has a number in an accepted trial.
+
+    Args:
+        simulation: the finished run.
+        names: of the forecasts; by default all.
+    """
+    found: list[Figure] = []
+    for row in summarise(simulation, names):
+        bins = histogram(simulation.results[row.name].sample, row.low.value, row.high.value)
+        refused = math.isnan(row.low.value) or math.isnan(row.high.value)  # too few effective trials to draw
+        if bins is not None and not refused:
+            found.append(Figure(len(found) + 1, row, bins))
+    return found
+
+
+def varying(figures: Sequence[Figure]) -> list[Figure]:
+    """The figures, without forecasts that are the same in all trials: their curve would be a step."""
+    return [figure for figure in figures if figure.answer.standard_deviation.value > 0.0]

@@ -1,0 +1,307 @@
+"""What was changed in the window, beside the workbook: numbers and switches of assumptions, limits of filters.
+
+Keys of an assumption are those of its parameters and cutoffs, `base` for the value that it is held at, `frozen`, and
+those of a band of its distribution that it is confined to; keys of a filter are those of its limits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Final
+
+from xlmc.analysis.results.statements.in_words import number_text
+from xlmc.excel.address import Cell
+from xlmc.montecarlo.definitions.definitions import Assumption, Definitions, Filter, Parameter
+from xlmc.montecarlo.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Scenario
+
+__all__ = [
+    "BAND",
+    "LIMITS",
+    "Adjustments",
+    "Amount",
+    "adjusted_definitions",
+    "adjustments_of",
+    "assumption_numbers",
+    "changes_of",
+    "in_words",
+    "movable_limits",
+    "own_values",
+    "scenario_of",
+    "usual_variants",
+]
+
+LIMITS: Final = {"at_least": "at least", "above": "above", "at_most": "at most", "below": "below"}
+"""Key of a filter's limit -> how it is read."""
+
+BAND: Final = {"band_low": 0.0, "band_high": 100.0}
+"""Key of each end of a band of a distribution, in percent -> where it is with no band."""
+
+Amount = float | bool
+
+Changed = Mapping[str, Mapping[str, Amount]]
+"""Name -> key -> value."""
+
+
+@dataclass(frozen=True, slots=True)
+class Adjustments:
+    """All that differs from the workbook; nothing in it is as in the workbook."""
+
+    assumptions: Changed = field(default_factory=dict)
+    filters: Changed = field(default_factory=dict)
+
+    def __bool__(self) -> bool:
+        return bool(self.assumptions or self.filters)
+
+    def having(self, of: str, name: str, key: str, value: Amount | None) -> Adjustments:
+        """The adjustments with one value set; None sets it back to the workbook's."""
+        before = self._part(of)
+        own = {k: v for k, v in before.get(name, {}).items() if k != key}
+        if value is not None:
+            own[key] = value
+        return self._with(of, name, own)
+
+    def without(self, of: str, name: str) -> Adjustments:
+        """The adjustments with one assumption or filter set back to the workbook's."""
+        return self._with(of, name, {})
+
+    def only(self, definitions: Definitions) -> Adjustments:
+        """What is left for a workbook that was changed meanwhile: of what it no longer has, and of values that it now
+        has itself, nothing.
+        """
+        found = Adjustments()
+        for of, name, key, value in self._each():
+            own = own_values(definitions, of, name)
+            if key in own and own[key] != value:
+                found = found.having(of, name, key, value)
+        return found
+
+    def held(self, definitions: Definitions) -> Adjustments:
+        """The part of it that says what is held, and where; nothing that has no effect."""
+        found = Adjustments()
+        for assumption in definitions.assumptions:
+            given = self.assumptions.get(assumption.name, {})
+            frozen = given.get("frozen", assumption.frozen)
+            if frozen != assumption.frozen:
+                found = found.having("assumption", assumption.name, "frozen", frozen)
+            if frozen and "base" in given:
+                found = found.having("assumption", assumption.name, "base", given["base"])
+        return found
+
+    def numbers(self, definitions: Definitions) -> Adjustments:
+        """The other part: numbers of what is drawn, and limits."""
+        found = Adjustments(filters=self.filters)
+        for assumption in definitions.assumptions:
+            given = self.assumptions.get(assumption.name, {})
+            if not given.get("frozen", assumption.frozen):
+                own = {key: value for key, value in given.items() if key not in ("frozen", "base")}
+                found = found._with("assumption", assumption.name, own)
+        return found
+
+    def as_json(self) -> dict[str, Any]:
+        """Plain values, which `of_json` reads back."""
+        return {
+            "assumptions": {name: dict(each) for name, each in self.assumptions.items()},
+            "filters": {name: dict(each) for name, each in self.filters.items()},
+        }
+
+    @classmethod
+    def of_json(cls, found: Mapping[str, Any]) -> Adjustments:
+        """See `as_json`.
+
+        Raises:
+            ValueError, TypeError, AttributeError, KeyError: it is something else.
+        """
+        made = cls()
+        for of, part in (("assumption", "assumptions"), ("filter", "filters")):
+            for name, each in found[part].items():
+                for key, value in each.items():
+                    made = made.having(of, str(name), str(key), value if isinstance(value, bool) else float(value))
+        return made
+
+    def _part(self, of: str) -> Changed:
+        return self.assumptions if of == "assumption" else self.filters
+
+    def _with(self, of: str, name: str, own: Mapping[str, Amount]) -> Adjustments:
+        part = {other: each for other, each in self._part(of).items() if other != name}
+        if own:
+            part[name] = own
+        return replace(self, **{f"{of}s": part})
+
+    def _each(self) -> Iterator[tuple[str, str, str, Amount]]:
+        for of, part in (("assumption", self.assumptions), ("filter", self.filters)):
+            for name, each in part.items():
+                for key, value in each.items():
+                    yield of, name, key, value
+
+
+def assumption_numbers(assumption: Assumption) -> dict[str, tuple[str, Parameter]]:
+    """Key of each parameter and cutoff that is given -> its heading and its value."""
+    return {key: (heading, assumption.given[key]) for key, heading in assumption.headings.items()}
+
+
+def own_values(definitions: Definitions, of: str, name: str) -> dict[str, Parameter | bool | None]:
+    """What can be set of an assumption or a filter, as the workbook has it; of a name that it has not, nothing."""
+    if of == "filter":
+        filter_ = next((each for each in definitions.filters if each.name == name), None)
+        return {} if filter_ is None else {**movable_limits(filter_)}
+    assumption = next((each for each in definitions.assumptions if each.name == name), None)
+    if assumption is None:
+        return {}
+    numbers = {key: value for key, (_, value) in assumption_numbers(assumption).items()}
+    return {**numbers, **BAND, "base": assumption.base, "frozen": assumption.frozen}
+
+
+def movable_limits(filter_: Filter) -> dict[str, Parameter]:
+    """The limits of a filter; none of evidence, whose reading and error say what it keeps."""
+    limits = {} if filter_.evidence is not None else {key: getattr(filter_, key) for key in LIMITS}
+    return {key: value for key, value in limits.items() if value is not None}
+
+
+def changes_of(definitions: Definitions, adjustments: Adjustments) -> list[Change]:
+    """What is to be changed in the workbook. What has no effect, a number of what is frozen, is left out."""
+    found: list[Change] = []
+    for assumption in definitions.assumptions:
+        found += _of_assumption(assumption, dict(adjustments.assumptions.get(assumption.name, {})))
+    for name, limits in adjustments.filters.items():
+        found.append(Limits(name, {key: float(value) for key, value in limits.items()}))
+    return found
+
+
+def _of_assumption(assumption: Assumption, given: dict[str, Amount]) -> Iterator[Change]:
+    name, base = assumption.name, given.pop("base", None)
+    frozen = given.pop("frozen", assumption.frozen)
+    if frozen:
+        if base is not None or not assumption.frozen:
+            yield Held(name, None if base is None else float(base))
+        return
+    if assumption.frozen:
+        yield Drawn(name)
+    low, high = (float(given.pop(key, end)) for key, end in BAND.items())
+    if given:
+        yield Numbers(name, {key: float(value) for key, value in given.items()})
+    if (low, high) != (*BAND.values(),):
+        yield Band(name, low, high)
+
+
+def scenario_of(definitions: Definitions, name: str, adjustments: Adjustments) -> Scenario:
+    """A state of the window as a scenario, such as the workbook's table `xlmc_scenarios` holds."""
+    return Scenario(name, tuple(changes_of(definitions, adjustments)))
+
+
+def adjustments_of(definitions: Definitions, scenario: Scenario) -> Adjustments | None:
+    """A scenario of the workbook as a state of the window; None where it changes what the window has no handle for."""
+    assumptions = {each.name: each for each in definitions.assumptions}
+    found = Adjustments()
+    for change in scenario.changes:
+        values = _values(change, assumptions)
+        if values is None:
+            return None
+        of = "filter" if isinstance(change, Limits) else "assumption"
+        name = change.filter if isinstance(change, Limits) else change.assumption  # type: ignore[union-attr]
+        for key, value in values.items():
+            if key not in own_values(definitions, of, name):
+                return None
+            found = found.having(of, name, key, value)
+    return found
+
+
+def _values(change: Change, assumptions: Mapping[str, Assumption]) -> dict[str, Amount] | None:
+    """Key -> value of one change; None where it is none of these."""
+    match change:
+        case Held(_, value):
+            return {"frozen": True} | ({} if value is None else {"base": value})
+        case Drawn():
+            return {"frozen": False}
+        case Band(_, low, high):
+            return dict(zip(BAND, (low, high), strict=True))
+        case Range(name, low, high) if name in assumptions and {"low", "high"} <= {*assumptions[name].parameters}:
+            ends = {"low": low, "high": high}
+            return {key: end for key, end in ends.items() if end is not None}
+        case Numbers(_, values) | Limits(_, values) if None not in values.values():
+            return {key: value for key, value in values.items() if value is not None}
+    return None
+
+
+def adjusted_definitions(definitions: Definitions, adjustments: Adjustments) -> Definitions:
+    """The definitions with these values, whatever they are."""
+    return replace(
+        definitions,
+        assumptions=tuple(_assumption(each, adjustments.assumptions) for each in definitions.assumptions),
+        filters=tuple(_filter(each, adjustments.filters) for each in definitions.filters),
+    )
+
+
+def _assumption(assumption: Assumption, changed: Changed) -> Assumption:
+    given = dict(changed.get(assumption.name, {}))
+    if not given:
+        return assumption
+    held: dict[str, Any] = {key: given.pop(key) for key in ("base", "frozen") if key in given}
+    for key in BAND:
+        given.pop(key, None)
+    return replace(assumption.with_numbers({key: float(value) for key, value in given.items()}), **held)
+
+
+def _filter(filter_: Filter, changed: Changed) -> Filter:
+    return replace(filter_, **{key: float(value) for key, value in changed.get(filter_.name, {}).items()})  # type: ignore[arg-type]
+
+
+def in_words(definitions: Definitions, adjustments: Adjustments) -> list[str]:
+    """What differs, a phrase each: `friction: High 0.75 → 0.85`."""
+    found = []
+    for of, name, key, value in adjustments._each():
+        own = own_values(definitions, of, name).get(key)
+        found.append(f"{name}: {changed_text(definitions, of, name, key, own, value)}")
+    return found
+
+
+def changed_text(
+    definitions: Definitions, of: str, name: str, key: str, before: Parameter | bool | None, after: Amount
+) -> str:
+    """`High 0.75 → 0.85`, `frozen`, `at least 0 → 0.1`."""
+    if key == "frozen":
+        return "frozen" if after else "not frozen"
+    if of == "filter":
+        heading = LIMITS[key]
+    elif key in BAND:
+        heading = "band from" if key == "band_low" else "band to"
+        return f"{heading} {number_text(after)} %"
+    elif key == "base":
+        heading = "value"
+    else:
+        assumption = next(each for each in definitions.assumptions if each.name == name)
+        heading = assumption_numbers(assumption)[key][0]
+    shown = "none" if before is None else number_text(before)
+    return f"{heading} {shown} → {number_text(after)}"
+
+
+def usual_variants(definitions: Definitions) -> dict[str, Adjustments]:
+    """What people try to see how firm an answer is: all ranges wider and narrower, each limit halved and doubled.
+
+    Ranges are those of the assumptions with numbers `low` and `high`; a limit of 0 stays.
+    """
+    found: dict[str, Adjustments] = {}
+    for said, factor in (("half as wide", 0.5), ("one and a half times as wide", 1.5)):
+        made = Adjustments()
+        for name, low, high in _ranges(definitions):
+            middle, half = 0.5 * (low + high), 0.5 * (high - low) * factor
+            for key, end in (("low", middle - half), ("high", middle + half)):
+                made = made.having("assumption", name, key, float(f"{end:.12g}"))  # 0.6875, not 0.6874999999999999
+        if made:
+            found[f"every range {said}"] = made
+    for filter_ in definitions.filters:
+        for key, limit in movable_limits(filter_).items():
+            if isinstance(limit, Cell) or not limit:
+                continue
+            for said, factor in (("half", 0.5), ("twice", 2.0)):
+                name = f"{filter_.name} {LIMITS[key]} {number_text(limit * factor)} ({said})"
+                found[name] = Adjustments().having("filter", filter_.name, key, limit * factor)
+    return found
+
+
+def _ranges(definitions: Definitions) -> Iterator[tuple[str, float, float]]:
+    """Name, low and high of the drawn assumptions that are given by these two numbers."""
+    for each in definitions.assumptions:
+        low, high = each.parameters.get("low"), each.parameters.get("high")
+        if not each.frozen and len(each.parameters) == 2 and isinstance(low, float) and isinstance(high, float):
+            yield each.name, low, high

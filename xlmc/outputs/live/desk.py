@@ -1,0 +1,357 @@
+"""One workbook that is open: its session, its windows, the thread that computes, the file that is watched."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import time
+from collections.abc import Callable, Coroutine, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, TypeVar
+
+from watchfiles import awatch
+
+from xlmc.errors import WorkbookError, XlmcError
+from xlmc.montecarlo.model.loading import load
+from xlmc.outputs.live.adjustments import Adjustments, in_words
+from xlmc.outputs.live.hand_over import KINDS, edited_state, save_result, write_changes
+from xlmc.outputs.live.jobs import Job, Outcome, SupersededError, View
+from xlmc.outputs.live.library import Library
+from xlmc.outputs.live.protocol import Message, Said, written
+from xlmc.outputs.live.session import Session
+from xlmc.outputs.live.study_run import OF_THE_FILE, StudyRun
+from xlmc.outputs.live.what_changed import what_changed
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.model.model import Model
+
+__all__ = ["Desk", "Window"]
+
+_PAUSE: Final = 0.15
+"""Seconds that a held handle must be still before the longer runs begin."""
+
+_TOLD_EVERY: Final = 0.1
+"""Seconds between two messages on how far a run is."""
+
+_SETTLING: Final = (0.0, 0.1, 0.3, 0.6, 1.0)
+"""Seconds before each try to read a workbook that was just saved: a half-written one is whole a moment later."""
+
+_CHANGING: Final = frozenset({"set", "reset", "keep", "show", "drop", "restore", "variants"})
+"""Kinds after which what outlives the window is other."""
+
+_NEWEST: Final = frozenset({"frame", "running", "state", "study"})
+"""Kinds of which a window that lags behind needs the newest alone."""
+
+
+T = TypeVar("T")
+
+
+class Window:
+    """What one window shows, and what is still to be sent to it."""
+
+    def __init__(self) -> None:
+        self.view: Said | None = None
+        self._waiting: list[tuple[str, str]] = []
+        self._more = asyncio.Event()
+
+    def put(self, kind: str, text: str) -> None:
+        """Add a message; it takes the place of an older one of its kind that was not sent yet."""
+        if kind in _NEWEST:
+            self._waiting = [each for each in self._waiting if each[0] != kind]
+        self._waiting.append((kind, text))
+        self._more.set()
+
+    async def next(self) -> str:
+        """The next message, when there is one."""
+        while not self._waiting:
+            self._more.clear()
+            await self._more.wait()
+        return self._waiting.pop(0)[1]
+
+
+class Desk:
+    """See the module.
+
+    Args:
+        path: of the workbook.
+        library: of the workbooks that may be opened beside it.
+    """
+
+    def __init__(self, path: Path, library: Library) -> None:
+        self.path = path
+        self.session: Session | None = None
+        self._library, self._keeper, self._windows = library, library.keeper, set[Window]()
+        self._study: StudyRun | None = None
+        self._pool = ThreadPoolExecutor(1, thread_name_prefix="xlmc-window")
+        self._wake = asyncio.Event()
+        self._trouble: dict[str, str] = {}
+        self._tasks: list[asyncio.Task[None]] = []
+        self._stamp: tuple[int, ...] | None = None
+
+    @property
+    def windows(self) -> int:
+        """How many show it."""
+        return len(self._windows)
+
+    def start(self) -> None:
+        """Begin to read, to compute and to watch; in a running event loop."""
+        for about, what in (("work", self._work()), ("watching", self._watch())):
+            task = asyncio.create_task(what)
+            task.add_done_callback(partial(self._ended, about))
+            self._tasks.append(task)
+
+    def _ended(self, about: str, task: asyncio.Task[None]) -> None:
+        """Tell it where what should go on has ended by a fault."""
+        fault = None if task.cancelled() else task.exception()
+        if fault is not None:
+            self._say(about, f"xlmc has failed, and must be started again: {type(fault).__name__}: {fault}")
+
+    async def close(self) -> None:
+        """End all of it."""
+        for task in self._tasks:
+            task.cancel()
+        if self.session is not None:
+            self.session.end()  # a run that is going on is not wanted any more
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        self._pool.shutdown(wait=False, cancel_futures=True)
+
+    def join(self) -> Window:
+        """A window that was opened, or came back."""
+        window = Window()
+        self._windows.add(window)
+        for message in self.session.greeting() if self.session is not None else ():
+            window.put(message["kind"], written(message))
+        for about, text in self._trouble.items():
+            window.put("trouble", written({"kind": "trouble", "about": about, "text": text}))
+        others = [each for each in self._library.books() if self._library.path(each["key"]) != self.path]
+        window.put("others", written({"kind": "others", "books": others}))
+        if self._study is not None:
+            window.put("study", written(self._study.last))
+        return window
+
+    def leave(self, window: Window) -> None:
+        """A window was closed."""
+        self._windows.discard(window)
+        self._look()
+
+    def _look(self) -> None:
+        """Tell the session what can be seen in all windows; with none, it goes on as before."""
+        views = [window.view for window in self._windows if window.view is not None]
+        if views and self.session is not None:
+            self.session.look(View.of(views, [each.name for each in self.session.own.forecasts]))
+            self._wake.set()
+
+    def hear(self, window: Window, said: Said) -> None:
+        """Take what a window says."""
+        if said.kind == "view":
+            window.view = said
+            self._look()
+        if self.session is None or said.kind in ("view", "hello"):
+            return
+        if said.kind == "study":
+            self._ask(window, said["what"], said["other"])
+            return
+        if said.kind == "cancel":
+            if self._study is not None:
+                self._later(self._study.cancel())
+            return
+        if said.kind == "save":
+            self._later(self._save(said["what"]))
+            return
+        try:
+            replies = self.session.receive(said)
+        except XlmcError as error:
+            window.put("trouble", written({"kind": "trouble", "about": "request", "text": str(error)}))
+            return
+        for message in replies.own:
+            window.put(message["kind"], written(message))
+        self._tell(replies.all)
+        if said.kind in ("set", "reset", "keep", "show", "drop", "restore") and not (
+            said.kind == "set" and said["held"]
+        ):
+            self._keep()
+        self._wake.set()
+
+    def _later(self, what: Coroutine[object, object, None]) -> None:
+        task = asyncio.create_task(what)
+        self._tasks.append(task)
+        task.add_done_callback(lambda done: self._tasks.remove(done) if done in self._tasks else None)
+
+    def _tell(self, messages: Iterable[Message]) -> None:
+        for message in messages:
+            text = written(message)
+            for window in self._windows:
+                window.put(message["kind"], text)
+
+    def _tell_study(self, message: Message) -> None:
+        self._tell([message])
+
+    def _say(self, about: str, text: str) -> None:
+        """Tell of a trouble, or, with an empty text, that it is over."""
+        if text:
+            self._trouble[about] = text
+        elif self._trouble.pop(about, None) is None:
+            return
+        self._tell([{"kind": "trouble", "about": about, "text": text}])
+
+    def _keep(self) -> None:
+        if self.session is None:
+            return
+        try:
+            self._keeper.keep(self.path, self.session.kept, self.session.unkept)
+        except WorkbookError as error:
+            self._say("keeping", str(error))
+        else:
+            self._say("keeping", "")
+
+    async def _in_thread(self, what: Callable[[], T]) -> T:
+        return await asyncio.get_running_loop().run_in_executor(self._pool, what)
+
+    async def _read(self) -> Model | None:
+        """The workbook's model; None where it cannot be read or understood, which is told."""
+        trouble = ""
+        for seconds in _SETTLING:
+            await asyncio.sleep(seconds)
+            self._stamp = _stamp(self.path)
+            try:
+                model = await self._in_thread(lambda: load(self.path))
+            except (XlmcError, OSError) as error:
+                trouble = str(error)
+                if not isinstance(error, WorkbookError | OSError):
+                    break  # it was read, and is not what it must be
+            else:
+                self._say("book", "")
+                return model
+        self._say("book", trouble)
+        return None
+
+    async def _work(self) -> None:
+        while (model := await self._read()) is None:
+            await self._changed()
+        kept, unkept = self._kept_before()
+        self.session = Session(model, kept, unkept)
+        self._tell(self.session.greeting())
+        while True:
+            job = self.session.job()
+            if job is None or (job.held and job.stage in ("rest", "part")):
+                try:
+                    await asyncio.wait_for(self._wake.wait(), None if job is None else _PAUSE)
+                    self._wake.clear()
+                    continue
+                except TimeoutError:
+                    pass
+            if job is not None:
+                await self._do(self.session, job)
+
+    def _kept_before(self) -> tuple[dict[str, Adjustments], Adjustments]:
+        try:
+            return self._keeper.scenarios(self.path)
+        except WorkbookError as error:
+            self._say("keeping", str(error))
+            return {}, Adjustments()
+
+    async def _do(self, session: Session, job: Job) -> None:
+        loop, told = asyncio.get_running_loop(), [time.monotonic()]
+
+        def tell(share: float) -> None:
+            if time.monotonic() - told[0] > _TOLD_EVERY:
+                told[0] = time.monotonic()
+                said = {"kind": "running", "version": job.version, "stage": job.stage, "share": share}
+                loop.call_soon_threadsafe(self._tell, [said])
+
+        def run() -> Outcome:
+            return job.run(lambda: session.wanted(job), tell, time.monotonic)
+
+        try:
+            outcome = await self._in_thread(run)
+        except SupersededError:
+            self._tell(session.superseded(job))
+            return
+        except Exception as error:  # a fault of xlmc's own must not end the window
+            outcome = Outcome(problem=f"xlmc has failed: {type(error).__name__}: {error}")
+        self._tell(session.finish(job, outcome))
+
+    async def _save(self, what: str) -> None:
+        """Write what is shown; say where, or why not."""
+        if self.session is None:
+            return
+        try:
+            state = self.session.at_rest()
+            if what in KINDS:
+                text = f"Written: {await self._in_thread(lambda: save_result(state, self.path, what))}"
+            else:
+                text = await self._in_thread(lambda: write_changes(state, self.path, into=what == "into"))
+        except (XlmcError, OSError) as error:
+            self._say("save", str(error))
+        else:
+            self._say("save", "")
+            self._tell([{"kind": "news", "text": text, "link": ""}])
+
+    def _ask(self, window: Window, what: str, other: str) -> None:
+        """Start a study, unless one is going on."""
+        trouble = "A study is going on: cancel it, or wait." if self._study and self._study.is_running else ""
+        others: list[Path] = []
+        if what == "compare":
+            second = self._library.path(other)
+            others += [] if second is None else [second]
+            trouble = trouble or ("" if second else "Choose the workbook to compare this one with.")
+        if trouble:
+            window.put("trouble", written({"kind": "trouble", "about": "study", "text": trouble}))
+            return
+        self._say("study", "")
+        session = self.session
+        if what in OF_THE_FILE or session is None or not session.adjustments:
+            self._begin(StudyRun(what, [self.path, *others], self._tell_study))
+        else:
+            self._later(self._ask_of_state(session, what, others))
+
+    def _begin(self, study: StudyRun) -> None:
+        self._study = study
+        self._later(study.run())
+
+    async def _ask_of_state(self, session: Session, what: str, others: Sequence[Path]) -> None:
+        """Start a study of the state that is shown, which is typed into a copy of the workbook for it."""
+        own, adjustments, name = session.own, session.adjustments, session.shown
+        try:
+            edited = await self._in_thread(lambda: edited_state(own, adjustments, name))
+        except (XlmcError, OSError) as error:
+            self._say("study", str(error))
+            return
+        of = in_words(own.definitions, adjustments)
+        if self._study is None or not self._study.is_running:
+            self._begin(StudyRun(what, [self.path, *others], self._tell_study, of, edited.data))
+
+    # The file
+
+    async def _watch(self) -> None:
+        """Read the workbook again whenever it was saved, in place or by a rename."""
+        folder, name = self.path.parent, self.path.name
+        async for changes in awatch(folder, recursive=False, debounce=100, step=20, rust_timeout=1000):
+            if any(os.path.basename(each) == name for _, each in changes) and _stamp(self.path) != self._stamp:
+                await self._again()
+
+    async def _changed(self) -> None:
+        """Wait until the file is another."""
+        while _stamp(self.path) == self._stamp:
+            await asyncio.sleep(0.2)
+
+    async def _again(self) -> None:
+        session = self.session
+        if session is None:
+            return  # `_work` is still reading it
+        before = session.own
+        model = await self._read()
+        if model is not None:
+            self._tell(session.replace_book(model, what_changed(before, model)))
+            self._wake.set()
+
+
+def _stamp(path: Path) -> tuple[int, ...] | None:
+    """What a file that was saved has another of."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_ino, found.st_size

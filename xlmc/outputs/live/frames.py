@@ -1,0 +1,305 @@
+"""A run as the window draws it: charts, the numbers beside them, and how far they are from the state drawn behind."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Mapping
+from typing import TYPE_CHECKING, Any, Final
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.analysis.results.record import make_record
+from xlmc.analysis.results.statements import statements
+from xlmc.analysis.results.statements.in_words import sampling_sentence
+from xlmc.analysis.studies.scenario_answers import scenario_answers
+from xlmc.analysis.studies.sensitivity import sensitivities
+from xlmc.montecarlo.statistics import (
+    Estimate,
+    Sample,
+    format_estimate,
+    maximum,
+    minimum,
+    percentiles,
+    rank_correlation,
+)
+from xlmc.montecarlo.statistics.estimate import finite
+from xlmc.outputs.histogram import Figure, figures_of, histogram, multiples
+from xlmc.outputs.live.protocol import Message
+from xlmc.outputs.page.element import element, join
+from xlmc.outputs.page.payload import forecast_payload
+from xlmc.outputs.page.sensitivity_sections import dependence, limits
+from xlmc.outputs.page.sheet_sections import (
+    assumptions,
+    certainty,
+    checks,
+    filters,
+    notices,
+    record,
+    scenarios,
+    statistics,
+)
+from xlmc.outputs.sheets.results_sheet import opening_sentences
+from xlmc.outputs.summary import ERROR_SENTENCE, SummaryRow, base_case, share_text
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.diagnostics.weighing import Weighting
+    from xlmc.montecarlo.loop.forecast_result import ForecastResult
+    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.simulation.simulation import Simulation
+
+__all__ = ["bases_of", "frame_of", "matters_html", "pair_of", "rest_of", "scenarios_html", "tables_html"]
+
+_VALUES_MOVING: Final = 400
+_VALUES_AT_REST: Final = 4_000
+"""Values of a forecast that a chart counts between its grabbers from: `xlmc.outputs.page.payload` says how exactly."""
+
+_PERCENTS: Final = (5.0, 25.0, 50.0, 75.0, 95.0)
+_KNOWN: Final[WeakKeyDictionary[ForecastResult, list[tuple[str, Estimate]]]] = WeakKeyDictionary()
+"""The estimates of each forecast: those of the state for comparison are asked for with every frame."""
+
+_POINTS: Final = 2_000
+"""Accepted trials that a scatter shows."""
+
+
+Bases = Mapping[str, float | None]
+"""Forecast -> its base case; None where that is no number."""
+
+
+def frame_of(
+    simulation: Simulation,
+    behind: Simulation | None,
+    names: Collection[str],
+    base: Bases | None,
+    *,
+    moving: bool,
+    fits: bool,
+) -> Message:
+    """The charts of some forecasts.
+
+    Args:
+        simulation: the run.
+        behind: the run of the state that is drawn behind it; None where there is none.
+        names: of the forecasts.
+        base: of each forecast; None where there is no base case.
+        moving: while a handle moves: fewer values to count from.
+        fits: with fitted distributions, which take their time.
+    """
+    most = _VALUES_MOVING if moving else _VALUES_AT_REST
+    charts: dict[str, Any] = dict.fromkeys(name for name in names if name in simulation.results)
+    for name in charts:
+        figure = _figure(simulation.results[name], None if base is None else base[name])
+        if figure is not None:
+            payload = forecast_payload(simulation, figure, most, fits=fits)
+            charts[name] = payload | _beside(figure, simulation.results[name], behind)
+    return {
+        "trials": simulation.evaluated,
+        "accepted": simulation.accepted,
+        "share": share_text(simulation.acceptance),
+        "forecasts": charts,
+    }
+
+
+def bases_of(simulation: Simulation) -> Bases | None:
+    """The base case of a run."""
+    found = base_case(simulation)
+    return None if found is None else found.forecasts
+
+
+def _figure(result: ForecastResult, base: float | None) -> Figure | None:
+    """A forecast to draw, with no other statistics than the window shows.
+
+    None where it has no number, or where its weighted trials carry too little for a range.
+    """
+    definition, (low, high) = result.definition, result.central()
+    bins = histogram(result.sample, low.value, high.value) if result.sample.n else None
+    if bins is None or math.isnan(low.value) or math.isnan(high.value):
+        return None
+    threshold = definition.threshold
+    row = SummaryRow(
+        name=definition.name,
+        units=definition.units,
+        trials=result.sample.n,
+        mean=result.mean,
+        standard_deviation=result.standard_deviation,
+        share=definition.central,
+        low=low,
+        high=high,
+        base=base,
+        threshold=threshold,
+        above=None if threshold is None else result.probability_above(threshold),
+    )
+    return Figure(1, row, bins)
+
+
+def _beside(figure: Figure, now: ForecastResult, behind: Simulation | None) -> dict[str, Any]:
+    """The numbers beside a chart, and the state behind it."""
+    before = None if behind is None else behind.results.get(figure.answer.name)
+    if before is None or not before.sample.n:
+        return {"beside": [[label, *_texts(each, None)] for label, each in _numbers(now)], "said": None, "behind": None}
+    pairs = zip(_numbers(now), _numbers(before), strict=True)
+    return {
+        "beside": [[label, *_texts(new, old)] for (label, new), (_, old) in pairs],
+        "said": _moved(figure, now, before),
+        "behind": _bars_behind(figure, before.sample),
+    }
+
+
+def _numbers(result: ForecastResult) -> list[tuple[str, Estimate]]:
+    """The numbers that a reader of the chart asks for first."""
+    if result not in _KNOWN:
+        sample = result.sample
+        found = percentiles(sample, _PERCENTS)
+        _KNOWN[result] = [
+            ("Mean", result.mean),
+            ("Standard deviation", result.standard_deviation),
+            ("Minimum", minimum(sample)),
+            *((f"{percent:g} %", found[percent]) for percent in _PERCENTS),
+            ("Maximum", maximum(sample)),
+        ]
+    return _KNOWN[result]
+
+
+def _texts(now: Estimate, before: Estimate | None) -> tuple[str, str, str]:
+    """The number, the one before, and by how much it has changed."""
+    shown = _text(now)
+    if before is None:
+        return shown, "", ""
+    apart = now.value - before.value
+    if not math.isfinite(apart):
+        return shown, _text(before), ""
+    sign = "+" if apart > 0 else "−" if apart < 0 else ""
+    decimals = len(shown.partition(" ")[0].partition(".")[2])
+    said = f"{abs(apart):.{decimals}f}" if now.error is None else _text(Estimate(abs(apart), now.error))
+    return shown, _text(before), sign + said.partition(" ± ")[0]
+
+
+def _text(estimate: Estimate) -> str:
+    return "" if math.isnan(estimate.value) else format_estimate(estimate.value, estimate.error)
+
+
+def _moved(figure: Figure, now: ForecastResult, before: ForecastResult) -> str:
+    """`Nissan impact speed: mean 4.72 → 5.31 mph`."""
+    units = f" {figure.answer.units}" if figure.answer.units else ""
+    old, new = (_text(each.mean).partition(" ± ")[0] for each in (before, now))
+    return f"{figure.answer.name}: mean {old} → {new}{units}"
+
+
+def _bars_behind(figure: Figure, sample: Sample) -> dict[str, Any]:
+    """The bars of the state behind, as wide as those before it, so that the two compare."""
+    x, width = sample.even, figure.bins.width
+    first, last = x[round(0.001 * (x.size - 1))], x[round(0.999 * (x.size - 1))]
+    start, stop = math.floor(first / width), math.floor(last / width) + 1
+    while stop - start > 400:  # it is much wider than the one before it
+        width, start, stop = 2.0 * width, start // 2, stop // 2 + 1
+    edges = multiples(width, start, stop - start + 1)
+    counts = np.diff(np.searchsorted(x, edges, side="left"))
+    return {
+        "edges": edges.tolist(),
+        "counts": counts.tolist(),
+        "trials": int(x.size),
+        "parts": figure.bins.width / width,
+        "curve": [[float(x[round(share * (x.size - 1))]), 100.0 * share] for share in np.linspace(0.0, 1.0, 101)],
+        "mean": finite(float(np.mean(x))),
+    }
+
+
+def rest_of(simulation: Simulation) -> Message:
+    """What is said of a run that is done: the answer in sentences, warnings, checks, what the filters rejected."""
+    counts = zip(simulation.model.filters, simulation.tally.rejected, simulation.tally.only, strict=True)
+    return {
+        "sentences": [each.text for each in statements(simulation)],
+        "meaning": ERROR_SENTENCE,
+        "warnings": [str(each) for each in opening_sentences(simulation)],
+        "notices": [str(each) for each in simulation.notices_of_run],
+        "sampling": sampling_sentence(simulation),
+        "evaluated": simulation.trials,
+        "rejected": {each.name: [int(rejected), int(only)] for each, rejected, only in counts},
+        "checks": [
+            {"name": each.name, "cell": str(each.cell), "holds": each.holds, "failing": each.warnings}
+            for each in simulation.checks
+        ],
+    }
+
+
+def matters_html(simulation: Simulation) -> str:
+    """Which assumptions the answer depends on, and what another limit of a filter would change."""
+    if simulation.weighting is not None:
+        said = "Each trial has a weight of its own, by the evidence; what matters is not known of such trials."
+        return join([element("p", said, class_="remark")]).source
+    found = sensitivities(simulation)
+    return join([dependence(found), limits(found)]).source
+
+
+def tables_html(simulation: Simulation) -> str:
+    """All tables that the page of results has."""
+    parts = (statistics, certainty, assumptions, filters, checks, notices)
+    return join([*(part(simulation) for part in parts), record(make_record(simulation, None))]).source
+
+
+def scenarios_html(model: Model, run: Callable[[Model], Simulation], told: Callable[[str], None]) -> str:
+    """The answers of the scenarios of a model beside its own, in tables.
+
+    Args:
+        model: with the scenarios.
+        run: makes the run of the model's own state, with its scenarios asked for.
+        told: called before each scenario with its name.
+
+    Raises:
+        DefinitionError, FormulaError: a scenario is not possible.
+    """
+    base = run(model)
+    scenario_answers(base, told=told)
+    return scenarios(base).source
+
+
+def pair_of(simulation: Simulation, first: str, second: str) -> dict[str, Any] | None:
+    """Two quantities in the same accepted trials, for a scatter and an overlay; None where either is unknown.
+
+    Args:
+        simulation: the run.
+        first: name of a forecast, or of an assumption that is drawn.
+        second: likewise.
+    """
+    columns: Mapping[str, Any] = {**simulation.inputs, **simulation.forecasts}
+    if first not in columns or second not in columns:
+        return None
+    n = min(columns[first].size, columns[second].size, 50 * _POINTS)
+    x, y = np.asarray(columns[first][:n]), np.asarray(columns[second][:n])
+    if simulation.weighting is not None:
+        chosen = _evenly(simulation.weighting, n)
+        x, y = x[chosen], y[chosen]
+    both = np.isfinite(x) & np.isfinite(y)
+    x, y = x[both], y[both]
+    return {
+        "first": first,
+        "second": second,
+        "x": x[:_POINTS].tolist(),
+        "y": y[:_POINTS].tolist(),
+        "trials": int(x.size),
+        "correlation": finite(rank_correlation(x, y).value) if x.size > 2 else None,
+        "units": [_units(simulation, first), _units(simulation, second)],
+        "together": _together(simulation, (first, second)),
+    }
+
+
+def _evenly(weighting: Weighting, n: int) -> NDArray[np.intp]:
+    """Trials of equal weight for the first `n` weighted ones: drawn in proportion to the weights, in order."""
+    reached = np.cumsum(weighting.weights[:n])
+    count = max(1, int(reached[-1] ** 2 / np.sum(weighting.weights[:n] ** 2)))
+    return np.asarray(np.searchsorted(reached, (np.arange(count) + 0.5) / count * reached[-1]))
+
+
+def _together(simulation: Simulation, names: tuple[str, str]) -> list[dict[str, Any]]:
+    """Both as charts to be laid over each other; none where they are not two forecasts in one unit."""
+    figures = figures_of(simulation, names) if names[0] != names[1] else []
+    if len(figures) < 2 or len({figure.answer.units for figure in figures}) > 1:
+        return []
+    return [forecast_payload(simulation, figure, _VALUES_MOVING, fits=False) for figure in figures]
+
+
+def _units(simulation: Simulation, name: str) -> str:
+    model = simulation.model
+    found = {each.name: each.units for each in model.assumptions} | {each.name: each.units for each in model.forecasts}
+    return found.get(name, "")

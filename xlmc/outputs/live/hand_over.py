@@ -1,0 +1,167 @@
+"""Writes what the window shows: result workbook, page, JSON, saved run; a copy with the changes; the workbook itself.
+
+Every result holds a record of how it can be repeated, from its workbook. A state that was changed in the window stands
+in no workbook; so it is typed into a copy first, the copy is run, and the results are the copy's, with a record that
+says what differs from the workbook, and how. They are written only where the numbers are those of the window.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from xlmc.analysis.results.saved import keep
+from xlmc.analysis.studies.scenario_workbook import EditedWorkbook, edited_workbook, write_edited
+from xlmc.errors import SimulationError
+from xlmc.excel.workbook.reader import read_workbook
+from xlmc.excel.workbook.target import copy_ending, free_target, refuse_existing, refuse_into_source, unused_path
+from xlmc.excel.workbook.writer import write_workbook
+from xlmc.montecarlo.model.loading import build_model
+from xlmc.montecarlo.simulation.simulate import simulate
+from xlmc.montecarlo.simulation.simulation import ChangedFrom
+from xlmc.outputs import save
+from xlmc.outputs.json_document import save_json
+from xlmc.outputs.live.adjustments import Adjustments, in_words, scenario_of
+from xlmc.outputs.page import save_page
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.simulation.simulation import Simulation
+
+__all__ = ["KINDS", "AtRest", "edited_state", "save_result", "write_changes"]
+
+_NO_NAME: Final = re.compile(r"[^\w .,+()-]+")
+_LONGEST: Final = 60
+"""Characters of a scenario's name in the name of a file."""
+
+
+class _Kind(NamedTuple):
+    """The ending of its file, where that is not the workbook's own; and what writes it."""
+
+    ending: str
+    write: Callable[[Simulation, Path], Path]
+
+
+KINDS: Final[Mapping[str, _Kind]] = {
+    "book": _Kind("", lambda run, path: save(run, path)),
+    "page": _Kind(".html", lambda run, path: save_page(run, path)),
+    "json": _Kind(".json", lambda run, path: save_json(run, path)),
+    "run": _Kind(".xlmcrun", lambda run, path: keep(run, path)),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class AtRest:
+    """A state whose run is done.
+
+    Attributes:
+        own: the workbook's model.
+        adjustments: what differs from it.
+        name: of the scenario that it is; empty for none.
+        run: its run.
+    """
+
+    own: Model
+    adjustments: Adjustments
+    name: str
+    run: Simulation
+
+    @property
+    def changes(self) -> tuple[str, ...]:
+        """What differs from the workbook, in words."""
+        return tuple(in_words(self.own.definitions, self.adjustments))
+
+
+def save_result(state: AtRest, book: Path, what: str) -> Path:
+    """Write one kind of result beside the workbook, under a name that is free or whose file is ours to replace.
+
+    Args:
+        state: the finished one.
+        book: the workbook.
+        what: a key of `KINDS`.
+
+    Raises:
+        WorkbookError: it cannot be written, or a change would have to replace a formula.
+        DefinitionError: the workbook's tables have no column for a change.
+        SimulationError: the changed copy gives other numbers than the window shows.
+    """
+    kind, run = KINDS[what], state.run if not state.adjustments else _run_of_copy(state)
+    wanted = book.with_name(f"{book.stem}{_label(state)}-results{kind.ending or copy_ending(book)}")
+    path, _ = free_target(wanted, run.model.workbook.name)
+    return kind.write(run, path)
+
+
+def _label(state: AtRest) -> str:
+    """What tells files of a changed state from those of the workbook: `-dry road`, `-changed`."""
+    if not state.adjustments:
+        return ""
+    return f"-{_NO_NAME.sub('_', state.name).strip(' .')[:_LONGEST].strip(' .') or 'changed'}"
+
+
+def edited_state(own: Model, adjustments: Adjustments, name: str) -> EditedWorkbook:
+    """A copy of the workbook with a state typed into it, not written yet.
+
+    Raises:
+        WorkbookError, DefinitionError: as for `save_result`.
+    """
+    return edited_workbook(own, scenario_of(own.definitions, name or "shown in the window", adjustments))
+
+
+def _run_of_copy(state: AtRest) -> Simulation:
+    """The run of a copy of the workbook with the state typed into it."""
+    edited, book = edited_state(state.own, state.adjustments, state.name), state.own.workbook
+    run = simulate(build_model(read_workbook(edited.data, book.name), state.own.path), evidence=None)
+    if not _is_same(run, state.run):
+        message = "a copy of the workbook with these changes gives other numbers than the window shows"
+        raise SimulationError(message, hint="Nothing was written; please report this")
+    return replace(run, changed_from=ChangedFrom(book.name, book.sha256, state.changes))
+
+
+def _is_same(first: Simulation, second: Simulation) -> bool:
+    """Whether two runs have the same accepted trials, to the last bit."""
+    columns = [(run.trial_index, *run.inputs.values(), *run.forecasts.values()) for run in (first, second)]
+    return len(columns[0]) == len(columns[1]) and all(
+        mine.tobytes() == theirs.tobytes() for mine, theirs in zip(*columns, strict=True)
+    )
+
+
+def write_changes(state: AtRest, book: Path, *, into: bool) -> str:
+    """Type the state into a copy of the workbook, or into the workbook itself, of which a copy is kept then.
+
+    Args:
+        state: the finished one.
+        book: the workbook.
+        into: into the workbook itself.
+
+    Returns:
+        What was done, in words.
+
+    Raises:
+        TakenError: a program has the workbook open, or it has changed since it was read.
+        WorkbookError: it is an old workbook (`.xls`), into which xlmc does not write; or as for `save_result`.
+        DefinitionError: as for `save_result`.
+    """
+    edited = edited_state(state.own, state.adjustments, state.name)
+    if not edited.cells:
+        raise SimulationError("nothing is changed", hint="move something first")
+    if not into:
+        path = write_edited(edited, unused_path(book.with_name(f"{book.stem}{_label(state)}{copy_ending(book)}")))
+        return f"Written: {path}. {_told(edited)}"
+    refuse_into_source(book, edited.sha256, "wait until it was read again")
+    kept = unused_path(book.with_name(f"{book.stem}-before{book.suffix}"))
+    write_workbook(kept, state.own.workbook.data, lambda: refuse_existing(kept))
+    write_edited(edited, book, overwrite=True)
+    return f"Typed into {book.name}. {_told(edited)} The workbook as it was: {kept.name}"
+
+
+def _told(edited: EditedWorkbook) -> str:
+    """How many cells were typed into, and what Excel must still do."""
+    count = len(edited.cells)
+    cells = f"{count} cells were typed into" if count > 1 else "1 cell was typed into"
+    formulas = f", {edited.computed:,} formulas have new values" if edited.computed else ""
+    excel = "; Excel calculates the rest when it opens the file" if edited.calculates else ""
+    sheets = "; its result sheets are those of the run before" if edited.has_results else ""
+    return f"{cells}{formulas}{excel}{sheets}."

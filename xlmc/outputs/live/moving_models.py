@@ -1,0 +1,200 @@
+"""The models of the states that a window goes through, and what their runs have in common.
+
+A state at rest has the model that the edited workbook would have. It is made from one in which the same assumptions are
+held at the same values: in such a model a moved number needs no formula to be looked at again. A state that moves has
+what a `KeptRunner` can run: an assumption that was frozen a moment ago is still drawn there, as a distribution that has
+a single value.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from importlib.util import find_spec
+from typing import Final
+
+from xlmc.errors import XlmcError
+from xlmc.excel.formula import Graph
+from xlmc.montecarlo.definitions.definitions import Assumption, Definitions
+from xlmc.montecarlo.loop.blocks import ModelRunner
+from xlmc.montecarlo.loop.kept_runner import KeptRunner
+from xlmc.montecarlo.model.applied_changes import applied, changed_cells
+from xlmc.montecarlo.model.model import Model
+from xlmc.outputs.live.adjustments import Adjustments, changes_of
+
+__all__ = ["MANY_FORMULAS", "KnownModels", "Moving"]
+
+MANY_FORMULAS: Final = 5_000
+"""Needed formulas with which a run takes long."""
+
+_MOST_SHAPES: Final = 1_000
+"""Different formulas that are compiled in some seconds."""
+
+_IN_SHAPES: Final = re.compile(r"\$?\b[A-Za-z]{1,3}\$?\d+\b|\d+(\.\d+)?")
+
+_KEPT: Final = 3
+"""Sets of held assumptions whose models are kept."""
+
+_Held = tuple[tuple[str, bool, float | None], ...]
+"""Each assumption that is held or drawn differently from the workbook: its name, whether it is held, and where."""
+
+
+@dataclass(frozen=True, slots=True)
+class Moving:
+    """What a state that moves is run with.
+
+    Attributes:
+        model: of the state.
+        kept: what it has in common with the states before.
+    """
+
+    model: Model
+    kept: KeptRunner
+
+    def runner(self, block: int) -> ModelRunner:
+        """Runs its blocks, of so many trials each."""
+        return self.kept.runner(self.model, min(block, self.kept.largest_block))
+
+    @property
+    def base(self) -> dict[str, float | None] | None:
+        """The forecasts at the base case; None where there is none."""
+        return self.kept.base(self.model)
+
+
+class KnownModels:
+    """See the module. For one thread.
+
+    Args:
+        own: the workbook's model.
+        trials: of the longest run of a state that moves.
+    """
+
+    def __init__(self, own: Model, trials: int) -> None:
+        self.own, self._trials = own, trials
+        self._holding: dict[_Held, Model] = {(): own}
+        self._kept: dict[_Held, KeptRunner] = {}
+
+    def at_rest(self, adjustments: Adjustments) -> Model:
+        """The model of a state.
+
+        Raises:
+            DefinitionError, FormulaError: as for `applied`.
+        """
+        held = _held(self.own.definitions, adjustments)
+        if not held:
+            return self._moved(self.own, adjustments)
+        try:
+            holding = self._of_held(held, adjustments)
+        except XlmcError:  # what is drawn now may have no distribution before its numbers are changed, too
+            return applied(self.own, changes_of(self.own.definitions, adjustments))
+        return self._moved(holding, adjustments.numbers(self.own.definitions))
+
+    def moving(self, adjustments: Adjustments) -> Moving:
+        """What a state is run with while it moves.
+
+        Raises:
+            DefinitionError, FormulaError: as for `applied`.
+            SimulationError: a filter or a forecast cannot be computed.
+        """
+        held = _held(self.own.definitions, adjustments)
+        numbers = adjustments.numbers(self.own.definitions)
+        still = _held_values(self.own, held)
+        if still is not None:
+            model = self._moved(self.own, numbers)
+            model = model.changed(model.workbook, _holding_still(model.definitions, still)) if still else model
+            kept = self._kept_runner((), self.own)
+            if kept.holds_for(model):
+                return Moving(model, kept)
+        model = self.at_rest(adjustments)
+        kept = self._kept_runner(held, self._holding.get(held, model))
+        return Moving(model, kept if kept.holds_for(model) else self._new_runner(model))
+
+    def _moved(self, model: Model, adjustments: Adjustments) -> Model:
+        changes = changes_of(model.definitions, adjustments)
+        return applied(model, changes) if changes else model
+
+    def _of_held(self, held: _Held, adjustments: Adjustments) -> Model:
+        """The workbook's own model but for what is held; the last ones are kept."""
+        if held not in self._holding:
+            changes = changes_of(self.own.definitions, adjustments.held(self.own.definitions))
+            self._holding[held] = applied(self.own, changes)
+            for old in [each for each in self._holding if each][:-_KEPT]:
+                self._holding.pop(old)
+                self._kept.pop(old, None)
+        return self._holding[held]
+
+    def _kept_runner(self, held: _Held, model: Model) -> KeptRunner:
+        if held not in self._kept or not self._kept[held].holds_for(model):
+            self._kept[held] = self._new_runner(model)
+        return self._kept[held]
+
+    def _new_runner(self, model: Model) -> KeptRunner:
+        return KeptRunner(model, _engine(model), model.definitions.settings.seed, self._trials)
+
+
+def _engine(model: Model) -> str:
+    """What computes states that move: the compiled engine where the workbook asks for it, or where it soon pays."""
+    compiled = find_spec("llvmlite") is not None
+    if model.definitions.settings.engine == "jit" and compiled:
+        return "jit"
+    many = len(model.needed.graph.formulas) > MANY_FORMULAS
+    return "jit" if many and compiled and _shapes(model.needed.graph) <= _MOST_SHAPES else "numpy"
+
+
+def _shapes(graph: Graph) -> int:
+    """How many formulas there are that differ by more than numbers and references; those filled down do not."""
+    return len({_IN_SHAPES.sub("#", graph.text(cell)) for cell in graph.formulas})
+
+
+def _held(definitions: Definitions, adjustments: Adjustments) -> _Held:
+    found, changed = [], adjustments.held(definitions).assumptions
+    for assumption in definitions.assumptions if changed else ():
+        given = changed.get(assumption.name)
+        if given is not None:
+            base = given.get("base")
+            frozen = bool(given.get("frozen", assumption.frozen))
+            found.append((assumption.name, frozen, None if base is None else float(base)))
+    return tuple(found)
+
+
+def _held_values(own: Model, held: _Held) -> dict[str, float] | None:
+    """The value of each assumption that is held; None where holding it changes more than the values of draws."""
+    named = {each.name: each for each in own.live}
+    grouped = {name for group in own.groups for name in group.names}
+    found: dict[str, float] = {}
+    for name, frozen, base in held:
+        assumption = named.get(name)
+        value = base if base is not None or assumption is None else assumption.base
+        if not frozen or value is None or assumption is None or assumption.cells or assumption.data is not None:
+            return None
+        if own.draws[name].name in grouped:
+            return None
+        found[name] = value
+    frozen_then = replace(
+        own.definitions,
+        assumptions=tuple(
+            replace(each, frozen=True, base=found[each.name]) if each.name in found else each
+            for each in own.definitions.assumptions
+        ),
+    )
+    return None if found and own.reads_elsewhere(changed_cells(own, frozen_then)[0]) else found
+
+
+def _holding_still(definitions: Definitions, values: Mapping[str, float]) -> Definitions:
+    """The definitions with assumptions that have a single value each."""
+
+    def still(assumption: Assumption) -> Assumption:
+        if assumption.name not in values:
+            return assumption
+        value = values[assumption.name]
+        return replace(
+            assumption,
+            distribution="Uniform",
+            own_family=None,
+            given={"low": value, "high": value},
+            base=value,
+            checked=None,
+        )
+
+    return replace(definitions, assumptions=tuple(map(still, definitions.assumptions)))

@@ -1,0 +1,116 @@
+"""What differs between a workbook as it was and as it was saved now, in phrases: `friction: High 0.75 → 0.85`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Final, Protocol, TypeVar
+
+from xlmc.analysis.results.statements.in_words import distribution_text, limits_text, number_text
+from xlmc.outputs.live.adjustments import LIMITS, assumption_numbers
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.definitions.definitions import Assumption, Filter
+    from xlmc.montecarlo.model.model import Model
+
+__all__ = ["what_changed"]
+
+_MOST_CELLS: Final = 4
+
+Row = TypeVar("Row", bound="_HasName")
+
+
+def what_changed(before: Model, after: Model) -> list[str]:
+    """Phrases, those on assumptions first; none where nothing that a run depends on is other."""
+    found = [
+        *_rows("assumption", _named(before.assumptions), _named(after.assumptions), _assumption),
+        *_rows("filter", _named(before.filters), _named(after.filters), _filter),
+        *_names("forecast", _named(before.forecasts), _named(after.forecasts)),
+        *_names("check", _named(before.checks), _named(after.checks)),
+        *_correlations(before, after),
+        *_settings(before, after),
+    ]
+    return [*found, *_cells(before, after)]
+
+
+class _HasName(Protocol):
+    @property
+    def name(self) -> str: ...
+
+
+def _named(rows: Iterable[Row]) -> dict[str, Row]:
+    return {each.name: each for each in rows}
+
+
+def _names(what: str, before: Iterable[str], after: Iterable[str]) -> Iterator[str]:
+    old, new = list(before), list(after)
+    yield from (f"new {what} {name}" for name in new if name not in old)
+    yield from (f"{what} {name} is gone" for name in old if name not in new)
+
+
+def _rows(
+    what: str, before: Mapping[str, Row], after: Mapping[str, Row], differing: Callable[[Row, Row], Iterator[str]]
+) -> Iterator[str]:
+    """What changed in rows with names: in those that are still there, those that are new, and those that are gone."""
+    for name, row in after.items():
+        phrases = list(differing(before[name], row)) if name in before else []
+        if phrases:
+            yield f"{name}: {', '.join(phrases)}"
+    yield from _names(what, before, after)
+
+
+def _assumption(before: Assumption, after: Assumption) -> Iterator[str]:
+    old, new = assumption_numbers(before), assumption_numbers(after)
+    if before.distribution != after.distribution or old.keys() != new.keys() or before.data != after.data:
+        yield f"{distribution_text(before)} → {distribution_text(after)}"
+    else:
+        for key, (heading, value) in new.items():
+            if value != old[key][1]:
+                yield f"{heading} {number_text(old[key][1])} → {number_text(value)}"
+    if before.frozen != after.frozen:
+        yield "frozen" if after.frozen else "not frozen"
+    if before.base != after.base:
+        values = ["blank" if base is None else number_text(base) for base in (before.base, after.base)]
+        yield f"value {values[0]} → {values[1]}"
+
+
+def _filter(before: Filter, after: Filter) -> Iterator[str]:
+    if any(getattr(before, key) != getattr(after, key) for key in LIMITS):
+        yield f"{limits_text(before)} → {limits_text(after)}"
+
+
+def _correlations(before: Model, after: Model) -> Iterator[str]:
+    old, new = (
+        {(row.first, row.second): row.value for row in model.definitions.correlations} for model in (before, after)
+    )
+    for pair in dict.fromkeys([*old, *new]):
+        values = [number_text(rows[pair]) if pair in rows else "none" for rows in (old, new)]
+        if values[0] != values[1]:
+            yield f"correlation of {pair[0]} with {pair[1]} {values[0]} → {values[1]}"
+
+
+def _settings(before: Model, after: Model) -> Iterator[str]:
+    old, new = before.definitions.settings, after.definitions.settings
+    for name in ("trials", "seed", "sampling", "engine"):
+        first, second = getattr(old, name), getattr(new, name)
+        if first != second:
+            yield f"{name} {first} → {second}"
+    if old.stopping != new.stopping:
+        yield "when a run ends"
+
+
+def _cells(before: Model, after: Model) -> Iterator[str]:
+    """The needed cells that hold another formula or another typed number; those of assumptions are told above."""
+    told = {each.cell for model in (before, after) for each in model.assumptions}
+    cells = [
+        cell for cell in sorted((before.read | after.read) - told) if _content(before, cell) != _content(after, cell)
+    ]
+    if cells:
+        named = ", ".join(map(str, cells[:_MOST_CELLS]))
+        more = f" and {len(cells) - _MOST_CELLS:,} more" if len(cells) > _MOST_CELLS else ""
+        yield f"{named}{more} changed"
+
+
+def _content(model: Model, cell: object) -> object:
+    """The formula, where there is one: its saved value may be other because an assumption's is."""
+    held = model.workbook.content(cell)  # type: ignore[arg-type]  # a cell
+    return held.formula or held.value

@@ -1,0 +1,264 @@
+"""The tables of a study of methods, as texts: the same for the terminal, the page and the workbook."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from xlmc.analysis.studies.methods import STATISTICS, Curve, Method, Runs, Study, need
+from xlmc.analysis.studies.methods.answer import seconds_text, trials_text
+from xlmc.analysis.studies.methods.need import shortfall
+from xlmc.montecarlo.sampling.sampling_methods import METHODS
+from xlmc.montecarlo.statistics import Estimate, format_estimate
+from xlmc.outputs.summary import estimate_text
+
+__all__ = [
+    "Table",
+    "accepted_text",
+    "bounds_table",
+    "cannot",
+    "cannot_lines",
+    "ends_lines",
+    "error_table",
+    "floor_of",
+    "forecast_table",
+    "length_table",
+    "near_text",
+    "reference_table",
+]
+
+_NONE = "–"
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Rows under headings; the columns from `right` on hold numbers."""
+
+    title: str
+    headings: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    right: int = 1
+
+
+def floor_of(study: Study, statistic: str) -> float:
+    """The reference's own error of a statistic, over the forecasts' 5–95 % ranges."""
+    reference = study.reference
+    parts = [
+        float(getattr(reference.errors[name], statistic)) / width
+        for name, width in reference.widths.items()
+        if study.converges(name, statistic)
+    ]
+    known = [part for part in parts if np.isfinite(part)]
+    return float(np.sqrt(np.mean(np.square(known)))) if known else np.nan
+
+
+def reference_table(study: Study) -> Table:
+    """The reference, with its standard errors."""
+    found = study.reference
+    rows = []
+    for forecast in study.model.forecasts:
+        answer, error = found.answers[forecast.name], found.errors[forecast.name]
+        pairs = ((getattr(answer, each), getattr(error, each)) for each in STATISTICS)
+        # Without an error the number is exact, and two digits of it would be another number.
+        numbers = (format_estimate(value, 0.0) if err == 0.0 else format_of(value, err) for value, err in pairs)
+        rows.append((forecast.name, forecast.units, *numbers))
+    how = METHODS[found.sampling].name
+    title = (
+        f"Reference: {found.trials:,} trials ({how}, engine {found.engine}, seed {found.seed}), accepted "
+        f"{accepted_text(found.acceptance)}, {seconds_text(found.seconds)}"
+    )
+    return Table(title, ("Forecast", "Units", *STATISTICS.values()), tuple(rows), 2)
+
+
+def error_table(study: Study) -> Table:
+    """Every method at its longest run: cost, error, slope, and what the accuracy asked for would take."""
+    headings = (
+        "Method", "Trials", "Time", "Evaluations", *STATISTICS.values(), "Accepted", "Effective", "Slope", "Needs",
+    )  # fmt: skip
+    rows = [(curve.method.name, *_cells(study, curve)) for curve in study.every if curve.answers]
+    text = study.accuracy[0]
+    title = (
+        "Root mean square errors, in % of each forecast's 5–95 % range (over the forecasts); of the accepted share, in "
+        f"% of it. Needs: for {text}, in 95 of 100 runs"
+    )
+    return Table(title, headings, tuple(rows))
+
+
+def _cells(study: Study, curve: Curve) -> Iterator[str]:
+    runs = curve.lengths[-1]
+    drawn = curve not in study.once
+    yield f"{runs.budget:,}" if drawn else _NONE
+    yield ("" if runs.measured else "≈ ") + seconds_text(runs.seconds)
+    yield f"{runs.evaluations:,.0f}"
+    for statistic in STATISTICS:
+        yield _share_text(runs.shares[statistic], 0.0 if drawn else floor_of(study, statistic))
+    yield _NONE if runs.acceptance is None else percent_text(runs.acceptance.value / study.reference.acceptance.value)
+    yield _NONE if runs.effective is None else f"{runs.effective:,.0f}"
+    yield slope_text(curve.slope("mean", "budget"))
+    yield _need_text(study, curve) if drawn else near_text(study, curve)
+
+
+def near_text(study: Study, curve: Curve) -> str:
+    """Whether the answer of a method that gives only one is near enough."""
+    if not study.varying:
+        return _NONE
+    return {"yes": "near enough", "no": "never", "unknown": "cannot tell"}[shortfall(study, curve).reaches]
+
+
+def _need_text(study: Study, curve: Curve) -> str:
+    found = need(study, curve)
+    if not found.forecast:
+        return _NONE
+    if found.reaches != "yes":
+        return {"no": "never", "unknown": "cannot tell"}[found.reaches]
+    return f"{trials_text(found.trials)} trials, {seconds_text(found.seconds)}"
+
+
+def length_table(study: Study) -> Table:
+    """Every run length of every method."""
+    work = ("Method", "Trials", "Runs", "Time", "Evaluations")
+    headings = (*work, *STATISTICS.values(), "Accepted", "Effective", "Failed")
+    rows = []
+    for curve in study.every:
+        floors = {each: floor_of(study, each) if curve in study.once else 0.0 for each in STATISTICS}
+        for runs in curve.lengths if curve.answers else ():
+            known = study.reference.acceptance.value
+            rows.append((
+                curve.method.name,
+                _NONE if curve in study.once else f"{runs.budget:,}",
+                f"{_runs(runs):,}",
+                ("" if runs.measured else "≈ ") + seconds_text(runs.seconds),
+                f"{runs.evaluations:,.0f}",
+                *(_share_text(runs.shares[each], floors[each]) for each in STATISTICS),
+                _NONE if runs.acceptance is None else percent_text(runs.acceptance.value / known),
+                _NONE if runs.effective is None else f"{runs.effective:,.0f}",
+                f"{runs.failed:,}" if runs.failed else _NONE,
+            ))  # fmt: skip
+    title = "Errors in % of each forecast's 5–95 % range, root mean square over runs and forecasts"
+    return Table(title, headings, tuple(rows))
+
+
+def _runs(runs: Runs) -> int:
+    return max(each.n for each in runs.errors.values()) + runs.failed
+
+
+def forecast_table(study: Study) -> Table:
+    """Every method's longest runs, forecast by forecast, in their units, beside what theory says of Monte Carlo."""
+    rows = []
+    for forecast in study.model.forecasts:
+        trials = study.ladder[-1]
+        theory = (_number(study.reference.theory(forecast.name, each, trials)) for each in STATISTICS)
+        rows.append((forecast.name, forecast.units, f"Theory, {trials:,} independent trials", *theory))
+        for curve in study.every:
+            if curve.answers:
+                found = (curve.lengths[-1].errors[forecast.name, each] for each in STATISTICS)
+                cells = (format_of(each.value, each.error) for each in found)
+                rows.append((forecast.name, forecast.units, curve.method.name, *cells))
+    headings = ("Forecast", "Units", "Method", *STATISTICS.values())
+    return Table("Root mean square errors of the longest runs, in the forecasts' units", headings, tuple(rows), 3)
+
+
+def bounds_table(study: Study) -> Table:
+    """What the bounds methods give, beside the central range of the reference."""
+    curves = [curve for curve in study.once if curve.ranges]
+    rows: list[tuple[str, ...]] = []
+    for forecast in study.model.forecasts:
+        answer = study.reference.answers[forecast.name]
+        found = [curve.ranges.get(forecast.name, (np.nan, np.nan)) for curve in curves]
+        central = _ends(answer.low, answer.high)
+        rows.append((forecast.name, forecast.units, *(_ends(*each) for each in found), central))
+    last = [curve.lengths[-1] for curve in curves]
+    rows.append(("Evaluations", "", *(f"{runs.evaluations:,.0f}" for runs in last), ""))
+    rows.append(("Time", "", *(seconds_text(runs.seconds) for runs in last), ""))
+    headings = ("Forecast", "Units", *(curve.method.name for curve in curves), "Reference, central range")
+    return Table("Bounds: what is possible", headings, tuple(rows), 2)
+
+
+def ends_lines(study: Study) -> list[tuple[str, str]]:
+    """Each optimised bound, and the point at which it is reached: the workbook accepts it, and gives this forecast."""
+    units = {forecast.name: f" {forecast.units}" if forecast.units else "" for forecast in study.model.forecasts}
+    found = []
+    for curve in study.once:
+        for (name, end), point in curve.ends.items():
+            value = curve.ranges[name][end == "most"]
+            said = f"{'Lowest' if end == 'least' else 'Highest'} {name}: {value:.6g}{units[name]}"
+            found.append((said, "; ".join(f"{assumption} = {at:.10g}" for assumption, at in point.items())))
+    return found
+
+
+def cannot_lines(study: Study) -> list[tuple[str, str]]:
+    """Method -> what it cannot do, and what its run had to say; methods that could not be used, and why."""
+    found = []
+    for curve in study.every:
+        parts = [each for each in (cannot(study, curve.method), *curve.remarks) if each]
+        if curve.setup > 0.1:
+            parts.append(f"its first run took {seconds_text(curve.setup)} longer, to compile or import")
+        if parts:
+            found.append((curve.method.name, "; ".join(parts)))
+    found += [(name, f"not used: {why.removesuffix('.')}") for name, why in study.absent.items()]
+    return found
+
+
+def cannot(study: Study, method: Method) -> str:
+    """What a method cannot do on this workbook: without filters, nothing that only filters would show."""
+    if study.model.filters:
+        return method.cannot
+    return "; ".join(
+        part
+        for said in method.cannot.split("; ")
+        if (part := said.replace(", does not see filters,", "")) and not part.startswith(_OF_FILTERS)
+    )
+
+
+_OF_FILTERS: Final = ("does not see filters", "filters take", "sees one assumption at a time")
+
+
+def accepted_text(acceptance: Estimate) -> str:
+    """`1.7566 ± 0.0023 %`."""
+    error = None if acceptance.error is None else 100.0 * acceptance.error
+    return f"{estimate_text(Estimate(100.0 * acceptance.value, error))} %"
+
+
+def format_of(value: float, error: float) -> str:
+    """A number with its error, and no more digits than that supports; a dash where there is none."""
+    if not np.isfinite(value):
+        return _NONE
+    return format_estimate(float(value), float(error)) if np.isfinite(error) and error > 0.0 else _number(value)
+
+
+def _ends(least: float, most: float) -> str:
+    """Both to a hundredth, whole from 1,000 on, or to four digits where they are small."""
+    if not (np.isfinite(least) and np.isfinite(most)):
+        return _NONE
+    size = max(abs(least), abs(most))
+    form = ",.0f" if size >= 1_000.0 else ".2f" if size >= 0.1 else ".4g"
+    return f"{least:{form}} to {most:{form}}"
+
+
+def _number(value: float) -> str:
+    """Two significant digits, whole numbers from 10 on; a dash where there is none."""
+    if not np.isfinite(value):
+        return _NONE
+    return f"{value:,.0f}" if abs(value) >= 10 else f"{value:#.2g}"
+
+
+def _share_text(share: float, floor: float) -> str:
+    if not np.isfinite(share):
+        return _NONE
+    return f"≤ {_number(100.0 * floor)}" if share < floor else percent_text(share)
+
+
+def percent_text(share: float) -> str:
+    """`2.4`: two significant digits, whole numbers from 10 on."""
+    value = 100.0 * share
+    if not np.isfinite(value):
+        return _NONE
+    return f"{value:,.0f}" if abs(value) >= 10 else f"{value:#.2g}"
+
+
+def slope_text(slope: float) -> str:
+    """`−0.49`."""
+    return _NONE if not np.isfinite(slope) else f"{slope:.2f}".replace("-", "−")

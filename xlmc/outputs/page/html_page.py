@@ -1,0 +1,209 @@
+"""The whole page: one file with its own style, scripts and data, which loads nothing else.
+
+A Content-Security-Policy allows the scripts and styles that are in it, by their hashes, and no others.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from collections.abc import Iterator
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+from string import Template
+from typing import TYPE_CHECKING
+
+from xlmc.analysis.results.record import make_record
+from xlmc.analysis.studies.sensitivity import sensitivities
+from xlmc.errors import WorkbookError
+from xlmc.excel.workbook.seal import sealed_text
+from xlmc.excel.workbook.target import Target
+from xlmc.excel.workbook.writer import check_folder, write_workbook
+from xlmc.outputs.histogram import figures_of
+from xlmc.outputs.page.answers import answers
+from xlmc.outputs.page.element import EMPTY, Html, element, join
+from xlmc.outputs.page.forecast_charts import charts, overlays
+from xlmc.outputs.page.payload import payload_text
+from xlmc.outputs.page.second_run import second_run
+from xlmc.outputs.page.sensitivity_sections import dependence, limits
+from xlmc.outputs.page.sheet_sections import (
+    assumptions,
+    certainty,
+    checks,
+    evidence,
+    filters,
+    notices,
+    pairs,
+    record,
+    scenarios,
+    statistics,
+)
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.simulation.simulation import Simulation
+
+__all__ = ["check_page_path", "page_text", "save_page"]
+
+ENDINGS = (".html", ".htm")
+
+_STYLES = ("uplot/uPlot.min.css", "page.css", "charts.css", "print.css")
+
+_SCRIPTS = (
+    "sharp.js",
+    "uplot/uPlot.iife.min.js",
+    "numbers.js",
+    "certainty.js",
+    "chart.js",
+    "grabbers.js",
+    "panel.js",
+    "overlay.js",
+    "copies.js",
+    "start.js",
+)
+
+_LICENCE = "uplot/LICENSE"
+
+_LINKS = {
+    "answer": "The answer",
+    "second": "Second run",
+    "forecasts": "Forecasts",
+    "overlay": "Overlay",
+    "certainty": "Certainty",
+    "scenarios": "Scenarios",
+    "pairs": "Pairs",
+    "statistics": "Statistics",
+    "sensitivity": "Sensitivity",
+    "checks": "Checks",
+    "evidence": "Evidence",
+    "filters": "Filters",
+    "limits": "Filter limits",
+    "assumptions": "Assumptions",
+    "notices": "Notices",
+    "record": "Record",
+}
+
+
+def save_page(
+    simulation: Simulation,
+    path: Path,
+    *,
+    beside: Simulation | None = None,
+    command: str | None = None,
+    overwrite: bool = False,
+) -> Path:
+    """Write the page whole or not at all; an untouched page of the same workbook is replaced.
+
+    Args:
+        simulation: the finished run.
+        path: where to; it ends in `.html` or `.htm`.
+        beside: a second run, which stands beside it.
+        command: what the person typed, for the record.
+        overwrite: replace any other file too.
+
+    Returns:
+        The path.
+
+    Raises:
+        TakenError: the file is not ours to replace.
+        WorkbookError: the file has another ending, or cannot be written.
+    """
+    check_page_path(path)
+    target = Target(path, simulation.model.workbook.name, overwrite, read=[simulation.model.path])
+    target.check()
+    # Half of a surrogate pair, which a damaged name can hold, has no UTF-8: the browser shows a reference's mark.
+    text = page_text(simulation, beside=beside, command=command).encode("utf-8", "xmlcharrefreplace")
+    write_workbook(path, sealed_text(text, ".html", target.book), target.check)
+    return path
+
+
+def check_page_path(path: Path) -> None:
+    """Refuse, before a long run, a file of another kind, or one that `check_folder` refuses.
+
+    Raises:
+        WorkbookError: it is one of these.
+    """
+    if path.suffix.casefold() not in ENDINGS:
+        hint = f"Name it '{path.stem or 'results'}.html'"
+        raise WorkbookError("the page must end in .html", where=path, hint=hint)
+    check_folder(path)
+
+
+def page_text(simulation: Simulation, *, beside: Simulation | None = None, command: str | None = None) -> str:
+    """The page of a run; the same run gives the same text.
+
+    Args:
+        simulation: the finished run.
+        beside: a second run, which stands beside it.
+        command: what the person typed, for the record.
+    """
+    figures, name = figures_of(simulation), simulation.model.workbook.name
+    found = None if simulation.weighting is not None else sensitivities(simulation)
+    parts = {
+        "answer": answers(simulation),
+        "second": EMPTY if beside is None else second_run(simulation, beside),
+        "forecasts": charts(simulation, figures),
+        "overlay": overlays(figures),
+        "certainty": certainty(simulation),
+        "scenarios": scenarios(simulation),
+        "pairs": pairs(simulation),
+        "statistics": statistics(simulation),
+        "sensitivity": EMPTY if found is None else dependence(found),
+        "checks": checks(simulation),
+        "evidence": evidence(simulation),
+        "filters": filters(simulation),
+        "limits": EMPTY if found is None else limits(found),
+        "assumptions": assumptions(simulation),
+        "notices": notices(simulation),
+        "record": record(make_record(simulation, command)),
+    }
+    styles, scripts = [_asset(path) for path in _STYLES], [_asset(path) for path in _SCRIPTS]
+    return Template(_asset("page.html")).substitute(
+        policy=escape(_policy(styles, scripts)),
+        title=escape(f"{name}: results of the simulation"),
+        licence=_asset(_LICENCE),
+        styles="".join(f"<style>{style}</style>\n" for style in styles),
+        header=_header(simulation, [key for key, part in parts.items() if part != EMPTY]).source,
+        sections=join(list(parts.values())).source,
+        data=payload_text(simulation, figures, beside),
+        scripts="".join(f"<script>{script}</script>\n" for script in scripts),
+    )
+
+
+def _asset(path: str) -> str:
+    return files("xlmc.outputs.page").joinpath(path).read_text(encoding="utf-8")
+
+
+def _policy(styles: list[str], scripts: list[str]) -> str:
+    return "; ".join(
+        (
+            "default-src 'none'",
+            f"style-src {' '.join(_hashes(styles))}",
+            f"script-src {' '.join(_hashes(scripts))}",
+            "img-src data:",
+            "base-uri 'none'",
+            "form-action 'none'",
+        )
+    )
+
+
+def _hashes(texts: list[str]) -> Iterator[str]:
+    for text in texts:
+        yield f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+
+def _header(simulation: Simulation, keys: list[str]) -> Html:
+    run = f"{simulation.evaluated:,} trials, {simulation.accepted:,} accepted; seed {simulation.settings.seed}"
+    links = (element("a", label, href=f"#{key}") for key, label in _LINKS.items() if key in keys)
+    return element(
+        "header",
+        element("h1", "Results of the simulation"),
+        element("p", element("bdi", simulation.model.workbook.name), f": {run}", class_="subtitle"),
+        element("nav", *links, *_buttons(), aria_label="Parts of this page"),
+    )
+
+
+def _buttons() -> Iterator[Html]:
+    """The buttons for the tables that are closed at first; only open tables are printed."""
+    for key, label in (("open", "Open all tables"), ("closed", "Close them")):
+        yield element("button", label, type="button", data_all=key)

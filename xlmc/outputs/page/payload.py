@@ -1,0 +1,221 @@
+"""What the page's charts are drawn and counted from, as JSON inside the page.
+
+`forecasts`: for each its trials (a `RankTable`; `counts` null where all are 1, `gaps` null where all are 0), its own
+central range, its bins as the sheet Bins has them, the values to be marked, and the distributions that describe it best
+(`FittedCurve`); `second`, the trials of the same forecast in a second run, or null. `overlays`: the numbers of
+forecasts in one unit. `z`: the quantile of the normal distribution that 95 % intervals are made with.
+
+A page has room for a limited number of trials. Of a forecast with no more than `most` trials every one is there, and
+every count is exact. Of one with more, the trials of `most` ranks at equal distances are there, each with how many
+trials lie between it and the next: a count is then exact where an end is one of the values given, and elsewhere its
+error at each end is less than the trials of one such gap.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.montecarlo.columns import picked, release
+from xlmc.montecarlo.statistics import Estimate, format_estimate
+from xlmc.montecarlo.statistics.estimate import t_quantile
+from xlmc.outputs.histogram import Figure
+from xlmc.outputs.page.fitted_curves import FittedCurve, fitted_curves
+from xlmc.outputs.page.second_run import partner_of
+from xlmc.outputs.summary import percent
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.loop.forecast_result import ForecastResult
+    from xlmc.montecarlo.simulation.simulation import Simulation
+
+__all__ = [
+    "ALL_VALUES",
+    "MOST_VALUES",
+    "RankTable",
+    "forecast_payload",
+    "most_values",
+    "overlays_of",
+    "payload",
+    "payload_text",
+    "rank_table",
+]
+
+CONFIDENCE = 0.95
+
+ALL_VALUES = 50_000
+"""Values on a page, of all its forecasts together: some 1.2 MB."""
+
+MOST_VALUES, _FEWEST = 20_000, 200
+"""Values of one forecast."""
+
+Floats = NDArray[np.float64]
+
+Counts = NDArray[np.int64]
+
+
+def payload_text(simulation: Simulation, figures: Sequence[Figure], beside: Simulation | None = None) -> str:
+    """The JSON, which holds no character that could end the element it stands in."""
+    text = json.dumps(payload(simulation, figures, beside), allow_nan=False, separators=(",", ":"))
+    return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
+
+
+def payload(simulation: Simulation, figures: Sequence[Figure], beside: Simulation | None = None) -> dict[str, Any]:
+    """The payload as plain values; `beside` is a second run."""
+    most = most_values(len(figures) * (1 if beside is None else 2))
+    return {
+        "z": t_quantile(math.inf, CONFIDENCE),
+        "forecasts": [
+            {**forecast_payload(simulation, each, most), "second": _second(each, beside, most)} for each in figures
+        ],
+        "overlays": overlays_of(figures),
+    }
+
+
+def overlays_of(figures: Sequence[Figure]) -> list[list[int]]:
+    """The figures, counted from 0, that one overlay can show: two or more in one unit."""
+    by_units: dict[str, list[int]] = {}
+    for index, figure in enumerate(figures):
+        by_units.setdefault(figure.answer.units, []).append(index)
+    return [group for group in by_units.values() if len(group) > 1]
+
+
+def forecast_payload(simulation: Simulation, figure: Figure, most: int, *, fits: bool = True) -> dict[str, Any]:
+    """What one forecast's chart is drawn and counted from.
+
+    Args:
+        simulation: the finished run.
+        figure: of the forecast.
+        most: how many of its values at most.
+        fits: with fitted distributions, which take some hundredths of a second.
+    """
+    answer = figure.answer
+    result = simulation.results[answer.name]
+    low, high = answer.low.value, answer.high.value
+    marks = [low, high] if answer.threshold is None else [low, high, answer.threshold]
+    return {
+        "name": answer.name,
+        "units": answer.units,
+        **_trials(result, most, marks),
+        "range": {
+            "share": answer.share,
+            "said": percent(answer.share),
+            "low": low,
+            "high": high,
+            "lowText": _value_text(answer.low),
+            "highText": _value_text(answer.high),
+        },
+        "bins": _bins(figure),
+        "fits": [_fit(each) for each in fitted_curves(result.sample.even, figure.bins)] if fits else [],
+        "marks": [{"label": label, "value": value, "text": text} for label, value, text in _marks(figure)],
+    }
+
+
+def _trials(result: ForecastResult, most: int, marks: Iterable[float] = ()) -> dict[str, Any]:
+    table = rank_table(result.sample.even, most, marks)
+    return {
+        "trials": int(result.sample.even.size),
+        "values": table.values.tolist(),
+        "counts": _unless_all(1, table.counts),
+        "gaps": _unless_all(0, table.gaps),
+    }
+
+
+def _second(figure: Figure, beside: Simulation | None, most: int) -> dict[str, Any] | None:
+    """The trials of the same forecast in the second run; None where there is none."""
+    partner = None if beside is None else partner_of(figure.answer, beside)
+    if beside is None or partner is None:
+        return None
+    return _trials(beside.results[partner.name], most, [figure.answer.low.value, figure.answer.high.value])
+
+
+def _fit(curve: FittedCurve) -> dict[str, Any]:
+    return {
+        "name": curve.name,
+        "parameters": curve.parameters,
+        "distance": f"{100 * curve.distance:.2g} %",
+        "parts": curve.parts,
+        "shares": curve.shares.tolist(),
+    }
+
+
+def _unless_all(usual: int, numbers: NDArray[np.int64]) -> list[int] | None:
+    return None if bool(np.all(numbers == usual)) else numbers.tolist()
+
+
+def _value_text(found: Estimate) -> str:
+    """The value in the digits that its error supports, without the error."""
+    return format_estimate(found.value, found.error).partition(" ± ")[0]
+
+
+def _bins(figure: Figure) -> dict[str, Any]:
+    bins = figure.bins
+    return {
+        "edges": [*bins.edges.tolist(), float(bins.upper_edges[-1])],
+        "counts": (bins.inside + bins.outside).tolist(),
+        "below": bins.below,
+        "above": bins.above,
+        "width": bins.width,
+        "decimals": bins.decimals,
+    }
+
+
+def _marks(figure: Figure) -> Iterator[tuple[str, float, str]]:
+    answer = figure.answer
+    yield "Mean", answer.mean.value, _value_text(answer.mean)
+    for label, value in (("Base case", answer.base), ("Threshold", answer.threshold)):
+        if value is not None:
+            yield label, value, f"{value:.6g}"
+
+
+@dataclass(frozen=True, slots=True)
+class RankTable:
+    """Trials by value.
+
+    Attributes:
+        values: `(k,)` ascending, all different.
+        counts: `(k,)` trials at each.
+        gaps: `(k - 1,)` trials between each and the next.
+    """
+
+    values: Floats
+    counts: Counts
+    gaps: Counts
+
+    @property
+    def exact(self) -> bool:
+        """Whether every trial is at one of the values."""
+        return not self.gaps.any()
+
+
+def most_values(forecasts: int) -> int:
+    """How many values of each forecast a page of so many has room for."""
+    return min(max(ALL_VALUES // max(forecasts, 1), _FEWEST), MOST_VALUES)
+
+
+def rank_table(x: Floats, most: int, marks: Iterable[float] = ()) -> RankTable:
+    """The table of ascending `(n,)` trials.
+
+    Args:
+        x: in memory or on disk; none of them NaN.
+        most: values to give, 2 or more.
+        marks: further values at which counts must be exact; those that are not finite are left out.
+    """
+    ranks = np.arange(x.size) if x.size <= most else np.rint(np.linspace(0, x.size - 1, most)).astype(np.intp)
+    finite: list[float] = [mark for mark in marks if np.isfinite(mark)]
+    values = np.unique(np.concatenate([picked(x, ranks), finite]))
+    while True:
+        below, upto = np.searchsorted(x, values, side="left"), np.searchsorted(x, values, side="right")
+        gaps = below[1:] - upto[:-1]
+        wide = np.flatnonzero(gaps)[: max(most - values.size, 0)]
+        if not wide.size:
+            break
+        # Ranks of whole numbers fall on the same values: there is room for those between.
+        values = np.union1d(values, picked(x, upto[wide] + gaps[wide] // 2))
+    release(x)
+    return RankTable(values, upto - below, gaps)

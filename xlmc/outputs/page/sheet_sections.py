@@ -1,0 +1,246 @@
+"""The sections of the page that say what the result sheets say, from certainty to the record."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from xlmc.analysis.results.record import Entry, Record, RecordTable, Section, Value
+from xlmc.analysis.results.statements import pairs_of
+from xlmc.analysis.results.statements.in_words import distribution_text, number_text, status
+from xlmc.analysis.studies.scenario_answers import scenario_answers
+from xlmc.excel.workbook.printable import printable
+from xlmc.montecarlo.statistics import Estimate
+from xlmc.outputs.filter_effect import PERCENTS, FilterEffect, Marginal, filter_effect_of, shapes_of
+from xlmc.outputs.page.element import EMPTY, Html, element
+from xlmc.outputs.page.flow import Flow, estimate_html, number
+from xlmc.outputs.page.svg import before_after
+from xlmc.outputs.sheets.accounting import write_accounting, write_checks
+from xlmc.outputs.sheets.assumptions_sheet import MEANING, MOVED, NARROWED, STRATIFIED, write_correlations
+from xlmc.outputs.sheets.cells import NONE
+from xlmc.outputs.sheets.certainty_sheet import write_ranges
+from xlmc.outputs.sheets.evidence_sheet import write_agreement
+from xlmc.outputs.sheets.pairs_sheet import pair_sentences, write_pair_table
+from xlmc.outputs.sheets.results_sheet import LAST, write_counts
+from xlmc.outputs.sheets.scenarios_sheet import write_scenario_tables
+from xlmc.outputs.sheets.statistics_sheet import write_forecast
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.definitions.definitions import Assumption
+    from xlmc.montecarlo.simulation.simulation import Simulation
+
+__all__ = [
+    "assumptions",
+    "certainty",
+    "checks",
+    "evidence",
+    "filters",
+    "notices",
+    "pairs",
+    "record",
+    "scenarios",
+    "statistics",
+]
+
+_HEADS = ("Assumption", "Trials", "Mean", "Standard deviation", *(f"{each:g} %" for each in PERCENTS))
+
+_CHANGES = ("Shift of mean in SDs", "SD accepted / before")
+
+_COLUMNS = len(_HEADS) + len(_CHANGES)
+
+_OPEN = frozenset({"run", "file", "trials", "sampling", "software"})
+
+_CODE = frozenset({"repeat", "command", "fingerprint", "sha256", "original_sha256"})
+
+
+def certainty(simulation: Simulation) -> Html:
+    """How certain the central ranges are."""
+    flow = Flow()
+    write_ranges(flow, simulation)
+    said = "The share of the accepted trials below, in and above each central range, as it is rounded here."
+    return element(
+        "section", element("h2", "Certainty of ranges"), element("p", said, class_="remark"), flow.html, id="certainty"
+    )
+
+
+def pairs(simulation: Simulation) -> Html:
+    """Forecasts two at a time; nothing where there are no two that vary."""
+    found = pairs_of(simulation) if simulation.weighting is None else []
+    if not found:
+        return EMPTY
+    flow = Flow()
+    write_pair_table(flow, found)
+    remarks = (element("p", said, class_="remark") for said in pair_sentences(simulation, found))
+    return element("section", element("h2", "Forecasts two at a time"), flow.html, *remarks, id="pairs")
+
+
+def scenarios(simulation: Simulation) -> Html:
+    """The answers of the workbook's scenarios beside its own; nothing where they were not run."""
+    found = scenario_answers(simulation)
+    if not found:
+        return EMPTY
+    flow = Flow()
+    write_scenario_tables(flow, found)
+    return element("section", element("h2", "Scenarios"), flow.html, id="scenarios")
+
+
+def statistics(simulation: Simulation) -> Html:
+    """Everything about the accepted trials of each forecast."""
+    forecasts = []
+    for result in simulation.results.values():
+        flow = Flow()
+        write_forecast(flow, result)
+        forecasts.append(element("div", flow.html, class_="forecast-statistics"))
+    said = "Of the accepted trials. The last two columns are the 95 % interval of each number."
+    return element(
+        "section", element("h2", "Statistics"), element("p", said, class_="remark"), *forecasts, id="statistics"
+    )
+
+
+def checks(simulation: Simulation) -> Html:
+    """The checks; nothing where the workbook has none."""
+    if not simulation.checks:
+        return EMPTY
+    flow = Flow()
+    write_checks(flow, simulation, LAST)
+    return element("section", element("h2", "Checks"), flow.html, id="checks")
+
+
+def evidence(simulation: Simulation) -> Html:
+    """Whether the evidence agrees, and what each item moves; nothing where none is used."""
+    if simulation.agreement is None:
+        return EMPTY
+    flow = Flow()
+    write_agreement(flow, simulation)
+    return element("section", element("h2", "Evidence"), flow.html, id="evidence")
+
+
+def filters(simulation: Simulation) -> Html:
+    """How many trials were run and accepted, and what each filter rejected."""
+    flow = Flow()
+    write_counts(flow, simulation)
+    write_accounting(flow, simulation, LAST)
+    return element("section", element("h2", "Trials and filters"), flow.html, id="filters")
+
+
+def assumptions(simulation: Simulation) -> Html:
+    """Every assumption before and after filtering, as the sheet Assumptions has it."""
+    correlations = Flow()
+    write_correlations(correlations, simulation)
+    names = enumerate((*_HEADS, *_CHANGES))
+    heads = (element("th", head, scope="col", class_="number" if index else None) for index, head in names)
+    bodies = (_assumption(simulation, assumption) for assumption in simulation.model.assumptions)
+    table = element("table", element("thead", element("tr", *heads)), *bodies)
+    return element(
+        "section",
+        element("h2", "Assumptions, before filtering and accepted"),
+        element("p", MEANING),
+        *(element("p", said, class_="remark") for said in _remarks(simulation)),
+        element("div", table, class_="wide-table paired"),
+        correlations.html,
+        id="assumptions",
+    )
+
+
+def _remarks(simulation: Simulation) -> Iterator[str]:
+    early = max((values.size for values in simulation.prior.values()), default=0)
+    yield f"Before filtering: the first {early:,} trials. ± is the standard error."
+    if simulation.plan.size:
+        yield STRATIFIED
+    if simulation.kept_inputs < simulation.accepted:
+        yield f"Accepted: the first {simulation.kept_inputs:,} of {simulation.accepted:,} accepted trials."
+
+
+def _assumption(simulation: Simulation, assumption: Assumption) -> Html:
+    """An assumption's name above two rows, in a table body of their own so that they stay together."""
+    found = filter_effect_of(simulation, assumption.name)
+    shape = EMPTY if found is None else _shape(simulation, assumption.name)
+    named = element("tr", element("th", shape, *_name_line(assumption), scope="rowgroup", colspan=str(_COLUMNS)))
+    if found is None:
+        why = element("td", status(simulation.model, assumption.name, assumption.frozen), colspan=str(_COLUMNS))
+        return element("tbody", named, element("tr", why))
+    before = element("tr", *_marginal(found.prior, "before"), element("td"), element("td"))
+    return element("tbody", named, before, element("tr", *_marginal(found.accepted, "accepted"), *_changes(found)))
+
+
+def _shape(simulation: Simulation, name: str) -> Html:
+    """A small picture of the draws before filtering and of the accepted ones; nothing where all draws are one value."""
+    found = shapes_of(simulation, name)
+    if found is None:
+        return EMPTY
+    said = f"{name}: before filtering pale, accepted as a line"
+    return before_after(found.before.tolist(), found.accepted.tolist(), said)
+
+
+def _name_line(assumption: Assumption) -> Iterator[Html | str]:
+    base = NONE if assumption.base is None else f"{assumption.base:.9g}"
+    yield element("b", assumption.name, f", {assumption.units}" if assumption.units else "")
+    yield " "
+    yield element("small", f"{assumption.cell}, base case {base}. {distribution_text(assumption)}. {assumption.source}")
+
+
+def _marginal(found: Marginal, when: str) -> Iterator[Html]:
+    yield element("td", when)
+    yield element("td", number(found.trials, f"{found.trials:,}"), class_="number")
+    for estimate in (found.mean, found.standard_deviation, *found.percentiles.values()):
+        yield element("td", estimate_html(estimate), class_="number")
+
+
+def _changes(found: FilterEffect) -> Iterator[Html]:
+    yield _change(found.shift, abs(found.shift.value) >= MOVED)
+    yield _change(found.narrowing, found.narrowing.value <= NARROWED)
+
+
+def _change(found: Estimate, marked: bool) -> Html:
+    return element("td", estimate_html(found), class_="number moved" if marked else "number")
+
+
+def notices(simulation: Simulation) -> Html:
+    """The notices; nothing where there are none."""
+    if not simulation.notices:
+        return EMPTY
+    notices = (element("p", str(notice), class_="notice") for notice in simulation.notices)
+    return element("section", element("h2", "Notices"), *notices, id="notices")
+
+
+def record(found: Record) -> Html:
+    """The record of the run: every part of it can be opened, and what is open is printed."""
+    said = "What the numbers depend on, and how to repeat them. Every number is in full. Only open parts are printed."
+    return element(
+        "section",
+        element("h2", "Record"),
+        element("p", said),
+        *(_record_section(section) for section in found.sections),
+        id="record",
+    )
+
+
+def _record_section(section: Section) -> Html:
+    found = [element("summary", section.title)]
+    entries = [entry for entry in section.entries if not entry.key.startswith("packed_")]  # for programs alone
+    if entries:
+        found.append(element("dl", *(each for entry in entries for each in _record_entry(section.key, entry))))
+    if section.table is not None:
+        found.append(_record_table(section.table) if section.table.rows else element("p", "None"))
+    return element("details", *found, open="" if section.key in _OPEN else None, data_section=section.key)
+
+
+def _record_entry(section: str, entry: Entry) -> tuple[Html, Html]:
+    said = _value_text(entry.value)
+    shown = element("code", said) if entry.key in _CODE else element("span", said)
+    return element("dt", entry.label), element("dd", shown, data_key=f"{section}.{entry.key}")
+
+
+def _record_table(table: RecordTable) -> Html:
+    heads = element("tr", *(element("th", label, scope="col") for _, label in table.columns))
+    rows = (element("tr", *(element("td", _value_text(value)) for value in row)) for row in table.rows)
+    inner = element("table", element("thead", heads), element("tbody", *rows))
+    return element("div", inner, class_="wide-table record")
+
+
+def _value_text(value: Value) -> str:
+    if value is None or value == "":
+        return NONE
+    if isinstance(value, bool):
+        return str(value).upper()
+    return printable(value) if isinstance(value, str) else number_text(value)

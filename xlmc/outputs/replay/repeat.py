@@ -1,0 +1,283 @@
+"""Repeat the run that a result workbook or a saved run records, with the definitions that stand in the same file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from xlmc.analysis.results.record import Record, make_record
+from xlmc.analysis.results.record.needed_cells import needed_contents, recorded_cells
+from xlmc.analysis.results.record.record_parts import read_record
+from xlmc.analysis.results.record.settings_table import recorded_settings
+from xlmc.analysis.results.saved import SUFFIX, is_saved_run, open_run
+from xlmc.errors import WorkbookError, XlmcError
+from xlmc.excel.workbook.lazy_sheets import naming_file
+from xlmc.excel.workbook.reader import read_workbook
+from xlmc.excel.workbook.seal import read_seal
+from xlmc.montecarlo.definitions.stopping import GOALS, AcceptedTrials, stopping
+from xlmc.montecarlo.loop.version import __version__
+from xlmc.montecarlo.model.loading import build_model
+from xlmc.montecarlo.sampling.sampling_methods import METHODS
+from xlmc.montecarlo.simulation.simulate import simulate
+from xlmc.montecarlo.simulation.simulation import KEPT_INPUTS
+from xlmc.outputs.replay.changes import (
+    Change,
+    Closeness,
+    NumberChange,
+    cell_changes,
+    contents_now,
+    definition_changes,
+    environment_changes,
+    is_rewritten_number,
+    number_changes,
+    structure_changes,
+)
+from xlmc.outputs.replay.sheets import SheetComparison
+from xlmc.outputs.replay.shown_results import as_recorded, compare_shown
+from xlmc.outputs.replay.versions import Rule, recorded_version, rules_since
+
+if TYPE_CHECKING:
+    from xlmc.excel.address import Cell
+    from xlmc.excel.workbook.workbook import Workbook
+    from xlmc.montecarlo.definitions.definitions import Settings
+    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.simulation.simulate import OnProgress
+    from xlmc.montecarlo.simulation.simulation import Simulation
+
+__all__ = ["Replayed", "recorded_run", "replay"]
+
+_NEEDED: Final = (
+    "run.fingerprint",
+    "file.name",
+    "counts.trials",
+    "counts.accepted",
+    "counts.inputs_kept",
+    "end.by",
+)
+"""Entries that the repeat, or the report on it, needs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Replayed:
+    """A recorded run and its repeat.
+
+    Attributes:
+        record: of the run.
+        repeated: the run again, from the workbook as it is now; None where it cannot be run any more.
+        fault: why it cannot be run.
+        changes: what is not as the record has it: cells, names, tables, definitions.
+        environment: the versions and the processor that differ.
+        numbers: numbers of the record that the repeat did not give to the last bit.
+        same_bits: the accepted trials are the same to the last bit.
+        shown: the result sheets, and the workbook's own cells that show results, beside those of the repeat.
+        version: the xlmc that made the run.
+        rules: what this xlmc computes differently from that one, where the recorded cells hold something of it.
+    """
+
+    record: Record
+    repeated: Simulation | None
+    fault: XlmcError | None
+    changes: tuple[Change, ...]
+    environment: tuple[Change, ...]
+    numbers: tuple[NumberChange, ...]
+    same_bits: bool
+    shown: SheetComparison = field(default_factory=SheetComparison)
+    version: str = __version__
+    rules: tuple[Rule, ...] = ()
+
+    @property
+    def of_this_version(self) -> bool:
+        """Whether this xlmc made the run."""
+        return self.version == __version__
+
+    @property
+    def to_the_last_bit(self) -> bool:
+        """Whether nothing differs at all, except perhaps versions."""
+        return self.same_bits and self.shown.same and not (self.changes or self.numbers or self.fault)
+
+    @property
+    def identical(self) -> bool:
+        """Whether the run was repeated: to the last bit, or, with other software or another processor, to 1e-12."""
+        if self.to_the_last_bit:
+            return True
+        close = self.shown.same and all(number.close for number in self.numbers)
+        return close and bool(self.environment) and not (self.changes or self.fault or self.same_bits)
+
+
+def replay(path: str | Path, *, jobs: int = 1, progress: OnProgress | None = None) -> Replayed:
+    """Repeat a recorded run, and compare it with its record.
+
+    Args:
+        path: a result workbook, or a saved run.
+        jobs: threads or processes.
+        progress: as for `Model.simulate`.
+
+    Raises:
+        WorkbookError: the file cannot be read, holds no record, or one by an xlmc that recorded less.
+        XlmcError: the workbook cannot be run, though this xlmc made the run, and nothing that was recorded has
+            changed.
+    """
+    path = Path(path)
+    if path.suffix.casefold() == SUFFIX or is_saved_run(path):
+        run = open_run(path)
+        return _replay(run.model.workbook, make_record(run), run.model, jobs, progress)
+    with naming_file(str(path)):
+        workbook = read_workbook(path)
+        return _replay(workbook, read_record(workbook), None, jobs, progress, path)
+
+
+def recorded_run(path: str | Path, *, progress: OnProgress | None = None) -> Simulation:
+    """The run that a result workbook records, repeated: under the name and with the SHA-256 of its workbook.
+
+    Args:
+        path: a result workbook.
+        progress: as for `Model.simulate`.
+
+    Raises:
+        WorkbookError: the file cannot be read, holds no record, or the repeated run differs from the recorded one.
+        XlmcError: as for `replay`.
+    """
+    found = replay(path, progress=progress)
+    if found.repeated is None or not found.identical:
+        hint = f"xlmc replay {Path(path).name} says what differs"
+        raise WorkbookError("the run that is recorded here cannot be repeated as it was", where=path, hint=hint)
+    run = as_recorded(found.repeated, found.record, recorded_settings(found.record))
+    run.model.workbook = replace(run.model.workbook, sha256=str(found.record["file.sha256"]))
+    return run
+
+
+def _replay(
+    workbook: Workbook,
+    record: Record,
+    model: Model | None,
+    jobs: int,
+    progress: OnProgress | None,
+    path: Path | None = None,
+) -> Replayed:
+    cells, settings = _read_recorded(record, path)
+    version = recorded_version(record)
+    rules = rules_since(version, cells.values())
+    _refuse_incomplete(record, settings, version, path)
+    try:
+        model = model or build_model(workbook, path or Path(workbook.name))
+        repeated = _repeat(model, record, settings, jobs, progress)
+    except XlmcError as fault:
+        changes = tuple(cell_changes(cells, contents_now(workbook, cells)))
+        if not changes and version == __version__:
+            raise
+        return Replayed(record, None, fault, changes, (), (), same_bits=False, version=version, rules=rules)
+    found = make_record(repeated)
+    same_bits = record["run.fingerprint"] == found["run.fingerprint"]
+    try:
+        numbers = number_changes(record, found)
+        of_the_model = (*structure_changes(record, found), *definition_changes(record, found))
+        environment = tuple(environment_changes(record, found))
+    except KeyError as error:
+        raise _lacking_error(repr(error.args[0]), version, path) from error
+    changes = (*cell_changes(cells, contents_now(workbook, cells) | needed_contents(model)), *of_the_model)
+    shown = SheetComparison()
+    if path is not None:
+        rewritten = not _is_untouched(path)
+        told = tuple(change for change in changes if not (same_bits and rewritten and is_rewritten_number(change)))
+        # Numbers with fewer digits beside the model move the last digits of what is computed from the base case.
+        closeness = Closeness(rewritten=rewritten, elsewhere=bool(environment) or len(told) < len(changes))
+        changes, same_run = told, same_bits or not told
+        shown = compare_shown(workbook, as_recorded(repeated, record, settings), record, closeness, same_run=same_run)
+    return Replayed(
+        record=record,
+        repeated=repeated,
+        fault=None,
+        changes=changes,
+        environment=environment,
+        # Some programs write 15 or 16 digits of a number: where the trials are the same, the record has lost the last.
+        numbers=tuple(number for number in numbers if not (same_bits and number.close)),
+        same_bits=same_bits,
+        shown=shown,
+        version=version,
+        rules=rules,
+    )
+
+
+def _is_untouched(path: Path) -> bool:
+    """Whether a result workbook is as xlmc wrote it; False where that cannot be told."""
+    seal = read_seal(path)
+    return seal is not None and seal.whole
+
+
+def _read_recorded(record: Record, path: Path | None) -> tuple[dict[Cell, str], Settings]:
+    """The cells and the settings of the record.
+
+    Raises:
+        WorkbookError: an older xlmc wrote it, which recorded neither, or it was edited.
+    """
+    try:
+        return recorded_cells(record), recorded_settings(record)
+    except KeyError as error:
+        message = f"the record lacks {error.args[0]!r}: an older xlmc wrote it, which did not record the cells"
+        command = _repeat_command(record)
+        hint = f"Repeat it by hand, and compare: {command}" if command else "Run the workbook again"
+        raise WorkbookError(message, where=path, hint=hint) from error
+
+
+def _refuse_incomplete(record: Record, settings: Settings, version: str, path: Path | None) -> None:
+    """Refuse a record without an entry that the repeat or what is said of it needs; the goal of the run is one.
+
+    Raises:
+        WorkbookError: it lacks one.
+    """
+    for key in _NEEDED:
+        try:
+            record[key]
+        except KeyError as error:
+            raise _lacking_error(repr(key), version, path) from error
+    by = str(record["end.by"])
+    reached = GOALS.get(AcceptedTrials.key if by == "search" else by)
+    if reached is not None and not isinstance(settings.stopping.goal, reached):
+        raise _lacking_error(repr(f"settings.{reached.labels[0][0]}"), version, path)
+    words = next((entry.value for entry in record.section("end").entries if entry.key == "goal"), None)
+    if words and not settings.stopping.has_goal:
+        raise _lacking_error(f"the setting that asked for its goal, {words}", version, path)
+
+
+def _lacking_error(what: str, version: str, path: Path | None) -> WorkbookError:
+    edited = "It was edited" if version in ("", __version__) else f"xlmc {version} made it"
+    return WorkbookError(f"the record lacks {what}", where=path, hint=f"{edited}: run the workbook again")
+
+
+def _repeat_command(record: Record) -> str:
+    try:
+        return str(record["run.repeat"])
+    except KeyError:
+        return ""
+
+
+def _repeat(model: Model, record: Record, settings: Settings, jobs: int, progress: OnProgress | None) -> Simulation:
+    """The run again: up to the trial that ended it, whatever did.
+
+    One that waited for an accepted trial waits again; methods whose trials belong together run all of them.
+    """
+    trials, accepted, kept = (_count(record, key) for key in ("trials", "accepted", "inputs_kept"))
+    waited = record["end.by"] in ("accepted", "search")
+    goal = settings.stopping.accepted
+    whole = waited or not METHODS[settings.sampling].independent
+    return simulate(
+        model,
+        trials=settings.trials if whole else trials,
+        seed=settings.seed,
+        stopping=stopping(until_accepted=goal if waited else None, rare=settings.stopping.rare),
+        engine=settings.engine,
+        sampling=settings.sampling,
+        scenarios=settings.scenarios,
+        jobs=jobs,
+        keep_inputs=kept if kept < accepted else max(kept, KEPT_INPUTS),
+        progress=progress,
+        evidence=settings.evidence or "rejection",
+    )
+
+
+def _count(record: Record, key: str) -> int:
+    value = record[f"counts.{key}"]
+    if not isinstance(value, int | float) or value != int(value) or value < 0:
+        raise WorkbookError(f"the record counts {value!r} {key}", hint="The record was edited")
+    return int(value)

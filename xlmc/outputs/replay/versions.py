@@ -1,0 +1,235 @@
+"""What a newer xlmc computes differently from the one that made a run, and how to install the older one."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from xlmc.montecarlo.loop.version import __version__
+
+if TYPE_CHECKING:
+    from xlmc.analysis.results.record import Record
+
+__all__ = ["RULES", "Rule", "install", "recorded_version", "rules_since"]
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """One way in which results changed.
+
+    Attributes:
+        since: the first version that computes so.
+        said: what it does now, in words.
+        met: the pattern of a formula, or of another content of a cell, that it may concern.
+        beside: a pattern that another cell must match, too; None where one is enough.
+    """
+
+    since: str
+    said: str
+    met: re.Pattern[str]
+    beside: re.Pattern[str] | None = None
+
+
+def _calls(*names: str) -> re.Pattern[str]:
+    """Calls of these functions, with or without the marks that a file gives to those of a newer Excel."""
+    return re.compile(rf"(?<![\w.])(?:_xl\w+\.)*(?:{'|'.join(map(re.escape, names))})\(", re.IGNORECASE)
+
+
+_COMPARED: Final = re.compile(r"=.*[<>=]")
+_LAST_SUM: Final = re.compile(r"=.*[+-]")
+_CHOICES: Final = ("IF", "IFS", "SWITCH", "CHOOSE", "IFERROR", "IFNA")
+_BESIDE: Final = ("INDEX", "IRR", "MODE", "CORREL", "LINEST", "TREND", "PROB", "LOOKUP", "XLOOKUP", "SUMPRODUCT")
+_TOOLPAK: Final = re.compile(
+    r"(?<![\w.])(?:EDATE|EOMONTH|WEEKNUM|YEARFRAC|(?:NET)?WORKDAYS?(?:\.INTL)?|ISODD|ISEVEN|MROUND|QUOTIENT|SQRTPI"
+    r"|FACTDOUBLE|CONVERT|DELTA|GESTEP|ERFC?|EFFECT|NOMINAL|DOLLAR(?:DE|FR)|CUM(?:IPMT|PRINC)|XNPV|XIRR|FVSCHEDULE"
+    r"|SERIESSUM|(?:PRICE|YIELD)(?:DISC|MAT)?|DISC|INTRATE|RECEIVED|M?DURATION|ACCRINTM?|COMPLEX|BESSEL[IJKY]"
+    r"|(?:BIN|DEC|HEX|OCT)2[A-Z]+|IM[A-Z0-9]+|COUP[A-Z]+|TBILL[A-Z]+|ODD[FL][A-Z]+|AMOR[A-Z]+)\(",
+    re.IGNORECASE,
+)
+_WHOLE: Final = re.compile(r"=.*\$?[A-Z]{1,3}:\$?[A-Z]{1,3}\b|=.*\$?\d+:\$?\d+\b")
+
+_FEW_VALUES: Final = re.compile(
+    r"(?<!\w)(?:CB\.|Risk)?(?:Yes-?No|Bernoulli|(?:Neg(?:ative)? ?)?Bin(?:om(?:ial)?)?|Poisson|Geomet(?:ric)?"
+    r"|Hyper-?geo(?:metric)?|Hypergeo|(?:Discrete|Int|D) ?Uniform|Discrete|Custom|Empirical|Resampled|Resample)(?!\w)",
+    re.IGNORECASE,
+)
+_CORRELATED: Final = re.compile(r"correlation|RiskCorrmat|Risk(?:In)?DepC|CB\.Correl", re.IGNORECASE)
+
+_TINY: Final = re.compile(r"\dE-[123]\d\d\b|\^-|(?<![\w.])(?:EXP|POWER)\(", re.IGNORECASE)
+_SMALL_LETTERS: Final = re.compile(r"=.*(?<![\w.])[A-Z]\w*[a-z]\w*\(")
+"""Calls by a name that is none of Excel's: those are in capitals in a file."""
+_REFUSED: Final = (
+    *("BAHTTEXT", "REGEXTEST", "REGEXEXTRACT", "REGEXREPLACE", "GROUPBY", "PIVOTBY", "TRIMRANGE"),
+    *("FORECAST.ETS", "FORECAST.ETS.CONFINT", "FORECAST.ETS.SEASONALITY", "FORECAST.ETS.STAT"),
+)
+
+_DATE: Final = re.compile(r'=.*"[^"]*\d[^"]*[-/.: ][^"]*\d[^"]*"')
+_ARRAYS: Final = _calls("ANCHORARRAY", "FILTER", "UNIQUE", "SORT", "SORTBY", "SEQUENCE", "OFFSET", "INDIRECT", "CELL")
+_ANY: Final = re.compile("=")
+
+RULES: Final = (
+    *(
+        Rule("0.2.0", said, met)
+        for said, met in (
+            ("= <> < <= > >= between numbers compare 15 significant digits, as in Excel", _COMPARED),
+            ("the + or - that a formula ends with gives 0 where it cancels but for the last bits", _LAST_SUM),
+            (
+                "ranges within INDEX, IRR, MODE, LINEST and kin are computed cell by cell in plain formulas",
+                _calls(*_BESIDE),
+            ),
+            (
+                "a choice that varies between ranges of different sizes gives the one it chooses, whole",
+                _calls(*_CHOICES),
+            ),
+            ("SUBTOTAL 1 to 11 leaves out the rows that a filter hides", _calls("SUBTOTAL")),
+            (
+                'the criterion "<>23" counts the text "23"',
+                _calls("COUNTIF", "COUNTIFS", "SUMIF", "SUMIFS", "AVERAGEIF"),
+            ),
+            ("whole columns and rows keep their size, empty cells included", _WHOLE),
+            (
+                "an array within a cell of an array is #CALC!; arrays side by side are filled up with #N/A",
+                _calls("LAMBDA"),
+            ),
+            ("EDATE, WEEKNUM, ISODD and kin give #VALUE! for a range of several cells", _TOOLPAK),
+            ("TRUNC rounds, exactly, the 15 digits that Excel shows", _calls("TRUNC")),
+            ("LCM leaves out empty cells", _calls("LCM")),
+            ("BITLSHIFT and BITRSHIFT give #NUM! above 48 bits", _calls("BITLSHIFT", "BITRSHIFT")),
+            ("MIRR gives -1 where nothing is received, and #DIV/0! at -100 %", _calls("MIRR")),
+            ("CONVERT keeps the digits of small absolute temperatures", _calls("CONVERT")),
+            ("YEARFRAC counts 1900 as a leap year, as Excel's calendar does", _calls("YEARFRAC")),
+            ("CUMIPMT and CUMPRINC truncate the type of payment", _calls("CUMIPMT", "CUMPRINC")),
+            ("FORMULATEXT shows the formula of its own cell, as Excel does", _calls("FORMULATEXT")),
+            ("PERCENTOF and ASC give what Excel gives", _calls("PERCENTOF", "ASC")),
+            ("functions that xlmc has no body for, such as FORECAST.ETS and REGEXTEST, are refused", _calls(*_REFUSED)),
+            ("OFFSET that leads to several ranges at once is refused", _calls("OFFSET")),
+            ("ISREF of a choice that varies between cells is refused", _calls("ISREF")),
+            ("CB.GetCertaintyFN gives percent", _calls("CB.GetCertaintyFN")),
+            (
+                "RiskMean and kin of another simulation than the first are not available",
+                _calls("RiskMean", "RiskPercentile"),
+            ),
+        )
+    ),
+    Rule("0.3.0", "numbers below 2.2250738585072014E-308 in size are 0", _TINY),
+    Rule("0.3.0", "a LAMBDA that is named like a function of Excel is not called by that name", _SMALL_LETTERS),
+    Rule("0.3.0", "INDEX of several errors gives the first", _calls("INDEX")),
+    Rule("0.3.0", "intervals of means and standard deviations allow for the skewness of the forecast", _ANY),
+    Rule("0.3.0", "a search for rare trials looks into every branch, solves thin layers, and draws other trials", _ANY),
+    Rule(
+        "0.3.0",
+        "assumptions that take few values have the rank correlation asked for, ties counted, or the most they can have",
+        _FEW_VALUES,
+        _CORRELATED,
+    ),
+    Rule(
+        "0.4.0",
+        "SUBTOTAL and AGGREGATE leave out the same of each of several ranges",
+        _calls("SUBTOTAL", "AGGREGATE"),
+    ),
+    Rule("0.4.0", "IFERROR and IFNA see the errors of arrays whose size is drawn", _calls("IFERROR", "IFNA")),
+    Rule("0.4.0", "A1# shows 0 for the empty cells of a range whose size is drawn", _calls("ANCHORARRAY")),
+    Rule("0.5.1", "INDEX of several rows and columns with one number gives #REF!", _calls("INDEX")),
+    Rule("0.5.1", "BETA.INV takes the probability 1, and gives the upper end", _calls("BETA.INV", "BETAINV")),
+    Rule(
+        "0.6.0",
+        "the engine jit computes EXP, LN, LOG10, LOG and powers itself, to one unit in the last bit",
+        re.compile(r"\^|(?<![\w.])(?:EXP|LN|LOG|LOG10|POWER)\(", re.IGNORECASE),
+    ),
+    Rule("0.6.0", "the error of the standard error of a mean may differ in its last bit", _ANY),
+    Rule(
+        "0.8.0",
+        "running totals give the error of a later cell where the first cells overflow",
+        _calls("SUM", "PRODUCT", "AVERAGE"),
+    ),
+    Rule("0.9.0", "the engine jit leaves workbooks to numpy where native loops do not pay: last bits may differ", _ANY),
+    Rule(
+        "0.9.0",
+        "the engine jit sees the errors that logical values of ranges are in some trials",
+        _calls("SUM", "AVERAGE", "MIN", "MAX", "SUMPRODUCT", "COUNT"),
+    ),
+    Rule("0.9.0", "parameters whose formulas another program could not compute are calculated", _ANY),
+    Rule("0.10.0", "all cells of a dynamic array vary, also as A1#, OFFSET, INDIRECT and CELL see them", _ARRAYS),
+    Rule("0.10.0", "formulas that name cells which a dynamic array may fill, beyond those saved, are refused", _ARRAYS),
+    Rule("0.10.0", "errors of percentiles that many trials share are smaller with Latin hypercube and Sobol", _ANY),
+    Rule(
+        "0.10.0",
+        "the engine jit rounds in its loops: the last bits of what stands beside it may differ",
+        _calls("INT", "ROUND", "ROUNDUP", "ROUNDDOWN", "TRUNC", "MROUND", "QUOTIENT", "MOD", "ISEVEN", "ISODD"),
+    ),
+    Rule("0.11.0", "a name of the whole workbook that names another means that of the whole workbook", _ANY),
+    Rule("0.11.0", "a text that is a date is read by the calendar from 1904 where the workbook has it", _DATE),
+    Rule(
+        "0.11.0",
+        "INDIRECT in the style R1C1 reads ranges, whole rows and columns, names and tables",
+        _calls("INDIRECT"),
+    ),
+    Rule(
+        "0.11.0",
+        "ranges that a choice or a lookup leads to by a condition that varies keep their empty cells and texts",
+        _calls(*_CHOICES, "INDEX", "XLOOKUP"),
+    ),
+    Rule(
+        "0.11.0", "thresholds and settings that formulas give are calculated where their saved values may be old", _ANY
+    ),
+)
+"""The rules in the order of versions."""
+
+_COMMITS: Final = {
+    "0.1.0": "46fd152e6dd49dcf68dc416c020a215c696d0a3d",
+    "0.2.0": "bb61f93b6f64bf49b751e73e09eb58a162bfd9ba",
+    "0.3.0": "00742dc47a736f0895b4959ff85cd29eb56e2e66",
+    "0.4.0": "bc3aba5294be41225bc1b4b5739ec48cd9e98e2c",
+    "0.5.0": "7496bc5c0bfbe39791f9066d2e05fbbc01b41aaf",
+    "0.5.1": "e9825adc0d54324dd6ffee4b7e227855ceaf6810",
+    "0.5.2": "a0233280c2c29797693a39af2d7ca65686378708",
+    "0.6.0": "3477a27842cfa0f06441ec8cd6cc49c4c3cc7516",
+    "0.7.0": "b28ef100a6c0bd6147d30638e5c13c82e6c2de5b",
+    "0.8.0": "9b6e83b15a18eff6e7b69dda8483149c1a89598f",
+    "0.9.0": "adb41e5b90878c069eb919353532b23ca12c59e6",
+    "0.10.0": "ef020dc5a73b4a5fcd48b50ea00a1d8bf3d0a8cc",
+    "0.11.0": "c1e30ea7db9c86e52d9a1a51f5eb1e8a31f640a7",
+    "0.11.1": "1fda55809b9b6bbbc6a1e1c28b25a49d63a3bf88",
+    "0.11.2": "4ec8e9b473b0f6efb5197e5c76ea5bf21cce2973",
+}
+"""The last commit of each version before this one."""
+
+
+def recorded_version(record: Record) -> str:
+    """The xlmc that made a run; of records that do not name it, nothing."""
+    try:
+        return str(record["software.xlmc"])
+    except KeyError:
+        return ""
+
+
+def rules_since(version: str, contents: Iterable[str]) -> tuple[Rule, ...]:
+    """The rules that changed after a version and that may concern a workbook.
+
+    Args:
+        version: the one that made a run, such as `0.1.0`.
+        contents: of the cells that the run needed.
+    """
+    texts = tuple(contents)
+    return tuple(
+        rule
+        for rule in RULES
+        if _parts(version) < _parts(rule.since) <= _parts(__version__)
+        and all(any(one.search(text) for text in texts) for one in (rule.met, rule.beside) if one is not None)
+    )
+
+
+def install(version: str) -> str:
+    """What to type, in a clone of xlmc's repository, to have a version beside this one."""
+    folder = f"../xlmc-{version}"
+    return (
+        f"git worktree add {folder} {_COMMITS.get(version, f'v{version}')} && python3 -m venv {folder}/.venv && "
+        f"{folder}/.venv/bin/pip install {folder}"
+    )
+
+
+def _parts(version: str) -> tuple[int, ...]:
+    """A version as numbers that can be compared; what is no number ends it."""
+    return tuple(int(part) for part in re.match(r"\d*(?:\.\d+)*", version)[0].split(".") if part)  # type: ignore[index]

@@ -1,0 +1,66 @@
+"""The answers of scenarios in tables of text: for the terminal and the document to hand over."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+from xlmc.analysis.results.statements.in_words import changes_text
+from xlmc.montecarlo.statistics import format_estimate
+from xlmc.outputs.sheets.scenarios_sheet import POINTS, above_head, range_heads
+from xlmc.outputs.summary import estimate_text, share_text
+
+if TYPE_CHECKING:
+    from xlmc.analysis.studies.scenario_answers import ForecastAnswer, ScenarioAnswers
+    from xlmc.montecarlo.statistics import Estimate
+
+__all__ = ["SCENARIO_HEADS", "answer_heads", "answer_rows", "scenario_rows"]
+
+SCENARIO_HEADS: Final = ("Scenario", "Accepted", "Share", POINTS, "What is changed")
+
+
+def scenario_rows(found: Sequence[ScenarioAnswers]) -> list[tuple[str, ...]]:
+    """A row for the workbook itself and for each scenario, under `SCENARIO_HEADS`."""
+    return [
+        (
+            each.name,
+            f"{each.run.accepted:,}",
+            share_text(each.acceptance),
+            _change(each.acceptance_difference, share=True),
+            "" if each.scenario is None else changes_text(each.scenario),
+        )
+        for each in found
+    ]
+
+
+def answer_heads(found: Sequence[ScenarioAnswers], index: int) -> list[str]:
+    """The headings of the table of the forecast at `index`."""
+    states = [each.forecasts[index] for each in found]
+    above = above_head(states)
+    heads = ["Scenario", *(heading for name in range_heads(states) for heading in (name, "Difference"))]
+    return [*heads, above, POINTS] if above else heads
+
+
+def answer_rows(found: Sequence[ScenarioAnswers], index: int) -> list[tuple[str, ...]]:
+    """A row for the workbook itself and for each scenario, of the forecast at `index`, under its `answer_heads`."""
+    above = bool(above_head([each.forecasts[index] for each in found]))
+    return [(each.name, *_cells(each.forecasts[index], above)) for each in found]
+
+
+def _cells(answer: ForecastAnswer, above: bool) -> list[str]:
+    found = []
+    for key, value in (("mean", answer.mean), ("low", answer.low), ("high", answer.high)):
+        found += [estimate_text(value), _change(answer.differences.get(key))]
+    if above:
+        share = "" if answer.above is None else share_text(answer.above)
+        found += [share, _change(answer.differences.get("above"), share=True)]
+    return found
+
+
+def _change(found: Estimate | None, *, share: bool = False) -> str:
+    """`+0.59 ± 0.03`, of shares in percentage points; empty for the workbook itself."""
+    if found is None:
+        return ""
+    scale = 100.0 if share else 1.0
+    text = format_estimate(scale * found.value, None if found.error is None else scale * found.error)
+    return f"+{text}" if found.value > 0 else text

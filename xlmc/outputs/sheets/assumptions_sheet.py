@@ -1,0 +1,233 @@
+"""The sheet Assumptions: what each one is and why, and beside it how the filters changed it.
+
+Each has three lines: name, units, base case and the draws before filtering; distribution, cell and the accepted draws;
+its source, and how mean and standard deviation changed. At their end a small chart shows the shapes of both.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from xlmc.analysis.results.record.definition_tables import correlations_met
+from xlmc.analysis.results.statements.in_words import distribution_text, status
+from xlmc.montecarlo.statistics import Estimate
+from xlmc.outputs.filter_effect import FilterEffect, Marginal, filter_effect_of, shapes_of
+from xlmc.outputs.sheets import cells
+from xlmc.outputs.sheets.cells import Shown
+from xlmc.outputs.sheets.curves_sheet import SHARE
+from xlmc.outputs.sheets.styles import DARK, LIGHT, straight
+
+if TYPE_CHECKING:
+    from xlsxwriter.chart import Chart
+    from xlsxwriter.workbook import Workbook
+
+    from xlmc.montecarlo.definitions.definitions import Assumption
+    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.outputs.sheets.curves_sheet import Curves, TableAt
+    from xlmc.outputs.sheets.page import Page
+
+__all__ = ["HEADER", "MEANING", "MOVED", "NARROWED", "STRATIFIED", "WIDTHS", "write_assumptions", "write_correlations"]
+
+HEADER = 3
+"""The row of the headings, counted from 0."""
+
+_STATISTICS = 10
+"""Columns of the mean, the standard deviation and three percentiles, each with its error."""
+_NAMED = 3
+"""Columns that say what the assumption is: lines begin in the first, the last has its base case and its cell."""
+_SHAPE = _NAMED + 2 + _STATISTICS
+WIDTHS = (32, 9.5, 12.5, 10.5, 7, *(8, 6.1) * (_STATISTICS // 2), 13.5)
+_LINES = 3
+_ROW = 15.0
+_GAP = 6.0
+_SIZE = (98, 62)
+"""The size of a small chart in pixels: within the cells of three lines."""
+_DRAWN = 100
+"""The most assumptions whose shapes are drawn: more would make the file slow to open."""
+_READABLE = _SHAPE
+"""The column that paragraphs reach to."""
+
+_HEADS = (
+    *("Assumption and its units; distribution; source", "Base case; cell", "Draws", "Trials"),
+    *("Mean", "±", "Standard deviation", "±", "5 %", "±", "50 %", "±", "95 %", "±", "Before (pale), accepted (line)"),
+)
+
+MOVED, NARROWED = 0.5, 0.8
+
+MEANING = (
+    "Filters keep only the combinations that agree with the evidence. So an assumption that the evidence bears on is "
+    "distributed differently among the accepted trials, although its range is the same. "
+    f"Marked: a mean that moved by {MOVED:g} standard deviations or more; a standard deviation that shrank to "
+    f"{NARROWED:g} of what it was or less."
+)
+
+_CHANGE = (
+    "The third line of each assumption has its change: how far the mean moved, in standard deviations of the draws "
+    "before filtering (SD), and what part of that standard deviation is left (×)."
+)
+
+STRATIFIED = (
+    "Before filtering, ± is that of independent trials; the draws of this run are more even, so it is rather too "
+    "large. Of the accepted draws, ± comes from the differences between the independent parts of the run (replicates)."
+)
+
+_CORRELATIONS = (
+    "“Asked for” and “drawn with” are before filtering. They differ if the correlations asked for are not all possible "
+    "at once, or if an assumption takes so few different values that only a weaker one is possible. Filters change "
+    "correlations as they change assumptions; those of the accepted trials are beside them."
+)
+
+
+def write_assumptions(page: Page, book: Workbook, simulation: Simulation, curves: Curves) -> None:
+    """Write the sheet; `curves` takes the numbers that its small charts draw."""
+    name = simulation.model.workbook.name
+    of = f" of {simulation.trials:,}" if simulation.rare is None else ""
+    page.title("Assumptions", f"{name}: {simulation.accepted:,}{of} trials accepted")
+    page.sheet.set_row(page.row, _GAP)
+    page.row = HEADER
+    page.height = _ROW
+    starts = [0, *range(_NAMED - 1, _NAMED - 1 + len(_HEADS) - 1)]
+    looks = ["header left", *["header"] * (len(_HEADS) - 1)]
+    page.line([Shown(head, look=look) for head, look in zip(_HEADS, looks, strict=True)], starts)
+    for assumption in simulation.model.assumptions:
+        page.may_begin()
+        _write_assumption(page, simulation, assumption)
+    page.sheet.freeze_panes(HEADER + 1, 1)
+    _draw_shapes(page, book, simulation, curves)
+    write_correlations(page, simulation)
+    page.heading("What this shows")
+    page.wide(MEANING, "paragraph", _READABLE)
+    page.wide(_CHANGE, "paragraph", _READABLE)
+    early = max((values.size for values in simulation.prior.values()), default=0)
+    page.wide(f"Before filtering: the first {early:,} trials. ± is the standard error.", "paragraph", _READABLE)
+    if simulation.plan.size:
+        page.wide(STRATIFIED, "paragraph", _READABLE)
+    if simulation.kept_inputs < simulation.accepted:
+        kept = f"Accepted: the first {simulation.kept_inputs:,} of {simulation.accepted:,} accepted trials."
+        page.wide(kept, "paragraph", _READABLE)
+    page.set_up_printing(name, repeat=HEADER)
+
+
+def _draw_shapes(page: Page, book: Workbook, simulation: Simulation, curves: Curves) -> None:
+    """Draw how often each assumption has each value, beside its lines."""
+    drawn = []
+    for index, assumption in enumerate(simulation.model.assumptions[:_DRAWN]):
+        found = shapes_of(simulation, assumption.name)
+        if found is not None:
+            drawn.append((HEADER + 1 + _LINES * index, assumption.name, found))
+    if not drawn:
+        return
+    heads = [f"{name}, {which}" for _, name, _ in drawn for which in ("before", "accepted")]
+    bins = np.column_stack([shares for _, _, found in drawn for shares in (found.before, found.accepted)])
+    rows = [[Shown(share, SHARE) for share in row] for row in bins.tolist()]
+    bottom = page.row
+    table = curves.write(["Shapes of the assumptions' draws"], "Share of the draws in each bin", heads, rows)
+    page.row = bottom
+    for column, (row, name, _) in enumerate(drawn):
+        words = f"{name}: before filtering pale, accepted as a line"
+        options = {"object_position": 1, "x_offset": 3, "y_offset": 2, "description": words}
+        page.sheet.insert_chart(row, _SHAPE, _shape_chart(book, table, 2 * column), options)
+
+
+def _shape_chart(book: Workbook, table: TableAt, column: int) -> Chart:
+    """A chart without axes, over the lines of an assumption: columns before filtering, a line of the accepted."""
+    chart = book.add_chart({"type": "column"})
+    chart.add_series(
+        {
+            "name": table.heading(column),
+            "values": table.column(column),
+            "fill": {"color": LIGHT},
+            "border": {"none": True},
+            "gap": 0,
+        }
+    )
+    line = straight(book.add_chart({"type": "line"}))
+    accepted = {"name": table.heading(column + 1), "values": table.column(column + 1)}
+    line.add_series({**accepted, "line": {"color": DARK, "width": 1.5}})
+    chart.combine(line)
+    chart.set_x_axis({"visible": False})
+    chart.set_y_axis({"visible": False, "min": 0, "major_gridlines": {"visible": False}})
+    chart.set_legend({"none": True})
+    chart.set_title({"none": True})
+    chart.set_chartarea({"border": {"none": True}, "fill": {"none": True}})
+    chart.set_plotarea({"layout": {"x": 0.0, "y": 0.0, "width": 1.0, "height": 1.0}})
+    chart.set_size({"width": _SIZE[0], "height": _SIZE[1]})
+    return chart
+
+
+def _write_assumption(page: Page, simulation: Simulation, assumption: Assumption) -> None:
+    """Write the lines of an assumption."""
+    before, accepted, change = _statistics(simulation, assumption)
+    starts = [0, *range(_NAMED - 1, _NAMED + len(before))]
+    name = f"{assumption.name} ({assumption.units})" if assumption.units else assumption.name
+    base = Shown(cells.NONE if assumption.base is None else assumption.base)
+    page.line([Shown(name, look="name"), base, *before], starts)
+    words = Shown(distribution_text(assumption), look="second")
+    page.line([words, Shown(str(assumption.cell), look="second"), *accepted], starts)
+    page.line([Shown(assumption.source or cells.NONE), *change], [0, *range(_NAMED, _NAMED + len(change))])
+
+
+def _statistics(simulation: Simulation, assumption: Assumption) -> tuple[list[Shown], list[Shown], list[Shown]]:
+    """The cells of the draws before filtering, of the accepted ones and of the change; or why it is not drawn."""
+    found = filter_effect_of(simulation, assumption.name)
+    if found is None:
+        why = Shown(status(simulation.model, assumption.name, assumption.frozen))
+        return [why, *_blank(_STATISTICS + 1)], _blank(_STATISTICS + 2, "second"), _blank(_STATISTICS + 2)
+    return _before(found), _accepted(found), _change(found)
+
+
+def _before(found: FilterEffect) -> list[Shown]:
+    return [Shown("before"), cells.count(found.prior.trials), *_marginal(found.prior)]
+
+
+def _accepted(found: FilterEffect) -> list[Shown]:
+    return [
+        Shown("accepted", look="second"),
+        Shown(found.accepted.trials, cells.count(0).format, "second number"),
+        *_marginal(found.accepted, "second number", "second error"),
+    ]
+
+
+def _marginal(found: Marginal, look: str = "number", error_look: str = "error") -> list[Shown]:
+    estimates = (found.mean, found.standard_deviation, *found.percentiles.values())
+    return [shown for estimate in estimates for shown in cells.estimate(estimate, look, error_look)]
+
+
+def _change(found: FilterEffect) -> list[Shown]:
+    shift = cells.estimate(found.shift, "moved" if abs(found.shift.value) >= MOVED else "number")
+    ratio = cells.estimate(found.narrowing, "moved" if found.narrowing.value <= NARROWED else "number")
+    changes = [
+        replace(shift[0], format=f'{shift[0].format}" SD"'),
+        shift[1],
+        replace(ratio[0], format=f'"× "{ratio[0].format}'),
+        ratio[1],
+    ]
+    return [Shown("change"), cells.BLANK, *changes, *_blank(_STATISTICS - len(changes))]
+
+
+def _blank(columns: int, look: str = "number") -> list[Shown]:
+    return [Shown(None, look=look)] * columns
+
+
+def write_correlations(page: Page, simulation: Simulation) -> None:
+    """Write the rank correlations, where there are any."""
+    met = correlations_met(simulation)
+    if not met:
+        return
+    page.heading("Rank correlations")
+    starts, last = (0, 1, 5, 7, 9, 10), 10
+    headers = ("First", "Second", "Asked for", "Drawn with", "Accepted", "±")
+    page.line([Shown(header, look="header left") for header in headers], starts, last)
+    for pair in met:
+        found = pair.accepted or Estimate(math.nan)
+        line = [Shown(pair.first), Shown(pair.second), cells.exact(pair.asked)]
+        line += [
+            Shown(cells.NONE) if pair.used is None else cells.exact(round(pair.used, 6)),
+            *cells.estimate(found),
+        ]
+        page.line(line, starts, last)
+    page.wide(_CORRELATIONS, "paragraph", _READABLE)

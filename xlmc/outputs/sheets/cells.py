@@ -1,0 +1,165 @@
+"""What stands in a cell of a result sheet: a text or a number, how the number shows, how the cell looks.
+
+Excel's number formats show no more decimals than a standard error supports, as `format_estimate` prints them. A cell
+keeps its full number; only what it shows is cut. Excel cannot show a number rounded to tens, so one whose error is
+larger than a unit shows its units too, with the error beside it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from xlmc.montecarlo.statistics import Estimate
+from xlmc.montecarlo.statistics.estimate import two_digit_exponent
+
+__all__ = [
+    "BLANK",
+    "LOGICAL",
+    "NOISE",
+    "NONE",
+    "Shown",
+    "count",
+    "estimate",
+    "exact",
+    "interval",
+    "number_format",
+    "paired_format",
+    "share",
+    "share_format",
+    "spread_format",
+]
+
+NONE = "–"
+"""The text shown if there is no number."""
+
+LOGICAL = '"TRUE";"TRUE";"FALSE"'
+"""The format of a logical: LibreOffice shows 1 or 0 without it; Excel has its own words and does not heed it."""
+
+NOISE = '"noise";"noise";"noise"'
+"""The format of a number that is no more than noise: it shows the word."""
+
+_COUNT = "#,##0"
+
+_DIGITS = 6
+"""Significant digits where no error limits them."""
+
+_ROOM = 9
+"""Characters that columns have room for; fewer decimals are shown rather than `###`."""
+
+_LARGEST, _SMALLEST = 1e7, 1e-4
+"""A number outside these limits is shown with a power of ten."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """The content of one cell: a text as it is, also where it begins with `=`; a number; None is an empty cell.
+
+    Attributes:
+        look: by default `text` for a text, and `number` for anything else.
+    """
+
+    value: str | float | None
+    format: str = "General"
+    look: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.look:
+            object.__setattr__(self, "look", "text" if isinstance(self.value, str) else "number")
+
+
+BLANK = Shown(None)
+
+
+def exact(value: float | None, number: str = "General") -> Shown:
+    """A number that has no error: a setting, the base case."""
+    return Shown(value, number)
+
+
+def count(value: int) -> Shown:
+    """Trials."""
+    return Shown(value, _COUNT)
+
+
+def estimate(
+    found: Estimate, look: str = "number", error_look: str = "error", *, like: Estimate | None = None
+) -> list[Shown]:
+    """Two cells: the value, and its standard error in the same digits; without an error, in those of `like`."""
+    digits = paired_format(like if found.error is None and like is not None else found)
+    return [Shown(found.value, digits, look), _error(found.error, _error_format(found, digits), error_look)]
+
+
+def share(found: Estimate) -> list[Shown]:
+    """Two cells: a share of trials and its standard error, in percent."""
+    digits = share_format(found)
+    return [Shown(found.value, digits), _error(found.error, digits, "error")]
+
+
+def interval(found: Estimate, *, percent: bool = False) -> list[Shown]:
+    """Two cells: the ends of the 95 % interval, in the digits of the value."""
+    digits = share_format(found) if percent else paired_format(found)
+    low, high = found.interval or (None, None)
+    return [_error(low, digits, "error"), _error(high, digits, "error")]
+
+
+def _error(value: float | None, digits: str, look: str) -> Shown:
+    return Shown(NONE if value is None else value, digits, look)
+
+
+def paired_format(estimate: Estimate) -> str:
+    """The format of a value whose error stands in a cell of its own: two digits of the error."""
+    if estimate.error == 0.0:
+        return "General"
+    return _format(estimate.value, _paired_decimals(estimate))
+
+
+def _error_format(found: Estimate, digits: str) -> str:
+    """The format of the error beside a value; digits of its own where those of so large a value show nothing of it."""
+    decimals = _paired_decimals(found)
+    if found.error is None or decimals is None or "E" in digits:
+        return digits
+    return digits if len(digits.partition(".")[2]) >= decimals - 1 else _format(found.error, decimals)
+
+
+def share_format(estimate: Estimate) -> str:
+    """`paired_format` for a share, in percent."""
+    decimals = _paired_decimals(estimate)
+    return "0" + _fraction(max((4 if decimals is None else decimals) - 2, 0)) + "%"
+
+
+def spread_format(spread: float) -> str:
+    """The format of single trials: four digits of their spread."""
+    return _format(spread, 3 - two_digit_exponent(spread)) if _usable(spread) else "General"
+
+
+def number_format(value: float) -> str:
+    """The format of a number that stands alone: six digits, or all that it has where these are fewer."""
+    if float(value).is_integer():
+        return _COUNT if abs(value) < _LARGEST * 100 else "General"
+    return "General" if len(repr(value)) <= _DIGITS + 1 else _format(value, None)
+
+
+def _paired_decimals(estimate: Estimate) -> int | None:
+    return 1 - two_digit_exponent(estimate.error) if estimate.error and _usable(estimate.error) else None
+
+
+def _format(value: float, decimals: int | None) -> str:
+    if not math.isfinite(value):
+        return "General"
+    if decimals is None:
+        if value == 0.0:
+            return "General"
+        decimals = _DIGITS - 1 - two_digit_exponent(value)
+    size = max(abs(value), 10.0**-decimals)
+    if not _SMALLEST <= size < _LARGEST:
+        return "0" + _fraction(min(max(decimals + two_digit_exponent(size), 0), 3)) + "E+00"
+    room = _ROOM - len(f"{value:,.0f}") - 1
+    return "#,##0" + _fraction(max(min(decimals, room), 0))
+
+
+def _fraction(decimals: int) -> str:
+    return "." + "0" * decimals if decimals else ""
+
+
+def _usable(number: float) -> bool:
+    return number != 0.0 and math.isfinite(number)

@@ -1,0 +1,134 @@
+"""The sheet Certainty: results in words, how certain their ranges are, and cells that count any other range.
+
+*Certainty* is Crystal Ball's word for the share of the trials in a range. Where a person types the ends of a range,
+formulas count the trials on the sheet Trials, and so the first ones alone where not all are there. The numbers that the
+formulas show at first are counted here, over the same trials. The formulas compare numbers with `>=` and `<=`, which is
+exact; a criterion of COUNTIFS is a text of 15 digits.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from xlmc.analysis.results.statements import MEANING, certainties, rounded_range, statements
+from xlmc.montecarlo.statistics import proportion
+from xlmc.outputs.sheets import cells
+from xlmc.outputs.sheets.cells import Shown
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from xlmc.analysis.results.statements import Certainty
+    from xlmc.montecarlo.loop.forecast_result import ForecastResult
+    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.outputs.sheets.page import Page
+    from xlmc.outputs.sheets.trials_sheet import TrialsAt
+
+__all__ = ["LAST", "WIDTHS", "write_certainty", "write_ranges"]
+
+
+WIDTHS = (44, 38, 13, 13, 12, 12, 12)
+
+LAST = len(WIDTHS) - 1
+
+_PERCENT = "0.0%"
+
+_Z = "1.96"
+
+
+def write_certainty(page: Page, simulation: Simulation, trials: TrialsAt) -> None:
+    """Write the sheet; `trials` is where the trials stand that its formulas count."""
+    name = simulation.model.workbook.name
+    page.title("Certainty", f"{name}: {simulation.accepted:,} accepted trials")
+    page.heading("In words")
+    for statement in statements(simulation):
+        page.wide(f"{statement.text}.", "quote", LAST)
+    page.row += 1
+    page.wide(MEANING, "remark", LAST)
+    page.heading("Certainty of ranges")
+    write_ranges(page, simulation)
+    _write_own_ranges(page, simulation, trials)
+    page.set_up_printing(name)
+
+
+def write_ranges(page: Page, simulation: Simulation) -> None:
+    """Write the certainty of every forecast's central range and threshold."""
+    rows = [_line(name, each) for name, result in simulation.results.items() for each in certainties(result)]
+    if not rows:
+        page.wide("No forecast has a number in an accepted trial.", "paragraph", LAST)
+        return
+    page.table(["Forecast", "Range", "Trials in it", "Certainty", "±", "95 % from", "to"], rows)
+
+
+def _line(name: str, found: Certainty) -> list[Shown]:
+    share = found.share
+    return [
+        Shown(name, look="name"),
+        Shown(found.words),
+        cells.count(round(share.value * share.n)),
+        *cells.share(share),
+        *cells.interval(share, percent=True),
+    ]
+
+
+def _write_own_ranges(page: Page, simulation: Simulation, trials: TrialsAt) -> None:
+    """Write a line for each forecast that has a number on the sheet Trials; nothing where there is none."""
+    found = [
+        (index, result, simulation.forecasts[name][: trials.shown])
+        for index, (name, result) in enumerate(simulation.results.items())
+    ]
+    found = [each for each in found if not np.isnan(each[2]).all()]
+    if not found:
+        return
+    from xlsxwriter.utility import xl_range_formula
+
+    page.heading("Certainty of a range of your own")
+    page.wide(_instructions(simulation, trials), "paragraph", LAST)
+    heads = ["Forecast", "Units", "From", "to", "Certainty", "Trials"]
+    errors = simulation.plan.size == 0
+    page.table([*heads[:5], "±", heads[5]] if errors else heads, [])
+    for index, result, values in found:
+        _write_line(page, result, values, xl_range_formula(*trials.column(index)), errors)
+
+
+def _instructions(simulation: Simulation, trials: TrialsAt) -> str:
+    which = f"all {trials.shown:,} accepted trials"
+    if trials.shown < simulation.accepted:
+        which = f"the first {trials.shown:,} of {simulation.accepted:,} accepted trials, which stand"
+    else:
+        which += ", which stand"
+    said = f"Type the ends of a range into the yellow cells; an empty cell means no limit. Formulas count {which} on "
+    said += "sheet Trials; both ends belong to the range."
+    if simulation.plan.size:
+        return f"{said} These trials depend on each other (see Sampling in the Record), so no error is given."
+    return said
+
+
+def _write_line(page: Page, result: ForecastResult, values: NDArray[np.float64], column: str, errors: bool) -> None:
+    from xlsxwriter.utility import xl_rowcol_to_cell
+
+    definition, row = result.definition, page.row
+    spoken = rounded_range(result.sample, result.statistics.central, definition.central)
+    assert spoken is not None  # there are numbers
+    known = values[~np.isnan(values)]
+    share = proportion(int(np.count_nonzero((known >= spoken.low) & (known <= spoken.high))), known.size)
+    page.line([Shown(definition.name, look="name"), Shown(definition.units)])
+    for column_of_end, end in ((2, spoken.low), (3, spoken.high)):
+        page.put(row, column_of_end, Shown(end, "General", "typed"))
+    low, high = xl_rowcol_to_cell(row, 2), xl_rowcol_to_cell(row, 3)
+    certainty, trials = xl_rowcol_to_cell(row, 4), xl_rowcol_to_cell(row, 6 if errors else 5)
+    inside = f'ISNUMBER({column})*((({low}="")+({column}>={low}))>0)*((({high}="")+({column}<={high}))>0)'
+    page.formula(row, 4, f"=SUMPRODUCT({inside})/{trials}", Shown(share.value, _PERCENT, "answer"))
+    if errors:
+        least = f"{_Z}/(2*({trials}+{_Z}^2))"
+        formula = f"=MAX(SQRT({certainty}*(1-{certainty})/{trials}),{least})"
+        page.formula(row, 5, formula, Shown(_error(share.value, known.size), _PERCENT, "error"))
+    page.formula(row, 6 if errors else 5, f"=COUNT({column})", Shown(known.size, cells.count(0).format))
+
+
+def _error(share: float, trials: int) -> float:
+    """The standard error as the formula has it: 1.96 is the 97.5th percentile of the normal distribution."""
+    return max(math.sqrt(share * (1.0 - share) / trials), 1.96 / (2.0 * (trials + 1.96**2)))

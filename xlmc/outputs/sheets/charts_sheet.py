@@ -1,0 +1,137 @@
+"""The sheet Charts: histograms, cumulative charts, overlay and trend charts.
+
+Histograms come first, like the paper's Figures 12 to 15, then what compares forecasts: these are printed. Then come the
+cumulative charts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from xlmc.outputs.histogram import Figure, varying
+from xlmc.outputs.sheets.bins_sheet import BinsAt, histogram_chart
+from xlmc.outputs.sheets.cells import Shown
+from xlmc.outputs.sheets.curve_charts import MOST, cumulative_charts, group_by_units, overlay_chart, trend_chart
+from xlmc.outputs.sheets.curves_sheet import Curves
+from xlmc.outputs.sheets.page import ROW
+from xlmc.outputs.summary import percent
+
+if TYPE_CHECKING:
+    from xlsxwriter.chart import Chart
+    from xlsxwriter.workbook import Workbook
+
+    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.outputs.sheets.page import Page
+
+__all__ = ["WIDTHS", "Drawing", "place_drawings", "write_charts"]
+
+_ACROSS = 2
+_COLUMNS = 9
+"""Drawings side by side, and the columns of the sheet that each takes."""
+
+_PRINTED = "The cumulative charts stand behind the others and are not printed, unless you clear the print area."
+
+CHART_ROWS = 16
+"""Rows of the sheet that a chart covers: a page has room for three such charts with their captions."""
+
+_GAP = 8
+"""Points below a caption."""
+
+_OFFSET = 3
+"""Pixels above a chart, so that its frame is not drawn on the page before."""
+
+_WIDTH = 548
+"""Pixels of a chart: what its columns have, but for a gap."""
+
+_FIRST = 3
+WIDTHS = (8.14,) * (_ACROSS * _COLUMNS)
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """A chart and what it shows in words."""
+
+    chart: Chart
+    caption: str
+
+
+def write_charts(
+    page: Page,
+    book: Workbook,
+    simulation: Simulation,
+    figures: Sequence[Figure],
+    bins: Sequence[BinsAt],
+    curves: Curves,
+) -> None:
+    """Write the sheet with the charts; `bins` says where their bins stand, `curves` takes the other numbers."""
+    name = simulation.model.workbook.name
+    page.title("Forecast charts of the accepted trials", f"{name}: {simulation.accepted:,} accepted trials")
+    page.wide(_PRINTED, "remark", len(WIDTHS) - 1)
+    page.row = _FIRST
+    if not figures:
+        page.put(page.row, 0, Shown("No forecast has a number in an accepted trial: nothing to draw.", look="alarm"))
+    drawings = [
+        Drawing(histogram_chart(book, at, figure.bins), figure.caption)
+        for figure, at in zip(figures, bins, strict=True)
+    ]
+    place_drawings(page, [*drawings, *_comparison_drawings(book, curves, simulation, figures)])
+    printed = page.row
+    place_drawings(page, list(_cumulative_drawings(book, curves, simulation, figures)))
+    page.set_up_printing(name, printed=printed, columns=(0, len(WIDTHS) - 1))
+
+
+def place_drawings(page: Page, drawings: Sequence[Drawing], rows: int = CHART_ROWS) -> None:
+    """Put charts with their captions on the sheet, two side by side.
+
+    Args:
+        page: the sheet.
+        drawings: the charts.
+        rows: how many rows of the sheet each is high.
+    """
+    for start in range(0, len(drawings), _ACROSS):
+        page.may_begin()
+        _place_row(page, drawings[start : start + _ACROSS], rows)
+
+
+def _place_row(page: Page, drawings: Sequence[Drawing], rows: int) -> None:
+    starts, captions = [], []
+    for column, drawing in enumerate(drawings):
+        left = column * _COLUMNS
+        options = {"object_position": 1, "y_offset": _OFFSET, "description": drawing.caption}
+        drawing.chart.set_size({"width": _WIDTH, "height": int(rows * ROW / 0.75) - 2 * _OFFSET})
+        page.sheet.insert_chart(page.row, left, drawing.chart, options)
+        starts += [left, left + _COLUMNS - 1]
+        captions += [Shown(drawing.caption, look="caption"), Shown("", look="caption")]
+    page.row += rows
+    page.line(captions, starts, starts[-1])
+    page.sheet.set_row(page.row, _GAP)
+    page.row += 1
+
+
+def _comparison_drawings(
+    book: Workbook, curves: Curves, simulation: Simulation, figures: Sequence[Figure]
+) -> Iterator[Drawing]:
+    number = len(figures)
+    for group in group_by_units(varying(figures)):
+        units, few = group[0].answer.units, f" (at most {MOST} in a chart)" if len(group) == MOST else ""
+        caption = f"Figure {number + 1}. Overlay chart: the forecasts in {units} as frequency curves{few}."
+        yield Drawing(overlay_chart(book, curves, group), caption)
+        ranges = "a box for the central range, a line from the 5th to the 95th percentile"
+        caption = f"Figure {number + 2}. Trend chart of the same forecasts: {ranges}."
+        yield Drawing(trend_chart(book, curves, simulation, group), caption)
+        number += 2
+
+
+def _cumulative_drawings(
+    book: Workbook, curves: Curves, simulation: Simulation, figures: Sequence[Figure]
+) -> Iterator[Drawing]:
+    varied = varying(figures)
+    first = len(figures) + 2 * len(group_by_units(varied))
+    for index, figure in enumerate(varied):
+        charts = cumulative_charts(book, curves, simulation, figure)
+        share, number = percent(figure.answer.share), first + 2 * index
+        for offset, (chart, words) in enumerate(zip(charts, ("at most", "above"), strict=True), 1):
+            caption = f"Figure {number + offset}. {figure.name}: share of the accepted trials {words} each value; "
+            yield Drawing(chart, f"{caption}the central {share} range is dark.")

@@ -1,0 +1,185 @@
+"""The sheet Pairs: forecasts two at a time, their joint probabilities, their correlation, and scatter charts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from xlmc.analysis.results.statements import PAIRS, Pair, pairs_of
+from xlmc.outputs.sheets import cells
+from xlmc.outputs.sheets.cells import BLANK, Shown
+from xlmc.outputs.sheets.charts_sheet import Drawing, place_drawings
+from xlmc.outputs.sheets.curves_sheet import Curves, TableAt
+from xlmc.outputs.sheets.styles import DARK, Reference, across, axis_format, bounds, finish, straight, upwards
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+    from xlsxwriter.chart_scatter import ChartScatter
+    from xlsxwriter.workbook import Workbook
+
+    from xlmc.montecarlo.definitions.definitions import Forecast
+    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.outputs.sheets.page import Page
+    from xlmc.outputs.sheets.trials_sheet import TrialsAt
+
+__all__ = ["POINTS", "WIDTHS", "pair_sentences", "write_pair_table", "write_pairs"]
+
+POINTS: Final = 1_000
+"""Points in a scatter chart: more would hide each other and make the file slow to open."""
+
+WIDTHS = (*[8.14] * 14, 10.6, *[7.3] * 3)
+_LAST = 17
+_STARTS = (0, 3, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17)
+_CHART_ROWS = 12
+"""Rows of the sheet that a chart covers: a page has room for the pairs of four forecasts, and a chart of each."""
+_PRINTED = 6
+"""The most pairs whose charts are printed: those that have room on a page with their table."""
+_FORECASTS = 6
+"""The most forecasts; with more there are more pairs than the sheet shows."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Points:
+    """A forecast's points: where its name and its values stand, and the limits of an axis for them."""
+
+    axis: Reference
+    values: Reference
+    limits: dict[str, float]
+
+
+def write_pairs(page: Page, book: Workbook, simulation: Simulation, curves: Curves, trials: TrialsAt) -> None:
+    """Write the sheet; its charts draw the trials where `trials` says, or points that `curves` takes."""
+    name = simulation.model.workbook.name
+    page.title("Forecasts two at a time", f"{name}: {simulation.accepted:,} accepted trials")
+    pairs = pairs_of(simulation)
+    if not pairs:
+        page.row += 1
+        page.wide(
+            "There are no two forecasts that vary and have numbers in the same accepted trials.", "paragraph", _LAST
+        )
+        page.set_up_printing(name)
+        return
+    page.heading("Joint probability and rank correlation")
+    write_pair_table(page, pairs)
+    sentences = pair_sentences(simulation, pairs)
+    on_paper = len(pairs) <= _PRINTED
+    if not on_paper:
+        sentences.append("The scatter charts are not printed, unless you clear the print area.")
+    for sentence in sentences:
+        page.wide(sentence, "remark", _LAST)
+    page.row += 1
+    table = page.row
+    place_drawings(page, _drawings(book, curves, simulation, pairs, trials), _CHART_ROWS)
+    page.set_up_printing(name, printed=None if on_paper else table, columns=(0, _LAST))
+
+
+def write_pair_table(page: Page, pairs: Sequence[Pair]) -> None:
+    """Write the table."""
+    heads = ["First (A) and its limit a", "Second (B) and its limit b", "A > a and B > b", "±", "95 % from", "to"]
+    heads += ["A > a or B > b", "±", "A > B", "±", "Rank correlation", "±", "95 % from", "to"]
+    looks = ["header left", "header left", *["header"] * 12]
+    page.line([Shown(head, look=look) for head, look in zip(heads, looks, strict=True)], _STARTS, _LAST)
+    for pair in pairs:
+        page.line(_line(pair), _STARTS, _LAST)
+
+
+def _line(pair: Pair) -> list[Shown]:
+    greater = [Shown(cells.NONE), BLANK] if pair.first_greater is None else cells.share(pair.first_greater)
+    return [
+        *(Shown(_name_and_limit(pair, index), look="name") for index in (0, 1)),
+        *cells.share(pair.both_above),
+        *cells.interval(pair.both_above, percent=True),
+        *cells.share(pair.either_above),
+        *greater,
+        *cells.estimate(pair.correlation),
+        *cells.interval(pair.correlation),
+    ]
+
+
+def _name_and_limit(pair: Pair, index: int) -> str:
+    forecast, limit = (pair.first, pair.second)[index], pair.limits[index]
+    units = f" {forecast.units}" if forecast.units else ""
+    what = "threshold" if pair.thresholds[index] else "median"
+    return f"{forecast.name}, {what} {limit:.6g}{units}"
+
+
+def pair_sentences(simulation: Simulation, pairs: Sequence[Pair]) -> list[str]:
+    """What the table is of."""
+    trials, ranked = {pair.trials for pair in pairs}, {pair.ranked for pair in pairs}
+    said = "A limit is the forecast's threshold or, if it has none, its median; it is used as the number printed here."
+    said += " Probabilities are shares of the accepted trials in which both forecasts are numbers"
+    said += f" ({min(trials):,})." if len(trials) == 1 else f" ({min(trials):,} to {max(trials):,})."
+    if max(ranked) < max(trials):
+        said += f" Rank correlations come from the first {max(ranked):,} of them."
+    said += " A > B is given where both have the same units."
+    found = [said]
+    if len(pairs) == PAIRS and len(simulation.model.forecasts) > _FORECASTS:
+        found.append(f"At most {PAIRS} pairs of forecasts are here, the first ones of the workbook.")
+    return found
+
+
+def _drawings(
+    book: Workbook, curves: Curves, simulation: Simulation, pairs: Sequence[Pair], trials: TrialsAt
+) -> list[Drawing]:
+    """A scatter chart for each pair, from the first trials in which all forecasts of these pairs are numbers."""
+    names = {forecast.name for pair in pairs for forecast in (pair.first, pair.second)}
+    forecasts = [forecast for forecast in simulation.model.forecasts if forecast.name in names]
+    known = _trials_with_numbers([simulation.forecasts[each.name] for each in forecasts])
+    if not known.size:
+        return []
+    found = {each.name: _points(curves, simulation, trials, each, known) for each in forecasts}
+    titles = [f"{pair.first.name} and {pair.second.name}" for pair in pairs]
+    titled = curves.write(["Titles of the scatter charts"], "", ["Title"], [[Shown(each)] for each in titles], 60)
+    points = f"the first {known.size:,} accepted trials in which all of these forecasts are numbers"
+    return [
+        Drawing(
+            _scatter(book, found[pair.first.name], found[pair.second.name], titled, index),
+            f"Scatter chart {index + 1}. {titles[index]}: {points}.",
+        )
+        for index, pair in enumerate(pairs)
+    ]
+
+
+def _trials_with_numbers(columns: Sequence[NDArray[np.float64]]) -> NDArray[np.intp]:
+    """The first trials in which all are numbers: a text among the points would turn a chart's axis into 1, 2, 3."""
+    early = [column[: 20 * POINTS] for column in columns]
+    return np.flatnonzero(~np.any([np.isnan(column) for column in early], axis=0))[:POINTS]
+
+
+def _points(
+    curves: Curves, simulation: Simulation, trials: TrialsAt, forecast: Forecast, known: NDArray[np.intp]
+) -> _Points:
+    """A forecast's values in these trials: where they stand on the sheet Trials, or else in a table of their own."""
+    values = simulation.forecasts[forecast.name][known]
+    limits = bounds(float(values.min()), float(values.max()))
+    if known[-1] < min(known.size, trials.shown):
+        index = simulation.model.forecasts.index(forecast)
+        return _Points(trials.heading(index), trials.column(index, known.size), limits)
+    digits = cells.spread_format(float(values.max()) - float(values.min()))
+    axis = f"{forecast.name} ({forecast.units})" if forecast.units else forecast.name
+    rows = [[Shown(value, digits)] for value in values.tolist()]
+    table = curves.write(["Points of a scatter chart"], axis, [forecast.name], rows)
+    return _Points(table.axis, table.column(0), limits)
+
+
+def _scatter(book: Workbook, first: _Points, second: _Points, titles: TableAt, index: int) -> ChartScatter:
+    chart = straight(book.add_chart({"type": "scatter"}))
+    chart.add_series(
+        {
+            "categories": first.values,
+            "values": second.values,
+            "marker": {
+                "type": "circle",
+                "size": 3,
+                "fill": {"color": DARK, "transparency": 50},
+                "border": {"none": True},
+            },
+        }
+    )
+    chart.set_x_axis(across(first.axis, num_format=axis_format("General"), **first.limits))
+    chart.set_y_axis(upwards(second.axis, "General", **second.limits))
+    finish(chart, titles.cell(index), legend=False)
+    return chart

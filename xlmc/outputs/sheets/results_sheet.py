@@ -1,0 +1,188 @@
+"""The sheet Results: the answer first, then how many trials it rests on and what the filters did."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from xlmc.analysis.results.record.errors_met import lost_sentences
+from xlmc.analysis.results.statements.in_words import sampling_sentence
+from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
+from xlmc.montecarlo.statistics import Estimate, proportion
+from xlmc.outputs.sheets import cells
+from xlmc.outputs.sheets.accounting import write_accounting, write_checks
+from xlmc.outputs.sheets.cells import Shown
+from xlmc.outputs.summary import ERROR_SENTENCE, SummaryRow, base_case, percent, range_heading, summarise
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.outputs.sheets.page import Page
+
+__all__ = ["LAST", "WIDTHS", "base_sentences", "opening_sentences", "range_sentences", "write_counts", "write_results"]
+
+WIDTHS = (30, 9, *[9.5] * 10)
+LAST = 11
+_ROW = 15.75
+
+
+def write_results(page: Page, simulation: Simulation) -> None:
+    """Write the sheet."""
+    book = simulation.model.workbook.name
+    settings = simulation.settings
+    page.height = _ROW
+    page.title("Results of the simulation", f"{book}, seed {settings.seed}, {simulation.evaluated:,} trials")
+    for sentence in opening_sentences(simulation):
+        page.wide(sentence, "warning", LAST)
+    _write_answers(page, simulation)
+    write_counts(page, simulation)
+    write_checks(page, simulation, LAST)
+    write_accounting(page, simulation, LAST)
+    _write_notices(page, simulation)
+    page.set_up_printing(book)
+
+
+def opening_sentences(simulation: Simulation) -> list[str]:
+    """What stands before the answers: of what they are, where that is no workbook that a person knows; why not to use
+    them, checks that fail first; then the trials lost to errors.
+    """
+    ended = simulation.stopped
+    missing = simulation.refused
+    return [
+        *([] if simulation.changed_from is None else [simulation.changed_from.sentence]),
+        *(f"An answer is missing: {warning}. The answers of other forecasts do not need it." for warning in missing),
+        *(f"Do not use these results as they are: {each}" for each in simulation.warnings if each not in missing),
+        *lost_sentences(simulation),
+        *([f"Fewer trials than were asked for: {ended.sentence}"] if ended.interrupted else []),
+    ]
+
+
+def _write_answers(page: Page, simulation: Simulation) -> None:
+    rows = summarise(simulation)
+    page.heading("Answers, from the accepted trials")
+    page.table(_headers(rows), [_answer(row, rows) for row in rows])
+    page.row += 1
+    for sentence in (
+        sampling_sentence(simulation),
+        ERROR_SENTENCE,
+        *range_sentences(rows),
+        *base_sentences(simulation),
+    ):
+        page.wide(sentence, "remark", LAST)
+    _write_thresholds(page, rows)
+
+
+def _headers(rows: Sequence[SummaryRow]) -> list[str]:
+    heads = ["Forecast", "Units", "Accepted trials", "Mean", "±", "Standard deviation", "±"]
+    heads += [f"{range_heading(rows)} from", "±", "to", "±", "Base case"]
+    return heads if len({row.share for row in rows}) < 2 else [*heads, "Range holds"]
+
+
+def _answer(row: SummaryRow, rows: Sequence[SummaryRow]) -> list[Shown]:
+    shown = [
+        Shown(row.name, look="name"),
+        Shown(row.units),
+        cells.count(row.trials),
+        *cells.estimate(row.mean, "answer"),
+        *cells.estimate(row.standard_deviation, "answer"),
+        *cells.estimate(row.low, "answer"),
+        *cells.estimate(row.high, "answer"),
+        cells.exact(row.base, cells.paired_format(row.mean)),
+    ]
+    return shown if len({other.share for other in rows}) < 2 else [*shown, Shown(percent(row.share))]
+
+
+def _write_thresholds(page: Page, rows: Sequence[SummaryRow]) -> None:
+    """Write how probable values above the thresholds are; nothing where there is no threshold."""
+    found = [row for row in rows if row.threshold is not None]
+    if not found:
+        return
+    page.heading("Values above a threshold")
+    page.table(
+        ["Forecast", "Units", "Threshold", "Above it", "±", "95 % from", "to"],
+        [
+            [
+                Shown(row.name, look="name"),
+                Shown(row.units),
+                cells.exact(row.threshold),
+                *([Shown(cells.NONE)] * 4 if row.above is None else _share(row.above)),
+            ]
+            for row in found
+        ],
+    )
+
+
+def range_sentences(rows: Sequence[SummaryRow]) -> list[str]:
+    """What a central range is."""
+    shares = {row.share for row in rows}
+    if len(shares) != 1:
+        return ["Central ranges leave out as many accepted trials below as above."]
+    share = shares.pop()
+    outside = percent((1 - share) / 2)
+    return [f"The {percent(share)} range is central: {outside} of the accepted trials lie below it, {outside} above."]
+
+
+def base_sentences(simulation: Simulation) -> list[str]:
+    """What the base case is, and which filters it would not pass."""
+    found = base_case(simulation)
+    if found is None:
+        return ["There is no base case: the cell of an assumption is blank."]
+    meaning = "The base case has every assumption at the value in its cell"
+    if not found.rejected_by:
+        return [f"{meaning}."]
+    return [f"{meaning}. As a trial it would be rejected by: {', '.join(found.rejected_by)}."]
+
+
+def write_counts(page: Page, simulation: Simulation) -> None:
+    """Write how many trials were run, accepted and lost."""
+    page.heading("Trials")
+    total, rare = simulation.trials, simulation.rare
+    lost = proportion(min(simulation.error_trials, total), total)
+    headers = ("", "Trials", "Share", "±", "95 % from", "to")
+    starts = (0, 2, 3, 4, 5, 6)
+    page.line([Shown(header, look="header") for header in headers], starts, 6)
+    for line in (
+        *_search_lines(simulation),
+        [
+            Shown("Run" if rare is None else "Drawn before the search", look="name"),
+            cells.count(total),
+            *[cells.BLANK] * 4,
+        ],
+        [
+            Shown("Accepted" if rare is None or not rare.at_least else "Accepted, at least", look="name"),
+            cells.count(simulation.accepted),
+            *_share(simulation.acceptance),
+        ],
+        *_weight_lines(simulation),
+        [Shown("Lost to errors in cells", look="name"), cells.count(simulation.error_trials), *_share(lost)],
+    ):
+        page.line(line, starts, 6)
+    if simulation.stopped != ALL_TRIALS:
+        page.row += 1
+        page.wide(f"The run ended when {simulation.stopped.sentence}.", "remark", LAST)
+
+
+def _weight_lines(simulation: Simulation) -> list[list[Shown]]:
+    """How many trials of equal weight carry as much, where evidence weights them."""
+    found = simulation.weighting
+    if found is None:
+        return []
+    return [[Shown("Effective", look="name"), cells.count(round(found.effective)), *[cells.BLANK] * 4]]
+
+
+def _search_lines(simulation: Simulation) -> list[list[Shown]]:
+    """What was evaluated where accepted trials are rare."""
+    if simulation.rare is None:
+        return []
+    return [[Shown("Evaluated in all", look="name"), cells.count(simulation.rare.evaluations), *[cells.BLANK] * 4]]
+
+
+def _share(found: Estimate) -> list[Shown]:
+    return [*cells.share(found), *cells.interval(found, percent=True)]
+
+
+def _write_notices(page: Page, simulation: Simulation) -> None:
+    if not simulation.notices:
+        return
+    page.heading("Notices")
+    for notice in simulation.notices:
+        page.wide(str(notice), "notice", LAST)

@@ -1,0 +1,283 @@
+"""The answer in a few lines, as the paper's Table 2 gives it: the same numbers for the command line and the sheets."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from xlmc.analysis.results.statements import reach_text
+from xlmc.analysis.results.statements.in_words import discards_of, limits_text
+from xlmc.engine.engine import UNDECIDED_RESULT
+from xlmc.montecarlo.distributions.parameters import range_text, show
+from xlmc.montecarlo.model.draw_binding import base_point
+from xlmc.montecarlo.rare.account import probability_text
+from xlmc.montecarlo.statistics import Estimate, format_estimate
+from xlmc.montecarlo.statistics.estimate import finite
+
+if TYPE_CHECKING:
+    from xlmc.engine.engine import Column
+    from xlmc.montecarlo.simulation.simulation import Simulation
+
+__all__ = [
+    "ERROR_SENTENCE",
+    "BaseCase",
+    "Said",
+    "SummaryRow",
+    "base_case",
+    "base_text",
+    "central_text",
+    "estimate_text",
+    "percent",
+    "question",
+    "range_heading",
+    "share_text",
+    "summarise",
+    "summary_text",
+]
+
+ERROR_SENTENCE = (
+    "± is the standard error that comes from a limited number of trials (Monte Carlo error): infinitely many trials "
+    "would give a number within twice ± of the one shown, with about 95 % confidence. Monte Carlo error is not "
+    "reconstruction error: it does not say whether the model fits the crash, or whether the ranges of the assumptions "
+    "are right."
+)
+"""What no table of results may be without."""
+
+MIXED = "Central range"
+
+_OF_ERROR = 0.1
+"""How much of the error of a mean a number beside it may lose by rounding."""
+
+
+@dataclass(frozen=True, slots=True)
+class SummaryRow:
+    """The answer of one forecast, in its units.
+
+    Attributes:
+        trials: accepted trials in which it is a number.
+        share: of the trials, held by the central range from `low` to `high`.
+        base: at the assumptions' base values; None where that is no number.
+        threshold, above: the probability above the threshold, where one was asked for.
+        asked, certainty: the probability of a range, where one was asked for; its ends, infinite where it has none.
+    """
+
+    name: str
+    units: str
+    trials: int
+    mean: Estimate
+    standard_deviation: Estimate
+    share: float
+    low: Estimate
+    high: Estimate
+    base: float | None
+    threshold: float | None
+    above: Estimate | None
+    asked: tuple[float, float] | None = None
+    certainty: Estimate | None = None
+
+
+def summarise(simulation: Simulation, names: Collection[str] | None = None) -> list[SummaryRow]:
+    """One row for each forecast, in the order of the workbook.
+
+    Args:
+        simulation: the finished run.
+        names: of the forecasts; by default all.
+    """
+    base = base_case(simulation)
+    return [
+        SummaryRow(
+            name=name,
+            units=result.definition.units,
+            trials=result.statistics.trials,
+            mean=result.statistics.mean,
+            standard_deviation=result.statistics.standard_deviation,
+            share=result.definition.central,
+            low=result.statistics.central[0],
+            high=result.statistics.central[1],
+            base=None if base is None else base.forecasts[name],
+            threshold=result.definition.threshold,
+            above=result.statistics.probability_above,
+            asked=result.definition.asked,
+            certainty=result.certainty,
+        )
+        for name, result in simulation.results.items()
+        if names is None or name in names
+    ]
+
+
+def summary_text(rows: Sequence[SummaryRow]) -> tuple[list[str], list[list[str]]]:
+    """Headings and rows of text, ready to be printed; columns that no forecast fills are left out.
+
+    Every number has its standard error and no more digits than that supports.
+    """
+    heading = range_heading(rows)
+    lines = [_line(row, heading) for row in rows]
+    headings = list(lines[0]) if lines else ["Forecast"]
+    used = [name for name in headings if name == "Forecast" or any(line[name] for line in lines)]
+    return used, [[line[name] for name in used] for line in lines]
+
+
+def _line(row: SummaryRow, heading: str) -> dict[str, str]:
+    threshold = "" if row.threshold is None else show(row.threshold)
+    return {
+        "Forecast": row.name,
+        "Units": row.units,
+        "Mean": estimate_text(row.mean),
+        "SD": estimate_text(row.standard_deviation),
+        heading: "" if math.isnan(row.low.value) else central_text(row),
+        "Range": "" if heading != MIXED else percent(row.share),
+        "Base case": base_text(row),
+        "Threshold": threshold,
+        "Above threshold": "" if row.above is None else share_text(row.above),
+        "Certainty of": "" if row.asked is None else range_text(*row.asked),
+        "Certainty": "" if row.certainty is None else share_text(row.certainty),
+    }
+
+
+def base_text(row: SummaryRow) -> str:
+    """A forecast at the base case; empty where there is none."""
+    return "" if row.base is None else _beside_mean(row.base, row.mean)
+
+
+def central_text(row: SummaryRow) -> str:
+    """`172.53 ± 0.70 to 243.16 ± 0.97`; ends without an error have the digits of the mean."""
+    ends = (
+        _beside_mean(end.value, row.mean) if end.error is None else estimate_text(end) for end in (row.low, row.high)
+    )
+    return " to ".join(ends)
+
+
+def _beside_mean(value: float, mean: Estimate) -> str:
+    """A number without an error to six digits, or to more where it stands beside a mean that is known better."""
+    allowed = math.inf if mean.error is None else _OF_ERROR * mean.error
+    texts = (f"{value:.{digits}g}" for digits in range(6, 12))
+    return next((text for text in texts if abs(float(text) - value) <= allowed), show(value))
+
+
+def range_heading(rows: Sequence[SummaryRow]) -> str:
+    """`51 % range`, or `Central range` where forecasts have different ones."""
+    shares = {row.share for row in rows}
+    return f"{percent(shares.pop())} range" if len(shares) == 1 else MIXED
+
+
+def percent(share: float) -> str:
+    """`0.51 -> 51 %`."""
+    return f"{show(100.0 * share)} %"
+
+
+def estimate_text(estimate: Estimate) -> str:
+    """`11.799 ± 0.013`; empty where there is no number."""
+    return "" if math.isnan(estimate.value) else format_estimate(estimate.value, estimate.error)
+
+
+def share_text(estimate: Estimate) -> str:
+    """A share in percent, `1.771 ± 0.029 %`; empty where there is no number.
+
+    Of none of the trials it is `0 %, at most 0.013 %`, of all of them `100 %, at least 99.987 %`: an error that is the
+    same on both sides would not say how far off these are.
+    """
+    reach = reach_text(estimate) if estimate.value in (0.0, 1.0) else ""
+    if reach:
+        return f"{100.0 * estimate.value:g} %, {reach}"
+    if math.isnan(estimate.value) or estimate.error is None:
+        return ""
+    return f"{format_estimate(100.0 * estimate.value, 100.0 * estimate.error)} %"
+
+
+@dataclass(frozen=True, slots=True)
+class BaseCase:
+    """What the workbook shows before any simulation.
+
+    Attributes:
+        forecasts: forecast -> its value; None where it is no number.
+        rejected_by: the filters that reject it.
+    """
+
+    forecasts: Mapping[str, float | None]
+    rejected_by: tuple[str, ...]
+
+
+def base_case(simulation: Simulation) -> BaseCase | None:
+    """The base case of a run's model; None where an assumption has none.
+
+    It is computed, not read: a file may hold no cached values, or stale ones.
+    """
+    model = simulation.model
+    known = base_point(model.bases)
+    if known is None:
+        return None
+    settings = simulation.settings  # always in float64
+    evaluator = model.program(settings.engine).evaluator(1)
+    filters = [_fails(column) for column in evaluator.filters(known | model.certain(1), 1)]
+    columns = evaluator.forecasts(np.zeros(1, np.intp))
+    return BaseCase(
+        forecasts={f.name: _number(column) for f, column in zip(model.forecasts, columns, strict=True)},
+        rejected_by=tuple(f.name for f, fails in zip(model.filters, filters, strict=True) if fails),
+    )
+
+
+def _fails(column: Column) -> bool:
+    return bool(column.values[0] == 0 or (column.codes is not None and column.codes[0] > 0))
+
+
+def _number(column: Column) -> float | None:
+    """The only value, also that of a forecast which its own filter discards: a base case is told all the same."""
+    discarded = column.codes is not None and column.codes[0] >= UNDECIDED_RESULT
+    return finite(column.values[0] if discarded else column.as_floats()[0])
+
+
+class Said(NamedTuple):
+    """A part of a sentence; a name of the workbook's may be in a script that runs from right to left."""
+
+    text: str
+    is_name: bool = False
+
+
+def question(simulation: Simulation) -> Iterator[Said]:
+    """What was asked of the workbook, in sentences: how many answers, from what, and which trials count."""
+    model = simulation.model
+    yield Said(
+        f"The workbook computes {_count_text(len(model.forecasts), 'answer (forecast)', 'answers (forecasts)')} from "
+        f"{_count_text(len(model.live), 'quantity', 'quantities')} known only within ranges (assumptions). "
+        f"{simulation.evaluated:,} combinations of values from these ranges were tried. "
+    )
+    if not model.filters:
+        without = "no filters" if not model.forecast_filters else "no filters of all forecasts"
+        yield Said(f"The workbook has {without}: every trial is accepted.")
+        yield from _of_some(simulation)
+        return
+    if simulation.weighting is not None:
+        yield Said(f"{simulation.accepted:,} of them ({share_text(simulation.acceptance)}) pass all limits, and each ")
+        yield Said("counts with the chance that the evidence would keep it. The evidence ")
+    elif simulation.rare is None:
+        agree = "agrees" if simulation.accepted == 1 else "agree"
+        share = share_text(simulation.acceptance)
+        yield Said(f"{simulation.accepted:,} of them ({share}) {agree} with the evidence, which ")
+    else:
+        yield Said(f"{simulation.accepted:,} that agree with the evidence were kept; one as they come agrees with ")
+        yield Said(f"probability {probability_text(simulation.rare)}. The evidence ")
+    yield Said("asks: ")
+    for index, filter_ in enumerate(model.filters):
+        yield Said("; " if index else "")
+        yield Said(filter_.name, is_name=True)
+        yield Said(f" {limits_text(filter_)}")
+    yield Said(". The answers are those of these accepted trials.")
+    yield from _of_some(simulation)
+
+
+def _of_some(simulation: Simulation) -> Iterator[Said]:
+    """What the filters of some forecasts only ask."""
+    for each in discards_of(simulation):
+        yield Said(" Of ")
+        yield Said(each.forecast, is_name=True)
+        yield Said(f" only those {simulation.accepted - each.trials:,} count in which ")
+        yield Said(each.filter.name, is_name=True)
+        yield Said(f" {limits_text(each.filter)}.")
+
+
+def _count_text(count: int, one: str, several: str) -> str:
+    return f"{count} {one if count == 1 else several}"

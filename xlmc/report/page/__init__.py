@@ -1,7 +1,0 @@
-"""The results as one page for a browser, without a network: the story of the result sheets, with charts to be moved."""
-
-from __future__ import annotations
-
-from xlmc.report.page.html_page import check_page_path, page_text, save_page
-
-__all__ = ["check_page_path", "page_text", "save_page"]

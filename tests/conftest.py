@@ -109,6 +109,12 @@ def definitions():
     return _definitions
 
 
+def _model(cells, assumptions=None, forecasts=None, filters=None, correlations=None, evidence=None, **of_workbook):
+    workbook = _workbook(cells, **of_workbook)
+    given = assumptions or {}, forecasts or {}, filters or {}, correlations or {}, evidence or {}
+    return Model(workbook, _definitions(workbook, *given), Path("book.xlsx"))
+
+
 @pytest.fixture(scope="session")
 def book():
     """A `Model` from cells and definitions, each by name.
@@ -119,13 +125,13 @@ def book():
     correlation is `{("a", "b"): 0.5}`. Evidence is `{"cell": "A1", "reading": 1, "error": "normal", "std_dev": 0.5}`.
     """
 
-    def make(cells, assumptions=None, forecasts=None, filters=None, correlations=None, evidence=None, **of_workbook):
-        held = _workbook(cells, **of_workbook)
-        given = assumptions or {}, forecasts or {}, filters or {}, correlations or {}, evidence or {}
-        found = _definitions(held, *given)
-        return Model(held, found, Path("book.xlsx"))
+    return _model
 
-    return make
+
+@pytest.fixture(scope="session")
+def model_of():
+    """As `book`, where a folder has a `book` of its own."""
+    return _model
 
 
 SMALL_BOOK = {

@@ -108,8 +108,8 @@ def test_the_command_in_the_record_repeats_the_run(xlmc, book, tmp_path):
 def test_ctrl_c_keeps_what_was_accepted(xlmc, started, book, tmp_path, monkeypatch):
     """A terminal tells the whole process group of Ctrl-C.
 
-    Of this process alone, and of threads, tests/montecarlo/loop/stopping/test_runs.py interrupts runs; of a local cluster,
-    tests/montecarlo/loop/scheduling/test_cluster.py.
+    Of this process alone, and of threads, tests/montecarlo/loop/stopping/test_runs.py interrupts runs; of a local
+    cluster, tests/montecarlo/loop/scheduling/test_cluster.py.
     """
     add = simulate._Gathered.add
 

@@ -87,12 +87,12 @@ def test_models_with_the_same_assumptions_held_share_their_nodes(case):
     assert len(known._holding) <= 5
 
 
-def test_what_decides_more_than_draws_is_made_anew(book):
+def test_what_decides_more_than_draws_is_made_anew(model_of):
     """The cell of a switch that a formula reads; a group that is correlated; data of its own."""
     cells = {"A1": 0.5, "A2": 2.0, "B1": "=A1+A2"}
     unit = {"cell": "A1", "low": 0.0, "high": 1.0}
     other = {"cell": "A2", "low": 1.0, "high": 3.0}
-    model = book(cells, {"u": unit, "v": other}, {"x": "B1"}, correlations={("u", "v"): 0.5})
+    model = model_of(cells, {"u": unit, "v": other}, {"x": "B1"}, correlations={("u", "v"): 0.5})
     frozen = Adjustments().having("assumption", "u", "frozen", value=True)
     assert KnownModels(model, TRIALS).moving(frozen).model.lowering is not model.lowering
 

@@ -72,12 +72,12 @@ def test_at_rest_the_numbers_are_those_of_simulate_with_the_same_numbers_in_the_
 
 
 @pytest.mark.parametrize("way", ["", "rejection", "weights"])
-def test_evidence_is_used_as_simulate_uses_it(book, way, monkeypatch):
+def test_evidence_is_used_as_simulate_uses_it(model_of, way, monkeypatch):
     """Weights, asked for or chosen by the rule on the first trials: at rest and while a handle moves."""
     monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", moving := 5_000)
     evidence = {"edr": {"cell": "B1", "reading": 1.1, "error": "normal", "std_dev": 0.05}}
     inputs = {"u": {"cell": "A1", "low": 0.0, "high": 1.0}, "v": {"cell": "A2", "low": 0.0, "high": 1.0}}
-    model = book({"A1": 0.5, "A2": 0.5, "B1": "=A1*A2"}, inputs, {"x": "B1", "y": "A1"}, {}, evidence=evidence)
+    model = model_of({"A1": 0.5, "A2": 0.5, "B1": "=A1*A2"}, inputs, {"x": "B1", "y": "A1"}, {}, evidence=evidence)
     settings = replace(model.definitions.settings, trials=10_000, evidence=way)
     model = model.changed(model.workbook, replace(model.definitions, settings=settings))
     session = Session(model)

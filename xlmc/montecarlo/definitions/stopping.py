@@ -5,8 +5,8 @@ its option and its setting, and put it into `GOALS`. It is a `WholeGoal` where o
 `Goal` with fields of its own, which it checks. Write its rule in a module of `xlmc/montecarlo/loop/stopping/` (see
 `rule.StopRule`), under the goal's key, and put it into `RULES` in `watch.py` there. Describe the option in
 docs/command-line.md and the setting in docs/workbooks.md. The command line, `xlmc_settings`, `Model.simulate`, the
-record, saved runs and `xlmc replay` read all that they need here; `tests/montecarlo/loop/stopping/test_new_rule.py` adds a rule in
-this way.
+record, saved runs and `xlmc replay` read all that they need here; `test_new_rule.py` in
+`tests/montecarlo/loop/stopping/` adds a rule in this way.
 """
 
 from __future__ import annotations

@@ -118,9 +118,7 @@ def with_naive_forms(path, template, given, forms):
 
 @pytest.mark.parametrize(("template", "given", "forms"), CASES, ids=[f"{n} {c[0]}" for n, c in enumerate(CASES)])
 def test_naive_forms_are_named_and_the_templates_are_not(template, given, forms, tmp_path, monkeypatch):
-    monkeypatch.setattr(
-        rounding_errors, "steady_form", lambda *_: None
-    )  # tests/analysis/studies/stability/test_stable_forms.py
+    monkeypatch.setattr(rounding_errors, "steady_form", lambda *_: None)  # see test_stable_forms.py
     model = with_naive_forms(tmp_path / "naive.xlsx", template, given, forms)
     found = stability(model, trials=300, seed=1)
     lost = {one.name: one for one in found.findings if one.kind in DIGITS and one.level is not Level.NOTE}

@@ -22,7 +22,7 @@ __all__ = [
     "RESPONSE_BEYOND",
     "RESPONSE_FILTER",
     "RESPONSE_LIMITS",
-    "SCENE_TELLS",
+    "SCENE_SHOWS",
     "STOPPING_SPEED",
     "way_braked",
 ]
@@ -132,7 +132,7 @@ RESPONSE_FILTER = FilterRow(
     at_most=0,
 )
 
-SCENE_TELLS = ForecastRow("Scene tells the response time (1 = yes, 0 = no)", "did_brake", "")
+SCENE_SHOWS = ForecastRow("Scene shows when the driver responded (1 = yes, 0 = it cannot tell)", "did_brake", "")
 
 BRAKING_CHECK = check(
     "check_friction",
@@ -158,7 +158,7 @@ NO_BRAKING = GuideSection(
         "never. The scene cannot tell. Answer 2 to the question whether he braked.",
         "Both ends are then given. At most: he brakes as soon as that time has passed. At least: he never brakes. "
         "Whatever he would have done lies between them. Quote both, or neither.",
-        "Scene tells the response time says 0 then, and the forecasts are one-sided: the response time is a least "
+        "The forecast whether the scene shows it says 0 then, and others are one-sided: the response time is a least "
         "one; speeds that still stop, and shares that stop, are greatest ones. Where he braked, both ends are equal.",
         "No limit on the response time rejects such a scene: that he had not braked after 4 s is no contradiction.",
     ),

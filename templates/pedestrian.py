@@ -13,7 +13,7 @@ from templates.braking import (
     RESPONSE_BEYOND,
     RESPONSE_FILTER,
     RESPONSE_LIMITS,
-    SCENE_TELLS,
+    SCENE_SHOWS,
     STOPPING_SPEED,
     way_braked,
 )
@@ -350,7 +350,7 @@ TEMPLATE = Template(
         ForecastRow("«1» impact speed, from the marks", "vs_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("«1» impact speed, from the throw", "vt_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("«1» speed before braking", "v0_[mph|kmh]", "[mph|km/h]"),
-        SCENE_TELLS,
+        SCENE_SHOWS,
         ForecastRow("Implied response time (without braking: at least)", "t_response", "s"),
         ForecastRow("Distance when the hazard began", "D_0", "[ft|m]"),
         ForecastRow("Highest speed that still stops (without braking: at most)", "v_stop_[mph|kmh]", "[mph|km/h]"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from templates.braking import RESPONSE_FILTER, SCENE_TELLS
+from templates.braking import RESPONSE_FILTER, SCENE_SHOWS
 from templates.description import Curve, Diagram, EvidenceRow, FilterRow, ForecastRow, Look, Template
 from templates.time_distance.equations import SECTIONS
 from templates.time_distance.guide import GUIDE
@@ -73,7 +73,7 @@ TEMPLATE = Template(
     forecasts=(
         ForecastRow("«1» speed before braking", "v0_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("«1» speed before braking, above the limit", "over_[mph|kmh]", "[mph|km/h]", threshold=0),
-        SCENE_TELLS,
+        SCENE_SHOWS,
         ForecastRow("Implied response time (without braking: at least)", "t_response", "s"),
         ForecastRow("Distance when the hazard began", "D_0", "[ft|m]"),
         ForecastRow("Highest speed that still stops (without braking: at most)", "v_stop_[mph|kmh]", "[mph|km/h]"),

@@ -103,7 +103,7 @@ def projection(symbol: str, notation: str, name: str, where: str = "") -> tuple[
             name,
             "[ft|m]/s",
             f"IF({where},{speed},NA())" if where else speed,
-            "as above; where it stopped: s = v²·cos² θ·(tan θ + √(tan² θ + 2·g·H/(v²·cos² θ)))/g",
+            "as above; where it stopped, the flight: s·√(g/(2·(H + s·tan θ)))/cos θ",
             "Steep or short throws stop where they land.",
         ),
     )

@@ -158,6 +158,18 @@ def _station(j: int, i: int) -> Input:
     )
 
 
+_BASIS = Input(
+    "basis",
+    "",
+    "Stiffness is made of: 1 = speeds of the tests, 2 = energy that the tests lost",
+    "",
+    1,
+    "1: b1 = (speed of the test − b0)/crush, as published b0, b1, A and B are; the energy is then that absorbed up to "
+    "the greatest crush. 2: coefficients fitted to energy lost, rebound taken off",
+    choices=(1, 2),
+)
+
+
 def _constants() -> tuple[Input, ...]:
     of_vehicles: list[Input] = []
     for j in (1, 2):
@@ -198,7 +210,7 @@ def _constants() -> tuple[Input, ...]:
         Both(12, 100),
         "Definition",
     )
-    return (*of_vehicles, GRAVITY, length, *CONVERSIONS)
+    return (_BASIS, *of_vehicles, GRAVITY, length, *CONVERSIONS)
 
 
 _OPTIONAL = tuple(
@@ -259,7 +271,7 @@ _ENERGY = (
     Equation(
         "E_plain_{j}",
         "E{j}0",
-        "{who} crush energy, force perpendicular",
+        "{who} energy by its stiffness, force perpendicular",
         "[ft·lb|J]",
         "L_{j}/(6*5*B_{j})*("
         + "+".join(f"F_{{j}}_{a}^2+F_{{j}}_{a}*F_{{j}}_{b}+F_{{j}}_{b}^2" for a, b in _PAIRS)
@@ -271,11 +283,11 @@ _ENERGY = (
     Equation(
         "E_{j}",
         "E{j}",
-        "{who} crush energy",
+        "{who} energy absorbed up to its greatest crush",
         "[ft·lb|J]",
-        "E_plain_{j}*(1+TAN(RADIANS(theta_{j}))^2)",
+        "E_plain_{j}*(1+TAN(RADIANS(theta_{j}))^2)/IF(basis=1,1,1-e^2)",
         "oblique force",
-        "<1 + tan²θ: an oblique force crushes along its own line.|>",
+        "<1 + tan²θ: an oblique force crushes along its own line. Energy lost is 1 − e² of the energy absorbed.|>",
         number_format="#,##0",
     ),
     Equation(
@@ -310,24 +322,31 @@ _IMPACT = (
         number_format="#,##0.00",
     ),
     Equation(
-        "E_sum", "E", "Energy of the crush, both vehicles", "[ft·lb|J]", "E_1+E_2", "definition", number_format="#,##0"
+        "E_sum",
+        "E",
+        "Energy absorbed up to the greatest crush, both vehicles",
+        "[ft·lb|J]",
+        "E_1+E_2",
+        "definition",
+        number_format="#,##0",
     ),
     Equation(
         "V_close",
         "Vc",
         "Closing speed along the line of force",
         "[ft|m]/s",
-        "SQRT(2*E_sum/(m_both*(1-e^2)))",
-        "energy",
-        "At the line of force, not of the centres of gravity.",
+        "SQRT(2*E_sum/m_both)",
+        "E = m̄ Vc²/2",
+        "At the line of force, not of the centres of gravity. At the greatest crush the closing speed is used up; "
+        "restitution comes after it.",
     ),
     Equation(
         "dV_{j}",
         "ΔV{j}",
         "{who} change in velocity",
         "[ft|m]/s",
-        "SQRT(2*m_both*E_sum*(1+e)/(1-e))/m_{j}",
-        "(1/m) √(2 m̄ E (1 + e)/(1 − e))",
+        "(1+e)*SQRT(2*m_both*E_sum)/m_{j}",
+        "(1 + e) m̄ Vc/m",
     ),
 )
 
@@ -341,11 +360,35 @@ _ANSWERS = (
         "[mph|km/h]",
         f"SQRT(2*E_{{j}}/m_{{j}})*{MPH}",
         "E = m·EBS²/2",
-        "<The speed whose energy, in the vehicle's own mass, crushes it so. It is no delta-V.|>",
+        "<The speed whose energy, in the vehicle's own mass, crushes it so: energy absorbed. It is no delta-V.|>",
         Role.ANSWER,
         "0.00",
     ),
-    Equation("E_crush", "E", "Energy of the crush", "[ft·lb|J]", "E_sum", "above", "", Role.ANSWER, "#,##0"),
+    Equation(
+        "EES{j}_[mph|kmh]",
+        "EES{j}",
+        "{who} energy equivalent speed",
+        "[mph|km/h]",
+        "EBS{j}_[mph|kmh]*SQRT(1-e^2)",
+        "EBS·√(1 − e²)",
+        "<The speed of the energy lost, which momentum-energy takes.|>",
+        Role.ANSWER,
+        "0.00",
+    ),
+    Equation(
+        "E_absorbed", "E", "Energy absorbed by the crush", "[ft·lb|J]", "E_sum", "above", "", Role.ANSWER, "#,##0"
+    ),
+    Equation(
+        "E_crush",
+        "Elost",
+        "Energy lost to the crush",
+        "[ft·lb|J]",
+        "E_sum*(1-e^2)",
+        "E (1 − e²)",
+        "The rest rebounds. Sliding and rotation take energy of their own beside it.",
+        Role.ANSWER,
+        "#,##0",
+    ),
     Equation(
         "ratio",
         "F1/F2",
@@ -456,6 +499,13 @@ _GUIDE = (
             "Stiffness from one test at one speed is a straight line through one point: stay near its crush. A and B "
             "of one test are bound to each other: b0 and b1 are drawn and both computed from them. Published A and B "
             "may be entered under Optional; they are then single values without a distribution, which is worth saying.",
+            "Absorbed and lost. b0 and b1 come from the speed with which the tests struck, so that the energy computed "
+            "from them is absorbed up to the greatest crush: it gives the closing speed whatever the restitution, and "
+            "the equivalent barrier speed (EBS). Rebound gives e² of it back; 1 − e² is lost and gives the energy "
+            "equivalent speed (EES). The template returns the test that its stiffness comes from for every e. "
+            "Coefficients that were fitted to energy lost are rare: enter 2 for what the stiffness is made of.",
+            "What other templates take: momentum-energy the EES; the evidence of planar-impact the energy lost, to "
+            "which work of sliding adds.",
             "The next models: momentum and planar-impact, if directions and run-out are known. If both kinds can be "
             "used, use both: two independent answers that agree are worth more than either.",
             "Not for sideswipes, override or underride, nor for crush far beyond the test's.",
@@ -496,7 +546,10 @@ TEMPLATE = Template(
         ForecastRow("Closing speed along the force", "closing_[mph|kmh]", "[mph|km/h]"),
         ForecastRow(f"{FIRST} equivalent barrier speed", "EBS1_[mph|kmh]", "[mph|km/h]"),
         ForecastRow(f"{SECOND} equivalent barrier speed", "EBS2_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow("Energy of the crush", "E_crush", "[ft·lb|J]"),
+        ForecastRow(f"{FIRST} energy equivalent speed", "EES1_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow(f"{SECOND} energy equivalent speed", "EES2_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("Energy absorbed by the crush", "E_absorbed", "[ft·lb|J]"),
+        ForecastRow("Energy lost to the crush", "E_crush", "[ft·lb|J]"),
         ForecastRow("Force balance", "ratio", ""),
     ),
     filters=(

@@ -84,8 +84,9 @@ def _of_vehicle(j: int) -> tuple[Input, ...]:
             f"{vehicle(j)} energy equivalent speed of its crush",
             "[mph|km/h]",
             _EES[j],
-            "Example. Enter: from the crush profile (crush-energy) or tests of like vehicles. Delta-V by CRASH3 was "
-            "within 9 to 25 % (Smith and Noga, DOT HS 806 152)",
+            "Example. Enter: the energy equivalent speed of crush-energy (of energy lost; not EBS, that of energy "
+            "absorbed), or of tests of like vehicles. Delta-V by CRASH3 was within 9 to 25 % (Smith and Noga, DOT HS "
+            "806 152)",
             "0.0",
         ),
         _ranged(
@@ -167,7 +168,7 @@ _ENERGY = (
     Equation(
         "E_crush",
         "Ed",
-        "Energy that crush took",
+        "Energy lost to crush",
         "[ft·lb|J]",
         f"(m_1*(EES_1/({MPH}))^2+m_2*(EES_2/({MPH}))^2)/2",
         "½·m·EES²",

@@ -19,7 +19,7 @@ from templates.editions import Both
 from templates.plan_view import line, mark
 from templates.planar_forward.equations import model_sections
 from templates.planar_forward.guide import GUIDE
-from templates.two_vehicles.answers import DELTA_V_ANSWER, FORCE, ROTATION
+from templates.two_vehicles.answers import APPROACH, DELTA_V_ANSWER, FORCE, ROTATION
 from templates.two_vehicles.checks import CLOSING, ENERGY, FRICTION
 from templates.two_vehicles.drawing import rest_points, vehicle_curves
 from templates.two_vehicles.options import drawing_inputs, duration_input, duration_section
@@ -108,19 +108,6 @@ _FURTHER = (
     ),
 )
 
-_NORMAL = (
-    Equation(
-        "approach_[mph|kmh]",
-        "Vn",
-        "Normal closing speed",
-        "[mph|km/h]",
-        f"V_close_n*SIGN(d_2-d_1)*{MPH}",
-        "eq (9)",
-        "Positive when the contact points approach each other, whichever way γ is drawn.",
-        number_format="0.00",
-    ),
-)
-
 _CHECKS = (
     ENERGY,
     CLOSING,
@@ -141,7 +128,7 @@ _CHECKS = (
     check(
         "check_push",
         "The vehicles push, not pull",
-        "P_n*SIGN(d_1-d_2)>0",
+        "P_n*side<0",
         "physics",
         "FALSE: the normal impulse would pull the vehicles together. Look at γ and the impact centre.",
     ),
@@ -172,7 +159,7 @@ def describe(scene: Scene) -> Template:
         sections=(
             *model_sections(),
             Section("5  Answers (the forecasts)", for_both((DELTA_V_ANSWER, *_FURTHER))),
-            Section("6  Direction of force, yaw, energy", for_both(FORCE + ROTATION + _NORMAL)),
+            Section("6  Direction of force, yaw, energy", for_both(FORCE + ROTATION + APPROACH)),
             duration_section(7),
             checks_section(8, *_CHECKS),
         ),

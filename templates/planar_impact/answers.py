@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from templates.checks import checks_section
 from templates.description import Equation, Section
-from templates.two_vehicles.answers import ANSWERS, FORCE, ROTATION
+from templates.two_vehicles.answers import ANSWERS, APPROACH, FORCE, ROTATION
 from templates.two_vehicles.checks import ANGLES, BOUNDS, CLOSING, ENERGY, FORWARD, FRICTION
 from templates.two_vehicles.options import duration_section, turn_section
 from templates.two_vehicles.readings import recorder_section
@@ -21,16 +21,6 @@ _NORMAL = (
         "b_{j}*COS(RADIANS(gamma_t))-a_{j}*SIN(RADIANS(gamma_t))",
         "notation",
     ),
-    Equation(
-        "approach_[mph|kmh]",
-        "Vn",
-        "Normal closing speed",
-        "[mph|km/h]",
-        "V_close_n*SIGN(d_2-d_1)*s_per_hour/[ft_per_mile|m_per_km]",
-        "eq (9)",
-        "Positive when the contact points approach each other, whichever way γ is drawn.",
-        number_format="0.00",
-    ),
 )
 
 
@@ -43,7 +33,7 @@ def answer_sections(*, more: bool) -> tuple[Section, ...]:
     optional = (duration_section(8), *((turn_section(9), recorder_section(10)) if more else ()))
     return (
         Section("6  Answers (the forecasts)", for_both(ANSWERS)),
-        Section("7  Direction of force, yaw, energy", for_both(FORCE + ROTATION + _NORMAL)),
+        Section("7  Direction of force, yaw, energy", for_both(FORCE + ROTATION + _NORMAL + APPROACH)),
         *optional,
         checks_section(8 + len(optional), ENERGY, CLOSING, ANGLES, FORWARD, BOUNDS, FRICTION),
     )

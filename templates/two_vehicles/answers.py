@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from templates.description import Equation, Role
 
-__all__ = ["ANSWERS", "DELTA_V_ANSWER", "FORCE", "ROTATION"]
+__all__ = ["ANSWERS", "APPROACH", "DELTA_V_ANSWER", "FORCE", "ROTATION"]
 
 DELTA_V_ANSWER = Equation(
     "dV{j}_[mph|kmh]",
@@ -131,5 +131,29 @@ ROTATION = (
         "E_before-E_after",
         "definition",
         number_format="#,##0",
+    ),
+)
+
+APPROACH = (
+    Equation(
+        "side",
+        "side",
+        "Side of the contact surface that «2» lies on",
+        "",
+        "IF(ABS(d_2-d_1)>0.000000001,SIGN(d_2-d_1),SIGN(V_close_n))",
+        "convention",
+        "1: that of the normal n; −1: the other. In a central impact, both centres of gravity at the impact centre, "
+        "the vehicles are points and close in from whichever side they come.",
+        number_format="0",
+    ),
+    Equation(
+        "approach_[mph|kmh]",
+        "Vn",
+        "Normal closing speed",
+        "[mph|km/h]",
+        "V_close_n*side*s_per_hour/[ft_per_mile|m_per_km]",
+        "eq (9)",
+        "Positive when the contact points approach each other, whichever way γ is drawn.",
+        number_format="0.00",
     ),
 )

@@ -184,7 +184,8 @@ def readings(*, yaw: bool) -> tuple[EvidenceRow, ...]:
             None,
             "Lognormal",
             {"Std dev": 0.2},
-            "From crush-energy, if its profile is used nowhere else. Delta-V by CRASH3 was within 9 to 25 % (Smith and "
-            "Noga, DOT HS 806 152), energy within twice that",
+            "The energy lost to the crush by crush-energy, which is 1 − e² of the energy absorbed, if its profile is "
+            "used nowhere else; where the contact slid, more was lost. Delta-V by CRASH3 was within 9 to 25 % (Smith "
+            "and Noga, DOT HS 806 152), energy within twice that",
         ),
     )

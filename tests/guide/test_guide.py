@@ -190,7 +190,7 @@ def test_a_wrong_angle_turns_checks_false(workbook, changed):
     assert right["Inputs"].cells[3, 1].value == "All physics checks hold at the base case"
     assert "physics check fails" in wrong["Inputs", 2, 0]
     failing = {f"D{row + 1}" for (sheet, row, column), value in wrong.items() if sheet == "Model" and value is False}
-    checks = {f"D{row}": check for row, check in enumerate(CHECKS, 101)}
+    checks = {f"D{row}": check for row, check in enumerate(CHECKS, 102)}
     in_order = sorted(failing, key=lambda cell: int(cell[1:]))
     assert [checks[cell] for cell in in_order] == ["angles", "forward", "restitution", "all"]
     assert all(right["Model"].cells[int(cell[1:]), 4].value is True for cell in checks)

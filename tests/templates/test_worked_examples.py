@@ -283,10 +283,11 @@ def test_the_shortcut_by_mean_crush_is_ten_percent_low(cells):
 
 
 def test_delta_v_closes_the_energy_balance(cells):
-    """E = ½ m̄ Vc² (1 − e²), P = m̄ (1 + e) Vc, and both vehicles take the same impulse."""
-    wanted = ["dV_1", "dV_2", "m_1", "m_2", "m_both", "V_close", "E_sum"]
+    """E = ½ m̄ Vc², of which 1 − e² is lost; P = m̄ (1 + e) Vc, and both vehicles take the same impulse."""
+    wanted = ["dV_1", "dV_2", "m_1", "m_2", "m_both", "V_close", "E_sum", "E_crush"]
     v = {symbol: value.item() for symbol, value in cells("crush-energy", CRUSH | {"e": 0.2}, wanted).items()}
-    assert v["E_sum"] == pytest.approx(v["m_both"] * v["V_close"] ** 2 * (1 - 0.2**2) / 2)
+    assert v["E_sum"] == pytest.approx(v["m_both"] * v["V_close"] ** 2 / 2)
+    assert v["E_crush"] == pytest.approx(v["E_sum"] * (1 - 0.2**2))
     assert v["m_1"] * v["dV_1"] == pytest.approx(v["m_both"] * 1.2 * v["V_close"])
     assert v["m_1"] * v["dV_1"] == pytest.approx(v["m_2"] * v["dV_2"])
 

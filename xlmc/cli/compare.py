@@ -143,15 +143,17 @@ def _report(found: Comparison) -> StudyReport:
 
 def _sentences(found: Comparison) -> Iterator[str]:
     from xlmc.analysis.studies.comparison.verdicts import book_names, inputs_text
-    from xlmc.outputs.summary import estimate_text
+    from xlmc.outputs.summary import share_text
 
     books, accepted, trials = book_names(found), found.acceptance, found.first.trials
     yield (
         f"Of {trials:,} trials both accept {accepted.both:,}; {books[0]} alone {accepted.first_only:,}, "
         f"{books[1]} alone {accepted.second_only:,}; seed {found.first.settings.seed}."
     )
-    if accepted.both and not accepted.first_only + accepted.second_only:
-        yield f"The acceptance is the same in both: {estimate_text(accepted.first)}."
+    if not (found.first.model.filters or found.second.model.filters):
+        yield "Neither book has filters: every trial is accepted."
+    elif accepted.both and not accepted.first_only + accepted.second_only:
+        yield f"The acceptance is the same in both: {share_text(accepted.first)}."
     yield from inputs_text(found)
 
 

@@ -128,29 +128,32 @@ def _report(found: Screening) -> StudyReport:
 def _tables(found: Screening) -> Iterator[Block]:
     expected = [_size(each.size) for each in found.expected]
     title = "Each assumption held at its base value, the least expected cost first"
-    yield _table(title, found.single, ("Held", _names(found.single)), ("Expected", expected))
+    yield _table(found, title, found.single, ("Held", _names(found.single)), ("Expected", expected))
+    if found.groups:
+        yield _table(found, "Correlated assumptions held at once", found.groups, ("Held", _names(found.groups)))
     if found.sets:
-        yield _table("Held at once, as asked", found.sets, ("Held", _names(found.sets)))
+        yield _table(found, "Held at once, as asked", found.sets, ("Held", _names(found.sets)))
     if found.ends:
-        yield _at_ends(found.ends)
+        yield _at_ends(found, found.ends)
     if found.filters:
         held = " with the assumptions named above held" if found.joint else ""
         what = "filter and item of evidence" if _has_evidence(found) else "filter"
-        yield _table(f"Each {what} left out{held}", found.filters, ("Left out", _names(found.filters)))
+        yield _table(found, f"Each {what} left out{held}", found.filters, ("Left out", _names(found.filters)))
     for name in found.tolerances:
         yield _of_forecast(found, name)
 
 
-def _table(title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]]) -> Table:
+def _table(found: Screening, title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]]) -> Table:
     """What each change costs. `first` are columns with headings."""
     from xlmc.outputs.study_report import Table
 
-    headings = (*(heading for heading, _ in first), "Cost", "Accepted, %")
+    accepted = ["Accepted, %"] if found.run.model.filters else []  # without filters nothing can change it
+    headings = (*(heading for heading, _ in first), "Cost", *accepted)
     rows = tuple(
         (
             *(column[index] for _, column in first),
             "no number" if cost.lost else _size(cost.size),
-            _percent(cost),
+            *(_percent(cost) for _ in accepted),
             cost.judgement.verdict.value,
         )
         for index, cost in enumerate(costs)
@@ -158,15 +161,15 @@ def _table(title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]])
     return Table(title, (*headings, "Verdict"), rows, tuple(range(1, len(headings))))
 
 
-def _at_ends(found: Sequence[AtEnds]) -> Table:
+def _at_ends(found: Screening, ends: Sequence[AtEnds]) -> Table:
     """What holding each assumption at an end of its range costs."""
     pairs = [
         (f"{each.name} = {value:.4g}", cost)
-        for each in found
+        for each in ends
         for value, cost in zip(each.values, each.costs, strict=True)
     ]
     title = "Each of these held at an end of its range, its 2.5 % and 97.5 % points"
-    return _table(title, [cost for _, cost in pairs], ("Held", [name for name, _ in pairs]))
+    return _table(found, title, [cost for _, cost in pairs], ("Held", [name for name, _ in pairs]))
 
 
 def _has_evidence(found: Screening) -> bool:
@@ -185,7 +188,7 @@ def _of_forecast(found: Screening, name: str) -> Table:
 
     units = found.run[name].definition.units
     rows = []
-    for cost in (*found.single, *found.sets, *found.filters):
+    for cost in (*found.single, *found.groups, *found.sets, *found.filters):
         number, size = _most_moved(found, cost, name)
         change = dict(cost.forecasts[name].changes)[number]
         rows.append(
@@ -217,7 +220,7 @@ def _tolerance(found: Screening, name: str) -> str:
 
     value, stated = found.tolerances[name]
     text = f"{value:.3g} {found.run[name].definition.units}".rstrip() + ("" if stated else " (a tenth of the SD)")
-    costs = (*found.single, *found.sets, *found.filters)
+    costs = (*found.single, *found.groups, *found.sets, *found.filters)
     limits = costs[0].forecasts[name].tolerances(value, found.chance) if costs else {}
     chances = [f"{number} {points(limit)}" for number, limit in limits.items() if is_chance(number)]
     return ", and ".join([text, *chances])
@@ -234,13 +237,23 @@ def _percent(cost: Cost) -> str:
     return format_estimate(100.0 * change.value, None if change.error is None else 100.0 * change.error)
 
 
+def _acceptance_text(found: Screening, cost: Cost) -> str:
+    """How the share of accepted trials changes; nothing where no filter could change it."""
+    change = cost.acceptance
+    if not found.run.model.filters:
+        return ""
+    if not change.first_only + change.second_only:
+        return "; the same trials are accepted"
+    return f"; the acceptance changes by {_percent(cost)} % of itself"
+
+
 def _verdicts(found: Screening) -> Iterable[str]:
     from xlmc.analysis.studies.comparison.verdicts import undecided_text
 
     if found.joint:
         yield (
             f"Not needed: {'; '.join(found.joint.names)}. With all of them held at their base values in one run, no "
-            f"number moves by more than {found.joint.size:.2f} of its tolerance; acceptance {_percent(found.joint)} %."
+            f"number moves by more than {found.joint.size:.2f} of its tolerance{_acceptance_text(found, found.joint)}."
         )
     else:
         yield "Every assumption is needed, as far as these trials tell."
@@ -291,11 +304,11 @@ def _meaning(found: Screening) -> Iterable[str]:
         yield f"Formula cells that then are not needed: {', '.join(map(str, found.dropped))}."
     yield f"Of {found.cells} formula cells that the book needs, {found.varying} then vary."
     tolerances = "; ".join(f"{name} {_tolerance(found, name)}" for name in found.tolerances)
+    accepted = f"; acceptance {100 * found.acceptance_tolerance:g} % of itself" if found.run.model.filters else ""
     yield (
         "Cost: the largest change of any number, divided by its tolerance; above 1 the answer changes. The numbers of "
         "a forecast are its mean, SD, both ends of its central range, and the probability of being above its "
-        f"threshold where it has one. Tolerances: {tolerances}; acceptance {100 * found.acceptance_tolerance:g} % of "
-        "itself."
+        f"threshold where it has one. Tolerances: {tolerances}{accepted}."
     )
     yield (
         f"{found.runs} runs of {found.run.trials:,} trials, seed {found.run.settings.seed}, over the same draws; ± is "
@@ -321,6 +334,7 @@ def _as_json(found: Screening) -> dict[str, object]:
         "forecasts_not_asked": found.unasked,
         "forecasts_without_numbers": found.valueless,
         "held_alone": [_entry(cost, found) for cost in found.single],
+        "correlated_held_at_once": [_entry(cost, found) for cost in found.groups],
         "held_together": None if found.joint is None else _entry(found.joint, found),
         "held_as_asked": [_entry(cost, found) for cost in found.sets],
         "held_at_ends": None

@@ -67,6 +67,7 @@ def difference_json(found: Difference) -> dict[str, object]:
         "kolmogorov": estimate_json(found.kolmogorov),
         "wasserstein_1": estimate_json(found.wasserstein),
         "largest_in_one_trial": finite(found.largest),
+        "root_mean_square_in_one_trial": finite(found.typical),
     }
 
 

@@ -99,6 +99,46 @@ def test_nothing_can_be_held_and_nothing_is_there_to_be_held(weighted):
     assert screen(weighted({"a": 1.0}), **SIZE).joint is None
 
 
+def cancelling(book, formula, correlations):
+    """Normals in A1 to A4 with a base value of 0."""
+    given = {
+        name: {"cell": f"A{row}", "distribution": "Normal", "mean": 0, "std_dev": 1}
+        for row, name in enumerate("abcd", start=1)
+    }
+    return book({**{f"A{row}": 0.0 for row in range(1, 5)}, "D1": formula}, given, {"y": "D1"}, None, correlations)
+
+
+@pytest.mark.parametrize(
+    ("formula", "correlations", "held"),
+    [
+        pytest.param("=A3+A1-A2+0*A4", {("a", "b"): 0.999}, {"a", "b", "d"}, id="two that cancel"),
+        pytest.param("=A3+A1+A2+0*A4", {("a", "b"): -0.999}, {"a", "b", "d"}, id="two that cancel by their sign"),
+        pytest.param(
+            "=A3+2*A1-2*A2+A4",
+            {("a", "b"): 0.998, ("a", "c"): 0.6, ("b", "c"): 0.6},
+            {"a", "b"},
+            id="two of three that are correlated",
+        ),
+        pytest.param(
+            "=A4+A1-0.5*A2-0.5*A3",
+            {("a", "b"): 0.998, ("a", "c"): 0.998, ("b", "c"): 0.998},
+            {"a", "b", "c"},
+            id="three that cancel",
+        ),
+        pytest.param("=A3+A1+A2+0*A4", {("a", "b"): 0.999}, {"d"}, id="two that add up"),
+    ],
+)
+def test_correlated_assumptions_are_tried_together(book, formula, correlations, held):
+    found = screen(cancelling(book, formula, correlations), **SIZE)
+    assert set(found.joint.names) == held
+    assert found.joint.judgement.verdict is Verdict.WITHIN
+    assert not {"a", "b", "c"} & {cost.names[0] for cost in found.single if cost.judgement.verdict is Verdict.WITHIN}
+
+
+def test_assumptions_without_strong_correlations_are_in_no_group(weighted):
+    assert screen(weighted({"a": 1.0, "b": 1.0, "c": 0.01}), **SIZE).groups == ()
+
+
 def test_sets_by_pattern(weighted):
     model = weighted({"a": 1.0, "b one": 0.1, "b two": 0.2, "c": 0.3})
     found = screen(model, sets=["B *", "c, b one"], **SIZE)

@@ -6,7 +6,7 @@ import pytest
 
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.stopping import LIMIT, stopping
-from xlmc.montecarlo.rare.rare_switch import ALWAYS_FIRST, FIRST_LOOK, RareSwitch, rare_switch
+from xlmc.montecarlo.rare.rare_switch import ALWAYS_FIRST, COSTLY_FROM, FIRST_LOOK, RareSwitch, rare_switch
 
 UNIT = {"low": 0, "high": 1}
 
@@ -32,7 +32,28 @@ def test_they_are_given_up_at_the_first_look_where_it_is_plain():
 def test_few_wanted_trials_are_waited_for():
     looks = RareSwitch(100, LIMIT)
     turns = [FIRST_LOOK << k for k in range(6) if looks.should_search(FIRST_LOOK << k, 0)]
-    assert turns[0] == 1 << 24, "100 · 2²⁴ is the first above 10⁹"
+    assert turns[0] == COSTLY_FROM, "100 · 2²³ is above a sixteenth of 10⁹"
+
+
+@pytest.mark.parametrize(
+    ("accepted", "searches"),
+    [
+        pytest.param(155, True, id="540 million plain trials"),
+        pytest.param(1_100, True, id="67 million still, and 62.5 million for a search"),
+        pytest.param(1_200, False, id="61 million still"),
+    ],
+)
+def test_a_search_begins_where_plain_trials_still_need_more_than_it_may_take(accepted, searches):
+    looks = RareSwitch(10_000, LIMIT)
+    assert not looks.should_search(COSTLY_FROM // 2, accepted // 2), "before, the limit alone decides"
+    assert looks.will_do(COSTLY_FROM, accepted)
+    assert looks.should_search(COSTLY_FROM, accepted) is searches
+
+
+def test_after_a_search_that_failed_there_is_no_other():
+    looks = RareSwitch(10_000, LIMIT)
+    looks.give_up()
+    assert not looks.should_search(COSTLY_FROM, 155)
 
 
 def test_no_search_where_none_is_possible():

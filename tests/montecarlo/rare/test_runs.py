@@ -112,6 +112,40 @@ def test_plain_trials_stay_where_they_do(model, monkeypatch):
     assert found.accepted == 10
 
 
+@pytest.fixture
+def costly(monkeypatch):
+    """Plain trials would do, and every search is cheaper."""
+    for name, value in (("FIRST_LOOK", 1 << 16), ("COSTLY_FROM", 1 << 16), ("_LEAST_PART", 1), ("SEARCH_PART", 64)):
+        monkeypatch.setattr(rare_switch, name, value)
+
+
+def test_a_search_is_made_where_it_is_cheaper(model, costly, run):
+    share = run.rare.acceptance.value
+    limit, wanted = 1 << 26, 1000
+    assert limit / 64 < wanted / share < limit, "plain trials would do, at a higher cost"
+    found = model.simulate(limit, seed=4, until_accepted=wanted)
+    assert found.rare is not None
+    assert found.rare.evaluations < wanted / share
+
+
+def test_plain_trials_go_on_after_a_search_that_failed(model, costly, monkeypatch):
+    from xlmc.montecarlo.rare import search as module
+
+    tried = []
+
+    def fails(*_):
+        tried.append(1)
+        return module.Search(np.empty((0, 1)), None, "it failed", 0)
+
+    monkeypatch.setattr(module, "search", fails)
+    found = model.simulate(1 << 24, seed=4, until_accepted=300)
+    plain = model.simulate(1 << 24, seed=4, until_accepted=300, rare="never")
+    assert tried == [1]
+    assert found.rare is None
+    assert found.stopped.reached
+    assert found.trial_index.tolist() == plain.trial_index.tolist()
+
+
 def test_never_is_never(model, monkeypatch):
     monkeypatch.setattr(rare_switch, "FIRST_LOOK", 1 << 14)
     found = model.simulate(1 << 18, seed=4, until_accepted=5000, rare="never")

@@ -4,7 +4,8 @@
    fifth of the prior) are what a run with the assumption held there would accept, but for the width of the fifth and
    for correlations. How far their mean, SD and central range lie from those of all accepted trials, and their share of
    the accepted from a fifth, is the expected cost.
-2. **Verified**, each by a run of its own with the assumption held and the same draws of all others.
+2. **Verified**, each by a run of its own with the assumption held and the same draws of all others. Correlated ones of
+   which one at least is needed alone are also held in groups: two that cancel each other move an answer only apart.
 3. **Together**: the cheapest that are within the tolerance, as many as still are when held at once. The end is one run
    with all of them held; costs are not added up.
 4. **Filters**, in the same way, on top of it: left out one by one, then together. The cells that only they need are not
@@ -57,6 +58,13 @@ SLICE: Final = 0.2
 ENDS: Final = (0.025, 0.975)
 """Percentiles of an assumption that stand for the ends of its range."""
 
+_CORRELATED: Final = 0.5
+"""The rank correlation from which on two assumptions are held at once: of a − b, holding both can cost less only above
+it."""
+
+_RANKED: Final = 8_192
+"""Trials that rank correlations are computed from."""
+
 _FEWEST: Final = 2
 """Values of a forecast: a standard deviation takes so many."""
 
@@ -106,6 +114,7 @@ class Screening:
         unasked: forecasts that were not to judge.
         expected: the cheap ranking, the cheapest first.
         single: each assumption held alone, in that order.
+        groups: correlated assumptions held at once, the most correlated first.
         joint: those that may be held together, in one run; None where there are none.
         sets: the sets asked for, each held at once.
         filters: each filter left out, with the assumptions of `joint` held.
@@ -128,6 +137,7 @@ class Screening:
     unasked: tuple[str, ...]
     expected: tuple[Expected, ...]
     single: tuple[Cost, ...]
+    groups: tuple[Cost, ...]
     joint: Cost | None
     sets: tuple[Cost, ...]
     filters: tuple[Cost, ...]
@@ -149,7 +159,7 @@ class Screening:
     @property
     def undecided(self) -> tuple[Cost, ...]:
         """The changes of which these trials cannot say whether they are within the tolerance."""
-        every = (*self.single, *self.filters)
+        every = (*self.single, *self.groups, *self.filters)
         return tuple(cost for cost in every if cost.judgement.verdict is Verdict.UNDECIDED)
 
 
@@ -240,7 +250,8 @@ class _Screen:
         held = [a for a in model.live if a.base is not None]
         expected = sorted((Expected(a.name, self._expect_cost(a)) for a in held), key=lambda each: each.size)
         single = tuple(self._hold([each.name]) for each in expected)
-        joint = self._together(single, self._hold)
+        groups = tuple(map(self._hold, self._correlated(single)))
+        joint = self._together((*single, *groups), self._hold)
         frozen = joint.names if joint else ()
 
         def left_out(names: Sequence[str]) -> Cost:
@@ -263,6 +274,7 @@ class _Screen:
             baseless=tuple(a.name for a in model.live if a.base is None),
             expected=tuple(expected),
             single=single,
+            groups=groups,
             joint=joint,
             sets=tuple(self._hold(names) for names in sets),
             filters=filters,
@@ -329,21 +341,30 @@ class _Screen:
         alone = sorted((c for c in single if c.judgement.verdict is Verdict.WITHIN), key=lambda cost: cost.size)
         if not alone:
             return None
-        names = [cost.names[0] for cost in alone]
-        best, low, high = alone[0], 1, len(names)
+        best, low, high = alone[0], 1, len(alone)
         length = high
         while low < high:
-            cost = changed(names[:length])
+            cost = changed(_all_names(alone[:length]))
             if cost.judgement.verdict is Verdict.WITHIN:
                 best, low = cost, length
             else:
                 high = length - 1
             length = (low + high + 1) // 2
-        for name in names[low + 1 :]:  # the one after the longest list is known not to fit
-            cost = changed([*best.names, name])
+        for each in alone[low + 1 :]:  # the one after the longest list is known not to fit
+            cost = changed(_all_names((best, each)))
             if cost.judgement.verdict is Verdict.WITHIN:
                 best = cost
         return best
+
+    def _correlated(self, single: Sequence[Cost]) -> list[tuple[str, ...]]:
+        """Groups of correlated assumptions with one at least that cannot be held alone."""
+        alone = {cost.names[0]: cost.judgement.verdict is Verdict.WITHIN for cost in single}
+        drawn = np.array([self._run.prior[name][:_RANKED] for name in alone])
+        if len(drawn) < 2:
+            return []
+        groups = _groups(np.nan_to_num(np.corrcoef(_ranks(drawn))))
+        named = [tuple(name for index, name in enumerate(alone) if index in group) for group in groups]
+        return [names for names in named if not all(alone[name] for name in names)]
 
     def _expect_cost(self, assumption: Assumption) -> float:
         """The expected cost of holding an assumption, from the accepted trials near its base value."""
@@ -359,6 +380,33 @@ class _Screen:
             values, tolerance = self._run.forecasts[forecast.name][: drawn.size], self._tolerances[forecast.name][0]
             sizes.append(_largest_move(values, near, forecast, tolerance, self._chance))
         return max(sizes)
+
+
+def _all_names(costs: Iterable[Cost]) -> list[str]:
+    return list(dict.fromkeys(name for cost in costs for name in cost.names))
+
+
+def _ranks(drawn: Floats) -> Floats:
+    """The ranks of `(k, n)` draws in each row."""
+    return np.asarray(drawn.argsort(axis=1, kind="stable").argsort(axis=1, kind="stable"), np.float64)
+
+
+def _groups(correlations: Floats) -> list[frozenset[int]]:
+    """The groups that grow as `(k, k)` correlations are gone through, the strongest first: k − 1 at most.
+
+    >>> [sorted(group) for group in _groups(np.array([[1, 0.6, 0.1], [0.6, 1, -0.9], [0.1, -0.9, 1]]))]
+    [[1, 2], [0, 1, 2]]
+    """
+    size = np.abs(correlations)
+    rows, columns = np.nonzero(np.triu(size >= _CORRELATED, 1))
+    own = {index: frozenset([index]) for index in range(len(size))}
+    found = []
+    for pair in np.argsort(-size[rows, columns], kind="stable").tolist():
+        joined = own[int(rows[pair])] | own[int(columns[pair])]
+        if joined not in (own[int(rows[pair])], own[int(columns[pair])]):
+            found.append(joined)
+            own |= dict.fromkeys(joined, joined)
+    return found
 
 
 def _largest_move(

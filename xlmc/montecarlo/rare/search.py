@@ -17,6 +17,7 @@ from xlmc.montecarlo.rare.equalising import Accepts, Equalised, equalise
 from xlmc.montecarlo.rare.landscape import GivenUniforms, Landscape
 from xlmc.montecarlo.rare.layered import Ground, Layered, ground_of
 from xlmc.montecarlo.rare.learning import Learned, Round, Say, count_on, learn, learn_again, search_on
+from xlmc.montecarlo.rare.rare_switch import SEARCH_PART, search_limit
 from xlmc.montecarlo.rare.splitting import Distance
 from xlmc.montecarlo.rare.strays import Evidence, Tempered, plain_assumptions, wide_assumptions
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
@@ -134,11 +135,6 @@ Floats = NDArray[np.float64]
 
 _PURPOSE: Final = "rare acceptance: "
 
-_PART: Final = 16
-_LEAST_PART: Final = 1 << 25
-"""The part of the limit of trials that a search may take, and the trials that it may take in any case: what is
-described well needs far less, and what is not is known by then."""
-
 _MOST_PLAIN: Final = 4_096
 """Accepted plain trials that are looked at: the first of them."""
 
@@ -174,7 +170,7 @@ def search(
     """
     learning, drawing = _random(settings.seed, "learning"), _random(settings.seed, "drawing")
     landscape = ground_of(model, Landscape(model, learning), _random(settings.seed, "layers"))
-    wanted, most = settings.stopping.accepted or 0, _most(settings.trials, plain)
+    wanted, most = settings.stopping.accepted or 0, search_limit(settings.trials, plain)
     independent = METHODS[settings.sampling].independent
     evidence = [_plain(model, settings, plain, accepted, landscape)] if independent else []
     found = find(
@@ -221,11 +217,6 @@ def search(
     return Search(landscape.uniforms(drawn.points), account, "", landscape.evaluations)
 
 
-def _most(limit: int, plain: int) -> int:
-    """Trials that a search may take."""
-    return min(limit - plain, max(limit // _PART, _LEAST_PART))
-
-
 def _plain(model: Model, settings: Settings, trials: int, accepted: NDArray[np.int64], landscape: Ground) -> Evidence:
     """The plain trials, or the first of them where many were accepted."""
     few = accepted[:_MOST_PLAIN]
@@ -265,7 +256,7 @@ def _failure(model: Model, landscape: Ground, found: Found, wanted: int, left: i
     share = f"about {found.learned.probability:.1g} of all trials are accepted"
     if found.used is None and found.learned.best is None:
         return f"a search of {found.evaluations:,} trials found that {share}, but could not describe where they lie"
-    more = f"the part of the limit (-n) that a search may take, one in {_PART}" if left else "the limit (-n)"
+    more = f"the part of the limit (-n) that a search may take, one in {SEARCH_PART}" if left else "the limit (-n)"
     return (
         f"a search of {found.evaluations:,} trials found that {share}, described badly where they lie, and gave up, "
         f"as {wanted:,} of them would take more than {more},"

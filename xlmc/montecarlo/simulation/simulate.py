@@ -34,7 +34,7 @@ from xlmc.montecarlo.loop.stopping import (
     refuse_other_sampling,
 )
 from xlmc.montecarlo.model.forecast_filters import discards_by_name
-from xlmc.montecarlo.rare.rare_switch import rare_switch
+from xlmc.montecarlo.rare.rare_switch import RareSwitch, rare_switch
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.simulation.simulation import KEPT_INPUTS, Simulation
 
@@ -132,8 +132,16 @@ def simulate(
     tasks = (task(start, min(piece, plan.trials - start)) for start in range(0, plan.trials, piece))
     stopped: Stopped | None = None
     with Interruption(wanted=keep_interrupted and may_end_early(settings.sampling)) as interruption:
+        found: Search | Stopped | None = None
         with closing(blocks_of(tasks)) as blocks:
-            while stopped is None and not looks.should_search(gathered.trials, gathered.accepted):
+            while stopped is None and found is None:
+                if looks.should_search(gathered.trials, gathered.accepted):
+                    found = _searched(
+                        model, settings, gathered.trials, gathered.accepted_trials, watch, interruption, progress
+                    )
+                    if _plain_go_on(found, looks, gathered):
+                        found = None
+                    continue
                 finished = next(blocks)
                 counting = finished.trials if looks.certain else watch.counting(finished)
                 if counting < finished.trials:
@@ -145,12 +153,21 @@ def simulate(
                     stopped = None
                 if progress is not None and teller is not None:
                     progress(teller.after(finished, watch.share))
-        if stopped is not None:
+        if found is None:
+            assert stopped is not None
             return gathered.simulation(settings, plan, stopped)
-        found = _searched(model, settings, gathered.trials, gathered.accepted_trials, watch, interruption, progress)
     if isinstance(found, Stopped):
         return gathered.simulation(settings, plan, found)
     return _with_search(gathered.simulation(settings, plan, watch.goal_reached), found, most_inputs)
+
+
+def _plain_go_on(found: Search | Stopped, looks: RareSwitch, gathered: _Gathered) -> bool:
+    """Whether a search has failed where plain trials would do, only at a higher cost; no other is then made."""
+    failed = isinstance(found, Stopped) and found.by == "search"
+    if not failed or looks.certain or not looks.will_do(gathered.trials, gathered.accepted):
+        return False
+    looks.give_up()
+    return True
 
 
 class _EndedError(Exception):

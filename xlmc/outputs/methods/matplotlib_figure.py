@@ -68,7 +68,7 @@ def draw(study: Study, against: Work = "seconds", *, words: bool = True) -> Figu
     if words:
         upper.suptitle(_title(study, picture), fontsize=10, ha="left", x=0.008, color=_INK, linespacing=1.45)
     for panel, (name, get) in zip(lower.subplots(1, 5), _numbers(study).items(), strict=True):
-        _small(panel, study, name, get)
+        _small(panel, study, name, get, _nothing_text(study, name))
     lower.suptitle(_below(study, picture), fontsize=8.5, ha="left", x=0.008, color=_GREY)
     return figure
 
@@ -167,6 +167,9 @@ def _labels(axis: Axes, picture: Picture) -> None:
         )  # fmt: skip
 
 
+_ACCEPTED: Final = "Accepted share, % of it"
+
+
 def _numbers(study: Study) -> dict[str, Callable[[Runs], tuple[float, float, float]]]:
     """Title -> the error of a run length in % and its interval; of the accepted share in % of it."""
 
@@ -181,7 +184,7 @@ def _numbers(study: Study) -> dict[str, Callable[[Runs], tuple[float, float, flo
             return (math.nan,) * 3
         return _with_interval(100.0 * runs.acceptance.value / study.reference.acceptance.value, [runs.acceptance])
 
-    return {**{name: of(each) for each, name in STATISTICS.items()}, "Accepted share, % of it": accepted}
+    return {**{name: of(each) for each, name in STATISTICS.items()}, _ACCEPTED: accepted}
 
 
 def _with_interval(value: float, errors: list[Rms]) -> tuple[float, float, float]:
@@ -193,7 +196,15 @@ def _with_interval(value: float, errors: list[Rms]) -> tuple[float, float, float
     return value, value * float(low), value * float(high)
 
 
-def _small(axis: Axes, study: Study, title: str, get: Callable[[Runs], tuple[float, float, float]]) -> None:
+def _nothing_text(study: Study, title: str) -> str:
+    """Why a panel is empty, if it is."""
+    every = title == _ACCEPTED and study.reference.acceptance.value == 1.0
+    return "every trial is accepted" if every else "nothing to show"
+
+
+def _small(
+    axis: Axes, study: Study, title: str, get: Callable[[Runs], tuple[float, float, float]], nothing: str
+) -> None:
     axis.set(xscale="log", yscale="log")
     drawn = False
     for curve in study.every:
@@ -207,7 +218,7 @@ def _small(axis: Axes, study: Study, title: str, get: Callable[[Runs], tuple[flo
         _half(axis)
     else:
         axis.set_axis_off()
-        _say(axis, "every trial is accepted" if study.reference.acceptance.value == 1.0 else "nothing to show")
+        _say(axis, nothing)
 
 
 def _small_line(axis: Axes, study: Study, curve: Curve, get: Callable[[Runs], tuple[float, float, float]]) -> bool:

@@ -12,8 +12,8 @@ from xlmc.analysis.studies.methods import STATISTICS, Curve, Method, Runs, Study
 from xlmc.analysis.studies.methods.answer import seconds_text, trials_text
 from xlmc.analysis.studies.methods.need import shortfall
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
-from xlmc.montecarlo.statistics import Estimate, format_estimate
-from xlmc.outputs.summary import estimate_text
+from xlmc.montecarlo.statistics import format_estimate
+from xlmc.outputs.summary import share_text
 
 __all__ = [
     "Table",
@@ -67,8 +67,8 @@ def reference_table(study: Study) -> Table:
         rows.append((forecast.name, forecast.units, *numbers))
     how = METHODS[found.sampling].name
     title = (
-        f"Reference: {found.trials:,} trials ({how}, engine {found.engine}, seed {found.seed}), accepted "
-        f"{accepted_text(found.acceptance)}, {seconds_text(found.seconds)}"
+        f"Reference: {found.trials:,} trials ({how}, engine {found.engine}, seed {found.seed}), "
+        f"{accepted_text(study)}, {seconds_text(found.seconds)}"
     )
     return Table(title, ("Forecast", "Units", *STATISTICS.values()), tuple(rows), 2)
 
@@ -95,10 +95,17 @@ def _cells(study: Study, curve: Curve) -> Iterator[str]:
     yield f"{runs.evaluations:,.0f}"
     for statistic in STATISTICS:
         yield _share_text(runs.shares[statistic], 0.0 if drawn else floor_of(study, statistic))
-    yield _NONE if runs.acceptance is None else percent_text(runs.acceptance.value / study.reference.acceptance.value)
+    yield _accepted_share(study, runs)
     yield _NONE if runs.effective is None else f"{runs.effective:,.0f}"
     yield slope_text(curve.slope("mean", "budget"))
     yield _need_text(study, curve) if drawn else near_text(study, curve)
+
+
+def _accepted_share(study: Study, runs: Runs) -> str:
+    """The error of the share of accepted trials, in % of it; a dash without filters."""
+    if runs.acceptance is None or not study.model.filters:
+        return _NONE
+    return percent_text(runs.acceptance.value / study.reference.acceptance.value)
 
 
 def near_text(study: Study, curve: Curve) -> str:
@@ -121,22 +128,23 @@ def length_table(study: Study) -> Table:
     """Every run length of every method."""
     work = ("Method", "Trials", "Runs", "Time", "Evaluations")
     headings = (*work, *STATISTICS.values(), "Accepted", "Effective", "Failed")
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for curve in study.every:
         floors = {each: floor_of(study, each) if curve in study.once else 0.0 for each in STATISTICS}
-        for runs in curve.lengths if curve.answers else ():
-            known = study.reference.acceptance.value
-            rows.append((
+        rows += [
+            (
                 curve.method.name,
                 _NONE if curve in study.once else f"{runs.budget:,}",
                 f"{_runs(runs):,}",
                 ("" if runs.measured else "≈ ") + seconds_text(runs.seconds),
                 f"{runs.evaluations:,.0f}",
                 *(_share_text(runs.shares[each], floors[each]) for each in STATISTICS),
-                _NONE if runs.acceptance is None else percent_text(runs.acceptance.value / known),
+                _accepted_share(study, runs),
                 _NONE if runs.effective is None else f"{runs.effective:,.0f}",
                 f"{runs.failed:,}" if runs.failed else _NONE,
-            ))  # fmt: skip
+            )
+            for runs in (curve.lengths if curve.answers else ())
+        ]
     title = "Errors in % of each forecast's 5–95 % range, root mean square over runs and forecasts"
     return Table(title, headings, tuple(rows))
 
@@ -216,10 +224,9 @@ def cannot(study: Study, method: Method) -> str:
 _OF_FILTERS: Final = ("does not see filters", "filters take", "sees one assumption at a time")
 
 
-def accepted_text(acceptance: Estimate) -> str:
-    """`1.7566 ± 0.0023 %`."""
-    error = None if acceptance.error is None else 100.0 * acceptance.error
-    return f"{estimate_text(Estimate(100.0 * acceptance.value, error))} %"
+def accepted_text(study: Study) -> str:
+    """`accepted 1.7566 ± 0.0023 %`, or that there is no filter."""
+    return f"accepted {share_text(study.reference.acceptance)}" if study.model.filters else "no filters"
 
 
 def format_of(value: float, error: float) -> str:

@@ -174,6 +174,7 @@ RULES: Final = (
     Rule(
         "0.11.0", "thresholds and settings that formulas give are calculated where their saved values may be old", _ANY
     ),
+    Rule("0.12.0", "a run until accepted trials may search for them from 8,388,608 plain trials on", _ANY),
 )
 """The rules in the order of versions."""
 

@@ -51,6 +51,36 @@ def test_a_book_agrees_with_itself_exactly(linear):
     assert verdict_text(found) == ["The two books agree for y to 1e-09."]
 
 
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        pytest.param("=10+A1", "=11-A1", id="mirrored"),
+        pytest.param("=A1+B1", "=1+A1-B1", id="one of two mirrored"),
+        pytest.param("=A1+2*B1", "=2*A1+B1", id="exchanged"),
+    ],
+)
+def test_distributions_that_agree_where_trials_do_not(linear, first, second):
+    found = compare(linear(first), linear(second, "y.xlsx"), "0.1", **SIZE)
+    assert only(found).judgement.verdict is Verdict.WITHIN
+    assert only(found).only_distributions_agree
+    said = verdict_text(found)
+    assert said[0] == "The two books agree for y to 0.1."
+    assert said[1].startswith("Of y only the distributions agree, and the trials do not")
+
+
+def test_the_size_of_differences_in_one_trial(linear):
+    """a − (1 − a) is uniform on (−1, 1): root mean square 1/√3."""
+    found = only(compare(linear("=A1"), linear("=1-A1", "y.xlsx"), "0.1", **SIZE)).difference
+    assert found.typical == pytest.approx(1 / math.sqrt(3), rel=0.02)
+    assert found.largest == pytest.approx(1.0, abs=1e-3)
+
+
+def test_small_differences_in_every_trial_are_agreement(linear):
+    found = compare(linear("=A1+B1"), linear("=A1+B1+0.01*SIN(40*A1)", "y.xlsx"), "0.1", **SIZE)
+    assert not only(found).only_distributions_agree
+    assert len(verdict_text(found)) == 1
+
+
 def test_a_shift_in_the_formulas_is_exact_and_nothing_else_accounts_for_it(linear):
     found = compare(linear(), linear("=A1+B1+0.25", "y.xlsx"), "0.2", **SIZE)
     assert only(found).difference.mean.difference.value == pytest.approx(0.25, abs=1e-12)

@@ -87,6 +87,11 @@ class ForecastComparison:
         size = abs(self.difference.mean.first.value) + self.difference.standard_deviation.first.value
         return self.difference.largest <= 1e-9 * size
 
+    @property
+    def only_distributions_agree(self) -> bool:
+        """The answers agree as a whole, but in one and the same trial the books differ by more than the tolerance."""
+        return self.judgement.verdict is Verdict.WITHIN and self.difference.typical > self.tolerance
+
 
 @dataclass(frozen=True, slots=True)
 class Comparison:

@@ -64,6 +64,7 @@ class Difference:
         above: P(> threshold); None where there is none.
         kolmogorov, wasserstein: distances of the two distributions, as above.
         largest: the largest difference in a trial that both accept; nan where there is none.
+        typical: the root mean square of these differences; nan where there is none.
     """
 
     mean: Change
@@ -74,6 +75,7 @@ class Difference:
     kolmogorov: Estimate
     wasserstein: Estimate
     largest: float
+    typical: float
     threshold: float | None = None
     above: Change | None = None
 
@@ -162,6 +164,7 @@ def difference(first: Accepted, second: Accepted, share: float, threshold: float
         kolmogorov=_kolmogorov(pair),
         wasserstein=_wasserstein(pair),
         largest=float(np.abs(pair.apart).max()) if pair.apart.size else float("nan"),
+        typical=float(np.sqrt(np.mean(pair.apart**2))) if pair.apart.size else float("nan"),
         threshold=threshold,
         above=None if threshold is None else change(share_above(first, threshold), share_above(second, threshold)),
     )

@@ -29,6 +29,7 @@ def verdict_text(comparison: Comparison) -> list[str]:
     books = book_names(comparison)
     return [
         *_enough(comparison, books),
+        *(_only_as_a_whole(each) for each in comparison.of(Verdict.WITHIN) if each.only_distributions_agree),
         *_rivals(comparison.rivals, books),
         *(_too_little(comparison, each, books) for each in comparison.of(Verdict.BEYOND)),
         *_undecided_text(comparison),
@@ -48,6 +49,16 @@ def _enough(comparison: Comparison, books: tuple[str, str]) -> Iterator[str]:
     names = _join_names([f"{_name(each)} to {_tolerance(each)}" for each in within])
     subject = _subject(comparison, books)
     yield f"{subject} is enough for {names}." if subject else f"The two books agree for {names}."
+
+
+def _only_as_a_whole(each: ForecastComparison) -> str:
+    """Two answers with one distribution that are not one number, as 10 + z and 10 − z."""
+    found, units = each.difference, f" {each.first.units}" if each.first.units else ""
+    return (
+        f"Of {_name(each)} only the distributions agree, and the trials do not: from the same draws the books give "
+        f"numbers that differ by {found.typical:.3g}{units} (root mean square), {found.largest:.3g}{units} at most. "
+        "What is computed from it together with other answers may not agree."
+    )
 
 
 def _too_little(comparison: Comparison, each: ForecastComparison, books: tuple[str, str]) -> str:

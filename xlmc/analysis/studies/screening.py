@@ -362,7 +362,7 @@ class _Screen:
         drawn = np.array([self._run.prior[name][:_RANKED] for name in alone])
         if len(drawn) < 2:
             return []
-        groups = _groups(np.nan_to_num(np.corrcoef(_ranks(drawn))))
+        groups = _groups(np.asarray(np.nan_to_num(np.corrcoef(_ranks(drawn)))))
         named = [tuple(name for index, name in enumerate(alone) if index in group) for group in groups]
         return [names for names in named if not all(alone[name] for name in names)]
 

@@ -52,7 +52,7 @@ from xlmc.outputs.summary import (
 
 if TYPE_CHECKING:
     from xlmc.analysis.results.record import Record
-    from xlmc.analysis.studies.sensitivity import ForecastSensitivity
+    from xlmc.analysis.studies.sensitivity import ForecastSensitivity, Influence
     from xlmc.montecarlo.definitions.definitions import Assumption
     from xlmc.montecarlo.simulation.simulation import Simulation
 
@@ -365,9 +365,14 @@ def _influence_rows(found: ForecastSensitivity, most: int) -> Iterator[tuple[str
         yield (
             "" if index else found.forecast,
             each.assumption,
-            "noise" if weak.explained else share_text(each.explained),
+            "noise" if weak.explained else explained_text(each),
             rank if rank and not math.isnan(each.rank_correlation.value) else _NONE,
         )
+
+
+def explained_text(found: Influence) -> str:
+    """The variance explained, `at least 81.4 ± 1.2 %` where it is a lower bound."""
+    return f"{'at least ' if found.explained_at_least else ''}{share_text(found.explained)}"
 
 
 def _checks(material: Material) -> Iterator[Block]:

@@ -14,7 +14,7 @@ from typing import Any
 from xlmc.analysis.results.statements.in_words import number_text
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.outputs.page.element import Html, element, join
-from xlmc.outputs.sheets.cells import NOISE, NONE, Shown
+from xlmc.outputs.sheets.cells import AT_LEAST, NOISE, NONE, Shown
 from xlmc.outputs.sheets.page import Page
 from xlmc.outputs.summary import estimate_text, share_text
 
@@ -165,6 +165,8 @@ def _general(value: float) -> str:
 def _format_number(value: float, number_format: str) -> str:
     if number_format == NOISE:
         return "noise"
+    if number_format.startswith(AT_LEAST):
+        return f"at least {_format_number(value, number_format.removeprefix(AT_LEAST))}"
     found = _FORMAT.fullmatch(number_format)
     if found is None:
         raise ValueError(f"no number format of a result sheet: {number_format!r}")

@@ -14,6 +14,7 @@ from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import two_digit_exponent
 
 __all__ = [
+    "AT_LEAST",
     "BLANK",
     "LOGICAL",
     "NOISE",
@@ -38,6 +39,9 @@ LOGICAL = '"TRUE";"TRUE";"FALSE"'
 
 NOISE = '"noise";"noise";"noise"'
 """The format of a number that is no more than noise: it shows the word."""
+
+AT_LEAST = '"at least "'
+"""What a number format begins with, if the number is a lower bound."""
 
 _COUNT = "#,##0"
 

@@ -149,7 +149,15 @@ def sensitivity_sentences(found: Sensitivities) -> list[str]:
     if found.sobol_reason:
         said.append(f"{found.sobol_reason}.")
     if found.examined < found.accepted:
-        said.append(f"Influences rest on {found.examined:,} of the {found.accepted:,} accepted trials.")
+        said.append(
+            f"Influences rest on {found.examined:,} of the {found.accepted:,} accepted trials; the variance explained, "
+            "where the forecast jumps or bends, on up to 131,072."
+        )
+    if any(each.explained_at_least for forecast in found.forecasts for each in forecast.influences):
+        said.append(
+            "Variance explained “at least” so much: the forecast jumps or bends more finely than the trials show, or a "
+            "few trials decide the number, and it may be larger than its error says. More trials help."
+        )
     if found.omitted:
         said.append(f"{found.omitted:,} assumptions with less influence in a first, coarse look were left out.")
     if found.medians:
@@ -234,7 +242,7 @@ def _row(found: Influence, weak: Noise, sobol: bool) -> list[Shown]:
     row = [
         Shown(found.assumption, look="name"),
         Shown(found.units),
-        *_with_floor(found.explained, found.explained_floor, weak.explained),
+        *_at_least(found, _with_floor(found.explained, found.explained_floor, weak.explained)),
         *_with_floor(found.dependence, found.dependence_floor, weak.dependence),
         *_as_noise(cells.estimate(found.rank_correlation), weak.correlation),
         *_as_noise(cells.share(found.contribution), weak.correlation),
@@ -247,6 +255,13 @@ def _row(found: Influence, weak: Noise, sobol: bool) -> list[Shown]:
 def _with_floor(found: Estimate, floor: float, is_noise: bool) -> list[Shown]:
     shown = _as_noise(cells.share(found), is_noise)
     return [*shown, Shown(floor, cells.share_format(found), "error")]
+
+
+def _at_least(found: Influence, shown: list[Shown]) -> list[Shown]:
+    """The cells of the variance explained, with the words before the number where it is a lower bound."""
+    if not found.explained_at_least or shown[0].format == cells.NOISE:
+        return shown
+    return [replace(shown[0], format=cells.AT_LEAST + shown[0].format), *shown[1:]]
 
 
 def _as_noise(shown: list[Shown], is_noise: bool) -> list[Shown]:

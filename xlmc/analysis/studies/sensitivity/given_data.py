@@ -11,7 +11,8 @@ assumptions Sobol's first-order index.
 - *Estimate.* X is cut into classes of equal probability (Plischke, Borgonovo & Smith 2013; Strong & Oakley 2013), at
   most 16 and of at least 50 trials, and a straight line is laid through Y in each (a regression as in Strong, Oakley &
   Brennan 2014, but without a family of smooth functions). Where E[Y | X] is linear that is exact, however few the
-  classes; a plain mean per class loses 1 to 2 % with normal X. With k parameters,
+  classes; a plain mean per class loses 1 to 2 % with normal X. Where Y jumps or bends inside a class, `explained` asks
+  for finer ones. With k parameters,
 
       S = 1 − (RSS / (n − k)) / (TSS / (n − 1)),
 
@@ -63,6 +64,7 @@ __all__ = [
     "dependence_floor",
     "explained_floor",
     "explained_share",
+    "fit_lines",
     "rank_correlation",
     "shares",
     "standardise",
@@ -85,7 +87,7 @@ def explained_share(x: Ranked, y: Floats, units: Units) -> Estimate:
     if z is None or n <= classes.freedom:
         return Estimate(math.nan, n=n)
     z = z[x.order]
-    residual = z - _fit_lines(classes, z)
+    residual = z - fit_lines(classes, z)
     value = _adjust(float(np.sum(residual * residual)), n, classes.freedom)
     pulls = np.empty(n)
     pulls[x.order] = (1.0 - value) * z * z - residual * residual * (n / (n - classes.freedom))
@@ -120,7 +122,7 @@ def _adjust(residual: float, n: int, k: int) -> float:
     return 1.0 - residual / (n - k) * ((n - 1.0) / n)
 
 
-def _fit_lines(classes: Classes, y: Floats) -> Floats:
+def fit_lines(classes: Classes, y: Floats) -> Floats:
     """`(n,)` the lines at every trial, of y in ascending order of x."""
     means = np.add.reduceat(y, classes.starts) / classes.sizes
     slopes = np.add.reduceat(y * classes.centred, classes.starts) / classes.squares

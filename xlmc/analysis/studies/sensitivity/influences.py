@@ -8,18 +8,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.analysis.studies.sensitivity.explained import Explained, explained
 from xlmc.analysis.studies.sensitivity.given_data import (
     contributions,
     dependence,
     dependence_floor,
     explained_floor,
-    explained_share,
     rank_correlation,
     shares,
     standardise,
@@ -54,15 +54,23 @@ _VALUES = 1 << 20
 
 _REPLICATES = 32
 
+_FINE_TRIALS = 1 << 15, 1 << 17
+_FINE_VALUES = 1 << 22
+"""Trials, and trials times pairs, where a forecast jumps or bends inside the classes of the first look; the second
+number where the first leaves an error above `_FINE_ERROR`, or a lower bound only."""
+
+_FINE_ERROR = 0.006
+
 
 @dataclass(frozen=True)
 class Influences:
     """The influence of every assumption on one forecast, by the variance explained; `trials` are those it is a number
-    in.
+    in. `coarse` names the assumptions whose share asks for finer classes, and more trials.
     """
 
     trials: int
     found: tuple[Influence, ...]
+    coarse: tuple[str, ...] = ()
 
 
 def ranked_assumptions(simulation: Simulation) -> list[str]:
@@ -99,7 +107,47 @@ def influences(simulation: Simulation, assumptions: Sequence[str]) -> list[Influ
         if key not in tables:
             tables[key] = _Table.of(draws, replicate, known)
         found.append(tables[key].influences(named, y[known]))
+    for trials in _FINE_TRIALS:
+        pairs = sum(len(each.coarse) for each in found)
+        most = min(trials, _FINE_VALUES // max(pairs, 1))
+        if pairs and most > rows.size < simulation.accepted:
+            found = _with_finer_shares(simulation, found, most)
     return found
+
+
+def _with_finer_shares(simulation: Simulation, found: Sequence[Influences], most: int) -> list[Influences]:
+    """The same with the shares that ask for it from up to `most` trials."""
+    rows, replicate = _examined_rows(simulation, most)
+    tables: dict[bytes, tuple[Units, dict[str, Ranked]]] = {}
+    finer = []
+    for forecast, each in zip(simulation.model.forecasts, found, strict=True):
+        if not each.coarse:
+            finer.append(each)
+            continue
+        y = _read(simulation.forecasts[forecast.name], rows)
+        known = ~np.isnan(y)
+        units, columns = tables.setdefault(known.tobytes(), (_units_of(replicate, known), {}))
+        for name in each.coarse:
+            if name not in columns:
+                columns[name] = Ranked.of(_read(simulation.inputs[name], rows)[known])
+        shares_now = {name: explained(columns[name], y[known], units) for name in each.coarse}
+        changed = [
+            replace(one, explained=now.share, explained_at_least=now.at_least)
+            if (now := shares_now.get(one.assumption))
+            else one
+            for one in each.found
+        ]
+        coarse = tuple(name for name in each.coarse if _asks_for_more(shares_now[name]))
+        finer.append(replace(each, found=tuple(sorted(changed, key=_by_share)), coarse=coarse))
+    return finer
+
+
+def _asks_for_more(found: Explained) -> bool:
+    return found.at_least or (found.share.error or 0.0) > _FINE_ERROR
+
+
+def _units_of(replicate: Ids | None, known: NDArray[np.bool_]) -> Units:
+    return Units.of(int(np.count_nonzero(known)), None if replicate is None else replicate[known])
 
 
 def _read(column: Floats, rows: NDArray[np.intp]) -> Floats:
@@ -116,7 +164,7 @@ class _Table:
 
     @classmethod
     def of(cls, draws: Sequence[Floats], replicate: Ids | None, known: NDArray[np.bool_]) -> _Table:
-        units = Units.of(int(np.count_nonzero(known)), None if replicate is None else replicate[known])
+        units = _units_of(replicate, known)
         enough = units.n >= _LEAST_TRIALS
         return cls([Ranked.of(column[known]) for column in draws] if enough else [], units)
 
@@ -125,21 +173,24 @@ class _Table:
         if not self.columns or not (ranked := Ranked.of(y)).varies:
             return Influences(int(y.size), ())
         correlations = [rank_correlation(x, ranked, self.units) for x in self.columns]
-        parts = zip(named, self.columns, correlations, contributions(correlations), strict=True)
+        shares_of = [explained(x, y, self.units) for x in self.columns]
+        parts = zip(named, self.columns, correlations, contributions(correlations), shares_of, strict=True)
         found = [
             Influence(
                 assumption=name,
                 units=units,
                 rank_correlation=correlation,
                 contribution=contribution,
-                explained=explained_share(x, y, self.units),
+                explained=share.share,
+                explained_at_least=share.at_least,
                 explained_floor=explained_floor(x, len(named)),
                 dependence=dependence(x, ranked, self.units),
                 dependence_floor=dependence_floor(x, len(named)),
             )
-            for (name, units), x, correlation, contribution in parts
+            for (name, units), x, correlation, contribution, share in parts
         ]
-        return Influences(int(y.size), tuple(sorted(found, key=_by_share)))
+        coarse = tuple(name for (name, _), share in zip(named, shares_of, strict=True) if not share.coarse_enough)
+        return Influences(int(y.size), tuple(sorted(found, key=_by_share)), coarse)
 
 
 def _by_share(influence: Influence) -> tuple[float, float]:

@@ -47,6 +47,8 @@ class Influence:
             on average, if the assumption's true value were known. Right with correlated assumptions and among
             accepted trials; it counts what the assumption tells of others that go with it. Shares need not add up to 1.
             May be a little below 0: the estimate has no bias, and noise has either sign.
+        explained_at_least: whether `explained` is a lower bound only, because the forecast jumps or bends more finely
+            than the trials show, or a few trials decide it.
         explained_floor: what noise alone reaches: with no influence of any assumption, the largest of all of a
             forecast's shares stays below it with 95 % probability.
         dependence: the Cramér–von Mises index, 0 to 1: 0 only where the forecast's whole distribution does not depend
@@ -68,6 +70,7 @@ class Influence:
     dependence_floor: float
     first_order: Estimate | None = None
     total: Estimate | None = None
+    explained_at_least: bool = False
 
     @property
     def seen(self) -> bool:

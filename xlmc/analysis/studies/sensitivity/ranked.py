@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Classes", "Ranked"]
+__all__ = ["Classes", "Ladder", "Ranked"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -21,6 +22,9 @@ _STEPS = 32
 
 _LEAST_IN_A_CLASS = 50
 """Trials, where there is more than one class: enough to lay a line through."""
+
+_LEAST_FITTED = 8
+"""Trials in the finest classes."""
 
 _FLAT = 1e-24
 """A share of the column's variance: less within a class is rounding, and no line is fitted there."""
@@ -123,7 +127,17 @@ class Ranked:
 
     @cached_property
     def classes(self) -> Classes:
-        label = self._labels(min(_MOST_CLASSES, max(1, self.n // _LEAST_IN_A_CLASS)))
+        """At most 16, each of 50 trials or more."""
+        return self.ladder[0]
+
+    @cached_property
+    def ladder(self) -> Ladder:
+        """`classes`, then four times as many, and so on, as long as there are 8 trials in each."""
+        return Ladder(self)
+
+    def cut(self, count: int) -> Classes:
+        """So many classes of equal probability, fewer where values are equal, with a line in each."""
+        label = self._labels(count)
         starts = np.flatnonzero(np.concatenate([[True], label[1:] != label[:-1]]))
         sizes = np.diff(np.append(starts, self.n))
         x = _squarable(self.values[self.order])
@@ -134,6 +148,26 @@ class Ranked:
         centred[np.repeat(flat, sizes)] = 0.0
         freedom = int(starts.size + np.count_nonzero(~flat))
         return Classes(starts, sizes, label, centred, np.where(flat, 1.0, squares), freedom)
+
+
+class Ladder:
+    """Ever finer classes of a column, each made when it is first asked for."""
+
+    def __init__(self, ranked: Ranked) -> None:
+        first = min(_MOST_CLASSES, max(1, ranked.n // _LEAST_IN_A_CLASS))
+        doublings = max(ranked.n // (_LEAST_FITTED * first), 1).bit_length() - 1
+        self._counts = [first * 4**step for step in range(doublings // 2 + 1)]
+        self._ranked = ranked
+        self._made: dict[int, Classes] = {}
+
+    def __iter__(self) -> Iterator[Classes]:
+        return (self[index] for index in range(len(self._counts)))
+
+    def __getitem__(self, index: int) -> Classes:
+        count = self._counts[index]
+        if count not in self._made:
+            self._made[count] = self._ranked.cut(count)
+        return self._made[count]
 
 
 def _squarable(x: Floats) -> Floats:

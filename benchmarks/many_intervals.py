@@ -16,7 +16,7 @@ from scipy.special import bdtrik, betaincinv, stdtrit
 from xlmc.montecarlo.statistics import pulls
 from xlmc.montecarlo.statistics.estimate import LENGTHENED
 
-__all__ = ["Numbers", "mean_and_deviation", "percentile", "share"]
+__all__ = ["Numbers", "deviation_of_share", "mean_and_deviation", "percentile", "share"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -148,6 +148,13 @@ def share(hits: Bools, kept: Bools, replicates: int) -> Numbers:
     low = np.where(even, np.minimum(low, ((k + least) / size).clip(0.0)), low)
     high = np.where(even, np.maximum(high, ((k + most) / size).clip(max=1.0)), high)
     return Numbers(p, low, high, nothing)
+
+
+def deviation_of_share(mean: Numbers, value: Floats) -> Numbers:
+    """The standard deviation, of the given value, of zeros and ones whose mean is known."""
+    ends = np.sort([np.sqrt(p * (1.0 - p)) for p in (mean.low, mean.high)], axis=0)
+    most = np.where((mean.low < 0.5) & (mean.high > 0.5), 0.5, ends[1])
+    return Numbers(value, np.minimum(ends[0], value), np.maximum(most, value), mean.told)
 
 
 def _each(trials: Bools, replicates: int) -> NDArray[np.int64]:

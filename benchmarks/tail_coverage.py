@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from many_intervals import mean_and_deviation, percentile, share
+from many_intervals import deviation_of_share, mean_and_deviation, percentile, share
 from numpy.typing import NDArray
 from scipy.special import bdtr
 from tables import placed
@@ -36,6 +36,7 @@ from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 from xlmc.montecarlo.simulation.simulation import FEW, LEAST_ACCEPTED
 from xlmc.montecarlo.statistics.sample import MOST_GROUPS
+from xlmc.montecarlo.statistics.yes_no import are_yes_no
 
 __all__ = ["Cell", "faults", "measure", "one_run", "tables"]
 
@@ -94,6 +95,9 @@ def many_runs(problem: Problem, u: Floats, plan: SamplingPlan) -> Floats:
     x, kept = problem.forecast(flat).reshape(shape), problem.keeps(flat).reshape(shape)
     ascending = np.sort(np.where(kept, x, np.inf), axis=1)
     mean, deviation, farthest = mean_and_deviation(x, kept, plan.replicates)
+    if are_yes_no(x):
+        mean = share(x > 0.5, kept, plan.replicates)
+        deviation, farthest = deviation_of_share(mean, deviation.value), np.zeros(len(x))
     ranks = [percentile(x, ascending, kept, p, plan.replicates) for p in RANKS]
     found = np.array([mean, deviation, *ranks, share(x > problem.above, kept, plan.replicates)])
     accepted = kept.sum(axis=1)
@@ -108,7 +112,7 @@ def _told(sample: xs.Sample, plan: SamplingPlan) -> list[bool]:
     """Whether a run gives a notice or a warning on each number."""
     if plan.replicates and sample.n < LEAST_ACCEPTED * min(plan.replicates, MOST_GROUPS):
         return [True] * len(STATISTICS)
-    hangs = sample.n >= TELLING and xs.farthest_part(sample) > FARTHEST_PART
+    hangs = sample.n >= TELLING and not sample.yes_no and xs.farthest_part(sample) > FARTHEST_PART
     few = not plan.replicates and sample.n < FEW
     named = {*xs.too_short(sample), *xs.errors_from_trials(sample)}
     both = [hangs or few or name in named for name in ("mean", "standard deviation")]

@@ -206,5 +206,5 @@ def _named(samples: Mapping[str, Sample], concerned: Callable[[Sample], list[str
 
 def _farthest(sample: Sample) -> str:
     """The part of the farthest trial, in words; empty where no trial has too large a part."""
-    part = statistics.farthest_part(sample)
+    part = 0.0 if sample.yes_no else statistics.farthest_part(sample)  # the interval of a share holds
     return f"which makes up {part:.0%} of the variance of {sample.n:,}" if part > FARTHEST_PART else ""

@@ -186,7 +186,8 @@ def _rank_intervals(sample: Sample, p: Floats, n: Floats, confidence: float) -> 
     last = np.maximum(n - 1.0, 1.0)
     ends = np.stack([low / last, high / last], axis=1).clip(0.0, 1.0)
     ends = sample.quantile(ends.ravel()).reshape(ends.shape)
-    ends[open_below, 0], ends[open_above, 1] = -np.inf, np.inf
+    least, most = (0.0, 1.0) if sample.yes_no else (-np.inf, np.inf)
+    ends[open_below, 0], ends[open_above, 1] = least, most
     return np.asarray(ends)
 
 

@@ -80,6 +80,14 @@ class Sample:
         count = max(1, round(self.effective))
         return self.quantile((np.arange(count) + 0.5) / count)
 
+    @cached_property
+    def yes_no(self) -> bool:
+        """Whether every value is 0 or 1, of two trials or more."""
+        if self.n < 2 or self.x[0] not in (0.0, 1.0) or self.x[-1] not in (0.0, 1.0):
+            return False
+        first = int(np.searchsorted(self.x, 0.0, side="right"))
+        return first == self.n or bool(self.x[first] == 1.0)
+
     @property
     def units(self) -> float:
         """Independent units: replicates, or else (effective) trials."""

@@ -29,6 +29,12 @@ from xlmc.montecarlo.statistics.pulls import (
     wider,
 )
 from xlmc.montecarlo.statistics.sample import Sample, Values
+from xlmc.montecarlo.statistics.yes_no import (
+    coefficient_of_share,
+    deviation_of_share,
+    share_of_ones,
+    variance_of_share,
+)
 
 __all__ = [
     "coefficient_of_variation",
@@ -61,7 +67,7 @@ SQUARE: Final[Pull] = (0.0, 1.0)
 def mean(
     values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None, *, confidence: float = 0.95
 ) -> Estimate:
-    """Arithmetic mean; for independent trials its error is s/√n.
+    """Arithmetic mean; for independent trials its error is s/√n, and of zeros and ones it is a share: see `yes_no`.
 
     >>> mean([1.0, 2.0, 3.0]).value
     2.0
@@ -69,6 +75,8 @@ def mean(
     nan
     """
     sample = Sample.of(values, weights, replicate)
+    if (found := share_of_ones(sample, confidence)) is not None:
+        return found
     m = sample.moments
     return _estimate(sample, m.mean, m.scale, MEAN, _error(sample, (*MEAN, 0.0, 0.0)), confidence, with_error)
 
@@ -89,6 +97,8 @@ def variance(
     value = _deviation(sample) * _deviation(sample)
     if math.isinf(value):  # too large for a number
         return Estimate(np.nan, n=sample.n)
+    if (found := share_of_ones(sample, confidence)) is not None:
+        return variance_of_share(found, value, confidence)
     error = _relative_error_of_variance(sample)
     return _estimate(sample, value, value, SQUARE, error, confidence, with_relative_error)
 
@@ -99,6 +109,8 @@ def standard_deviation(
     """Square root of the sample variance, as Excel's STDEV.S."""
     sample = Sample.of(values, weights, replicate)
     value = _deviation(sample)
+    if (found := share_of_ones(sample, confidence)) is not None:
+        return deviation_of_share(found, value, confidence)
     error = _relative_error_of_variance(sample)
     return _estimate(sample, value, 0.5 * value, SQUARE, error, confidence, with_relative_error)
 
@@ -112,6 +124,8 @@ def coefficient_of_variation(
     if m.mean == 0.0:
         return Estimate(np.nan, n=sample.n)
     value = _deviation(sample) / m.mean
+    if (found := share_of_ones(sample, confidence)) is not None:
+        return coefficient_of_share(found, value, confidence)
     sign = math.copysign(1.0, value)
     pull = -sign * m.scale / m.mean, sign * 0.5
     return _estimate(sample, value, abs(value), pull, _error(sample, (*pull, 0.0, 0.0)), confidence, with_error)
@@ -148,6 +162,8 @@ def mean_standard_error(
     sample = Sample.of(values, weights, replicate)
     if sample.dof < LEAST_DOF:
         return Estimate(np.nan, n=sample.n)
+    if sample.yes_no and sample.x[0] == sample.x[-1]:  # all agree, and another seed may have one that does not
+        return Estimate(mean(sample).error or math.nan, n=sample.n)
     value = sample.moments.scale * _error(sample, (1.0, 0.0, 0.0, 0.0))
     return with_relative_error(value, value * sample.moments.noise, sample.dof, confidence, sample.n)
 
@@ -157,7 +173,7 @@ def errors_from_trials(
 ) -> list[str]:
     """Name which of mean and standard deviation have the error of independent trials although there are replicates."""
     sample = Sample.of(values, weights, replicate)
-    if sample.group is None or sample.dof < LEAST_DOF or sample.n < 2:
+    if sample.group is None or sample.dof < LEAST_DOF or sample.n < 2 or sample.yes_no:
         return []
     n = sample.effective
     return [name for name, pull in _NAMED.items() if few_decide(trial_skewness(sample.moments, pull, n), n)]
@@ -166,7 +182,7 @@ def errors_from_trials(
 def too_short(values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None) -> list[str]:
     """Name which of mean and standard deviation may have too short an interval, because the tail is heavy."""
     sample = Sample.of(values, weights, replicate)
-    if sample.n < 2:
+    if sample.n < 2 or sample.yes_no:
         return []
     return [name for name, pull in _NAMED.items() if beyond_reach(sample.moments, pull, sample.effective)]
 

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+
 import xlmc
 from xlmc.analysis.studies.sensitivity.explained import explained
 from xlmc.analysis.studies.sensitivity.given_data import explained_share

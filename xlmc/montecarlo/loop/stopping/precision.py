@@ -135,7 +135,8 @@ class UntilPrecise:
         half = half_width(found)
         allowed = self._asked.tolerance * (abs(found.value) if self._asked.relative else 1.0)
         if allowed == 0.0:
-            return 0.0 if half == 0.0 else math.inf
+            same = self._moments[wanted.index].deviation == 0.0  # no share of 0 is ever known to a part of itself
+            return 0.0 if half == 0.0 or same else math.inf
         return half / allowed
 
     def _estimate(self, wanted: Wanted, columns: Columns) -> Estimate:

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 from xlmc.montecarlo.loop.stopping.rule import Observed
 from xlmc.montecarlo.statistics.estimate import Estimate, with_error, with_relative_error
+from xlmc.montecarlo.statistics.proportions import proportion
 from xlmc.montecarlo.statistics.pulls import Pull, Shape, trial_skewness
+from xlmc.montecarlo.statistics.yes_no import are_yes_no, deviation_of_share
 
 __all__ = ["Progress", "ProgressTracker", "RunningMoments"]
 
@@ -35,6 +37,7 @@ class RunningMoments:
         self._pivot = self._mean = 0.0
         self._sums = np.zeros(7 if spread else 4)
         """The sums of the powers 0, 1, 2, … about the mean; that of the first power is always 0."""
+        self._yes_no = True
 
     def add(self, column: Floats) -> None:
         """Take `(m,)` more; NaN is no number."""
@@ -43,6 +46,7 @@ class RunningMoments:
             return
         if self.n == 0:
             self._pivot = float(x[0])  # all is counted from here, so that 1e9 ± 1 keeps its digits
+        self._yes_no = self._yes_no and are_yes_no(x)
         with np.errstate(over="ignore", invalid="ignore"):  # beyond the largest number nothing is ever precise
             x = x - self._pivot
             mean = float(x.mean())
@@ -65,12 +69,16 @@ class RunningMoments:
         """As `statistics.mean`, to rounding."""
         if self.n == 0:
             return Estimate(math.nan)
+        if self._yes_no and self.n > 1:
+            return proportion(round((self._pivot + self._mean) * self.n), self.n, confidence=confidence)
         value, error = self._pivot + self._mean, self.deviation / math.sqrt(self.n)
         return with_error(value, error, self.n - 1.0, confidence, self.n, self._skewness((1.0, 0.0)))
 
     def standard_deviation(self, confidence: float = 0.95) -> Estimate:
         """As `statistics.standard_deviation`, to rounding: Var(s²) ≈ (m₄ − s⁴(n − 3)/(n − 1))/n."""
         n, value = self.n, self.deviation
+        if n > 1 and self._yes_no:
+            return deviation_of_share(self.mean(confidence), value, confidence)
         if n < 2 or self._sums[2] == 0.0:
             return with_error(value, 0.0, n - 1.0, confidence, n)
         kurtosis = float(self._standardised()[4])

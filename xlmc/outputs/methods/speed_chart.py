@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
@@ -17,7 +17,7 @@ import numpy as np
 from xlmc.analysis.studies.methods import Curve, Study
 from xlmc.analysis.studies.methods.answer import seconds_text, trials_text
 from xlmc.analysis.studies.methods.law import law
-from xlmc.analysis.studies.methods.need import Choice, Need, choice, reach_of, seconds_of, shortfall
+from xlmc.analysis.studies.methods.need import Choice, Need, choice, reach_of, seconds_of, shortfall, tied
 from xlmc.outputs.methods.methods_tables import near_text
 
 __all__ = [
@@ -189,8 +189,8 @@ def picture_of(study: Study, work: Work) -> Picture | None:
         if line.points:
             lines.append(line)
     marks = (
-        Mark(scale, _mark(study, scale, found, ", as asked for")),
-        Mark(scale / FINER, _mark(study, scale / FINER, finer, "")),
+        Mark(scale, _mark(study, scale, study.accuracy, found, ", as asked for")),
+        Mark(scale / FINER, _mark(study, scale / FINER, _finer(study), finer, "")),
     )
     return Picture(
         across="time of a run, s" if work == "seconds" else "evaluations of the workbook in a run",
@@ -307,13 +307,18 @@ def _when(found: Need) -> str:
     return "never" if found.reaches == "no" else "cannot tell"
 
 
-def _mark(study: Study, height: float, found: Choice, more: str) -> tuple[str, ...]:
-    """The accuracy, the cheapest method there, and those that tie with it."""
+def _mark(study: Study, height: float, accuracy: tuple[str, float, bool], found: Choice, more: str) -> tuple[str, ...]:
+    """The accuracy, the cheapest method there, and those that tie with it; also those that draw nothing."""
     text = f"{_accuracy_text(study, height)}{more}"
-    if not found.cheapest:
+    asked = replace(study, accuracy=accuracy)
+    costs = {c.method.name: each.seconds for c, each in found.needs.items() if each.usable}
+    costs |= {
+        c.method.name: c.lengths[-1].seconds for c in study.once if c.answers and shortfall(asked, c).reaches == "yes"
+    }
+    if not costs:
         return (text,)
-    first, *others = (curve.method.name for curve in found.cheapest)
-    said = (f"{text}; cheapest:", f"{first}, {seconds_text(found.needs[found.cheapest[0]].seconds)}")
+    first, *others = tied(costs)
+    said = (f"{text}; cheapest:", f"{first}, {seconds_text(costs[first])}")
     if not others:
         return said
     named, rest = others[:_NAMED], len(others) - _NAMED

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.analysis.studies.methods.answer import Answer, Extreme, extremes_of
+from xlmc.analysis.studies.methods.quantile_need import QuantileNeed, quantile_need
 from xlmc.errors import SimulationError
 from xlmc.montecarlo import statistics
 from xlmc.montecarlo.definitions.definitions import Forecast
@@ -40,6 +41,8 @@ _ROUNDING: Final = 1e-12
 _NORMAL_WIDTH: Final = 3.289707
 """The width from the 5 % to the 95 % quantile of a normal distribution, in standard deviations."""
 
+_MOST_ORDERED: Final = 1 << 20
+
 _WATCHED: Final = 256
 """Accepted trials whose draws are kept: the watch for lost digits looks at so many."""
 
@@ -62,6 +65,7 @@ class Reference:
         heavy: forecast -> attributes of `Answer` that do not converge, because its tail is too heavy.
         warnings: why its answers must not be used as they are.
         extremes: its lowest and highest accepted trials.
+        ordered: forecast -> its accepted values in ascending order, evenly thinned to 1,048,576.
     """
 
     trials: int
@@ -78,6 +82,17 @@ class Reference:
     warnings: tuple[str, ...] = ()
     heavy: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     extremes: tuple[Extreme, ...] = ()
+    ordered: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+
+    def quantile_need(self, forecast: Forecast, statistic: str, tolerance: float) -> QuantileNeed | None:
+        """What an end of a forecast's central range needs, as far as the reference knows; else None."""
+        own, single = (getattr(each[forecast.name], statistic) for each in (self.errors, self.single))
+        ordered = self.ordered.get(forecast.name)
+        if ordered is None or ordered.size < 2 or not (own > 0.0 and single > 0.0 and tolerance > 0.0):
+            return None
+        tail = (1.0 - forecast.central) / 2.0
+        p = tail if statistic == "low" else 1.0 - tail
+        return quantile_need(ordered, p, tolerance, self.accepted, own * self.accepted**0.5 / single)
 
     def theory(self, forecast: str, statistic: str, trials: int) -> float:
         """The standard error of one number of a forecast in a run of so many independent trials."""
@@ -139,6 +154,7 @@ def reference_of(model: Model, trials: int, sampling: str, engine: str, seed: in
         acceptance=run.acceptance,
         warnings=tuple(run.warnings),
         extremes=extremes_of(run.forecasts, run.trial_index, seed, run.plan),
+        ordered={f.name: _thinned(run[f.name].sample.x) for f in model.forecasts},
         heavy={f.name: lost for f in model.forecasts if (lost := _lost(run[f.name].sample.x))},
     )
 
@@ -158,6 +174,13 @@ def unfiltered_of(model: Model, reference: Reference) -> Reference | None:
     except SimulationError:
         return None
     return None if found.warnings or found.heavy else found
+
+
+def _thinned(ordered: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(m,) values of the middles of as many equal parts."""
+    if ordered.size <= _MOST_ORDERED:
+        return ordered
+    return ordered[((np.arange(_MOST_ORDERED) + 0.5) * (ordered.size / _MOST_ORDERED)).astype(np.int64)]
 
 
 def _width(sample: Sample, answer: Answer) -> float:

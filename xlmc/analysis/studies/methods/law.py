@@ -2,7 +2,8 @@
 
 The error of `n` trials is c·n^s, and 95 of 100 runs lie within hypot(1.96·c·n^s, floor).
 
-- Independent trials: s = −1/2, and c is the reference's own standard error, as of one trial. The runs only check it.
+- Independent trials: s = −1/2, and c is the reference's own standard error, as of one trial. The runs only check it. Of
+  percentiles, c is that of the tolerance: what the reference's distribution within it says (`quantile_need`).
 - Latin hypercubes and scrambled nets: they converge too, in the long run at least as fast (Owen 1997, 1998). s is −1/2
   unless the runs fall faster by more than chance; c is that of the runs. The same for weighted trials, with s = −1/2.
 - Trials on a substitute for the workbook: as independent trials, down to a floor that more of them do not lower. The
@@ -28,6 +29,7 @@ Kind = tuple[str, str]
 Floats = NDArray[np.float64]
 
 _HALF: Final = -0.5
+_ENDS: Final = ("low", "high")
 _STEEPEST: Final = -1.5
 _WINDOW: Final = 4
 """Run lengths that one line is fitted to: two decades. Over more, some curves bend."""
@@ -52,6 +54,7 @@ class Law:
         least: trials of the shortest runs that it holds for.
         floor: what 95 of 100 runs of any length are off by; 0 where none was found.
         floor_low, floor_high: where that lies, as far as the runs know.
+        error: the standard error of the logarithm of the trials that are needed.
     """
 
     constant: float
@@ -60,6 +63,7 @@ class Law:
     floor: float = 0.0
     floor_low: float = 0.0
     floor_high: float = 0.0
+    error: float = 0.0
 
     def reach(self, trials: float) -> float:
         """What 95 of 100 runs of so many trials keep within."""
@@ -86,13 +90,26 @@ def law(study: Study, curve: Curve, kind: Kind) -> Law:
     lengths = curve.settled
     match curve.method.errors:
         case "independent":
-            return _law_of_independent(lengths, kind, theory)
+            return _law_of_quantile(study, lengths, kind) or _law_of_independent(lengths, kind, theory)
         case "floor":
             return _law_with_floor(study, lengths, kind, theory)
         case "weighted":
             return _fit_law(lengths[-_WINDOW:], kind, may_be_steeper=False)
         case _:
-            return _law_near_tolerance(lengths, kind, study.tolerance(kind[0]))
+            return _fit_law(lengths, kind, may_be_steeper=True)
+
+
+def _law_of_quantile(study: Study, lengths: Sequence[Runs], kind: Kind) -> Law | None:
+    """The law that meets what a percentile needs; None for other numbers, and where the reference does not know it."""
+    if kind[1] not in _ENDS:
+        return None
+    tolerance = study.tolerance(kind[0])
+    forecast = next(each for each in study.model.forecasts if each.name == kind[0])
+    found = study.reference.quantile_need(forecast, kind[1], tolerance)
+    if found is None:
+        return None
+    trials = found.trials / study.reference.acceptance.value
+    return Law(tolerance / NORMAL_95 * trials**0.5, _HALF, lengths[0].budget, error=found.error)
 
 
 def _law_of_independent(lengths: Sequence[Runs], kind: Kind, theory: float) -> Law:
@@ -110,18 +127,6 @@ def _law_of_independent(lengths: Sequence[Runs], kind: Kind, theory: float) -> L
     return Law(constant, _HALF, lengths[0].budget)
 
 
-def _law_near_tolerance(lengths: Sequence[Runs], kind: Kind, tolerance: float) -> Law:
-    """The line through the run lengths nearest to where the error falls to the tolerance, the longest first."""
-    exact = _exact_from(lengths, kind)
-    if exact is not None:
-        return Law(0.0, _HALF, exact)
-    for start in range(max(len(lengths) - _WINDOW, 0), -1, -1):
-        found = _fit_law(lengths[start : start + _WINDOW], kind, may_be_steeper=True)
-        if np.isnan(found.constant) or found.trials(tolerance) > found.least:
-            break
-    return found
-
-
 def _fit_law(lengths: Sequence[Runs], kind: Kind, *, may_be_steeper: bool) -> Law:
     exact = _exact_from(lengths, kind)
     if exact is not None:
@@ -135,7 +140,7 @@ def _fit_law(lengths: Sequence[Runs], kind: Kind, *, may_be_steeper: bool) -> La
     weights = np.array([2.0 * (each.n - 1) for _, each in known])
     slope = _slope(budgets, values, weights) if may_be_steeper else _HALF
     height = float(np.average(np.log(values) - slope * np.log(budgets), weights=weights))
-    return Law(float(np.exp(height)), slope, least)
+    return Law(float(np.exp(height)), slope, least, error=float(np.sum(weights)) ** -0.5 / abs(slope))
 
 
 def _slope(budgets: Floats, values: Floats, weights: Floats) -> float:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Final, Literal
+from typing import Final, Literal, TypeVar
 
 import numpy as np
 
@@ -17,11 +17,23 @@ from xlmc.analysis.studies.methods.law import CONFIDENCE, law
 from xlmc.analysis.studies.methods.sampled import MONTE_CARLO
 from xlmc.analysis.studies.methods.study import Study
 
-__all__ = ["NO_TIME", "Choice", "Need", "Shortfall", "Verdict", "choice", "need", "reach_of", "seconds_of", "shortfall"]
+__all__ = [
+    "NO_TIME",
+    "Choice",
+    "Need",
+    "Shortfall",
+    "Verdict",
+    "choice",
+    "need",
+    "reach_of",
+    "seconds_of",
+    "shortfall",
+    "tied",
+]
+
+Each = TypeVar("Each")
 
 Verdict = Literal["yes", "no", "unknown"]
-
-_LEAST_PART: Final = 0.25
 
 _TIE: Final = 1.2
 """Methods whose seconds are within this factor of the least are a tie: clocks and fits tell no more."""
@@ -29,11 +41,14 @@ _TIE: Final = 1.2
 NO_TIME: Final = 0.1
 """A difference of fewer seconds does not matter."""
 
-_NO_MATTER: Final = 2.0
+_NO_MATTER: Final = 1.5
 """A method must be faster by this factor to be chosen instead of Monte Carlo."""
 
+_ENGINE_MATTERS: Final = 2.0
+"""The same for another engine, whose trials are the same."""
+
 _SOON: Final = 5.0
-"""A run that takes no longer is chosen whatever is faster."""
+"""A run that takes no longer is computed by the usual engine."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +61,7 @@ class Need:
         forecast, statistic: whose accuracy needs the most.
         beyond: how many times as many trials as the longest measured runs had; below 1 where it is between them.
         reaches: whether the method reaches the accuracy at all, as far as the runs can tell.
+        error: the standard error of the logarithm of the trials; 0 where theory alone gives them.
         floor: the error that 95 of 100 runs of any length stay within, in tolerances; 0 for a method that converges.
     """
 
@@ -56,6 +72,7 @@ class Need:
     beyond: float
     reaches: Verdict = "yes"
     floor: float = 0.0
+    error: float = 0.0
 
     @property
     def usable(self) -> bool:
@@ -99,7 +116,7 @@ def need(study: Study, curve: Curve) -> Need:
         rank = (("yes", "unknown", "no").index(reaches), trials)
         if rank > (("yes", "unknown", "no").index(worst.reaches), worst.trials) or not worst.forecast:
             floor = found.floor / tolerance if tolerance > 0.0 else np.inf
-            worst = Need(trials, seconds_of(curve, trials), *kind, trials / longest, reaches, floor)
+            worst = Need(trials, seconds_of(curve, trials), *kind, trials / longest, reaches, floor, found.error)
     if worst.reaches == "yes" and not np.isfinite(worst.trials):
         worst = replace(worst, reaches="unknown")
     return _agreeing(study, curve, worst)
@@ -156,10 +173,10 @@ def reach_of(study: Study, curve: Curve, runs: Runs, kind: tuple[str, str]) -> t
 
 
 def seconds_of(curve: Curve, trials: float) -> float:
-    """A run of so many trials: between measured run lengths in proportion, and beyond them as between the last two.
+    """A run of so many trials: between measured run lengths in proportion, and beyond them at the longest one's rate.
 
-    A trial is taken to cost at least a quarter of the longest run's average: runs that are shorter than a block of
-    trials all take the same time, and do not show what a trial costs.
+    Beyond them a trial costs what it cost on average in the longest run: the difference between two clocked runs is
+    noise where they are short, and would be carried on to billions of trials.
     """
     timed = [runs for runs in curve.lengths if np.isfinite(runs.seconds)]
     if not timed or not np.isfinite(trials):
@@ -169,9 +186,14 @@ def seconds_of(curve: Curve, trials: float) -> float:
     if trials <= budgets[-1]:
         return float(np.interp(trials, budgets, seconds))
     each = float(seconds[-1] / budgets[-1])
-    if budgets.size > 1:
-        each = max(float((seconds[-1] - seconds[-2]) / (budgets[-1] - budgets[-2])), _LEAST_PART * each)
     return float(seconds[-1]) + each * (trials - float(budgets[-1]))
+
+
+def tied(seconds: Mapping[Each, float]) -> tuple[Each, ...]:
+    """Those that take the least time within a fifth or a tenth of a second, the fastest first."""
+    ordered = sorted(seconds, key=lambda each: seconds[each])
+    least = seconds[ordered[0]]
+    return tuple(each for each in ordered if seconds[each] <= max(_TIE * least, least + NO_TIME))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -193,7 +215,8 @@ def choice(study: Study, accuracy: tuple[str, float, bool] | None = None) -> Cho
     """Choose for the accuracy of a study, or for another one.
 
     Monte Carlo, whose trials are independent and whose errors come out of the run itself, unless that takes more than
-    five seconds and another method takes less than half.
+    one and a half times what another method takes, and a tenth of a second more; or five seconds, and twice what
+    another engine takes.
     """
     asked = study if accuracy is None else replace(study, accuracy=accuracy)
     needs = {curve: need(asked, curve) for curve in (*study.curves, *study.engines)}
@@ -201,7 +224,9 @@ def choice(study: Study, accuracy: tuple[str, float, bool] | None = None) -> Cho
     if not usable:
         return Choice(None, needs, ())
     least = needs[usable[0]].seconds
-    cheapest = tuple(c for c in usable if needs[c].seconds <= max(_TIE * least, least + NO_TIME))
+    cheapest = tied({curve: needs[curve].seconds for curve in usable})
     plain = next((curve for curve in usable if curve.method.key == MONTE_CARLO.key), usable[0])
-    slow = needs[plain].seconds > _SOON and needs[plain].seconds > _NO_MATTER * least
+    others = min((needs[curve].seconds for curve in usable if curve in asked.curves), default=least)
+    slow = needs[plain].seconds > max(_NO_MATTER * others, others + NO_TIME)
+    slow |= needs[plain].seconds > max(_SOON, _ENGINE_MATTERS * least)
     return Choice(usable[0] if slow else plain, needs, cheapest)

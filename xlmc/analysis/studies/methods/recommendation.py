@@ -24,6 +24,9 @@ __all__ = ["Parts", "parts_of", "recommendation"]
 _FAR: Final = 64.0
 """If errors are carried on to more than this many times the measured runs, a sentence says so."""
 
+_NOTABLE: Final = 0.05
+"""The relative standard error from which on a number of trials that no run had is given with it."""
+
 _ERROR_WORDS: Final = (
     "All errors here are those of computing the answer, measured against the reference; none says whether the model "
     "fits the crash, or whether the ranges of the assumptions are right."
@@ -108,6 +111,8 @@ def _drawing_text(study: Study, found: Choice) -> list[str]:
             f" That is {wanted.beyond:,.0f} times as many trials as the longest measured runs had; it is computed from "
             "how their errors fall."
         )
+    if wanted.beyond > 1.0 and wanted.error >= _NOTABLE:
+        said += f" The number of trials is computed, and known to a factor of {np.exp(2.0 * wanted.error):.2g}."
     others = sorted(
         (curve for curve, each in found.needs.items() if curve is not chosen and each.usable),
         key=lambda curve: found.needs[curve].seconds,

@@ -1,6 +1,6 @@
 """Do 95 % intervals of the variance explained hold the truth where a forecast jumps, bends or oscillates?
 
-`python benchmarks/share_coverage.py` makes 200 seeded runs of each problem and number of trials, and writes
+`python benchmarks/share_coverage.py` makes 100 seeded runs of each problem and number of trials, and writes
 `results/share-coverage.json` and the table of docs/sensitivity.md. A run looks at 8,192 trials first, as xlmc does for
 up to 128 pairs of an assumption and a forecast, and at more where that asks for it. No figure depends on the machine.
 
@@ -34,7 +34,7 @@ HERE = Path(__file__).resolve().parent
 PAGE = HERE.parent / "docs" / "sensitivity.md"
 RESULTS = HERE / "results" / "share-coverage.json"
 
-RUNS = 200
+RUNS = 100
 TRIALS = (3_500, 32_768)
 FIRST = 1 << 13
 LEAST, SELDOM, LONGEST, FAMILY = 0.92, 0.05, 1.3, 0.01

@@ -35,6 +35,7 @@ from xlmc.montecarlo.loop.forecast_result import FARTHEST_PART, TELLING
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 from xlmc.montecarlo.simulation.simulation import FEW, LEAST_ACCEPTED
+from xlmc.montecarlo.statistics.heavy_tails import decides_spread
 from xlmc.montecarlo.statistics.sample import MOST_GROUPS
 from xlmc.montecarlo.statistics.yes_no import are_yes_no
 
@@ -99,6 +100,8 @@ def many_runs(problem: Problem, u: Floats, plan: SamplingPlan) -> Floats:
         mean = share(x > 0.5, kept, plan.replicates)
         deviation, farthest = deviation_of_share(mean, deviation.value), np.zeros(len(x))
     ranks = [percentile(x, ascending, kept, p, plan.replicates) for p in RANKS]
+    rows = zip(ascending, kept.sum(axis=1), strict=True)
+    deviation = deviation._replace(told=deviation.told | [_tail_decides(row[:count]) for row, count in rows])
     found = np.array([mean, deviation, *ranks, share(x > problem.above, kept, plan.replicates)])
     accepted = kept.sum(axis=1)
     sparse = accepted < LEAST_ACCEPTED * plan.replicates
@@ -106,6 +109,12 @@ def many_runs(problem: Problem, u: Floats, plan: SamplingPlan) -> Floats:
     found[:, 3] = np.maximum(found[:, 3], sparse)
     found[:2, 3] = np.maximum(found[:2, 3], hangs | ((accepted < FEW) if not plan.replicates else False))
     return np.moveaxis(found, -1, 0)
+
+
+def _tail_decides(x: Floats) -> bool:
+    apart = x - x.mean()
+    scale = float(np.sqrt(np.mean(apart**2)))
+    return not are_yes_no(x) and decides_spread(x, float(x.mean()), scale, float(np.mean((apart / scale) ** 4)))
 
 
 def _told(sample: xs.Sample, plan: SamplingPlan) -> list[bool]:

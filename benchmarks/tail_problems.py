@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache, cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,6 +67,12 @@ class Problem:
 def _lognormal(sigma: float) -> Problem:
     there = stats.lognorm(sigma)
     return Problem(lambda u: np.exp(sigma * ndtri(u[0])), there.cdf, there.mean(), there.std(), 1.3)
+
+
+def _of(there: Any, above: float) -> Problem:
+    """A forecast that one uniform decides, with a power tail."""
+    support = float(there.ppf(1e-9)) - 1.0, float(there.isf(1e-9))
+    return Problem(lambda u: there.ppf(u[0]), there.cdf, there.mean(), there.std(), above, support=support)
 
 
 def _gumbel_and_uniform() -> Problem:
@@ -160,6 +167,9 @@ PROBLEMS: dict[str, Problem] = {
     "lognormal, σ .5": _lognormal(0.5),
     "lognormal, σ 1": _lognormal(1.0),
     "lognormal, σ 1.5": _lognormal(1.5),
+    "lognormal, σ 2": _lognormal(2.0),
+    "Student, 3 degrees": _of(stats.t(3), 0.8),
+    "Pareto, 3": _of(stats.pareto(3), 1.4),
     "exponential": Problem(lambda u: -np.log1p(-u[0]), lambda x: float(-special.expm1(-max(x, 0.0))), 1.0, 1.0, 1.1),
     "Gumbel + uniform": _gumbel_and_uniform(),
     "switch": _bimodal(_switched),

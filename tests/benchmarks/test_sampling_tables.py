@@ -137,3 +137,29 @@ def test_unfiltered_sobol_means_of_the_case_study_hardly_vary(sobol):
     free = sobol.Model(book.workbook, sobol.replace(book.definitions, filters=()), book.path)
     plain, even = (sobol.means(free, method, range(6), 1 << 13) for method in ("mc", "sobol"))
     assert (plain.var(axis=0) > 1_000 * even.var(axis=0)).all()
+
+
+@pytest.fixture(scope="module")
+def shares():
+    return script("share_coverage")
+
+
+def test_the_committed_table_of_shares_meets_its_bar(shares):
+    cells = [shares.Cell(*each) for each in json.loads(shares.RESULTS.read_text(encoding="utf-8"))["cells"]]
+    assert [(cell.problem, cell.trials) for cell in cells] == [(p, n) for p in shares.PROBLEMS for n in shares.TRIALS]
+    assert shares.faults(cells) == []
+    assert page_table(shares.PAGE, "share-coverage") == shares.table(cells)
+
+
+def test_the_bar_of_shares_can_be_missed(shares):
+    step = shares.Cell("step at 90 %", 3_500, 100, 0.8, 0.7, 60, 70, 20, 0, 0.9)
+    straight = shares.Cell("straight, 0.3", 3_500, 100, 0.3, 0.3, 95, 95, 30, 95, 1.4)
+    assert len(shares.faults([step])) == 1
+    assert len(shares.faults([straight])) == 2
+
+
+@pytest.mark.parametrize("name", ["step at 97 %", "sine, filtered"])
+def test_shares_of_a_few_runs_hold(shares, name):
+    cell = shares.measure(name, 3_500, 20)
+    assert cell.bounded >= 16
+    assert cell.before <= 2

@@ -1,4 +1,4 @@
-"""Two tests of forecasts that a few far trials decide: how much one trial contributes, and how heavy the tail is.
+"""Three tests of forecasts that a few far trials decide: how much one trial contributes, and how heavy the tail is.
 
 **One trial.** If a forecast has a variance, the part of it that comes from the farthest trial goes to 0 as trials are
 added: with 1,000 trials it is about 1 % for a normal forecast, 4 % for an exponential one. If it has none, the part
@@ -7,6 +7,9 @@ mean of such a forecast does not exist; the number printed for it depends on the
 
 **The tail.** Hill's estimator gives its index α: P(|x - median| > t) falls as t^-α. The mean exists if α is above 1,
 the standard deviation if it is above 2. A ratio whose denominator passes 0 has α = 1.
+
+**The spread.** The error of a standard deviation comes from the fourth moment, which exists if α is above 4. Where α is
+below, or where at most ten trials hold more than half of the sum of fourth powers, its interval may be too short.
 """
 
 from __future__ import annotations
@@ -19,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from xlmc.montecarlo.statistics.sample import Sample, Values
 
-__all__ = ["farthest_part", "heavy_tail"]
+__all__ = ["decides_spread", "farthest_part", "heavy_tail"]
 
 
 def farthest_part(values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None) -> float:
@@ -47,30 +50,56 @@ _FAR: Final = 0.25
 """The share of the tail that must be as heavy by itself; if it is not, only a few trials lie apart from the rest."""
 
 
-def _tail_index(x: Floats, part: float = 1.0) -> tuple[float, float]:
+def _tail_index(ascending: Floats, part: float = 1.0) -> tuple[float, float]:
     """Return Hill's index of the heavier tail, and its standard error; infinite if there are too few numbers.
 
     Args:
-        x: the numbers.
+        ascending: the numbers.
         part: the share of the tail that is used, from the far end.
     """
-    known = x[np.isfinite(x)]
-    k = int(max(_FEWEST, _SHARE * known.size))
-    if known.size < 10 * k:
+    n = ascending.size
+    k = int(max(_FEWEST, _SHARE * n))
+    if n < 10 * k:
         return np.inf, 0.0
-    middle = np.median(known)
+    middle, used = 0.5 * (ascending[(n - 1) // 2] + ascending[n // 2]), int(part * k) + 1
     best = np.inf
-    for side in (known - middle, middle - known):
-        largest = np.sort(side)[-int(part * k) - 1 :]
+    for largest in (ascending[-used:] - middle, middle - ascending[:used][::-1]):
         if largest[0] > 0:
             best = min(best, 1.0 / max(float(np.mean(np.log(largest[1:] / largest[0]))), 1e-300))
     return best, best / np.sqrt(k)
 
 
 _LIMIT: Final = 2.0
+_LIMIT_OF_SPREAD: Final = 4.0
+"""The index below which the standard deviation, and its error, do not exist."""
+
+_FEW: Final = 10
+_TRIALS_FOR_ONE: Final = 1_000
+"""The most trials that count as a few: one in so many, and at most ten."""
 
 
 def heavy_tail(x: Floats) -> tuple[float, float] | None:
     """Return index and standard error of a tail so heavy that the standard deviation does not converge, else None."""
-    index, error = _tail_index(x)
-    return (index, error) if index + 2 * error < _LIMIT and _tail_index(x, _FAR)[0] < _LIMIT else None
+    return _heavier_than(_LIMIT, np.sort(x[np.isfinite(x)]))
+
+
+def _heavier_than(limit: float, ascending: Floats) -> tuple[float, float] | None:
+    index, error = _tail_index(ascending)
+    return (index, error) if index + 2 * error < limit and _tail_index(ascending, _FAR)[0] < limit else None
+
+
+def decides_spread(ascending: Floats, mean: float, scale: float, kurtosis: float) -> bool:
+    """Return whether the tail of (n,) ascending values makes the interval of their standard deviation too short.
+
+    Args:
+        ascending: the values.
+        mean: their mean.
+        scale: the root of their mean square about it.
+        kurtosis: their kurtosis.
+    """
+    few = min(_FEW, ascending.size // _TRIALS_FOR_ONE)
+    if not (few and scale > 0.0):
+        return False
+    ends = (np.concatenate([ascending[:few], ascending[-few:]]) - mean) / scale
+    held = float(np.sort(ends**4)[-few:].sum())
+    return held > 0.5 * kurtosis * ascending.size or _heavier_than(_LIMIT_OF_SPREAD, ascending) is not None

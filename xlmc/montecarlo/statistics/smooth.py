@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from xlmc.montecarlo.statistics.estimate import LEAST_DOF, Estimate, with_error, with_relative_error
+from xlmc.montecarlo.statistics.heavy_tails import decides_spread
 from xlmc.montecarlo.statistics.pulls import (
     Pull,
     beyond_reach,
@@ -184,7 +185,10 @@ def too_short(values: Values, weights: ArrayLike | None = None, replicate: Array
     sample = Sample.of(values, weights, replicate)
     if sample.n < 2 or sample.yes_no:
         return []
-    return [name for name, pull in _NAMED.items() if beyond_reach(sample.moments, pull, sample.effective)]
+    m, x = sample.moments, sample.even
+    short = {name: beyond_reach(m, pull, sample.effective) for name, pull in _NAMED.items()}
+    short["standard deviation"] |= decides_spread(x, m.mean, m.scale, m.kurtosis)
+    return [name for name, is_short in short.items() if is_short]
 
 
 _NAMED: Final = {"mean": MEAN, "standard deviation": SQUARE}

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Unpack
 
-from xlmc.montecarlo.definitions.stopping import stopping
+from xlmc.montecarlo.definitions.run_options import RunArguments, RunOptions
 from xlmc.montecarlo.model import loading, model
 from xlmc.montecarlo.simulation import simulation
 
@@ -208,26 +208,9 @@ class Model(model.Model):
         trials: int | None = None,
         seed: int | None = None,
         *,
-        until_accepted: int | None = None,
-        rare: str | None = None,
-        precision: str | float | None = None,
-        precision_of: str | Sequence[str] | None = None,
-        confidence: str | float | None = None,
-        adaptive: int | None = None,
-        forecasts: str | Sequence[str] = (),
-        time_limit: str | float | None = None,
-        engine: str | None = None,
-        sampling: str | None = None,
-        evidence: str | None = None,
-        scenarios: bool = False,
-        jobs: int = 1,
-        scheduler: str | None = None,
-        workers: int | None = None,
-        keep_inputs: int | None = 1 << 20,
-        keep_interrupted: bool = False,
         progress: OnProgress | None = None,
         tell: Callable[[str], None] | None = None,
-        **goals: Any,
+        **options: Unpack[RunArguments],
     ) -> Simulation:
         """Run the simulation; what is not given comes from the workbook's settings.
 
@@ -262,46 +245,20 @@ class Model(model.Model):
             keep_interrupted: end the run with what it has when Ctrl-C is pressed, rather than raise KeyboardInterrupt.
             progress: called with a `Progress` (trials, accepted, share done, means) after every block.
             tell: called before the run with a sentence on the disk that it needs, if it needs any.
-            **goals: options of goals that have no argument here: see `xlmc.montecarlo.definitions.stopping`.
 
         Raises:
             SimulationError: an argument is out of its range, there is no room on the disk for the accepted trials,
                 or the workers cannot be used.
+            TypeError: there is no such argument.
         """
-        from xlmc.montecarlo.simulation.simulate import simulate
+        from xlmc.montecarlo.simulation.simulate import run_model
 
-        if scenarios:
+        asked = RunOptions.of(trials=trials, seed=seed, **options)
+        if asked.scenarios:
             from xlmc.analysis.studies.scenario_answers import models_of
 
             models_of(self)  # a scenario that is not possible is refused before the run
-        run = simulate(
-            self,
-            trials=trials,
-            seed=seed,
-            stopping=stopping(
-                until_accepted=until_accepted,
-                precision=precision,
-                precision_of=precision_of,
-                confidence=confidence,
-                adaptive=adaptive,
-                forecasts=forecasts,
-                time_limit=time_limit,
-                rare=rare,
-                **goals,
-            ),
-            engine=engine,
-            sampling=sampling,
-            scenarios=scenarios,
-            jobs=jobs,
-            scheduler=scheduler,
-            workers=workers,
-            keep_inputs=keep_inputs,
-            keep_interrupted=keep_interrupted,
-            progress=progress,
-            tell=tell,
-            evidence=evidence,
-        )
-        return Simulation.of(run)
+        return Simulation.of(run_model(self, asked, progress=progress, tell=tell))
 
 
 def load(path: str | Path) -> Model:

@@ -2,35 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
 import click
 
-from xlmc.engine.engines import ENGINES
-from xlmc.montecarlo.definitions.evidence_ways import EVIDENCE_WAYS
-from xlmc.montecarlo.definitions.stopping import GOALS, RARE, Option
-from xlmc.montecarlo.sampling.sampling_methods import METHODS
+from xlmc.montecarlo.definitions.run_settings import SETTINGS, Setting
+from xlmc.montecarlo.definitions.setting_kinds import Names, Seconds, Switch, Whole, Word
+from xlmc.montecarlo.definitions.stopping import GOALS, Option
 
 __all__ = [
     "OneOf",
     "WholeNumber",
     "chance_option",
     "engine_option",
-    "evidence_option",
     "jobs_option",
-    "sampling_option",
-    "stopping_options",
+    "run_options",
     "tolerance_option",
 ]
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 _MOST_JOBS = 1024
-
-_SAMPLINGS = "; ".join(f"{method.key}: {method.name}" for method in METHODS.values())
-
-_ENGINES = "; ".join(f"{engine.key}: {engine.what}" if engine.what else engine.key for engine in ENGINES.values())
 
 
 class WholeNumber(click.ParamType):  # type: ignore[type-arg]  # no generic before click 8.2
@@ -91,18 +84,24 @@ jobs_option = click.option(
 )
 """The option for threads or processes; the result does not depend on it."""
 
-sampling_option = click.option(
-    "--sampling", type=OneOf(*METHODS), help=f"{_SAMPLINGS}.  [default: the book's, else mc]"
-)
 
-evidence_option = click.option(
-    "--evidence",
-    type=OneOf(*EVIDENCE_WAYS),
-    help="How evidence with a normal or lognormal error is used: rejection: it rejects trials; weights: it weights"
-    " them; auto: the run's first trials decide.  [default: the book's, else auto]",
-)
+def _setting_option(setting: Setting) -> Callable[[F], F]:
+    """The option of a setting."""
+    names = (*setting.options, setting.key) if setting.recorded_as else setting.options
+    match setting.kind:
+        case Whole(least=least):
+            return click.option(*names, type=WholeNumber(least), help=setting.help)
+        case Word() as kind:
+            return click.option(*names, type=OneOf(*kind.words()), help=setting.help)
+        case Switch():
+            return click.option(*names, is_flag=True, help=setting.help)
+        case Names():
+            return click.option(*names, multiple=True, metavar="FORECAST", help=setting.help)
+        case Seconds():
+            return click.option(*names, metavar="TIME", help=setting.help)
 
-engine_option = click.option("--engine", type=OneOf(*ENGINES), help=f"{_ENGINES}.  [default: the book's, else numpy]")
+
+engine_option = _setting_option(SETTINGS["engine"])
 
 tolerance_option = click.option(
     "--tolerance",
@@ -124,27 +123,20 @@ def _goal_option(option: Option) -> Callable[[F], F]:
     return click.option(f"--{option.name.replace('_', '-')}", type=kind, metavar=option.metavar, help=option.help)
 
 
-_OPTIONS = (
-    *(_goal_option(option) for goal in GOALS.values() for option in goal.options),
-    click.option(
-        "--rare",
-        type=OneOf(*RARE),
-        help="Where accepted trials are rare, learn where they are and draw there.  [default: auto: if -n would not be"
-        " enough]",
-    ),
-    click.option(
-        "--for",
-        "forecasts",
-        multiple=True,
-        metavar="FORECAST",
-        help="The forecast whose precision or digits count; may be given several times.  [default: all]",
-    ),
-    click.option("--time-limit", metavar="TIME", help="End the run after 60s, 5m or 1h30m."),
-)
+def _run_options() -> Iterator[Callable[[F], F]]:
+    """The options of all settings, and of goals after the number of trials."""
+    for setting in SETTINGS.values():
+        if setting.options:
+            yield _setting_option(setting)
+        if setting.key == "trials":
+            yield from (_goal_option(option) for goal in GOALS.values() for option in goal.options)
 
 
-def stopping_options(command: F) -> F:
-    """Add the options, under the names that `Model.simulate` has for them."""
-    for option in reversed(_OPTIONS):
+_RUN_OPTIONS: tuple[Callable[[Any], Any], ...] = tuple(_run_options())
+
+
+def run_options(command: F) -> F:
+    """Add the options of all settings, under the names that `Model.simulate` has for them."""
+    for option in reversed(_RUN_OPTIONS):
         command = option(command)
     return command

@@ -11,11 +11,8 @@ import click
 
 from xlmc.cli.options import (
     WholeNumber,
-    engine_option,
-    evidence_option,
     jobs_option,
-    sampling_option,
-    stopping_options,
+    run_options,
 )
 from xlmc.cli.output_options import Outputs, Reports, Wishes, output_options, results_beside
 from xlmc.cli.terminal import paragraph, say
@@ -38,16 +35,7 @@ _MOST_MOVED = 4
 
 @click.command()
 @click.argument("book", type=click.Path(readable=False, path_type=Path))
-@click.option("-n", "--trials", type=WholeNumber(1), help="Trials to run.  [default: the book's, else 200000]")
-@stopping_options
-@click.option(
-    "--seed",
-    type=WholeNumber(0),
-    help="Seed: the number that the random draws start from.  [default: the book's, else 999]",
-)
-@engine_option
-@sampling_option
-@evidence_option
+@run_options
 @jobs_option
 @click.option(
     "--scheduler",
@@ -69,22 +57,9 @@ _MOST_MOVED = 4
     help="Save the run, for xlmc report and xlmc replay.",
 )
 @output_options
-@click.option(
-    "--scenarios",
-    is_flag=True,
-    help="Also run the scenarios of the table xlmc_scenarios, and compare their answers with the book's own.",
-)
 @click.option("--quiet", is_flag=True, help="Print no progress bar and no notes.")
 def simulate(
     book: Path,
-    trials: int | None,
-    seed: int | None,
-    engine: str | None,
-    sampling: str | None,
-    evidence: str | None,
-    jobs: int,
-    scheduler: str | None,
-    workers: int | None,
     output: Path | None,
     in_place: bool,
     save_run: Path | None,
@@ -94,9 +69,8 @@ def simulate(
     overwrite: bool,
     reports: Reports,
     wishes: Wishes,
-    scenarios: bool,
     quiet: bool,
-    **length: Any,
+    **asked: Any,
 ) -> None:
     """Run BOOK, print the summary, and write result sheets and charts into a copy of it."""
     from xlmc.analysis.studies.scenario_answers import models_of
@@ -110,7 +84,7 @@ def simulate(
     if os.path.isdir(book):
         load(book)  # says so
     target = book if in_place else output or results_beside(book)
-    asked = Outputs(
+    wanted = Outputs(
         book,
         book.name,
         target,
@@ -124,31 +98,23 @@ def simulate(
         reports,
         wishes,
     )
-    outputs = asked.check(book) if os.path.exists(book) else asked  # `load` says that there is no book
+    outputs = wanted.check(book) if os.path.exists(book) else wanted  # `load` says that there is no book
     model = load(book)
     outputs.check_against(model)
+    scenarios = bool(asked["scenarios"])
     if scenarios:
         models_of(model)  # what is wrong with one is said before anything else
     if not quiet:
-        notices([*model.notices, *_hints(model, trials, engine)])
+        notices([*model.notices, *_hints(model, asked["trials"], asked["engine"])])
     with progress_bar(quiet) as progress:
         run = model.simulate(
-            trials,
-            seed,
-            **length,
-            engine=engine,
-            sampling=sampling,
-            evidence=evidence,
-            scenarios=scenarios,
-            jobs=jobs,
-            scheduler=scheduler,
-            workers=workers,
+            **asked,
             keep_inputs=None if extract else KEPT_INPUTS,
             keep_interrupted=True,
             progress=progress,
             tell=None if quiet else lambda sentence: say(sentence, err=True),
         )
-    run, answers = _with_scenarios(run, jobs, quiet)
+    run, answers = _with_scenarios(run, asked["jobs"], quiet)
     written, lines = outputs.write(run)  # before the answer is printed, so that no terminal can cost a run
     show_run(run)
     for line in lines:

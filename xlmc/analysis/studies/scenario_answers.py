@@ -10,7 +10,7 @@ the errors of two numbers add up as those of independent ones.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import hypot
 from typing import Final
 from weakref import WeakKeyDictionary
@@ -29,12 +29,10 @@ from xlmc.analysis.studies.comparison.paired_statistics import (
 from xlmc.errors import DefinitionError, SimulationError, XlmcError
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.scenarios import Scenario
-from xlmc.montecarlo.definitions.stopping import stopping
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.applied_changes import applied
 from xlmc.montecarlo.model.model import Model
-from xlmc.montecarlo.sampling.sampling_methods import METHODS
-from xlmc.montecarlo.simulation.simulate import simulate
+from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.montecarlo.simulation.simulation import Simulation
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import with_error
@@ -184,20 +182,7 @@ def _answers(run: Simulation, jobs: int, told: Callable[[str], None] | None) -> 
 
 
 def _run(model: Model, base: Simulation, jobs: int) -> Simulation:
-    settings = base.settings
-    waited = base.stopped.by in ("accepted", "search")
-    whole = waited or not METHODS[settings.sampling].independent
-    goal = settings.stopping.accepted if waited else None
-    return simulate(
-        model,
-        trials=settings.trials if whole else base.trials,
-        seed=settings.seed,
-        stopping=stopping(until_accepted=goal, rare=settings.stopping.rare if waited else None),
-        engine=settings.engine,
-        sampling=settings.sampling,
-        jobs=jobs,
-        keep_inputs=0,
-    )
+    return run_model(model, replace(base.repeating, scenarios=False, jobs=jobs, keep_inputs=0))
 
 
 def _of(run: Simulation, scenario: Scenario | None, base: Simulation) -> ScenarioAnswers:

@@ -13,8 +13,8 @@ from xlmc.errors import DefinitionError, FormulaError, Notice
 from xlmc.excel.address import Area, Cell, InFormula
 from xlmc.excel.formula.ir import Expression
 from xlmc.montecarlo.definitions.evidence import Evidence
+from xlmc.montecarlo.definitions.run_settings import USUAL, Settings
 from xlmc.montecarlo.definitions.scenarios import Scenario
-from xlmc.montecarlo.definitions.stopping import NO_GOAL, Stopping
 from xlmc.montecarlo.distributions import FAMILIES, Family
 from xlmc.montecarlo.sampling.draws import Draw
 
@@ -239,29 +239,6 @@ class Copula:
 
 
 @dataclass(frozen=True, slots=True)
-class Settings:
-    """What a run is a function of, beside the workbook itself.
-
-    Attributes:
-        trials: how many; at most, where `stopping` has a goal or a time.
-        stopping: what else ends the run.
-        evidence: how evidence whose error is no limit is used: one of `EVIDENCE_WAYS`; empty where nothing is said, or
-            where a run has no such evidence.
-        lognorm: whose `RiskLognorm` is meant, `@RISK` (also where it is empty) or `XLRisk`.
-        scenarios: whether the workbook's scenarios are run, too, and compared with it.
-    """
-
-    trials: int = 200_000
-    seed: int = 999
-    sampling: str = "mc"
-    engine: str = "numpy"
-    stopping: Stopping = NO_GOAL
-    lognorm: str = ""
-    scenarios: bool = False
-    evidence: str = ""
-
-
-@dataclass(frozen=True, slots=True)
 class Definitions:
     """Everything that a workbook asks of a run.
 
@@ -280,7 +257,7 @@ class Definitions:
     filters: tuple[Filter, ...] = ()
     correlations: tuple[Correlation, ...] = ()
     copulas: tuple[Copula, ...] = ()
-    settings: Settings = Settings()
+    settings: Settings = USUAL
     notices: tuple[Notice, ...] = ()
     problems: tuple[DefinitionError, ...] = ()
     rewritten: Mapping[Cell, Expression | FormulaError] = field(default_factory=dict)

@@ -79,13 +79,9 @@ def chosen_way(model: Model, settings: Settings) -> str:
     scenarios, which are compared trial by trial.
 
     Raises:
-        SimulationError: weights were asked for in such a run, or a way that there is not.
+        SimulationError: weights were asked for in such a run.
     """
     asked = settings.evidence or EVIDENCE_WAYS[0]
-    if asked not in EVIDENCE_WAYS:
-        raise SimulationError(
-            f"there is no way {asked!r} to use evidence", hint=f"choose one of {', '.join(EVIDENCE_WAYS)}"
-        )
     if not model.chances:
         return ""
     goal = settings.stopping.goal is not None or settings.scenarios

@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.engine.engine import Room
-from xlmc.errors import SimulationError
 from xlmc.montecarlo.columns import ColumnStore
-from xlmc.montecarlo.definitions.stopping import LIMIT, MOST_TRIALS, NO_GOAL, Stopping
+from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.diagnostics.checking import LEAST_CHECKED
 from xlmc.montecarlo.diagnostics.weighing import chosen_way, weighing
 from xlmc.montecarlo.loop.blocks import Block, FilterTally, ModelRunner, Task
@@ -35,8 +34,7 @@ from xlmc.montecarlo.loop.stopping import (
 )
 from xlmc.montecarlo.model.forecast_filters import discards_by_name
 from xlmc.montecarlo.rare.rare_switch import RareSwitch, rare_switch
-from xlmc.montecarlo.sampling.sampling_methods import METHODS
-from xlmc.montecarlo.simulation.simulation import KEPT_INPUTS, Simulation
+from xlmc.montecarlo.simulation.simulation import Simulation
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Settings
@@ -44,7 +42,7 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.rare.search import Search
     from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 
-__all__ = ["BLOCK", "PRIOR_TRIALS", "OnProgress", "simulate"]
+__all__ = ["BLOCK", "PRIOR_TRIALS", "OnProgress", "run_model", "simulate"]
 
 BLOCK: Final = 32_768
 """Trials evaluated at once, where the engine does not want fewer: enough that the calls cost little beside the
@@ -63,32 +61,37 @@ OnProgress = Callable[[Progress], None]
 def simulate(
     model: Model,
     *,
-    trials: int | None = None,
-    seed: int | None = None,
-    stopping: Stopping = NO_GOAL,
-    engine: str | None = None,
-    sampling: str | None = None,
-    scenarios: bool = False,
-    jobs: int = 1,
-    scheduler: str | None = None,
-    workers: int | None = None,
-    keep_inputs: int | None = KEPT_INPUTS,
-    keep_interrupted: bool = False,
     progress: OnProgress | None = None,
     tell: Callable[[str], None] | None = None,
-    evidence: str | None = "rejection",
+    own_runner: ModelRunner | None = None,
+    pieces: int = BLOCK,
+    **asked: Any,
+) -> Simulation:
+    """Run a model with options given by name, the fields of `RunOptions`; without `evidence` it rejects trials.
+
+    See `run_model`, and `Model.simulate`.
+    """
+    options = RunOptions(**{"evidence": "rejection", **asked})
+    return run_model(model, options, progress=progress, tell=tell, own_runner=own_runner, pieces=pieces)
+
+
+def run_model(
+    model: Model,
+    options: RunOptions,
+    *,
+    progress: OnProgress | None = None,
+    tell: Callable[[str], None] | None = None,
     own_runner: ModelRunner | None = None,
     pieces: int = BLOCK,
 ) -> Simulation:
     """Run a model; see `Model.simulate`.
 
-    With `evidence`, one of `EVIDENCE_WAYS`, the workbook is not asked how evidence is used; None asks it. A runner that
-    is given, of this model, seed and sampling method, runs the blocks. A run of a given number of trials is computed in
-    pieces of at most `pieces` trials, a power of two, for who wants `progress` more often: its numbers are the same.
+    A runner that is given, of this model, seed and sampling method, runs the blocks. A run of a given number of trials
+    is computed in pieces of at most `pieces` trials, a power of two, for who wants `progress` more often: its numbers
+    are the same.
     """
-    settings = _settings(model, trials, seed, engine, sampling, stopping)
-    settings = replace(settings, scenarios=scenarios)
-    settings = replace(settings, evidence=settings.evidence if evidence is None else evidence)
+    settings, keep_inputs = options.settings(model.definitions.settings), options.keep_inputs
+    refuse_other_sampling(settings.sampling, settings.stopping)
     settings = replace(settings, evidence=chosen_way(model, settings))
     if settings.evidence == "weights":
         model, keep_inputs = weighing(model), None  # weights are computed from the draws
@@ -97,11 +100,7 @@ def simulate(
     rule, looks = chosen_rule(settings.stopping, model.forecasts), rare_switch(model, settings)
     watch = Watch(rule, plan.trials, settings.stopping.seconds, time.monotonic)
     teller = None if progress is None else ProgressTracker([forecast.name for forecast in model.forecasts])
-    pool = WorkerPool(jobs, scheduler, workers)
-    if keep_inputs is not None and keep_inputs < 0:
-        raise SimulationError(
-            f"the draws of {keep_inputs} trials were asked for", hint="give 0 or more, or None for all"
-        )
+    pool = WorkerPool(options.jobs, options.scheduler, options.workers)
     block = min(BLOCK, largest)
     piece = block if settings.stopping.asked else min(block, pieces)
     computed = min(piece, -(-plan.trials // _TOGETHER) * _TOGETHER)  # a short run computes no whole block
@@ -131,7 +130,7 @@ def simulate(
 
     tasks = (task(start, min(piece, plan.trials - start)) for start in range(0, plan.trials, piece))
     stopped: Stopped | None = None
-    with Interruption(wanted=keep_interrupted and may_end_early(settings.sampling)) as interruption:
+    with Interruption(wanted=options.keep_interrupted and may_end_early(settings.sampling)) as interruption:
         found: Search | Stopped | None = None
         with closing(blocks_of(tasks)) as blocks:
             while stopped is None and found is None:
@@ -224,33 +223,6 @@ def _with_search(plain: Simulation, found: Search, most_inputs: int) -> Simulati
         discards=drawn.discards,
         rare=replace(found.account, kept=gathered.accepted, faulty=gathered.lost),
     )
-
-
-def _settings(
-    model: Model,
-    trials: int | None,
-    seed: int | None,
-    engine: str | None,
-    sampling: str | None,
-    stopping: Stopping,
-) -> Settings:
-    given = {"trials": trials, "seed": seed, "engine": engine, "sampling": sampling}
-    settings = replace(model.definitions.settings, **{k: v for k, v in given.items() if v is not None})  # type: ignore[arg-type]
-    if trials is not None or stopping.has_goal:
-        settings = replace(settings, trials=LIMIT if trials is None else trials, stopping=stopping)
-    else:
-        own = settings.stopping
-        seconds = own.seconds if stopping.seconds is None else stopping.seconds
-        settings = replace(settings, stopping=replace(own, seconds=seconds, rare=stopping.rare or own.rare))
-    if settings.sampling not in METHODS:
-        message = f"there is no sampling method {settings.sampling!r}"
-        raise SimulationError(message, hint=f"choose one of {', '.join(METHODS)}")
-    refuse_other_sampling(settings.sampling, settings.stopping)
-    if not 1 <= settings.trials <= MOST_TRIALS:
-        raise SimulationError(f"{settings.trials} trials were asked for", hint=f"give 1 to {MOST_TRIALS:,}")
-    if settings.seed < 0:
-        raise SimulationError(f"the seed {settings.seed} is negative", hint="give a whole number from 0 up")
-    return settings
 
 
 class _Gathered:

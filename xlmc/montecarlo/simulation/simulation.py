@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from xlmc.errors import Notice, SimulationError
 from xlmc.montecarlo import statistics
 from xlmc.montecarlo.columns import parts
-from xlmc.montecarlo.definitions.definitions import Settings
+from xlmc.montecarlo.definitions.run_options import KEPT_INPUTS, RunOptions
+from xlmc.montecarlo.definitions.run_settings import Settings
 from xlmc.montecarlo.diagnostics.agreement import Agreement, agreement
 from xlmc.montecarlo.diagnostics.cell_errors import Root, error_roots
 from xlmc.montecarlo.diagnostics.checking import CheckResult, check_results
@@ -57,9 +58,6 @@ ERROR_SHARE: Final = 0.001
 
 TRIAL: Final = "Trial"
 """The heading of the trials' numbers in tables of trials."""
-
-KEPT_INPUTS: Final = 1 << 20
-"""Accepted trials whose draws are kept, unless asked otherwise: more than a sheet has rows."""
 
 LEAST_ACCEPTED: Final = 10
 """Accepted trials for each replicate that errors come from, on average, if they are to be trusted: docs/sampling.md."""
@@ -202,6 +200,12 @@ class Simulation:
     @property
     def accepted(self) -> int:
         return int(self.trial_index.size)
+
+    @property
+    def repeating(self) -> RunOptions:
+        """The options that give this run again."""
+        by, weighable = self.stopped.by, bool(self.model.chances)
+        return RunOptions.repeating(self.settings, trials=self.trials, by=by, weighable=weighable)
 
     @property
     def evaluated(self) -> int:

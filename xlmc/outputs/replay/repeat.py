@@ -15,12 +15,11 @@ from xlmc.errors import WorkbookError, XlmcError
 from xlmc.excel.workbook.lazy_sheets import naming_file
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.seal import read_seal
-from xlmc.montecarlo.definitions.stopping import GOALS, AcceptedTrials, stopping
+from xlmc.montecarlo.definitions.run_options import KEPT_INPUTS, RunOptions
+from xlmc.montecarlo.definitions.stopping import GOALS, AcceptedTrials
 from xlmc.montecarlo.loop.version import __version__
 from xlmc.montecarlo.model.loading import build_model
-from xlmc.montecarlo.sampling.sampling_methods import METHODS
-from xlmc.montecarlo.simulation.simulate import simulate
-from xlmc.montecarlo.simulation.simulation import KEPT_INPUTS
+from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.outputs.replay.changes import (
     Change,
     Closeness,
@@ -253,27 +252,12 @@ def _repeat_command(record: Record) -> str:
 
 
 def _repeat(model: Model, record: Record, settings: Settings, jobs: int, progress: OnProgress | None) -> Simulation:
-    """The run again: up to the trial that ended it, whatever did.
-
-    One that waited for an accepted trial waits again; methods whose trials belong together run all of them.
-    """
+    """The run again: up to the trial that ended it, whatever did."""
     trials, accepted, kept = (_count(record, key) for key in ("trials", "accepted", "inputs_kept"))
-    waited = record["end.by"] in ("accepted", "search")
-    goal = settings.stopping.accepted
-    whole = waited or not METHODS[settings.sampling].independent
-    return simulate(
-        model,
-        trials=settings.trials if whole else trials,
-        seed=settings.seed,
-        stopping=stopping(until_accepted=goal if waited else None, rare=settings.stopping.rare),
-        engine=settings.engine,
-        sampling=settings.sampling,
-        scenarios=settings.scenarios,
-        jobs=jobs,
-        keep_inputs=kept if kept < accepted else max(kept, KEPT_INPUTS),
-        progress=progress,
-        evidence=settings.evidence or "rejection",
-    )
+    by = str(record["end.by"])
+    options = RunOptions.repeating(settings, trials=trials, by=by, weighable=bool(model.chances))
+    keep_inputs = kept if kept < accepted else max(kept, KEPT_INPUTS)
+    return run_model(model, replace(options, jobs=jobs, keep_inputs=keep_inputs), progress=progress)
 
 
 def _count(record: Record, key: str) -> int:

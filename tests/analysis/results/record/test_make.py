@@ -18,8 +18,8 @@ from xlmc.analysis.results.record import make_record
 from xlmc.analysis.results.record.errors_met import errors_met
 from xlmc.analysis.results.record.make import fingerprint, quoted_argument, repeat_command
 from xlmc.excel.workbook.inject import original_hash
-from xlmc.montecarlo.definitions.definitions import Settings
-from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
+from xlmc.montecarlo.definitions.run_options import RunOptions
+from xlmc.montecarlo.definitions.run_settings import Settings
 from xlmc.montecarlo.statistics import rank_correlation
 
 EXAMPLE = Path(__file__).resolve().parents[4] / "examples/intersection.xlsx"
@@ -219,8 +219,9 @@ def test_trials_and_seed_are_always_said(run):
 def test_other_settings_are_said_where_the_workbook_does_not_say_them():
     own = Settings(trials=10, seed=1, sampling="mc", engine="numpy")
     model = SimpleNamespace(definitions=SimpleNamespace(settings=own), workbook=SimpleNamespace(name="-b.xlsx"))
-    used = replace(own, sampling="lhs", engine="jit")
-    simulation = SimpleNamespace(settings=used, model=model, trials=20, stopped=ALL_TRIALS, changed_from=None)
+    used = replace(own, trials=20, sampling="lhs", engine="jit")
+    repeating = RunOptions.repeating(used, trials=20, by="trials", weighable=False)
+    simulation = SimpleNamespace(repeating=repeating, model=model, changed_from=None)
     command = "xlmc simulate ./-b.xlsx --trials 20 --seed 1 --sampling lhs --engine jit"
     assert repeat_command(simulation) == command
 

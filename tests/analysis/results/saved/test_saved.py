@@ -212,7 +212,7 @@ FAULTS = {
     "a number that is a text": (changed(block="x"), "the size of its blocks"),
     "no tally": (lambda p, d: d.pop("tally"), "'tally'"),
     "filters of another book": (lambda p, d: d["tally"].update(rejected=[1, 2]), "its filters"),
-    "unknown sampling": (lambda p, d: d["settings"].update(sampling="dice"), "its sampling"),
+    "unknown sampling": (lambda p, d: d["settings"].update(sampling="dice"), "no sampling method 'dice'"),
     "unknown setting": (lambda p, d: d["settings"].update(magic=1), "magic"),
     "two goals": (lambda p, d: d["settings"]["stopping"].update(accepted=3, digits=1), "were both asked for"),
     "unknown end": (lambda p, d: d["stopped"].update(by="boredom"), "its end"),

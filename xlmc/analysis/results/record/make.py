@@ -29,7 +29,6 @@ from xlmc.analysis.results.record.settings_table import settings_section
 from xlmc.analysis.results.statements.in_words import errors_text, generator_text, method_text
 from xlmc.excel.workbook.inject import original_hash
 from xlmc.montecarlo.columns import parts
-from xlmc.montecarlo.definitions.stopping import LIMIT
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.simulation.simulation import KEPT_INPUTS, ChangedFrom
 
@@ -354,37 +353,17 @@ def _update(digest: hashlib._Hash, values: NDArray[np.float64]) -> None:
 def repeat_command(simulation: Simulation) -> str:
     """What to type, in the workbook's folder, to get the same numbers: `xlmc simulate book.xlsx --trials … --seed …`.
 
-    A run that ended with an accepted trial it waited for is repeated as that, any other by its number of trials. Other
-    settings are named where they differ from the workbook's own, which the repeat reads again. Of a changed copy, which
-    may stand in no file, it is said how to make one.
+    See `RunOptions.repeating` and `RunOptions.arguments`. Of a changed copy, which may stand in no file, it is said how
+    to make one.
     """
-    settings, own = simulation.settings, simulation.model.definitions.settings
     book, changed = simulation.model.workbook.name, simulation.changed_from
     first = ""
     if changed is not None:
         book = f"COPY{Path(book).suffix}"
         first = f"type the changes that this record lists into a copy of {changed.name}, and then: "
-    options = [*_length(simulation), f"--seed {settings.seed}"]
-    if settings.sampling != own.sampling:
-        options.append(f"--sampling {settings.sampling}")
-    if settings.stopping.rare is not None and simulation.stopped.by in ("accepted", "search"):
-        options.append(f"--rare {settings.stopping.rare}")
-    if settings.engine != own.engine:
-        options.append(f"--engine {settings.engine}")
-    if settings.scenarios:
-        options.append("--scenarios")
-    return " ".join([f"{first}xlmc simulate", quoted_argument(f"./{book}" if book.startswith("-") else book), *options])
-
-
-def _length(simulation: Simulation) -> list[str]:
-    settings = simulation.settings
-    if simulation.stopped.by == "search" or getattr(simulation, "rare", None) is not None:
-        limit = [] if settings.trials == LIMIT else [f"--trials {settings.trials}"]
-        return [*limit, f"--until-accepted {settings.stopping.accepted}"]
-    if simulation.stopped.by != "accepted":
-        return [f"--trials {simulation.trials}"]
-    limit = [f"--trials {simulation.trials}"] if simulation.trials > LIMIT else []
-    return [*limit, f"--until-accepted {simulation.accepted}"]
+    arguments = simulation.repeating.arguments(simulation.model.definitions.settings)
+    named = f"./{book}" if book.startswith("-") else book
+    return first + " ".join(["xlmc simulate", *map(quoted_argument, [named, *arguments])])
 
 
 def quoted_argument(text: str) -> str:

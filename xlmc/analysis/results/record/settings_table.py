@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import astuple, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, get_type_hints
 
 from xlmc.analysis.results.record.record_parts import Entry, Record, Section, Value
 from xlmc.errors import WorkbookError, XlmcError
-from xlmc.montecarlo.definitions.definitions import Settings
+from xlmc.montecarlo.definitions.run_settings import ENDS, SETTINGS, Setting, Settings
 from xlmc.montecarlo.definitions.stopping import GOALS, Goal, Stopping, only_one
 
 if TYPE_CHECKING:
@@ -36,23 +35,23 @@ def in_float32(version: str, where: Path | None = None) -> WorkbookError:
 
 def settings_section(simulation: Simulation) -> Section:
     """What the run was asked to do, each setting so that it reads back as the same one."""
-    settings, asked = simulation.settings, simulation.settings.stopping
+    settings = simulation.settings
+    of_run, of_end = ([row for row in SETTINGS.values() if bool(row.field) is ends] for ends in (False, True))
     entries = (
-        Entry("trials", "Trials at most", settings.trials),
-        Entry("seed", "Seed", str(settings.seed)),  # as text: a worksheet's numbers have 15 to 17 digits
-        Entry("sampling", "Sampling", settings.sampling),
-        Entry("engine", "Engine", settings.engine),
-        Entry("lognorm", "RiskLognorm is that of", settings.lognorm or None),
-        *([Entry("evidence", "Evidence by", settings.evidence)] if settings.evidence else []),
-        *(entry for kind in GOALS.values() for entry in _goal_entries(kind, asked.goal)),
-        Entry(
-            "for", "Of these forecasts", json.dumps(asked.forecasts, ensure_ascii=False) if asked.forecasts else None
-        ),
-        Entry("time_limit", "Seconds at most", asked.seconds),
-        Entry("rare", "Search for rare trials", asked.rare),
-        *([Entry("scenarios", "Scenarios are run, too", True)] if settings.scenarios else []),
+        *_setting_entries(of_run, settings),
+        *(entry for kind in GOALS.values() for entry in _goal_entries(kind, settings.stopping.goal)),
+        *_setting_entries(of_end, settings),
     )
     return Section("settings", "Settings", entries)
+
+
+def _setting_entries(rows: Iterable[Setting], settings: Settings) -> Iterator[Entry]:
+    """An entry for every setting: empty, or none at all, where nothing is said of it."""
+    for row in rows:
+        value = row.of(settings)
+        said = bool(value) or not row.blank
+        if said or not row.sparse:
+            yield Entry(row.entry_key, row.label, row.kind.entry(value) if said else None)
 
 
 def _goal_entries(kind: type[Goal], asked: Goal | None) -> Iterator[Entry]:
@@ -74,31 +73,21 @@ def recorded_settings(record: Record) -> Settings:
         software = {entry.key: entry.value for entry in record.section("software").entries}
         raise in_float32(str(software.get("xlmc", "")))
     try:
-        return Settings(
-            trials=_whole(section["trials"]),
-            seed=int(str(section["seed"])),
-            sampling=str(section["sampling"]),
-            engine=str(section["engine"]),
-            lognorm=str(section["lognorm"] or ""),
-            scenarios=bool(section.get("scenarios")),
-            stopping=_stopping(section),
-            evidence=str(section.get("evidence") or ""),
-        )
+        given = {row.field or row.key: value for row, value in _recorded(section)}
+        goals = [_goal(kind, section) for kind in GOALS.values() if section.get(kind.labels[0][0]) is not None]
+        ends = {name.removeprefix(ENDS): given.pop(name) for name in list(given) if name.startswith(ENDS)}
+        return Settings(**given, stopping=Stopping(goal=only_one(goals), **ends))
     except (TypeError, ValueError, XlmcError) as error:
         hint = "The record was edited: use a copy of the result workbook as xlmc wrote it"
         raise WorkbookError(f"the settings in the record cannot be read ({error})", hint=hint) from error
 
 
-def _stopping(section: dict[str, Value]) -> Stopping:
-    goals = [_goal(kind, section) for kind in GOALS.values() if section.get(kind.labels[0][0]) is not None]
-    forecasts = tuple(str(name) for name in json.loads(str(section["for"] or "[]")))
-    seconds = section["time_limit"]
-    return Stopping(
-        goal=only_one(goals),
-        forecasts=forecasts,
-        seconds=None if seconds is None else float(seconds),
-        rare=None if section["rare"] is None else str(section["rare"]),
-    )
+def _recorded(section: dict[str, Value]) -> Iterator[tuple[Setting, Any]]:
+    """The settings that the entries say."""
+    for row in SETTINGS.values():
+        value = section.get(row.entry_key) if row.sparse else section[row.entry_key]
+        if value is not None or not row.blank:
+            yield row, row.kind.recorded(value)
 
 
 def _goal(kind: type[Goal], section: dict[str, Value]) -> Goal:

@@ -11,13 +11,11 @@ from typing import Any, Final, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from xlmc.engine.engines import ENGINES
-from xlmc.montecarlo.definitions.definitions import Settings
-from xlmc.montecarlo.definitions.stopping import GOALS, MOST_TRIALS, RARE, Goal, Stopping, WholeGoal, only_one
+from xlmc.montecarlo.definitions.run_settings import Settings, check_settings
+from xlmc.montecarlo.definitions.stopping import GOALS, Goal, Stopping, WholeGoal, only_one
 from xlmc.montecarlo.loop.blocks import FilterTally
 from xlmc.montecarlo.loop.stopping.stopped import WITHOUT_GOAL, Stopped
 from xlmc.montecarlo.rare.account import RareAccount
-from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.simulation.simulation import ChangedFrom, Origin
 
 __all__ = [
@@ -70,12 +68,8 @@ def settings_of(found: object) -> Settings:
     given = dict(mapping(found, "its settings"))
     stopping = _stopping_of(given.pop("stopping", {}))
     settings = replace(build(Settings, given, "its settings"), stopping=stopping)
-    require(1 <= settings.trials <= MOST_TRIALS, "its number of trials")
-    require(settings.seed >= 0, "its seed")
-    require(settings.sampling in METHODS, "its sampling")
-    require(settings.engine in ENGINES, "its engine")
-    require(settings.evidence in ("", "rejection", "weights"), "how it used evidence")
-    require(settings.lognorm in ("", "@RISK", "XLRisk"), "its RiskLognorm")
+    check_settings(settings)
+    require(settings.evidence != "auto", "how it used evidence")
     return settings
 
 
@@ -86,8 +80,6 @@ def _stopping_of(found: object) -> Stopping:
     goals = [_goal_of(kind, given.pop(kind.saved_as or kind.key, None)) for kind in GOALS.values()]
     forecasts = texts(given.pop("forecasts", []), "the forecasts that its end looks at")
     limits = build(Stopping, given, "its end")
-    require(limits.seconds is None or limits.seconds > 0, "its time limit")
-    require(limits.rare is None or limits.rare in RARE, "what is done where accepted trials are rare")
     return replace(limits, goal=only_one([goal for goal in goals if goal is not None]), forecasts=forecasts)
 
 

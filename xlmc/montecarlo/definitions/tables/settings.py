@@ -9,24 +9,22 @@ from typing import Any, NamedTuple, TypeVar
 from xlmc.errors import DefinitionError, SimulationError
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.amounts import as_seconds, typed_whole_number
-from xlmc.montecarlo.definitions.definitions import Settings
-from xlmc.montecarlo.definitions.evidence_ways import EVIDENCE_WAYS
 from xlmc.montecarlo.definitions.problems import Findings
-from xlmc.montecarlo.definitions.stopping import GOALS, LIMIT, MOST_TRIALS, NO_GOAL, RARE, Option, Stopping, stopping
+from xlmc.montecarlo.definitions.run_settings import SETTINGS, Setting, Settings
+from xlmc.montecarlo.definitions.setting_kinds import Names, Seconds, Switch, Whole, Word
+from xlmc.montecarlo.definitions.stopping import GOALS, LIMIT, NO_GOAL, Option, Stopping, stopping
 from xlmc.montecarlo.definitions.tables.reserved_tables import DefinitionTable
 from xlmc.montecarlo.definitions.tables.table_rows import Row, as_text, central_share, number_in, required_text, rows_of
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.distributions.spelling import did_you_mean, plain
-from xlmc.montecarlo.sampling.sampling_methods import METHODS
 
 __all__ = ["LEAST_PERCENT", "read_settings"]
 
 _DEFAULT_CENTRAL = 0.51
 """The share of the central range where neither the forecast nor the settings give one: the paper's 51 %."""
 
-_LARGEST_SEED = 10**15  # a worksheet holds no more digits
+_LARGEST = 10**15  # a worksheet holds no more digits
 _KNOWN = ("Setting", "Value")
-_LOGNORMS = ("@RISK", "XLRisk")
 
 _Reader = Callable[[Row, Findings], Any]
 
@@ -34,9 +32,6 @@ T = TypeVar("T")
 
 LEAST_PERCENT = 0.1
 """A precision in percent below this is most likely a number in a cell of percent format."""
-
-_OTHERS = {"Precision %": "precision", "Rare": "rare", "Look at": "forecasts", "Time limit": "time_limit"}
-"""Setting -> what `stopping` calls it, of those that are no option of a goal."""
 
 
 class _Setting(NamedTuple):
@@ -98,45 +93,6 @@ def _take(row: Row, values: dict[str, Any], settings: Mapping[str, _Setting], fi
     values[key] = settings[key].read(row, findings)
 
 
-def _trials(row: Row, _findings: Findings) -> int:
-    return _whole_number(row, "Trials", 1, MOST_TRIALS)
-
-
-def _seed(row: Row, _findings: Findings) -> int:
-    return _whole_number(row, "Seed", 0, _LARGEST_SEED)
-
-
-def _sampling(row: Row, _findings: Findings) -> str:
-    typed = required_text(row, "Value")
-    known = {name: method.key for method in METHODS.values() for name in (method.key, *method.also)}
-    if plain(typed) not in known:
-        *keys, last = METHODS
-        hint = f"Use {', '.join(keys)} or {last}"
-        raise DefinitionError(f"There is no sampling method {typed!r}", where=row.cell("Value"), hint=hint)
-    return known[plain(typed)]
-
-
-def _engine(engines: Collection[str], row: Row, _findings: Findings) -> str:
-    typed = required_text(row, "Value")
-    if plain(typed) not in engines:
-        message = f"There is no engine {typed!r}"
-        raise DefinitionError(message, where=row.cell("Value"), hint=did_you_mean(typed, engines))
-    return plain(typed)
-
-
-def _lognorm(row: Row, _findings: Findings) -> str:
-    typed = required_text(row, "Value")
-    found = {plain(name): name for name in _LOGNORMS}.get(plain(typed))
-    if found is None:
-        hint = "Use @RISK (mean and std dev of the draw) or XLRisk (of its logarithm)"
-        raise DefinitionError(f"There is no RiskLognorm of a program {typed!r}", where=row.cell("Value"), hint=hint)
-    return found
-
-
-def _evidence(row: Row, _findings: Findings) -> str:
-    return _way(row, "use evidence", EVIDENCE_WAYS)
-
-
 def _arithmetic(row: Row, _findings: Findings) -> None:
     """A row of earlier books, which could ask for float32."""
     typed = required_text(row, "Value")
@@ -152,17 +108,49 @@ def _range(row: Row, findings: Findings) -> float:
 def _settings(engines: Collection[str]) -> dict[str, _Setting]:
     """Plain name -> the setting."""
     readers: dict[str, _Reader] = {
-        "Trials": _trials,
-        "Seed": _seed,
-        "Sampling": _sampling,
-        "Engine": partial(_engine, engines),
-        "Arithmetic": _arithmetic,
+        **_of_run(engines, ends=False),
         "Range %": _range,
-        **_stopping_settings(),
-        "Lognorm": _lognorm,
-        "Evidence": _evidence,
+        **_goal_settings(),
+        **_of_run(engines, ends=True),
+        "Arithmetic": _arithmetic,
     }
     return {plain(name): _Setting(name, read) for name, read in readers.items()}
+
+
+def _of_run(engines: Collection[str], *, ends: bool) -> dict[str, _Reader]:
+    """Heading -> reader of the settings of a run, or of those of its end."""
+    rows = [row for row in SETTINGS.values() if row.heading and bool(row.field) is ends]
+    return {row.heading: partial(_read, row, engines) for row in rows}
+
+
+def _read(setting: Setting, engines: Collection[str], row: Row, _findings: Findings) -> Any:
+    """The value of a setting's row.
+
+    Raises:
+        DefinitionError: it is none.
+    """
+    match setting.kind:
+        case Whole(least=least, most=most):
+            return _whole_number(row, setting.heading, least, _LARGEST if most is None else most)
+        case Word() as kind:
+            return _word(row, kind, engines if setting.key == "engine" else kind.words())
+        case Names():
+            return tuple(name.strip() for name in required_text(row, "Value").split(";") if name.strip())
+        case Seconds():
+            return _seconds(row)
+        case Switch():
+            raise AssertionError(setting.key)  # no workbook says one
+
+
+def _word(row: Row, kind: Word, words: Collection[str]) -> str:
+    """The one of the words that was typed, in any case."""
+    typed = required_text(row, "Value")
+    found = {plain(word): word for word in words} | kind.also()
+    if plain(typed) in found:
+        return found[plain(typed)]
+    *some, last = words
+    hint = kind.hint or (did_you_mean(typed, words) if kind.suggest else f"Use {', '.join(some)} or {last}")
+    raise DefinitionError(kind.fault.format(repr(typed)), where=row.cell("Value"), hint=hint)
 
 
 def _number_of(row: Row, name: str) -> float:
@@ -200,27 +188,22 @@ def _whole_number_as_text(row: Row, name: str) -> int | None:
     return found
 
 
-def _stopping_settings() -> dict[str, Callable[[Row, Findings], Any]]:
-    """Setting -> reader of its row: what `stopping` takes."""
+def _goal_settings() -> dict[str, Callable[[Row, Findings], Any]]:
+    """Setting -> reader of its row: what goals take."""
     options = {option.setting: partial(_option, option) for option in _options()}
-    return options | {
-        "Precision": _precision,
-        "Precision %": _percent,
-        "Rare": _rare,
-        "Look at": _names,
-        "Time limit": _seconds,
-    }
+    return options | {"Precision": _precision, "Precision %": _percent}
 
 
 def _read_stopping(tables: list[DefinitionTable], values: dict[str, Any], findings: Findings) -> Stopping:
     """What the settings say of the end of the run, taken out of `values`; a mistake is reported for the whole table."""
-    given = {name: values.pop(plain(name)) for name in _stopping_settings() if plain(name) in values}
+    arguments = {option.setting: option.name for option in _options()} | {"Precision %": "precision"}
+    arguments |= {row.heading: row.key for row in SETTINGS.values() if row.field}
+    given = {name: values.pop(plain(name)) for name in arguments if plain(name) in values}
     if any(value is None for value in given.values()):  # a mistake that was reported before
         return NO_GOAL
     try:
         if "Precision %" in given and "Precision" in given:
             raise SimulationError("Precision and Precision % are both set", hint="Keep one of the two rows")
-        arguments = {option.setting: option.name for option in _options()} | _OTHERS
         return stopping(**{arguments[name]: value for name, value in given.items()})
     except SimulationError as error:
         findings.problem(error.message, tables[0].where, error.hint or "")
@@ -258,11 +241,7 @@ def _percent(row: Row, findings: Findings) -> str:
     return f"{value!r}%"
 
 
-def _names(row: Row, _findings: Findings) -> tuple[str, ...]:
-    return tuple(name.strip() for name in required_text(row, "Value").split(";") if name.strip())
-
-
-def _seconds(row: Row, _findings: Findings) -> float:
+def _seconds(row: Row) -> float:
     content = row.content("Value")
     given = content.value if isinstance(content.value, str) else _number_of(row, "Time limit")
     if not isinstance(given, str) and given < 1:
@@ -271,19 +250,6 @@ def _seconds(row: Row, _findings: Findings) -> float:
             message, where=row.cell("Value"), hint="Type seconds, or a text such as 5m; not a clock time"
         )
     return _as_written(row, as_seconds, given)
-
-
-def _rare(row: Row, _findings: Findings) -> str:
-    return _way(row, "look for rare trials", RARE)
-
-
-def _way(row: Row, purpose: str, ways: Collection[str]) -> str:
-    """The one of the ways that was typed, in any case."""
-    typed = required_text(row, "Value")
-    if plain(typed) not in ways:
-        message = f"{typed!r} is not a way to {purpose}"
-        raise DefinitionError(message, where=row.cell("Value"), hint=f"Use {', '.join(ways)}")
-    return plain(typed)
 
 
 def _as_written(row: Row, read: Callable[[Any], T], given: object) -> T:

@@ -96,7 +96,16 @@ def test_what_cannot_be_seen_is_said(small):
     assert "because it does not see the filters, which reject 98.2 % of the trials" in text
     assert "Bounds answer another question" in text
     assert "Recommended: " in text
-    assert "`xlmc simulate intersection.xlsx -n " in text
+    assert "`xlmc simulate intersection.xlsx --trials " in text
+
+
+def test_the_command_is_one_for_this_workbook(small):
+    known = small.model
+    settings = replace(known.definitions.settings, sampling="lhs500", engine="formulas")
+    book = replace(known.workbook, name="my book.xlsx")
+    model = type(known)(book, replace(known.definitions, settings=settings), known.path)
+    text = "\n".join(recommendation(replace(small, model=model)))
+    assert re.search(r'`xlmc simulate "my book.xlsx" --trials \d+ --sampling \w+ --engine (numpy|jit)`', text)
 
 
 def test_the_tables(small):

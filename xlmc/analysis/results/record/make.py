@@ -41,7 +41,16 @@ from importlib.metadata import version
 from xlmc.engine.engines import ENGINES
 from xlmc.montecarlo.statistics.estimate import finite
 
-__all__ = ["LIBRARIES", "fingerprint", "make_record", "processor", "quoted_argument", "repeat_command", "versions"]
+__all__ = [
+    "LIBRARIES",
+    "fingerprint",
+    "make_record",
+    "processor",
+    "quoted_argument",
+    "repeat_command",
+    "simulate_command",
+    "versions",
+]
 
 LIBRARIES = ("numpy", "scipy", "formulas", "XlsxWriter", "openpyxl")
 
@@ -362,8 +371,13 @@ def repeat_command(simulation: Simulation) -> str:
         book = f"COPY{Path(book).suffix}"
         first = f"type the changes that this record lists into a copy of {changed.name}, and then: "
     arguments = simulation.repeating.arguments(simulation.model.definitions.settings)
+    return first + simulate_command(book, arguments)
+
+
+def simulate_command(book: str, arguments: Sequence[str]) -> str:
+    """What to type in a workbook's folder to run it with these arguments."""
     named = f"./{book}" if book.startswith("-") else book
-    return first + " ".join(["xlmc simulate", *map(quoted_argument, [named, *arguments])])
+    return " ".join(["xlmc simulate", *map(quoted_argument, [named, *arguments])])
 
 
 def quoted_argument(text: str) -> str:

@@ -13,11 +13,13 @@ from typing import Final
 
 import numpy as np
 
+from xlmc.analysis.results.record.make import simulate_command
 from xlmc.analysis.studies.methods.answer import percent_words, rounded_text, seconds_text, statistic_words, trials_text
 from xlmc.analysis.studies.methods.curve import Curve
 from xlmc.analysis.studies.methods.need import NO_TIME, Choice, Need, Shortfall, choice, shortfall
 from xlmc.analysis.studies.methods.sampled import MONTE_CARLO, Sampled
 from xlmc.analysis.studies.methods.study import Study
+from xlmc.montecarlo.definitions.run_options import RunOptions
 
 __all__ = ["Parts", "parts_of", "recommendation"]
 
@@ -159,17 +161,16 @@ def _command(study: Study, curve: Curve, wanted: Need) -> str:
         call = f"xlmc.analysis.studies.methods.{type(method).__name__}().run(model, {wanted.trials:.0f}, seed=1)"
         return f"It runs from Python: `{call}`."
     text, _, relative = study.accuracy
-    options = [
-        f"--{name} {chosen}"
-        for name, chosen, usual in (
-            ("sampling", method.method, MONTE_CARLO.method),
-            ("engine", method.engine, MONTE_CARLO.engine),
-        )
-        if chosen != usual
-    ]
-    command = " ".join(["xlmc simulate", study.model.workbook.name, *options])
+    model = study.model
+    asked = RunOptions(
+        trials=_upwards(wanted.trials) if relative else None,
+        sampling=method.method,
+        engine=method.engine,
+        evidence="rejection" if model.chances else None,
+    )
+    command = simulate_command(model.workbook.name, asked.arguments(model.definitions.settings))
     if relative:
-        return f"`{command} -n {_upwards(wanted.trials)}` runs it, and prints what each number is known to."
+        return f"`{command}` runs it, and prints what each number is known to."
     numbers = "range" if study.reference.heavy else "mean,sd,range"
     command += f" --precision {text.replace(' ', '')} --precision-of {numbers}"
     return f"`{command}` goes on until the run's own errors say that the accuracy is reached."

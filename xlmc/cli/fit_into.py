@@ -42,9 +42,10 @@ def prepare(path: Path, name: str, fitted: Fitted, base: float, source: str) -> 
         WorkbookError: the file cannot be read, a program has it open, or a cell of the row holds a formula.
     """
     from xlmc.analysis.studies.fitting import parameter_texts, rounded_value
+    from xlmc.excel.workbook.package_check import checked_bytes
     from xlmc.excel.workbook.reader import read_workbook
     from xlmc.excel.workbook.target import refuse_into_old_workbook
-    from xlmc.excel.workbook.writer import package_bytes, refuse_if_open
+    from xlmc.excel.workbook.writer import refuse_if_open
     from xlmc.montecarlo.definitions.tables.new_row import row_edit
 
     refuse_if_open(path)
@@ -52,7 +53,7 @@ def prepare(path: Path, name: str, fitted: Fitted, base: float, source: str) -> 
     refuse_into_old_workbook(path)
     parameters = {heading: float(text) for heading, text in parameter_texts(fitted).items()}
     row = row_edit(workbook, name, fitted.name, parameters, rounded_value(fitted, base), source)
-    data = package_bytes(_parts(workbook, row))
+    data = checked_bytes(_parts(workbook, row), workbook.parts)
     _refuse_new_problems(workbook, read_workbook(data, path.name))
     return Edited(path, row, data, workbook.sha256)
 

@@ -19,10 +19,11 @@ from xlmc.excel.workbook.injection.cell_edit import Content, with_calculation_on
 from xlmc.excel.workbook.injection.content_types import roles
 from xlmc.excel.workbook.lazy_sheets import with_values
 from xlmc.excel.workbook.package import is_old_workbook
+from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.target import Target, copy_ending, is_same_file, refuse_into_source, refuse_read
 from xlmc.excel.workbook.workbook import CellValue, Workbook
-from xlmc.excel.workbook.writer import package_bytes, write_workbook
+from xlmc.excel.workbook.writer import write_workbook
 from xlmc.montecarlo.definitions.computed import Computed
 from xlmc.montecarlo.definitions.definitions import Assumption, Filter
 from xlmc.montecarlo.definitions.scenarios import Scenario
@@ -91,7 +92,7 @@ def edited_workbook(model: Model, scenario: Scenario | str) -> EditedWorkbook:
     if left:
         part = roles(parts).workbook
         parts[part] = with_calculation_on_load(parts[part], part)
-    data = package_bytes(parts) if cells or is_old_workbook(book.data) else book.data
+    data = checked_bytes(parts, book.parts) if cells or is_old_workbook(book.data) else book.data
     _refuse_difference(wanted, build_model(read_workbook(data, book.name), model.path), found)
     typed = {cell: (book.content(cell).value, value) for cell, value in sorted(cells.items())}
     results = bool(result_sheets(book.parts))

@@ -27,7 +27,7 @@ from xlmc.excel.workbook.injection.book_edit import (
 )
 from xlmc.excel.workbook.injection.content_types import Roles, add_types, drop_types, roles, types_of
 from xlmc.excel.workbook.injection.formula_values import without_formula_values
-from xlmc.excel.workbook.injection.part_numbers import free_names, free_part_names, free_tables, reached
+from xlmc.excel.workbook.injection.part_numbers import claimed_names, free_names, free_part_names, free_tables, reached
 from xlmc.excel.workbook.injection.result_sheet import (
     BuiltBook,
     BuiltSheet,
@@ -37,6 +37,7 @@ from xlmc.excel.workbook.injection.result_sheet import (
     relative_target,
 )
 from xlmc.excel.workbook.injection.splice import MAIN, OFFICE_RELATIONSHIPS, Element, SplicedXml, as_utf8, parse_spans
+from xlmc.excel.workbook.injection.strict import STRICT_MAIN, strict_part, strict_type
 from xlmc.excel.workbook.injection.styles_merge import StyleMap, merge_styles, same_styles
 from xlmc.excel.workbook.package import CONTENT_TYPES, Relationship, hash_parts, relationships, rels_part
 from xlmc.excel.workbook.safe_xml import tree
@@ -74,11 +75,14 @@ def inject(
     user = _User.of(remove_result_sheets(host) if replace else host)
     built = read_built(sheets)
     names = free_names([sheet.name for sheet in built.sheets], user.sheets)
-    styles = _Styles.merged(user, built)
-    carrier = _carrier(user, built, names, styles.numbers)
+    taken = claimed_names(user.parts)
+    styles = _Styles.merged(user, built, taken)
+    carrier = _carrier(user, built, names, styles.numbers, taken)
     rels, pointers = add_pointers(user.parts[user.role.rels], user.role.rels, _targets(user, carrier, styles))
     added = [_new_sheet(*found, names, carrier.renames, marked) for found in zip(built.sheets, pointers, strict=False)]
     carried = carrier.parts()
+    if user.is_strict:
+        carried = {name: strict_part(content) if _is_xml(name) else content for name, content in carried.items()}
     changed = {
         CONTENT_TYPES: add_types(user.parts[CONTENT_TYPES], _types(carrier, carried, styles)),
         user.role.workbook: add_sheets(user.parts[user.role.workbook], user.role.workbook, added),
@@ -97,20 +101,22 @@ class _User:
     role: Roles
     sheets: tuple[str, ...]
     names: tuple[str, ...]
+    is_strict: bool
 
     @classmethod
     def of(cls, parts: Mapping[str, bytes]) -> _User:
         role = roles(parts)
         root = parse_spans(as_utf8(parts[role.workbook], role.workbook), role.workbook)
-        if root.namespace != MAIN:
+        if root.namespace not in (MAIN, STRICT_MAIN):
             hint = "Save it as an Excel Workbook (.xlsx) or Macro-Enabled Workbook (.xlsm)"
-            raise WorkbookError("the workbook is a Strict Open XML file, to which no sheets can be added", hint=hint)
+            raise WorkbookError("the workbook is in a form to which no sheets can be added", hint=hint)
         names = root.find("definedNames")
         return cls(
             parts=parts,
             role=role,
             sheets=tuple(sheet.attributes.get("name", "") for sheet in sheet_list(root, role.workbook).children),
             names=tuple(name.attributes.get("name", "") for name in (names.children if names else ())),
+            is_strict=root.namespace == STRICT_MAIN,
         )
 
 
@@ -124,17 +130,20 @@ class _Styles:
     new: bool
 
     @classmethod
-    def merged(cls, user: _User, built: BuiltBook) -> _Styles:
+    def merged(cls, user: _User, built: BuiltBook, taken: Collection[str]) -> _Styles:
         part = user.role.styles
         if part is not None:
             return cls(part, *merge_styles(user.parts[part], part, built.styles), new=False)
-        taken = any(name.casefold() == _STYLES for name in user.parts)
-        free = free_part_names([_STYLES], user.parts)[_STYLES] if taken else _STYLES
-        return cls(free, built.styles, same_styles(built.styles), new=True)
+        is_taken = any(name.casefold() == _STYLES for name in taken)
+        free = free_part_names([_STYLES], taken)[_STYLES] if is_taken else _STYLES
+        xml = strict_part(built.styles) if user.is_strict else built.styles
+        return cls(free, xml, same_styles(built.styles), new=True)
 
 
-def _carrier(user: _User, built: BuiltBook, names: Mapping[str, str], styles: StyleMap) -> Carrier:
-    parts = free_part_names(reached(built.parts, *(sheet.part for sheet in built.sheets)), user.parts)
+def _carrier(
+    user: _User, built: BuiltBook, names: Mapping[str, str], styles: StyleMap, taken: Collection[str]
+) -> Carrier:
+    parts = free_part_names(reached(built.parts, *(sheet.part for sheet in built.sheets)), taken)
     types = types_of(built.parts[CONTENT_TYPES], parts)
     tables = free_tables(
         {part: built.parts[part] for part, kind in types.items() if kind.endswith(".table+xml")},
@@ -150,7 +159,12 @@ def _targets(user: _User, carrier: Carrier, styles: _Styles) -> list[tuple[str, 
     """What the workbook part has to point to, as (type, target): each sheet, then the styles if they are new."""
     workbook = user.role.workbook
     found = [(sheet.type, relative_target(workbook, carrier.names[sheet.part])) for sheet in carrier.built.sheets]
-    return [*found, (_STYLES_POINTER, relative_target(workbook, styles.part))] if styles.new else found
+    found += [(_STYLES_POINTER, relative_target(workbook, styles.part))] if styles.new else []
+    return [(strict_type(kind), target) for kind, target in found] if user.is_strict else found
+
+
+def _is_xml(name: str) -> bool:
+    return name.endswith((".xml", ".rels", ".vml"))
 
 
 def _new_sheet(sheet: BuiltSheet, pointer: str, names: Mapping[str, str], renames: Renames, marked: bool) -> NewSheet:

@@ -17,11 +17,12 @@ import numpy as np
 from xlmc.errors import DefinitionError, FormulaError, WorkbookError
 from xlmc.excel.address import InFormula
 from xlmc.excel.workbook.inject import inject, remove_result_sheets
+from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.structure import read_structure
 from xlmc.excel.workbook.target import Target
 from xlmc.excel.workbook.workbook import Workbook
-from xlmc.excel.workbook.writer import package_bytes, write_workbook
+from xlmc.excel.workbook.writer import write_workbook
 from xlmc.montecarlo.definitions.definitions import Definitions
 from xlmc.montecarlo.definitions.new_tables import NewTable, new_tables
 from xlmc.montecarlo.model.loading import build_model
@@ -78,7 +79,7 @@ def convert(model: Model, path: Path, *, overwrite: bool = False) -> Converted:
         replace=False,
         marked=False,
     )
-    data = package_bytes(parts)
+    data = checked_bytes(parts, workbook.parts)
     _compare(model, build_model(read_workbook(data, path.name), path))
     write_workbook(path, data, target.check)
     return Converted(path, tables, left)

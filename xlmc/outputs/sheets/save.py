@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 from xlmc.errors import SimulationError, WorkbookError
 from xlmc.excel.workbook.inject import inject, result_sheets
+from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.seal import sealed_parts
 from xlmc.excel.workbook.target import Target, copy_ending, is_same_file, refuse_into_source, refuse_read
-from xlmc.excel.workbook.writer import package_bytes, write_workbook
+from xlmc.excel.workbook.writer import write_workbook
 from xlmc.montecarlo.diagnostics.result_cells import filled_sheets
 from xlmc.montecarlo.model.model import paused_collection
 from xlmc.outputs.sheets.book import build_sheets
@@ -64,7 +65,7 @@ def save(
         parts = inject(own, sheets)
     if not _is_source(simulation, path):  # the person's own file, which is never ours to replace
         parts = sealed_parts(parts, result_sheets(parts)[-1], simulation.model.workbook.name)
-    write_workbook(path, package_bytes(parts), check)
+    write_workbook(path, checked_bytes(parts, book.parts), check)
     return path
 
 

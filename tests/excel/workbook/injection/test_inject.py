@@ -6,10 +6,13 @@ import re
 import openpyxl
 import pytest
 
-from xlmc.errors import WorkbookError
-from xlmc.excel.workbook.inject import inject, original_hash, remove_result_sheets
+from xlmc.excel.address import Cell
+from xlmc.excel.workbook.inject import inject, original_hash, remove_result_sheets, result_sheets
 from xlmc.excel.workbook.injection.content_types import roles
 from xlmc.excel.workbook.injection.splice import as_utf8, parse_spans
+from xlmc.excel.workbook.injection.strict import strict_part
+from xlmc.excel.workbook.package_check import faults
+from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.writer import package_bytes
 
 # openpyxl says what it would lose; it only looks here.
@@ -219,11 +222,71 @@ def test_a_utf16_workbook_part_is_understood(rich, results):
     assert original_hash(inject(host, results)) == original_hash(host) == original_hash(rich)
 
 
-def test_a_strict_workbook_is_refused(rich, results):
-    main = b"http://schemas.openxmlformats.org/spreadsheetml/2006/main"
-    strict = rich["xl/workbook.xml"].replace(b'xmlns="' + main, b'xmlns="http://purl.oclc.org/ooxml/spreadsheetml/main')
-    with pytest.raises(WorkbookError, match="Strict Open XML"):
-        inject({**rich, "xl/workbook.xml": strict}, results)
+def test_a_strict_workbook_gets_strict_sheets(build, results):
+    """Every part and every relationship type is in the strict namespaces, as Excel saves them."""
+    host = build(lambda book: book.add_worksheet("Only").write("A1", 1.5, book.add_format({"num_format": "0.00"})))
+    host = {name: strict_part(part) if name.endswith((".xml", ".rels")) else part for name, part in host.items()}
+    done = inject(host, results)
+    added = {name: part for name, part in done.items() if host.get(name) != part and name.endswith((".xml", ".rels"))}
+    assert len(added) > 10
+    added.pop("docProps/app.xml")  # its namespace was not translated above
+    old = re.compile(rb"schemas.openxmlformats.org/(?:spreadsheetml|officeDocument|drawingml)/2006")
+    assert [name for name, part in added.items() if old.search(part)] == []
+    assert read_workbook(package_bytes(done), "strict").content(Cell("Results", 2, 2)).value == 31.5
+    assert inject(done, results) == done
+    assert faults(done, done) == []
+
+
+@pytest.mark.parametrize(
+    "leftover",
+    ["xl/worksheets/sheet4.xml", "xl/charts/chart2.xml", "xl/tables/table2.xml", "xl/drawings/drawing2.xml"],
+)
+@pytest.mark.parametrize("kind", ["content type", "pointer"])
+def test_a_name_that_something_else_speaks_of_is_taken(rich, results, leftover, kind):
+    """A content type or a pointer of a part that is not there: no new part takes its name."""
+    assert leftover not in rich
+    if kind == "content type":
+        line = f'<Override PartName="/{leftover}" ContentType="application/xml"/></Types>'.encode()
+        host = {**rich, "[Content_Types].xml": rich["[Content_Types].xml"].replace(b"</Types>", line)}
+    else:
+        line = f'<Relationship Id="rIdOld" Type="http://x/old" Target="/{leftover}"/></Relationships>'.encode()
+        host = {
+            **rich,
+            "xl/_rels/workbook.xml.rels": rich["xl/_rels/workbook.xml.rels"].replace(b"</Relationships>", line),
+        }
+    done = inject(host, results)
+    assert leftover not in done
+    assert [fault for fault in faults(done, done) if fault not in faults(host, host)] == []
+
+
+@pytest.mark.parametrize("name", ["cellXfs", "fonts", "fills", "borders"])
+def test_an_entry_in_several_forms_is_one_style(rich, results, name):
+    """As Hancom Office writes them: `mc:AlternateContent` in a list of styles counts once."""
+    kind = {"cellXfs": "xf", "fonts": "font", "fills": "fill", "borders": "border"}[name]
+    inner = f"<{kind}/>"
+    entry = (
+        '<mc:AlternateContent xmlns:mc="http://schemas.openxmlformats.org/markup-compatibility/2006">'
+        f'<mc:Choice Requires="x">{inner}</mc:Choice><mc:Fallback>{inner}</mc:Fallback></mc:AlternateContent>'
+    )
+    styles = rich["xl/styles.xml"].decode()
+    host = {**rich, "xl/styles.xml": styles.replace(f"</{name}>", f"{entry}</{name}>").encode()}
+    before, after = (parse_spans(inject(each, results)["xl/styles.xml"], "styles") for each in (rich, host))
+    shown = [_formats(root, inject(each, results)) for root, each in ((before, rich), (after, host))]
+    assert shown[0] == shown[1]
+
+
+def _formats(styles, parts):
+    """What each styled cell of the result sheets shows: number format, font and fill, by what they say."""
+    lists = {name: styles.find(name).children for name in ("cellXfs", "fonts", "fills", "borders")}
+    codes = {each.attributes["numFmtId"]: each.attributes["formatCode"] for each in styles.find("numFmts").children}
+    found = []
+    for part in result_sheets(parts):
+        for number in re.findall(rb'<c r="[A-Z]+[0-9]+" s="([0-9]+)"', parts[part]):
+            style = lists["cellXfs"][int(number)].attributes
+            places = (("fontId", "fonts"), ("fillId", "fills"), ("borderId", "borders"))
+            said = [lists[where][int(style[what])].canonical() for what, where in places]
+            found.append((codes.get(style["numFmtId"], style["numFmtId"]), said))
+    return found
 
 
 def test_a_workbook_without_styles_takes_those_of_the_results(rich, results):

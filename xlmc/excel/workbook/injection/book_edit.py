@@ -15,6 +15,7 @@ from itertools import chain
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.injection.result_sheet import SheetName
 from xlmc.excel.workbook.injection.splice import OFFICE_RELATIONSHIPS, Element, SplicedXml, render
+from xlmc.excel.workbook.injection.strict import STRICT_MAIN, strict_type
 from xlmc.excel.workbook.safe_xml import REPAIR
 from xlmc.excel.workbook.workbook import DefinedName
 
@@ -111,12 +112,13 @@ def _add_view(document: SplicedXml, sheets: Element) -> None:
 
 
 def _sheet_element(document: SplicedXml, sheet: NewSheet, sheet_id: int) -> bytes:
-    prefix = document.prefix_of(OFFICE_RELATIONSHIPS)
+    namespace = strict_type(OFFICE_RELATIONSHIPS) if document.root.namespace == STRICT_MAIN else OFFICE_RELATIONSHIPS
+    prefix = document.prefix_of(namespace)
     attributes: dict[str, object] = {"name": sheet.name, "sheetId": sheet_id}
     if sheet.state is not None:
         attributes["state"] = sheet.state
     if prefix is None:
-        attributes["xmlns:r"] = OFFICE_RELATIONSHIPS
+        attributes["xmlns:r"] = namespace
     attributes[f"{prefix or 'r'}:id"] = sheet.pointer
     return render(document.prefix(document.root) + "sheet", attributes)
 

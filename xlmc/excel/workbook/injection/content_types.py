@@ -45,7 +45,7 @@ def roles(parts: Mapping[str, bytes]) -> Roles:
         workbook=workbook,
         rels=rels,
         styles=_target(parts, workbook, "styles"),
-        properties=_target(parts, "", "extended-properties"),
+        properties=_target(parts, "", "extended-properties") or _target(parts, "", "extendedProperties"),
     )
 
 

@@ -10,11 +10,12 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
 
-from xlmc.excel.workbook.package import relationships
+from xlmc.excel.workbook.package import CONTENT_TYPES, relationships
 from xlmc.excel.workbook.safe_xml import tree
 
 __all__ = [
     "TableNumbers",
+    "claimed_names",
     "free_names",
     "free_part_names",
     "free_table_name",
@@ -117,6 +118,22 @@ class TableNumbers:
 
     ids: Mapping[str, int] = field(default_factory=dict)
     names: Mapping[str, str] = field(default_factory=dict)
+
+
+def claimed_names(parts: Mapping[str, bytes]) -> set[str]:
+    """Names that a new part must not take: those of the parts, and those that content types and pointers speak of.
+
+    A content type or a pointer of a part that is not there is a common leftover; a new part of its name would have two
+    content types, or be taken for what the pointer meant.
+
+    Raises:
+        WorkbookError: the content types or a rels part are not XML.
+    """
+    types = tree(parts[CONTENT_TYPES], CONTENT_TYPES).findall("{*}Override")
+    spoken = {each.get("PartName", "").removeprefix("/") for each in types}
+    sources = ["", *(name for name in parts if not name.endswith(".rels"))]
+    pointed = {each.target for part in sources for each in relationships(parts, part).values() if not each.external}
+    return {*parts, *spoken, *pointed} - {""}
 
 
 def free_part_names(wanted: Iterable[str], taken: Iterable[str]) -> dict[str, str]:

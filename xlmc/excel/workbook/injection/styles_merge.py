@@ -7,10 +7,11 @@ workbook has already is used again, so repeated runs add nothing.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from xlmc.excel.workbook.injection.splice import MAIN, Element, SplicedXml, parse_spans, render
+from xlmc.excel.workbook.injection.strict import STRICT_MAIN
 
 __all__ = [
     "StyleMap",
@@ -128,7 +129,8 @@ class _StyleEntry:
     def of(cls, element: Element) -> _StyleEntry:
         children = tuple(cls.of(child) for child in element.children)
         # An extension keeps its full name, so that it is never taken for one of the schema's own elements.
-        return cls(element.local if element.namespace == MAIN else element.name, element.attributes, children)
+        own = element.namespace in (MAIN, STRICT_MAIN)
+        return cls(element.local if own else element.name, element.attributes, children)
 
     def key(self) -> tuple[object, ...]:
         """Equal for entries that say the same."""
@@ -198,7 +200,8 @@ class _NumberFormats:
         self._codes = {e.attributes["numFmtId"]: _code(e) for e in _style_entries(source, "numFmts")}
         self._numbers = {_code(e): _number(e) for e in _style_entries(root, "numFmts")}
         # A style may name a format that nothing defines; defining it now would change the user's cells.
-        used = [_number(e) for name in ("numFmts", "cellXfs", "cellStyleXfs") for e in _style_entries(root, name)]
+        holders = [root.find(name) for name in ("numFmts", "cellXfs", "cellStyleXfs")]
+        used = [_number(entry) for holder in holders if holder for entry in _descendants(holder)]
         self._next = max([_FIRST_CUSTOM_FORMAT - 1, *used]) + 1
 
     def number(self, built: str, code: str | None = None) -> str:
@@ -214,9 +217,18 @@ class _NumberFormats:
 
 
 def _style_entries(root: Element, name: str) -> list[Element]:
-    """The entries of one list of a styles part, in order; none where there is no such list."""
+    """The entries of one list of a styles part, in order; none where there is no such list.
+
+    Each child is one entry, whatever its name: an `mc:AlternateContent` holds one style in several forms.
+    """
     holder = root.find(name)
-    return [child for child in holder.children if child.namespace == root.namespace] if holder else []
+    return list(holder.children) if holder else []
+
+
+def _descendants(element: Element) -> Iterator[Element]:
+    for child in element.children:
+        yield child
+        yield from _descendants(child)
 
 
 def _number(entry: Element) -> int:

@@ -106,7 +106,7 @@ def test_a_state_whose_run_is_not_done_is_not_written(book):
 
 
 def test_other_numbers_than_the_window_shows_are_never_written(state, book, monkeypatch):
-    monkeypatch.setattr(hand_over, "simulate", lambda model, evidence: state_of(book))
+    monkeypatch.setattr(hand_over, "run_model", lambda model, options: state_of(book))
     with pytest.raises(XlmcError, match="other numbers than the window shows"):
         save_result(state, book, "json")
     assert [each.name for each in book.parent.iterdir()] == ["case.xlsx"]

@@ -19,8 +19,9 @@ from xlmc.errors import SimulationError
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.target import copy_ending, free_target, refuse_existing, refuse_into_source, unused_path
 from xlmc.excel.workbook.writer import write_workbook
+from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.model.loading import build_model
-from xlmc.montecarlo.simulation.simulate import simulate
+from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.montecarlo.simulation.simulation import ChangedFrom
 from xlmc.outputs import save
 from xlmc.outputs.json_document import save_json
@@ -113,7 +114,7 @@ def edited_state(own: Model, adjustments: Adjustments, name: str) -> EditedWorkb
 def _run_of_copy(state: AtRest) -> Simulation:
     """The run of a copy of the workbook with the state typed into it."""
     edited, book = edited_state(state.own, state.adjustments, state.name), state.own.workbook
-    run = simulate(build_model(read_workbook(edited.data, book.name), state.own.path), evidence=None)
+    run = run_model(build_model(read_workbook(edited.data, book.name), state.own.path), RunOptions())
     if not _is_same(run, state.run):
         message = "a copy of the workbook with these changes gives other numbers than the window shows"
         raise SimulationError(message, hint="Nothing was written; please report this")

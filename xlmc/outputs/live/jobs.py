@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, Literal
 
 from xlmc.errors import XlmcError
-from xlmc.montecarlo.simulation.simulate import simulate
+from xlmc.montecarlo.definitions.run_options import RunOptions
+from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.outputs.live.adjustments import Adjustments, scenario_of
 from xlmc.outputs.live.frames import bases_of, frame_of, matters_html, pair_of, rest_of, scenarios_html, tables_html
 from xlmc.outputs.live.moving_models import KnownModels
@@ -176,7 +177,7 @@ class StateRun:
             if resting:
                 model = self.models.at_rest(self.adjustments)
                 begun = clock()
-                found = simulate(model, progress=watched, pieces=self.piece, evidence=None)
+                found = run_model(model, RunOptions(), progress=watched, pieces=self.piece)
                 base = bases_of(found)
             else:
                 moving = self.models.moving(self.adjustments)
@@ -184,12 +185,11 @@ class StateRun:
                 pieces = -(-self.trials // min(self.piece, moving.kept.largest_block))
                 runner = moving.runner(-(-self.trials // pieces))
                 begun = clock()
-                found = simulate(
+                way = self.way or "rejection"
+                options = RunOptions(trials=self.trials, sampling="mc", engine=moving.kept.engine, evidence=way)
+                found = run_model(
                     model,
-                    trials=self.trials,
-                    sampling="mc",
-                    engine=moving.kept.engine,
-                    evidence=self.way or "rejection",
+                    options,
                     own_runner=None if self.way == "weights" else runner,  # it computes other filters
                     progress=watched,
                 )
@@ -258,7 +258,7 @@ def scenario_table(own: Model, kept: Mapping[str, Adjustments], asked: int) -> W
             tell(len(begun) / (len(all_of_them) + 1))
 
         try:
-            html = scenarios_html(model, lambda model: simulate(model, scenarios=True, evidence=None), told)
+            html = scenarios_html(model, lambda model: run_model(model, RunOptions(scenarios=True)), told)
         except XlmcError as error:
             html = join([element("p", str(error), class_="warning")]).source
         message = {"kind": "part", "tab": "scenarios", "version": asked, "html": html}

@@ -1,7 +1,9 @@
 from __future__ import annotations
 
+import json
+
 import pytest
-from repeated_commands import Case, repeated
+from repeated_commands import KINDS, RESULTS, Case, repeated
 
 GOAL = (("Trials", 20_000), ("Precision %", 10), ("Precision of", "mean"))
 
@@ -33,3 +35,9 @@ def test_the_recorded_command_gives_the_fingerprint(case, parts):
     assert found["same"], found["command"]
     for part in parts:
         assert part in found["command"]
+
+
+def test_the_committed_runs_all_gave_it():
+    found = json.loads(RESULTS.read_text(encoding="utf-8"))
+    assert (found["runs"], found["same"], found["other"]) == (200, 200, [])
+    assert set(found["kinds"]) == set(KINDS)

@@ -352,3 +352,31 @@ def test_in_python_the_same_holds(book, tmp_path, monkeypatch):
         assert (tmp_path / name).read_text(encoding="utf-8") == "mine"
         write(name, overwrite=True)
         assert (tmp_path / name).stat().st_size > 10
+
+
+OUTPUTS = {
+    "book": ("save", (), "case-results.xlsx"),
+    "page": ("save_page", ("--html", "o.html"), "o.html"),
+    "JSON": ("save_json", ("--json", "o.json"), "o.json"),
+    "run": ("keep", ("--save-run", "o.xlmcrun"), "o.xlmcrun"),
+    "report": ("save_report", ("--docx", "o.docx"), "o.docx"),
+    "trials": ("extract", ("--extract", "o.csv"), "o.csv"),
+}
+
+
+@pytest.mark.parametrize("failing", OUTPUTS)
+def test_a_fault_in_one_output_costs_no_other_and_not_the_answer(xlmc, plain_book, monkeypatch, failing):
+    method, _, lost = OUTPUTS[failing]
+
+    def fail(*_, **__):
+        raise ZeroDivisionError("float division by zero")
+
+    monkeypatch.setattr(f"xlmc.api.Simulation.{method}", fail)
+    done = xlmc("simulate", plain_book, "-n", 500, *(text for _, options, _ in OUTPUTS.values() for text in options))
+    assert done.code == 2
+    assert "accepted trials" in done.out
+    said = [line for line in done.err.splitlines() if line.startswith("xlmc: ")]
+    assert len(said) == 1
+    assert "xlmc has failed (ZeroDivisionError: float division by zero)" in said[0]
+    written = {path.name for path in plain_book.parent.iterdir()} - {"case.xlsx"}
+    assert written == {name for _, _, name in OUTPUTS.values()} - {lost}

@@ -49,4 +49,7 @@ def written_or_told(path: Path, write: Callable[[], Path]) -> Path | None:
         say(f"xlmc: {error}", err=True)
     except OSError as error:
         say(f"xlmc: {path}: the file cannot be written ({error.strerror or error}).", err=True)
+    except Exception as error:  # a fault of xlmc's own in one output must not cost the others, nor the answer
+        said = f"{type(error).__name__}: {error}"[:500]
+        say(f"xlmc: {path}: xlmc has failed ({said}), and this file was not written. Please report it.", err=True)
     return None

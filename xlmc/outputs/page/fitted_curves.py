@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import islice
 from typing import Final
 
 import numpy as np
@@ -70,8 +71,9 @@ def fitted_curves(x: Floats, bins: Histogram) -> list[FittedCurve]:
     try:
         with np.errstate(all="ignore"):  # over hundreds of orders of magnitude some families have no number to show
             found = fit(values, kind="counts" if whole and values[0] >= 0 else "continuous", errors=False)
-            fits = [fitted for fitted in found.fits if np.isfinite(fitted.ks)][:_MOST]
-            return [_curve(fitted, at - 0.5 if whole else at, parts) for fitted in fits]
+            fits = (fitted for fitted in found.fits if np.isfinite(fitted.ks))
+            curves = (_curve(fitted, at - 0.5 if whole else at, parts) for fitted in fits)
+            return list(islice((curve for curve in curves if np.isfinite(curve.shares).all()), _MOST))
     except SimulationError:
         return []
 

@@ -69,7 +69,7 @@ class Candidate:
     def log_likelihood(self, x: Floats, params: Params) -> float:
         """The logarithm of the likelihood; minus infinity where a value is impossible."""
         with np.errstate(all="ignore"):
-            total = float(np.sum(self.log_density(x, *params)))
+            total = float(np.sum(self.log_density(x, *np.asarray(params))))  # NumPy's numbers overflow to infinity
         return total if total == total else -np.inf
 
 

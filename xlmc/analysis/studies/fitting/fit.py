@@ -6,7 +6,7 @@ hold for a distribution that was known beforehand, and are far too large for one
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -63,6 +63,9 @@ _SAME = 1e-4
 
 _LOOKED_AT = np.array([0.001, 0.01, 0.1, 0.25, 0.5, 0.75, 0.9, 0.99, 0.999])
 """Shares at whose quantiles a distribution is compared with what rounding makes of it."""
+
+
+_TOO_FEW_DIGITS = "the values have too few digits, or are too large or small, for its parameters"
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,18 +131,25 @@ def fit(values: ArrayLike, *, kind: str | None = None, by: str = "aic", errors: 
     kind = kind or ("counts" if whole else "continuous")
     if kind == "counts" and not whole:
         raise SimulationError("not every value is a whole number from 0 up", hint="Fit them as continuous values")
-    found, unfit = _estimates(kind, x)
-    best = min((_aic(candidate, top) for candidate, _, top in found), default=0.0)
-    fits = []
-    for candidate, params, top in found:
-        told: tuple[Errors, str] = (None,) * len(params), "not worked out"
-        if errors:
-            told = _errors(candidate, params, x, _aic(candidate, top) - best < _IN_THE_RACE)
-        fits.append(_judge_fit(candidate, params, top, x, kind, *told))
+    with np.errstate(all="ignore"):  # what is no number is refused, or ends an interval
+        found, unfit = _estimates(kind, x)
+        fits = _judged(kind, x, found, errors=errors)
     fits.sort(key=lambda each: (_criterion(each, by), each.aic))
     near = sorted(fits, key=lambda each: each.aic)
     rivals = [each.name for each in near if each.aic - near[0].aic < _NEAR]
     return Fitting(kind, x.size, by, tuple(fits), unfit, cautions(x.size, rivals))
+
+
+def _judged(kind: str, x: Floats, found: Sequence[tuple[Candidate, Params, float]], *, errors: bool) -> list[Fitted]:
+    """The families found with their errors and their distances from the values."""
+    best = min((_aic(candidate, top) for candidate, _, top in found), default=0.0)
+    fits = []
+    for candidate, params, top in found:
+        said: tuple[Errors, str] = (None,) * len(params), "not worked out"
+        if errors:
+            said = _errors(candidate, params, x, _aic(candidate, top) - best < _IN_THE_RACE)
+        fits.append(_judge_fit(candidate, params, top, x, kind, *said))
+    return fits
 
 
 def _refuse_hopeless(x: Floats) -> None:
@@ -165,11 +175,14 @@ def _estimates(kind: str, x: Floats) -> tuple[list[tuple[Candidate, Params, floa
     for candidate in KINDS[kind]:
         try:
             params = candidate.estimate(x)
+            refuse(not np.isfinite(params).all(), _TOO_FEW_DIGITS)
             top = candidate.log_likelihood(x, params)
             refuse(not np.isfinite(top), "its likelihood has no highest point")
             found.append((candidate, params, top))
         except Unfit as reason:
             unfit[candidate.name] = str(reason)
+        except ArithmeticError:  # a spread that is 0 to the last digit, a power beyond the largest number
+            unfit[candidate.name] = _TOO_FEW_DIGITS
     return found, unfit
 
 
@@ -181,9 +194,9 @@ def _judge_fit(
     candidate: Candidate, params: Params, top: float, x: Floats, kind: str, errors: Errors, errors_from: str
 ) -> Fitted:
     if kind == "counts":
-        ad, ks = None, kolmogorov_smirnov_of_counts(x, lambda k: np.asarray(candidate.cdf(k, *params)))
+        ad, ks = None, kolmogorov_smirnov_of_counts(x, lambda k: np.asarray(candidate.cdf(k, *np.asarray(params))))
     else:
-        at = np.asarray(candidate.cdf(x, *params))
+        at = np.asarray(candidate.cdf(x, *np.asarray(params)))
         ad, ks = anderson_darling(at), kolmogorov_smirnov(at)
     return Fitted(
         name=candidate.name,

@@ -48,7 +48,8 @@ def _secant_log(x: Floats, mean: float, std_dev: float) -> Floats:
 def _inverse_gaussian(x: Floats) -> Params:
     refuse(x[0] <= 0, "it takes values above 0 only")
     mean = float(x.mean())
-    return 0.0, mean, 1 / float(np.mean(1 / x) - 1 / mean)
+    # Not 1/(mean(1/x) − 1/mean), which loses all digits where the values lie close together.
+    return 0.0, mean, 1 / float(np.mean(((x - mean) / mean) ** 2 / x))
 
 
 def _inverse_gaussian_log(x: Floats, location: float, mean: float, shape: float) -> Floats:

@@ -49,6 +49,16 @@ class Simulation(simulation.Simulation):
         found.__dict__.update(run.__dict__, model=Model.of(run.model))
         return found
 
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """The sentences that may be quoted, as on the sheet Certainty, without a full stop.
+
+        Each forecast is stated at the resolution under `Report to`; of a bound one side alone, of a diagnostic nothing.
+        """
+        from xlmc.analysis.results.statements import statements
+
+        return tuple(each.text for each in statements(self))
+
     def save(self, path: str | Path, *, overwrite: bool = False) -> Path:
         """Write the workbook with result sheets, and give the path back.
 

@@ -16,7 +16,7 @@ from xlmc.errors import sentence
 
 if TYPE_CHECKING:
     from xlmc.excel.workbook.workbook import Workbook
-    from xlmc.montecarlo.definitions.definitions import Correlation, Definitions
+    from xlmc.montecarlo.definitions.definitions import Correlation, Definitions, Forecast
     from xlmc.montecarlo.diagnostics.cell_errors import BaseErrors
     from xlmc.montecarlo.diagnostics.checking import CheckResult
     from xlmc.montecarlo.model.model import Model
@@ -125,10 +125,14 @@ def _show_definitions(definitions: Definitions, model: Model | None) -> None:
         ("Name", "Cell", "Units", "Distribution", ""),
         [(a.name, str(a.cell), a.units, distribution_text(a), "frozen" * a.frozen) for a in definitions.assumptions],
     )
+    stated = any(f.says_how for f in definitions.forecasts)
     table(
         "Forecasts",
-        ("Name", "Cell", "Units", "Central range"),
-        [(f.name, str(f.cell), f.units, percent(f.central)) for f in definitions.forecasts],
+        ("Name", "Cell", "Units", "Central range", *["Report to", "Kind", "Role"] * stated),
+        [
+            (f.name, str(f.cell), f.units, percent(f.central), *(_stated(f) if stated else ()))
+            for f in definitions.forecasts
+        ],
     )
     if any(f.evidence is None for f in definitions.filters):
         filters = [f for f in definitions.filters if f.evidence is None]
@@ -149,6 +153,14 @@ def _show_definitions(definitions: Definitions, model: Model | None) -> None:
         pairs = [(c.first, c.second, a, _drawn_with(model, c)) for c, a in zip(correlations, asked, strict=True)]
         table("Rank correlations", ("First", "Second", "Asked for", "Drawn with"), pairs, right=(2, 3))
     scenario_table(definitions)
+
+
+def _stated(forecast: Forecast) -> tuple[str, str, str]:
+    """How a forecast is to be stated: its resolution, its kind and its role."""
+    from xlmc.montecarlo.distributions.parameters import show
+
+    resolution = "" if forecast.report_to is None else show(forecast.report_to)
+    return resolution, "" if forecast.kind is None else forecast.kind.value, forecast.role.value
 
 
 def scenario_table(definitions: Definitions) -> None:

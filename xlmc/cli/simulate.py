@@ -179,6 +179,7 @@ def show_run(run: Simulation) -> None:
     show_first(run)
     headings, rows = summary_text(summarise(run))
     table(f"{run.model.workbook.name}: accepted trials", headings, rows, right=range(2, len(headings)))
+    _show_sentences(run)
     say(f"{_acceptance_sentence(run)}; seed {run.settings.seed}.")
     ended = "" if run.stopped == ALL_TRIALS else f"Ended when {run.stopped.sentence}.\n"
     say(ended + paragraph(sampling_sentence(run)) + "\n")
@@ -194,6 +195,15 @@ def show_run(run: Simulation) -> None:
     say(paragraph(ERROR_SENTENCE))
     for notice in run.notices_of_run:
         say(paragraph(f"{notice}."))
+
+
+def _show_sentences(run: Simulation) -> None:
+    """Print what may be quoted, where a forecast says how it is to be stated."""
+    from xlmc.analysis.results.statements import statements
+
+    if any(each.says_how for each in run.model.forecasts):
+        said = [paragraph(f"{each.text}.") for each in statements(run)]
+        say("\n".join([*said, ""]) if said else "")
 
 
 def _show_evidence(run: Simulation) -> None:

@@ -148,8 +148,8 @@ def test_what_a_program_counts_in_a_range_of_ones_own_is_recounted(results, run,
     where = certainty.coordinate, error.coordinate
     values = run.forecasts["area"]
     values = values[~np.isnan(values)][:FEW]  # the rows of the sheet Trials
-    share = np.mean((values >= 12) & (values <= high.value))
-    shown = {low.coordinate: 12, where[0]: share, where[1]: math.sqrt(share * (1 - share) / values.size)}
+    share = np.mean((values >= 11) & (values <= high.value))
+    shown = {low.coordinate: 11, where[0]: share, where[1]: math.sqrt(share * (1 - share) / values.size)}
     found = replay(with_numbers(results, tmp_path, shown))
     assert (found.identical, found.shown.differences) == (True, ())
     assert "holds a range that a person typed" in found.shown.left_out[0]

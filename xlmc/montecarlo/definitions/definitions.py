@@ -15,6 +15,7 @@ from xlmc.excel.formula.ir import Expression
 from xlmc.montecarlo.definitions.evidence import Evidence
 from xlmc.montecarlo.definitions.run_settings import USUAL, Settings
 from xlmc.montecarlo.definitions.scenarios import Scenario
+from xlmc.montecarlo.definitions.stating import Kind, Role
 from xlmc.montecarlo.distributions import FAMILIES, Family
 from xlmc.montecarlo.sampling.draws import Draw
 
@@ -149,6 +150,9 @@ class Forecast:
         central: the share of its central range.
         threshold: to report P(> threshold) for.
         asked: both ends of a range, which belong to it, to report its certainty for; infinite where it has none.
+        report_to: the resolution at which it is stated, in its units; None where its error alone decides.
+        kind: what its numbers are; None where the row does not say.
+        role: what it is to the question asked.
     """
 
     name: str
@@ -159,6 +163,14 @@ class Forecast:
     threshold: float | None = None
     notes: Mapping[str, str] = field(default_factory=dict)
     asked: tuple[float, float] | None = None
+    report_to: float | None = None
+    kind: Kind | None = None
+    role: Role = Role.ANSWER
+
+    @property
+    def says_how(self) -> bool:
+        """Whether its row says how it is to be stated."""
+        return self.report_to is not None or self.kind is not None or self.role is not Role.ANSWER
 
 
 @dataclass(frozen=True, slots=True)

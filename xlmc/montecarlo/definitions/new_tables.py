@@ -25,6 +25,7 @@ from xlmc.montecarlo.definitions.definitions import (
     Forecast,
     Parameter,
 )
+from xlmc.montecarlo.definitions.stating import Role
 from xlmc.montecarlo.definitions.stopping import Precision
 from xlmc.montecarlo.definitions.tables.settings import LEAST_PERCENT
 from xlmc.montecarlo.distributions import FAMILIES
@@ -177,7 +178,7 @@ def _headings(rows: Iterable[NewRow]) -> dict[str, None]:
 
 
 _FIRST = ("Name", "Value", "Cell", "Call in", "Call", "Distribution")
-_ANSWER = ("Units", "Threshold", "Certainty from", "Certainty to")
+_ANSWER = ("Units", "Threshold", "Certainty from", "Certainty to", "Report to", "Kind", "Role")
 _LAST = (*CUTOFFS.values(), *_ANSWER, "Frozen", "Source", "Only for", "Because", DIALOG)
 
 
@@ -206,6 +207,9 @@ class _Written:
         cells |= {} if each.threshold is None else {"Threshold": each.threshold}
         ends = zip(("Certainty from", "Certainty to"), each.asked or (), strict=False)
         cells |= {heading: end for heading, end in ends if math.isfinite(end)}
+        cells |= {} if each.report_to is None else {"Report to": each.report_to}
+        cells |= {} if each.kind is None else {"Kind": each.kind.value}
+        cells |= {} if each.role is Role.ANSWER else {"Role": each.role.value}
         return NewRow(cells, "forecast", each.name, each.cell, _was(each.notes) or "an answer of the formula")
 
     def filter(self, each: Filter) -> NewRow:

@@ -109,8 +109,9 @@ def _answer(material: Material) -> Iterator[Block]:
         yield Paragraph(sentence, "warning")
     yield Paragraph("".join(said.text for said in question(simulation)))
     told = [each for each in statements(simulation) if each.forecast in material.forecasts]
-    yield Bullets(tuple(f"{each.text}." for each in told))
-    yield Paragraph(MEANING, "small")
+    if told:
+        yield Bullets(tuple(f"{each.text}." for each in told))
+        yield Paragraph(MEANING, "small")
     rows = [row for row in summarise(simulation) if row.name in material.forecasts]
     yield _answers(material, rows)
     yield Paragraph(ERROR_SENTENCE, "small")

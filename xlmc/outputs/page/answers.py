@@ -29,8 +29,7 @@ def answers(simulation: Simulation) -> Html:
         element("h2", "The answer"),
         *map(_warning, opening_sentences(simulation)),
         element("p", *_question(simulation)),
-        element("ul", *(element("li", *_statement(each)) for each in statements(simulation)), class_="statements"),
-        element("p", MEANING, class_="remark"),
+        *_statements(simulation),
         _table(rows),
         element("p", ERROR_SENTENCE, class_="meaning"),
         *(element("p", sentence, class_="remark") for sentence in _remarks(simulation, rows)),
@@ -45,6 +44,13 @@ def _warning(sentence: str) -> Html:
 def _question(simulation: Simulation) -> Iterator[Html | str]:
     for said in question(simulation):
         yield element("bdi", said.text) if said.is_name else said.text
+
+
+def _statements(simulation: Simulation) -> Iterator[Html]:
+    """The sentences and what they mean; nothing where all forecasts are diagnostics."""
+    if said := statements(simulation):
+        yield element("ul", *(element("li", *_statement(each)) for each in said), class_="statements")
+        yield element("p", MEANING, class_="remark")
 
 
 def _statement(statement: Statement) -> Iterator[Html | str]:

@@ -37,7 +37,7 @@ _OTHER_PROGRAM: Final = 1e-9
 
 _DEFINITIONS: Final = (
     ("assumptions", "assumption", ("name",), ("cell", "status", "distribution", "parameters", "cutoffs")),
-    ("forecasts", "forecast", ("name",), ("cell", "range_share", "threshold")),
+    ("forecasts", "forecast", ("name",), ("cell", "range_share", "threshold", "report_to", "kind", "role")),
     ("filters", "filter", ("name",), ("cell", "limits")),
     ("forecast_filters", "filter", ("name", "only_for"), ("cell", "limits")),
     ("checks", "check", ("name",), ("cell", "base")),

@@ -175,6 +175,9 @@ RULES: Final = (
         "0.11.0", "thresholds and settings that formulas give are calculated where their saved values may be old", _ANY
     ),
     Rule("0.12.0", "a run until accepted trials may search for them from 8,388,608 plain trials on", _ANY),
+    Rule(
+        "0.12.0", "ranges are rounded outwards until they are more probable than not; a yes/no has a probability", _ANY
+    ),
 )
 """The rules in the order of versions."""
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from xlmc.analysis.results.statements import MEANING, certainties, rounded_range, statements
+from xlmc.analysis.results.statements import MEANING, certainties, stated_range, statements
 from xlmc.montecarlo.statistics import proportion
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
@@ -43,11 +43,12 @@ def write_certainty(page: Page, simulation: Simulation, trials: TrialsAt) -> Non
     """Write the sheet; `trials` is where the trials stand that its formulas count."""
     name = simulation.model.workbook.name
     page.title("Certainty", f"{name}: {simulation.accepted:,} accepted trials")
-    page.heading("In words")
-    for statement in statements(simulation):
-        page.wide(f"{statement.text}.", "quote", LAST)
-    page.row += 1
-    page.wide(MEANING, "remark", LAST)
+    if said := statements(simulation):
+        page.heading("In words")
+        for statement in said:
+            page.wide(f"{statement.text}.", "quote", LAST)
+        page.row += 1
+        page.wide(MEANING, "remark", LAST)
     page.heading("Certainty of ranges")
     write_ranges(page, simulation)
     _write_own_ranges(page, simulation, trials)
@@ -111,13 +112,13 @@ def _write_line(page: Page, result: ForecastResult, values: NDArray[np.float64],
     from xlsxwriter.utility import xl_rowcol_to_cell
 
     definition, row = result.definition, page.row
-    spoken = rounded_range(result.sample, result.statistics.central, definition.central)
+    spoken = stated_range(result)
     assert spoken is not None  # there are numbers
     known = values[~np.isnan(values)]
     share = proportion(int(np.count_nonzero((known >= spoken.low) & (known <= spoken.high))), known.size)
     page.line([Shown(definition.name, look="name"), Shown(definition.units)])
     for column_of_end, end in ((2, spoken.low), (3, spoken.high)):
-        page.put(row, column_of_end, Shown(end, "General", "typed"))
+        page.put(row, column_of_end, Shown(end if math.isfinite(end) else None, "General", "typed"))
     low, high = xl_rowcol_to_cell(row, 2), xl_rowcol_to_cell(row, 3)
     certainty, trials = xl_rowcol_to_cell(row, 4), xl_rowcol_to_cell(row, 6 if errors else 5)
     inside = f'ISNUMBER({column})*((({low}="")+({column}>={low}))>0)*((({high}="")+({column}<={high}))>0)'

@@ -10,6 +10,7 @@ import pytest
 from xlmc.analysis.results.statements.sentences import certainties, statements
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import Forecast
+from xlmc.montecarlo.definitions.stating import Kind, Role
 from xlmc.montecarlo.loop.forecast_result import ForecastResult
 
 
@@ -34,11 +35,106 @@ def test_a_range_that_is_surely_more_probable_than_not_is_called_so():
     ]
 
 
-def test_one_that_may_be_even_odds_is_not():
-    (text,) = sentences(GRID[::100], units="mph")
-    assert text.endswith("; there are too few trials to call it more probable than not")
+@pytest.mark.parametrize("n", [5, 12, 40, 300, 1000, 20_000])
+@pytest.mark.parametrize("report_to", [None, 0.01, 1.0, 5.0])
+@pytest.mark.parametrize("factor", [1.0, 0.731])  # proportional in every trial, and so both are stated or neither
+def test_a_range_is_rounded_outwards_until_it_is_more_probable_than_not(n, report_to, factor):
+    values = factor * np.random.default_rng(n).normal(40.0, 6.0, n)
+    found = {each.kind: each for each in certainties(Run(values, report_to=report_to).results["speed"])}["between"]
+    assert found.share.interval[0] > 0.5
+    assert found.share.value == np.mean((values >= found.low) & (values <= found.high))
+    if report_to is not None and report_to >= 1.0:
+        assert (found.low % report_to, found.high % report_to) == (0.0, 0.0)
+    (text,) = sentences(values, units="mph", report_to=report_to)
+    assert "more probable than not (" in text or text.startswith(f"speed: all {n} trials")
+
+
+def test_three_trials_cannot_tell_and_a_range_below_even_odds_claims_nothing():
+    (text,) = sentences([1.0, 2.0, 4.0], units="mph")
+    assert "more probable" not in text.partition(";")[0]
     (text,) = sentences(GRID, units="mph", central=0.4)
     assert text == "speed: 40.0 % ± 0.2 % between 30.0 and 70.0 mph"
+
+
+@pytest.mark.parametrize(
+    ("report_to", "text"),
+    [
+        (1.0, "between 24 and 75 mph"),
+        (0.25, "between 24.50 and 75.50 mph"),
+        (5.0, "between 25 and 80 mph"),
+        (10.0, "between 20 and 80 mph"),
+        (100.0, "between 0 and 100 mph"),
+        (1e-6, "between 24.5 and 75.5 mph"),  # finer than the trials support
+    ],
+)
+def test_answers_are_stated_at_the_resolution_that_is_asked_for(report_to, text):
+    (found,) = sentences(GRID, units="mph", report_to=report_to)
+    assert found.endswith(text)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(22.0, "speed: 22 mph in all 40 trials"), (22.4, "speed: all 40 trials; at least 91.2 % with 95 % confidence, ")],
+)
+def test_a_constant_is_stated_within_the_resolution(value, text):
+    (found,) = sentences([value] * 40, units="mph", report_to=1.0)
+    assert found.startswith(text)
+    assert value == 22.0 or found.endswith("between 22 and 23 mph")
+
+
+@pytest.mark.parametrize(
+    ("role", "definition", "texts"),
+    [
+        (Role.LOWER, {}, ["speed: at least 48 mph, more probable than not (52.0 % ± 0.2 %)"]),
+        (Role.UPPER, {}, ["speed: at most 52 mph, more probable than not (52.0 % ± 0.2 %)"]),
+        (Role.LOWER, {"threshold": 85.8}, ["P(speed > 85.8 mph) ≥ 14.20 % ± 0.11 %"]),
+        (Role.UPPER, {"threshold": 85.8}, ["P(speed > 85.8 mph) ≤ 14.20 % ± 0.11 %"]),
+        (Role.LOWER, {"threshold": 200.0}, ["P(speed > 200 mph): the bound does not tell"]),
+        (Role.UPPER, {"threshold": -5.0}, ["P(speed > -5 mph): the bound does not tell"]),
+        (Role.UPPER, {"asked": (-math.inf, 10.0)}, ["P(speed at most 10 mph) ≥ 10.00 % ± 0.09 %"]),
+        (Role.LOWER, {"asked": (-math.inf, 10.0)}, ["P(speed at most 10 mph) ≤ 10.00 % ± 0.09 %"]),
+        (Role.LOWER, {"asked": (10.0, 20.0)}, ["P(speed from 10 to 20 mph): the bound does not tell"]),
+        (Role.DIAGNOSTIC, {"threshold": 85.8, "asked": (10.0, 20.0)}, []),
+    ],
+    ids=str,
+)
+def test_bounds_are_stated_on_one_side_and_diagnostics_not_at_all(role, definition, texts):
+    found = sentences(GRID, units="mph", report_to=2.0, role=role, **definition)
+    assert found[-len(texts) :] == texts if texts else found == []
+
+
+@pytest.mark.parametrize("role", [Role.LOWER, Role.UPPER])
+@pytest.mark.parametrize("central", [0.4, 0.51, 0.95])
+def test_the_two_sides_of_a_bound_are_all_trials(role, central):
+    values = np.random.default_rng(5).gamma(2.0, 3.0, 4000)
+    found = {each.kind: each for each in certainties(Run(values, role=role, central=central).results["speed"])}
+    assert sum(each.share.value for each in found.values()) == pytest.approx(1.0, abs=1e-12)
+    between = found["between"]
+    assert between.share.value == np.mean((values >= between.low) & (values <= between.high)) >= central
+    assert (between.high if role is Role.LOWER else -between.low) == math.inf
+
+
+@pytest.mark.parametrize(
+    ("ones", "text"),
+    [
+        (842, "speed: yes with probability 84.2 % ± 1.2 %, more probable than not"),
+        (100, "speed: yes with probability 10.0 % ± 0.9 %, so no is more probable than yes"),
+        (505, "speed: yes with probability 50 % ± 2 %"),
+        (0, "speed: yes in 0 of 1,000 trials; at most 0.39 % with 95 % confidence"),
+        (1000, "speed: yes in all 1,000 trials; at least 99.61 % with 95 % confidence"),
+    ],
+)
+@pytest.mark.parametrize("kind", [None, Kind.YES_NO])
+def test_a_yes_or_no_is_a_probability(ones, text, kind):
+    values = [0.0] * (1000 - ones) + [1.0] * ones
+    assert sentences(values, kind=kind) == [text]
+
+
+def test_other_numbers_are_a_yes_and_numbers_stay_numbers_where_the_row_says_so():
+    (text,) = sentences([0.0, 2.0, 3.0, 4.0] * 100, kind=Kind.YES_NO)
+    assert text.startswith("speed: yes with probability 75 % ± 2 %, more probable than not; numbers other than 0 and 1")
+    (text,) = sentences([0.0] * 900 + [1.0] * 100, kind=Kind.NUMBER)
+    assert text == "speed: more probable than not (90.0 % ± 0.9 %) equal to 0"
 
 
 @pytest.mark.parametrize(
@@ -83,7 +179,7 @@ def test_without_units_numbers_or_variation():
     assert sentences([math.nan, math.nan]) == ["speed: no accepted trial has a number"]
     assert sentences([2.0] * 40, units="mph") == ["speed: 2 mph in all 40 trials"]
     assert sentences([2.0], units="mph") == ["speed: 2 mph in the only trial"]
-    assert sentences([0.0] * 900 + [1.0] * 100) == ["speed: more probable than not (90.0 % ± 0.9 %) equal to 0"]
+    assert sentences([0.0] * 900 + [2.0] * 100) == ["speed: more probable than not (90.0 % ± 0.9 %) equal to 0"]
     (text,) = sentences([1.0] * 20 + [2.0] * 20)
     assert re.fullmatch(r"speed: all 40 trials; at least [\d.]+ % with 95 % confidence, between 1 and 2", text)
 

@@ -7,6 +7,7 @@ import pytest
 from xlmc.errors import ErrorCode
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.workbook.workbook import Formula
+from xlmc.montecarlo.definitions.stating import Kind, Role
 
 MISTAKES = [
     ({"Answers!A2": None}, "Answers!A2", "Name is blank", "Fill in Name"),
@@ -87,6 +88,59 @@ def test_a_certainty_of_no_range(only_problem, blocks):
     columns = blocks("Answers!F1", [["Certainty from", "Certainty to"], [2, 1]])
     message = "The range of the certainty begins at 2 and ends at 1"
     only_problem("Answers!F2", message, "Exchange", columns, tables={"xlmc_forecasts": "Answers!A1:G2"})
+
+
+def stated(blocks, *row):
+    """Cells that add the columns of how an answer is stated, with this row below them."""
+    units, *others = row
+    return {"Answers!C2": units, **blocks("Answers!F1", [["Report to", "Kind", "Role"], others])}
+
+
+WIDE = {"xlmc_forecasts": "Answers!A1:H2"}
+
+
+@pytest.mark.parametrize(
+    ("row", "report_to", "kind", "role"),
+    [
+        ((None, None, None, None), None, None, Role.ANSWER),
+        (("mph", 1, "Number", "answer"), 1.0, Kind.NUMBER, Role.ANSWER),
+        (("mph", " 0.5 MPH ", "Whole  number", "Lower bound"), 0.5, Kind.WHOLE, Role.LOWER),
+        (("°", "1°", "number", "upper-bound"), 1.0, Kind.NUMBER, Role.UPPER),
+        (("deg", "1 °", None, "DIAGNOSTIC"), 1.0, None, Role.DIAGNOSTIC),
+        ((None, "=2/4", "date", None), 0.5, Kind.DATE, Role.ANSWER),
+        ((None, None, "Yes/No", None), None, Kind.YES_NO, Role.ANSWER),
+        (("$", "1e3 $", "currency", None), 1000.0, Kind.CURRENCY, Role.ANSWER),
+    ],
+    ids=str,
+)
+def test_how_an_answer_is_stated(read, blocks, row, report_to, kind, role):
+    row = [("=2/4", 0.5) if each == "=2/4" else each for each in row]
+    found = read(stated(blocks, *row), tables=WIDE)
+    assert not found.problems
+    [forecast] = found.forecasts
+    assert (forecast.report_to, forecast.kind, forecast.role) == (report_to, kind, role)
+    assert not forecast.notes
+
+
+@pytest.mark.parametrize(
+    ("row", "where", "message", "hint"),
+    [
+        ((None, 0, None, None), "Answers!F2", "Report to (0) must be above 0", "such as 1"),
+        ((None, -1, None, None), "Answers!F2", "Report to (-1) must be above 0", "such as 1"),
+        ((None, "coarse", None, None), "Answers!F2", "Report to holds the text 'coarse'", "Type a number"),
+        (("mph", "1 km/h", None, None), "Answers!F2", "in 'km/h', and the forecast is in 'mph'", "units"),
+        ((None, "1 mph", None, None), "Answers!F2", "in 'mph', and the forecast has no units", "units"),
+        ((None, True, None, None), "Answers!F2", "Report to holds TRUE, not a number", "Type a number"),
+        ((None, None, "speed", None), "Answers!G2", "Kind 'speed' is unknown", "a column of notes"),
+        ((None, None, None, "lower bond"), "Answers!H2", "Role 'lower bond' is unknown", "Did you mean lower bound?"),
+        ((None, None, "yes/no", "upper bound"), "Answers!H2", "of the kind yes/no is no bound", "Kind"),
+        ((None, 1, "category", None), "Answers!F2", "of the kind category is not rounded", "Kind"),
+        ((None, ErrorCode.NA, None, None), "Answers!F2", "Report to holds the error #N/A", "Correct the cell"),
+    ],
+    ids=str,
+)
+def test_how_an_answer_is_not_stated(only_problem, blocks, row, where, message, hint):
+    only_problem(where, message, hint, stated(blocks, *row), tables=WIDE)
 
 
 @pytest.mark.parametrize("value", [41.5, True])

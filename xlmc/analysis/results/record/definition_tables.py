@@ -18,12 +18,13 @@ from xlmc.analysis.results.statements.in_words import (
     status,
 )
 from xlmc.excel.address import Cell
+from xlmc.montecarlo.definitions.stating import Role
 from xlmc.montecarlo.model.correlating import CHANGED, drawn_correlation
 from xlmc.montecarlo.statistics import Estimate, rank_correlation
 from xlmc.montecarlo.statistics.estimate import finite
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.definitions.definitions import Filter
+    from xlmc.montecarlo.definitions.definitions import Filter, Forecast
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
     from xlmc.montecarlo.simulation.simulation import Simulation
 
@@ -55,6 +56,9 @@ _FORECAST = (
 )
 _CERTAINTY = (("certainty_from", "Certainty from"), ("certainty_to", "to"), ("certainty", "Certainty"))
 """Columns of forecasts where a range was asked for."""
+
+_STATED = (("report_to", "Report to"), ("kind", "Kind"), ("role", "Role"))
+"""Columns of forecasts where rows say how they are to be stated."""
 
 _FILTER = (
     ("name", "Filter"),
@@ -120,17 +124,26 @@ _CORRELATION = (
 def forecast_section(simulation: Simulation) -> Section:
     """Every forecast with its main results at full precision, for a repeat to be compared with."""
     results = simulation.results.values()
-    rows = tuple(_forecast_row(result) for result in results)
-    if not any(result.definition.asked for result in results):
-        return Section("forecasts", "Forecasts", table=RecordTable(_FORECAST, rows))
-    more = tuple(_certainty_cells(result) for result in results)
-    rows = tuple(row + cells for row, cells in zip(rows, more, strict=True))
-    return Section("forecasts", "Forecasts", table=RecordTable((*_FORECAST, *_CERTAINTY), rows))
+    columns: tuple[tuple[str, str], ...] = _FORECAST
+    rows = [_forecast_row(result) for result in results]
+    if any(result.definition.asked for result in results):
+        columns = (*columns, *_CERTAINTY)
+        rows = [row + _certainty_cells(result) for row, result in zip(rows, results, strict=True)]
+    if any(result.definition.says_how for result in results):
+        columns = (*columns, *_STATED)
+        rows = [row + _stated_cells(result.definition) for row, result in zip(rows, results, strict=True)]
+    return Section("forecasts", "Forecasts", table=RecordTable(columns, tuple(rows)))
 
 
 def _certainty_cells(result: ForecastResult) -> tuple[Value, ...]:
     low, high = result.definition.asked or (None, None)
     return finite(low), finite(high), None if result.certainty is None else finite(result.certainty.value)
+
+
+def _stated_cells(forecast: Forecast) -> tuple[Value, ...]:
+    """How a forecast is stated; that it is an answer, as most are, is not repeated."""
+    role = "" if forecast.role is Role.ANSWER else forecast.role.value
+    return forecast.report_to, "" if forecast.kind is None else forecast.kind.value, role
 
 
 def _forecast_row(result: ForecastResult) -> tuple[Value, ...]:

@@ -4,8 +4,15 @@
 """
 
 from xlmc.analysis.results.statements.pairs import PAIRS, Pair, pairs_of
-from xlmc.analysis.results.statements.sentences import MEANING, Certainty, Statement, certainties, statements
-from xlmc.analysis.results.statements.significant_digits import RoundedRange, percent_text, reach_text, rounded_range
+from xlmc.analysis.results.statements.sentences import (
+    MEANING,
+    Certainty,
+    Statement,
+    certainties,
+    stated_range,
+    statements,
+)
+from xlmc.analysis.results.statements.significant_digits import RoundedRange, percent_text, reach_text
 
 __all__ = [
     "MEANING",
@@ -18,6 +25,6 @@ __all__ = [
     "pairs_of",
     "percent_text",
     "reach_text",
-    "rounded_range",
+    "stated_range",
     "statements",
 ]

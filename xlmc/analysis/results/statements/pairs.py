@@ -100,7 +100,7 @@ def _limit(simulation: Simulation, forecast: Forecast) -> float:
     if forecast.threshold is not None:
         return forecast.threshold
     median = simulation.results[forecast.name].statistics.median
-    return median.value if math.isnan(median.value) else rounded_value(median)[0]
+    return median.value if math.isnan(median.value) else rounded_value(median, forecast.report_to)[0]
 
 
 @dataclass(frozen=True, slots=True)

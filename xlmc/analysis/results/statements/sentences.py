@@ -6,26 +6,35 @@ Each share stands with its error, and no number has more digits than its error s
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
-from xlmc.analysis.results.statements.significant_digits import RoundedRange, percent_text, rounded_range
+from xlmc.analysis.results.statements.significant_digits import (
+    EVEN,
+    RoundedRange,
+    percent_text,
+    rounded_range,
+    surely_above,
+)
+from xlmc.montecarlo.definitions.stating import Kind, Role
 from xlmc.montecarlo.distributions.parameters import range_text, show
 from xlmc.montecarlo.statistics import Estimate, probability_above, probability_between
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
     from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.statistics import Sample
 
-__all__ = ["MEANING", "Certainty", "Statement", "certainties", "statements"]
+__all__ = ["MEANING", "Certainty", "Statement", "certainties", "stated_range", "statements"]
 
 
-_EVEN: Final = 0.5
 MEANING: Final = (
     "Each share is a share of the accepted trials, counted for the range as it is printed here, and has its standard "
     "error beside it. “More probable than not” is said only where the whole 95 % interval of the share lies above "
-    "50 %. All of this holds only if the model and the ranges of its assumptions are right: the error given is Monte "
-    "Carlo error, not reconstruction error."
+    "50 %; ends are rounded outwards until it does. Of a bound one side alone is stated, and a share of trials in "
+    "which the bound lies there is a least probability. All of this holds only if the model and the ranges of its "
+    "assumptions are right: the error given is Monte Carlo error, not reconstruction error."
 )
 """The note that stands below the sentences."""
 
@@ -36,7 +45,7 @@ class Statement:
 
     Attributes:
         forecast: its name.
-        kind: `range`, `threshold` or `certainty`.
+        kind: `range`, `bound` or `probability` (of a yes/no answer); `threshold`; or `certainty`.
         text: the sentence, without a full stop.
     """
 
@@ -46,34 +55,111 @@ class Statement:
 
 
 def statements(simulation: Simulation) -> list[Statement]:
-    """For every forecast: where its central range lies, and how probable are values above its threshold and in the
-    range that was asked for.
+    """Say of every forecast, but diagnostics, where its central range lies or how probable a yes is, and how probable
+    values above its threshold and in the range that was asked for are.
     """
     return [each for result in simulation.results.values() for each in _of(result)]
 
 
+def stated_range(result: ForecastResult) -> RoundedRange | None:
+    """Round the range that is stated of a forecast: its central one, or the side of it that a bound has.
+
+    None where too few trials have a number.
+    """
+    definition, share = result.definition, result.definition.central
+    ends: tuple[Estimate | None, Estimate | None] = result.statistics.central
+    if definition.role is Role.LOWER:
+        ends = result.percentile(100.0 * (1.0 - share)), None
+    elif definition.role is Role.UPPER:
+        ends = None, result.percentile(100.0 * share)
+    return rounded_range(result.sample, ends, share, definition.report_to)
+
+
 def _of(result: ForecastResult) -> list[Statement]:
-    definition, central = result.definition, result.statistics.central
-    name, units = definition.name, f" {definition.units}" if definition.units else ""
-    found = rounded_range(result.sample, central, definition.central)
-    if found is None:
-        why = "too few effective trials for its central range" if result.sample.n else "no accepted trial has a number"
-        return [Statement(name, "range", f"{name}: {why}")]
+    definition = result.definition
+    if definition.role is Role.DIAGNOSTIC:
+        return []
     part = _part_text(result)
-    told = [Statement(name, "range", f"{name}: {_range_text(found, units, result.statistics.trials)}{part}")]
-    above = result.statistics.probability_above
+    main = _main(result, part)
+    if main is None:
+        why = "too few effective trials for its central range" if result.sample.n else "no accepted trial has a number"
+        return [Statement(definition.name, "range", f"{definition.name}: {why}")]
+    return [main, *(replace(each, text=f"{each.text}{part}") for each in _probabilities(result))]
+
+
+def _main(result: ForecastResult, part: str) -> Statement | None:
+    """The sentence that answers the question; None where there are too few trials for one."""
+    definition, trials = result.definition, result.statistics.trials
+    name, units = definition.name, f" {definition.units}" if definition.units else ""
+    if result.sample.n and _is_yes_no(result):
+        return Statement(name, "probability", f"{name}: {_yes_text(result)}{part}")
+    found = stated_range(result)
+    if found is None:
+        return None
+    if definition.role.is_bound:
+        return Statement(name, "bound", f"{name}: {_bound_text(found, units, trials)}{part}")
+    return Statement(name, "range", f"{name}: {_range_text(found, definition.central, units, trials)}{part}")
+
+
+def _is_yes_no(result: ForecastResult) -> bool:
+    """Whether a forecast is a yes/no answer: its row says so or, where the row says nothing, it is 0 or 1 in all
+    trials.
+    """
+    definition = result.definition
+    return definition.kind is Kind.YES_NO or (
+        definition.kind is None and not definition.role.is_bound and result.sample.yes_no
+    )
+
+
+def _yes_text(result: ForecastResult) -> str:
+    """`yes with probability 84.2 % ± 0.4 %, more probable than not`; any number but 0 is a yes, as in Excel."""
+    no = probability_between(result.sample, 0.0, 0.0)
+    yes = _complement(no)
+    says = "" if result.sample.yes_no else "; numbers other than 0 and 1 count as yes"
+    if yes.value in (0.0, 1.0):
+        return f"yes in {percent_text(yes)}{says}"
+    likelier = ", more probable than not" if surely_above(yes, EVEN) else ""
+    likelier = ", so no is more probable than yes" if surely_above(no, EVEN) else likelier
+    return f"yes with probability {percent_text(yes)}{likelier}{says}"
+
+
+def _complement(share: Estimate) -> Estimate:
+    interval = None if share.interval is None else (1.0 - share.interval[1], 1.0 - share.interval[0])
+    return replace(share, value=1.0 - share.value, interval=interval)
+
+
+def _probabilities(result: ForecastResult) -> Iterator[Statement]:
+    """What was asked of a forecast beside its range."""
+    definition, above = result.definition, result.statistics.probability_above
+    name, units = definition.name, f" {definition.units}" if definition.units else ""
     if definition.threshold is not None and above is not None:
         event = f"{name} > {show(definition.threshold)}{units}"
-        told.append(Statement(name, "threshold", f"{_probability_text(event, above)}{part}"))
+        yield Statement(name, "threshold", _probability_text(event, above, _relation(definition.role, "above")))
     if definition.asked is not None and result.certainty is not None:
         event = f"{name} {range_text(*definition.asked)}{units}"
-        told.append(Statement(name, "certainty", f"{_probability_text(event, result.certainty)}{part}"))
-    return told
+        side = "below" if math.isinf(definition.asked[0]) else "above" if math.isinf(definition.asked[1]) else "between"
+        relation = _relation(definition.role, side)
+        yield Statement(name, "certainty", _probability_text(event, result.certainty, relation))
 
 
-def _probability_text(event: str, share: Estimate) -> str:
-    """`P(Speed > 35 mph) = 1.6 % ± 0.3 %`."""
-    joined = ":" if share.value in (0.0, 1.0) else " ="
+def _relation(role: Role, side: str) -> str:
+    """How the probability of a range of the quantity compares with the share of trials in which the forecast is in it.
+
+    A lower bound that lies above a limit puts the quantity above it, too; it says nothing of both ends of a range.
+    """
+    if not role.is_bound:
+        return "="
+    if side == "between":
+        return ""
+    return "≥" if (role is Role.LOWER) == (side == "above") else "≤"
+
+
+def _probability_text(event: str, share: Estimate, relation: str) -> str:
+    """`P(Speed > 35 mph) = 1.6 % ± 0.3 %`; `P(Speed > 35 mph) ≥ 1.6 % ± 0.3 %` where the speed is a lower bound."""
+    empty = {"≥": 0.0, "≤": 1.0}.get(relation)
+    if not relation or share.value == empty:
+        return f"P({event}): the bound does not tell"
+    joined = ":" if share.value in (0.0, 1.0) else f" {relation}"
     return f"P({event}){joined} {percent_text(share)}"
 
 
@@ -87,21 +173,34 @@ def _part_text(result: ForecastResult) -> str:
     return f"; counted in the {numbers:,} of {numbers + others:,} accepted trials in which it is a number"
 
 
-def _range_text(found: RoundedRange, units: str, trials: int) -> str:
+def _range_text(found: RoundedRange, nominal: float, units: str, trials: int) -> str:
     """`more probable than not (52.1 % ± 0.8 %) between 22.0 and 24.2 mph`, where that is so."""
-    share, between = found.share, f"between {found.low_text} and {found.high_text}{units}"
+    share, between = found.share, found.words(units, "between", "and")
     if found.low == found.high:
         if share.value == 1.0:
-            return f"{found.low_text}{units} in {f'all {trials:,} trials' if trials > 1 else 'the only trial'}"
+            return f"{found.low_text}{units} in {_all(trials)}"
         between = f"equal to {found.low_text}{units}"
     elif share.value == 1.0:
         return f"{percent_text(share)}, {between}"
-    lowest = share.value if share.interval is None else share.interval[0]
-    if lowest > _EVEN:
+    if surely_above(share, EVEN):
         return f"more probable than not ({percent_text(share)}) {between}"
-    if share.value > _EVEN:
+    if nominal > EVEN:
         return f"{percent_text(share)} {between}; there are too few trials to call it more probable than not"
     return f"{percent_text(share)} {between}"
+
+
+def _bound_text(found: RoundedRange, units: str, trials: int) -> str:
+    """`at least 22 mph, more probable than not (51.3 % ± 0.4 %)`."""
+    share, side = found.share, found.words(units)
+    if share.value == 1.0:
+        return f"{side} in {_all(trials)}"
+    if surely_above(share, EVEN):
+        return f"{side}, more probable than not ({percent_text(share)})"
+    return f"{side}, with a probability of at least {percent_text(share)}"
+
+
+def _all(trials: int) -> str:
+    return f"all {trials:,} trials" if trials > 1 else "the only trial"
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,8 +208,8 @@ class Certainty:
     """The share of a forecast's accepted trials in a range.
 
     Attributes:
-        kind: `below`, `between` or `above` for the central range; `at most` or `over` for the threshold; `asked` for
-            the range that was asked for.
+        kind: `below`, `between` or `above` for the range that is stated; `at most` or `over` for the threshold;
+            `asked` for the range that was asked for.
         low, high: the ends of the range, infinite where it has none. The ends of `below`, `above` and `over` do not
             belong to the range.
         words: the range in words, with units.
@@ -125,23 +224,13 @@ class Certainty:
 
 
 def certainties(result: ForecastResult) -> list[Certainty]:
-    """The certainties below, in and above the central range as it is printed; those of the threshold, if any, and of
-    the range that was asked for, if any.
+    """The certainties below, in and above the range that is stated, as it is printed; those of the threshold, if any,
+    and of the range that was asked for, if any.
     """
     definition, sample = result.definition, result.sample
     units = f" {definition.units}" if definition.units else ""
-    found = []
-    spoken = rounded_range(sample, result.statistics.central, definition.central)
-    if spoken is not None:
-        low, high = spoken.low, spoken.high
-        under = probability_between(sample, -math.inf, math.nextafter(low, -math.inf))
-        over = probability_above(sample, high)
-        between = f"from {spoken.low_text} to {spoken.high_text}{units}"
-        found = [
-            Certainty("below", -math.inf, low, f"below {spoken.low_text}{units}", under),
-            Certainty("between", low, high, between, spoken.share),
-            Certainty("above", high, math.inf, f"above {spoken.high_text}{units}", over),
-        ]
+    spoken = stated_range(result)
+    found = [] if spoken is None else _around(spoken, sample, units)
     threshold, above = definition.threshold, result.statistics.probability_above
     if threshold is not None and above is not None and sample.n:
         at_most = probability_between(sample, -math.inf, threshold)
@@ -150,4 +239,17 @@ def certainties(result: ForecastResult) -> list[Certainty]:
     if definition.asked is not None and result.certainty is not None:
         words = f"{range_text(*definition.asked)}{units}"
         found.append(Certainty("asked", *definition.asked, words, result.certainty))
+    return found
+
+
+def _around(spoken: RoundedRange, sample: Sample, units: str) -> list[Certainty]:
+    """The certainties below, in and above a range; below or above alone beside one that has no other end."""
+    low, high = spoken.low, spoken.high
+    found = [Certainty("between", low, high, spoken.words(units), spoken.share)]
+    if spoken.low_text:
+        under = probability_between(sample, -math.inf, math.nextafter(low, -math.inf))
+        found.insert(0, Certainty("below", -math.inf, low, f"below {spoken.low_text}{units}", under))
+    if spoken.high_text:
+        over = probability_above(sample, high)
+        found.append(Certainty("above", high, math.inf, f"above {spoken.high_text}{units}", over))
     return found

@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from xlmc.montecarlo.statistics import Estimate, probability_between
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.statistics import Sample
 
-__all__ = ["RoundedRange", "percent_text", "reach_text", "rounded_range", "rounded_value"]
+__all__ = ["EVEN", "RoundedRange", "percent_text", "reach_text", "rounded_range", "rounded_value", "surely_above"]
+
+EVEN: Final = 0.5
+"""Even odds: above it something is more probable than not."""
 
 _DIGITS, _SINGLE_DIGITS = 6, 12
 """Significant digits of a number without an error; and of one that is the same in all trials."""
+
+_LAST_BITS = 1e-12
+"""By how much a multiple of a resolution may be off, relative to it."""
 
 _WIDEST = 17
 """Digits before or after the point beyond which a number is written with a power of ten, and not rounded."""
@@ -23,10 +30,10 @@ _WIDEST = 17
 
 @dataclass(frozen=True, slots=True)
 class RoundedRange:
-    """A central range in words that people can quote.
+    """A central range, or one side of it, in words that people can quote.
 
     Attributes:
-        low, high: its rounded ends.
+        low, high: its rounded ends; infinite where one side alone is stated.
         low_text, high_text: the same in words.
         share: of the accepted trials from `low` to `high`, ends included.
     """
@@ -37,38 +44,128 @@ class RoundedRange:
     high_text: str
     share: Estimate
 
+    def words(self, units: str, first: str = "from", last: str = "to") -> str:
+        """`from 22 to 24 mph`; `at least 22 mph` or `at most 24 mph` where one side alone is stated."""
+        if not self.low_text:
+            return f"at most {self.high_text}{units}"
+        if not self.high_text:
+            return f"at least {self.low_text}{units}"
+        return f"{first} {self.low_text} {last} {self.high_text}{units}"
 
-def rounded_range(sample: Sample, ends: tuple[Estimate, Estimate], nominal: float) -> RoundedRange | None:
-    """The central range with its ends in the digits that the errors of both support, so that it still holds its share.
 
-    Each end is rounded to the nearest number, unless the range would then hold less than `nominal` of the trials: then
-    one end, or both, are rounded outwards. A single value is rounded in words alone. None where there are no trials.
+def rounded_range(
+    sample: Sample, ends: tuple[Estimate | None, Estimate | None], nominal: float, resolution: float | None = None
+) -> RoundedRange | None:
+    """Round a range so that what is said of it holds for its ends as they are printed.
+
+    Each end is rounded to the nearest multiple of the resolution, or of a finer or coarser unit that the errors of the
+    ends support. If the range then holds less than `nominal` of the trials, or if `nominal` is above one half and the
+    95 % interval of its share is not, ends are rounded outwards, and moved out unit by unit until both hold. A single
+    value is rounded in words alone. None where there are no trials.
+
+    Args:
+        sample: the accepted trials.
+        ends: of the range; None for an end that is not stated.
+        nominal: the share that it holds.
+        resolution: the step of the ends, which is used unless their errors are larger.
     """
-    low, high = (end.value for end in ends)
-    if math.isnan(low) or math.isnan(high):
+    known = [end for end in ends if end is not None]
+    if any(math.isnan(end.value) for end in known):
         return None
-    decimals = _common_decimals(*ends)
-    if low == high:
-        text = _text(_round(low, decimals, ROUND_HALF_EVEN, _SINGLE_DIGITS))
-        return RoundedRange(low, high, text, text, probability_between(sample, low, high))
-    best: RoundedRange | None = None
-    for down, up in ((False, False), (False, True), (True, False), (True, True)):
-        first = _round(low, decimals, ROUND_FLOOR if down else ROUND_HALF_EVEN)
-        last = _round(high, decimals, ROUND_CEILING if up else ROUND_HALF_EVEN)
-        share = probability_between(sample, float(first), float(last))
-        found = RoundedRange(float(first), float(last), _text(first), _text(last), share)
-        if share.value >= nominal and (best is None or share.value < best.share.value):
-            best = found
-    return best if best is not None else found
+    rounding = _Rounding(sample, ends, _unit(known, resolution))
+    value = known[0].value
+    if len(known) > 1 and value == known[1].value and (resolution is None or _is_multiple(value, resolution)):
+        return rounding.single(value)
+    if found := _least(rounding, _NEAREST_FIRST, nominal):
+        return found
+    return _widened(rounding, nominal) or _least(rounding, [(0, 0)], nominal, claimed=False)
 
 
-def rounded_value(found: Estimate) -> tuple[float, str]:
-    """A number in the digits that its error supports, and the same in words; not for nan.
+Steps = tuple[int | None, int | None]
+"""How many units outwards of the end rounded outwards, on either side; None for the nearest multiple."""
+
+_NEAREST_FIRST: Final[tuple[Steps, ...]] = ((None, None), (None, 0), (0, None), (0, 0))
+
+
+@dataclass(frozen=True, slots=True)
+class _Rounding:
+    """Ranges about two ends, or one, in steps of a unit; without a unit in six digits, and not wider."""
+
+    sample: Sample
+    ends: tuple[Estimate | None, Estimate | None]
+    unit: Decimal | None
+
+    def single(self, value: float) -> RoundedRange:
+        """The range of one value, which its text alone rounds."""
+        text = _text(_round(value, self.unit, ROUND_HALF_EVEN, _SINGLE_DIGITS))
+        return RoundedRange(value, value, text, text, probability_between(self.sample, value, value))
+
+    def range(self, steps: Steps) -> RoundedRange:
+        """The range with its ends so many steps out."""
+        low, high = self._end(0, steps[0]), self._end(1, steps[1])
+        first, last = -math.inf if low is None else float(low), math.inf if high is None else float(high)
+        share = probability_between(self.sample, first, max(first, last))
+        first_text, last_text = ("" if end is None else _text(end) for end in (low, high))
+        return RoundedRange(first, last, first_text, last_text, share)
+
+    def _end(self, side: int, steps: int | None) -> Decimal | None:
+        end, outwards = self.ends[side], (ROUND_FLOOR, ROUND_CEILING)[side]
+        if end is None:
+            return None
+        if steps is None:
+            return _round(end.value, self.unit, ROUND_HALF_EVEN)
+        if self.unit is None:
+            whole = self.sample.x[(0, -1)[side]]
+            return _round(float(whole) if steps else end.value, None, outwards)
+        return _round(end.value, self.unit, outwards) + (-1, 1)[side] * steps * self.unit
+
+    def is_whole(self, found: RoundedRange) -> bool:
+        """Whether the range holds every trial."""
+        return bool(found.low <= self.sample.x[0] and found.high >= self.sample.x[-1])
+
+
+def _least(rounding: _Rounding, steps: Iterable[Steps], nominal: float, *, claimed: bool = True) -> RoundedRange | None:
+    """The range with the least share of those that hold what is said of them; of equal ones the first."""
+    every = dict.fromkeys(rounding.range(each) for each in steps)
+    found = [each for each in every if not claimed or _holds(each.share, nominal)]
+    return min(found, key=lambda each: each.share.value, default=None)
+
+
+def _holds(share: Estimate, nominal: float) -> bool:
+    """Whether a share is at least the nominal one and, where that is above one half, surely so."""
+    return share.value >= nominal and (nominal <= EVEN or surely_above(share, EVEN))
+
+
+def surely_above(share: Estimate, bound: float) -> bool:
+    """Whether the whole 95 % interval of a share lies above a bound."""
+    return (share.value if share.interval is None else share.interval[0]) > bound
+
+
+def _widened(rounding: _Rounding, nominal: float) -> RoundedRange | None:
+    """The narrowest range, with ends as many steps out on both sides or one step less, that holds; None where none is.
+
+    The number of steps is doubled until a range holds, and then the least is sought.
+    """
+    least, most = 0, 1
+    while not _holds((found := rounding.range((most, most))).share, nominal):
+        if rounding.is_whole(found):
+            return None
+        least, most = most, 2 * most
+    while most - least > 1:
+        middle = (least + most) // 2
+        least, most = (least, middle) if _holds(rounding.range((middle, middle)).share, nominal) else (middle, most)
+    return _least(rounding, [(most - 1, most), (most, most - 1), (most, most)], nominal)
+
+
+def rounded_value(found: Estimate, resolution: float | None = None) -> tuple[float, str]:
+    """A number in the digits that its error and the resolution support, and the same in words; not for nan.
 
     >>> rounded_value(Estimate(11.8435, 0.019))
     (11.84, '11.84')
+    >>> rounded_value(Estimate(11.8435, 0.019), 0.5)
+    (12.0, '12.0')
     """
-    value = _round(found.value, _common_decimals(found), ROUND_HALF_EVEN)
+    value = _round(found.value, _unit([found], resolution), ROUND_HALF_EVEN)
     return float(value), _text(value)
 
 
@@ -116,10 +213,23 @@ def reach_text(share: Estimate) -> str:
     return f"at most {reach:f} %" if share.value == 0.0 else f"at least {100 - reach:f} %"
 
 
-def _common_decimals(*ends: Estimate) -> int | None:
-    """How many decimals: the finest unit that is at least half the largest error; None where there is no error."""
+def _unit(ends: Sequence[Estimate], resolution: float | None) -> Decimal | None:
+    """The finest power of ten that is at least half the largest error, or the resolution if that is not finer.
+
+    None where there is neither.
+    """
     errors = [end.error for end in ends if end.error]
-    return math.floor(-math.log10(max(errors) / 2.0)) if errors else None
+    supported = Decimal(1).scaleb(-math.floor(-math.log10(max(errors) / 2.0))) if errors else None
+    if resolution is None:
+        return supported
+    asked = Decimal(repr(resolution)).normalize()
+    return asked if supported is None or asked >= Decimal(repr(max(errors) / 2.0)) else max(asked, supported)
+
+
+def _is_multiple(value: float, resolution: float) -> bool:
+    """Whether a number is a multiple of the resolution, but for the last bits."""
+    steps = value / resolution
+    return abs(steps - round(steps)) <= _LAST_BITS * max(1.0, abs(steps))
 
 
 def _size(value: float) -> int:
@@ -127,13 +237,13 @@ def _size(value: float) -> int:
     return Decimal(repr(value)).adjusted() if value else 0
 
 
-def _round(value: float, decimals: int | None, rounding: str, significant: int = _DIGITS) -> Decimal:
+def _round(value: float, unit: Decimal | None, rounding: str, significant: int = _DIGITS) -> Decimal:
     exact, size = Decimal(repr(value)), _size(value)
-    digits = significant - 1 - size if decimals is None else decimals
-    if max(abs(digits), abs(size)) > _WIDEST:
+    step = Decimal(1).scaleb(size + 1 - significant) if unit is None else unit
+    if max(abs(step.adjusted()), abs(size)) > _WIDEST:
         return exact
-    found = exact.quantize(Decimal(1).scaleb(-digits), rounding)
-    return found.normalize() if decimals is None else found
+    found = (exact / step).quantize(Decimal(1), rounding) * step
+    return found.normalize() if unit is None else found
 
 
 def _text(value: Decimal) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable
 
 from xlmc.errors import DefinitionError
@@ -11,14 +12,19 @@ from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.computed import Computed
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.problems import Findings
+from xlmc.montecarlo.definitions.stating import WITHOUT_ORDER, Kind, Named, Role, named
 from xlmc.montecarlo.definitions.tables.identity import Claims, identify
 from xlmc.montecarlo.definitions.tables.reserved_tables import DefinitionTable
 from xlmc.montecarlo.definitions.tables.table_rows import Row, central_share, number, number_in, optional_text, rows_of
 from xlmc.montecarlo.distributions.parameters import show
+from xlmc.montecarlo.distributions.spelling import nearest
 
 __all__ = ["read_forecasts"]
 
-_KNOWN = ("Name", "Value", "Cell", "Units", "Range %", "Threshold", "Certainty from", "Certainty to")
+_STATED = ("Report to", "Kind", "Role")
+_KNOWN = ("Name", "Value", "Cell", "Units", "Range %", "Threshold", "Certainty from", "Certainty to", *_STATED)
+_NUMBER_FIRST = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
+_DEGREES = ("°", "deg", "degree", "degrees")
 
 
 def read_forecasts(
@@ -53,6 +59,10 @@ def _forecast(row: Row, computed: Computed, central: float, claims: Claims, find
     threshold = findings.attempt(number, row, "Threshold")
     asked = findings.attempt(_asked, row)
     units = findings.attempt(optional_text, row, "Units") or ""
+    kind = findings.attempt(_named, row, "Kind", Kind)
+    role = findings.attempt(_named, row, "Role", Role) or Role.ANSWER
+    report_to = findings.attempt(_resolution, row, units)
+    findings.attempt(_refuse_without_order, row, kind, role)
     if len(findings.problems) > before or not identity:
         return None
     name, cell = identity
@@ -65,7 +75,74 @@ def _forecast(row: Row, computed: Computed, central: float, claims: Claims, find
         threshold=threshold,
         notes=row.notes(_KNOWN),
         asked=asked,
+        report_to=report_to,
+        kind=kind,
+        role=role,
     )
+
+
+def _named(row: Row, heading: str, words: type[Named]) -> Named | None:
+    """The role or kind in the cell; None where it is blank.
+
+    Raises:
+        DefinitionError: the cell holds another word.
+    """
+    text = optional_text(row, heading)
+    found = named(words, text) if text else None
+    if text and found is None:
+        known = [each.value for each in words]
+        meant = nearest(text, known)
+        hint = f"Did you mean {meant}? " if meant else ""
+        hint += f"Type {', '.join(known[:-1])} or {known[-1]}; a column of notes needs another heading"
+        raise DefinitionError(f"{row.heading(heading)} {text!r} is unknown", where=row.cell(heading), hint=hint)
+    return found
+
+
+def _resolution(row: Row, units: str) -> float | None:
+    """The resolution in the cell, a number or such as `1 mph` in the units of the row; None where it is blank.
+
+    Raises:
+        DefinitionError: it is no number above 0, or in other units.
+    """
+    if not row.filled("Report to"):
+        return None
+    content, where = row.content("Report to"), row.cell("Report to")
+    typed = _NUMBER_FIRST.fullmatch(content.value) if isinstance(content.value, str) else None
+    if typed is None or not typed[2]:
+        value = number_in(row.heading("Report to"), content, where)
+    elif _same_units(typed[2], units):
+        value = float(typed[1])
+    else:
+        message = f"{row.heading('Report to')} is in {typed[2]!r}, and the forecast is in {units!r}"
+        message = message if units else f"{row.heading('Report to')} is in {typed[2]!r}, and the forecast has no units"
+        raise DefinitionError(message, where=where, hint="Type a number in the units of the forecast, such as 1")
+    if not 0.0 < value < math.inf:
+        message = f"{row.heading('Report to')} ({show(value)}) must be above 0"
+        raise DefinitionError(
+            message, where=where, hint="Type the step in which the answer is stated, such as 1 or 0.5"
+        )
+    return value
+
+
+def _same_units(first: str, second: str) -> bool:
+    first, second = first.casefold(), second.strip().casefold()
+    return first == second or (first in _DEGREES and second in _DEGREES)
+
+
+def _refuse_without_order(row: Row, kind: Kind | None, role: Role | None) -> None:
+    """Refuse a bound or a resolution of what has no order.
+
+    Raises:
+        DefinitionError: the row asks for one.
+    """
+    if kind not in WITHOUT_ORDER:
+        return
+    hint = "Leave the cell blank, or correct Kind"
+    if role is not None and role.is_bound:
+        raise DefinitionError(f"A forecast of the kind {kind} is no bound", where=row.cell("Role"), hint=hint)
+    if row.filled("Report to"):
+        message = f"A forecast of the kind {kind} is not rounded"
+        raise DefinitionError(message, where=row.cell("Report to"), hint=hint)
 
 
 def _asked(row: Row) -> tuple[float, float] | None:

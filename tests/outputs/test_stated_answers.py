@@ -1,0 +1,112 @@
+"""How answers are stated, in every output of one workbook: at their resolution, on one side, as a probability."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+
+import openpyxl
+import pytest
+from click.testing import CliRunner
+from openpyxl.worksheet.table import Table
+
+import xlmc
+from xlmc.cli import xlmc as command
+from xlmc.outputs.live.frames import rest_of
+
+ROWS = [
+    ["Name", "Value", "Units", "Threshold", "Report to", "Kind", "Role"],
+    ["delta-V", "=B7*2", "mph", None, "1 mph", None, None],
+    ["projection speed, at least", "=B7+1", "mph", None, 1, "number", "lower bound"],
+    ["avoided", "=B7>12", None, None, None, "yes/no", None],
+    ["residual", "=B7-15", "mph", 0, None, None, "diagnostic"],
+]
+"""B7 is the assumption, uniform from 10 to 20."""
+
+
+@pytest.fixture(scope="module")
+def outputs(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("stated")
+    book = openpyxl.Workbook()
+    sheet = book.active
+    sheet.title = "S"
+    for row in (*ROWS, ["Name", "Value", "Low", "High"], ["speed", 15, 10, 20]):
+        sheet.append(row)
+    sheet.add_table(Table(displayName="xlmc_forecasts", ref="A1:G5"))
+    sheet.add_table(Table(displayName="xlmc_assumptions", ref="A6:D7"))
+    book.save(folder / "book.xlsx")
+    run = xlmc.load(folder / "book.xlsx").simulate(20_000)
+    run.save_page(folder / "out.html")
+    run.save_json(folder / "out.json")
+    run.save_report(folder / "out.docx")
+    run.keep(folder / "out.xlmcrun")
+    found = CliRunner().invoke(command, ["simulate", str(folder / "book.xlsx"), "-n20000", f"-o{folder / 'out.xlsx'}"])
+    assert found.exit_code == 0, found.output
+    return folder, " ".join(found.output.split())
+
+
+@pytest.fixture(scope="module")
+def said(outputs):
+    """What Python says of the saved run."""
+    return xlmc.open_run(outputs[0] / "out.xlmcrun").sentences
+
+
+def test_each_answer_is_stated_as_its_row_asks(said):
+    first, bound, avoided = said
+    assert first.startswith("delta-V: more probable than not (")
+    assert first.endswith((" between 25 and 36 mph", " between 24 and 35 mph"))
+    assert bound.startswith("projection speed, at least: at least 15 mph, more probable than not (")
+    share, _, rest = avoided.removeprefix("avoided: yes with probability ").partition(" % ± 0.3 %")
+    assert abs(float(share) - 80.0) < 4 * 0.29  # of 20,000 trials
+    assert rest == ", more probable than not"
+    assert not any("residual" in each for each in said)
+
+
+def test_every_output_says_the_same(outputs, said):
+    folder, terminal = outputs
+    page = (folder / "out.html").read_text(encoding="utf-8")
+    with zipfile.ZipFile(folder / "out.docx") as package:
+        report = package.read("word/document.xml").decode()
+    sheet = openpyxl.load_workbook(folder / "out.xlsx")["Certainty"]
+    cells = [cell.value for row in sheet for cell in row]
+    document = json.loads((folder / "out.json").read_text(encoding="utf-8"))
+    window = rest_of(xlmc.open_run(folder / "out.xlmcrun"))
+    assert [each["text"] for each in document["statements"]] == window["sentences"] == list(said)
+    for each in said:
+        assert f"{each}." in cells
+        assert f"{each}." in terminal
+        assert f"{each}." in report
+        assert each.partition(": ")[2] in page
+
+
+def test_the_record_and_the_json_keep_what_was_asked(outputs):
+    document = json.loads((outputs[0] / "out.json").read_text(encoding="utf-8"))
+    found = [(each["report_to"], each["kind"], each["role"]) for each in document["forecasts"]]
+    assert found == [
+        (1, None, "answer"),
+        (1, "number", "lower bound"),
+        (None, "yes/no", "answer"),
+        (None, None, "diagnostic"),
+    ]
+    rows = document["record"]["forecasts"]["rows"]
+    assert [(each["report_to"], each["kind"], each["role"]) for each in rows] == [
+        (1, "", ""),
+        (1, "number", "lower bound"),
+        (None, "yes/no", ""),
+        (None, "", "diagnostic"),
+    ]
+
+
+def test_a_bound_is_typed_with_one_end_and_the_run_can_be_repeated(outputs):
+    folder, _ = outputs
+    sheet = openpyxl.load_workbook(folder / "out.xlsx")["Certainty"]
+    typed = [row for row in sheet.iter_rows(values_only=True) if row[0] == ROWS[2][0] and row[1] == "mph"]
+    assert [row[2:4] for row in typed] == [(15, None)]
+    found = CliRunner().invoke(command, ["replay", str(folder / "out.xlsx")])
+    assert found.exit_code == 0, found.output
+
+
+def test_check_shows_how_answers_are_stated(outputs):
+    found = CliRunner().invoke(command, ["check", str(outputs[0] / "book.xlsx")])
+    assert found.exit_code == 0
+    assert all(word in found.output for word in ("Report to", "lower bound", "yes/no", "diagnostic"))

@@ -1,0 +1,62 @@
+"""How a forecast is stated: what it is to the question asked, what its numbers are, and how finely it is reported."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import TypeVar
+
+from xlmc.montecarlo.distributions.spelling import plain
+
+__all__ = ["WITHOUT_ORDER", "Kind", "Named", "Role", "named"]
+
+
+class Role(StrEnum):
+    """What a forecast is to the question: the quantity asked for, a bound of it, or a number to judge the model by."""
+
+    ANSWER = "answer"
+    LOWER = "lower bound"
+    UPPER = "upper bound"
+    DIAGNOSTIC = "diagnostic"
+
+    @property
+    def is_bound(self) -> bool:
+        """Whether one side alone can be stated."""
+        return self in (Role.LOWER, Role.UPPER)
+
+
+class Kind(StrEnum):
+    """What the numbers of a forecast are."""
+
+    NUMBER = "number"
+    WHOLE = "whole number"
+    YES_NO = "yes/no"
+    CATEGORY = "category"
+    DATE = "date or time"
+    PERCENT = "percent"
+    CURRENCY = "currency"
+
+
+WITHOUT_ORDER = (Kind.YES_NO, Kind.CATEGORY)
+"""Kinds whose numbers stand for words, so that they have no bounds and are not rounded."""
+
+_ALSO = {
+    "integer": Kind.WHOLE,
+    "yes or no": Kind.YES_NO,
+    "true/false": Kind.YES_NO,
+    "date": Kind.DATE,
+    "time": Kind.DATE,
+    "date/time": Kind.DATE,
+}
+
+Named = TypeVar("Named", Role, Kind)
+
+
+def named(kind: type[Named], text: str) -> Named | None:
+    """Return the role or kind that a person means, whatever its case and blanks; None for another word.
+
+    >>> named(Role, "Lower Bound"), named(Kind, "Yes or no"), named(Kind, "speed")
+    (<Role.LOWER: 'lower bound'>, <Kind.YES_NO: 'yes/no'>, None)
+    """
+    spellings = {plain(each.value): each for each in kind}
+    also = {plain(word): each for word, each in _ALSO.items() if isinstance(each, kind)}
+    return (spellings | also).get(plain(text))

@@ -39,6 +39,7 @@ def check(book: Path) -> None:
     from xlmc.cli.printing import notices
     from xlmc.engine.engines import ENGINES
     from xlmc.errors import XlmcError
+    from xlmc.excel.workbook.inject import refuse_unwritable
     from xlmc.excel.workbook.reader import read_workbook
     from xlmc.montecarlo.definitions.definitions_reader import read_definitions
     from xlmc.montecarlo.model.labels import calculate_labels
@@ -55,6 +56,7 @@ def check(book: Path) -> None:
             problems += filter_faults(model)
             if definitions.scenarios and not problems:
                 models_of(model)
+            refuse_unwritable(workbook.parts)
         except XlmcError as error:
             problems.append(error)
     faults = [] if model is None else _show_base_case(model)

@@ -171,7 +171,12 @@ class Outputs(NamedTuple):
         Raises:
             DefinitionError: its table `xlmc_case` is not what it must be.
             SimulationError: it has no such forecast.
+            WorkbookError: it is damaged so that no sheets can be added to it.
         """
+        if self.book is not None:
+            from xlmc.excel.workbook.inject import refuse_unwritable
+
+            refuse_unwritable(model.workbook.parts)
         if self.reports.paths:
             from xlmc.outputs.document import check_wanted_of
 

@@ -135,6 +135,31 @@ def test_cells_that_a_link_does_not_hold_are_blank(linked):
     assert found.sheet_of(Cell("[x", 1, 1)) is None
 
 
+BROKEN = """<sheetNames><sheetName val="Prices"/><sheetName val="Whole"/></sheetNames>
+<definedNames><definedName name="Rate" refersTo="=Prices!$B$2"/></definedNames><sheetDataSet>
+<sheetData sheetId="0" refreshError="1"><row r="2"><cell r="B2"><v>142</v></cell></row></sheetData>
+<sheetData sheetId="1"><row r="1"><cell r="A1"><v>7</v></cell></row></sheetData></sheetDataSet>"""
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected"),
+    [
+        ("[1]Prices!$B$2", ErrorCode.REF),
+        ("[1]Prices!C9", ErrorCode.REF),
+        ("SUM([1]Prices!A1:B3)", ErrorCode.REF),
+        ("[1]!Rate", ErrorCode.REF),
+        ("ROWS([1]Prices!A1:B3)", ErrorCode.REF),
+        ("IFERROR([1]Prices!B2,5)", 5.0),
+        ("[1]Whole!A1+1", 8.0),
+    ],
+)
+def test_a_sheet_that_excel_could_not_read_again_is_an_error(linked, formula, expected):
+    found = linked(row_of(formula), BROKEN)
+    assert any("links to prices.xlsx are broken" in str(notice) for notice in found.notices)
+    (compared,) = verify(found).cells
+    assert compared.got == expected
+
+
 def test_a_run_records_what_it_read_of_another_workbook_and_a_replay_names_a_change(small_book, tmp_path, monkeypatch):
     keep_sheets(monkeypatch, *SHORT)
     book = openpyxl.load_workbook(small_book)

@@ -205,6 +205,8 @@ class Resolver:
                 raise FormulaError("refers to several sheets of another workbook", hint=COPY)
             return self._over_sheets(tree, host, origin)
         sheet = self._sheet(tree.sheet, host) if book is None else linked_sheet(self.workbook, book, tree.sheet, host)
+        if book is not None and sheet in self.workbook.links[book].broken:
+            return ir.ErrorLiteral(ErrorCode.REF)
         found = seen_from(tree, sheet, host, origin, wraps=bool(self._open_names))
         return self._cut(found) if isinstance(found, Area) else found
 

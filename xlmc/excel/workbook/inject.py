@@ -10,6 +10,7 @@ from __future__ import annotations
 import dataclasses
 import json
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 from xlmc.errors import WorkbookError
@@ -40,9 +41,9 @@ from xlmc.excel.workbook.injection.splice import MAIN, OFFICE_RELATIONSHIPS, Ele
 from xlmc.excel.workbook.injection.strict import STRICT_MAIN, strict_part, strict_type
 from xlmc.excel.workbook.injection.styles_merge import StyleMap, merge_styles, same_styles
 from xlmc.excel.workbook.package import CONTENT_TYPES, Relationship, hash_parts, relationships, rels_part
-from xlmc.excel.workbook.safe_xml import tree
+from xlmc.excel.workbook.safe_xml import REPAIR, tree
 
-__all__ = ["inject", "marked_names", "original_hash", "remove_result_sheets", "result_sheets"]
+__all__ = ["inject", "marked_names", "original_hash", "refuse_unwritable", "remove_result_sheets", "result_sheets"]
 
 _STYLES = "xl/styles.xml"
 _STYLES_POINTER = f"{OFFICE_RELATIONSHIPS}/styles"
@@ -180,7 +181,28 @@ def _types(carrier: Carrier, carried: Mapping[str, bytes], styles: _Styles) -> d
 
 def _list_names(user: _User, added: Sequence[str]) -> dict[str, bytes]:
     part = user.role.properties
-    return {} if part is None else {part: list_sheets(user.parts[part], part, user.sheets, added)}
+    if part is None:
+        return {}
+    try:
+        return {part: list_sheets(user.parts[part], part, user.sheets, added)}
+    except WorkbookError:  # damaged: no more than a list for file managers, it stays as it is
+        return {}
+
+
+def refuse_unwritable(parts: Mapping[str, bytes]) -> None:
+    """Refuse, before a run, a workbook that could be read but that no sheets could be added to.
+
+    Raises:
+        WorkbookError: the workbook part, its pointers, the content types, the styles or a table are damaged.
+    """
+    user = _User.of(remove_result_sheets(parts))
+    claimed_names(user.parts)
+    for part in (CONTENT_TYPES, user.role.rels, user.role.styles):
+        if part is not None:
+            root = SplicedXml(user.parts[part], part).root
+            if part == user.role.styles and root.local != "styleSheet":
+                raise WorkbookError(f"{part} is no styles part", hint=REPAIR)
+    free_tables({}, user.parts, user.role.workbook, user.names)
 
 
 def remove_result_sheets(parts: Mapping[str, bytes]) -> dict[str, bytes]:
@@ -213,7 +235,8 @@ def remove_result_sheets(parts: Mapping[str, bytes]) -> dict[str, bytes]:
     kept[CONTENT_TYPES] = drop_types(parts[CONTENT_TYPES], dropped, kept)
     if role.properties is not None:
         present, removed = _names(sheets.children), _names(marked)
-        kept[role.properties] = unlist_sheets(parts[role.properties], role.properties, present, removed)
+        with suppress(WorkbookError):  # damaged: no more than a list for file managers, it stays as it is
+            kept[role.properties] = unlist_sheets(parts[role.properties], role.properties, present, removed)
     return kept
 
 

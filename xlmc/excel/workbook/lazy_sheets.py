@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import ChainMap
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -90,11 +91,26 @@ class LazySheets(Mapping[str, Sheet]):
             strings=self._read("sharedStrings", shared_strings) or (),
             dynamic_marks=self._read("sheetMetadata", dynamic_array_marks) or frozenset(),
             date1904=self._structure.date1904,
+            placeholders=self._never_calculated(),
         )
+
+    def _never_calculated(self) -> bool:
+        """Whether a program that does not calculate wrote the workbook: 0 beside every formula, and Excel is asked to.
+
+        XlsxWriter writes so, and pandas by it.
+        """
+        if not is_true(self._structure.calculation.get("fullCalcOnLoad")):
+            return False
+        sheets = [self._parts[entry.part] for entry in self._entries.values() if entry.part in self._parts]
+        return not any(b"\0" in xml[:4] or _CALCULATED.search(xml) for xml in sheets)
 
     def _read(self, kind: str, reader: Callable[[bytes, str], _T]) -> _T | None:
         part = self._structure.target(kind)
         return None if part is None or part not in self._parts else reader(self._parts[part], part)
+
+
+_CALCULATED = re.compile(rb"(?:</(?:\w+:)?f>|<(?:\w+:)?f\b[^>]*/>)\s*<(?:\w+:)?v\b[^>]*>(?!\s*(?:0(?:\.0*)?\s*)?</)")
+"""A formula with a saved value that is neither 0 nor empty."""
 
 
 def _may_hold_data_table(xml: bytes) -> bool:

@@ -100,11 +100,12 @@ def read_parts(data: bytes, limits: Limits = LIMITS) -> dict[str, bytes]:
     _check_container(data)
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as package:
-            entries = [entry for entry in package.infolist() if not entry.filename.endswith("/")]
+            entries = [entry for entry in package.infolist() if not entry.filename.endswith(("/", "\\"))]
+            names = {entry.filename: _with_slashes(entry.filename) for entry in entries}
             _check_entries(entries, limits)
             if entries and entries[0].filename == "mimetype" and _OPEN_DOCUMENT in data[:256]:
                 raise WorkbookError("the file is an OpenDocument spreadsheet (.ods)", hint=_OPEN_DOCUMENT_HINT)
-            return {entry.filename: _unpack(package, entry) for entry in entries}
+            return {names[entry.filename]: _unpack(package, entry) for entry in entries}
     except _DAMAGE as error:
         reason = str(error) or "it ends too early"
         raise WorkbookError(f"the file is damaged ({reason})", hint="Fetch or copy it again") from error
@@ -192,17 +193,22 @@ def _check_entries(entries: list[zipfile.ZipInfo], limits: Limits) -> None:
         raise WorkbookError(f"the file holds {len(entries):,} parts; xlmc reads up to {limits.entries:,}", hint=SMALLER)
     seen: set[str] = set()
     for entry in entries:
-        _check_name(entry.filename, seen)
+        _check_name(_with_slashes(entry.filename), seen)
         _check_size(entry, limits)
     if sum(entry.file_size for entry in entries) > limits.total:
         raise WorkbookError(f"the file unpacks to more than {limits.total >> 20} MB", hint=SMALLER)
+
+
+def _with_slashes(name: str) -> str:
+    """The name of a part: some programs on Windows write backslashes, which Excel reads as slashes."""
+    return name.replace("\\", "/")
 
 
 def _check_name(name: str, seen: set[str]) -> None:
     folded = name.casefold()
     if folded in seen:
         raise WorkbookError(f"the file holds the part {name!r} twice", hint=REPAIR)
-    if "\\" in name or not all(name.split("/")) or {".", ".."} & set(name.split("/")):
+    if not all(name.split("/")) or {".", ".."} & set(name.split("/")):
         raise WorkbookError(f"the file holds a part with the unsafe name {name!r}", hint=REPAIR)
     seen.add(folded)
 

@@ -99,8 +99,9 @@ def _sheet_faults(parts: Mapping[str, bytes], workbook: str) -> Iterator[str]:
         yield from (f"two sheets have the {what} {value!r}" for value in _repeated(values) if value)
     known = relationships(parts, workbook)
     for sheet in sheets:
-        pointer = known.get(sheet.foreign("id") or "")
-        if pointer is None or pointer.target not in parts:
+        name = sheet.foreign("id")
+        pointer = known.get(name or "")
+        if name != "" and (pointer is None or pointer.target not in parts):  # "": a module sheet of the 1990s
             yield f"the sheet {sheet.attributes.get('name', '')!r} has no part"
     names = root.find("definedNames")
     said = [

@@ -112,6 +112,8 @@ _REASONS = (
 )
 
 
+_BROKEN: Final = re.compile(rb"""\srefreshError\s*=\s*["'](?:1|true)["']""")
+
 _SAVED_AT: Final = re.compile(rb"<dcterms:modified[^>]*>\s*(\d{4}-\d\d-\d\d)")
 
 
@@ -168,6 +170,12 @@ def _on_links(parts: Mapping[str, bytes], structure: Structure) -> Iterator[str]
             f"the workbook links to other files{f' ({named})' if named else ''}, which xlmc does not open: where a "
             f"formula reads them, it gets the value that Excel stored{_age(parts)}"
         )
+        broken = [_file(parts, part) or part for part in structure.links if _BROKEN.search(parts.get(part, b""))]
+        if broken:
+            yield (
+                f"links to {', '.join(dict.fromkeys(broken))} are broken: what reads them is #REF!, as in Excel. "
+                "Update or break the links in Excel (Data, Edit Links)"
+            )
 
 
 def _age(parts: Mapping[str, bytes]) -> str:
@@ -226,12 +234,14 @@ def _file(parts: Mapping[str, bytes], part: str) -> str:
 
 def _linked_book(book: str, file: str, root: Element, part: str) -> LinkedBook:
     titles = [decode(name.get("val", "")) for name in root.findall("{*}externalBook/{*}sheetNames/{*}sheetName")]
-    sheets = {}
+    sheets, broken = {}, set()
     for data in root.findall("{*}externalBook/{*}sheetDataSet/{*}sheetData"):
         title = _of_id(titles, data.get("sheetId"))
-        if title is not None:
+        is_broken = is_true(data.get("refreshError"))
+        if title is not None and (is_broken or len(data)):
             sheets[book + title] = Sheet(book + title, part, dict(_cells(data, part)))
-    return LinkedBook(file, sheets, tuple(_names(book, root, titles)))
+            broken |= {book + title} if is_broken else set()
+    return LinkedBook(file, sheets, tuple(_names(book, root, titles)), frozenset(broken))
 
 
 def _names(book: str, root: Element, titles: list[str]) -> Iterator[DefinedName]:

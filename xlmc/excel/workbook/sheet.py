@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from math import isfinite
 
 from xlmc.errors import ErrorCode, WorkbookError
-from xlmc.excel.address import MAX_COLUMN, MAX_ROW, Area, Cell, column_number
+from xlmc.excel.address import MAX_COLUMN, MAX_ROW, Area, Cell, column_letters, column_number
 from xlmc.excel.workbook.safe_xml import REPAIR, decode, expat_parser, feed, is_true, run_text, whole_number
 from xlmc.excel.workbook.structure import SheetEntry, area_of
 from xlmc.excel.workbook.workbook import CellContent, CellValue, DataTable, Formula, Sheet
@@ -25,6 +25,9 @@ _SPACE = "http://www.w3.org/XML/1998/namespace space"
 _ROW = re.compile("[1-9][0-9]{0,6}")
 _A1 = re.compile("([A-Z]{1,3})([1-9][0-9]{0,6})")
 
+_NUMBER = re.compile(r"[ \t\r\n]*[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?[ \t\r\n]*")
+"""A number as XML Schema writes it: Python's `1_5`, digits of other scripts and no-break spaces are none."""
+
 _LOGICAL = {"1": True, "0": False, "true": True, "false": False}
 
 _Attributes = Mapping[str, str]
@@ -38,11 +41,13 @@ class CellContext:
         strings: the shared string table.
         dynamic_marks: the values of `cm` that mark a dynamic-array formula.
         date1904: dates count from 1904 instead of 1900.
+        placeholders: what is saved beside formulas only stands for values that were never calculated.
     """
 
     strings: Sequence[str] = ()
     dynamic_marks: frozenset[str] = frozenset()
     date1904: bool = False
+    placeholders: bool = False
 
 
 def parse_sheet(xml: bytes, entry: SheetEntry, context: CellContext) -> Sheet:
@@ -63,6 +68,17 @@ def parse_sheet(xml: bytes, entry: SheetEntry, context: CellContext) -> Sheet:
         tuple(reading.filtered),
         tuple(reading.data_tables),
     )
+
+
+_WHOLE = re.compile(r"(?:([A-Z]{1,3}):([A-Z]{1,3})|([1-9][0-9]{0,6}):([1-9][0-9]{0,6}))")
+"""Whole columns, `A:B`, or whole rows, `1:3`, which Excel writes where all of them are merged."""
+
+
+def _with_ends(whole: re.Match[str]) -> str:
+    if whole[0] != whole.string:
+        return whole[0]
+    left, right, top, bottom = whole.groups()
+    return f"{left}1:{right}{MAX_ROW}" if left else f"A{top}:{column_letters(MAX_COLUMN)}{bottom}"
 
 
 class _Pass:
@@ -130,7 +146,7 @@ class _Pass:
         if position in self.cells:
             raise self._faulty("stands in the file twice")
         value: CellValue = None
-        if self._raw is not None:
+        if self._raw is not None and not (self._formula is not None and self._context.placeholders):
             try:
                 value = convert(self._cell.get("t", "n"), self._raw, self._context)
             except ValueError as error:
@@ -166,7 +182,8 @@ class _Pass:
             self._formula = self._array(text) if kind == "array" else Formula(text, self._row, self._column)
 
     def start_merged(self) -> None:
-        self.merged.append(area_of(self._attributes.get("ref"), self._sheet, "a merged cell"))
+        reference = _WHOLE.sub(_with_ends, self._attributes.get("ref", ""))
+        self.merged.append(area_of(reference, self._sheet, "a merged cell"))
 
     def start_filter(self) -> None:
         self._filter, self._has_condition = self._attributes.get("ref"), False
@@ -258,10 +275,7 @@ def convert(kind: str, raw: str, context: CellContext) -> CellValue:
 def _number(raw: str, _: CellContext) -> CellValue:
     if not raw:
         return None
-    try:
-        value = float(raw)
-    except ValueError:
-        value = float("nan")
+    value = float(raw) if _NUMBER.fullmatch(raw) else float("nan")
     if not isfinite(value):
         raise ValueError(f"holds {raw!r} where a number should be")
     return value
@@ -282,6 +296,8 @@ def _error(raw: str, _: CellContext) -> CellValue:
 
 
 def _shared(raw: str, context: CellContext) -> CellValue:
+    if not raw:
+        return None
     number = whole_number(raw)
     if number is None or number >= len(context.strings):
         raise ValueError(f"holds a text that the workbook does not (number {raw!r} of {len(context.strings)})")

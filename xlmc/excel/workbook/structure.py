@@ -22,7 +22,10 @@ __all__ = ["SheetEntry", "Structure", "area_of", "read_structure", "read_table",
 
 @dataclass(frozen=True, slots=True)
 class SheetEntry:
-    """One tab. `kind` is `worksheet`, or that of a sheet without cells (`chartsheet`, …)."""
+    """One tab. `kind` is `worksheet`, or that of a sheet without cells (`chartsheet`, …).
+
+    A module sheet of the 1990s, whose code lies in the macro project, keeps its place among the tabs and has no part.
+    """
 
     name: str
     part: str
@@ -112,7 +115,10 @@ def _sheet_entry(element: Element, rels: Mapping[str, Relationship], parts: Mapp
         raise WorkbookError(
             f"the name of the sheet {printable(name)!r} holds a character that steers a screen", hint=hint
         )
-    rel = rels.get(attribute(element, "id") or "")
+    pointer = attribute(element, "id")
+    if pointer == "":
+        return SheetEntry(name, "", "module", visible=False)
+    rel = rels.get(pointer or "")
     if rel is None or rel.target not in parts:
         raise WorkbookError(f"the sheet {name!r} is missing from the file", hint=REPAIR)
     return SheetEntry(name, rel.target, rel.kind, element.get("state", "visible") == "visible")
@@ -122,7 +128,7 @@ def _check_distinct(sheets: tuple[SheetEntry, ...]) -> None:
     names = Counter(sheet.name.casefold() for sheet in sheets)
     parts = Counter(sheet.part for sheet in sheets)
     for sheet in sheets:
-        if names[sheet.name.casefold()] > 1 or parts[sheet.part] > 1:
+        if names[sheet.name.casefold()] > 1 or (sheet.part and parts[sheet.part] > 1):
             raise WorkbookError(f"the sheet {sheet.name!r} is in the file twice", hint=REPAIR)
 
 

@@ -107,11 +107,13 @@ class LinkedBook:
         file: its name, without a folder.
         sheets: with the cells that were read, under their names as formulas write them: `[1]Prices`.
         names: with what they stand for in that workbook; `sheet` is such a name, too.
+        broken: the names of sheets that Excel could not read again: their cells are `#REF!`.
     """
 
     file: str
     sheets: Mapping[str, Sheet]
     names: tuple[DefinedName, ...] = ()
+    broken: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)

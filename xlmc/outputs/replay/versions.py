@@ -178,6 +178,10 @@ RULES: Final = (
     Rule(
         "0.12.0", "ranges are rounded outwards until they are more probable than not; a yes/no has a probability", _ANY
     ),
+    Rule("0.12.0", "cells that read a broken link to another workbook are #REF!", re.compile(r"\[\d+\]")),
+    Rule("0.12.0", "what stands beside formulas that nothing calculated is no saved value", _ANY),
+    Rule("0.12.0", "shares of variance are found in finer classes where a forecast jumps or bends", _ANY),
+    Rule("0.12.0", "yes/no answers have the interval of their share", _ANY),
 )
 """The rules in the order of versions."""
 

@@ -5,12 +5,14 @@ import math
 import pytest
 
 from xlmc.analysis.results.statements import statements
+from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.montecarlo.statistics import Estimate, format_estimate, proportion
 from xlmc.outputs.summary import (
     ERROR_SENTENCE,
     base_case,
     estimate_text,
     percent,
+    question,
     range_heading,
     share_text,
     summarise,
@@ -31,6 +33,44 @@ def test_rows_are_the_simulations_own_numbers(run):
     assert (area.units, area.trials, area.share, area.base, area.threshold) == ("ft", run.accepted, 0.51, 16.0, 16.0)
     assert area.above == run["area"].probability_above(16.0)
     assert rows[1].above is None
+
+
+SWITCHED = {"A1": 0.5, "A2": 0, "A3": "=IF(A2=1,A1,0)", "A4": "=A1*2+1", "A5": "=1/(A1-0.4)", "A6": "=A1^2"}
+ONE = {"x": {"cell": "A1", "low": 0, "high": 1}}
+
+
+def asked(model, trials=4000, **options):
+    return "".join(said.text for said in question(simulate(model, trials=trials, seed=3, **options)))
+
+
+@pytest.mark.parametrize(
+    ("filters", "said", "unsaid"),
+    [
+        ({"off": {"cell": "A3", "at_most": 0.95}, "low": {"cell": "A1", "below": 0.5}}, ["low below 0.5"], ["off"]),
+        ({"sure": {"cell": "A4", "at_least": 1, "at_most": 3}, "low": {"cell": "A1", "below": 0.5}}, ["low"], ["sure"]),
+        ({"may": {"cell": "A4", "at_least": 1, "below": 2.9}}, ["may at least 1 and below 2.9"], []),
+        ({"error": {"cell": "A5", "at_least": -1e9}}, ["error at least"], []),
+        ({"square": {"cell": "A6", "at_most": 0.5}}, ["square at most 0.5", "pass all filters"], ["evidence"]),
+        ({"off": {"cell": "A3", "at_most": 0.95}}, ["no filter that a trial could break: every trial"], ["off"]),
+        ({}, ["The workbook has no filters: every trial is accepted"], ["evidence"]),
+    ],
+    ids=str,
+)
+def test_what_no_trial_can_break_is_not_said_to_be_asked(model_of, filters, said, unsaid):
+    text = asked(model_of(SWITCHED, ONE, {"y": "A1"}, filters))
+    assert all(each in text for each in said), text
+    assert not any(each in text.removeprefix("The workbook computes") for each in unsaid), text
+
+
+@pytest.mark.parametrize(("options"), [{"evidence": "rejection"}, {"evidence": "weights"}], ids=str)
+@pytest.mark.parametrize("filters", [{}, {"low": {"cell": "A1", "below": 0.9}}], ids=["no filter", "a filter"])
+def test_evidence_is_the_table_of_that_name(model_of, filters, options):
+    reading = {"EDR": {"cell": "A4", "reading": 2.0, "error": "normal", "std_dev": 0.2}}
+    text = asked(model_of(SWITCHED, ONE, {"y": "A1"}, filters, evidence=reading), **options)
+    assert "The evidence: EDR reads 2, normal (Std dev 0.2)" in text
+    assert ("The filters ask: low below 0.9." in text) == bool(filters)
+    assert ("pass all filters" in text) == bool(filters)
+    assert ("counts with the chance" in text) == (options["evidence"] == "weights")
 
 
 def test_the_text_prints_each_number_with_its_error(run):

@@ -1,8 +1,8 @@
 """What the filters did to an assumption: its accepted draws beside those before filtering.
 
-Filters keep only the combinations that agree with the evidence, so an input that the evidence bears on is distributed
-differently afterwards, although its range has not changed. (In statistics: conditioning; the draws before filtering are
-the prior, and an assumption's draws on their own its marginal distribution.)
+Filters keep only some of the combinations, so an input that they bear on is distributed differently afterwards,
+although its range has not changed. (In statistics: conditioning; the draws before filtering are the prior, and an
+assumption's draws on their own its marginal distribution.)
 """
 
 from __future__ import annotations

@@ -13,6 +13,7 @@ from xlmc.analysis.results.statements import reach_text
 from xlmc.analysis.results.statements.in_words import discards_of, limits_text
 from xlmc.engine.engine import UNDECIDED_RESULT
 from xlmc.montecarlo.distributions.parameters import range_text, show
+from xlmc.montecarlo.model.certain_filters import breakable
 from xlmc.montecarlo.model.draw_binding import base_point
 from xlmc.montecarlo.rare.account import probability_text
 from xlmc.montecarlo.statistics import Estimate, format_estimate
@@ -20,6 +21,7 @@ from xlmc.montecarlo.statistics.estimate import finite
 
 if TYPE_CHECKING:
     from xlmc.engine.engine import Column
+    from xlmc.montecarlo.definitions.definitions import Filter
     from xlmc.montecarlo.simulation.simulation import Simulation
 
 __all__ = [
@@ -245,28 +247,49 @@ def question(simulation: Simulation) -> Iterator[Said]:
         f"{_count_text(len(model.live), 'quantity', 'quantities')} known only within ranges (assumptions). "
         f"{simulation.evaluated:,} combinations of values from these ranges were tried. "
     )
-    if not model.filters:
+    asked = _asked(simulation)
+    if not asked:
         without = "no filters" if not model.forecast_filters else "no filters of all forecasts"
-        yield Said(f"The workbook has {without}: every trial is accepted.")
+        without = f"has {without}" if not model.filters else "has no filter that a trial could break"
+        yield Said(f"The workbook {without}: every trial is accepted.")
         yield from _of_some(simulation)
         return
-    if simulation.weighting is not None:
-        yield Said(f"{simulation.accepted:,} of them ({share_text(simulation.acceptance)}) pass all limits, and each ")
-        yield Said("counts with the chance that the evidence would keep it. The evidence ")
-    elif simulation.rare is None:
-        agree = "agrees" if simulation.accepted == 1 else "agree"
-        share = share_text(simulation.acceptance)
-        yield Said(f"{simulation.accepted:,} of them ({share}) {agree} with the evidence, which ")
-    else:
-        yield Said(f"{simulation.accepted:,} that agree with the evidence were kept; one as they come agrees with ")
-        yield Said(f"probability {probability_text(simulation.rare)}. The evidence ")
-    yield Said("asks: ")
-    for index, filter_ in enumerate(model.filters):
-        yield Said("; " if index else "")
-        yield Said(filter_.name, is_name=True)
-        yield Said(f" {limits_text(filter_)}")
-    yield Said(". The answers are those of these accepted trials.")
+    filters, evidence = ([each for each in asked if (each.evidence is None) is plain] for plain in (True, False))
+    yield Said(_counted(simulation, bool(filters), bool(evidence)))
+    yield from _listed(" The filters ask: ", filters)
+    yield from _listed(" The evidence: ", evidence)
+    yield Said(" The answers are those of these accepted trials.")
     yield from _of_some(simulation)
+
+
+def _asked(simulation: Simulation) -> list[Filter]:
+    """The filters that trials can break, or have broken."""
+    may = {each.name for each in breakable(simulation.model)}
+    rejected = zip(simulation.model.filters, simulation.tally.rejected, strict=True)
+    return [each for each, trials in rejected if trials or each.name in may]
+
+
+def _counted(simulation: Simulation, filters: bool, evidence: bool) -> str:
+    """How many trials do what is asked of them, by filters, by evidence or by both."""
+    count, share, one = f"{simulation.accepted:,}", share_text(simulation.acceptance), simulation.accepted == 1
+    does = ["passes all filters" if one else "pass all filters"] * filters
+    if simulation.weighting is not None:
+        each = f"{count} of them ({share}) {does[0]}, and each" if does else "Each of them"
+        return f"{each} counts with the chance that the evidence would keep it."
+    does += ["agrees with the evidence" if one else "agree with the evidence"] * evidence
+    said = " and ".join(does)
+    if simulation.rare is not None:
+        chance = probability_text(simulation.rare)
+        return f"{count} that {said} were kept; one as they come does so with probability {chance}."
+    return f"{count} of them ({share}) {said}."
+
+
+def _listed(opening: str, filters: Sequence[Filter]) -> Iterator[Said]:
+    """What filters ask, one after the other."""
+    for index, filter_ in enumerate(filters):
+        yield Said("; " if index else opening)
+        yield Said(filter_.name, is_name=True)
+        yield Said(f" {limits_text(filter_)}" + "." * (filter_ is filters[-1]))
 
 
 def _of_some(simulation: Simulation) -> Iterator[Said]:

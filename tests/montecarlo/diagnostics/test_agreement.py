@@ -171,6 +171,47 @@ def test_inputs_that_press_against_their_ends_are_named(judged, book):
     assert not judged(EDR=("C1", 1, bell(0.5))).pressed
 
 
+UNIFORM = {"low": 0, "high": 1}
+TRIANGULAR = {"distribution": "Triangular", "low": 0, "likeliest": 0.5, "high": 1}
+NORMAL = {"distribution": "Normal", "mean": 0, "std_dev": 1}
+CUT = {**NORMAL, "upper_cutoff": 1}
+EXPONENTIAL = {"distribution": "Exponential", "rate": 1}
+
+
+@pytest.mark.parametrize(
+    ("prior", "reading", "error", "ends"),
+    [
+        (UNIFORM, 0.97, bell(0.002), []),
+        (UNIFORM, 0.03, bell(0.002), []),
+        (UNIFORM, 0.97, bell(0.01), []),
+        (UNIFORM, 0.999, bell(0.0002), []),
+        (UNIFORM, 0.97, {"error": "at least"}, ["upper"]),
+        (UNIFORM, 0.03, {"error": "at most"}, ["lower"]),
+        (UNIFORM, 0.999, bell(0.01), ["upper"]),
+        (UNIFORM, 1.02, bell(0.02), ["upper"]),
+        (TRIANGULAR, 0.98, bell(0.01), []),
+        (TRIANGULAR, 1.03, bell(0.04), ["upper"]),
+        (NORMAL, 2.5, bell(0.05), []),  # it has no limit
+        (CUT, 0.97, bell(0.002), []),
+        (CUT, 1.05, bell(0.05), ["upper"]),
+        (EXPONENTIAL, 4.0, bell(0.05), []),
+        (EXPONENTIAL, 0.001, bell(0.02), ["lower"]),
+    ],
+    ids=str,
+)
+def test_the_range_decides_only_where_draws_pile_up_at_its_limit(book, prior, reading, error, ends):
+    model = book(
+        {"A1": 0.5, "C1": "=A1+0"},
+        {"x": {"cell": "A1", **prior}},
+        {"x": "C1"},
+        evidence={"EDR": {"cell": "C1", "reading": reading, **error}},
+    )
+    for seed in (SEED, SEED + 1, SEED + 2):
+        found = agreement(model, seed, 100_000)
+        assert [each.end for each in found.pressed] == ends
+        assert bool(ends) == any("the range, not the evidence" in each for each in found.remarks)
+
+
 def test_filters_of_some_forecasts_hold_for_what_evidence_moves(book):
     model = book(CELLS, INPUTS, {"a": "C1", "sum": "D1"}, evidence={"EDR": {"cell": "D1", "reading": 0, **bell(9.0)}})
     cell = model.forecasts[0].cell

@@ -239,5 +239,5 @@ def test_the_page_does_not_take_kept_trials_for_a_share_of_the_plain_ones(run):
 
     words = str(answers(run))
     assert f"{run.rare.evaluations:,} combinations of values" in words
-    assert "2,000 that agree with the evidence were kept" in words
+    assert "2,000 that pass all filters were kept" in words
     assert f"{run.trials:,} combinations" not in words

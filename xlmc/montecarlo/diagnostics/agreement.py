@@ -122,7 +122,7 @@ class ItemAgreement:
 
 @dataclass(frozen=True, slots=True)
 class Pressed:
-    """An assumption whose draws, given all evidence, press against an end of its range.
+    """An assumption whose draws, given all evidence, pile up at a limit of its range.
 
     Attributes:
         end: `lower` or `upper`.

@@ -8,8 +8,9 @@ Letters: n trials past the filters, k items of evidence, f forecasts.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -45,6 +46,10 @@ _MOST_FORECASTS: Final = 32
 OUTER: Final = 0.05
 """The share of an assumption's draws at either end of its range that counts as its end."""
 
+_PILED: Final = 0.75
+"""The mean weight nearest to a limit by that up to the median, at least, where the weight piles up at the limit; less
+than 1, so that a weight that is even up to the limit does so for every seed."""
+
 Floats = NDArray[np.float64]
 
 
@@ -59,7 +64,7 @@ class EvidenceTrials:
         quantities: `(k, n)` what the model has in place of each reading; NaN for an error.
         forecasts: forecast -> `(n,)`; NaN where it is no number.
         at_ends: assumption -> the share of the weight of all evidence with the draw in the lowest, and in the highest,
-            twentieth of its range.
+            twentieth of its range; 0 where the range has no limit there, or the weight does not pile up at it.
     """
 
     trials: int
@@ -135,43 +140,83 @@ def _fails(column: Column) -> NDArray[np.bool_]:
     return np.asarray(fails if column.codes is None else fails | (column.codes > 0))
 
 
-class _Ends:
-    """Counts the weight of the trials whose draws lie at the ends of their ranges.
+@dataclass
+class _Outer:
+    """The trials whose draws lie in the outer twentieth of a range that has a limit there.
 
-    Weights are kept as shares of the largest so far, so that none is lost where all are small. Assumptions whose
-    parameters vary, or that take few values, have no such ends.
+    Attributes:
+        limit: the end of the range.
+        inner: where the twentieth begins.
+        distances: `(m,)` from the limit, block by block; `log_weights` beside them.
+    """
+
+    limit: float
+    inner: float
+    distances: list[Floats] = field(default_factory=list)
+    log_weights: list[Floats] = field(default_factory=list)
+
+    def add(self, draws: Floats, log_weights: Floats) -> None:
+        """Keep the trials of a block that lie there."""
+        distance = np.abs(draws - self.limit)
+        here = distance <= abs(self.inner - self.limit)
+        self.distances.append(distance[here])
+        self.log_weights.append(log_weights[here])
+
+    def share(self, largest: float, total: float) -> float:
+        """The share of the weight here, where it piles up at the limit; else 0.
+
+        It does where, of the trials between the limit and the weighted median, the nearest quarter carries about a
+        quarter of the weight, or more. A reading that is sharp beside the range leaves hardly a weight there.
+        """
+        order = np.argsort(np.concatenate(self.distances), kind="stable")
+        reached = np.cumsum(np.exp(np.concatenate(self.log_weights)[order] - largest))
+        if not order.size or not reached[-1]:
+            return 0.0
+        middle = int(np.searchsorted(reached, reached[-1] / 2.0))
+        nearest = middle // 4
+        piled = reached[nearest] / (nearest + 1) >= _PILED * reached[middle] / (middle + 1)
+        return float(reached[-1]) / total if piled else 0.0
+
+
+class _Ends:
+    """Collects the trials whose draws lie at the ends of their ranges, and the weight of all.
+
+    Assumptions whose parameters vary, or that take few values, have no such ends, and neither has a side on which a
+    distribution has no limit.
     """
 
     def __init__(self, model: Model) -> None:
-        quantiles = model.quantiles([OUTER, 1.0 - OUTER])
-        fixed = [a for a in model.live if model.draws[a.name].fixed and model.draws[a.name].ties() is None]
-        self._limits: dict[str, tuple[str, float, float]] = {}
-        for a in fixed:
-            low, high = map(float, quantiles[a.name])
+        quantiles = model.quantiles([0.0, OUTER, 1.0 - OUTER, 1.0])
+        fixed = [a.name for a in model.live if model.draws[a.name].fixed and model.draws[a.name].ties() is None]
+        self._sides: dict[str, tuple[_Outer | None, _Outer | None]] = {}
+        for name in fixed:
+            least, low, high, most = map(float, quantiles[name])
             if low < high:
-                self._limits[a.name] = a.name, low, high
-        self._low, self._high = dict.fromkeys(self._limits, 0.0), dict.fromkeys(self._limits, 0.0)
-        self._all, self._largest = 0.0, -np.inf
+                sides = ((least, low), (most, high))
+                lower, upper = (_Outer(*side) if math.isfinite(side[0]) else None for side in sides)
+                self._sides[name] = lower, upper
+        self._log_weights: list[Floats] = []
 
     def add(self, draws: Mapping[str, Floats], log_weights: Floats) -> None:
-        """Count the trials of a block: `(n,)` each."""
-        largest = float(log_weights.max())
-        if largest == -np.inf:
-            return
-        if largest > self._largest:
-            shrunk = float(np.exp(self._largest - largest))
-            self._all, self._largest = self._all * shrunk, largest
-            self._low = {name: found * shrunk for name, found in self._low.items()}
-            self._high = {name: found * shrunk for name, found in self._high.items()}
-        weights = np.exp(log_weights - self._largest)
-        self._all += float(weights.sum())
-        for name, (key, low, high) in self._limits.items():
-            self._low[name] += float(weights[draws[key] <= low].sum())
-            self._high[name] += float(weights[draws[key] >= high].sum())
+        """Take the trials of a block: `(n,)` each."""
+        self._log_weights.append(log_weights)
+        for name, sides in self._sides.items():
+            for side in sides:
+                if side is not None:
+                    side.add(draws[name], log_weights)
 
     @property
     def shares(self) -> dict[str, tuple[float, float]]:
         """Assumption -> the share at its lower end, and at its upper end; none where no trial has a weight."""
-        if not self._all:
+        weights = np.concatenate([np.empty(0), *self._log_weights])
+        largest = float(weights.max(initial=-np.inf))
+        if largest == -np.inf:
             return {}
-        return {name: (self._low[name] / self._all, self._high[name] / self._all) for name in self._limits}
+        total = float(np.exp(weights - largest).sum())
+        return {
+            name: (
+                0.0 if lower is None else lower.share(largest, total),
+                0.0 if upper is None else upper.share(largest, total),
+            )
+            for name, (lower, upper) in self._sides.items()
+        }

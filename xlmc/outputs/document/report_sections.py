@@ -280,7 +280,7 @@ def _scenarios(material: Material) -> Iterator[Block]:
 def _assumptions(material: Material) -> Iterator[Block]:
     simulation = material.simulation
     yield Paragraph(
-        "Filters keep only the combinations that agree with the evidence. So an assumption that the evidence bears on "
+        "Filters keep only the combinations in which they hold. So an assumption that they bear on "
         "is distributed differently among the accepted trials, although its range is the same. In the pictures, the "
         "draws before filtering are pale, and the line is the accepted ones."
     )

@@ -59,7 +59,7 @@ _HEADS = (
 MOVED, NARROWED = 0.5, 0.8
 
 MEANING = (
-    "Filters keep only the combinations that agree with the evidence. So an assumption that the evidence bears on is "
+    "Filters keep only the combinations in which they hold. So an assumption that they bear on is "
     "distributed differently among the accepted trials, although its range is the same. "
     f"Marked: a mean that moved by {MOVED:g} standard deviations or more; a standard deviation that shrank to "
     f"{NARROWED:g} of what it was or less."

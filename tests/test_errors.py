@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.errors import DefinitionError, XlmcError
+from xlmc.errors import DefinitionError, FormulaError, XlmcError
 
 
 @pytest.mark.parametrize(
@@ -21,3 +21,14 @@ from xlmc.errors import DefinitionError, XlmcError
 )
 def test_a_message_is_a_sentence(error, text):
     assert str(error) == text
+
+
+def test_messages_that_quote_a_file_stay_short():
+    assert len(str(XlmcError("x" * 10_000, where="S!A1", hint="Shorten it"))) < 600
+    long = "+".join(f"B{row}" for row in range(1, 3000)) + "+#faulty+C1"
+    at = long.index("#faulty")
+    lines = str(FormulaError("there is no such cell", where="S!A1", text=long, span=(at, at + 7))).splitlines()
+    assert all(len(line) < 600 for line in lines)
+    start = lines[2].index("^")
+    assert lines[1][start : start + 7] == "#faulty"
+    assert lines[2].strip() == "^" * 7

@@ -18,7 +18,12 @@ __all__ = [
     "WorkbookError",
     "XlmcError",
     "sentence",
+    "shortened",
 ]
+
+
+_LONGEST = 500
+"""Characters of a text that a message quotes."""
 
 
 class ErrorCode(IntEnum):
@@ -98,9 +103,18 @@ class XlmcError(Exception):
         self.hint = hint
 
     def __str__(self) -> str:
-        start = f"{self.where}: " if self.where else ""
-        said = sentence(f"{start}{self.message}")
+        start = f"{shortened(self.where)}: " if self.where else ""
+        said = sentence(f"{start}{shortened(self.message)}")
         return sentence(f"{said} {_begun(self.hint)}") if self.hint else said
+
+
+def shortened(text: str) -> str:
+    """Cut a text that may quote a file after 500 characters, so that a message stays one.
+
+    >>> len(shortened("x" * 10_000))
+    501
+    """
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"
 
 
 class WorkbookError(XlmcError):
@@ -143,10 +157,13 @@ class FormulaError(XlmcError):
     def __str__(self) -> str:
         if self.text is None:
             return super().__str__()
-        lines = [super().__str__(), f"    ={self.text}"]
+        start, end = self.span or (0, 0)
+        first = max(0, min(start - _LONGEST // 4, len(self.text) - _LONGEST))
+        shown = f"{'…' * (first > 0)}{shortened(self.text[first:])}"
+        lines = [super().__str__(), f"    ={shown}"]
         if self.span is not None:
-            start, end = self.span
-            lines.append(" " * (5 + start) + "^" * max(1, end - start))
+            at = start - first + (first > 0)
+            lines.append(" " * (5 + at) + "^" * max(1, min(end, first + _LONGEST) - start))
         return "\n".join(lines)
 
 

@@ -50,6 +50,19 @@ def summary(printed):
     return printed.partition("\nResults are in")[0]
 
 
+def test_a_saved_run_that_was_changed_is_told(xlmc, simulated, book, tmp_path):
+    """Its zip is whole, and the seal at its end is not that of its bytes."""
+    simulated(book, "--save-run", "run.xlmcrun")
+    whole, changed = tmp_path / "run.xlmcrun", tmp_path / "changed.xlmcrun"
+    data = bytearray(whole.read_bytes())
+    at = data.index(b"sha256=") + 7
+    data[at : at + 4] = b"0000" if data[at : at + 4] != b"0000" else b"1111"
+    changed.write_bytes(data)
+    said = "was changed since xlmc wrote it (its seal is broken)"
+    assert said in xlmc("report", changed, "--json", "changed.json").err
+    assert said not in xlmc("report", whole, "--json", "whole.json").err
+
+
 def test_nothing_is_simulated(xlmc, simulated, book, monkeypatch):
     simulated(book, "--save-run", "first.xlmcrun")
 

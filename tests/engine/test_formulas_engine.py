@@ -39,6 +39,17 @@ def test_a_function_that_formulas_lacks_is_shown_with_its_own_references(lower):
     assert caught.value.text == "(SIN(S!B7)+ENCODEURL(S!B7))"
 
 
+@pytest.mark.parametrize(
+    "formula",
+    ["ROW(D5)", "COLUMNS(A1:D5)", 'CELL("row",D5)', "FORMULATEXT(B7)", "ISFORMULA(B7)", "SHEET(D5)", "AREAS(D5)"],
+)
+def test_where_a_cell_stands_is_told_apart_from_what_it_holds(lower, formula):
+    lowering, (target,) = lower({"B7": "=A1*2", "C1": f"={formula}+A1"}, ["A1"], ["C1"])
+    with pytest.raises(FormulaError, match="cannot tell where a cell stands") as caught:
+        FormulasProgram(lowering, [target], [], frozenset())
+    assert caught.value.where == "S!C1"
+
+
 def test_array_formulas_are_refused(lower):
     anchor = CellContent(None, Formula("A1*{1;2}", 1, 3, Area("S", 1, 3, 2, 3)))
     lowering, (target,) = lower({"C1": anchor, "C2": 4.0, "D1": "=C2+1"}, ["A1"], ["D1"])

@@ -55,6 +55,7 @@ def report(
     from xlmc.cli.printing import notices, warnings
     from xlmc.cli.simulate import show_run
     from xlmc.excel.workbook.package import WORKBOOKS
+    from xlmc.excel.workbook.seal import read_seal
     from xlmc.excel.workbook.target import copy_ending
 
     if run.suffix.casefold() in WORKBOOKS:
@@ -66,6 +67,9 @@ def report(
         found = _repeated(run, quiet)
     else:
         found = open_run(run)
+        seal = read_seal(run)
+        if seal is None or not seal.whole:
+            say(f"warning: {run}: this saved run was changed since xlmc wrote it (its seal is broken).", err=True)
     if not quiet:
         notices(found.model.notices)
     target = output

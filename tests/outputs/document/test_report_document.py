@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import re
+import time
 import zipfile
 from datetime import date
 from pathlib import Path
@@ -210,6 +211,14 @@ def test_the_pdf_is_pdf_a_with_an_intent_embedded_fonts_and_tags(files):
         ]
         assert pictures
         assert all(len(str(each.Alt)) > 10 for each in pictures)
+
+
+@pytest.mark.parametrize("year", [1970, 2030, 2200])
+def test_a_word_file_asks_no_clock(run, tmp_path, monkeypatch, year):
+    """A zip holds no date before 1980 or after 2107."""
+    monkeypatch.setattr("time.localtime", lambda *_: time.struct_time((year, 1, 2, 3, 4, 5, 4, 2, 0)))
+    path = run.save_report(tmp_path / f"{year}.docx")
+    assert path.read_bytes() == run.save_report(tmp_path / "again.docx").read_bytes()
 
 
 def test_the_same_run_gives_the_same_bytes(run, tmp_path):

@@ -67,6 +67,20 @@ def test_the_case_study_is_identical_and_a_changed_cell_is_named(tmp_path):
     assert {number.name for number in found.numbers} > {"Chevrolet delta-V: mean", "Nissan delta-V: low"}
 
 
+def test_a_result_that_is_shown_with_other_decimals_is_named(results, tmp_path):
+    """As where another program's styles shift those of the result sheets: 2.975 is shown as 3."""
+    parts = read_parts(results.read_bytes())
+    styles = parts["xl/styles.xml"].decode()
+    code = re.search(r'formatCode="([^"]*0\.00)"', styles)[1]
+    shown = tmp_path / "shown.xlsx"
+    shown.write_bytes(package_bytes(parts | {"xl/styles.xml": styles.replace(f'"{code}"', '"0"').encode()}))
+    found = replay(shown)
+    assert not found.identical
+    assert found.shown.differences
+    assert {each.says for each in found.shown.differences} == {"shown with 0 decimals"}
+    assert {each.gives for each in found.shown.differences} == {"shown with 2 decimals"}
+
+
 RUNS = {
     "by default": {},
     "other settings than the book's": {"trials": 777, "seed": 10**20},

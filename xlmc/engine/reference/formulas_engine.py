@@ -92,7 +92,7 @@ class _Compiled:
             self._names[reference] = f"{column_letters(left)}1{last}"
             left += columns
         try:
-            self._call = compile_with_formulas(formula_text(tree, self._names.__getitem__))
+            self._call = compile_with_formulas(formula_text(tree, self._name))
         except FormulaError as error:
             raise self._naming_cell(error) from None
 
@@ -106,6 +106,12 @@ class _Compiled:
             return self._call({name: _argument_of(reference, value) for reference, name in self._names.items()})
         except FormulaError as error:
             raise self._naming_cell(error) from None
+
+    def _name(self, reference: Cell | Area) -> str:
+        """The address that stands for a reference; one that the formula only looks at (`ROW(D5)`) has none."""
+        if reference not in self._names:
+            raise FormulaError("the engine `formulas` cannot tell where a cell stands", hint=_OTHER_ENGINE)
+        return self._names[reference]
 
     def _naming_cell(self, error: FormulaError) -> FormulaError:
         """The error, naming the cell and showing the formula with its own references."""

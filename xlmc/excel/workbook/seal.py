@@ -23,7 +23,7 @@ from urllib.parse import quote, unquote
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.injection.book_edit import add_pointers
 from xlmc.excel.workbook.injection.content_types import add_types
-from xlmc.excel.workbook.injection.part_numbers import free_part_names
+from xlmc.excel.workbook.injection.part_numbers import claimed_names, free_part_names
 from xlmc.excel.workbook.injection.result_sheet import relative_target
 from xlmc.excel.workbook.package import CONTENT_TYPES, WORKBOOKS, read_parts, rels_part
 
@@ -77,7 +77,7 @@ def sealed_parts(parts: Mapping[str, bytes], sheet: str, book: str) -> dict[str,
         sheet: the part of a worksheet of ours, which is to point to the seal.
         book: the name of the workbook.
     """
-    part, pointers = free_part_names([_PART], parts)[_PART], rels_part(sheet)
+    part, pointers = free_part_names([_PART], claimed_names(parts))[_PART], rels_part(sheet)
     target = (_POINTER, relative_target(sheet, part))
     found = dict(parts)
     found[pointers] = add_pointers(parts.get(pointers, _NO_POINTERS), pointers, [target])[0]

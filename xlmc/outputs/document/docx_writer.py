@@ -6,7 +6,6 @@ The same document gives the same bytes: the parts are packed without a clock, an
 from __future__ import annotations
 
 import io
-import zipfile
 from datetime import UTC, datetime, time
 from typing import Any, Final
 
@@ -205,8 +204,24 @@ def _keep_whole(row: Any, *, repeated: bool) -> None:
         properties.append(OxmlElement(tag))
 
 
+class _Collected:
+    """Takes the parts of a package, in place of a zip, which would ask a clock for their date."""
+
+    def __init__(self) -> None:
+        self.parts: dict[str, bytes] = {}
+
+    def write(self, name: Any, content: bytes) -> None:
+        self.parts[name.membername] = content
+
+
 def _parts(file: Any) -> dict[str, bytes]:
-    saved = io.BytesIO()
-    file.save(saved)
-    with zipfile.ZipFile(saved) as package:
-        return {name: package.read(name) for name in package.namelist()}
+    from docx.opc.pkgwriter import PackageWriter
+
+    writer: Any = PackageWriter  # takes whatever writes a part by its name
+    package, collected = file.part.package, _Collected()
+    for part in package.parts:
+        part.before_marshal()
+    writer._write_content_types_stream(collected, package.parts)
+    writer._write_pkg_rels(collected, package.rels)
+    writer._write_parts(collected, package.parts)
+    return collected.parts

@@ -17,6 +17,8 @@ from xlmc.excel.address import Cell
 from xlmc.excel.formula import Resolver, build_graph
 from xlmc.excel.formula.precedents import mentioned
 from xlmc.excel.workbook.inject import marked_names
+from xlmc.excel.workbook.injection.content_types import roles
+from xlmc.excel.workbook.number_formats import NumberFormat, number_formats
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.workbook import CellContent, CellValue
 from xlmc.excel.workbook.writer import package_bytes
@@ -101,7 +103,9 @@ def compare_sheets(workbook: Workbook, run: Simulation, command: str | None, clo
     rows = _trial_rows(found["Trials"]) if "Trials" in found else TRIAL_ROWS
     if rows != TRIAL_ROWS:
         built = _build(run, command, rows)
-    pairs = [_Pair(built, built.sheets[name], found[name], closeness) for name in built.sheets if name in found]
+    pairs = [
+        _Pair(built, workbook, built.sheets[name], found[name], closeness) for name in built.sheets if name in found
+    ]
     return SheetComparison(
         sheets=tuple(pair.sheet.name for pair in pairs),
         differences=tuple(difference for pair in pairs for difference in pair.differences()),
@@ -128,6 +132,7 @@ class _Pair:
     """A sheet of the run and the one in the file."""
 
     built: Workbook
+    file: Workbook
     expected: Sheet
     sheet: Sheet
     closeness: Closeness
@@ -138,9 +143,24 @@ class _Pair:
         below = {(row - lower, column) for row, column in self.sheet.cells if row > last + lower}
         above = {at for at in self.sheet.cells if at[0] <= min(last, last + lower)}
         for at in sorted(self.expected.cells.keys() | above | below):
+            where = Cell(self.sheet.name, *self._in_file(at))
             if self._is_compared(at) and not self._same(at):
-                where = Cell(self.sheet.name, *self._in_file(at))
                 yield CellDifference(where, self._says(at), self._expected(at).value)
+            elif is_number(self._expected(at).value):
+                yield from self._shown_otherwise(at, where)
+
+    def _shown_otherwise(self, at: _RowColumn, where: Cell) -> Iterator[CellDifference]:
+        """The difference where a number is there, and is shown with other decimals than the run's."""
+        says, gives = self._formats[1].get(self._in_file(at)), self._formats[0].get(at)
+        if says is not None and gives is not None and says != gives:
+            yield CellDifference(where, f"shown {says}", f"shown {gives}")
+
+    @cached_property
+    def _formats(self) -> tuple[Mapping[_RowColumn, NumberFormat], Mapping[_RowColumn, NumberFormat]]:
+        """The number formats of the run's sheet, and of the one in the file."""
+        pairs = ((self.built, self.expected), (self.file, self.sheet))
+        first, second = (number_formats(book.parts, roles(book.parts).workbook, sheet.part) for book, sheet in pairs)
+        return first, second
 
     def left_out(self) -> Iterator[str]:
         """The rows in which a person has typed a range of their own."""

@@ -22,6 +22,9 @@ def warned(book):
         "=(A1+1E15)-1E15",
         "=A1*COS(RADIANS(270))*1E16",
         "=(1-COS(A1/100000000))*1E17",
+        "=(1-COS(A1*1E-9))/(A1*1E-9)^2",
+        "=LN(1+A1*1E-18)/A1*1E18",
+        "=(SQRT(1+A1*1E-18)-1)*1E18",
     ],
 )
 def test_lost_digits_are_warned_of(warned, formula):
@@ -47,6 +50,9 @@ def test_lost_digits_are_warned_of(warned, formula):
         "=20.3*A1/A1-20.3",
         "=IFERROR(SQRT(A1-1.5),0)",
         "=MOD(A1*360,360)",
+        "=MAX(A1,5)",
+        "=5+(1-COS(A1*1E-9))",
+        "=IF(A1>0,0.1+0.2-0.3,0)",
     ],
 )
 def test_sound_formulas_are_not(warned, formula):

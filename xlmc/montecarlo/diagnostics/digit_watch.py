@@ -5,13 +5,15 @@ It runs with every simulation. `xlmc stability` says more: which cell it is, why
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.engine.passes.random_rounding import RandomRounding, closure, evaluate, numbers_of, term_sizes
+from xlmc.engine.graph.nodes import Input
+from xlmc.engine.passes.random_rounding import RandomRounding, closure, evaluate, formula_of, numbers_of, term_sizes
 from xlmc.excel.functions.budget import TooLargeError
 
 if TYPE_CHECKING:
@@ -92,7 +94,8 @@ def _lost(
             if _is_blurred(one, other):
                 blurred[name] = node
     lost = {name: where for name, where in lost.items() if np.count_nonzero(where) > _SHARE * n}
-    if not lost and not blurred:
+    still = {name: node for name, node in nodes.items() if _stands_still(model, node, numbers_of(plain[node], n))}
+    if not lost and not blurred and not still:
         return []
     dust = term_sizes(model.lowering.dag, needed, plain)
     told = [
@@ -100,6 +103,12 @@ def _lost(
         f"range in {np.count_nonzero(where):,} of {n:,} accepted trials (xlmc stability says where)"
         for name, where in lost.items()
         if _is_confirmed(model, nodes[name], draws, numbers_of(plain[nodes[name]], n), where, DUST * dust[nodes[name]])
+    ]
+    told += [
+        f"the digits of {name!r} cannot be trusted: it shows {shown:.6g} in all trials, and with 50 digits it is "
+        f"{exact:.6g} in the first (xlmc stability says where)"
+        for name, node in still.items()
+        for shown, exact in _absorbed(model, node, draws, numbers_of(plain[node], n), DUST * dust[node])
     ]
     others = {name: node for name, node in blurred.items() if not any(repr(name) in sentence for sentence in told)}
     return told + [
@@ -109,6 +118,28 @@ def _lost(
         for error, width in _blur(model, node, draws, numbers_of(plain[node], n))
         if width > 0 and error > MOST_OF_SPREAD * width
     ]
+
+
+def _stands_still(model: Model, node: int, plain: Floats) -> bool:
+    """Whether a number is the same in all trials although it depends on an assumption."""
+    if not np.isfinite(plain).all() or plain.size < 2 or (plain != plain[0]).any():
+        return False
+    dag = model.lowering.dag
+    return any(isinstance(formula_of(dag, part), Input) for part in closure(dag, [node]))
+
+
+def _absorbed(
+    model: Model, node: int, draws: Mapping[str, Floats], plain: Floats, dust: float
+) -> list[tuple[float, float]]:
+    """What a number that stands still shows, and what it is; nothing where 50 digits give the same.
+
+    Random rounding does not show it: 1-COS(x) of a tiny x is 0, and 1 and 0 are exact.
+    """
+    found = list(_exact(model, node, draws, np.arange(min(_CONFIRMED, plain.size))).values())
+    shown = float(plain[0])
+    off = [abs(shown - exact) > _VISIBLE * max(abs(shown), abs(exact)) for exact in found if math.isfinite(exact)]
+    is_dust = not any(found) and abs(shown) <= dust
+    return [(shown, found[0])] if off and all(off) and not is_dust else []
 
 
 def _is_blurred(plain: Floats, moved: Floats) -> bool:

@@ -140,6 +140,108 @@ def test_arguments_beyond_their_domain(look, formula, what):
     assert "the cell is an error in" in one.effect
 
 
+SMALL = {"x": (1e-9, 2e-9)}
+
+
+@pytest.mark.parametrize(
+    ("cells", "where", "said", "instead"),
+    [
+        ({"B1": "=(1-COS(A1))/A1^2"}, "S!B1", "'f' shows 0 in a trial in which it is 0.5", "=2*SIN(A1/2)^2/A1^2"),
+        ({"C1": "=1-COS(A1)", "B1": "=C1/A1^2"}, "S!C1", "'f' shows 0 in a trial in which it is 0.5", "=2*SIN(A1/2)^2"),
+        ({"B1": "=(1-COS(A1))/A1^2+A2*0"}, "S!B1", "is 0.5", None),
+        ({"B1": "=LN(1+A1*1E-9)/A1*1E9"}, "S!B1", "in which it is 1", None),
+        ({"B1": "=(SQRT(1+A1*1E-9)-1)/A1*1E9"}, "S!B1", "in which it is 0.5", None),
+    ],
+    ids=str,
+)
+def test_what_is_absorbed_whole_goes_to_50_digits(look, cells, where, said, instead):
+    found = look(cells, trials=2000, **SMALL)
+    (one,) = [each for each in found.findings if each.level is Level.WRONG]
+    assert (str(one.cell), said in one.effect) == (where, True), one.effect
+    assert instead is None or one.instead == instead
+
+
+@pytest.mark.parametrize("formula", ["=5+(1-COS(A1))", "=MAX(A1,5)", "=IF(A1>5,1,0)", "=ROUND(A1,3)", "=A1-A1"])
+def test_what_never_varies_for_a_reason_is_sound(look, formula):
+    assert not look({"B1": formula}, trials=2000, **SMALL).findings
+
+
+@pytest.mark.parametrize(
+    ("cells", "better"),
+    [
+        ({"B1": "=AVERAGE(MOD(A1,360),MOD(A2,360))"}, "=MOD(DEGREES(ATAN2(COS(RADIANS(MOD(A1,360)))+"),
+        ({"B1": "=(MOD(A1,360)+MOD(A2,360))/2"}, "=MOD(DEGREES(ATAN2("),
+        ({"B1": "=0.5*SUM(MOD(A1,360),MOD(A2,360))"}, "=MOD(DEGREES(ATAN2("),
+        ({"C1": "=MOD(A1,360)", "C2": "=MOD(A2,360)", "B1": "=AVERAGE(C1:C2)"}, "=MOD(DEGREES(ATAN2(SUMPRODUCT(COS("),
+        ({"B1": "=MEDIAN(MOD(A1,2*PI()),MOD(A2,2*PI()))"}, "=MOD(ATAN2(COS(MOD(A1,2*PI()))+"),
+        ({"B1": "=AVERAGE(DEGREES(ATAN2(-10,A1)),DEGREES(ATAN2(-10,A2)))"}, "=MOD(DEGREES(ATAN2("),
+    ],
+    ids=str,
+)
+def test_directions_are_not_averaged_as_numbers(look, cells, better):
+    found = look(cells, trials=2000, x=(-2, 2), y=(-2, 2))
+    one = only(found, "direction")
+    assert one.level is Level.WRONG
+    assert one.instead.startswith(better)
+    assert "of the accepted trials they lie on both sides of the jump" in one.effect
+    mended = look(cells | {"B1": one.instead}, trials=2000, x=(-2, 2), y=(-2, 2))
+    assert "direction" not in kinds(mended)
+    values = mended.run["f"].values
+    turn = 360.0 if "360" in str(cells) or "DEGREES" in str(cells) else 6.283185307179586
+    middle = turn / 2 if "ATAN2" in str(cells) else 0.0
+    off = (values - middle + turn / 2) % turn - turn / 2
+    assert abs(off).max() < 15.0
+
+
+@pytest.mark.parametrize(
+    "formula",
+    [
+        "=AVERAGE(MOD(A1,360),MOD(A2,360))",
+        "=AVERAGE(A1,MOD(A2,360))",
+        "=(MOD(A1,360)+MOD(A2,360))/3",
+        "=AVERAGE(A1,A2)",
+    ],
+)
+def test_directions_on_one_side_of_the_jump_may_be_averaged(look, formula):
+    assert "direction" not in kinds(look({"B1": formula}, trials=2000, x=(170, 190), y=(175, 185)))
+
+
+@pytest.mark.parametrize(
+    ("formula", "what", "ranges"),
+    [
+        ("=POWER(A1,0.5)", "POWER with a broken exponent takes 0 or more, and A1 goes to -", {"x": (-1, 2)}),
+        ("=A1^A2", "a power with a broken exponent takes 0 or more, and A1 goes to -", {"x": (-1, 2)}),
+        ("=(A1-1)^1.5", "and A1-1 goes to -", {"x": (0, 2)}),
+        ("=EXP(A1)", "EXP takes 709.8 or less, and A1 goes to 7", {"x": (700, 720)}),
+        ("=LN(COSH(A1))", "COSH takes -710.5 to 710.5, and A1 goes to 7", {"x": (700, 720)}),
+    ],
+)
+def test_powers_and_overflows_have_edges(look, formula, what, ranges):
+    found = look({"B1": formula}, trials=2000, **ranges).findings
+    assert [one.level for one in found if one.kind == "edge" and what in one.what] == [Level.DOUBTFUL]
+
+
+@pytest.mark.parametrize("formula", ["=A1^2", "=A1^-1", "=POWER(A1,3)", "=(A1^2)^0.5", "=EXP(A1)", "=ABS(A1)^0.5"])
+def test_powers_and_overflows_without_edges(look, formula):
+    found = look({"B1": formula}, trials=2000, x=(-2, 2)).findings
+    assert not [one for one in found if one.kind == "edge" and one.level is Level.DOUBTFUL]
+
+
+@pytest.mark.parametrize("ends", [(0.1, 0.9), (1, 2), (1100, 2000), (1.1e6, 2e6), (0.99, 1.01)])
+@pytest.mark.parametrize("formula", ["=VAR.P(A1,A1+1,A1+2)", "=STDEV.S(A1,A1+1,A1+2)", "=VAR.S(A1,A1+3,A1+7)"])
+def test_a_variance_that_is_right_to_its_last_digits_is_not_doubted(look, formula, ends):
+    assert look({"B1": formula}, trials=2000, x=ends).findings == ()
+
+
+def test_an_unstable_recurrence_is_one_finding(look):
+    steps = {f"C{n}": f"=1-{n - 1}*C{n - 1}" for n in range(2, 21)}
+    found = look({"C1": "=1-EXP(-1)+A1*1E-3", **steps, "B1": "=C20"}, trials=2000, x=(0, 1e-25))
+    one = only(found, "cancellation")
+    assert one.level is Level.WRONG
+    assert "cells repeat this step, from S!C" in one.what
+    assert " to S!C" in one.what
+
+
 def test_an_argument_close_to_the_edge_of_its_domain(look):
     one = only(look({"B1": "=SQRT(A1-1)"}), "edge")
     assert one.level is Level.NOTE

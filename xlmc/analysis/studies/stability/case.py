@@ -142,7 +142,8 @@ class Case:
             found = evaluate(self.dag, self.nodes, self.draws, **how(replica))
             for node in {*self.node.values()}:
                 off = numbers_of(found[node], self.n) - self.number(node)
-                squares[node] = squares.get(node, 0.0) + np.where(np.isnan(off), 0.0, off) ** 2
+                with np.errstate(over="ignore"):
+                    squares[node] = squares.get(node, 0.0) + np.where(np.isnan(off), 0.0, off) ** 2
         return {node: np.sqrt(square / _REPLICAS) for node, square in squares.items()}
 
     def number(self, node: int) -> Floats:
@@ -198,7 +199,8 @@ class Case:
         """The error that rounding the assumptions, and the result, would bring alone, `(n,)`; NaN where unknown."""
         if cell not in self._inherent:
             gradient = self.derivatives.cells[cell].gradient
-            moved: Floats = np.nansum(np.abs(gradient * self.derivatives.points), axis=1)
+            with np.errstate(over="ignore"):
+                moved: Floats = np.nansum(np.abs(gradient * self.derivatives.points), axis=1)
             node = self.node[cell]
             self._inherent[cell] = np.fmax(DOUBLE * (moved + np.abs(self.number(node))), self.of_inputs[node])
         return self._inherent[cell]

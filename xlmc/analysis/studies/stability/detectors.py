@@ -1,4 +1,4 @@
-"""The short searches: heavy tails, narrow filters, edges of domains, jumps, rounded angles, forecasts that amplify."""
+"""The short searches: heavy tails, narrow filters, jumps, rounded angles, forecasts that amplify."""
 
 from __future__ import annotations
 
@@ -9,19 +9,17 @@ import numpy as np
 
 from xlmc.analysis.studies.stability.case import Case, Floats
 from xlmc.analysis.studies.stability.digit_findings import Finding, Level, Where
-from xlmc.analysis.studies.stability.formula_trees import terms
 from xlmc.analysis.studies.stability.quadrant import arctangents, guards
 from xlmc.analysis.studies.stability.rewriting import angles_in_degrees, without_quotient
 from xlmc.engine.graph.nodes import Constant, uses
 from xlmc.engine.passes.random_rounding import formula_of, numbers_of
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir
-from xlmc.excel.functions.facts import Domain
 from xlmc.excel.functions.families import function_named
 from xlmc.excel.functions.lookup.search_and_pick import POSITION
 from xlmc.montecarlo.statistics.heavy_tails import heavy_tail
 
-__all__ = ["amplifying_forecasts", "domain_edges", "heavy_tails", "jumps", "narrow_filters", "rounded_angles"]
+__all__ = ["amplifying_forecasts", "heavy_tails", "jumps", "narrow_filters", "rounded_angles"]
 
 _LIMIT: Final = 1e3
 """Relative change of the forecast per relative change of the assumptions, all together, in the median trial."""
@@ -31,9 +29,6 @@ _FEW: Final = 1e-3
 
 _LEFT: Final = 0.1
 """A share of the larger angle: a difference above it loses less than a digit."""
-
-_CLOSE: Final = 1e-3
-"""A share of the spread of the argument: an argument that comes nearer to the edge is reported."""
 
 _NEAREST: Final = 20
 """Trials nearest to where the condition changes."""
@@ -104,8 +99,8 @@ def amplifying_forecasts(case: Case) -> Iterator[Finding]:
     """The forecasts that amplify a thousand times and more in half of the trials."""
     for forecast in case.model.forecasts:
         one = case.derivatives.forecasts[forecast.name]
-        moved = np.abs(one.gradient * case.derivatives.points)
         with np.errstate(all="ignore"):
+            moved = np.abs(one.gradient * case.derivatives.points)
             amplified = np.nansum(moved, axis=1) / np.maximum(np.abs(one.value), 0.01 * case.scale(forecast.cell))
         known = amplified[np.isfinite(amplified)]
         if not known.size or np.median(known) < _LIMIT:
@@ -180,79 +175,6 @@ def _left(case: Case, cell: Cell, part: ir.Expression) -> float:
     difference, first, second = (np.abs(case.number(node)) for node in nodes if node is not None)
     with np.errstate(all="ignore"):
         return float(np.nanmin(difference / np.fmax(first, second)))
-
-
-def domain_edges(case: Case) -> Iterator[Finding]:
-    """The functions whose argument leaves their domain in some trials, or comes close to its edge."""
-    for cell in case.cells:
-        for part in case.trees.parts(cell):
-            row = function_named(part.name) if isinstance(part, ir.Call) else None
-            domain = None if row is None else row.facts.domain
-            if isinstance(part, ir.Call) and domain is not None and not _is_of_squares(part):
-                finding = _edge_finding(case, cell, part, domain)
-                if finding is not None:
-                    yield finding
-
-
-def _is_of_squares(part: ir.Call) -> bool:
-    """Whether it is the root of a sum of squares, which cannot leave the domain."""
-    squares = [
-        sign > 0 and isinstance(term, ir.Binary) and (term.operator == "^" and term.right == ir.Number(2.0))
-        for sign, term in (found for argument in part.arguments[:1] for found in terms(argument))
-    ]
-    return all(squares)
-
-
-def _edge_finding(case: Case, cell: Cell, part: ir.Call, domain: Domain) -> Finding | None:
-    low, high = domain.low, domain.high
-    node = case.trees.node_of(part.arguments[0], cell)
-    if node is None or node not in case.values:
-        return None
-    x = case.number(node)[case.special :]
-    x = x[np.isfinite(x)]
-    if not x.size or x.min() == x.max():
-        return None
-    every = case.number(node)
-    outside = (every < low) | (every > high)
-    argument, function = case.trees.text(part.arguments[0], cell), part.name
-    takes = f"{low:g} or more" if high == np.inf else f"{low:g} to {high:g}"
-    above = takes if domain.with_ends else f"above {low:g}"
-    share = float(outside[case.special :].mean())
-    if share:
-        what = f"{function} takes {above}, and {argument} goes to {_extreme(x, low, high):.4g}"
-        return Finding(
-            Level.DOUBTFUL,
-            "edge",
-            cell,
-            case.trees.title(cell),
-            case.trees.written_formula(cell),
-            what,
-            f"the cell is an error in {share:.2%} of the trials",
-            case.where(outside, node),
-            None,
-            share,
-        )
-    room = np.minimum(x - low, high - x)
-    spread = float(x.max() - x.min())
-    if room.min() > _CLOSE * spread:
-        return None
-    near = np.asarray(np.minimum(every - low, high - every) <= 10 * _CLOSE * spread)
-    return Finding(
-        Level.NOTE,
-        "edge",
-        cell,
-        case.trees.title(cell),
-        case.trees.written_formula(cell),
-        f"{function} takes {above}, and {argument} comes as near as {room.min():.2g} to that edge",
-        "close to it the function is steep, and a trial beyond it is an error",
-        case.where(near, node),
-        None,
-        float(room.min() / spread),
-    )
-
-
-def _extreme(x: Floats, low: float, high: float) -> float:
-    return float(x.min() if low - x.min() > x.max() - high else x.max())
 
 
 def jumps(case: Case) -> Iterator[Finding]:

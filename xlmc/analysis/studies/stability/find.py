@@ -5,17 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
+from xlmc.analysis.studies.stability.averaged_directions import averaged_directions
 from xlmc.analysis.studies.stability.case import Case
 from xlmc.analysis.studies.stability.detectors import (
     amplifying_forecasts,
-    domain_edges,
     heavy_tails,
     jumps,
     narrow_filters,
     rounded_angles,
 )
 from xlmc.analysis.studies.stability.digit_findings import Finding, Level, Stability
+from xlmc.analysis.studies.stability.edges import domain_edges
 from xlmc.analysis.studies.stability.quadrant import lost_quadrants
+from xlmc.analysis.studies.stability.repeated_steps import as_one
 from xlmc.analysis.studies.stability.rounding_errors import cell_digits, lost_digits
 from xlmc.engine.graph.nodes import Apply
 from xlmc.engine.passes.derivatives.sweep import owners
@@ -32,6 +34,7 @@ Told = Callable[[str], None]
 
 _DETECTORS: Final[Mapping[str, Callable[[Case], Iterable[Finding]]]] = {
     "lost quadrants": lost_quadrants,
+    "averaged directions": averaged_directions,
     "lost digits": lost_digits,
     "heavy tails": heavy_tails,
     "narrow filters": narrow_filters,
@@ -73,7 +76,9 @@ def stability(
         found += detector(case)
     tell("what every cell amplifies")
     cells = tuple(cell_digits(case))
-    ranked = sorted(_first_causes(case, found), key=lambda finding: (finding.level, -finding.size))
+    ranked = sorted(
+        as_one(case, _first_causes(case, found), _OF_DIGITS), key=lambda finding: (finding.level, -finding.size)
+    )
     return Stability(run, tuple(ranked), cells, _unchecked_functions(case), case.n, case.recomputed)
 
 

@@ -103,6 +103,7 @@ def _size(case: Case, cell: Cell) -> Floats:
 def lost_digits(case: Case) -> Iterator[Finding]:
     """The cells that lose digits themselves."""
     losses = _losses(case)
+    named: set[Cell] = set()
     for cell, loss in losses.items():
         before = [losses[part] for part in case.lowering.graph.needs.get(cell, ()) if part in losses]
         excess, error = (max((getattr(b, name) for b in before), default=0.0) for name in ("most", "worst"))
@@ -111,7 +112,65 @@ def lost_digits(case: Case) -> Iterator[Finding]:
         if by_form or by_size:
             finding = _finding(case, loss, by_form)
             if finding is not None:
+                named.add(cell)
                 yield finding
+    for answer in _answers(case):
+        if not named & case.upstream(answer) and (source := _absorbed(case, answer)) is not None:
+            named.add(source)
+            yield _of_absorbed(case, source, answer)
+
+
+def _answers(case: Case) -> list[Cell]:
+    """The cells of forecasts and filters that vary with an assumption."""
+    rows = [*(each.cell for each in case.model.forecasts), *(each.cell for each in case.model.filters)]
+    return [
+        cell for cell in dict.fromkeys(rows) if cell in case.lowering.graph.formulas and case.inputs_of(case.node[cell])
+    ]
+
+
+def _absorbed(case: Case, answer: Cell) -> Cell | None:
+    """The first cell on the way to an answer that is visibly off in most trials; None where the answer is not.
+
+    What is absorbed whole shows no error by random rounding: 1-COS(x) of a tiny x is 0, and 1 and 0 are exact.
+    """
+    if _off(case, answer)[0] < _VISIBLE:
+        return None
+    upstream = case.upstream(answer)
+    return next(cell for cell in case.cells if cell in upstream and _off(case, cell)[0] >= _VISIBLE)
+
+
+def _off(case: Case, cell: Cell) -> tuple[float, float, float]:
+    """How far off a cell is by 50 digits, as a share of its value, in the median of some trials; in such a trial, what
+    it shows, and what it is. A 0 that rounding has moved is not off.
+    """
+    node = case.node[cell]
+    found = []
+    for trial in _some_trials(case, _WORST):
+        shown, exact = float(case.number(node)[trial]), case.exact_number(node, trial)
+        size = max(abs(shown), abs(exact))
+        is_zero = exact == 0.0 and abs(shown) <= DUST * case.term_sizes[node]
+        if np.isfinite(size):
+            found.append((0.0 if is_zero or not size else abs(shown - exact) / size, shown, exact))
+    return sorted(found)[len(found) // 2] if found else (0.0, 0.0, 0.0)
+
+
+def _of_absorbed(case: Case, cell: Cell, answer: Cell) -> Finding:
+    """The finding on a cell that absorbs what an answer needs."""
+    share, shown, exact = _off(case, answer)
+    what, instead, ranges = _explain(case, cell, _some_trials(case, _WORST))
+    title = case.trees.title(answer) or str(answer)
+    return Finding(
+        Level.WRONG if share >= _UNUSABLE else Level.DOUBTFUL,
+        "rounding" if what is None else what[0],
+        cell,
+        case.trees.title(cell),
+        case.trees.written_formula(cell),
+        f"{case.trees.title(cell) or cell} loses digits" if what is None else what[1],
+        f"rounding takes all digits of a part: {title!r} shows {shown:.6g} in a trial in which it is {exact:.6g}",
+        ranges,
+        instead,
+        share,
+    )
 
 
 def _finding(case: Case, loss: _Loss, by_form: bool) -> Finding | None:
@@ -135,7 +194,7 @@ def _finding(case: Case, loss: _Loss, by_form: bool) -> Finding | None:
                 of = "value" if size[trial] > case.scale(cell) else "central range"
     inherent = float(np.nanmax(case.inherent(cell)[worst]))
     times = off / inherent if inherent > 0 else float("inf")
-    if not missing and share < _VISIBLE and times < _EXCESS / 3:
+    if not missing and share < _VISIBLE and (times < _EXCESS / 3 or share < _NOTICED / 3):
         return None
     bad = np.asarray(loss.error >= _UNUSABLE)
     random = bool(bad[case.special :].any())
@@ -278,11 +337,11 @@ def cell_digits(case: Case) -> Iterator[CellDigits]:
         if not np.isfinite(values).any():
             continue
         one = case.derivatives.cells[cell]
-        moved = np.abs(one.gradient * case.derivatives.points)
         with np.errstate(all="ignore"):
+            moved = np.abs(one.gradient * case.derivatives.points)
             amplified = np.nansum(moved, axis=1) / np.maximum(np.abs(values), case.scale(cell) * _LEAST)
+            total = np.nansum(moved, axis=0)
         amplified = amplified[np.isfinite(amplified)]
-        total = np.nansum(moved, axis=0)
         through = case.derivatives.names[int(total.argmax())] if total.size and total.any() else ""
         is_zero = _is_zero(case, cell, losses[cell])
         yield CellDigits(
@@ -328,8 +387,7 @@ class _Spread:
 
 def _spread(case: Case, cell: Cell) -> _Spread:
     """Compute the spread of a cell in accepted trials, or in drawn ones where none is accepted."""
-    first = case.first_accepted if case.n - case.first_accepted >= _TRIALS else case.special
-    trials = sorted({int(trial) for trial in np.linspace(first, case.n - 1, _TRIALS)} if case.n > first else set())
+    trials = _some_trials(case, _TRIALS)
     node = case.node[cell]
     shown = case.number(node)[trials]
     exact = np.array([case.exact_number(node, trial) for trial in trials])
@@ -338,3 +396,9 @@ def _spread(case: Case, cell: Cell) -> _Spread:
         return _Spread(0.0, 0.0)
     low, high = np.quantile(exact[known], [0.245, 0.755])
     return _Spread(float(np.median(np.abs(shown - exact)[known])), float(high - low))
+
+
+def _some_trials(case: Case, count: int) -> list[int]:
+    """Some accepted trials, or drawn ones where too few are accepted, evenly spaced."""
+    first = case.first_accepted if case.n - case.first_accepted >= count else case.special
+    return sorted({int(trial) for trial in np.linspace(first, case.n - 1, count)}) if case.n > first else []

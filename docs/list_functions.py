@@ -77,8 +77,11 @@ in each trial, with the engines `numpy` and `jit` alike:
   as a number and as a draw: `=1/(1E-160*1E-150)` is `#DIV/0!` (Microsoft, article 78113). With the engine `numpy` one
   result is an exception: within a formula, the difference of two numbers that are below 1E-291 themselves.
 
-All bits are kept by `MATCH`, `XLOOKUP` and the other lookups, criteria such as those of `COUNTIF`, `SWITCH` and
-`CHOOSE`, `SUM` (which Excel makes 0 in some cases and not in others, by no rule that is known), and the limits in the
+Criteria, such as those of `COUNTIF`, `SUMIFS` and `DSUM`, compare numbers so, too: a text that a formula joins
+(`">"&A1`) holds no more of a number, and books that Excel saved show that the cells are compared so as well. Of a
+criterion that is a plain number, only equality is compared.
+
+All bits are kept by `MATCH`, `XLOOKUP` and the other lookups, `SWITCH` and `CHOOSE`, `SUM` (which Excel makes 0 in some cases and not in others, by no rule that is known), and the limits in the
 tables of xlmc. Bounds, derivatives, `xlmc stability` and its recomputation with 50 digits change neither the last sum
 nor small numbers. LibreOffice differs: it makes every sum 0 that cancels to some 16 units, also in brackets.
 

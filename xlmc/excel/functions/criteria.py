@@ -7,6 +7,8 @@ The criterion of a trial is compared with the cells of the same trial. Letters: 
   criterion is the number 0.
 * `<>` matches every cell that `=` does not, even an empty one or an error. Only `<>5` matches the text `5` as well.
 * `<`, `<=`, `>` and `>=` match only cells of the operand's kind.
+* Numbers are compared at 15 digits, those of the cells and the operand's: a text that a formula joins, `">"&A1`, holds
+  no more of a number, and the cell that it came from is not above itself.
 * `""` matches empty cells and empty texts, `"="` empty cells, `"<>"` all other cells.
 
 A text with wildcards is a pattern for a whole text: `*` stands for any characters, `?` for one, and the character
@@ -26,6 +28,7 @@ import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.excel.functions.arguments import fill_blanks
+from xlmc.excel.functions.fifteen_digits import COMPARISONS
 from xlmc.excel.functions.logical import choose
 from xlmc.excel.functions.number_text import parse_number
 from xlmc.excel.functions.ordering import Ordered, to_ordered
@@ -39,12 +42,7 @@ _Read = Callable[[str], float | None]
 _OPERATOR: Final = re.compile(r"(<=|>=|<>|<|>|=|)(.*)", re.DOTALL)
 _BEGINS: Final = "begins"
 _LOGICALS: Final = {"true": True, "false": False}
-_RELATIONS: Final[dict[str, Callable[[Any, Any], Any]]] = {
-    "<": np.less,
-    "<=": np.less_equal,
-    ">": np.greater,
-    ">=": np.greater_equal,
-}
+_RELATIONS: Final = frozenset({"<", "<=", ">", ">="})
 
 
 def which_meet(criterion: Value, cells: Value, *, begins: bool = False, date1904: bool = False) -> Bools:
@@ -110,17 +108,18 @@ def _read_operand(text: str, read: _Read) -> object:
 def _match(operator: str, wanted: Ordered, found: Ordered, read: _Read) -> Bools:
     if operator in _RELATIONS:
         comparable = (found.kinds == wanted.kinds) & (found.kinds != BLANK) & (found.kinds < ERROR)
-        return np.asarray(comparable & _RELATIONS[operator](found.order, wanted.order))
+        return np.asarray(comparable & COMPARISONS[operator](found.order, wanted.order))
     equal = _match_equal(wanted, found, operator == _BEGINS, read if operator != "<>" else None)
     return ~equal if operator == "<>" else equal
 
 
 def _match_equal(wanted: Ordered, found: Ordered, begins: bool, read: _Read | None) -> Bools:
     """Return which cells equal the operand; with `read`, the texts that read as a number equal it too."""
-    result = (found.kinds == wanted.kinds) & (found.order == wanted.order)
+    equal = COMPARISONS["="]
+    result = (found.kinds == wanted.kinds) & equal(found.order, wanted.order)
     is_number, is_text = wanted.kinds == NUMBER, wanted.kinds == TEXT
     if read is not None and is_number.any() and (found.kinds == TEXT).any():
-        result = result | (is_number & (_numbers_of_texts(found, read) == wanted.order))
+        result = result | (is_number & equal(_numbers_of_texts(found, read), wanted.order))
     for index in np.unique(wanted.order[is_text]).astype(np.intp):
         text = wanted.texts[index]
         if not text or begins or is_pattern(text):

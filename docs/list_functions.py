@@ -82,8 +82,9 @@ Criteria, such as those of `COUNTIF`, `SUMIFS` and `DSUM`, compare numbers so, t
 criterion that is a plain number, only equality is compared.
 
 All bits are kept by `MATCH`, `XLOOKUP` and the other lookups, `SWITCH` and `CHOOSE`, `SUM` (which Excel makes 0 in some
-cases and not in others, by no rule that is known), and the limits in the tables of xlmc. Bounds, derivatives, `xlmc stability` and its recomputation with 50 digits change neither the last sum
-nor small numbers. LibreOffice differs: it makes every sum 0 that cancels to some 16 units, also in brackets.
+cases and not in others, by no rule that is known), and the limits in the tables of xlmc. Bounds, derivatives, `xlmc
+stability` and its recomputation with 50 digits change neither the last sum nor small numbers. LibreOffice differs: it
+makes every sum 0 that cancels to some 16 units, also in brackets.
 
 Sources. Comparisons: Apache POI, `NumberComparer` and the doubles at which Excel's answer changes in its
 `NumberComparisonExamples` (all 33 steps are met to the last bit); S. Byrne, Stack Overflow 40293983. The last sum:

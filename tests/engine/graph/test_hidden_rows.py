@@ -1,7 +1,8 @@
 """SUBTOTAL and AGGREGATE of rows that a filter hides, and of rows hidden by hand.
 
 Microsoft's page of SUBTOTAL: 1 to 11 include rows hidden by hand, 101 to 111 leave them out; all leave out rows that
-a filter leaves out. The file marks both alike, so that a hidden row within an active filter counts as filtered.
+a filter leaves out. The file marks both alike: while any filter of the sheet has a condition, Excel takes every hidden
+row of that sheet for filtered, also outside the range of the filter.
 """
 
 from __future__ import annotations
@@ -19,18 +20,18 @@ FORMULAS = {
     "SUBTOTAL(109,A2:A5)": (11.0, 11.0, 11.0, 11.0),
     "SUBTOTAL(1,A2:A5)": (3.75, 11 / 3, 11 / 3, 11 / 3),
     "SUBTOTAL(3,A2:A5)": (4.0, 3.0, 3.0, 3.0),
-    "SUBTOTAL(9,A2:A8)": (255.0, 251.0, 251.0, 251.0),
+    "SUBTOTAL(9,A2:A8)": (255.0, 183.0, 183.0, 183.0),
     "SUBTOTAL(109,A2:A8)": (183.0, 183.0, 183.0, 183.0),
     "AGGREGATE(9,5,A2:A5)": (11.0, 11.0, 11.0, 11.0),
     "AGGREGATE(9,4,A2:A5)": (15.0, 15.0, 15.0, 15.0),
-    "SUBTOTAL(9,A2:A3,A4:A8)": (255.0, 251.0, 251.0, 251.0),
+    "SUBTOTAL(9,A2:A3,A4:A8)": (255.0, 183.0, 183.0, 183.0),
     "SUBTOTAL(109,A2:A3,A4:A8)": (183.0, 183.0, 183.0, 183.0),
     "AGGREGATE(9,5,A2:A3,A4:A5)": (11.0, 11.0, 11.0, 11.0),
     "AGGREGATE(9,4,A2:A3,A4:A5)": (15.0, 15.0, 15.0, 15.0),
     "AGGREGATE(14,5,A2:A8,A4)": (2.0, 2.0, 2.0, 2.0),
     "SUM(A2:A5)": (15.0, 15.0, 15.0, 15.0),
 }
-"""With rows 4 and 8 hidden: by hand; row 4 by a filter of the sheet, of a table; by hand within an active filter."""
+"""With rows 4 and 8 hidden: by hand; by a filter over rows 2 to 5, beside which all hidden rows count as filtered."""
 
 
 def _written(path, filtered):

@@ -212,11 +212,12 @@ class Workbook:
         return None if found is None else self.sheets[found]
 
     def filtered_rows(self, sheet: Sheet) -> frozenset[int]:
-        """The hidden rows within a filter of the sheet or of a table: Excel takes all of these for filtered."""
-        tables = (table.filtered for table in self.tables)
-        areas = [*sheet.filtered, *(area for area in tables if area is not None and area.sheet == sheet.name)]
-        below = [range(area.top + 1, area.bottom + 1) for area in areas]
-        return frozenset(row for row in sheet.hidden_rows if any(row in rows for rows in below))
+        """The hidden rows of a sheet where a filter of it, or of a table on it, leaves rows out; else none.
+
+        Excel takes all of them for filtered then, also those outside the filter's range.
+        """
+        of_tables = any(table.filtered is not None and table.filtered.sheet == sheet.name for table in self.tables)
+        return sheet.hidden_rows if sheet.filtered or of_tables else frozenset()
 
     def table_named(self, name: str) -> Table | None:
         """The table of that name, whatever its case."""

@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from xlmc.montecarlo.distributions.spelling import plain
 
-__all__ = ["WITHOUT_ORDER", "Kind", "Named", "Role", "named"]
+__all__ = ["NOT_ROUNDED", "Kind", "Named", "Role", "named"]
 
 
 class Role(StrEnum):
@@ -36,8 +36,8 @@ class Kind(StrEnum):
     CURRENCY = "currency"
 
 
-WITHOUT_ORDER = (Kind.YES_NO, Kind.CATEGORY)
-"""Kinds whose numbers stand for words, so that they have no bounds and are not rounded."""
+NOT_ROUNDED = (Kind.YES_NO, Kind.CATEGORY)
+"""Kinds whose numbers stand for words, so that they are not rounded."""
 
 _ALSO = {
     "integer": Kind.WHOLE,

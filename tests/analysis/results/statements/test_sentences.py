@@ -130,6 +130,23 @@ def test_a_yes_or_no_is_a_probability(ones, text, kind):
     assert sentences(values, kind=kind) == [text]
 
 
+@pytest.mark.parametrize(
+    ("role", "ones", "text"),
+    [
+        (Role.LOWER, 842, "yes with a probability of at least 84.2 % ± 1.2 %, more probable than not"),
+        (Role.LOWER, 100, "yes with a probability of at least 10.0 % ± 0.9 %"),
+        (Role.LOWER, 0, "the bound does not tell"),
+        (Role.UPPER, 842, "yes with a probability of at most 84.2 % ± 1.2 %"),
+        (Role.UPPER, 100, "yes with a probability of at most 10.0 % ± 0.9 %, so no is more probable than yes"),
+        (Role.UPPER, 1000, "the bound does not tell"),
+        (Role.UPPER, 0, "yes in 0 of 1,000 trials; at most 0.39 % with 95 % confidence"),
+    ],
+)
+@pytest.mark.parametrize("kind", [None, Kind.YES_NO])
+def test_a_bound_of_a_yes_or_no_says_one_side_alone(role, ones, text, kind):
+    assert sentences([0.0] * (1000 - ones) + [1.0] * ones, kind=kind, role=role) == [f"speed: {text}"]
+
+
 def test_other_numbers_are_a_yes_and_numbers_stay_numbers_where_the_row_says_so():
     (text,) = sentences([0.0, 2.0, 3.0, 4.0] * 100, kind=Kind.YES_NO)
     assert text.startswith("speed: yes with probability 75 % ± 2 %, more probable than not; numbers other than 0 and 1")

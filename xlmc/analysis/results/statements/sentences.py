@@ -105,22 +105,31 @@ def _is_yes_no(result: ForecastResult) -> bool:
     """Whether a forecast is a yes/no answer: its row says so or, where the row says nothing, it is 0 or 1 in all
     trials.
     """
-    definition = result.definition
-    return definition.kind is Kind.YES_NO or (
-        definition.kind is None and not definition.role.is_bound and result.sample.yes_no
-    )
+    kind = result.definition.kind
+    return kind is Kind.YES_NO or (kind is None and result.sample.yes_no)
 
 
 def _yes_text(result: ForecastResult) -> str:
-    """`yes with probability 84.2 % ± 0.4 %, more probable than not`; any number but 0 is a yes, as in Excel."""
-    no = probability_between(result.sample, 0.0, 0.0)
+    """`yes with probability 84.2 % ± 0.4 %, more probable than not`; any number but 0 is a yes, as in Excel.
+
+    That a lower bound is a yes makes the answer one; where it is a no, the answer may be either.
+    """
+    role, no = result.definition.role, probability_between(result.sample, 0.0, 0.0)
     yes = _complement(no)
     says = "" if result.sample.yes_no else "; numbers other than 0 and 1 count as yes"
+    if (role, yes.value) in ((Role.LOWER, 0.0), (Role.UPPER, 1.0)):
+        return f"the bound does not tell{says}"
     if yes.value in (0.0, 1.0):
         return f"yes in {percent_text(yes)}{says}"
-    likelier = ", more probable than not" if surely_above(yes, EVEN) else ""
-    likelier = ", so no is more probable than yes" if surely_above(no, EVEN) else likelier
-    return f"yes with probability {percent_text(yes)}{likelier}{says}"
+    likelier = ""
+    if role is not Role.UPPER and surely_above(yes, EVEN):
+        likelier = ", more probable than not"
+    elif role is not Role.LOWER and surely_above(no, EVEN):
+        likelier = ", so no is more probable than yes"
+    return f"yes with {_OF_ROLE.get(role, 'probability')} {percent_text(yes)}{likelier}{says}"
+
+
+_OF_ROLE: Final = {Role.LOWER: "a probability of at least", Role.UPPER: "a probability of at most"}
 
 
 def _complement(share: Estimate) -> Estimate:

@@ -12,7 +12,7 @@ from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.computed import Computed
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.problems import Findings
-from xlmc.montecarlo.definitions.stating import WITHOUT_ORDER, Kind, Named, Role, named
+from xlmc.montecarlo.definitions.stating import NOT_ROUNDED, Kind, Named, Role, named
 from xlmc.montecarlo.definitions.tables.identity import Claims, identify
 from xlmc.montecarlo.definitions.tables.reserved_tables import DefinitionTable
 from xlmc.montecarlo.definitions.tables.table_rows import Row, central_share, number, number_in, optional_text, rows_of
@@ -62,7 +62,7 @@ def _forecast(row: Row, computed: Computed, central: float, claims: Claims, find
     kind = findings.attempt(_named, row, "Kind", Kind)
     role = findings.attempt(_named, row, "Role", Role) or Role.ANSWER
     report_to = findings.attempt(_resolution, row, units)
-    findings.attempt(_refuse_without_order, row, kind, role)
+    findings.attempt(_refuse_misfits, row, kind, role)
     if len(findings.problems) > before or not identity:
         return None
     name, cell = identity
@@ -129,16 +129,16 @@ def _same_units(first: str, second: str) -> bool:
     return first == second or (first in _DEGREES and second in _DEGREES)
 
 
-def _refuse_without_order(row: Row, kind: Kind | None, role: Role | None) -> None:
-    """Refuse a bound or a resolution of what has no order.
+def _refuse_misfits(row: Row, kind: Kind | None, role: Role | None) -> None:
+    """Refuse a resolution of what is not rounded, and a bound of what has no order.
 
     Raises:
         DefinitionError: the row asks for one.
     """
-    if kind not in WITHOUT_ORDER:
+    if kind not in NOT_ROUNDED:
         return
     hint = "Leave the cell blank, or correct Kind"
-    if role is not None and role.is_bound:
+    if kind is Kind.CATEGORY and role is not None and role.is_bound:
         raise DefinitionError(f"A forecast of the kind {kind} is no bound", where=row.cell("Role"), hint=hint)
     if row.filled("Report to"):
         message = f"A forecast of the kind {kind} is not rounded"

@@ -49,6 +49,17 @@ def test_a_workbook_that_is_saved_is_run_again_and_what_changed_is_said(running,
         assert after["sentences"] != before["sentences"]
 
 
+def test_the_usual_variants_are_kept(running, book):
+    server = running(book=book)
+    with server.window(server.library.only) as window:
+        window.next("state")
+        window.say("variants")
+        names = {each["name"] for each in window.next("state")["scenarios"]}
+        assert "every range half as wide" in names
+    kept, _ = server.library.keeper.scenarios(book)
+    assert kept.keys() == names
+
+
 def test_a_half_written_or_faulty_workbook_leaves_the_last_good_answer(running, book, tmp_path, soon_settled):
     server = running(book=book)
     whole = book.read_bytes()

@@ -222,8 +222,8 @@ def test_what_was_not_kept_is_offered(case):
     lost = Adjustments().having("assumption", FRICTION, "high", 0.85).having("assumption", "gone", "high", 1.0)
     session = Session(case[1], {}, lost)
     (state,) = [each for each in session.greeting() if each["kind"] == "state"]
-    assert state["offered"] == [f"{FRICTION}: High 0.95 → 0.85"]
-    assert session.unkept.assumptions == {FRICTION: {"high": 0.85}}
+    assert state["offered"] == [f"{FRICTION}: High 0.95 → 0.85", "gone: high 1 (no longer in the workbook)"]
+    assert session.unkept == lost
     session.receive(Said("restore", {"take": True}))
     assert session.adjustments.assumptions == {FRICTION: {"high": 0.85}}
 

@@ -247,11 +247,16 @@ def _filter(filter_: Filter, changed: Changed) -> Filter:
 
 
 def in_words(definitions: Definitions, adjustments: Adjustments) -> list[str]:
-    """What differs, a phrase each: `friction: High 0.75 → 0.85`."""
+    """What differs, a phrase each: `friction: High 0.75 → 0.85`; also of what the workbook no longer has."""
     found = []
     for of, name, key, value in adjustments._each():
-        own = own_values(definitions, of, name).get(key)
-        found.append(f"{name}: {changed_text(definitions, of, name, key, own, value)}")
+        own = own_values(definitions, of, name)
+        if key in own:
+            said = changed_text(definitions, of, name, key, own[key], value)
+        else:
+            number = value if isinstance(value, bool) else number_text(value)
+            said = f"{LIMITS.get(key, key.replace('_', ' '))} {number} (no longer in the workbook)"
+        found.append(f"{name}: {said}")
     return found
 
 

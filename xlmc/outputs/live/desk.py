@@ -168,9 +168,7 @@ class Desk:
         for message in replies.own:
             window.put(message["kind"], written(message))
         self._tell(replies.all)
-        if said.kind in ("set", "reset", "keep", "show", "drop", "restore") and not (
-            said.kind == "set" and said["held"]
-        ):
+        if said.kind in _CHANGING and not (said.kind == "set" and said["held"]):
             self._keep()
         self._wake.set()
 
@@ -200,11 +198,14 @@ class Desk:
         if self.session is None:
             return
         try:
-            self._keeper.keep(self.path, self.session.kept, self.session.unkept)
+            kept = self._keeper.keep(self.path, self.session.kept, self.session.unkept)
         except WorkbookError as error:
             self._say("keeping", str(error))
-        else:
-            self._say("keeping", "")
+            return
+        self._say("keeping", "")
+        if kept != self.session.kept:  # another window on this workbook kept some, too
+            self.session.kept = kept
+            self._tell(self.session.greeting()[1:2])
 
     async def _in_thread(self, what: Callable[[], T]) -> T:
         return await asyncio.get_running_loop().run_in_executor(self._pool, what)

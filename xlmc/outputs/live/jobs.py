@@ -244,10 +244,11 @@ def scenario_table(own: Model, kept: Mapping[str, Adjustments], asked: int) -> W
         kept: those of the window, by name; they take the place of one of the same name.
         asked: how often the table was asked for.
     """
-    scenarios = tuple(scenario_of(own.definitions, name, each) for name, each in kept.items())
-    all_of_them = (*(each for each in own.definitions.scenarios if each.name not in kept), *scenarios)
 
     def run(wanted: Wanted, tell: Tell, _clock: Clock) -> Outcome:
+        fitting = {name: each.only(own.definitions) for name, each in kept.items()}
+        scenarios = tuple(scenario_of(own.definitions, name, each) for name, each in fitting.items())
+        all_of_them = (*(each for each in own.definitions.scenarios if each.name not in kept), *scenarios)
         model = own.changed(own.workbook, replace(own.definitions, scenarios=all_of_them))
         begun: list[str] = []
 

@@ -11,7 +11,9 @@ import json
 import os
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from itertools import count
 from pathlib import Path
 from typing import Any, Final
 
@@ -22,6 +24,8 @@ __all__ = ["Keeper", "state_folder"]
 
 _MOST_RECENT: Final = 12
 _MOST_BYTES: Final = 4 << 20
+_PATIENCE: Final = 5.0
+"""Seconds after which a lock is that of a program that died: a file is written within milliseconds."""
 
 
 def state_folder() -> Path:
@@ -37,25 +41,43 @@ def state_folder() -> Path:
 class Keeper:
     """Reads and writes them.
 
+    Several windows of several programs may be open on one workbook: what each has kept since it read the file last is
+    put into what the file holds by then, so that none takes the other's scenarios away.
+
     Args:
         folder: where they lie; it is made when something is written.
     """
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
+        self._seen: dict[Path, dict[str, Adjustments]] = {}
 
     @property
     def dropped(self) -> Path:
         """The folder of workbooks that were dropped onto the window."""
         return self._folder / "dropped"
 
+    def make_folder(self) -> None:
+        """Make the folder, for its owner's eyes alone.
+
+        Raises:
+            OSError: it cannot be made.
+        """
+        self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+        self._folder.chmod(0o700)
+
     def scenarios(self, book: Path) -> tuple[dict[str, Adjustments], Adjustments]:
         """The scenarios of a workbook by name, and the state that was not kept under a name.
 
         Raises:
-            WorkbookError: there is a file of them, and it cannot be read.
+            WorkbookError: there is a file of them, and it cannot be read; it is set aside.
         """
         path = self._of(book)
+        named, unkept = self._scenarios(path)
+        self._seen[path] = dict(named)
+        return named, unkept
+
+    def _scenarios(self, path: Path) -> tuple[dict[str, Adjustments], Adjustments]:
         found = self._read(path)
         try:
             if found is None:
@@ -63,26 +85,41 @@ class Keeper:
             named = {str(name): Adjustments.of_json(each) for name, each in found["scenarios"].items()}
             return named, Adjustments.of_json(found["unkept"])
         except (ValueError, TypeError, AttributeError, KeyError) as error:
-            raise _unreadable(path) from error
+            raise _set_aside(path) from error
 
-    def keep(self, book: Path, scenarios: Mapping[str, Adjustments], unkept: Adjustments) -> None:
-        """Write the scenarios of a workbook.
+    def keep(self, book: Path, scenarios: Mapping[str, Adjustments], unkept: Adjustments) -> dict[str, Adjustments]:
+        """Write the scenarios of a workbook, and return all of them: also those that another window kept meanwhile.
 
         Raises:
             WorkbookError: they cannot be written.
         """
         path = self._of(book)
-        if not scenarios and not unkept:
-            path.unlink(missing_ok=True)
-            return
-        named = {name: each.as_json() for name, each in scenarios.items()}
-        self._write(path, {"book": str(book), "scenarios": named, "unkept": unkept.as_json()})
+        try:
+            with self._alone(path):
+                theirs, _ = self._scenarios(path)
+                kept = _merged(self._seen.get(path, {}), scenarios, theirs)
+                if kept or unkept:
+                    named = {name: each.as_json() for name, each in kept.items()}
+                    self._write(path, {"book": str(book), "scenarios": named, "unkept": unkept.as_json()})
+                else:
+                    path.unlink(missing_ok=True)
+        except OSError as error:
+            raise _unwritable(path, error) from error
+        self._seen[path] = dict(kept)
+        return kept
 
     def recent(self) -> list[Path]:
-        """The workbooks that were opened last and are still there, the last first."""
-        found = self._read(self._folder / "recent.json")
+        """The workbooks that were opened last and are still there, the last first.
+
+        Raises:
+            WorkbookError: the list cannot be read; it is set aside.
+        """
+        path = self._folder / "recent.json"
+        found = self._read(path)
         books = found.get("books", []) if found else []
-        return [path for each in books if isinstance(each, str) and (path := Path(each)).is_file()]
+        if not isinstance(books, list):
+            raise _set_aside(path)
+        return [path for each in books if isinstance(each, str) and "\0" not in each and (path := Path(each)).is_file()]
 
     def opened(self, book: Path) -> None:
         """Put a workbook first among them.
@@ -92,7 +129,11 @@ class Keeper:
         """
         others = [each for each in self.recent() if each != book]
         kept = [str(each) for each in (book, *others)][:_MOST_RECENT]
-        self._write(self._folder / "recent.json", {"books": kept})
+        path = self._folder / "recent.json"
+        try:
+            self._write(path, {"books": kept})
+        except OSError as error:
+            raise _unwritable(path, error) from error
 
     def _of(self, book: Path) -> Path:
         name = hashlib.sha256(os.fsencode(os.path.realpath(book))).hexdigest()[:32]
@@ -102,33 +143,88 @@ class Keeper:
         """A file's contents; None where there is none.
 
         Raises:
-            WorkbookError: it is no JSON object.
+            WorkbookError: it is no JSON object; it is set aside.
         """
         try:
             text = path.read_bytes()[:_MOST_BYTES]
         except FileNotFoundError:
             return None
         except OSError as error:
-            raise _unreadable(path) from error
+            raise WorkbookError(
+                f"This file of scenarios cannot be read ({error.strerror or error})",
+                where=path,
+                hint="Look at its rights",
+            ) from error
         try:
             found = json.loads(text)
-        except ValueError as error:
-            raise _unreadable(path) from error
+        except (ValueError, RecursionError) as error:
+            raise _set_aside(path) from error
         if not isinstance(found, dict):
-            raise _unreadable(path)
+            raise _set_aside(path)
         return found
 
     def _write(self, path: Path, found: Mapping[str, Any]) -> None:
         unfinished = path.with_suffix(f".{os.getpid()}-{time.monotonic_ns()}.tmp")
         try:
-            self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+            self.make_folder()
             unfinished.write_text(json.dumps(found, indent=1), encoding="utf-8")
             unfinished.replace(path)
-        except OSError as error:
+        except OSError:
             unfinished.unlink(missing_ok=True)
-            message = f"the scenarios cannot be kept: {error.strerror or error}"
-            raise WorkbookError(message, where=path, hint="note them, and look at the folder's rights") from error
+            raise
+
+    @contextmanager
+    def _alone(self, path: Path) -> Iterator[None]:
+        """While no other program reads and writes the file; one that died holds it up for some seconds."""
+        self.make_folder()
+        lock, until = path.with_suffix(".lock"), time.monotonic() + _PATIENCE
+        while True:
+            try:
+                os.close(os.open(lock, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600))
+                break
+            except FileExistsError:
+                if time.monotonic() > until:
+                    lock.unlink(missing_ok=True)
+                time.sleep(0.01)
+        try:
+            yield
+        finally:
+            lock.unlink(missing_ok=True)
 
 
-def _unreadable(path: Path) -> WorkbookError:
-    return WorkbookError("this file of scenarios cannot be read", where=path, hint="move it away, or delete it")
+def _merged(
+    seen: Mapping[str, Adjustments], ours: Mapping[str, Adjustments], theirs: Mapping[str, Adjustments]
+) -> dict[str, Adjustments]:
+    """What two windows keep, each of which began with what was seen last; of one name with two contents, both."""
+    found = {name: each for name, each in theirs.items() if name in ours or name not in seen}
+    for name, each in ours.items():
+        changed_here, changed_there = seen.get(name) != each, theirs.get(name) != seen.get(name)
+        if not changed_here and name in seen and name not in theirs:
+            continue  # forgotten in the other window
+        if changed_here and changed_there and name in theirs and theirs[name] != each:
+            free = (f"{name} ({number})" for number in count(2))
+            found[next(other for other in free if other not in ours and other not in theirs)] = theirs[name]
+        if changed_here or name not in theirs:
+            found[name] = each
+    return found
+
+
+def _set_aside(path: Path) -> WorkbookError:
+    """Move a damaged file out of the way, so that nothing writes over it, and say where it is."""
+    aside = next(
+        other for number in count(1) if not (other := path.with_suffix(f".damaged{number}{path.suffix}")).exists()
+    )
+    try:
+        path.rename(aside)
+    except OSError as error:
+        return WorkbookError(
+            f"This file of scenarios is damaged, and cannot be set aside ({error.strerror or error})",
+            where=path,
+            hint="Move it away",
+        )
+    return WorkbookError("This file of scenarios is damaged", where=path, hint=f"It was set aside as {aside.name}")
+
+
+def _unwritable(path: Path, error: OSError) -> WorkbookError:
+    message = f"the scenarios cannot be kept: {error.strerror or error}"
+    return WorkbookError(message, where=path, hint="note them, and look at the folder's rights")

@@ -128,7 +128,9 @@ class Library:
         folder = self.keeper.dropped / secrets.token_hex(8)
         target = folder / plain
         try:
-            folder.mkdir(parents=True, mode=0o700)
+            self.keeper.make_folder()
+            self.keeper.dropped.mkdir(exist_ok=True, mode=0o700)
+            folder.mkdir(mode=0o700)
             target.write_bytes(data)
         except OSError as error:
             raise WorkbookError(f"it cannot be kept: {error.strerror or error}", where=target) from error

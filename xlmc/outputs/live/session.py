@@ -98,7 +98,7 @@ class Session:
         self.own = model
         self.adjustments = Adjustments()
         self.kept: dict[str, Adjustments] = dict(kept or {})
-        self.offered = (offered or Adjustments()).only(model.definitions)
+        self.offered = offered or Adjustments()
         self.shown = ""
         self.version = 0
         self.rest: Simulation | None = None
@@ -200,7 +200,7 @@ class Session:
                 found, self.offered = self.offered, Adjustments()
                 if said["take"]:
                     self._held = False
-                    self._change(found)
+                    self._change(found.only(self.own.definitions))
                 return Replies(all=[self._state()])
             case "keep":
                 return self._keep(said["name"].strip())
@@ -257,7 +257,9 @@ class Session:
             news: what changed, in words.
         """
         self.own = model
-        self.adjustments = self.adjustments.only(model.definitions)
+        before, self.adjustments = self.adjustments, self.adjustments.only(model.definitions)
+        if before != self.adjustments and before not in self.kept.values() and not self.offered:
+            self.offered = before  # what no longer fits is not lost: it may fit again
         self.version += 1
         self._models, self._seconds = KnownModels(model, MOVING_TRIALS), {}
         self._moving, self._sketch_seconds = None, 0.0

@@ -14,9 +14,10 @@ from templates.description import (
     Template,
 )
 from templates.editions import Both
-from templates.guidance import CAVEATS, FIRST_STEPS, RESTITUTION
+from templates.guidance import CAVEATS, FIRST_STEPS, SIGNS
+from templates.restitution import RESTITUTION, restitution_input
 from templates.speed_answer import speed_answer
-from templates.units import CONVERSIONS, GRAVITY, MPH
+from templates.units import CONVERSIONS, GRAVITY, MPH, RADIUS_OF_GYRATION
 from templates.vehicles import vehicle
 
 __all__ = ["TEMPLATE"]
@@ -40,19 +41,10 @@ def _mass(j: int, low: Both, base: Both, high: Both) -> Input:
 _ASSUMPTIONS = (
     _mass(1, Both(3900, 1770), Both(4000, 1815), Both(4100, 1860)),
     _mass(2, Both(2930, 1330), Both(3000, 1360), Both(3070, 1390)),
-    Input(
-        "e",
-        "e",
-        "Restitution",
-        "",
-        0.15,
-        "Example: frontal barrier tests at 30 mph, 0.04 to 0.24 (Monson and Germane); see sheet Guide",
-        {"Low": 0.04, "High": 0.24},
-        number_format="0.00",
-    ),
+    restitution_input("e", "Restitution"),
     Input(
         "V2_before",
-        "V2i",
+        "V2i,given",
         "«2» speed before, in the direction of «1»",
         _SPEED,
         0,
@@ -63,7 +55,7 @@ _ASSUMPTIONS = (
     ),
     Input(
         "V2_after",
-        "V2f",
+        "V2f,given",
         "«2» speed after (used where known = 2 or 3)",
         _SPEED,
         Both(20, 32),
@@ -73,7 +65,7 @@ _ASSUMPTIONS = (
     ),
     Input(
         "V1_after",
-        "V1f",
+        "V1f,given",
         "«1» speed after (used where known = 3)",
         _SPEED,
         Both(17, 27),
@@ -84,7 +76,7 @@ _ASSUMPTIONS = (
     ),
     Input(
         "V1_before",
-        "V1i",
+        "V1i,given",
         "«1» speed before (used where known = 1)",
         _SPEED,
         Both(30, 48),
@@ -126,7 +118,7 @@ _OPTIONAL = (
         "Radius of gyration in yaw",
         "[ft|m]",
         Both(4.6, 1.4),
-        "Typical of passenger cars. Used with the lever arms only",
+        f"{RADIUS_OF_GYRATION}. Used with the lever arms only",
     ),
 )
 
@@ -135,7 +127,7 @@ _SPEEDS = (
     Equation("[m_2|]", "m2", "«2» mass", "lb·s²/ft", "w_2/g", "weight / g"),
     Equation(
         "V_part",
-        "V2f − V1f",
+        "Vpart",
         "Speed at which they part, where both speeds after are known",
         "[ft|m]/s",
         f"IF(known=3,(V2_after-V1_after)/({MPH}),0)",
@@ -198,7 +190,7 @@ _ANSWERS = (
 _MORE = (
     Equation(
         "closing_[mph|kmh]",
-        "Vc",
+        "Vc ([mph|km/h])",
         "Closing speed",
         _SPEED,
         f"V_close*{MPH}",
@@ -207,7 +199,7 @@ _MORE = (
     ),
     Equation(
         "common_[mph|kmh]",
-        "Vcommon",
+        "Vcommon ([mph|km/h])",
         "Common speed at the end of compression",
         _SPEED,
         f"(m_1*V1_i+m_2*V2_i)/(m_1+m_2)*{MPH}",
@@ -294,13 +286,15 @@ _GUIDE = (
         ),
     ),
     FIRST_STEPS,
+    SIGNS,
     GuideSection(
         "When to use this model",
         (
             "Head-on and front-to-rear impacts whose line of force passes near both centres of gravity, at low angles. "
             "It needs the masses, the restitution and one speed: that of «1» before, or that of «2» after.",
             "Positive is the direction of «1». «2» has a negative speed if it came the other way.",
-            "Restitution matters: delta-V is proportional to 1 + e. At low speeds it is far from 0.",
+            "Restitution matters: delta-V is proportional to 1 + e. The range on sheet Inputs is that of impacts at "
+            "speed; where delta-V is [2 to 5 mph|3 to 8 km/h], tests had 0.2 to 0.4 (SAE 931842): enter that.",
             "Not for impacts off centre: enter the lever arms on sheet Inputs to see by how much delta-V is "
             "overstated. The next models are momentum and planar-impact (directions and run-out known) and "
             "planar-forward.",

@@ -126,7 +126,7 @@ _STEPS = (
 
 _ANSWERS = (
     speed_answer("v", "v", "Critical speed", "v"),
-    Equation("R_path", "R", "Radius of the path", "[ft|m]", "R_cg", "above", "", Role.ANSWER, "0.0"),
+    Equation("R_path", "Rpath", "Radius of the path", "[ft|m]", "R_cg", "above", "", Role.ANSWER, "0.0"),
 )
 
 _CHECKS = checks_section(

@@ -18,9 +18,10 @@ from templates.description import (
     Template,
 )
 from templates.editions import Both
-from templates.guidance import CAVEATS, FIRST_STEPS, RESTITUTION, SIGNS
+from templates.guidance import CAVEATS, FIRST_STEPS, SIGNS
+from templates.restitution import RESTITUTION, restitution_input
 from templates.speed_answer import speed_answer
-from templates.units import CONVERSIONS, GRAVITY, MPH
+from templates.units import CONVERSIONS, GRAVITY, MPH, RADIUS_OF_GYRATION
 from templates.vehicles import FIRST, SECOND, for_both, vehicle
 
 __all__ = ["TEMPLATE"]
@@ -117,17 +118,7 @@ def _assumptions() -> tuple[Input, ...]:
         for j in (1, 2)
         for symbol, notation, name, unit, values, source, number_format in _UNCERTAIN
     )
-    restitution = Input(
-        "e",
-        "e",
-        "Restitution",
-        "",
-        0.1,
-        "Example: frontal barrier tests at 30 and 35 mph, 0.04 to 0.24 (Monson and Germane); see sheet Guide",
-        {"Low": 0.04, "High": 0.24},
-        number_format="0.00",
-    )
-    return (*of_vehicles, *(_station(j, i) for j in (1, 2) for i in _STATIONS), restitution)
+    return (*of_vehicles, *(_station(j, i) for j in (1, 2) for i in _STATIONS), restitution_input("e", "Restitution"))
 
 
 _PROFILES = (
@@ -198,7 +189,7 @@ def _constants() -> tuple[Input, ...]:
                 f"{vehicle(j)} radius of gyration in yaw",
                 "[ft|m]",
                 Both(4.6, 1.4),
-                "Typical of passenger cars: √(I/m)",
+                RADIUS_OF_GYRATION,
                 number_format="0.00",
             ),
         )
@@ -376,7 +367,7 @@ _ANSWERS = (
         "0.00",
     ),
     Equation(
-        "E_absorbed", "E", "Energy absorbed by the crush", "[ft·lb|J]", "E_sum", "above", "", Role.ANSWER, "#,##0"
+        "E_absorbed", "Eabs", "Energy absorbed by the crush", "[ft·lb|J]", "E_sum", "above", "", Role.ANSWER, "#,##0"
     ),
     Equation(
         "E_crush",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from templates.description import GuideSection
 
-__all__ = ["CAVEATS", "EXAMPLE_NUMBERS", "FIRST_STEPS", "NAMES", "READINGS", "RESTITUTION", "SIGNS"]
+__all__ = ["CAVEATS", "EXAMPLE_NUMBERS", "FIRST_STEPS", "NAMES", "READINGS", "SIGNS"]
 
 EXAMPLE_NUMBERS = GuideSection(
     "This workbook",
@@ -43,45 +43,28 @@ READINGS = GuideSection(
     ),
 )
 
-SIGNS = GuideSection(
-    "Names",
-    ("Every quantity is a named cell, so that formulas read like the printed equation beside them.",),
+_CONVENTION = (
+    "One convention in every template. In the plane, seen from above: X and Y as on a map; angles, rotations and yaw "
+    "rates counter-clockwise positive. On a vehicle: x forward, y to the right of its centre of gravity. Along a path: "
+    "forward positive; a slope or an angle of take-off upward positive; a drop, or a fall, downward positive.",
+    "Where others differ. SAE J670 and SAE J211 have the same x and y and z downward, so that rotation and yaw are "
+    "clockwise positive: change the sign. ISO 8855 has y to the left. Recorders count forward and to the right (49 CFR "
+    "563.5). CDC and clock directions of a force run clockwise from the front.",
 )
+_NAMED = "Every quantity is a named cell, so that formulas read like the printed equation beside them."
+
+SIGNS = GuideSection("Signs and names", (*_CONVENTION, _NAMED))
 
 NAMES = GuideSection(
     "Signs, units, names",
     (
-        "Angles are in degrees, counter-clockwise from +X, and say where a vehicle moves to. The direction of X is "
-        "yours to choose, one for all angles.",
-        "Every quantity is a named cell, so that formulas read like the paper: alpha is α, beta β, gamma_t γ, omega "
-        "ω; _1 and _2 are the vehicles, _i before and _f after the impact, _n normal and _t tangential to the contact.",
-    ),
-)
-
-RESTITUTION = GuideSection(
-    "Restitution: published values, as cited in SAE 2001-01-3347",
-    (
-        "Restitution varies from test to test and no data will match a crash exactly: choose the tests that resemble "
-        "it most, and limits wide enough for their scatter. Published values depend on how the normal was chosen.",
-    ),
-    (
-        ("Source", "Values"),
-        ("Monson and Germane [23], frontal barrier, 30 mph", "e_n 0.04 to 0.24, one test about 0.35"),
-        (
-            "Monson and Germane [23], frontal barrier, 35 mph",
-            "e_n 0.08 to 0.23; on average higher than at 30 mph for transverse engines (the engine meets the cowl)",
-        ),
-        ("King, Siegmund and Bailey [18], low-speed barrier and vehicle to vehicle", "e_n 0.25 to 0.75"),
-        (
-            "Ishikawa [17], 45 vehicle-to-vehicle tests: 32 side, 13 frontal, cars of about 1000 kg",
-            "e_n: no clear trend with severity across configurations. e_t falls with tangential closing speed in side "
-            "impacts; engagement is superficial below about 15 mph of normal closing speed",
-        ),
-        (
-            "Any impact",
-            "−1 to 1. Below 0: a common velocity was never reached (sideswipe, break-through). "
-            "1 or more adds energy: reject",
-        ),
+        *_CONVENTION,
+        "Angles are in degrees from +X, and say where a vehicle moves to. The direction of X is yours to choose, one "
+        "for all angles. The direction of force (PDOF) says where the blow came from: counter-clockwise from the "
+        "front, −180 to 180, the left side positive. Sheet Model gives it clockwise (0 to 360) and by the clock "
+        "too.",
+        f"{_NAMED} alpha is α, beta β, gamma_t γ, omega ω; _1 and _2 are the vehicles, _i before and _f after the "
+        "impact, _n normal and _t tangential to the contact.",
     ),
 )
 

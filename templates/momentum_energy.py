@@ -50,6 +50,12 @@ _SCENE = replace(
         "f_2": (0.65, 0.75),
     },
     base={},
+    sources=MOMENTUM_EXAMPLE.sources
+    | {
+        f"f_{j}": "Example: about 0.7, with which the travel gives the speeds after the impact of that case. Enter: "
+        "published drag of this surface, share of locked wheels, grade"
+        for j in (1, 2)
+    },
 )
 """Close to a head-on case of Schreier and Nelson (SAE Transactions 96, 1987), where momentum alone is blind."""
 
@@ -189,7 +195,7 @@ _ENERGY = (
         "|V1f − V2f|²",
         "Square of the speed at which they part",
         "[ft|m]²/s²",
-        "(V1_f-V2_f)^2+4*V1_f*V2_f*SIN(RADIANS(beta_1-beta_2)/2)^2",
+        "(V1_f-V2_f)^2+4*V1_f*V2_f*SIN(RADIANS((beta_1-beta_2)/2))^2",
         "law of cosines",
         "Not V1f² + V2f² − 2·V1f·V2f·cos(β1 − β2), which loses digits where both leave alike.",
     ),
@@ -217,7 +223,7 @@ _SPEEDS = (
     Equation(
         "p_across",
         "p⊥",
-        "Momentum after, across it, to the left",
+        "Momentum after, across it, 90° counter-clockwise",
         "[lb·s|N·s]",
         "m_1*V1_f*SIN(RADIANS(beta_1-alpha_1))+m_2*V2_f*SIN(RADIANS(beta_2-alpha_1))",
         "definition",
@@ -226,17 +232,17 @@ _SPEEDS = (
     ),
     Equation(
         "reach",
-        "m2·c − |p⊥|",
+        "prest",
         "Closing momentum beyond what went across",
         "[lb·s|N·s]",
         "m_2*V_close-ABS(p_across)",
-        "definition",
+        "m2·c − |p⊥|",
         "Below 0 no speed fits. Near 0 energy says little, and momentum answers better.",
         number_format="#,##0.00",
     ),
     Equation(
         "root",
-        "√",
+        "pc",
         "Closing momentum along the approach of «1»",
         "[lb·s|N·s]",
         "SQRT(MAX(reach,0)*(m_2*V_close+ABS(p_across)))",
@@ -244,7 +250,7 @@ _SPEEDS = (
         "As a product, which keeps its digits. The other root would drive the vehicles apart.",
         number_format="#,##0.00",
     ),
-    Equation("V1_i", "V1i", "«1» impact speed", "[ft|m]/s", "(p_along+root)/(m_1+m_2)", "(p∥ + √)/(m1 + m2)"),
+    Equation("V1_i", "V1i", "«1» impact speed", "[ft|m]/s", "(p_along+root)/(m_1+m_2)", "(p∥ + pc)/(m1 + m2)"),
     Equation(
         "V2_along",
         "V2∥",
@@ -253,11 +259,18 @@ _SPEEDS = (
         "(p_along-m_1*V1_i)/m_2",
         "momentum",
     ),
-    Equation("V2_across", "V2⊥", "«2» impact velocity, across it, to the left", "[ft|m]/s", "p_across/m_2", "momentum"),
+    Equation(
+        "V2_across",
+        "V2⊥",
+        "«2» impact velocity, across it, 90° counter-clockwise",
+        "[ft|m]/s",
+        "p_across/m_2",
+        "momentum",
+    ),
     Equation("V2_i", "V2i", "«2» impact speed", "[ft|m]/s", "SQRT(V2_along^2+V2_across^2)", "momentum"),
     Equation(
         "aside_2",
-        "α2 − α1",
+        "Δα",
         "«2» approach angle, from that of «1»",
         "deg",
         "DEGREES(ATAN2(V2_along,V2_across))",
@@ -288,7 +301,7 @@ _CHANGES = (
     Equation(
         "dV1_across",
         "ΔV1⊥",
-        "«1» change in velocity, to its left",
+        "«1» change in velocity, across its approach, 90° counter-clockwise",
         "[ft|m]/s",
         "V1_f*SIN(RADIANS(beta_1-alpha_1))",
         "definition",
@@ -405,8 +418,8 @@ _WHEN = GuideSection(
         "Where a speed after the impact is known rather than the travel to rest, enter the travel V²/(2·g·f) that goes "
         "with it.",
         "The approach angle of the other vehicle is an answer. Compare it with its lane: sheet Evidence has a row.",
-        "The reverse: where the closing momentum m2·c is hardly more than the momentum across (the quantity m2·c − "
-        "|p⊥| on sheet Model, near 0), energy says little, and momentum is better. Fill in both templates: "
+        "The reverse: where the closing momentum m2·c is hardly more than the momentum across (the quantity prest = "
+        "m2·c − |p⊥| on sheet Model, near 0), energy says little, and momentum is better. Fill in both templates: "
         "xlmc compare runs them and says which tells more, by their standard deviations, and whether they agree.",
         "Where both approach angles are known, the scene is overdetermined: enter the second as evidence, and the "
         "trials that agree with both remain.",

@@ -116,7 +116,7 @@ _ASSUMPTIONS = (
     *(given for symbol, _, *rest in _LATER for given in _later(symbol, *rest)),
     Input(
         "v_end",
-        "vend,given ([mph|km/h])",
+        "vend,given",
         "Speed at the end of the skid",
         "[mph|km/h]",
         0,
@@ -127,7 +127,7 @@ _ASSUMPTIONS = (
     ),
     Input(
         "v_begin",
-        "vbegin,given ([mph|km/h])",
+        "vbegin,given",
         "Speed at the beginning of the skid (used where known = 2)",
         "[mph|km/h]",
         Both(55, 90),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from templates.description import Input
 from templates.editions import Both
 
-__all__ = ["CONVERSIONS", "GRAVITY", "INCHES_PER_FOOT", "MPH"]
+__all__ = ["CONVERSIONS", "GRAVITY", "INCHES_PER_FOOT", "MPH", "RADIUS_OF_GYRATION"]
 
 GRAVITY = Input(
     "g",
@@ -28,6 +28,12 @@ LONG_DISTANCE = Input(
 )
 CONVERSIONS = (SECONDS_PER_HOUR, LONG_DISTANCE)
 """What a speed in mph or km/h needs."""
+
+RADIUS_OF_GYRATION = (
+    "√(I/m) of [4.2 to 4.9 ft|1.3 to 1.5 m] for the vehicles of SAE 2001-01-3347, [4.59 ft|1.40 m] for the car of SAE "
+    "2019-01-0422. Enter: that of this vehicle, where its inertia is published"
+)
+"""Where the radius of gyration in yaw of a passenger car comes from, as a source."""
 
 MPH = "s_per_hour/[ft_per_mile|m_per_km]"
 """A speed in ft/s or m/s times this is in mph or km/h."""

@@ -88,7 +88,7 @@ def _of_templates() -> dict[str, str]:
     sections = edition(model_sections(), Edition.SI)
     rows: tuple[Equation, ...] = tuple(row for section in sections for row in section.equations)
     force = edition(for_both(FORCE), Edition.SI)
-    rows += tuple(row for row in force if row.symbol in ("dV1_long", "dV1_left", "PDOF_1"))
+    rows += tuple(row for row in force if row.symbol in ("dV1_long", "dV1_right", "PDOF_1"))
     return {row.symbol: row.formula for row in rows if row.symbol not in INPUTS}
 
 

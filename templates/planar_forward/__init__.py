@@ -19,6 +19,7 @@ from templates.editions import Both
 from templates.plan_view import line, mark
 from templates.planar_forward.equations import model_sections
 from templates.planar_forward.guide import GUIDE
+from templates.restitution import restitution_input
 from templates.two_vehicles.answers import APPROACH, DELTA_V_ANSWER, FORCE, ROTATION
 from templates.two_vehicles.checks import CLOSING, ENERGY, FRICTION
 from templates.two_vehicles.drawing import rest_points, vehicle_curves
@@ -38,7 +39,7 @@ def _speeds() -> tuple[Input, ...]:
     return tuple(
         Input(
             f"V{j}_before",
-            f"V{j}",
+            f"V{j} ([mph|km/h])",
             f"{vehicle(j)} impact speed",
             "[mph|km/h]",
             base,
@@ -51,16 +52,7 @@ def _speeds() -> tuple[Input, ...]:
 
 
 _CLOSURES = (
-    Input(
-        "e_n",
-        "e_n",
-        "Restitution, normal",
-        "",
-        0.1,
-        "Example: frontal barrier tests at 30 and 35 mph, 0.04 to 0.24 (Monson and Germane); see sheet Guide",
-        {"Low": 0.04, "High": 0.24},
-        number_format="0.00",
-    ),
+    restitution_input("e_n", "Restitution, normal"),
     Input(
         "e_t",
         "e_t",
@@ -77,7 +69,8 @@ _CLOSURES = (
         "Impulse ratio, at most (closure 2)",
         "",
         0.55,
-        "Example, held: set Frozen to FALSE with closure 2. Friction and engagement of the contact surfaces",
+        "Example, held: set Frozen to FALSE with closure 2. Friction and engagement of the contact surfaces; SAE "
+        "2019-01-0422 takes 0.82 for a corner into a barrier. Enter: what the damage shows",
         {"Low": 0.4, "High": 0.7},
         number_format="0.00",
         frozen=True,
@@ -97,7 +90,7 @@ _CLOSURE = Input(
 _FURTHER = (
     Equation(
         "V{j}f_[mph|kmh]",
-        "V{j}f",
+        "V{j}f ([mph|km/h])",
         "{who} speed after",
         "[mph|km/h]",
         f"V{{j}}_f*{MPH}",

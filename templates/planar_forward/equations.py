@@ -180,7 +180,7 @@ _AFTER = (
         "deg",
         "IF(V{j}_f>0,MOD(DEGREES(ATAN2(V{j}_xf,V{j}_yf)),360),0)",
         "definition",
-        "<0 to 360. Excel's ATAN2 takes x first.|>",
+        "<0 to 360. Excel's ATAN2 takes x first; printed, as in mathematics, y is first.|>",
         number_format="0.0",
     ),
     Equation(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from templates.description import GuideSection
-from templates.guidance import CAVEATS, FIRST_STEPS, NAMES, RESTITUTION
+from templates.guidance import CAVEATS, FIRST_STEPS, NAMES
+from templates.restitution import RESTITUTION
 
 __all__ = ["GUIDE"]
 

@@ -126,12 +126,12 @@ def _force(v: Values) -> Values:
     for j in (1, 2):
         sine, cosine = _sin(v[f"alpha_{j}"]), _cos(v[f"alpha_{j}"])
         forward = _mph(v, v[f"dV{j}_x"] * cosine + v[f"dV{j}_y"] * sine)
-        left = _mph(v, v[f"dV{j}_y"] * cosine - v[f"dV{j}_x"] * sine)
-        pdof = np.degrees(np.arctan2(-left, -forward))
+        right = _mph(v, v[f"dV{j}_x"] * sine - v[f"dV{j}_y"] * cosine)
+        pdof = np.degrees(np.arctan2(right, -forward))
         clockwise = np.mod(-pdof, 360)
         new |= {
             f"dV{j}_long": forward,
-            f"dV{j}_left": left,
+            f"dV{j}_right": right,
             f"PDOF_{j}": pdof,
             f"PDOF{j}_cw": clockwise,
             f"PDOF{j}_clock": np.mod(np.floor(clockwise / 30 + 0.5) + 11, 12) + 1,

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from templates.description import GuideSection
-from templates.guidance import CAVEATS, FIRST_STEPS, NAMES, READINGS, RESTITUTION
+from templates.guidance import CAVEATS, FIRST_STEPS, NAMES, READINGS
+from templates.restitution import RESTITUTION
 
 __all__ = ["guide"]
 

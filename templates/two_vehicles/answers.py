@@ -8,7 +8,7 @@ __all__ = ["ANSWERS", "APPROACH", "DELTA_V_ANSWER", "FORCE", "ROTATION"]
 
 DELTA_V_ANSWER = Equation(
     "dV{j}_[mph|kmh]",
-    "ΔV{j}",
+    "ΔV{j} ([mph|km/h])",
     "{who} delta-V",
     "[mph|km/h]",
     "dV_{j}*s_per_hour/[ft_per_mile|m_per_km]",
@@ -21,7 +21,7 @@ ANSWERS = (
     DELTA_V_ANSWER,
     Equation(
         "V{j}_[mph|kmh]",
-        "V{j}i",
+        "V{j}i ([mph|km/h])",
         "{who} impact speed",
         "[mph|km/h]",
         "V{j}_i*s_per_hour/[ft_per_mile|m_per_km]",
@@ -53,12 +53,13 @@ FORCE = (
         number_format="0.00",
     ),
     Equation(
-        "dV{j}_left",
-        "ΔV{j} left",
-        "{who} delta-V to its left",
+        "dV{j}_right",
+        "ΔV{j} right",
+        "{who} delta-V to its right",
         "[mph|km/h]",
-        "(dV{j}_y*COS(RADIANS(alpha_{j}))-dV{j}_x*SIN(RADIANS(alpha_{j})))*s_per_hour/[ft_per_mile|m_per_km]",
+        "(dV{j}_x*SIN(RADIANS(alpha_{j}))-dV{j}_y*COS(RADIANS(alpha_{j})))*s_per_hour/[ft_per_mile|m_per_km]",
         "definition",
+        "<Negative: pushed to its left. y to the right, as SAE J670, SAE J211 and 49 CFR 563.5 count.|>",
         number_format="0.00",
     ),
     Equation(
@@ -66,10 +67,10 @@ FORCE = (
         "PDOF{j}",
         "{who} PDOF, counter-clockwise from the front",
         "deg",
-        "DEGREES(ATAN2(-dV{j}_long,-dV{j}_left))",
+        "DEGREES(ATAN2(-dV{j}_long,dV{j}_right))",
         "eq (23′)",
         "<Direction the blow came from, −180 to 180, left side positive. Eq (23)'s arctangent loses the quadrant. "
-        "Excel's ATAN2 takes x first.|>",
+        "Excel's ATAN2 takes x first; printed, as in mathematics, y is first.|>",
         number_format="0.0",
     ),
     Equation(
@@ -79,7 +80,7 @@ FORCE = (
         "deg",
         "MOD(-PDOF_{j},360)",
         "convention",
-        "<0 to 360: right side 90, left side 270.|>",
+        "<As reports and CDC count, 0 to 360: right side 90, left side 270.|>",
         number_format="0.0",
     ),
     Equation(
@@ -97,12 +98,12 @@ FORCE = (
 ROTATION = (
     Equation(
         "d_omega{j}_deg",
-        "Δω{j}",
+        "Δω{j} (deg/s)",
         "{who} change in yaw rate",
         "deg/s",
         "DEGREES(d_omega_{j})",
         "eq (<17|18>′)",
-        "<Counter-clockwise positive.|>",
+        "<Counter-clockwise positive, seen from above; SAE J670 counts clockwise.|>",
         number_format="0.0",
     ),
     Equation(

@@ -100,7 +100,7 @@ DELTA_V = (
     ),
     Equation(
         "mean_alpha",
-        "μ",
+        "ᾱ",
         "Direction of the bisector",
         "deg",
         "(alpha_1+alpha_2)/2",

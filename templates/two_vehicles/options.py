@@ -71,7 +71,7 @@ def turn_inputs() -> tuple[Input, ...]:
     """The radius of either vehicle's turn, blank."""
     source = "Optional. Radius of the path before the impact, if the vehicle was turning: limits its speed"
     return tuple(
-        Input(f"R_turn_{j}", f"R{j}", f"{vehicle(j)} radius of its turn", "[ft|m]", None, source) for j in (1, 2)
+        Input(f"R_turn_{j}", f"Rturn,{j}", f"{vehicle(j)} radius of its turn", "[ft|m]", None, source) for j in (1, 2)
     )
 
 

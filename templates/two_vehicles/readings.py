@@ -32,24 +32,25 @@ _AT_THE_SENSOR = (
         "ΔV{j} EDR,long",
         "{who} delta-V where its recorder sits, forward",
         "[mph|km/h]",
-        f"dV{{j}}_long-d_omega_{{j}}*N(ys_{{j}})[/in_per_ft|]*{MPH}",
-        "ΔV − Δω·y",
+        f"dV{{j}}_long+d_omega_{{j}}*N(ys_{{j}})[/in_per_ft|]*{MPH}",
+        "ΔV + Δω·y",
         "<The recorder turns about the CG with the vehicle. At the CG while its position is blank.|>",
         number_format="0.00",
     ),
     Equation(
-        "edr{j}_left",
-        "ΔV{j} EDR,left",
-        "{who} delta-V where its recorder sits, to the left",
+        "edr{j}_right",
+        "ΔV{j} EDR,right",
+        "{who} delta-V where its recorder sits, to the right",
         "[mph|km/h]",
-        f"dV{{j}}_left+d_omega_{{j}}*N(xs_{{j}})[/in_per_ft|]*{MPH}",
-        "ΔV + Δω·x",
-        "<Recorders may count to the right as positive: change the sign of the reading.|>",
+        f"dV{{j}}_right-d_omega_{{j}}*N(xs_{{j}})[/in_per_ft|]*{MPH}",
+        "ΔV − Δω·x",
+        "<To the right positive, as 49 CFR 563.5 asks of recorders. A reading that counts to the left: change its "
+        "sign.|>",
         number_format="0.00",
     ),
     Equation(
         "omega{j}_after_deg",
-        "ω{j}f",
+        "ω{j}f (deg/s)",
         "{who} yaw rate after the impact",
         "deg/s",
         "DEGREES(omega{j}_f)",
@@ -77,7 +78,7 @@ def lever_inputs() -> tuple[Input, ...]:
         for j in (1, 2)
         for axis, where, source in (
             ("x", "forward of", "Optional. Blank: at the CG"),
-            ("y", "to the left of", "Optional. Blank: at the CG"),
+            ("y", "to the right of", "Optional. Blank: at the CG"),
         )
     )
 
@@ -138,13 +139,18 @@ def readings(*, yaw: bool) -> tuple[EvidenceRow, ...]:
     rows: list[EvidenceRow] = []
     for j in (1, 2):
         who = vehicle(j)
-        along, left = (f"edr{j}_long", f"edr{j}_left") if yaw else (f"dV{j}_long", f"dV{j}_left")
+        along, right = (f"edr{j}_long", f"edr{j}_right") if yaw else (f"dV{j}_long", f"dV{j}_right")
         rows += [
             EvidenceRow(
                 f"{who} EDR delta-V, forward", along, None, "Instrument", _RECORDER, f"{_RULE}. Slowed: negative"
             ),
             EvidenceRow(
-                f"{who} EDR delta-V, to the left", left, None, "Instrument", _RECORDER, f"{_RULE}. Left positive"
+                f"{who} EDR delta-V, to the right",
+                right,
+                None,
+                "Instrument",
+                _RECORDER,
+                f"{_RULE}. Right positive, as 49 CFR 563.5 counts",
             ),
             EvidenceRow(
                 f"{who} impact speed, from an EDR or a video",

@@ -141,5 +141,7 @@ def constants_of_momentum(*, inches: bool = False) -> tuple[Input, ...]:
 
 def yaw_rates() -> tuple[Input, ...]:
     """Yaw rates before the impact, held fixed at 0 unless the engineer knows better."""
-    yaw = "Before the impact, counter-clockwise positive; 0 unless the vehicle was turning"
-    return tuple(Input(f"omega{j}_deg", f"ω{j}i", f"{vehicle(j)} pre-impact yaw rate", "deg/s", 0, yaw) for j in (1, 2))
+    yaw = "Before the impact, counter-clockwise positive seen from above; 0 unless the vehicle was turning"
+    return tuple(
+        Input(f"omega{j}_deg", f"ω{j}i (deg/s)", f"{vehicle(j)} pre-impact yaw rate", "deg/s", 0, yaw) for j in (1, 2)
+    )

@@ -22,7 +22,7 @@ SWITCH = Input(
 
 _DIRECTION = Equation(
     "beta_out_2",
-    "β2",
+    "β2,out",
     "«2» departure angle, or that of both",
     "deg",
     "IF(together=1,beta_1,beta_2)",

@@ -26,7 +26,7 @@ _DISTRIBUTIONS = ("Uniform", "Normal", "Triangular", "Trapezoid")
 _BEFORE = ("Name", "Symbol", "Cell name", "Value", "Units", "Distribution")
 _HEADERS = (*_BEFORE, *PARAMETER_COLUMNS, "Frozen", "Source")
 _SOURCE_WIDTH = 84
-_WIDTHS = (40, 10, 13, 13, 11, 13, *(12 for _ in PARAMETER_COLUMNS), 9, _SOURCE_WIDTH)
+_WIDTHS = (40, 12, 13, 13, 11, 13, *(12 for _ in PARAMETER_COLUMNS), 9, _SOURCE_WIDTH)
 _ALWAYS_SHOWN = 2
 """Of the parameter columns, Low and High; the others fold away until a distribution needs them."""
 _FROZEN = len(_HEADERS) - 2

@@ -104,3 +104,121 @@ def test_a_central_impact_goes_back_through_planar_impact(cells):
     np.testing.assert_allclose(found["e_n"], given["e_n"], rtol=1e-8, atol=1e-8)
     np.testing.assert_allclose(found["approach_mph"], forward["approach_mph"], rtol=1e-8)
     assert (found["check_closing"] == 1).all()
+
+
+def returned(cells, template, given, expected):
+    """Check that a template returns what made its inputs: symbol of a cell -> values."""
+    found = cells(template, given, list(expected))
+    for symbol, values in expected.items():
+        np.testing.assert_allclose(
+            found[symbol], np.broadcast_to(values, found[symbol].shape), rtol=1e-8, err_msg=symbol
+        )
+
+
+@pytest.mark.parametrize("known", [1, 2, 3])
+def test_collinear_returns_collisions_in_line(cells, known):
+    """Each speed after is that of the common centre of gravity, and rebound turns the rest round, times e."""
+    rng, n = np.random.default_rng(7), 300
+    w = {j: rng.uniform(2e3, 8e4, n) for j in (1, 2)}
+    before = {2: rng.uniform(-50, 50, n)}
+    before[1] = before[2] + rng.uniform(1, 60, n)
+    e = rng.uniform(0.02, 0.9, n)
+    centre = (w[1] * before[1] + w[2] * before[2]) / (w[1] + w[2])
+    after = {j: centre + e * (centre - before[j]) for j in (1, 2)}
+    read = {1: ("V1_before", "V2_before"), 2: ("V2_after", "V2_before"), 3: ("V1_after", "V2_after")}
+    speeds = {f"V{j}_{when}": x[j] for when, x in (("before", before), ("after", after)) for j in (1, 2)}
+    given = {"known": known, "e": e, "w_1": w[1], "w_2": w[2], "g": 32.174}
+    given |= {symbol: x if symbol in read[known] else 99.0 for symbol, x in speeds.items()}
+    lost = sum(w[j] / 32.174 * (before[j] ** 2 - after[j] ** 2) for j in (1, 2)) / 2 / MPH**2
+    expected = {"V1_mph": before[1], "V1f_mph": after[1], "V2f_mph": after[2], "closing_mph": before[1] - before[2]}
+    expected |= {"dV1_mph": before[1] - after[1], "dV2_mph": after[2] - before[2], "E_lost": lost}
+    returned(cells, "collinear", given, expected)
+
+
+def test_collinear_returns_the_published_low_speed_test(cells):
+    """A car at 5.5 mph into a standing one: delta-V 3.5 and 3.1 mph, so e is 0.2 and the masses are as 31 to 35."""
+    given = {"known": 2, "e": 0.2, "w_1": 3100, "w_2": 3500, "V2_before": 0, "V2_after": 3.1}
+    returned(cells, "collinear", given, {"V1_mph": 5.5, "dV1_mph": 3.5, "dV2_mph": 3.1})
+
+
+def turned(degrees):
+    """The unit vector of a direction, as a complex number."""
+    return np.exp(1j * np.radians(degrees))
+
+
+def run_out(after, friction):
+    """Departure angle and travel to rest of a velocity in mph, feet."""
+    return np.degrees(np.angle(after)) % 360, np.abs(after / MPH) ** 2 / (2 * 32.174 * friction)
+
+
+@pytest.mark.parametrize("template", ["momentum", "planar-impact"])
+def test_momentum_returns_collisions_at_an_angle(cells, template):
+    """Any impulse at all between two vehicles: the speeds before it come back, and its sides of either vehicle."""
+    rng, n = np.random.default_rng(8), 300
+    alpha = {1: rng.uniform(0, 360, n)}
+    alpha[2] = alpha[1] + rng.choice([-1, 1], n) * rng.uniform(20, 160, n)
+    speed, w = ({j: rng.uniform(*ends, n) for j in (1, 2)} for ends in ((10, 70), (2e3, 8e4)))
+    impulse = rng.uniform(1e4, 1e5, n) * turned(rng.uniform(0, 360, n))
+    given, expected = {"g": 32.174, "together": 0}, {}
+    for j, force in ((1, impulse), (2, -impulse)):
+        change, friction = force / w[j], rng.uniform(0.1, 0.9, n)
+        beta, travel = run_out(speed[j] * turned(alpha[j]) + change, friction)
+        given |= {f"w_{j}": w[j], f"alpha_{j}": alpha[j], f"beta_{j}": beta, f"s_{j}": travel, f"f_{j}": friction}
+        seen = change / turned(alpha[j])  # forward and, as y is to the right, minus that to the left
+        expected |= {f"V{j}_mph": speed[j], f"dV{j}_mph": abs(change), f"dV{j}_long": seen.real}
+        expected |= {f"dV{j}_right": -seen.imag, f"PDOF_{j}": np.degrees(np.angle(-seen))}
+        expected |= {f"PDOF{j}_cw": -np.degrees(np.angle(-seen)) % 360}
+    returned(cells, template, given, expected)
+
+
+@pytest.mark.parametrize("apart", [(150, 210), (-25, 25)], ids=["head-on", "from behind"])
+def test_momentum_energy_returns_collisions_that_crush_and_spin(cells, apart):
+    rng, n = np.random.default_rng(9), 300
+    w = {j: rng.uniform(2e3, 8e4, n) for j in (1, 2)}
+    alpha = {1: rng.uniform(-180, 180, n)}
+    alpha[2] = alpha[1] + rng.uniform(*apart, n)
+    speed = {1: rng.uniform(45, 70, n), 2: rng.uniform(10, 30, n)}
+    before = {j: speed[j] * turned(alpha[j]) for j in (1, 2)}
+    centre = (w[1] * before[1] + w[2] * before[2]) / (w[1] + w[2])
+    rebound = rng.uniform(0.05, 0.5, n) * turned(rng.uniform(-30, 30, n))
+    given, spun = {"g": 32.174, "together": 0, "alpha_1": alpha[1], "lane_2": alpha[2] + rng.uniform(-90, 90, n)}, 0.0
+    crushed = 0.0
+    for j in (1, 2):
+        after, friction = centre + rebound * (centre - before[j]), rng.uniform(0.1, 0.9, n)
+        beta, travel = run_out(after, friction)
+        mass, inertia, base, mu = w[j] / 32.174, rng.uniform(1e3, 5e3, n), 9.0, rng.uniform(0.2, 0.6, n)
+        yaw, first = rng.uniform(-1, 1, n), rng.uniform(-0.2, 0.2, n)
+        given |= {f"w_{j}": w[j], f"beta_{j}": beta, f"s_{j}": travel, f"f_{j}": friction, f"I_{j}": inertia}
+        given |= {f"mu_{j}": mu, f"R_{j}": base, f"omega{j}_deg": np.degrees(first)}
+        given |= {f"phi_{j}": np.degrees(np.sign(yaw) * inertia * yaw**2 / (mu * mass * 32.174 * base))}
+        spun = spun + inertia * (yaw**2 - first**2) / 2
+        crushed = crushed + mass * (abs(before[j]) ** 2 - abs(after) ** 2) / 2 / MPH**2
+    crushed = crushed - spun
+    assert (crushed > 0).all()
+    for j, share in ((1, 0.3), (2, 0.7)):
+        given[f"EES_{j}"] = np.sqrt(2 * share * crushed / (w[j] / 32.174)) * MPH
+    expected = {f"V{j}_mph": speed[j] for j in (1, 2)} | {"alpha_2": alpha[2], "E_lost": crushed}
+    expected |= {"closing_mph": abs(before[1] - before[2]), "check_balance": 1.0}
+    returned(cells, "momentum-energy", given, expected)
+
+
+@pytest.mark.parametrize("e", ENDS)
+def test_the_speeds_of_crush_energy_are_those_that_momentum_energy_takes(cells, e):
+    """Head-on through both centres: the crush of a collision gives the energy that it lost, and that its speeds."""
+    weights, speeds = {1: 3000.0, 2: 4500.0}, {1: 45.0, 2: 20.0}
+    mass = {j: w / 32.174 for j, w in weights.items()}
+    both, closing = mass[1] * mass[2] / sum(mass.values()), sum(speeds.values())
+    barrier = {j: np.sqrt(both * closing**2 / 2 / mass[j]) for j in (1, 2)}
+    crush = SQUARE | {"e": e}
+    for j in (1, 2):
+        crush |= {f"w_{j}": weights[j], f"w_test_{j}": weights[j], f"L_{j}": 60.0, f"L_test_{j}": 60.0}
+        crush |= {f"b0_{j}": 5.0, f"b1_{j}": 1.5} | uniform_crush(j, (barrier[j] - 5) / 1.5)
+    found = cells("crush-energy", crush, ["EES1_mph", "EES2_mph", "E_crush", "closing_mph"])
+    assert found["closing_mph"].item() == pytest.approx(closing, rel=1e-9)
+    centre = (mass[1] * speeds[1] - mass[2] * speeds[2]) / sum(mass.values())
+    given = {"g": 32.174, "together": 0, "alpha_1": 0, "lane_2": 180, "omega1_deg": 0, "omega2_deg": 0}
+    for j, before in ((1, speeds[1]), (2, -speeds[2])):
+        beta, travel = run_out(complex(centre + e * (centre - before)), 0.7)
+        given |= {f"w_{j}": weights[j], f"beta_{j}": beta, f"s_{j}": travel, f"f_{j}": 0.7, f"phi_{j}": 0}
+        given[f"EES_{j}"] = found[f"EES{j}_mph"].item()
+    returned(cells, "momentum-energy", given, {"V1_mph": speeds[1], "V2_mph": speeds[2], "E_lost": found["E_crush"]})

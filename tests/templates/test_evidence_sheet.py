@@ -76,12 +76,12 @@ def test_a_reading_keeps_what_agrees_with_it(template, row, reading, forecast, h
 
 def test_a_recorder_away_from_the_cg_reads_the_turning_too(cells):
     """The velocity of a point is that of the CG and the rate of turning times its lever arm."""
-    given = {"xs_1": 30, "ys_1": -24}
-    wanted = ["edr1_long", "edr1_left", "dV1_long", "dV1_left", "d_omega_1", "spin_1", "omega1_f", "m_1"]
+    given = {"xs_1": 30, "ys_1": 24}
+    wanted = ["edr1_long", "edr1_right", "dV1_long", "dV1_right", "d_omega_1", "spin_1", "omega1_f", "m_1"]
     found = {symbol: value.item() for symbol, value in cells("planar-impact", given, wanted).items()}
     to_mph = 3600 / 5280
     assert found["edr1_long"] == pytest.approx(found["dV1_long"] + found["d_omega_1"] * 24 / 12 * to_mph, rel=1e-12)
-    assert found["edr1_left"] == pytest.approx(found["dV1_left"] + found["d_omega_1"] * 30 / 12 * to_mph, rel=1e-12)
+    assert found["edr1_right"] == pytest.approx(found["dV1_right"] - found["d_omega_1"] * 30 / 12 * to_mph, rel=1e-12)
     assert math.isnan(found["spin_1"])
     turned = {"phi_1": -40, "mu_R_1": 0.35, "R_1": 11, "I_1": 4960, "g": 32.174}
     spin = {symbol: value.item() for symbol, value in cells("planar-impact", turned, wanted).items()}

@@ -14,6 +14,8 @@ NOTATION = {
     "a": "a",
     "b": "b",
     "Check_a": "",
+    "spread": "a − b",
+    "fast": "v (km/h)",
 }
 
 
@@ -24,7 +26,16 @@ NOTATION = {
         ("SQRT(2*g*V1_f)", "√(2 · g · V1f)"),
         ("-P_x/m_1", "−Px/m1"),
         ("-(a+b)/2", "−(a + b)/2"),
-        ("DEGREES(ATAN2(-a,-b))", "deg(atan2(−a, −b))"),
+        ("DEGREES(ATAN2(-a,-b))", "deg(atan2(−b, −a))"),
+        ("ATAN2(MAX(a,b),MIN(b,ATAN2(a,g)))", "atan2(min(b, atan2(g, a)), max(a, b))"),
+        ("TAN(RADIANS(a))^2", "tan(a)²"),
+        ("SIN(RADIANS((a-b)/2))", "sin((a − b)/2)"),
+        ("COS(RADIANS(a)/2)", "cos(rad(a)/2)"),
+        ("IF(N(a)>0,N(b)/2,0)", "if(a > 0, b/2, 0)"),
+        ("IF(a=1,b,-b)", "if(a = 1, b, −b)"),
+        ("a*spread/b", "a · (a − b)/b"),
+        ("spread", "a − b"),
+        ("2*fast", "2 · v (km/h)"),
         ("a^2+b^2", "a² + b²"),
         ("RADIANS(a)", "rad(a)"),
         ("AND(a>0,b<=1)", "and(a > 0, b ≤ 1)"),

@@ -33,9 +33,9 @@ BARRIER = {
 
 def test_the_published_barrier_impact(cells):
     """Tolerance: half a unit of the last digit printed, or what the rounding of the printed inputs leaves."""
-    found = cells("planar-forward", BARRIER, ["dV1_long", "dV1_left", "d_omega1_deg", "E_lost", "mu_used", "V_slide"])
+    found = cells("planar-forward", BARRIER, ["dV1_long", "dV1_right", "d_omega1_deg", "E_lost", "mu_used", "V_slide"])
     assert found["dV1_long"].item() == pytest.approx(-35.7275, abs=5e-4)
-    assert found["dV1_left"].item() == pytest.approx(7.5998, abs=5e-4)
+    assert found["dV1_right"].item() == pytest.approx(-7.5998, abs=5e-4)
     assert found["d_omega1_deg"].item() == pytest.approx(-176.43, abs=0.01)
     assert found["E_lost"].item() == pytest.approx(170_421, rel=1e-5)
     assert abs(found["mu_used"].item()) < 0.82  # friction suffices: the contact stops sliding

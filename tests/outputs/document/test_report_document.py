@@ -164,6 +164,14 @@ def test_every_assumption_has_its_numbers_of_the_json(case_study, word):
             assert shown(each["accepted"][name], accepted)
 
 
+def test_every_equation_has_its_units_and_one_symbol(word):
+    rows = table_with(word, "Quantity")
+    by_symbol = {symbol: (units, equation) for _, symbol, units, equation, _ in rows}
+    assert len(by_symbol) == len(rows)
+    assert by_symbol["ΔV1 (mph)"] == ("mph", "ΔV1 · 3600/5280")
+    assert by_symbol["V1f"] == ("ft/s", "√(2 · g · f1 · s1)")
+
+
 def test_every_influence_has_its_numbers_of_the_json(case_study, word):
     known = {
         (forecast["forecast"], each["assumption"]): each

@@ -13,17 +13,18 @@ from xlmc.montecarlo.model.model import Model
 
 __all__ = ["Equation", "equations_of"]
 
-_HEADS = ("quantity", "symbol", "equation", "source")
+_HEADS = ("quantity", "symbol", "units", "equation", "source")
 _NEEDED = frozenset({"quantity", "equation"})
 _COLUMNS = 40
 """How far to the right a heading is looked for."""
 
 
 class Equation(NamedTuple):
-    """One row: what is computed, its symbol, the equation where that is from; texts may be empty."""
+    """One row: what is computed, its symbol and units, the equation, where that is from; texts may be empty."""
 
     quantity: str
     symbol: str
+    units: str
     equation: str
     source: str
 
@@ -62,4 +63,4 @@ def _of_sheet(workbook: Workbook, sheet: Sheet, needed: set[int]) -> Iterator[Eq
     for row, columns in below.items():
         texts = {head: said.get((row, at), "") for head, at in columns.items()}
         if texts["equation"]:
-            yield Equation(texts["quantity"], texts.get("symbol", ""), texts["equation"], texts.get("source", ""))
+            yield Equation(*(texts.get(head, "") for head in _HEADS))

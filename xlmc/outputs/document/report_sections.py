@@ -402,8 +402,8 @@ def _equations(material: Material) -> Iterator[Block]:
         "The equations as the workbook prints them beside the cells that the answers need, with the source that it "
         "names. xlmc computes the cells' formulas, not these texts."
     )
-    heads = ("Quantity", "Symbol", "Equation", "Source")
-    yield material.table("The equations.", heads, [tuple(each) for each in found], (2.6, 0.9, 4.4, 1.8))
+    heads = ("Quantity", "Symbol", "Units", "Equation", "Source")
+    yield material.table("The equations.", heads, [tuple(each) for each in found], (2.5, 0.9, 0.7, 4.0, 1.7))
 
 
 def _notices(material: Material) -> Iterator[Block]:

@@ -65,7 +65,7 @@ def test_a_row_of_each(read, name):
         ("Geometric", {"Probability": 0}, "Probability", "Probability (0) must be above 0"),
         ("Hypergeometric", {"Success": 60}, "Success", "Success (60) is above Population (50)"),
         ("Negative Binomial", {"Shape": 0}, "Shape", "Shape (0) must be a whole number from 1"),
-        ("Poisson", {"Rate": -1}, "Rate", "Rate (-1) must be above 0"),
+        ("Poisson", {"Rate": -1}, "Rate", "Rate (-1) must be from 0"),
         ("Poisson", {"Rate": None}, "Rate", "Poisson needs Rate, and this cell is blank"),
         ("Poisson", {"Trials": 5}, "Trials", "Poisson has no Trials"),
         ("Discrete Uniform", {"Min": 9}, "Min", "Low (9) is above High (6)"),

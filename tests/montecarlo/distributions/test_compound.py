@@ -97,7 +97,7 @@ def test_ranks_are_those_of_the_count_and_percentiles_those_of_the_sums():
 @pytest.mark.parametrize(
     ("family", "params", "key", "message"),
     [
-        (CLAIMS, (-1.0, 1.0), "frequency rate", "Frequency: Rate (-1) must be above 0 and at most 1,000,000,000"),
+        (CLAIMS, (-1.0, 1.0), "frequency rate", "Frequency: Rate (-1) must be from 0 to 1,000,000,000"),
         (CLAIMS, (5.0, 0.0), "severity rate", "Severity: Rate (0) must be above 0"),
         (CLAIMS, (5e6, 1.0), "frequency rate", "Frequency may be 5,018,258, and at most 1,000,000 amounts are added"),
         (INSURED, (5.0, 1.0, 0.0, -1.0), "limit", "Limit (-1) must be 0 or more"),

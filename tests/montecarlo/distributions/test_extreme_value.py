@@ -32,7 +32,7 @@ def test_far_values_raise_no_flag(clean):
     np.testing.assert_array_equal(MAXIMUM.sf(np.array([-1e300, 1e300]), 0, 1e-100), [1, 0])
 
 
-@pytest.mark.parametrize("scale", [0, -1])
+@pytest.mark.parametrize("scale", [-0.5, -1])
 def test_scale_must_be_positive(scale):
     fault = MAXIMUM.fault(0, scale)
     assert (fault.key, fault.message) == ("scale", f"Scale ({scale}) must be above 0")

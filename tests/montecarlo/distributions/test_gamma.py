@@ -49,7 +49,7 @@ def test_the_upper_tail_keeps_its_digits():
 @pytest.mark.parametrize(
     ("params", "key", "message"),
     [
-        ((0, 0, 1), "scale", "Scale (0) must be above 0"),
+        ((0, -1, 1), "scale", "Scale (-1) must be above 0"),
         ((0, 1, -1), "shape", "Shape (-1) must be above 0"),
         ((0, 1, 1e7), "shape", "Shape (10000000) must be at most 1000000"),
     ],

@@ -33,7 +33,7 @@ def test_values_up_to_the_location_are_impossible(clean):
 @pytest.mark.parametrize(
     ("params", "key", "message"),
     [
-        ((0, 1, 0), "sigma", "Sigma (0) must be above 0"),
+        ((0, 1, -1), "sigma", "Sigma (-1) must be above 0"),
         ((0, 350, 1), "mu", "Mu (350) and Sigma (1) give values above 1E150"),
     ],
 )

@@ -49,7 +49,7 @@ def test_extreme_ratios_raise_no_flag(clean):
     ("params", "key", "message"),
     [
         ((2, 2, 1), "mean", "Mean (2) must be above Location (2)"),
-        ((0, 1, 0), "std_dev", "Std dev (0) must be above 0"),
+        ((0, 1, -1), "std_dev", "Std dev (-1) must be above 0"),
     ],
 )
 def test_bad_parameters(params, key, message):

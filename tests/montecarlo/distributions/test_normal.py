@@ -34,7 +34,7 @@ def test_far_values_raise_no_flag(clean):
     np.testing.assert_array_equal(NORMAL.cdf(np.array([-1e300, 1e300]), 0, 1e-100), [0, 1])
 
 
-@pytest.mark.parametrize(("std_dev", "shown"), [(0, "0"), (-0.46, "-0.46")])
+@pytest.mark.parametrize(("std_dev", "shown"), [(-1, "-1"), (-0.46, "-0.46")])
 def test_std_dev_must_be_positive(std_dev, shown):
     fault = NORMAL.fault(mean=1.25, std_dev=std_dev)
     assert (fault.key, fault.message) == ("std_dev", f"Std dev ({shown}) must be above 0")

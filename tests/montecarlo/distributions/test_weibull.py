@@ -60,7 +60,7 @@ def test_far_values_raise_no_flag(clean):
 
 @pytest.mark.parametrize(
     ("params", "key", "message"),
-    [((0, 0, 1), "scale", "Scale (0) must be above 0"), ((0, 1, -1), "shape", "Shape (-1) must be above 0")],
+    [((0, -1, 1), "scale", "Scale (-1) must be above 0"), ((0, 1, -1), "shape", "Shape (-1) must be above 0")],
 )
 def test_bad_parameters(params, key, message):
     fault = WEIBULL.fault(*params)

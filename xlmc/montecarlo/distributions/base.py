@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from xlmc.montecarlo.distributions.parameters import Constraint, DataSpec, Fault, ParameterSpec, Role, show
 
-__all__ = ["LARGEST", "SMALLEST_U", "TRIED_U", "Array", "Family", "Member", "Values", "ends", "share"]
+__all__ = ["LARGEST", "SMALLEST_U", "TRIED_U", "Array", "Family", "Member", "Values", "ends", "point_where", "share"]
 
 Array = NDArray[np.float64]
 Values = float | Array
@@ -117,6 +117,8 @@ class Family(ABC):
             if not -LARGEST <= value <= LARGEST:
                 message = f"{spec.heading} ({show(value)}) must be a number between -1E150 and 1E150"
                 return Fault(spec.key, message, "Correct the number")
+        if self.point(*values) is not None:
+            return None
         for rule in self.rules:
             if not rule.holds(*values):
                 shown = {key: show(value) for key, value in zip(self.keys, values, strict=True)}
@@ -136,7 +138,8 @@ class Family(ABC):
             kept = kept & (value >= -LARGEST) & (value <= LARGEST)
         for rule in self.rules:
             kept = kept & rule.holds(*values)
-        return kept  # type: ignore[no-any-return]  # numbers give a bool, arrays an array
+        points = self.point(*values)
+        return kept if points is None else kept | np.isfinite(points)  # type: ignore[no-any-return]  # as the values are
 
     def checked(self, *params: Values, **named: Values) -> Member:
         """The member of the family that has these parameters: they are checked here, and by none of its functions."""
@@ -182,6 +185,28 @@ class Family(ABC):
     def support(self, *params: Values, **named: Values) -> tuple[Array, Array]:
         """The lowest and the highest possible value, each `()` or `(n,)`; may be infinite."""
         return self.checked(*params, **named).support()
+
+    def point(self, *values: Values) -> Values | None:
+        """Return the one value that parameters without scatter leave, such as the mean of a standard deviation of 0.
+
+        Programs that draw say of such a distribution that it is its one value.
+
+        Args:
+            *values: the parameters in order, each a number or `(n,)`.
+
+        Returns:
+            It, a number or `(n,)`, NaN in trials in which the draws scatter; None where they do in all.
+        """
+        if not self.roles or self.roles[0] != "location" or self.roles.count("scale") != 1:
+            return None
+        scale = self.roles.index("scale")
+        if np.ndim(values[scale]) == 0 and values[scale] != 0.0:
+            return None
+        degenerate: Any = np.equal(values[scale], 0.0)
+        for rule in self.rules:
+            if rule.blames != self.keys[scale]:
+                degenerate = degenerate & rule.holds(*values)
+        return point_where(degenerate, values[0])
 
     def cutoffs(self, lower: Values, upper: Values) -> tuple[tuple[Values, Values], tuple[Values, Values]]:
         """What cutoffs, which are kept themselves, mean to the family.
@@ -291,30 +316,44 @@ class Member:
         return self._evaluate(self.family.percentile, _open(self.family, _own_copy(p, self.values)))
 
     def cdf(self, x: Values) -> Array:
-        return self._evaluate(self.family._cdf, x)
+        return self._evaluate(self.family._cdf, x, said=lambda point: 1.0 * np.greater_equal(x, point))
 
     def sf(self, x: Values) -> Array:
-        return self._evaluate(self.family._sf, x)
+        return self._evaluate(self.family._sf, x, said=lambda point: 1.0 * np.less_equal(x, point))
 
     def mean(self) -> Array:
         return self._evaluate(self.family._mean)
 
     def variance(self) -> Array:
-        return self._evaluate(self.family._variance)
+        return self._evaluate(self.family._variance, said=lambda point: 0.0 * point)
 
     def support(self) -> tuple[Array, Array]:
-        with np.errstate(all="ignore"):
-            low, high = self.family._support(*self.values)
-        return self._masked(low), self._masked(high)
+        return (
+            self._evaluate(lambda *values: self.family._support(*values)[0]),
+            self._evaluate(lambda *values: self.family._support(*values)[1]),
+        )
 
-    def _evaluate(self, hook: Callable[..., Any], *points: Values) -> Array:
+    def _evaluate(self, hook: Callable[..., Any], *at: Values, said: Callable[[Any], Any] = np.asarray) -> Array:
+        """What the hook gives; where the parameters leave one value only, what is `said` of that (`Family.point`)."""
+        point = self.family.point(*self.values)
+        if point is not None and np.ndim(point) == 0:
+            shape = np.broadcast_shapes(*map(np.shape, at))
+            return np.array(np.broadcast_to(said(point), shape), dtype=float)
         with np.errstate(all="ignore"):
-            return self._masked(hook(*points, *self.values))
+            result = self._masked(hook(*at, *self.values))
+        return result if point is None else np.where(np.isnan(point), result, said(point))
 
     def _masked(self, result: Values) -> Array:
         if self.invalid is not None:
             result = np.where(self.invalid, np.nan, result)
         return np.asarray(result, dtype=float)
+
+
+def point_where(degenerate: Any, value: Values) -> Values | None:
+    """Return the value where the parameters leave one only, NaN elsewhere; None where they never do."""
+    if not np.any(degenerate):
+        return None
+    return value if np.ndim(degenerate) == np.ndim(value) == 0 else np.where(degenerate, value, np.nan)
 
 
 def _open(family: Family, u: Array) -> Array:

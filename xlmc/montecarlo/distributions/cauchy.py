@@ -20,8 +20,8 @@ class Cauchy(Located):
     [ 3.844633 10.       12.      ]
     >>> print(cauchy.mean(location=10, scale=2))
     nan
-    >>> cauchy.check(location=10, scale=0)
-    'Scale (0) must be above 0'
+    >>> cauchy.check(location=10, scale=-1)
+    'Scale (-1) must be above 0'
     """
 
     name = "Cauchy"

@@ -32,9 +32,9 @@ class MaximumExtreme(_Extreme, Family):
     >>> largest = MaximumExtreme()
     >>> print(largest.ppf(np.array([0.1, 0.5, 0.9]), likeliest=10, scale=2).round(6))
     [ 8.331935 10.733026 14.500735]
-    >>> largest.check(likeliest=10, scale=0)
-    'Scale (0) must be above 0'
-    >>> print(largest.ppf(0.5, 10.0, np.array([2.0, 0.0])).round(6))
+    >>> largest.check(likeliest=10, scale=-1)
+    'Scale (-1) must be above 0'
+    >>> print(largest.ppf(0.5, 10.0, np.array([2.0, -1.0])).round(6))
     [10.733026       nan]
     """
 
@@ -72,9 +72,9 @@ class MinimumExtreme(_Extreme, Family):
     >>> smallest = MinimumExtreme()
     >>> print(smallest.ppf(np.array([0.1, 0.5, 0.9]), likeliest=10, scale=2).round(6))
     [ 5.499265  9.266974 11.668065]
-    >>> smallest.check(likeliest=10, scale=0)
-    'Scale (0) must be above 0'
-    >>> print(smallest.ppf(0.5, 10.0, np.array([2.0, 0.0])).round(6))
+    >>> smallest.check(likeliest=10, scale=-1)
+    'Scale (-1) must be above 0'
+    >>> print(smallest.ppf(0.5, 10.0, np.array([2.0, -1.0])).round(6))
     [9.266974      nan]
     """
 

@@ -16,8 +16,8 @@ class HyperbolicSecant(Family):
     >>> secant = HyperbolicSecant()
     >>> print(secant.ppf(np.array([0.1, 0.5, 0.9]), mean=10, std_dev=2).round(6))
     [ 7.653763 10.       12.346237]
-    >>> secant.check(mean=10, std_dev=0)
-    'Std dev (0) must be above 0'
+    >>> secant.check(mean=10, std_dev=-1)
+    'Std dev (-1) must be above 0'
     """
 
     name = "Hyperbolic secant"

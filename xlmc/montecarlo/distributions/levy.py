@@ -18,8 +18,8 @@ class Levy(Located):
     [  1.739223   5.396219 127.656235]
     >>> print(levy.mean(location=1, scale=2))
     inf
-    >>> levy.check(scale=0)
-    'Scale (0) must be above 0'
+    >>> levy.check(scale=-1)
+    'Scale (-1) must be above 0'
     """
 
     name = "Levy"

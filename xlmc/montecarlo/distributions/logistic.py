@@ -18,7 +18,7 @@ class Logistic(Family):
     [ 5.605551 10.       14.394449]
     >>> logistic.check(mean=10, scale=-2)
     'Scale (-2) must be above 0'
-    >>> print(logistic.ppf(0.5, 10.0, np.array([2.0, 0.0])))
+    >>> print(logistic.ppf(0.5, 10.0, np.array([2.0, -1.0])))
     [10. nan]
     """
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from xlmc.montecarlo.distributions.base import Array, Family, Values, ends
+from xlmc.montecarlo.distributions.base import Array, Family, Values, ends, point_where
 from xlmc.montecarlo.distributions.parameters import LOCATION, MEAN, STD_DEV, Constraint, ParameterSpec, above_zero
 
 __all__ = ["Lognorm2", "Lognormal"]
@@ -16,9 +16,9 @@ class Lognorm2(Family):
     >>> lognorm2 = Lognorm2()
     >>> print(lognorm2.ppf(np.array([0.1, 0.5, 0.9]), mu=1, sigma=0.5).round(6))
     [1.432218 2.718282 5.15917 ]
-    >>> lognorm2.check(mu=1, sigma=0)
-    'Sigma (0) must be above 0'
-    >>> print(lognorm2.ppf(0.5, mu=1, sigma=np.array([0.5, 0.0])).round(6))
+    >>> lognorm2.check(mu=1, sigma=-1)
+    'Sigma (-1) must be above 0'
+    >>> print(lognorm2.ppf(0.5, mu=1, sigma=np.array([0.5, -1.0])).round(6))
     [2.718282      nan]
     """
 
@@ -43,6 +43,11 @@ class Lognorm2(Family):
     formula = "ln(X − Location) is normal with mean Mu and standard deviation Sigma"
     source = "Johnson, Kotz and Balakrishnan, Continuous Univariate Distributions, vol. 1, ch. 14"
     elsewhere = ("Crystal Ball Lognormal by log mean and log std dev", "@RISK Lognorm2(mu, sigma)", "XLRisk LogNorm")
+
+    def point(self, *values: Values) -> Values | None:
+        location, mu, sigma = values
+        with np.errstate(over="ignore"):
+            return point_where(np.equal(sigma, 0.0), location + np.exp(mu))
 
     def _ppf(self, u: Array, location: Values, mu: Values, sigma: Values) -> Array:
         from scipy.special import ndtri
@@ -100,7 +105,7 @@ class Lognormal(Family):
     [ 6.575059  9.578263 13.953202]
     >>> lognormal.check(mean=-1, std_dev=3)
     'Mean (-1) must be above Location (0)'
-    >>> print(lognormal.ppf(0.5, mean=10.0, std_dev=np.array([3.0, 0.0])).round(6))
+    >>> print(lognormal.ppf(0.5, mean=10.0, std_dev=np.array([3.0, -1.0])).round(6))
     [9.578263      nan]
     """
 
@@ -124,6 +129,10 @@ class Lognormal(Family):
     )
     source = "Johnson, Kotz and Balakrishnan, Continuous Univariate Distributions, vol. 1, ch. 14"
     elsewhere = ("Crystal Ball Lognormal (location, mean, std dev)", "@RISK Lognorm(mean, std dev)")
+
+    def point(self, *values: Values) -> Values | None:
+        location, mean, std_dev = values
+        return point_where(np.equal(std_dev, 0.0) & np.greater_equal(mean, location), mean)
 
     def _ppf(self, u: Array, location: Values, mean: Values, std_dev: Values) -> Array:
         return _BY_LOGARITHMS._ppf(u, location, *_of_logarithm(mean - location, std_dev))

@@ -16,8 +16,8 @@ class Normal(Family):
     >>> normal = Normal()
     >>> print(normal.ppf(np.array([0.0, 0.5, 0.975]), mean=1.25, std_dev=0.46).round(4))
     [-2.5645  1.25    2.1516]
-    >>> normal.check(mean=1.25, std_dev=0)
-    'Std dev (0) must be above 0'
+    >>> normal.check(mean=1.25, std_dev=-1)
+    'Std dev (-1) must be above 0'
     >>> print(normal.ppf(0.5, 1.25, np.array([0.46, -0.46])))
     [1.25  nan]
     """

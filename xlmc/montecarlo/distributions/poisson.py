@@ -28,8 +28,8 @@ class Poisson(WholeNumbers):
     >>> poisson = Poisson()
     >>> print(poisson.ppf(np.array([0.0, 0.5, 0.99]), rate=4))
     [0. 4. 9.]
-    >>> poisson.check(rate=0)
-    'Rate (0) must be above 0 and at most 1,000,000,000'
+    >>> poisson.check(rate=-1)
+    'Rate (-1) must be from 0 to 1,000,000,000'
     >>> print(poisson.ppf(0.5, np.array([4.0, -4.0])))
     [ 4. nan]
     """
@@ -42,8 +42,8 @@ class Poisson(WholeNumbers):
     rules = (
         Constraint(
             "rate",
-            lambda rate: (rate > 0) & (rate <= MOST),
-            f"Rate ({{rate}}) must be above 0 and at most {MOST:,.0f}",
+            lambda rate: (rate >= 0) & (rate <= MOST),
+            f"Rate ({{rate}}) must be from 0 to {MOST:,.0f}",
             "Type the mean number of events",
         ),
     )
@@ -61,10 +61,10 @@ class Poisson(WholeNumbers):
         return rate
 
     def _skewness(self, rate: Values) -> Values:
-        return 1 / np.sqrt(rate)
+        return 1 / np.sqrt(np.maximum(rate, 1e-300))
 
     def _support(self, rate: Values) -> tuple[Values, Values]:
-        return 0 * rate, np.inf + 0 * rate
+        return 0 * rate, np.where(np.equal(rate, 0), 0.0, np.inf)
 
 
 def _poisson_at_most(k: Array, rate: Values) -> Array:

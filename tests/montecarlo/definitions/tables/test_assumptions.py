@@ -53,7 +53,7 @@ MISTAKES = [
     ({"Inputs!D2": 7000}, "Inputs!D2", "Low (7000) is above High (6861)", "Exchange the two"),
     ({"Inputs!D2": ("=7*1000", 7000.0)}, "Inputs!D2", "Low (7000) is above High (6861)", "Exchange the two"),
     ({"Inputs!D2": 1e200}, "Inputs!D2", "Low (1e+200) must be a number between -1E150 and 1E150", "Correct"),
-    ({"Inputs!H4": 0}, "Inputs!H4", "Std dev (0) must be above 0", "set Frozen to TRUE"),
+    ({"Inputs!H4": -1}, "Inputs!H4", "Std dev (-1) must be above 0", "set Frozen to TRUE"),
     ({"Inputs!N5": 0.9}, "Inputs!N5", "Low likeliest (0.9) is above High likeliest (0.85)", "Exchange the two"),
     ({"Inputs!O5": 0.99}, "Inputs!O5", "High likeliest (0.99) is above High (0.95)", "The four must rise"),
     ({"Inputs!F6": 33}, "Inputs!F6", "Likeliest (33) is above High (32.5)", "from Low to High"),

@@ -529,3 +529,39 @@ def test_a_forecast_cannot_depend_on_a_data_table_of_the_run(tmp_path, answer):
     """Its cells hold no formulas, and so they would pass for constants."""
     with pytest.raises(FormulaError, match="what-if data tables that depend on the run are not computed"):
         xlmc.load(with_table(tmp_path / "book.xlsx", {"A5": (answer, 1)}))
+
+
+@pytest.mark.parametrize("writer", ["openpyxl", "XlsxWriter"])
+def test_cells_that_were_never_calculated_are_computed_and_not_taken_for_0(tmp_path, writer):
+    """Beside a cell that shows a result: a constant's double, and one that depends on a draw, which has no value."""
+    formulas = {
+        "A1": "=CB.Normal(100,10)",
+        "A2": "=A1*2",
+        "F1": 7,
+        "F2": "=F1*2",
+        "F3": "=F2+A1",
+        "C1": "=CB.GetForeStatFN(A2,2)",
+        "C2": "=C1-F2",
+        "C3": '=IF(C1>F2*20,"over","within")',
+        "C4": "=C1+F3",
+        "C5": "=SUM(F1:F2)+C1*0",
+    }
+    path = tmp_path / "book.xlsx"
+    if writer == "openpyxl":
+        book = openpyxl.Workbook()
+        for address, content in formulas.items():
+            book.active[address] = content
+        book.save(path)
+    else:
+        with xlsxwriter.Workbook(path) as book:
+            sheet = book.add_worksheet("Sheet")
+            for address, content in formulas.items():
+                sheet.write(address, content)
+    run = xlmc.load(path).simulate(2000, seed=4)
+    shown = {cell.a1: value for cell, value in run.shown_results.cells.items()}
+    mean = run.results[next(iter(run.results))].mean.value
+    assert shown["C1"] == pytest.approx(mean, rel=1e-12)
+    assert shown["C2"] == pytest.approx(mean - 14, rel=1e-12)
+    assert (shown["C3"], shown["C5"]) == ("within", 21.0)
+    assert shown["C4"] == ErrorCode.NA
+    assert "C4" in run.shown_results.warning

@@ -131,7 +131,7 @@ def recalculated(workbook: Workbook, cells: Iterable[Cell]) -> ShownResults:
         workbook: with the new contents.
         cells: that have them; no formulas.
     """
-    found = _Recalculating(workbook, {}, {}, frozenset(cells)).found()
+    found = _Showing(workbook, {}, {}, frozenset(cells)).found()
     formulas = {cell: why for cell, why in found.missing.items() if workbook.content(cell).formula is not None}
     return ShownResults(found.values, formulas)
 
@@ -167,7 +167,9 @@ class _Showing:
             lowering, faults = self._lowered(changed)
             for cell, needs in lowering.graph.needs.items():
                 self._needs.setdefault(cell, set()).update(needs)
-            self._missing |= {cell: reason for cell, reason in faults.items() if cell in changed}
+            self._missing |= {
+                cell: reason for cell, reason in faults.items() if cell in changed or self._is_uncalculated(cell)
+            }
             now = self._downstream(self._missing), self._downstream(self._start)
             if now[0] == missing and now[1] - missing - self._constants == changed:
                 break
@@ -238,7 +240,7 @@ class _Showing:
             try:
                 lowering = lower_until_complete(lower)
             except FormulaError as error:  # Excel has saved no value that could stand in for it
-                found = [cell for cell in targets - stuck.keys() if str(cell) == error.where]
+                found = [cell for cell in self._formulas - stuck.keys() if str(cell) == error.where]
                 if not found:
                     raise
                 stuck |= dict.fromkeys(found, error.message)
@@ -246,16 +248,12 @@ class _Showing:
                 return lowering, stuck | _faults(lowering)
 
     def _given(self, targets: frozenset[Cell]) -> frozenset[Cell]:
-        """The other formulas, whose values are those that Excel saved."""
-        return self._formulas - targets
+        """The other formulas that were calculated, whose values are those that Excel saved."""
+        return frozenset(cell for cell in self._formulas - targets if not self._is_uncalculated(cell))
 
-
-class _Recalculating(_Showing):
-    """The formulas of a workbook in which constants were changed; a cell that was never calculated is computed, too."""
-
-    def _given(self, targets: frozenset[Cell]) -> frozenset[Cell]:
-        others = self._formulas - targets
-        return frozenset(cell for cell in others if self._workbook.content(cell).value is not None)
+    def _is_uncalculated(self, cell: Cell) -> bool:
+        """Whether a formula has no saved value, as in books that openpyxl or XlsxWriter wrote: it is computed, too."""
+        return self._workbook.content(cell).value is None
 
 
 class _Watching(Lowering):

@@ -265,9 +265,9 @@ TEMPLATE = Template(
     forecasts=(
         ForecastRow("«1» speed at take-off", "v_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("«1» speed before braking", "v1_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow("«1» take-off speed, at least", "vmin_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("«1» take-off speed, at least", "vmin_[mph|kmh]", "[mph|km/h]", stated="lower bound"),
         ForecastRow("Time in the air", "t", "s"),
-        ForecastRow("Direction of flight at landing", "landing_slope", "deg"),
+        ForecastRow("Direction of flight at landing", "landing_slope", "deg", stated="diagnostic"),
     ),
     filters=(FilterRow("Fall below the line of take-off", "q", "The vehicle landed, at some speed", above=0),),
     evidence=(

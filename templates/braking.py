@@ -132,7 +132,13 @@ RESPONSE_FILTER = FilterRow(
     at_most=0,
 )
 
-SCENE_SHOWS = ForecastRow("Scene shows when the driver responded (1 = yes, 0 = it cannot tell)", "did_brake", "")
+SCENE_SHOWS = ForecastRow(
+    "Scene shows when the driver responded (1 = yes, 0 = it cannot tell)",
+    "did_brake",
+    "",
+    kind="yes/no",
+    stated="diagnostic",
+)
 
 BRAKING_CHECK = check(
     "check_friction",

@@ -539,9 +539,9 @@ TEMPLATE = Template(
         ForecastRow(f"{SECOND} equivalent barrier speed", "EBS2_[mph|kmh]", "[mph|km/h]"),
         ForecastRow(f"{FIRST} energy equivalent speed", "EES1_[mph|kmh]", "[mph|km/h]"),
         ForecastRow(f"{SECOND} energy equivalent speed", "EES2_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow("Energy absorbed by the crush", "E_absorbed", "[ft·lb|J]"),
-        ForecastRow("Energy lost to the crush", "E_crush", "[ft·lb|J]"),
-        ForecastRow("Force balance", "ratio", ""),
+        ForecastRow("Energy absorbed by the crush", "E_absorbed", "[ft·lb|J]", stated="diagnostic"),
+        ForecastRow("Energy lost to the crush", "E_crush", "[ft·lb|J]", stated="diagnostic"),
+        ForecastRow("Force balance", "ratio", "", stated="diagnostic"),
     ),
     filters=(
         FilterRow(

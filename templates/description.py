@@ -115,13 +115,20 @@ class Section:
 
 @dataclass(frozen=True, slots=True)
 class ForecastRow:
-    """A row of `xlmc_forecasts`; `symbol` is the equation whose cell is the answer."""
+    """A row of `xlmc_forecasts`; `symbol` is the equation whose cell is the answer.
+
+    Attributes:
+        kind: what its numbers are, such as yes/no; empty for plain numbers.
+        stated: what it is to the question: lower bound, upper bound or diagnostic; empty for an answer.
+    """
 
     name: str
     symbol: str
     unit: str
     central_percent: float | None = 51
     threshold: float | None = None
+    kind: str = ""
+    stated: str = ""
 
 
 @dataclass(frozen=True, slots=True)

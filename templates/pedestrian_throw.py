@@ -197,7 +197,7 @@ TEMPLATE = Template(
         _CHECKS,
     ),
     forecasts=(
-        ForecastRow("Projection speed, at least", "vmin_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("Projection speed, at least", "vmin_[mph|kmh]", "[mph|km/h]", stated="lower bound"),
         ForecastRow("Projection speed, if level", "vlevel_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("Projection speed at the angle", "v_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("«1» speed", "V_vehicle_[mph|kmh]", "[mph|km/h]"),

@@ -181,7 +181,7 @@ def _forecasts() -> tuple[ForecastRow, ...]:
     of_vehicles = (
         ForecastRow(f"{vehicle(j)} {name}", symbol.format(j=j), unit) for name, symbol, unit in patterns for j in (1, 2)
     )
-    return (*of_vehicles, ForecastRow("Energy lost", "E_lost", "[ft·lb|J]"))
+    return (*of_vehicles, ForecastRow("Energy lost", "E_lost", "[ft·lb|J]", stated="diagnostic"))
 
 
 def _diagram() -> Diagram:

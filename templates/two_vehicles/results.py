@@ -29,7 +29,7 @@ def direction_forecasts(*, yaw: bool, near: bool) -> tuple[ForecastRow, ...]:
     rows = [
         *(ForecastRow(f"{vehicle(j)} PDOF, counter-clockwise", f"{pdof}_{j}", "deg") for j in (1, 2)),
         ForecastRow("Closing speed", "closing_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow("Energy lost", "E_lost", "[ft·lb|J]"),
+        ForecastRow("Energy lost", "E_lost", "[ft·lb|J]", stated="diagnostic"),
     ]
     if yaw:
         rows += (ForecastRow(f"{vehicle(j)} change in yaw rate", f"d_omega{j}_deg", "deg/s") for j in (1, 2))

@@ -19,6 +19,7 @@ from templates.writer.styles import Styles
 __all__ = ["draw_results_wanted"]
 
 _FORECASTS = ("Name", "Cell", "Units", "Range %", "Threshold", "Symbol", "Note")
+_STATED = ("Report to", "Kind", "Role")
 _FILTERS = ("Name", "Cell", "At least", "At most", "Above", "Below", "Because")
 _CHECKS = ("Name", "Cell", "Because")
 _CORRELATIONS = ("First", "Second", "Correlation")
@@ -29,6 +30,7 @@ _LOGICAL = '"TRUE";"TRUE";"FALSE"'
 It is the format of a condition, not of the cell: LibreOffice would save the cell as a number then.
 """
 _WIDTHS = (38, 22, 12, 12, 12, 12, 76, 34)
+_STATED_WIDTHS = (12, 12, 14)
 _ONLY_FOR = 7
 """Column of the last of both headings that only a template needs in which a filter is about one forecast."""
 _SUBTITLE = (
@@ -44,7 +46,8 @@ def draw_results_wanted(
 ) -> None:
     """Write the sheet; `values` are what the formulas give at the base case."""
     one_forecast = any(kept.only_for for kept in template.filters)
-    begin_sheet(sheet, styles, template.title, _SUBTITLE, _WIDTHS if one_forecast else _WIDTHS[:_ONLY_FOR])
+    widths = _WIDTHS if one_forecast else _WIDTHS[:_ONLY_FOR]
+    begin_sheet(sheet, styles, template.title, _SUBTITLE, (*widths, *_STATED_WIDTHS))
     row = _draw_forecasts(sheet, styles, template, at, values, 3)
     row = _draw_filters(sheet, styles, template, at, values, row + _ROOM)
     row = _draw_checks(sheet, styles, template, at, values, row + _ROOM)
@@ -65,13 +68,14 @@ def _draw_forecasts(
     remark = "Range % is the central range reported; a Threshold also reports the probability of exceeding it."
     _head(sheet, styles, top, "Forecasts", remark, values)
     only_if = {kept.only_for: kept.name for kept in template.filters if kept.only_for}
-    headers = (*_FORECASTS, "Only if") if only_if else _FORECASTS
+    headers = (*_FORECASTS, *["Only if"] * bool(only_if), *_STATED)
     add_table(sheet, styles, "xlmc_forecasts", top + 1, headers, len(template.forecasts))
     equations = {equation.symbol: equation for equation in template.equations}
     for row, forecast in enumerate(template.forecasts, top + 2):
         _draw_forecast(sheet, styles, forecast, row, equations[forecast.symbol].notation, values)
         if only_if:
             sheet.write_string(row, _ONLY_FOR, only_if.get(forecast.name, ""), styles("text"))
+        _draw_stated(sheet, styles, forecast, row, len(headers) - len(_STATED))
         shown = styles("answer", equations[forecast.symbol].number_format)
         write_formula(sheet, row, 1, reference(at[forecast.symbol]), shown, values)
     guard(sheet, (top + 2, 1, top + 1 + len(template.forecasts), 1), "A formula", _POINTS)
@@ -89,6 +93,16 @@ def _draw_forecast(
     sheet.write_blank(row, 6, None, styles("text"))
     if len(forecast.name) > _WIDTHS[0]:
         fit_row(sheet, row, [(forecast.name, _WIDTHS[0])])
+
+
+def _draw_stated(sheet: Worksheet, styles: Styles, forecast: ForecastRow, row: int, left: int) -> None:
+    """Write how the forecast is stated; a cell without a word stays blank, for the user."""
+    sheet.write_blank(row, left, None, styles("text"))
+    for column, word in enumerate((forecast.kind, forecast.stated), left + 1):
+        if word:
+            sheet.write_string(row, column, word, styles("text"))
+        else:
+            sheet.write_blank(row, column, None, styles("text"))
 
 
 def _draw_filters(

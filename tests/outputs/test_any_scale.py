@@ -41,7 +41,9 @@ def test_every_output_is_written(folder, exponent, spread, sign, curved):
     workbook_of({"S": rows}, {"xlmc_assumptions": "S!A1:D2", "xlmc_forecasts": "S!A4:B5"}).save(book)
     run = xlmc.load(book).simulate(trials=2000)
     assert run.accepted == 2000
-    document = json.loads(run.save_json(folder / "o.json", overwrite=True).read_text(), parse_constant=refuse)
+    document = json.loads(
+        run.save_json(folder / "o.json", overwrite=True).read_text(encoding="utf-8"), parse_constant=refuse
+    )
     assert document["forecasts"]
     for save, name in ((run.save, "o.xlsx"), (run.save_page, "o.html"), (run.keep, "o.xlmcrun")):
         assert save(folder / name, overwrite=True).exists()

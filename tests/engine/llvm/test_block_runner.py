@@ -145,6 +145,9 @@ def test_trials_behind_those_that_count_are_not_counted(book):
     assert few.trial_index.tolist() == more.trial_index[: few.accepted].tolist()
 
 
+MAY_HAVE_NO_ANSWER = ("pedestrian", "time-distance")
+"""Books some of whose answers are #N/A where a length was not measured: their blocks are run in parts."""
+
 EQUATIONS = {name: path for name, path in BOOKS.items() if not name.endswith("-si")}
 """An edition in other units has the equations of its template."""
 
@@ -167,8 +170,9 @@ def test_examples_and_templates_are_computed_in_loops_and_in_whole_blocks(number
     program = model.program("jit")
     program = program._program if isinstance(program, FilteringProgram) else program
     assert isinstance(program, JitProgram)
-    assert model_runner(model, model.program("jit"), "jit", 7, BLOCK)._run_whole is not None
-    if compiled:
+    whole = model_runner(model, model.program("jit"), "jit", 7, BLOCK)._run_whole is not None
+    assert whole == (path.stem not in MAY_HAVE_NO_ANSWER)
+    if compiled and whole:
         assert list(map(bits, ran(model, True, range(5, 6)))) == list(map(bits, ran(model, False, range(5, 6))))
 
 

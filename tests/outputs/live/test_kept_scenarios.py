@@ -155,4 +155,4 @@ def test_what_is_written_is_read_again(book, keeper):
     keeper.keep(book, named, changed("y"))
     assert keeper.scenarios(book) == (named, changed("y"))
     (file,) = keeper._folder.glob("*.json")
-    assert json.loads(file.read_text())["book"] == str(book)
+    assert json.loads(file.read_text(encoding="utf-8"))["book"] == str(book)

@@ -61,9 +61,10 @@ def _tail_index(ascending: Floats, part: float = 1.0) -> tuple[float, float]:
     k = int(max(_FEWEST, _SHARE * n))
     if n < 10 * k:
         return np.inf, 0.0
-    middle, used = 0.5 * (ascending[(n - 1) // 2] + ascending[n // 2]), int(part * k) + 1
+    used, size = int(part * k) + 1, max(-float(ascending[0]), float(ascending[-1])) or 1.0
+    middle = 0.5 * (ascending[(n - 1) // 2] / size) + 0.5 * (ascending[n // 2] / size)
     best = np.inf
-    for largest in (ascending[-used:] - middle, middle - ascending[:used][::-1]):
+    for largest in (ascending[-used:] / size - middle, middle - ascending[:used][::-1] / size):
         if largest[0] > 0:
             best = min(best, 1.0 / max(float(np.mean(np.log(largest[1:] / largest[0]))), 1e-300))
     return best, best / np.sqrt(k)

@@ -167,5 +167,5 @@ def test_draws_that_are_none_are_left_out_of_the_surrogate(book):
 
 
 def test_an_engine_that_is_not_there(case_study):
-    with pytest.raises(SimulationError, match="there is no engine"):
+    with pytest.raises(SimulationError, match="There is no engine"):
         Sampled("x", "x", engine="abacus").run(case_study, 1_024, 1)

@@ -162,7 +162,7 @@ def test_independent_trials_are_carried_on_by_theory(of_straight):
     found = of_straight
     plain = next(curve for curve in found.curves if curve.method is MONTE_CARLO)
     finer = replace(found, accuracy=("0.1%", 0.001, True))
-    assert need(finer, plain).trials == pytest.approx(64 * need(found, plain).trials)
+    assert need(finer, plain).trials == pytest.approx(64 * need(found, plain).trials, rel=0.02)  # whole counts
 
 
 def test_ends_that_are_never_off_need_no_more_trials(book):

@@ -29,7 +29,7 @@ def verdict_text(comparison: Comparison) -> list[str]:
     books = book_names(comparison)
     return [
         *_enough(comparison, books),
-        *(_only_as_a_whole(each) for each in comparison.of(Verdict.WITHIN) if each.only_distributions_agree),
+        *_apart_in_trials(comparison),
         *_rivals(comparison.rivals, books),
         *(_too_little(comparison, each, books) for each in comparison.of(Verdict.BEYOND)),
         *_undecided_text(comparison),
@@ -49,6 +49,12 @@ def _enough(comparison: Comparison, books: tuple[str, str]) -> Iterator[str]:
     names = _join_names([f"{_name(each)} to {_tolerance(each)}" for each in within])
     subject = _subject(comparison, books)
     yield f"{subject} is enough for {names}." if subject else f"The two books agree for {names}."
+
+
+def _apart_in_trials(comparison: Comparison) -> Iterator[str]:
+    """The answers that agree as a whole only; of books that draw other inputs, trials say nothing of each other."""
+    if not any(comparison.inputs.drawn):
+        yield from (_only_as_a_whole(each) for each in comparison.of(Verdict.WITHIN) if each.only_distributions_agree)
 
 
 def _only_as_a_whole(each: ForecastComparison) -> str:

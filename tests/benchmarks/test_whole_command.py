@@ -15,9 +15,9 @@ NUMBER = re.compile(rb"<v>([^<]*\.[^<]*)</v>")
 
 
 def _as_xlsxwriter_writes(part):
-    """Numbers with 15 digits, and lines of charts that are not said to be straight."""
-    fifteen = NUMBER.sub(lambda found: b"<v>%.15G</v>" % float(found[1]), part)
-    return fifteen.replace(b'<c:smooth val="0"/>', b"")
+    """Numbers with 13 digits, and lines of charts that are not said to be straight."""
+    thirteen = NUMBER.sub(lambda found: b"<v>%.13G</v>" % float(found[1]), part)
+    return thirteen.replace(b'<c:smooth val="0"/>', b"")
 
 
 def test_the_baseline_writes_the_same_sheets(tmp_path, monkeypatch):

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.errors import DefinitionError, FormulaError, XlmcError
+from xlmc.errors import DefinitionError, FormulaError, Notice, XlmcError
 
 
 @pytest.mark.parametrize(
@@ -25,6 +25,7 @@ def test_a_message_is_a_sentence(error, text):
 
 def test_messages_that_quote_a_file_stay_short():
     assert len(str(XlmcError("x" * 10_000, where="S!A1", hint="Shorten it"))) < 600
+    assert len(str(Notice("x" * 10_000, where="y" * 10_000))) < 1_100
     long = "+".join(f"B{row}" for row in range(1, 3000)) + "+#faulty+C1"
     at = long.index("#faulty")
     lines = str(FormulaError("there is no such cell", where="S!A1", text=long, span=(at, at + 7))).splitlines()

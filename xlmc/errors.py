@@ -175,4 +175,5 @@ class Notice:
     where: object = None
 
     def __str__(self) -> str:
-        return f"{self.where}: {self.message}" if self.where is not None else self.message
+        said = shortened(self.message)
+        return f"{shortened(str(self.where))}: {said}" if self.where is not None else said

@@ -12,6 +12,7 @@ from itertools import zip_longest
 from typing import TYPE_CHECKING, Final
 
 from xlmc.cli.terminal import encodable, on_terminal, paragraph, put, say, width
+from xlmc.errors import shortened
 from xlmc.excel.workbook.printable import printable
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ def warnings(found: Sequence[str], missing: Collection[str] = ()) -> None:
     for warning in found:
         meaning = "this answer is missing, and the others do not need it"
         said = meaning if warning in missing else "the answer must not be used as it is"
-        say(f"warning: {warning}; {said}.", err=True)
+        say(f"warning: {shortened(warning)}; {said}.", err=True)
 
 
 def _one_line(cell: str) -> str:

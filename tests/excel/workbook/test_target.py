@@ -149,4 +149,5 @@ def test_outputs_of_other_names_are_not_one(tmp_path):
 def test_names_that_are_one_where_case_does_not_count():
     assert same_name("Book.xlsx", "book.XLSX")
     assert same_name("\u00fc.xlsx", "u\u0308.xlsx")
+    assert same_name("\u00fc.xlsx", "\udcc3\udcbc.xlsx")  # as Python reads it where the settings speak of ASCII
     assert not same_name("book.xlsx", "book2.xlsx")

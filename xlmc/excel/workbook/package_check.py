@@ -9,11 +9,12 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
-from typing import TypeVar
+from typing import Final, TypeVar
 from xml.parsers import expat
 
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.injection.content_types import roles
+from xlmc.excel.workbook.injection.part_numbers import tables_in
 from xlmc.excel.workbook.injection.splice import as_utf8, parse_spans
 from xlmc.excel.workbook.package import CONTENT_TYPES, relationships, rels_part
 from xlmc.excel.workbook.safe_xml import REPAIR, tree
@@ -61,7 +62,7 @@ def faults(parts: Mapping[str, bytes], looked_at: Iterable[str]) -> list[str]:
     """
     role = roles(parts)
     names = sorted(name for name in looked_at if name in parts)
-    found = [*_content_type_faults(parts), *_sheet_faults(parts, role.workbook)]
+    found = [*_content_type_faults(parts), *_sheet_faults(parts, role.workbook), *_table_faults(parts, role.workbook)]
     entries = _cell_styles(parts, role.styles)
     for name in names:
         found += _xml_faults(name, parts[name])
@@ -114,6 +115,14 @@ def _sheet_faults(parts: Mapping[str, bytes], workbook: str) -> Iterator[str]:
             yield f"the name {name!r} belongs to a sheet that does not exist"
 
 
+def _table_faults(parts: Mapping[str, bytes], workbook: str) -> Iterator[str]:
+    """Tables have numbers and names of their own."""
+    found = list(tables_in(parts, workbook))
+    yield from (f"two tables have the number {value!r}" for value in _repeated([each.get("id", "") for each in found]))
+    names = [each.get("displayName", "").casefold() for each in found]
+    yield from (f"two tables have the name {value!r}" for value in _repeated(names))
+
+
 def _cell_styles(parts: Mapping[str, bytes], styles: str | None) -> int | None:
     """How many cell styles there are; None without a styles part."""
     if styles is None:
@@ -125,9 +134,14 @@ def _cell_styles(parts: Mapping[str, bytes], styles: str | None) -> int | None:
 def _style_faults(name: str, xml: bytes, entries: int | None) -> Iterator[str]:
     if entries is None or "/worksheets/" not in f"/{name}":
         return
-    found = _styles_from(max(entries, 1)).search(xml)
+    suspect = _styles_from(max(entries, 1)).search(xml)
+    found = suspect and next((each for each in _STYLED.finditer(xml) if int(each[1]) >= max(entries, 1)), None)
     if found is not None:
         yield f"{name} uses the cell style {int(found[1])}, and there are {entries}"
+
+
+_STYLED: Final = re.compile(rb'<(?:\w+:)?(?:c|row|col)\b[^<>]*? (?:s|style)="([0-9]{1,9})"')
+"""The style number of a cell, a row or a column; slower than `_styles_from`, which may find one in a cell's text."""
 
 
 @cache

@@ -23,13 +23,21 @@ _STEERING: Final = re.compile(
 )
 
 
+_BYTES: Final = re.compile("[\udc80-\udcff]+")
+"""What Python makes of a file's name in UTF-8 where the system's settings speak of ASCII."""
+
+
 def printable(text: str) -> str:
     r"""The text with such characters written as Python writes them; line feeds and tabs stay.
 
+    Names of files are read as UTF-8, whatever encoding the system's settings speak of.
+
     >>> printable("Speed\x1b[2J")
     'Speed\\x1b[2J'
+    >>> printable("Gr\udcc3\udcb6\udcc3\udc9fe")
+    'Größe'
     """
-    return _STEERING.sub(_escape, text)
+    return _STEERING.sub(_escape, _BYTES.sub(_decoded, text))
 
 
 def label(text: str) -> str:
@@ -39,6 +47,10 @@ def label(text: str) -> str:
     'Initial\nspeed'
     """
     return printable(text.replace("\r\n", "\n"))
+
+
+def _decoded(found: re.Match[str]) -> str:
+    return found[0].encode("ascii", "surrogateescape").decode("utf-8", "surrogateescape")
 
 
 def _escape(found: re.Match[str]) -> str:

@@ -19,6 +19,8 @@ DAMAGE = {
     "a sheet number twice": (WORKBOOK, b'sheetId="2"', b'sheetId="1"'),
     "a name of no sheet": (WORKBOOK, b'localSheetId="0"', b'localSheetId="7"'),
     "a style beyond the last": (SHEET, b' s="1"', b' s="99"'),
+    "a table number twice": ("xl/tables/table2.xml", b'id="2"', b'id="1"'),
+    "a table name twice": ("xl/tables/table2.xml", b'displayName="Second"', b'displayName="FIRST"'),
     "no XML": (SHEET, b"</worksheet>", b""),
 }
 
@@ -26,9 +28,11 @@ DAMAGE = {
 @pytest.fixture
 def book(build):
     def fill(made):
-        first, _ = made.add_worksheet("One"), made.add_worksheet("Two")
+        first, second = made.add_worksheet("One"), made.add_worksheet("Two")
         first.write("A1", 1.5, made.add_format({"num_format": "0.00"}))
         first.repeat_rows(0)
+        second.add_table("A1:A3", {"name": "First"})
+        second.add_table("C1:C3", {"name": "Second"})
 
     return build(fill)
 
@@ -47,3 +51,11 @@ def test_result_sheets_are_whole(rich, results):
     done = inject(rich, results)
     assert faults(done, done) == []
     assert checked_bytes(done, rich)
+
+
+@pytest.mark.parametrize("text", [' s="5000" ', '&lt;c r="A1" s="5000"/>', '<![CDATA[ s="5000"]]>'])
+def test_a_text_that_looks_like_a_style_is_none(book, text):
+    cell = f'<c r="Z1" t="inlineStr"><is><t>{text}</t></is></c></row>'.encode()
+    said = {**book, SHEET: book[SHEET].replace(b"</row>", cell, 1)}
+    assert cell in said[SHEET]
+    assert checked_bytes(said, book)

@@ -2,7 +2,13 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.excel.workbook.injection.part_numbers import free_names, free_table_name, quoted, rename_in_formula
+from xlmc.excel.workbook.injection.part_numbers import (
+    claimed_names,
+    free_names,
+    free_table_name,
+    quoted,
+    rename_in_formula,
+)
 
 SHEETS = {"results": "Results (2)", "o'hara": "O'Hara (2)", "résumé": "Neu"}
 TABLES = {"trials": "Trials_2"}
@@ -58,3 +64,10 @@ def test_table_names_are_free(taken, found):
 
 def test_quoted():
     assert quoted("O'Hara") == "'O''Hara'"
+
+
+def test_names_that_pointers_speak_of_are_claimed_whatever_the_case_of_their_part():
+    pointer = b'<Relationship Id="a" Type="t/image" Target="../media/image7.png"/>'
+    rels = b'<Relationships xmlns="x">' + pointer + b"</Relationships>"
+    parts = {"[Content_Types].xml": b"<Types/>", "xl/drawings/a.xml": b"<a/>", "xl/drawings/_RELS/A.xml.rels": rels}
+    assert claimed_names(parts) == {*parts, "xl/media/image7.png"}

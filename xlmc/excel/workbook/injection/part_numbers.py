@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
 
-from xlmc.excel.workbook.package import CONTENT_TYPES, relationships
+from xlmc.excel.workbook.package import CONTENT_TYPES, relationships, rels_part
 from xlmc.excel.workbook.safe_xml import tree
 
 __all__ = [
@@ -23,6 +23,7 @@ __all__ = [
     "quoted",
     "reached",
     "rename_in_formula",
+    "tables_in",
 ]
 
 _LONGEST = 31  # characters in a sheet name, Excel's limit
@@ -131,7 +132,8 @@ def claimed_names(parts: Mapping[str, bytes]) -> set[str]:
     """
     types = tree(parts[CONTENT_TYPES], CONTENT_TYPES).findall("{*}Override")
     spoken = {each.get("PartName", "").removeprefix("/") for each in types}
-    sources = ["", *(name for name in parts if not name.endswith(".rels"))]
+    folded = {name.casefold() for name in parts if name.casefold().endswith(".rels")}
+    sources = [part for part in ("", *parts) if rels_part(part).casefold() in folded]
     pointed = {each.target for part in sources for each in relationships(parts, part).values() if not each.external}
     return {*parts, *spoken, *pointed} - {""}
 
@@ -167,7 +169,7 @@ def free_tables(
     Raises:
         WorkbookError: a table of the user's is not XML.
     """
-    present = list(_tables(parts, workbook))
+    present = list(tables_in(parts, workbook))
     last = max((int(table.get("id", "")) for table in present if table.get("id", "").isdecimal()), default=0)
     taken = {name.casefold() for name in names} | {table.get("displayName", "").casefold() for table in present}
     ids, changed = {}, {}
@@ -182,7 +184,7 @@ def free_tables(
     return TableNumbers(ids, changed)
 
 
-def _tables(parts: Mapping[str, bytes], workbook: str) -> Iterator[Mapping[str, str]]:
+def tables_in(parts: Mapping[str, bytes], workbook: str) -> Iterator[Mapping[str, str]]:
     """The attributes of every table of the workbook."""
     for sheet in _pointed_to(parts, workbook):
         for rel in relationships(parts, sheet).values():

@@ -52,6 +52,11 @@ table, that has a condition. An advanced filter leaves no condition in the file,
 hand; `xlmc verify` shows where the saved value contradicts this. Where rows are hidden and the function number of
 `SUBTOTAL` varies, it is refused.
 
+`MATCH` with -1 goes down from the first cell, over cells of another kind, and ends at the first equal or smaller one;
+the other approximate lookups halve the range, as Excel does also where it is in no order. In an array that is no range,
+such as `{1;TRUE}`, `AVERAGEA` and its like count no logicals, and no texts but for `AVERAGEA`. In patterns a `~` takes
+the next character as it is.
+
 `A1#` is the range that the dynamic array in A1 fills, or `#REF!` if there is none (an array formula entered with
 Ctrl-Shift-Enter does not spill). Where its size varies, it is what the formula gives in each trial.
 

@@ -129,6 +129,7 @@ def test_what_a_column_is_filled_with_is_of_one_shape(pieces, others, row, other
         ('"_xlfn.IFS(" & A1', '="_xlfn.IFS(" & A1'),
         ("'_xlfn.old'!A1+_xlfn.DAYS(A1,A2)", "='_xlfn.old'!A1+DAYS(A1,A2)"),
         ("my_xlfn.name+1", "=my_xlfn.name+1"),
+        ("_xll.RiskNormal(A1,2)+1", "=RiskNormal(A1,2)+1"),
     ],
 )
 def test_without_the_prefixes_of_the_file(text, shown):

@@ -19,7 +19,7 @@ from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.address import Area
 from xlmc.excel.formula import ir
 from xlmc.excel.functions import Kind
-from xlmc.excel.functions.operators import ALL_BITS
+from xlmc.excel.functions.operators import ALL_BITS, IS_CASE
 from xlmc.excel.functions.values import ERROR, NUMBER
 
 __all__ = ["CHOICES", "lower_reference"]
@@ -123,7 +123,7 @@ def _switch(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
     last = rest[-1] if len(rest) % 2 else ir.ErrorLiteral(ErrorCode.NA)
     node = _branch(lowering, last, scope.branch())
     for match, result in reversed(list(zip(rest[: len(rest) // 2 * 2 : 2], rest[1::2], strict=True))):
-        same = lowering.apply(ALL_BITS["="], (subject, lowering.lower(match, scope.plainly())))
+        same = lowering.apply(IS_CASE, (subject, lowering.lower(match, scope.plainly())))
         node = _select(lowering, same, _branch(lowering, result, scope.branch()), node, scope.branch())
     return node
 

@@ -14,7 +14,7 @@ from typing import Final
 from xlmc.engine.graph.called_functions import check_count
 from xlmc.engine.graph.lowering import Scope, Thunk, TreeLowering
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.excel.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of
+from xlmc.excel.address import MAX_COLUMN, MAX_ROW, Area, Cell, column_number, host_of
 from xlmc.excel.formula import ir, parse
 from xlmc.excel.functions.budget import ask_for_reading
 from xlmc.excel.functions.values import Codes
@@ -161,6 +161,12 @@ def _stop_at_error(errors: Codes) -> None:
 
 def _whole_number(lowering: TreeLowering, tree: ir.Expression, scope: Scope, function: str) -> int | None:
     """A known argument, cut to a whole number; None where it is left out."""
+    number = _known_number(lowering, tree, scope, function)
+    return None if number is None else int(number)
+
+
+def _known_number(lowering: TreeLowering, tree: ir.Expression, scope: Scope, function: str) -> float | None:
+    """A known argument; None where it is left out."""
     if isinstance(tree, ir.Missing):
         return None
     node = lowering.lower(tree, scope.inside())
@@ -172,15 +178,15 @@ def _whole_number(lowering: TreeLowering, tree: ir.Expression, scope: Scope, fun
         raise FormulaError(f"{function} depends on a value that varies; where it leads must be fixed", hint=hint)
     numbers, errors = known.to_numbers()
     _stop_at_error(errors)
-    return int(numbers[0])
+    return float(numbers[0])
 
 
 def _offset(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
     base = areas_of(lowering, arguments[0], scope)
     if base is None or len(base) != 1:
         raise FormulaError("OFFSET starts from a reference to one area")
-    numbers = [_whole_number(lowering, argument, scope, "OFFSET") for argument in arguments[1:]]
-    down, right = (numbers[0] or 0), (numbers[1] or 0)
+    numbers = [_known_number(lowering, argument, scope, "OFFSET") for argument in arguments[1:]]
+    down, right = int(numbers[0] or 0), int(numbers[1] or 0)
     height = numbers[2] if len(numbers) > 2 and numbers[2] is not None else base[0].whole.rows
     width = numbers[3] if len(numbers) > 3 and numbers[3] is not None else base[0].whole.columns
     top, left = base[0].top + down, base[0].left + right
@@ -191,9 +197,12 @@ def _offset(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[
     return [cut(lowering, reached)]
 
 
-def _span(start: int, count: int) -> tuple[int, int]:
-    """First and last; a negative count goes backwards."""
-    end = start + count - (1 if count > 0 else -1)
+def _span(start: int, count: float) -> tuple[int, int]:
+    """First and last; a negative count goes backwards.
+
+    Excel cuts the count to a whole number, but looks at its sign first: 0.9 goes one back, and -0.9 one on.
+    """
+    end = start + int(count) - (1 if count > 0 else -1)
     return min(start, end), max(start, end)
 
 
@@ -228,7 +237,19 @@ def _is_true(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:
     return bool(logicals[0])
 
 
+_PADDED: Final = re.compile(r"(?P<before>\$?(?P<column>[A-Za-z]{1,3})\$?)0+(?=[1-9])")
+"""The row of a cell with zeros before it, `A02`, which Excel reads as `A2`."""
+_CELLS: Final = re.compile(r"\$?[A-Za-z]{1,3}\$?[0-9]+(?::\$?[A-Za-z]{1,3}\$?[0-9]+)?")
+
+
+def _unpad(found: re.Match[str]) -> str:
+    return found["before"] if column_number(found["column"].upper()) <= MAX_COLUMN else found[0]
+
+
 def _read(lowering: TreeLowering, text: str) -> ir.Expression | None:
+    sheet, mark, place = text.rpartition("!")
+    if _CELLS.fullmatch(place):
+        text = sheet + mark + _PADDED.sub(_unpad, place)
     try:
         return parse(text)
     except FormulaError:

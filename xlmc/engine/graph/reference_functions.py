@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 
-from xlmc.engine.graph.arrays import beside, grid
+from xlmc.engine.graph.arrays import beside, cell_by_cell, grid
 from xlmc.engine.graph.computed_references import (
     REFERENCES,
     NoReference,
@@ -23,6 +23,8 @@ from xlmc.excel.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of, quote_s
 from xlmc.excel.formula import ir
 from xlmc.excel.formula.shape import shown_formula
 from xlmc.excel.functions.budget import ask_for_reading
+from xlmc.excel.functions.registry import row_of
+from xlmc.excel.functions.statistical.descriptive import array_values
 from xlmc.excel.functions.values import constant
 
 __all__ = ["REFERENCE_FUNCTIONS"]
@@ -296,6 +298,37 @@ def _call_with_areas(
     return lowering.lower(ir.Call(name, tuple(parts)), scope)
 
 
+def _of_all_values(name: str, count_texts: bool = False) -> Callable[[TreeLowering, Arguments, Scope], int | None]:
+    """AVERAGEA and its like: an array that is no range loses what they do not count there."""
+
+    def lower(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int | None:
+        plain = [not _is_array(lowering, argument, scope) for argument in arguments]
+        if all(plain):
+            return None
+        found: list[int] = []
+        for argument, is_plain in zip(arguments, plain, strict=True):
+            if is_plain:
+                found += lowering.whole(argument, scope.inside())
+            else:
+                found.append(_values_of_array(lowering, lowering.lower(argument, scope.over_arrays()), count_texts))
+        return lowering.apply(row_of(name), tuple(found))
+
+    return lower
+
+
+def _values_of_array(lowering: TreeLowering, node: int, count_texts: bool) -> int:
+    one = array_values(count_texts)
+    cells = cell_by_cell(lowering.dag, (node,), lambda cell: lowering.apply(one, cell), constants=True)
+    return lowering.apply(array_values(count_texts, spills=True), (node,)) if cells is None else cells
+
+
+def _is_array(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:
+    """Whether an argument is an array, and not a reference."""
+    if isinstance(tree, Cell | Area) or areas_of(lowering, tree, scope.inside()) is not None:
+        return False
+    return isinstance(tree, ir.Array) or (scope.array and lowering.dag.sizes[lowering.lower(tree, scope)] is not None)
+
+
 def _blanks(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int | None:
     """COUNTBLANK, also of the cells beyond the last filled one."""
     areas = areas_of(lowering, arguments[0], scope)
@@ -330,6 +363,13 @@ REFERENCE_FUNCTIONS: Mapping[str, Callable[[TreeLowering, Arguments, Scope], int
     "SHEETS": _sheets,
     "CELL": _cell,
     "ANCHORARRAY": _spill,
+    "AVERAGEA": _of_all_values("AVERAGEA", count_texts=True),
+    "MAXA": _of_all_values("MAXA"),
+    "MINA": _of_all_values("MINA"),
+    "VARA": _of_all_values("VARA"),
+    "VARPA": _of_all_values("VARPA"),
+    "STDEVA": _of_all_values("STDEVA"),
+    "STDEVPA": _of_all_values("STDEVPA"),
     "SUBTOTAL": without_totals("SUBTOTAL"),
     "AGGREGATE": without_totals("AGGREGATE"),
 }

@@ -39,6 +39,8 @@ def without_totals(name: str) -> Callable[[TreeLowering, Arguments, Scope], int 
         nested = name == "SUBTOTAL" or (None if skipped is None else skipped.nested)
         ranked = name == "AGGREGATE" and _is_ranked(lowering, found[0])
         for position, argument in enumerate(arguments[first:]):
+            if name == "SUBTOTAL" and isinstance(argument, ir.ErrorLiteral):
+                return lowering.error(argument.code)
             is_rank = ranked and position == 1
             areas = None if is_rank else areas_of(lowering, argument, scope)
             if areas is None:

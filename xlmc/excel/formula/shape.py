@@ -190,7 +190,7 @@ _HIDDEN: Final = re.compile(
     rf"|_xlfn\.ANCHORARRAY\((?P<spilled>{_REFERENCE})\)"
     rf"|_xlfn\.SINGLE\((?P<single>{_REFERENCE})\)"
     r"|'(?:[^']|'')*'"  # a sheet's name
-    r"|(?<![\w.])(?P<prefix>(?:_xlfn\.|_xlws\.|_xlpm\.|_xlop\.|_xleta\.)+)",
+    r"|(?<![\w.])(?P<prefix>(?:_xlfn\.|_xlws\.|_xlpm\.|_xlop\.|_xleta\.|_xll\.)+)",
     re.IGNORECASE,
 )
 _OPTIONAL: Final = re.compile(r"_xlop\.([\w.]+)", re.IGNORECASE)

@@ -12,8 +12,8 @@ The criterion of a trial is compared with the cells of the same trial. Letters: 
 * `""` matches empty cells and empty texts, `"="` empty cells, `"<>"` all other cells.
 
 A text with wildcards is a pattern for a whole text: `*` stands for any characters, `?` for one, and the character
-after `~` for itself. A pattern is cut at its stars into pieces of fixed length, so that each piece goes over the text
-once at most: one regular expression with many stars could take for ever.
+after `~` for itself; a `~` at the end is nothing. A pattern is cut at its stars into pieces of fixed length, so that
+each piece goes over the text once at most: one regular expression with many stars could take for ever.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from xlmc.errors import ErrorCode
 from xlmc.excel.functions.arguments import fill_blanks
 from xlmc.excel.functions.fifteen_digits import COMPARISONS
 from xlmc.excel.functions.logical import choose
-from xlmc.excel.functions.number_text import parse_number
+from xlmc.excel.functions.number_text import SPACES, parse_number
 from xlmc.excel.functions.ordering import Ordered, to_ordered
 from xlmc.excel.functions.values import BLANK, ERROR, NUMBER, TEXT, Bools, Floats, Objects, Value, from_objects
 
@@ -57,7 +57,7 @@ def which_meet(criterion: Value, cells: Value, *, begins: bool = False, date1904
     Returns:
         (n, k), the cells row by row.
     """
-    read = partial(parse_number, date1904=date1904)
+    read = partial(_read_stripped, date1904=date1904)
     operators, operand = _parse(criterion, _BEGINS if begins else "=", read)
     wanted, found = to_ordered(operand, cells)
     present = sorted(set(operators.tolist()))
@@ -65,6 +65,10 @@ def which_meet(criterion: Value, cells: Value, *, begins: bool = False, date1904
     for operator in present[1:]:
         result = np.where((operators == operator)[:, None], _match(operator, wanted, found, read), result)
     return result
+
+
+def _read_stripped(text: str, date1904: bool) -> float | None:
+    return parse_number(text.strip(SPACES), date1904)
 
 
 def _parse(criterion: Value, plain: str, read: _Read) -> tuple[Objects, Value]:
@@ -148,7 +152,7 @@ def _look_up_texts(found: Ordered, table: Any, otherwise: Any) -> Any:
     return np.where(is_text, table[np.where(is_text, found.order, 0).astype(np.intp)], otherwise)
 
 
-_TOKEN = re.compile(r"~[*?~]|.", re.DOTALL)
+_TOKEN = re.compile(r"~.|~$|.", re.DOTALL)
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,6 +195,6 @@ def pattern_of(text: str, begins: bool = False) -> _Pattern:
     for token in _TOKEN.findall(text.casefold() + ("*" if begins else "")):
         if token == "*":
             pieces.append([])
-        else:
+        elif token != "~":
             pieces[-1].append("." if token == "?" else re.escape(token[-1]))
     return _Pattern(tuple((re.compile("".join(piece), re.DOTALL), len(piece)) for piece in pieces))

@@ -22,7 +22,7 @@ from xlmc.excel.functions.math import aggregate
 from xlmc.excel.functions.math.conditional import Reduce, fold_of_numbers
 from xlmc.excel.functions.ordering import to_ordered
 from xlmc.excel.functions.registry import Anything, Cells, Kind, excel
-from xlmc.excel.functions.values import BLANK, NUMBER, TEXT, Bools, Value, constant
+from xlmc.excel.functions.values import BLANK, ERROR, NUMBER, TEXT, Bools, Value, constant
 
 __all__: list[str] = []
 
@@ -62,10 +62,18 @@ def _records(database: Value, field: int) -> Value:
 
 
 def _field_named(database: Value, name: Value) -> Indices:
-    """Return the first column with that heading, counted from 0, or -1: (n,)."""
-    wanted, headings = to_ordered(name, map_parts(database, lambda part: part[:, :1]))
+    """Return the first column with that heading, counted from 0, or -1: (n,). Headings are texts: 1 is `1`."""
+    wanted, headings = to_ordered(_as_heading(name), _as_heading(map_parts(database, lambda part: part[:, :1])))
     same = (headings.kinds == wanted.kinds) & (headings.order == wanted.order) & (wanted.kinds != BLANK)
     return np.where(same.any(axis=1), same.argmax(axis=1), -1)
+
+
+def _as_heading(value: Value) -> Value:
+    """Numbers and logicals as the texts that `&` makes of them."""
+    texts, _ = value.to_texts()
+    is_text = np.broadcast_to((value.kinds != BLANK) & (value.kinds < ERROR), texts.shape)
+    kinds = np.where(is_text, np.uint8(TEXT), value.kinds).astype(np.uint8)
+    return Value(np.broadcast_to(value.numbers, texts.shape), kinds, texts)
 
 
 def _find_field(database: Value, field: Value) -> tuple[Indices, Bools]:

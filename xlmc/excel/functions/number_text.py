@@ -87,17 +87,17 @@ def dates_from_1904() -> Iterator[None]:
 def parse_number(text: str, date1904: bool | None = None) -> float | None:
     """Read the number that a text stands for in arithmetic; None if it is no number.
 
-    `$1,234.50`, `(5)`, `12%`, `1E-3` and `1 1/2` are numbers, and so are dates and times.
+    `$1,234.50`, `(5)`, `12%`, `1E-3` and `1 1/2` are numbers, and so are dates and times. Spaces may stand around
+    numbers, but not around dates and times.
 
     Args:
         text: what is read.
         date1904: whether days count from 1904; by default they do within `dates_from_1904`, and nowhere else.
     """
-    stripped = text.strip(SPACES)
-    number = parse_plain_number(stripped)
+    number = parse_plain_number(text.strip(SPACES))
     if number is not None:
         return number
-    moment = parse_moment(stripped, _CALENDAR.from_1904 if date1904 is None else date1904)
+    moment = parse_moment(text, _CALENDAR.from_1904 if date1904 is None else date1904)
     return None if moment is None else moment.serial
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Any, Final
 
@@ -15,9 +16,9 @@ import numpy as np
 from xlmc.excel.functions.facts import Facts
 from xlmc.excel.functions.fifteen_digits import COMPARISONS
 from xlmc.excel.functions.registry import Anything, Function, Kind, Number, excel
-from xlmc.excel.functions.values import BLANK, DIV0, ERROR, NUM, TEXT, Floats, Value
+from xlmc.excel.functions.values import BLANK, DIV0, ERROR, LOGICAL, NUM, TEXT, Floats, Value
 
-__all__ = ["ALL_BITS", "compare"]
+__all__ = ["ALL_BITS", "IS_CASE", "compare"]
 
 _Relation = Callable[[Any, Any], Any]
 
@@ -115,3 +116,16 @@ _register("<", operator.lt)
 _register("<=", operator.le)
 _register(">", operator.gt)
 _register(">=", operator.ge)
+
+
+def _is_case(x: Value, y: Value) -> Value:
+    """Whether two values are equal as SWITCH has it: a logical equals no empty cell."""
+    if x.numbers.ndim != y.numbers.ndim:
+        x, y = x.as_range(), y.as_range()
+    found = compare(operator.eq, COMPARISONS["="].plain, x, y)
+    apart = (x.kinds == BLANK) & (y.kinds == LOGICAL) | (x.kinds == LOGICAL) & (y.kinds == BLANK)
+    return Value.of_logicals((found.numbers != 0) & ~apart, found.errors if found.errors.any() else None)
+
+
+IS_CASE: Final = replace(ALL_BITS["="], body=_is_case)
+"""How SWITCH compares its first argument with the others."""

@@ -66,6 +66,15 @@ _REFUSED: Final = (
 )
 
 _DATE: Final = re.compile(r'=.*"[^"]*\d[^"]*[-/.: ][^"]*\d[^"]*"')
+_CRITERIA: Final = ("COUNTIF", "COUNTIFS", "SUMIF", "SUMIFS", "AVERAGEIF", "AVERAGEIFS", "MAXIFS", "MINIFS")
+_DATABASE: Final = (
+    *("DSUM", "DPRODUCT", "DAVERAGE", "DMIN", "DMAX", "DVAR", "DVARP", "DSTDEV", "DSTDEVP", "DGET"),
+    *("DCOUNT", "DCOUNTA"),
+)
+_AT_THE_ENDS: Final = (
+    *("BETA.INV", "BETAINV", "BINOM.INV", "CRITBINOM", "NEGBINOM.DIST", "NEGBINOMDIST", "SERIESSUM"),
+    *("PMT", "PV", "FV", "IPMT", "PPMT"),
+)
 _ARRAYS: Final = _calls("ANCHORARRAY", "FILTER", "UNIQUE", "SORT", "SORTBY", "SEQUENCE", "OFFSET", "INDIRECT", "CELL")
 _ANY: Final = re.compile("=")
 
@@ -187,8 +196,27 @@ RULES: Final = (
     Rule(
         "0.12.0",
         "criteria compare numbers at 15 digits",
-        _calls("COUNTIF", "COUNTIFS", "SUMIF", "SUMIFS", "AVERAGEIF", "AVERAGEIFS", "MAXIFS", "MINIFS"),
+        _calls(*_CRITERIA, *_DATABASE),
     ),
+    Rule("0.12.0", "MATCH with -1 ends at the first equal or smaller cell", _calls("MATCH")),
+    Rule("0.12.0", "LOOKUP searches the first of several columns", _calls("LOOKUP")),
+    Rule(
+        "0.12.0",
+        "AVERAGEA and its like count no logicals in arrays",
+        _calls("AVERAGEA", "MAXA", "MINA", "VARA", "VARPA", "STDEVA", "STDEVPA"),
+    ),
+    Rule(
+        "0.12.0",
+        "probabilities of 0 or 1, rates of -100 % and below, and 0^0 in a series give Excel's errors",
+        _calls(*_AT_THE_ENDS),
+    ),
+    Rule("0.12.0", "database functions compare headings as texts", _calls(*_DATABASE)),
+    Rule("0.12.0", "a ~ in a pattern takes any next character as it is", re.compile("~")),
+    Rule("0.12.0", "SWITCH takes no empty cell for a logical", _calls("SWITCH")),
+    Rule("0.12.0", "TEXTBEFORE and TEXTAFTER round the number of a delimiter down", _calls("TEXTBEFORE", "TEXTAFTER")),
+    Rule("0.12.0", "OFFSET of less than one row or column leads where Excel's does", _calls("OFFSET")),
+    Rule("0.12.0", "INDIRECT reads rows with zeros before them", _calls("INDIRECT")),
+    Rule("0.12.0", "texts of dates with spaces around them are no numbers", _ANY),
 )
 """The rules in the order of versions."""
 

@@ -1,4 +1,4 @@
-"""The search by halves against plain loops; equal, next smaller and larger values against a model that tries all."""
+"""The searches by halves and downwards against plain loops; the others against a model that tries all values."""
 
 from __future__ import annotations
 
@@ -7,7 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.excel.functions.lookup.vector_search import EXACT, LARGER, SMALLER, last_not_beyond, nearest
+from xlmc.excel.functions.lookup.vector_search import (
+    EXACT,
+    LARGER,
+    SMALLER,
+    before_first_smaller,
+    last_not_beyond,
+    nearest,
+)
 from xlmc.excel.functions.values import from_objects
 
 cells = st.sampled_from([0.0, 1.0, 2.0, 3.0, "a", "b", "bc", True, False, None])
@@ -100,3 +107,29 @@ def test_in_order_it_is_the_last_value_up_to_the_key(size):
     wanted = np.arange(-1.0, size + 1, 0.5)
     found = last_not_beyond(_values(wanted.tolist()), _values([values.tolist()], size, 1))
     assert found.tolist() == (np.searchsorted(values, wanted, side="right") - 1).tolist()
+
+
+def _place_downwards(key, row):
+    before = -1
+    for place, cell in enumerate(row):
+        if type(cell) is not type(key):
+            continue
+        if cell == key:
+            return place
+        if cell < key:
+            return before
+        before = place
+    return before
+
+
+@given(
+    st.lists(
+        st.tuples(cells_halving.filter(lambda key: key is not None), *[cells_halving] * 7), min_size=1, max_size=4
+    ),
+    st.booleans(),
+)
+def test_downwards_as_a_plain_loop_has_it(trials, same_list):
+    lists = [trials[0][1:] if same_list else trial[1:] for trial in trials]
+    vector = _values(lists[:1] if same_list else lists, 7, 1)
+    found = before_first_smaller(_values([trial[0] for trial in trials]), vector)
+    assert found.tolist() == [_place_downwards(trial[0], row) for trial, row in zip(trials, lists, strict=True)]

@@ -152,7 +152,7 @@ TABLE = [
     ("SUMXMY2", ([[1, "x"]], [[1, NA_OF_PAIRED_SUMS]]), NA_OF_PAIRED_SUMS),
     ("SERIESSUM", (2, 3, 4, 5), 40),
     ("SERIESSUM", (2, 2, 1, [[1, 2, 3], [4, 5, 6]]), 1284),
-    ("SERIESSUM", (0, 0, 1, [[7, 9]]), 7),
+    ("SERIESSUM", (0, 0, 1, [[7, 9]]), NUM_OF_PAIRED_SUMS),
     ("SERIESSUM", (10, 100, 100, [[1, 2, 3]]), 3e300),
     ("SERIESSUM", (10, 100, 100, [[1, 2, 3, 4]]), NUM_OF_PAIRED_SUMS),
     ("SERIESSUM", (-2, 0.5, 1, [[1]]), NUM_OF_PAIRED_SUMS),

@@ -53,22 +53,34 @@ def _nan_if_zero(x: Any) -> Floats:
     return np.where(np.asarray(x) == 0, np.nan, x)
 
 
+def _nan_unless_kept(rate: Any) -> Floats:
+    """The rate, NaN where it leaves nothing of a unit: at -1 and below."""
+    return np.where(np.asarray(rate) > -1, rate, np.nan)
+
+
 @excel("FV", Number, Number, Number, Number(default=0.0), Number(default=0.0))
 def future_value(rate: Any, nper: Any, pmt: Any, pv: Any, when: Any) -> Floats:
-    """Balance after the last payment."""
+    """Balance after the last payment; `#DIV/0!` before the first one at a rate of -100 %."""
+    lost = (np.asarray(rate) == -1) & (np.asarray(nper) < 0)
+    return np.where(lost, DIV0, _future_value(np.where(lost, 0.0, rate), nper, pmt, pv, when))
+
+
+def _future_value(rate: Any, nper: Any, pmt: Any, pv: Any, when: Any) -> Floats:
     return np.asarray(-(pv * growth(rate, nper) + pmt * _timing_factor(rate, when) * _accumulation(rate, nper)) + 0.0)
 
 
 @excel("PV", Number, Number, Number, Number(default=0.0), Number(default=0.0))
 def present_value(rate: Any, nper: Any, pmt: Any, fv: Any, when: Any) -> Floats:
-    """What all payments are worth now; `#NUM!` at a rate of -100 %."""
+    """What all payments are worth now; `#NUM!` at rates of -100 % and below."""
+    rate = _nan_unless_kept(rate)
     later = fv + pmt * _timing_factor(rate, when) * _accumulation(rate, nper)
     return np.asarray(-later / _nan_if_zero(growth(rate, nper)) + 0.0)
 
 
 @excel("PMT", Number, Number, Number, Number(default=0.0), Number(default=0.0))
 def payment(rate: Any, nper: Any, pv: Any, fv: Any, when: Any) -> Floats:
-    """Payment per period; `#NUM!` without periods."""
+    """Payment per period; `#NUM!` without periods, and at rates of -100 % and below."""
+    rate = _nan_unless_kept(rate)
     worth = _timing_factor(rate, when) * _accumulation(rate, nper)
     return np.asarray(-(fv + pv * growth(rate, nper)) / _nan_if_zero(worth) + 0.0)
 

@@ -29,7 +29,14 @@ from xlmc.excel.functions.arguments import (
 from xlmc.excel.functions.facts import Facts
 from xlmc.excel.functions.logical import choose
 from xlmc.excel.functions.lookup.picked_cells import Indices, by_portions, map_parts, pick, transpose_cells, width_of
-from xlmc.excel.functions.lookup.vector_search import EXACT, LARGER, SMALLER, last_not_beyond, nearest
+from xlmc.excel.functions.lookup.vector_search import (
+    EXACT,
+    LARGER,
+    SMALLER,
+    before_first_smaller,
+    last_not_beyond,
+    nearest,
+)
 from xlmc.excel.functions.ordering import to_ordered
 from xlmc.excel.functions.registry import Anything, Arrays, Cells, Kind, Logical, Number, Ranges, excel
 from xlmc.excel.functions.values import BLANK, Codes, Floats, Value, constant
@@ -58,7 +65,7 @@ def _classic_index(key: Value, vector: Value, order: Floats) -> Indices:
         if wanted == EXACT:
             found = nearest(key, vector, wildcards=True)
         else:
-            found = last_not_beyond(key, vector, falling=bool(wanted < 0))
+            found = before_first_smaller(key, vector) if wanted < 0 else last_not_beyond(key, vector)
         result = np.where(order == wanted, found, result)
     return result
 
@@ -67,7 +74,7 @@ def _classic_index(key: Value, vector: Value, order: Floats) -> Indices:
 def match(key: Value, cells: Value, order: Value | None = None) -> Value:
     """Position of the key, or of the last value before it, in a row or column in rising (1) or falling order (-1).
 
-    `vector_search` says how these are halved. With `order` 0 it is that of the first equal value, and wildcards count.
+    `vector_search` says how these are searched. With `order` 0 it is that of the first equal value; wildcards count.
     """
     return by_portions(_match, [key, cells, constant(1) if order is None else order], width_of(cells))
 
@@ -118,7 +125,7 @@ def _vlookup(key: Value, table: Value, column: Value, near: Value) -> Value:
 def lookup(key: Value, cells: Value, results: Value | None = None) -> Value:
     """The cell beside the last value up to the key.
 
-    Without `results`, the key is searched in the first column of the range, and the result is in its last column; in a
+    The key is searched in the first column of the range; without `results`, the result is in its last column. In a
     range that is wider than high, these are rows.
     """
     if results is None:
@@ -127,9 +134,7 @@ def lookup(key: Value, cells: Value, results: Value | None = None) -> Value:
 
 
 def _lookup_in_array(key: Value, cells: Value) -> Value:
-    grid = cells.as_range()
-    if grid.shape[2] > grid.shape[1]:
-        grid = transpose_cells(grid)
+    grid = _upright(cells.as_range())
     errors = first_error(key.errors, errors_unless_range(cells, key))
     first, last = map_parts(grid, lambda part: part[:, :, :1]), map_parts(grid, lambda part: part[:, :, -1:])
     return _take_beside(key, first, last, errors)
@@ -137,9 +142,15 @@ def _lookup_in_array(key: Value, cells: Value) -> Value:
 
 def _lookup_in_vector(key: Value, cells: Value, results: Value) -> Value:
     errors = first_error(key.errors, errors_unless_range(cells, key), errors_unless_range(results, key))
-    if not (_is_vector(cells.as_range()) and _is_vector(results.as_range())):
+    if not _is_vector(results.as_range()):
         return error_everywhere(key, _NOT_FOUND, errors)
-    return _take_beside(key, cells.as_range(), map_parts(results.as_range(), _as_column), errors)
+    first = map_parts(_upright(cells.as_range()), lambda part: part[:, :, :1])
+    return _take_beside(key, first, map_parts(results.as_range(), _as_column), errors)
+
+
+def _upright(grid: Value) -> Value:
+    """The range, turned where it is wider than high: LOOKUP searches its first row then."""
+    return transpose_cells(grid) if grid.shape[2] > grid.shape[1] else grid
 
 
 def _as_column(part: Floats) -> Floats:

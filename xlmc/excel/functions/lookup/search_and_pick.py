@@ -76,7 +76,8 @@ class Search:
             by_size = np.argsort(numbers, kind="stable")
             return cls(np.append(numbers[by_size], np.inf), 1.0, np.append(by_size + 1, 0), 0.0)
         signed = np.copysign(1.0, order) * numbers
-        if not (signed[:-1] <= signed[1:]).all():
+        in_order = np.less_equal if order > 0 else np.less  # of equal numbers in falling order MATCH finds the first
+        if not in_order(signed[:-1], signed[1:]).all():
             return None
         with np.errstate(all="ignore"):  # of numbers that are too far apart, or too near, the step is none
             step = float(signed[-1] - signed[0]) / max(1, signed.size - 1)

@@ -1,7 +1,10 @@
-"""Two ways to find the positions of keys in vectors. Letters: m keys, k values.
+"""Three ways to find the positions of keys in vectors. Letters: m keys, k values.
 
 `nearest` finds the equal value, or else the next smaller or larger one, anywhere in the vector. A key finds only values
 of its own kind, and texts in upper or lower case.
+
+`before_first_smaller` goes down a vector in falling order from its first value, as `MATCH` does with -1, and stops at
+the first equal or smaller one: what follows does not count (measured in Excel by the authors of ClosedXML).
 
 `last_not_beyond` halves the vector again and again, as `MATCH`, `LOOKUP`, `VLOOKUP` and `HLOOKUP` do, which expect the
 values to be in order. If they are not, it still finds what Excel finds, because sheets rely on it:
@@ -21,7 +24,7 @@ from xlmc.excel.functions.lookup.picked_cells import Indices
 from xlmc.excel.functions.ordering import Ordered, search_each_trial
 from xlmc.excel.functions.values import ERROR, LOGICAL, NUMBER, TEXT, Bools, Floats, Value
 
-__all__ = ["EXACT", "LARGER", "SMALLER", "last_not_beyond", "nearest"]
+__all__ = ["EXACT", "LARGER", "SMALLER", "before_first_smaller", "last_not_beyond", "nearest"]
 
 SMALLER: Final = -1
 EXACT: Final = 0
@@ -109,6 +112,42 @@ def _match_pattern(vector: Ordered, pattern: str) -> Bools:
     fits = pattern_of(pattern).fits
     fitting = [rank for rank in np.unique(vector.order[is_text]).tolist() if fits(vector.texts[int(rank)])]
     return np.asarray(is_text & np.isin(vector.order, fitting))
+
+
+def before_first_smaller(keys: Value, vector: Value) -> Indices:
+    """Find each key in a vector in falling order: its first equal value, else the one before the first smaller value.
+
+    Values of another kind than the key's are passed over. Where the first of its kind is smaller, there is none.
+
+    Args:
+        keys: (n,) or, in an array formula, (n, r, c).
+        vector: (n, k, 1) or (n, 1, k).
+
+    Returns:
+        The shape of `keys`, with the trials of both, counted from 0; -1 where there is none.
+    """
+
+    def find(keys: Ordered, vector: Ordered) -> Indices:
+        result = np.full(len(keys.order), -1)
+        for kind in (NUMBER, TEXT, LOGICAL):
+            mine = np.flatnonzero(keys.kinds[:, 0] == kind)
+            rows = mine if len(vector.order) > 1 else np.zeros(1, np.intp)
+            if mine.size:
+                result[mine] = _go_down(keys.order[mine, 0], vector.kinds[rows] == kind, vector.order[rows])
+        return result
+
+    return search_each_trial(keys, vector, find)
+
+
+def _go_down(keys: Floats, comparable: Bools, order: Floats) -> Indices:
+    """Find keys (m,) in values (m, k), or (1, k) for all keys: the last one that is reached and not smaller."""
+    least = np.minimum.accumulate(np.where(comparable, order, np.inf), axis=1)
+    k = order.shape[1]
+    stop = np.searchsorted(-least[0], -keys) if len(least) == 1 else (least > keys[:, None]).sum(axis=1)
+    before = np.maximum.accumulate(np.where(comparable, np.arange(k), -1), axis=1)
+    rows = np.arange(len(keys)) if len(least) > 1 else np.zeros(1, np.intp)
+    equal = (stop < k) & (least[rows, np.minimum(stop, k - 1)] == keys)
+    return np.where(equal, stop, np.where(stop > 0, before[rows, np.maximum(stop - 1, 0)], -1))
 
 
 def last_not_beyond(keys: Value, vector: Value, *, falling: bool = False) -> Indices:

@@ -168,7 +168,10 @@ def sum_of_squares_of_differences(x: Value, y: Value) -> Value:
 
 @excel("SERIESSUM", OneCell, OneCell, OneCell, Cells)
 def series_sum(x: Value, first: Value, step: Value, coefficients: Value) -> Value:
-    """Sum of a·x^first + b·x^(first + step) + …, the coefficients read row by row; a blank one is 0."""
+    """Sum of a·x^first + b·x^(first + step) + …, the coefficients read row by row; a blank one is 0.
+
+    As everywhere in Excel, 0^0 is `#NUM!`.
+    """
     values = align_ranges(x, first, step)
     (base, _), (power, _), (more, _) = numbers = [strict_numbers(value) for value in values]
     factors, kinds = _cells(coefficients)
@@ -177,5 +180,9 @@ def series_sum(x: Value, first: Value, step: Value, coefficients: Value) -> Valu
     spread = (-1,) + (1,) * (values[0].numbers.ndim - 1)
     total = np.zeros(spread[1:] or 1)
     for i in range(factors.shape[1]):
-        total = total + factors[:, i].reshape(spread) * np.float_power(base, power + i * more)
+        total = total + factors[:, i].reshape(spread) * _power_of(base, power + i * more)
     return Value.of_numbers(total, first_error(*(codes for _, codes in numbers), refused.reshape(spread)))
+
+
+def _power_of(base: Floats, exponent: Floats) -> Floats:
+    return np.where((base == 0) & (exponent == 0), NUM, np.float_power(base, exponent))

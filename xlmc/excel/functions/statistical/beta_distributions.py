@@ -52,10 +52,10 @@ def betadist(x: Floats, a: Floats, b: Floats, low: Floats, high: Floats) -> Floa
 
 @excel("BETA.INV", Number, Number, Number, Number(default=0.0), Number(default=1.0), aliases=("BETAINV",))
 def beta_inv(p: Floats, a: Floats, b: Floats, low: Floats, high: Floats) -> Floats:
-    """Quantile of the beta distribution between `low` and `high`."""
+    """Quantile of the beta distribution between `low` and `high`; `#NUM!` at the probabilities 0 and 1."""
     from scipy.special import betaincinv
 
-    inside = (np.asarray(p) > 0) & (p <= 1) & (a > 0) & (b > 0) & (low < high)
+    inside = (np.asarray(p) > 0) & (p < 1) & (a > 0) & (b > 0) & (low < high)
     z = betaincinv(*(np.where(inside, array, 0.5) for array in (a, b, p)))
     return np.where(inside, low + np.subtract(high, low) * z, NUM)
 

@@ -23,6 +23,11 @@ def _is_probability(p: Floats) -> Bools:
     return (np.asarray(p) >= 0) & (p <= 1)
 
 
+def _is_open(p: Floats) -> Bools:
+    """Whether it is a probability, and neither 0 nor 1, which some of Excel's functions refuse."""
+    return (np.asarray(p) > 0) & (p < 1)
+
+
 @excel("POISSON.DIST", Number, Number, Logical, aliases=("POISSON",))
 def poisson_dist(x: Floats, mean: Floats, cumulative: Bools) -> Floats:
     """Poisson distribution."""
@@ -76,7 +81,7 @@ def binom_dist_range(trials: Floats, p: Floats, least: Floats, most: Floats | No
 def binom_inv(trials: Floats, p: Floats, alpha: Floats) -> Floats:
     """The least number of successes whose cumulative probability reaches alpha; for less than 2³¹ trials."""
     n = np.floor(trials)
-    inside = (n >= 0) & (n < _LARGEST) & _is_probability(p) & (alpha > 0) & (alpha < 1)
+    inside = (n >= 0) & (n < _LARGEST) & _is_open(p) & _is_open(alpha)
     n, p, alpha = np.where(inside, n, 0.0), np.where(inside, p, 0.5), np.where(inside, alpha, 0.5)
     low, high = np.full(np.shape(n), -1.0), n
     while np.any(high - low > 1):
@@ -98,7 +103,7 @@ def _reaches(k: Floats, n: Floats, p: Floats, alpha: Floats) -> Bools:
 def negbinom_dist(failures: Floats, successes: Floats, p: Floats, cumulative: Bools) -> Floats:
     """Negative binomial distribution: how many failures come before so many successes."""
     k, n = np.floor(failures), np.floor(successes)
-    inside = (k >= 0) & (n >= 1) & _is_probability(p)
+    inside = (k >= 0) & (n >= 1) & _is_open(p)
     k, n, p = np.where(inside, k, 0.0), np.where(inside, n, 1.0), np.where(inside, p, 0.5)
     result = by_form(
         cumulative,

@@ -1,11 +1,13 @@
 """Means other than the arithmetic one, and the shape of a sample. Letters: n trials, k numbers of a trial.
 
-`AVERAGEA` and its like count everything in a range but blanks: TRUE as 1, FALSE and texts as 0.
+`AVERAGEA` and its like count everything in a range but blanks: TRUE as 1, FALSE and texts as 0. In an array that is no
+range they count less: see `array_values`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache, partial
 
 import numpy as np
 
@@ -13,11 +15,11 @@ from xlmc.excel.functions.facts import EmptyCells, Facts, Repeats
 from xlmc.excel.functions.lookup.picked_cells import flatten_cells
 from xlmc.excel.functions.math.aggregate import maximum, minimum
 from xlmc.excel.functions.math.rounding import int_
-from xlmc.excel.functions.registry import Cells, Number, Numbers, excel
+from xlmc.excel.functions.registry import Anything, Cells, Function, Kind, Number, Numbers, excel
 from xlmc.excel.functions.samples import Sample, at_each, join_samples, mean_of, row_sums, spread_of
-from xlmc.excel.functions.values import BLANK, DIV0, NUM, Bools, Floats, Value
+from xlmc.excel.functions.values import BLANK, DIV0, LOGICAL, NUM, TEXT, Bools, Floats, Value
 
-__all__: list[str] = []
+__all__ = ["array_values"]
 
 
 @excel("AVEDEV", Numbers, facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT))
@@ -156,3 +158,19 @@ _register("VARA", "Variance, estimated from a sample; `#DIV/0!` of fewer than tw
 _register("VARPA", "Variance of the values themselves; `#DIV/0!` of nothing.", _population_variance)
 _register("STDEVA", "Standard deviation, from a sample; `#DIV/0!` of fewer than two.", _root(_variance))
 _register("STDEVPA", "Standard deviation of the values themselves; `#DIV/0!` of nothing.", _root(_population_variance))
+
+
+@cache
+def array_values(count_texts: bool, spills: bool = False) -> Function:
+    """The function that leaves of an array what `AVERAGEA` and its like count: numbers, and texts if `count_texts`.
+
+    Excel does not count logicals there, and texts only in AVERAGEA, as the authors of ClosedXML measured.
+    """
+    body = partial(_array_values, count_texts=count_texts)
+    return Function("an array's values", (Anything,), body, Kind.ANY, facts=Facts(spills=spills, unrounded=True))
+
+
+def _array_values(cells: Value, count_texts: bool) -> Value:
+    ignored = cells.kinds == LOGICAL if count_texts else (cells.kinds == LOGICAL) | (cells.kinds == TEXT)
+    kinds = np.where(ignored, np.uint8(BLANK), cells.kinds).astype(np.uint8)
+    return Value(np.where(ignored, 0.0, cells.numbers), kinds, cells.texts)

@@ -115,7 +115,7 @@ def repeat(text: str, count: float) -> object:
     return text * min(times, LONGEST)
 
 
-_WILDCARD: Final = re.compile(r"~[*?~]|.", re.DOTALL)
+_WILDCARD: Final = re.compile(r"~.|~$|.", re.DOTALL)
 
 
 @excel("FIND", Text, Text, Number(default=1.0), aliases=("FINDB",))
@@ -132,7 +132,7 @@ def find(wanted: str, text: str, start: float) -> object:
 @per_element
 @in_units
 def search(wanted: str, text: str, start: float) -> object:
-    """As `FIND`, but case does not count, and `?` and `*` are wildcards; `~` before one takes it as it is."""
+    """As `FIND`, but case does not count, and `?` and `*` are wildcards; `~` takes the next character as it is."""
     first = math.trunc(start) - 1
     found = _first_fit(wanted, text, first) if 0 <= first <= len(text) else None
     return ErrorCode.VALUE if found is None else found + 1.0
@@ -165,7 +165,7 @@ def _pieces(wanted: str) -> tuple[re.Pattern[str], ...]:
         if token == "*":
             pieces.append("")
         else:
-            pieces[-1] += "." if token == "?" else re.escape(token[-1])
+            pieces[-1] += "." if token == "?" else re.escape(token[-1]) if token != "~" else ""
     return tuple(re.compile(piece, re.IGNORECASE | re.DOTALL) for piece in pieces)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Final
@@ -77,10 +78,10 @@ def _first_error(*items: object) -> ErrorCode | None:
 
 
 def _whole_number(item: object, default: int) -> int | None:
-    """A number without its fraction; a default for what is left out."""
+    """A number rounded down, -1.6 to -2; a default for what is left out."""
     if item is None:
         return default
-    return int(item) if isinstance(item, float | bool) else None
+    return math.floor(item) if isinstance(item, float | bool) else None
 
 
 def _occurrence(text: str, marks: list[str], number: int, fold: bool, at_end: bool) -> tuple[int, int] | None:

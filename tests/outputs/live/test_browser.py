@@ -409,3 +409,31 @@ def test_the_start_page_opens_what_is_there_and_what_is_dropped(chromium, runnin
         assert time.monotonic() < end
         time.sleep(0.05)
     assert chromium.find_element("id", "book").text == "other.xlsx"
+
+
+def test_a_page_whose_program_has_ended_says_so_and_asks_no_more(chromium, running, tmp_path):
+    server = running(book=simple(tmp_path / "case.xlsx"))
+    page = Page(chromium, server)
+    page.run(
+        "window.made = 0; window.WebSocket = class extends EventTarget {"
+        " static OPEN = 1; constructor() { super(); made += 1; } };"
+    )
+    server.server.end()
+    page.until("document.body.classList.contains('over')")
+    assert "xlmc has ended" in page.one("#stand").text
+    assert page.run("return document.querySelector('#left').inert")
+    page.run("dispatchEvent(new Event('online')); Live.wire.set('assumption', 'a', 'low', 1, false);")
+    assert page.run("return [made, Live.wire.waiting.length]") == [0, 0]
+
+
+def test_a_page_whose_program_was_killed_tries_some_times_and_gives_up(chromium, running, tmp_path):
+    page = Page(chromium, running(book=simple(tmp_path / "case.xlsx")))
+    page.run(
+        "window.made = 0; const own = Live.wire.socket;"
+        "window.WebSocket = class extends EventTarget { static OPEN = 1; constructor() { super(); made += 1;"
+        " setTimeout(() => this.dispatchEvent(new CloseEvent('close', { code: 1006 }))); } };"
+        "own.close();"
+    )
+    page.until("document.body.classList.contains('over')")
+    assert page.run("return made") == 3
+    assert "xlmc has ended" in page.one("#stand").text

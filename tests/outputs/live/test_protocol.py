@@ -18,6 +18,7 @@ WRONG = {
     "a field missing": json.dumps({**SET, "key": None}),
     "NaN": json.dumps({**SET, "value": float("nan")}),
     "a number beyond all": json.dumps(SET).replace("1.5", "1e999"),
+    "an integer beyond all": json.dumps(SET).replace("1.5", "9" * 400),
     "a text as a number": json.dumps({**SET, "value": "1"}),
     "a number as a switch": json.dumps({**SET, "held": 1}),
     "a negative count": json.dumps({**SET, "seq": -1}),

@@ -6,6 +6,7 @@ import asyncio
 import json
 import shutil
 import socket
+import sys
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -284,10 +285,61 @@ def test_it_ends_when_nobody_has_looked_for_a_while(running, book):
 
 
 def test_a_port_that_is_taken_is_told():
-    with bound_socket(0) as taken:
-        taken.listen()
+    with bound_socket(0) as taken, pytest.raises(XlmcError, match="--port"):
+        bound_socket(taken.getsockname()[1])
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere another program could take the port over")
+def test_a_port_can_be_used_again_at_once():
+    """Also while connections that this end has closed are remembered, which Linux does for a minute."""
+    with bound_socket(0) as before:
+        port = before.getsockname()[1]
+        with socket.create_connection(("127.0.0.1", port), timeout=120) as client:
+            before.accept()[0].close()
+            assert client.recv(1) == b""
+    with bound_socket(port) as after:
+        assert after.getsockname()[1] == port
         with pytest.raises(XlmcError, match="--port"):
-            bound_socket(taken.getsockname()[1])
+            bound_socket(port)
+
+
+def test_a_link_works_as_soon_as_there_is_one():
+    with bound_socket(0) as waiting:
+        socket.create_connection(waiting.getsockname(), timeout=120).close()
+
+
+HALVES = {
+    "nothing": b"",
+    "half a line": b"GET / HT",
+    "half a head": b"GET / HTTP/1.1\r\nHost: ",
+    "a request, and half of another": b"GET /static/live.css HTTP/1.1\r\nHost: {host}\r\n\r\nGET /",
+    "half a body": (
+        b"POST /drop?name=a.xlsx HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nCookie: {cookie}\r\n"
+        b"X-Xlmc-Page: {page}\r\nContent-Length: 100\r\n\r\nPK"
+    ),
+}
+
+
+@pytest.mark.parametrize("sent", HALVES.values(), ids=HALVES.keys())
+def test_half_a_request_is_given_up(open_book, monkeypatch, sent):
+    monkeypatch.setattr("xlmc.outputs.live.timed_requests._HEAD_SECONDS", 0.2)
+    monkeypatch.setattr("xlmc.outputs.live.server._BODY_SECONDS", 0.2)
+    words = {"host": open_book.host, "cookie": open_book.cookie, "page": open_book.server.guard.page}
+    for word, value in words.items():
+        sent = sent.replace(f"{{{word}}}".encode(), value.encode())
+    with socket.create_connection(("127.0.0.1", open_book.port), timeout=120) as client:
+        client.sendall(sent)
+        while client.recv(1 << 16):
+            pass
+
+
+def test_a_connection_whose_head_came_in_time_lives_on(open_book, monkeypatch):
+    monkeypatch.setattr("xlmc.outputs.live.timed_requests._HEAD_SECONDS", 0.2)
+    with open_book.window(open_book.library.only) as window:
+        window.next("rest")
+        time.sleep(0.5)
+        window.say("view", forecasts=[], tab="tables", first="", second="", fits=False)
+        assert window.next("part")["tab"] == "tables"
 
 
 def test_small_messages_are_sent_at_once():

@@ -91,7 +91,15 @@ def _is_text(value: object) -> bool:
 
 
 def _is_value(value: object) -> bool:
-    return value is None or isinstance(value, bool) or (isinstance(value, int | float) and math.isfinite(value))
+    return value is None or isinstance(value, bool) or (isinstance(value, int | float) and _is_finite(value))
+
+
+def _is_finite(value: float) -> bool:
+    """Return whether a float can hold the number: an integer of JSON may have 400 digits."""
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
 
 
 def _is_flag(value: object) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import socket
+import sys
 import time
 from collections.abc import Callable
 from html import escape
@@ -27,6 +28,7 @@ from xlmc.outputs.live.desk import Desk
 from xlmc.outputs.live.guard import HEADERS, MOST_UPLOADED, Guard
 from xlmc.outputs.live.library import Library
 from xlmc.outputs.live.protocol import MOST_BYTES, ProtocolError, read_message
+from xlmc.outputs.live.timed_requests import TimedRequests
 
 __all__ = ["IDLE_SECONDS", "LiveServer", "bound_socket"]
 
@@ -35,6 +37,9 @@ IDLE_SECONDS: Final = 600.0
 
 _MOST_WINDOWS: Final = 32
 _HELLO_SECONDS: Final = 10.0
+_BODY_SECONDS: Final = 60.0
+"""Seconds in which a window's first message, and the body of a request, must have arrived."""
+
 _UNKNOWN: Final = 4401
 _FULL: Final = 4429
 """Why a WebSocket is closed."""
@@ -79,7 +84,9 @@ _ASSETS: Final = {**STYLES, **SCRIPTS, **START_SCRIPTS}
 
 
 def bound_socket(port: int) -> socket.socket:
-    """A socket on the loopback address, on a port that is free, or on this one.
+    """Return a socket that listens on the loopback address, on a port that is free, or on this one.
+
+    From then on a link to it works: who follows it before `LiveServer.serve` runs waits for a moment.
 
     Raises:
         XlmcError: something else has the port.
@@ -88,8 +95,11 @@ def bound_socket(port: int) -> socket.socket:
     made = socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     if hasattr(socket, "SO_EXCLUSIVEADDRUSE"):  # Windows lets two programs share a port otherwise
         made.setsockopt(socket.SOL_SOCKET, socket.SO_EXCLUSIVEADDRUSE, 1)
+    elif sys.platform == "linux":  # connections that were closed a minute ago do not keep the port
+        made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         made.bind(("127.0.0.1", port))
+        made.listen()  # with SO_REUSEADDR it is this that fails where another program listens, too
     except OSError as error:
         made.close()
         hint = "give another with --port, or none"
@@ -131,6 +141,7 @@ class LiveServer:
         self.app: ASGIApp = _Guarded(Starlette(routes=routes), self.guard)
         config = uvicorn.Config(
             self.app,
+            http=TimedRequests,
             log_config=None,
             access_log=False,
             lifespan="off",
@@ -242,10 +253,14 @@ class LiveServer:
         if not said.isdigit() or int(said) > MOST_UPLOADED:
             return too_large
         data = bytearray()
-        async for part in request.stream():
-            data += part
-            if len(data) > MOST_UPLOADED:
-                return too_large
+        try:
+            async with asyncio.timeout(_BODY_SECONDS):
+                async for part in request.stream():
+                    data += part
+                    if len(data) > MOST_UPLOADED:
+                        return too_large
+        except TimeoutError:
+            return JSONResponse({"trouble": "The file did not arrive in time."}, 408, {"Connection": "close"})
         try:
             key = await asyncio.to_thread(self._library.take, request.query_params.get("name", ""), bytes(data))
         except XlmcError as error:

@@ -10,7 +10,7 @@ const Live = {
 
   start() {
     const { key, page } = document.body.dataset;
-    this.wire = new Wire(key, page, (message) => this.heard(message), (open) => this.stands(open));
+    this.wire = new Wire(key, page, (message) => this.heard(message), (open) => this.stands(open), () => this.over());
     this.left = new LeftSide(this.wire, (seq, event) => { if (event) this.moves.set(seq, event.timeStamp); });
     this.right = new RightSide(this.wire);
     const say = (id, message) => document.getElementById(id).addEventListener("click", () => this.wire.say(message));
@@ -22,6 +22,13 @@ const Live = {
   stands(open) {
     document.body.classList.toggle("away", !open);
     if (!open) this.stand("The connection is lost; trying again. Nothing is lost.");
+  },
+
+  /** The program has ended: nothing is taken any more, and what was answered stays. */
+  over() {
+    document.body.classList.add("away", "over");
+    document.querySelectorAll("#left, #offer, header .actions, #panel-scenarios, #panel-studies").forEach((each) => { each.inert = true; });
+    this.stand("xlmc has ended: changes are not taken any more. Scenarios are kept; type xlmc open to go on.");
   },
 
   stand(text) {

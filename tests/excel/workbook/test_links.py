@@ -99,6 +99,17 @@ def test_what_is_not_stored_is_refused_by_cell(linked, formula):
     assert REFUSED[formula] in check.reason
 
 
+def test_a_link_whose_part_is_not_there_holds_nothing(book):
+    found = book(
+        {"S": f"<sheetData>{row_of('[1]Prices!A1')}</sheetData>"},
+        in_workbook='<externalReferences><externalReference r:id="link"/></externalReferences>',
+        rels=[("link", "externalLink", "externalLinks/externalLink1.xml")],
+    )
+    (check,) = verify(found).cells
+    assert check.status is Status.UNSUPPORTED
+    assert "of which no values are stored" in check.reason
+
+
 def test_nothing_stored_at_all(linked):
     (check,) = verify(linked(row_of("[1]Prices!A1"), stored="")).cells
     assert "of which no values are stored" in check.reason
@@ -118,6 +129,7 @@ def test_formulas_filled_down(linked):
     [
         (STORED.replace("142", "x"), "externalLink1.xml: the value of B2 holds 'x' where a number should be"),
         (STORED.replace('"B2"', '"2B"'), "holds a value of the cell '2B', which is none"),
+        (STORED.replace(' r="B2"', ""), "externalLink1.xml holds a value without a cell"),
         ("<open>", "externalLink1.xml is not well-formed XML"),
     ],
 )

@@ -33,6 +33,7 @@ VALUES = {
     '<c r="B7" t="inlineStr"><is><t xml:space="preserve"> F_x000a_</t></is></c>': " F\n",
     '<c r="B7" t="inlineStr"><is><r><t>Fo</t></r><r><t>rd</t></r><rPh><t>no</t></rPh></is></c>': "Ford",
     '<c r="B7" t="inlineStr"><is/></c>': "",
+    '<c r="B7" t="inlineStr"><is><t>Ford</t></is><v>5</v></c>': "Ford",
     '<c r="B7"><v>1</v><extLst><ext><f xmlns="urn:other">A1</f></ext></extLst></c>': 1.0,
 }
 
@@ -44,7 +45,9 @@ def test_values(cell, value):
     assert type(found[7, 2].value) is type(value)
 
 
-@pytest.mark.parametrize("cell", ['<c r="B7" s="3"/>', '<c r="B7" t="s"/>', '<c r="B7"><f></f></c>'])
+@pytest.mark.parametrize(
+    "cell", ['<c r="B7" s="3"/>', '<c r="B7" t="s"/>', '<c r="B7"><f></f></c>', '<c r="B7" t="inlineStr"><v>5</v></c>']
+)
 def test_blank_cells_are_left_out(cell):
     assert cells(f'<row r="7">{cell}</row>') == {}
 

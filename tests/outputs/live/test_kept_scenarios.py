@@ -80,7 +80,22 @@ def test_a_workbook_that_loses_an_assumption_keeps_what_was_set_of_it(book):
     assert session.offered == before
 
 
-@pytest.mark.parametrize("content", [b"{", b"[]", b'{"scenarios": 5, "unkept": {}}', b"\xff\xfe", b"[" * 100_000])
+def holding(number):
+    held = b'{"assumptions": {"a": {"low": %b}}, "filters": {}}' % number
+    return b'{"scenarios": {"x": %b}, "unkept": {"assumptions": {}, "filters": {}}}' % held
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"{",
+        b"[]",
+        b'{"scenarios": 5, "unkept": {}}',
+        b"\xff\xfe",
+        b"[" * 100_000,
+        *map(holding, [b"NaN", b"Infinity", b'"-inf"', b"1" + b"0" * 400, b"[1]", b"null"]),
+    ],
+)
 def test_a_damaged_file_is_set_aside_and_told(book, keeper, content):
     keeper.keep(book, {"a": changed("x")}, Adjustments())
     (file,) = keeper._folder.glob("*.json")
@@ -102,7 +117,10 @@ def test_a_damaged_list_of_workbooks_is_set_aside_and_told_on_the_page(keeper, c
     assert (keeper._folder / "recent.damaged1.json").read_bytes() == content
 
 
-@pytest.mark.parametrize("content", ['{"books": [5, null, "\\u0000", "gone.xlsx"]}', '{"books": []}', "{}"])
+LONG = json.dumps({"books": ["x" * 300, "y/" * 3_000, "\ud800.xlsx"]})
+
+
+@pytest.mark.parametrize("content", ['{"books": [5, null, "\\u0000", "gone.xlsx"]}', '{"books": []}', "{}", LONG])
 def test_entries_that_are_no_workbooks_are_left_out(keeper, content):
     keeper.make_folder()
     (keeper._folder / "recent.json").write_text(content, encoding="utf-8")

@@ -39,7 +39,8 @@ from xlmc.excel.workbook.injection.result_sheet import (
 )
 from xlmc.excel.workbook.injection.splice import MAIN, OFFICE_RELATIONSHIPS, Element, SplicedXml, as_utf8, parse_spans
 from xlmc.excel.workbook.injection.strict import STRICT_MAIN, strict_part, strict_type
-from xlmc.excel.workbook.injection.styles_merge import StyleMap, merge_styles, same_styles
+from xlmc.excel.workbook.injection.style_numbers import styles_from
+from xlmc.excel.workbook.injection.styles_merge import PLAIN, StyleMap, merge_styles, same_styles
 from xlmc.excel.workbook.package import CONTENT_TYPES, Relationship, hash_parts, relationships, rels_part
 from xlmc.excel.workbook.safe_xml import REPAIR, tree
 
@@ -120,6 +121,12 @@ class _User:
             is_strict=root.namespace == STRICT_MAIN,
         )
 
+    def styles_from(self, least: int) -> set[int]:
+        """The numbers of cell styles, from this one on, that the user's sheets name."""
+        pointers = relationships(self.parts, self.role.workbook).values()
+        sheets = {each.target for each in pointers if each.kind.endswith("sheet") and each.target in self.parts}
+        return set().union(*(styles_from(as_utf8(self.parts[sheet], sheet), least) for sheet in sheets))
+
 
 @dataclass(frozen=True, slots=True)
 class _Styles:
@@ -134,11 +141,13 @@ class _Styles:
     def merged(cls, user: _User, built: BuiltBook, taken: Collection[str]) -> _Styles:
         part = user.role.styles
         if part is not None:
-            return cls(part, *merge_styles(user.parts[part], part, built.styles), new=False)
+            return cls(part, *merge_styles(user.parts[part], part, built.styles, user.styles_from), new=False)
         is_taken = any(name.casefold() == _STYLES for name in taken)
         free = free_part_names([_STYLES], taken)[_STYLES] if is_taken else _STYLES
-        xml = strict_part(built.styles) if user.is_strict else built.styles
-        return cls(free, xml, same_styles(built.styles), new=True)
+        xml, numbers = built.styles, same_styles(built.styles)
+        if user.styles_from(1):
+            xml, numbers = merge_styles(PLAIN, free, built.styles, user.styles_from)
+        return cls(free, strict_part(xml) if user.is_strict else xml, numbers, new=True)
 
 
 def _carrier(

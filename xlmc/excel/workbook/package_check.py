@@ -5,17 +5,16 @@ Faults that the workbook had before are the person's own and stay; `checked_byte
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from functools import cache
-from typing import Final, TypeVar
+from typing import TypeVar
 from xml.parsers import expat
 
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.injection.content_types import roles
 from xlmc.excel.workbook.injection.part_numbers import tables_in
 from xlmc.excel.workbook.injection.splice import as_utf8, parse_spans
+from xlmc.excel.workbook.injection.style_numbers import styles_from
 from xlmc.excel.workbook.package import CONTENT_TYPES, relationships, rels_part
 from xlmc.excel.workbook.safe_xml import REPAIR, tree
 from xlmc.excel.workbook.writer import package_bytes
@@ -134,27 +133,9 @@ def _cell_styles(parts: Mapping[str, bytes], styles: str | None) -> int | None:
 def _style_faults(name: str, xml: bytes, entries: int | None) -> Iterator[str]:
     if entries is None or "/worksheets/" not in f"/{name}":
         return
-    suspect = _styles_from(max(entries, 1)).search(xml)
-    found = suspect and next((each for each in _STYLED.finditer(xml) if int(each[1]) >= max(entries, 1)), None)
-    if found is not None:
-        yield f"{name} uses the cell style {int(found[1])}, and there are {entries}"
-
-
-_STYLED: Final = re.compile(rb'<(?:\w+:)?(?:c|row|col)\b[^<>]*? (?:s|style)="([0-9]{1,9})"')
-"""The style number of a cell, a row or a column; slower than `_styles_from`, which may find one in a cell's text."""
-
-
-@cache
-def _styles_from(least: int) -> re.Pattern[bytes]:
-    """The pattern of a style number of a cell, a row or a column that is at least this."""
-    digits = str(least)
-    larger = [
-        f"{digits[:at]}[{int(digit) + 1}-9]{'[0-9]' * (len(digits) - at - 1)}"
-        for at, digit in enumerate(digits)
-        if digit != "9"
-    ]
-    numbers = "|".join([digits, *larger, f"[1-9][0-9]{{{len(digits)},}}"])
-    return re.compile(rf' (?:s|style)="({numbers})"'.encode())
+    found = styles_from(xml, max(entries, 1))
+    if found:
+        yield f"{name} uses the cell style {min(found)}, which is not there"
 
 
 def _xml_faults(name: str, xml: bytes) -> Iterator[str]:

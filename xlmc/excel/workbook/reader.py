@@ -207,7 +207,8 @@ class Links(Mapping[str, LinkedBook]):
     def __getitem__(self, book: str) -> LinkedBook:
         part, xml = self._parts[book]
         if book not in self._read:
-            self._read[book] = _linked_book(book, self._files[book], tree(xml, part), part)
+            file = self._files[book]  # without its part, nothing of it is stored
+            self._read[book] = _linked_book(book, file, tree(xml, part), part) if xml else LinkedBook(file, {})
         return self._read[book]
 
     def __contains__(self, book: object) -> bool:
@@ -262,7 +263,9 @@ def _cells(data: Element, part: str) -> Iterator[tuple[tuple[int, int], CellCont
     for cell in data.findall("{*}row/{*}cell"):
         corner = _A1.fullmatch(cell.get("r", ""))
         if corner is None:
-            raise WorkbookError(f"{part} holds a value of the cell {cell.get('r')!r}, which is none", hint=REPAIR)
+            at = cell.get("r")
+            said = "a value without a cell" if at is None else f"a value of the cell {at!r}, which is none"
+            raise WorkbookError(f"{part} holds {said}", hint=REPAIR)
         yield (int(corner[2]), column_number(corner[1])), CellContent(_value(cell, part))
 
 

@@ -154,7 +154,8 @@ class _Pass:
         self.cells[position] = CellContent(value, self._formula)
 
     def end_value(self) -> None:
-        self._raw = "".join(self.text)
+        if self._cell.get("t") != "inlineStr":  # whose text stands in `is`; other readers ignore a value, too
+            self._raw = "".join(self.text)
 
     def end_run(self) -> None:
         if not self._phonetic:

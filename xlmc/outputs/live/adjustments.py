@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from math import isfinite
 from typing import Any, Final
 
 from xlmc.analysis.results.statements.in_words import number_text
@@ -110,13 +111,16 @@ class Adjustments:
         """See `as_json`.
 
         Raises:
-            ValueError, TypeError, AttributeError, KeyError: it is something else.
+            ValueError, TypeError, AttributeError, KeyError, OverflowError: it is something else.
         """
         made = cls()
         for of, part in (("assumption", "assumptions"), ("filter", "filters")):
             for name, each in found[part].items():
                 for key, value in each.items():
-                    made = made.having(of, str(name), str(key), value if isinstance(value, bool) else float(value))
+                    number = value if isinstance(value, bool) else float(value)
+                    if not isfinite(number):
+                        raise ValueError(f"{key} is {number}")
+                    made = made.having(of, str(name), str(key), number)
         return made
 
     def _part(self, of: str) -> Changed:

@@ -84,7 +84,7 @@ class Keeper:
                 return {}, Adjustments()
             named = {str(name): Adjustments.of_json(each) for name, each in found["scenarios"].items()}
             return named, Adjustments.of_json(found["unkept"])
-        except (ValueError, TypeError, AttributeError, KeyError) as error:
+        except (ValueError, TypeError, AttributeError, KeyError, OverflowError) as error:
             raise _set_aside(path) from error
 
     def keep(self, book: Path, scenarios: Mapping[str, Adjustments], unkept: Adjustments) -> dict[str, Adjustments]:
@@ -119,7 +119,7 @@ class Keeper:
         books = found.get("books", []) if found else []
         if not isinstance(books, list):
             raise _set_aside(path)
-        return [path for each in books if isinstance(each, str) and "\0" not in each and (path := Path(each)).is_file()]
+        return [Path(each) for each in books if isinstance(each, str) and _is_file(each)]
 
     def opened(self, book: Path) -> None:
         """Put a workbook first among them.
@@ -207,6 +207,14 @@ def _merged(
         if changed_here or name not in theirs:
             found[name] = each
     return found
+
+
+def _is_file(path: str) -> bool:
+    """Whether there is such a file; a name that no file can have, or that may not be looked at, is none."""
+    try:
+        return Path(path).is_file()
+    except (OSError, ValueError):
+        return False
 
 
 def _set_aside(path: Path) -> WorkbookError:

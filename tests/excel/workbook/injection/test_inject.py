@@ -11,7 +11,7 @@ from xlmc.excel.workbook.inject import inject, original_hash, remove_result_shee
 from xlmc.excel.workbook.injection.content_types import roles
 from xlmc.excel.workbook.injection.splice import as_utf8, parse_spans
 from xlmc.excel.workbook.injection.strict import strict_part
-from xlmc.excel.workbook.package_check import faults
+from xlmc.excel.workbook.package_check import checked_bytes, faults
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.writer import package_bytes
 
@@ -287,6 +287,40 @@ def _formats(styles, parts):
             said = [lists[where][int(style[what])].canonical() for what, where in places]
             found.append((codes.get(style["numFmtId"], style["numFmtId"]), said))
     return found
+
+
+PLAIN_STYLE = {"numFmtId": "0", "fontId": "0", "fillId": "0", "borderId": "0"}
+
+
+@pytest.mark.parametrize("quote", ['"', "'"])
+@pytest.mark.parametrize(("encoding", "number"), [("utf-8", 5), ("utf-16", 5), ("utf-8", 70_000)])
+@pytest.mark.parametrize("styles", ["with styles", "without"])
+def test_a_cell_whose_style_is_not_there_gets_none_of_the_results(build, results, styles, encoding, number, quote):
+    """Excel shows such a cell in the default style; a style of the result sheets must not take its number."""
+    host = build(lambda book: book.add_worksheet("Only").write("A1", 45000.75))
+    cell = f"<c r={quote}A1{quote} s={quote}{number}{quote}>"
+    sheet = host["xl/worksheets/sheet1.xml"].decode().replace('<c r="A1">', cell).replace("UTF-8", encoding.upper())
+    assert cell in sheet
+    host["xl/worksheets/sheet1.xml"] = sheet.encode(encoding)
+    if styles == "without":
+        host.pop("xl/styles.xml")
+        for name in ("[Content_Types].xml", "xl/_rels/workbook.xml.rels"):
+            host[name] = re.sub(rb"<(?:Override|Relationship) [^>]*styles[^>]*>", b"", host[name])
+    done = inject(host, results)
+    xfs = parse_spans(done["xl/styles.xml"], "styles").find("cellXfs").children
+    if number < len(xfs):
+        assert {key: xfs[number].attributes.get(key) for key in PLAIN_STYLE} == PLAIN_STYLE
+        assert not xfs[number].children
+    else:
+        assert number == 70_000  # more styles than Excel takes
+    used = b"".join(done[part] for part in result_sheets(done))
+    assert max(int(found) for found in re.findall(rb' s="([0-9]+)"', used)) < len(xfs)
+    assert f' s="{number}"'.encode() not in used
+    assert '0.0 "km/h"' in [code for code, _ in _formats(parse_spans(done["xl/styles.xml"], "styles"), done)]
+    again = inject(done, results)
+    assert again["xl/styles.xml"] == done["xl/styles.xml"]
+    assert inject(again, results) == again
+    assert checked_bytes(again, host)
 
 
 def test_a_workbook_without_styles_takes_those_of_the_results(rich, results):

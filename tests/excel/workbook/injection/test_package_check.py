@@ -19,6 +19,7 @@ DAMAGE = {
     "a sheet number twice": (WORKBOOK, b'sheetId="2"', b'sheetId="1"'),
     "a name of no sheet": (WORKBOOK, b'localSheetId="0"', b'localSheetId="7"'),
     "a style beyond the last": (SHEET, b' s="1"', b' s="99"'),
+    "a style in other quotes": (SHEET, b' s="1"', b" s='99'"),
     "a table number twice": ("xl/tables/table2.xml", b'id="2"', b'id="1"'),
     "a table name twice": ("xl/tables/table2.xml", b'displayName="Second"', b'displayName="FIRST"'),
     "no XML": (SHEET, b"</worksheet>", b""),

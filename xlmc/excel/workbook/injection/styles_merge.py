@@ -7,13 +7,14 @@ workbook has already is used again, so repeated runs add nothing.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 from xlmc.excel.workbook.injection.splice import MAIN, Element, SplicedXml, parse_spans, render
 from xlmc.excel.workbook.injection.strict import STRICT_MAIN
 
 __all__ = [
+    "PLAIN",
     "StyleMap",
     "merge_styles",
     "same_styles",
@@ -31,6 +32,18 @@ class StyleMap:
     differential: tuple[int, ...]
 
 
+PLAIN = (
+    f'<styleSheet xmlns="{MAIN}">'
+    '<fonts count="1"><font><sz val="11"/><name val="Calibri"/><family val="2"/></font></fonts>'
+    '<fills count="2"><fill><patternFill patternType="none"/></fill><fill><patternFill patternType="gray125"/></fill>'
+    '</fills><borders count="1"><border><left/><right/><top/><bottom/><diagonal/></border></borders>'
+    '<cellStyleXfs count="1"><xf numFmtId="0" fontId="0" fillId="0" borderId="0"/></cellStyleXfs><cellXfs count="1">'
+    '<xf numFmtId="0" fontId="0" fillId="0" borderId="0" xfId="0"/></cellXfs><cellStyles count="1">'
+    '<cellStyle name="Normal" xfId="0" builtinId="0"/></cellStyles></styleSheet>'
+).encode()
+"""The styles of a workbook that has none."""
+
+
 def same_styles(styles: bytes) -> StyleMap:
     """The map for a workbook that takes over the built styles as they are."""
     root = parse_spans(styles, "styles")
@@ -38,8 +51,17 @@ def same_styles(styles: bytes) -> StyleMap:
     return StyleMap(*(tuple(range(size)) for size in sizes))
 
 
-def merge_styles(styles: bytes, part: str, built: bytes) -> tuple[bytes, StyleMap]:
+def merge_styles(
+    styles: bytes, part: str, built: bytes, beyond: Callable[[int], Collection[int]] = lambda _: ()
+) -> tuple[bytes, StyleMap]:
     """The user's styles part with the built styles added, and where they now are.
+
+    Args:
+        styles: the user's part.
+        part: its name, for messages.
+        built: the part of the result sheets.
+        beyond: gives the style numbers, from one on, that the user's cells name. A cell whose style is not there is
+            shown in the default one, and is so still: no new style gets its number.
 
     Raises:
         WorkbookError: the styles part is not XML.
@@ -49,6 +71,7 @@ def merge_styles(styles: bytes, part: str, built: bytes) -> tuple[bytes, StyleMa
     lists = {name: _StyleList(document, name) for name in (*_PARTS_OF_A_STYLE.values(), "cellXfs", "dxfs")}
     indices = {name: _indices(lists[name], source) for name in _PARTS_OF_A_STYLE.values()}
     normal = _normal(document.root)
+    lists["cellXfs"].pass_over(beyond)
     cells = [_cell_style(style, indices, formats, normal) for style in _style_entries(source, "cellXfs")]
     differential = [_differential(style, formats) for style in _style_entries(source, "dxfs")]
     found = StyleMap(
@@ -115,6 +138,8 @@ _ORDER = ("numFmts", "fonts", "fills", "borders", "cellStyleXfs", "cellXfs", "ce
 """The order the schema wants; whatever else there may be stands behind them."""
 
 _FIRST_CUSTOM_FORMAT = 164
+_MOST_STYLES = 65_000
+"""There are never more cell styles than Excel takes."""
 
 
 @dataclass(frozen=True)
@@ -167,6 +192,13 @@ class _StyleList:
             self._new.append(entry)
             self._size += 1
         return index
+
+    def pass_over(self, beyond: Callable[[int], Collection[int]]) -> None:
+        """Have default entries up to the last number, from the size on, that a cell names without there being one."""
+        numbers = [number for number in beyond(self._size) if number < _MOST_STYLES]
+        missing = max(numbers, default=self._size - 1) + 1 - self._size
+        self._new += [_StyleEntry("xf", dict.fromkeys(("numFmtId", *_PARTS_OF_A_STYLE), "0"))] * missing
+        self._size += missing
 
     def write(self) -> None:
         """Splice the new entries in, in a list of their own where the part has none."""

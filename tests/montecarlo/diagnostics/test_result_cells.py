@@ -533,7 +533,7 @@ def test_a_forecast_cannot_depend_on_a_data_table_of_the_run(tmp_path, answer):
 
 @pytest.mark.parametrize("writer", ["openpyxl", "XlsxWriter"])
 def test_cells_that_were_never_calculated_are_computed_and_not_taken_for_0(tmp_path, writer):
-    """Beside a cell that shows a result: a constant's double, and one that depends on a draw, which has no value."""
+    """Beside a cell that shows a result: a constant's double, and one that depends on a draw, at its base case."""
     formulas = {
         "A1": "=CB.Normal(100,10)",
         "A2": "=A1*2",
@@ -563,5 +563,46 @@ def test_cells_that_were_never_calculated_are_computed_and_not_taken_for_0(tmp_p
     assert shown["C1"] == pytest.approx(mean, rel=1e-12)
     assert shown["C2"] == pytest.approx(mean - 14, rel=1e-12)
     assert (shown["C3"], shown["C5"]) == ("within", 21.0)
-    assert shown["C4"] == ErrorCode.NA
-    assert "C4" in run.shown_results.warning
+    assert shown["C4"] == pytest.approx(mean + 114, rel=1e-12)
+    assert run.warnings == []
+
+
+AT_BASE = {
+    "A1": "=RiskNormal(100,10)",
+    "A2": "=RiskTheoMean(A1)",
+    "A3": '=RiskOutput("y")+A1-A2+7',
+    "A4": '=RiskOutput("z")+RiskNormal(A2,1)+RiskUniform(0,A2)',
+    "A5": "=A2*1.1",
+    "A6": "=RiskDiscrete({1,5},{0.25,0.75},RiskShift(100),RiskStatic(106))+RAND()+A2*0",
+    "A7": '=SUM(A1:A3)+RiskOutput("sum",,,RiskUnits("m"))',
+    "B1": "=RiskMean(A3)-A1",
+    "B2": '=IF(RiskMean("z")>A6,"a","b")',
+    "B3": "=RiskMean(A7)+A4",
+}
+
+
+@pytest.mark.parametrize("engine", ["numpy", "jit"])
+def test_cells_that_draw_or_mark_an_answer_keep_their_base_case_below_a_number_of_a_distribution(tmp_path, engine):
+    path = tmp_path / "book.xlsx"
+    book = openpyxl.Workbook()
+    for address, content in AT_BASE.items():
+        book.active[address] = content
+    book.save(path)
+    run = xlmc.load(path).simulate(2000, seed=4, engine=engine)
+    shown = {cell.a1: value for cell, value in run.shown_results.cells.items()}
+    y, total = run["y"].mean.value, run["sum"].mean.value
+    assert [shown[each] for each in ("A2", "A3", "A4", "A5")] == pytest.approx([100, 7, 150, 110])
+    assert [shown[each] for each in ("A6", "A7", "B1", "B3")] == pytest.approx([106.5, 207, y - 100, total + 150])
+    assert shown["B2"] == "a"
+    assert run.warnings == []
+
+
+def test_a_draw_whose_base_case_is_not_known_is_named_as_that(tmp_path):
+    path = tmp_path / "book.xlsx"
+    book = openpyxl.Workbook()
+    cells = {"A1": "=RiskNormal(0,1)", "A2": "=RiskNormal(A1*A1,1)+RiskOutput()", "B1": "=RiskMean(A2)-A2"}
+    for address, content in cells.items():
+        book.active[address] = content
+    book.save(path)
+    warning = xlmc.load(path).simulate(200).shown_results.warning
+    assert "Sheet!A2 (draws at random, and its base case is not known)" in warning

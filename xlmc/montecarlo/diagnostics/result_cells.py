@@ -109,6 +109,7 @@ def shown_results(
     unavailable: Mapping[Cell, str],
     results: Iterable[ForecastResult],
     run: RunFacts,
+    at_base: Mapping[Cell, ir.Expression | FormulaError],
 ) -> ShownResults:
     """The values of the cells that show results, and of those that depend on them.
 
@@ -118,10 +119,11 @@ def shown_results(
         unavailable: those that should, and cannot -> why.
         results: of the forecasts.
         run: whose results they are.
+        at_base: the formulas of cells that draw or mark an answer, with base cases instead of draws; or why not.
     """
     answers = _Answers(workbook, tuple(results), run)
     trees = {cell: answers.formula(tree) for cell, tree in formulas.items() if cell not in unavailable}
-    return _Showing(workbook, trees, unavailable).found()
+    return _Showing(workbook, trees, unavailable, at_base).found()
 
 
 def recalculated(workbook: Workbook, cells: Iterable[Cell]) -> ShownResults:
@@ -131,7 +133,7 @@ def recalculated(workbook: Workbook, cells: Iterable[Cell]) -> ShownResults:
         workbook: with the new contents.
         cells: that have them; no formulas.
     """
-    found = _Showing(workbook, {}, {}, frozenset(cells)).found()
+    found = _Showing(workbook, {}, {}, {}, frozenset(cells)).found()
     formulas = {cell: why for cell, why in found.missing.items() if workbook.content(cell).formula is not None}
     return ShownResults(found.values, formulas)
 
@@ -144,9 +146,10 @@ class _Showing:
         workbook: Workbook,
         trees: Mapping[Cell, ir.Expression],
         unavailable: Mapping[Cell, str],
+        at_base: Mapping[Cell, ir.Expression | FormulaError],
         constants: frozenset[Cell] = frozenset(),
     ) -> None:
-        self._workbook, self._trees = workbook, trees
+        self._workbook, self._trees = workbook, {**at_base, **trees}
         self._missing, self._constants = dict(unavailable), constants
         self._start = constants | trees.keys()
         self._formulas = frozenset(_formulas(workbook))

@@ -17,6 +17,7 @@ from xlmc.montecarlo.columns import parts
 from xlmc.montecarlo.definitions.run_options import KEPT_INPUTS, RunOptions
 from xlmc.montecarlo.definitions.run_settings import Settings
 from xlmc.montecarlo.diagnostics.agreement import Agreement, agreement
+from xlmc.montecarlo.diagnostics.base_formulas import base_formulas
 from xlmc.montecarlo.diagnostics.cell_errors import Root, error_roots
 from xlmc.montecarlo.diagnostics.checking import CheckResult, check_results
 from xlmc.montecarlo.diagnostics.digit_watch import lost_digits
@@ -295,7 +296,9 @@ class Simulation:
         if not (asked.results or asked.unavailable):
             return ShownResults()
         run = RunFacts(self.trials, self.plan.trials, self.model.assumptions, self.model.draws)
-        return shown_results(self.model.workbook, asked.results, asked.unavailable, self.results.values(), run)
+        at_base = base_formulas(asked, self.model.draws)
+        results = self.results.values()
+        return shown_results(self.model.workbook, asked.results, asked.unavailable, results, run, at_base)
 
     @cached_property
     def error_roots(self) -> dict[Cell, Root]:

@@ -65,6 +65,8 @@ _REFUSED: Final = (
     *("FORECAST.ETS", "FORECAST.ETS.CONFINT", "FORECAST.ETS.SEASONALITY", "FORECAST.ETS.STAT"),
 )
 
+_SHOWN: Final = re.compile(r"(?<![\w.])(?:_xl\w+\.|\[\d+\]!)*(?:Risk|CB\.)\w+\(", re.IGNORECASE)
+
 _DATE: Final = re.compile(r'=.*"[^"]*\d[^"]*[-/.: ][^"]*\d[^"]*"')
 _CRITERIA: Final = ("COUNTIF", "COUNTIFS", "SUMIF", "SUMIFS", "AVERAGEIF", "AVERAGEIFS", "MAXIFS", "MINIFS")
 _DATABASE: Final = (
@@ -217,6 +219,7 @@ RULES: Final = (
     Rule("0.12.0", "OFFSET of less than one row or column leads where Excel's does", _calls("OFFSET")),
     Rule("0.12.0", "INDIRECT reads rows with zeros before them", _calls("INDIRECT")),
     Rule("0.12.0", "texts of dates with spaces around them are no numbers", _ANY),
+    Rule("0.12.0", "cells that draw or mark an answer below RiskTheo… or a result show their base case", _SHOWN),
 )
 """The rules in the order of versions."""
 

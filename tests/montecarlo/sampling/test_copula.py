@@ -6,10 +6,18 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy import stats
+from scipy import optimize, stats
 
 from xlmc.montecarlo.distributions import family_named
-from xlmc.montecarlo.sampling.copula import GaussianCopula, Ties, bounds, nearest_correlation, parameter, spearman
+from xlmc.montecarlo.sampling.copula import (
+    GaussianCopula,
+    Ties,
+    bounds,
+    nearest_by_weights,
+    nearest_correlation,
+    parameter,
+    spearman,
+)
 from xlmc.montecarlo.sampling.draws import Draw
 
 N = 50_000
@@ -284,3 +292,39 @@ def test_many_values_are_taken_together():
     ties = Draw("x", family_named("Poisson"), (400.0,)).ties()
     assert ties is None or ties.cuts.size < 600
     assert spearman(Ties(np.arange(1, 100) / 100), None, 0.5) == pytest.approx(6 / math.pi * math.asin(0.25), abs=1e-4)
+
+
+WEIGHTED = np.array([[1, 0.9, -0.3], [0.9, 1, 0.8], [-0.3, 0.8, 1]])
+
+
+@pytest.mark.parametrize("weights", [(0, 0, 0), (50, 0, 0), (90, 20, 5), (99, 99, 0)], ids=str)
+def test_nearest_by_weights_is_the_least_weighted_change(weights):
+    """Beside a search over all correlation matrices of three, by angles: r₂₃ is cos a cos b + sin a sin b cos c."""
+    pairs = (0, 1), (0, 2), (1, 2)
+    square = np.zeros((3, 3))
+    for (i, j), weight in zip(pairs, weights, strict=True):
+        square[i, j] = square[j, i] = weight
+
+    def numbers(angles):
+        a, b, c = angles
+        return np.array([np.cos(a), np.cos(b), np.cos(a) * np.cos(b) + np.sin(a) * np.sin(b) * np.cos(c)])
+
+    def change(angles):
+        asked = np.array([WEIGHTED[pair] for pair in pairs])
+        return float(((numbers(angles) - asked) ** 2 / (1 - np.array(weights) / 100)).sum())
+
+    best = min(
+        (optimize.minimize(change, start, tol=1e-14) for start in ((0.5, 1, 1), (1, 2, 0.1))), key=lambda r: r.fun
+    )
+    found, met = nearest_by_weights(WEIGHTED, square)
+    assert met
+    assert [found[pair] for pair in pairs] == pytest.approx(numbers(best.x), abs=1e-4)
+    if not any(weights):
+        assert found == pytest.approx(nearest_correlation(WEIGHTED), abs=1e-8)
+
+
+def test_numbers_that_must_all_stay_and_cannot_give_way_alike():
+    target = np.array([[1, 0.9, 0.9], [0.9, 1, -0.9], [0.9, -0.9, 1]])
+    every = np.full((3, 3), 100.0)
+    assert not nearest_by_weights(target, every)[1]
+    assert GaussianCopula(target, weights=every).spearman == pytest.approx(GaussianCopula(target).spearman, abs=1e-6)

@@ -213,12 +213,16 @@ class Check:
 
 @dataclass(frozen=True, slots=True)
 class Correlation:
-    """A Spearman rank correlation between two assumptions, by name as defined; of a model, `value` is a number."""
+    """A Spearman rank correlation between two assumptions, by name as defined; of a model, `value` is a number.
+
+    `weight` says how much it is kept where correlations contradict each other: from 0, as any other, to 100, as it is.
+    """
 
     first: str
     second: str
     value: Parameter
     row: Cell
+    weight: float = 0.0
 
     @property
     def number(self) -> float:

@@ -43,17 +43,18 @@ def correlated_groups(correlations: Sequence[Correlation], draws: Mapping[str, D
         correlations: the rows.
         draws: name of a drawn assumption -> how it is drawn, at least of all that the rows name.
     """
-    pairs = {(c.first, c.second): c for c in correlations if c.value}
-    pairs = {pair: c for pair, c in pairs.items() if pair[0] in draws and pair[1] in draws}
+    given = [c for c in correlations if c.first in draws and c.second in draws]
+    pairs = {(c.first, c.second): c for c in given if c.value}
     groups = []
     for names in _connected(list(draws), list(pairs)):
-        matrix = np.eye(len(names))
-        for (first, second), correlation in pairs.items():
-            if first in names:
-                i, j = names.index(first), names.index(second)
-                matrix[i, j] = matrix[j, i] = correlation.number
+        matrix, weights = np.eye(len(names)), np.zeros((len(names), len(names)))
+        for each in given:
+            if {each.first, each.second} <= set(names):
+                i, j = names.index(each.first), names.index(each.second)
+                matrix[i, j] = matrix[j, i] = each.number
+                weights[i, j] = weights[j, i] = each.weight
         ties = [draws[name].ties() for name in names]
-        groups.append(CorrelatedGroup(names, GaussianCopula(matrix, ties if any(ties) else ())))
+        groups.append(CorrelatedGroup(names, GaussianCopula(matrix, ties if any(ties) else (), weights)))
     return groups
 
 
@@ -191,6 +192,8 @@ def _repair(group: CorrelatedGroup, asked: dict[frozenset[str], Correlation]) ->
         else "these correlations cannot all be drawn at once in the one way that xlmc has, a Gaussian copula, so the "
         "nearest ones that can are used"
     )
+    if any(row.weight for row in asked.values() if {row.first, row.second} <= set(group.names)):
+        why += ", as their adjustment weights say"
     message = f"{why}; the largest change is {-changes[0][0]:.2g}: {'; '.join(told)}"
     return Notice(message, rows[0])
 

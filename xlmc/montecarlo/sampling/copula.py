@@ -27,7 +27,16 @@ from numpy.typing import NDArray
 
 from xlmc.montecarlo.distributions.quadrature import gauss_legendre
 
-__all__ = ["GaussianCopula", "Ties", "bounds", "nearest_correlation", "parameter", "spearman", "ties_of"]
+__all__ = [
+    "GaussianCopula",
+    "Ties",
+    "bounds",
+    "nearest_by_weights",
+    "nearest_correlation",
+    "parameter",
+    "spearman",
+    "ties_of",
+]
 
 Floats = NDArray[np.float64]
 
@@ -45,6 +54,16 @@ _ROUNDING: Final = 1e-9
 _PROJECTIONS: Final = 10_000
 _CLOSE: Final = 1e-12
 """The projections have met when a round changes the matrix by less than this share."""
+
+_CLOSE_ENOUGH: Final = 1e-10
+_MET: Final = 1e-6
+"""Copies of a matrix that differ by more after the last round do not become one."""
+
+_PATIENCE: Final = 500
+"""Rounds after which the copies must have come nearer."""
+
+_ALMOST: Final = 99.9
+"""The largest weight of a number that may change: where those of 100 contradict each other, they count as this."""
 
 _GRID: Final = 4096
 """The number of probabilities at which draws are computed to find ties."""
@@ -77,6 +96,7 @@ class GaussianCopula:
     Args:
         target: the matrix `(k, k)`, symmetric with a diagonal of 1.
         ties: the values that each of the k takes, None for a continuous one; by default all are continuous.
+        weights: `(k, k)`, symmetric, from 0 to 100: how much each number of the target is kept where it is repaired.
 
     Attributes:
         wanted: the target, each number limited to what ties allow its pair.
@@ -88,7 +108,7 @@ class GaussianCopula:
     (Higham 2002), and the rank correlations follow from it.
     """
 
-    def __init__(self, target: Floats, ties: Sequence[Ties | None] = ()) -> None:
+    def __init__(self, target: Floats, ties: Sequence[Ties | None] = (), weights: Floats | None = None) -> None:
         self._ties = ties
         pearson = 2 * np.sin(np.pi / 6 * target)
         np.fill_diagonal(pearson, 1.0)
@@ -98,7 +118,7 @@ class GaussianCopula:
             self.wanted[i, j] = self.wanted[j, i] = min(max(float(target[i, j]), least), most)
             pearson[i, j] = pearson[j, i] = parameter(ties[i], ties[j], float(target[i, j])) if target[i, j] else 0.0
         self.repaired = bool(np.linalg.eigvalsh(pearson)[0] < -_ROUNDING)
-        self._mix = _triangular_root(nearest_correlation(pearson) if self.repaired else pearson)
+        self._mix = _triangular_root(_repaired(pearson, weights) if self.repaired else pearson)
         normals = np.clip(self._mix @ self._mix.T, -1.0, 1.0)
         self.spearman = 6 / np.pi * np.arcsin(normals / 2)
         for i, j in self._tied_pairs():
@@ -133,6 +153,45 @@ def _triangular_root(matrix: Floats) -> Floats:
     turned: Floats = np.linalg.qr((vectors * np.sqrt(np.maximum(values, 0.0))).T, mode="r")  # type: ignore[assignment]
     triangle = turned.T * np.where(np.diagonal(turned) < 0.0, -1.0, 1.0)
     return np.asarray(triangle / np.linalg.norm(triangle, axis=1, keepdims=True))
+
+
+def _repaired(matrix: Floats, weights: Floats | None) -> Floats:
+    """Find the nearest correlation matrix, by weights where there are any."""
+    if weights is None or not weights.any():
+        return nearest_correlation(matrix)
+    found, met = nearest_by_weights(matrix, weights)
+    return found if met else nearest_by_weights(matrix, np.minimum(weights, _ALMOST))[0]
+
+
+def nearest_by_weights(matrix: Floats, weights: Floats) -> tuple[Floats, bool]:
+    """Find the correlation matrix (k, k) with the least sum of (change)² / (1 - weight/100), and whether there is one.
+
+    A weight of 100 allows no change, and there may be no correlation matrix that has all of these numbers. By the
+    alternating direction method of multipliers (Boyd et al. 2011, chapter 5): one copy of the matrix is near the
+    target, number by number, the other has no negative eigenvalue, and both become one.
+
+    >>> target = np.array([[1.0, 0.9, 0.0], [0.9, 1.0, 0.9], [0.0, 0.9, 1.0]])
+    >>> nearest_by_weights(target, 100.0 * (target == 0.9))[0].round(4).tolist()[0]
+    [1.0, 0.9, 0.62]
+    """
+    free = 1 - weights / 100
+    np.fill_diagonal(free, 0.0)
+    free /= max(free.max(), 1 - _ALMOST / 100)
+    share = free / (1 + free)
+    found, turned = matrix.copy(), np.zeros_like(matrix)
+    last = np.inf
+    for round_ in range(_PROJECTIONS):
+        inside = _drop_negative_eigenvalues(found + turned)
+        turned += found - inside
+        before, found = found, matrix + share * (inside - turned - matrix)
+        apart = float(np.abs(found - inside).max())
+        if max(apart, float(np.abs(found - before).max())) <= _CLOSE_ENOUGH:
+            break
+        if round_ % _PATIENCE == _PATIENCE - 1:
+            if apart > max(_MET, 0.98 * last):
+                break  # no nearer than so many rounds before
+            last = apart
+    return found, apart <= _MET
 
 
 def nearest_correlation(matrix: Floats) -> Floats:

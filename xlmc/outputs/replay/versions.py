@@ -220,6 +220,7 @@ RULES: Final = (
     Rule("0.12.0", "INDIRECT reads rows with zeros before them", _calls("INDIRECT")),
     Rule("0.12.0", "texts of dates with spaces around them are no numbers", _ANY),
     Rule("0.12.0", "cells that draw or mark an answer below RiskTheo… or a result show their base case", _SHOWN),
+    Rule("0.12.0", "adjustment weights of matrices of rank correlations are honoured", _calls("RiskCorrmat")),
 )
 """The rules in the order of versions."""
 

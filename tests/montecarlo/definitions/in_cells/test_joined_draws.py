@@ -163,3 +163,103 @@ def test_a_coefficient_may_be_a_formula_that_was_never_calculated(model):
     for formula, message in (("=A1", "varies with an assumption"), ("=1+1", "Correlation (2) must lie between")):
         with pytest.raises(XlmcError, match=message.replace("(", r"\(").replace(")", r"\)")):
             model({**cells, "F2": formula})
+
+
+MATRIX = {
+    "A1": "=RiskNormal(0,1,RiskCorrmat($K$1:$M$3,1))",
+    "A2": "=RiskNormal(0,1,RiskCorrmat($K$1:$M$3,2))",
+    "A3": "=RiskNormal(0,1,RiskCorrmat($K$1:$M$3,3))",
+    "A4": '=RiskOutput("sum")+A1+A2+A3',
+    "K1": 1,
+    "L2": 1,
+    "M3": 1,
+    "K2": 0.9,
+    "K3": 0.0,
+    "L3": 0.9,
+}
+
+
+def spearman_of(run, first, second):
+    return stats.spearmanr(run.inputs[f"S!A{first}#1"], run.inputs[f"S!A{second}#1"]).statistic
+
+
+@pytest.mark.parametrize(
+    ("above", "told"),
+    [
+        ({"L1": 0.9, "M1": None}, []),
+        ({"L1": 0.2}, ["S!K2 is 0.9, and S!L1 is 0.2"]),
+        ({"L1": "0.9"}, ["S!K2 is 0.9, and S!L1 is '0.9'"]),
+        ({"L1": "=K2", "M1": 0, "M2": -0.9}, ["S!L3 is 0.9, and S!M2 is -0.9"]),
+    ],
+    ids=["alike", "another number", "a text", "one of two"],
+)
+def test_halves_that_contradict_each_other_are_told_and_the_lower_one_holds(model, above, told):
+    made = model({**MATRIX, **above})
+    found = [notice.message for notice in made.notices if "contradict each other" in notice.message]
+    assert len(found) == len(told)
+    assert all(text in message for text, message in zip(told, found, strict=True))
+    assert {(c.first, c.second): c.value for c in made.definitions.correlations} == {
+        ("S!A1#1", "S!A2#1"): 0.9,
+        ("S!A2#1", "S!A3#1"): 0.9,
+    }
+
+
+def test_halves_of_a_copula_that_contradict_each_other_are_told(model):
+    cells = {**TWO, "K1": "Gaussian", "K2": 1, "K3": 0.5, "L2": 0.4, "L3": 1}
+    assert any("S!K3 is 0.5, and S!L2 is 0.4" in notice.message for notice in model(cells).notices)
+
+
+@pytest.fixture
+def weighted(tmp_path):
+    """A model of `MATRIX` whose matrix is called Matrix1, with these weights in P1:R3."""
+
+    def made(weights, name="Matrix1_Weights", area="S!$P$1:$R$3"):
+        from openpyxl.workbook.defined_name import DefinedName
+
+        book = Workbook()
+        sheet = book.active
+        sheet.title = "S"
+        named = {key: str(value).replace("$K$1:$M$3", "Matrix1") for key, value in MATRIX.items() if key[0] == "A"}
+        for address, value in {**MATRIX, **named, **weights}.items():
+            sheet[address] = value
+        book.defined_names["Matrix1"] = DefinedName("Matrix1", attr_text="S!$K$1:$M$3")
+        book.defined_names[name] = DefinedName(name, attr_text=area)
+        book.save(tmp_path / "book.xlsx")
+        return xlmc.load(tmp_path / "book.xlsx")
+
+    return made
+
+
+@pytest.mark.parametrize(
+    ("weights", "kept"),
+    [
+        ({"P2": 100, "Q3": 100}, {(1, 2): 0.9, (2, 3): 0.9}),
+        ({"Q1": 100, "R2": 100}, {(1, 2): 0.9, (2, 3): 0.9}),
+        ({"P2": 100, "P3": 0, "Q3": 0}, {(1, 2): 0.9}),
+        ({"P3": 100, "P2": 20, "Q3": 20}, {(1, 3): 0.0, (1, 2): 6 / math.pi * math.asin(math.sqrt(0.5) / 2)}),
+    ],
+    ids=["two stay", "above the diagonal", "one stays", "that of 0 stays"],
+)
+def test_adjustment_weights_keep_a_correlation(weighted, weights, kept):
+    """In normal scores the cosines of three directions: where the two ends are at right angles, at most √½ each."""
+    made = weighted(weights, name="MATRIX1_weights")
+    assert any("as their adjustment weights say" in notice.message for notice in made.notices)
+    run = made.simulate(trials=TRIALS, seed=7)
+    for pair, value in kept.items():
+        assert abs(spearman_of(run, *pair) - value) < 4 / math.sqrt(TRIALS)
+
+
+@pytest.mark.parametrize(
+    ("weights", "area", "message"),
+    [
+        ({"P2": 101}, "S!$P$1:$R$3", "S!P2: The adjustment weight (101) must lie between 0 and 100"),
+        ({"P2": "high"}, "S!$P$1:$R$3", "S!P2"),
+        ({}, "S!$P$1:$Q$2", "The name Matrix1_Weights is no range of 3 rows and columns"),
+    ],
+    ids=["too large", "a text", "too small a range"],
+)
+def test_weights_that_are_none_are_refused(weighted, weights, area, message):
+    with pytest.raises(XlmcError) as refused:
+        weighted(weights, area=area)
+    assert message in str(refused.value)
+    assert refused.value.hint

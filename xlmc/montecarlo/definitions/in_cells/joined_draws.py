@@ -16,12 +16,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import combinations, pairwise
+from types import NoneType
 from typing import Final
 
 from xlmc.errors import DefinitionError
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.definitions import Assumption, Copula, Correlation, Parameter
+from xlmc.montecarlo.definitions.in_cells.adjustment_weights import weight_of, weights_of_matrices
 from xlmc.montecarlo.definitions.in_cells.call_draws import MatrixRow
 from xlmc.montecarlo.definitions.in_cells.reading import CellDraw
 from xlmc.montecarlo.definitions.problems import Findings
@@ -58,7 +60,7 @@ def in_cell_correlations(
     rows: Iterable[Correlation],
     findings: Findings,
 ) -> list[Correlation]:
-    """The correlations between draws that name rows of one matrix, or one partner; those of 0 left out.
+    """The correlations between draws that name rows of one matrix, or one partner; of 0 only weighted ones.
 
     Args:
         workbook: holds the matrices.
@@ -68,16 +70,23 @@ def in_cell_correlations(
         findings: takes mistakes.
     """
     taken = {frozenset((row.first, row.second)): row for row in rows}
-    found = []
-    for first, second in (pair for group in _groups(assumptions, draws, "matrix") for pair in _pairs(group, findings)):
+    found: list[Correlation | None] = []
+    groups = _groups(assumptions, draws, "matrix")
+    weights = findings.attempt(weights_of_matrices, workbook, {row.area for group in groups for _, row in group}) or {}
+    compared: set[Cell] = set()
+    for first, second in (pair for group in groups for pair in _pairs(group, findings)):
         row = taken.get(frozenset((first[0].name, second[0].name)))
         if row is not None:
             message = f"{row.first!r} and {row.second!r} are correlated by this row and by the matrix {first[1].area}"
             findings.problem(message, row.row, "Keep one of them")
             continue
-        found.append(findings.attempt(_correlation, workbook, first, second))
+        correlation = findings.attempt(_correlation, workbook, weights, first, second)
+        found.append(correlation)
+        if correlation is not None and correlation.row not in compared:
+            compared.add(correlation.row)
+            _compare_halves(workbook, first[1].area, correlation.row, findings)
     found += _partners(assumptions, draws, findings)
-    return [each for each in found if each is not None and each.value != 0]
+    return [each for each in found if each is not None and (each.value != 0 or each.weight)]
 
 
 def _groups(assumptions: Iterable[Assumption], draws: _Draws, which: str) -> list[list[_Row]]:
@@ -101,11 +110,26 @@ def _pairs(group: list[_Row], findings: Findings) -> Iterator[tuple[_Row, _Row]]
             yield first, second
 
 
-def _correlation(workbook: Workbook, first: _Row, second: _Row) -> Correlation:
+def _compare_halves(workbook: Workbook, area: Area, used: Cell, findings: Findings) -> None:
+    """Tell of a number that differs from the one across the diagonal of its matrix, which is used."""
+    across = Cell(area.sheet, area.top + used.column - area.left, area.left + used.row - area.top)
+    number, other = (workbook.content(cell).value for cell in (used, across))
+    if not isinstance(number, int | float) or isinstance(other, bool | NoneType) or workbook.content(across).is_blank:
+        return
+    if not isinstance(other, int | float) or not math.isclose(number, other, rel_tol=1e-12, abs_tol=1e-12):
+        said = show(other) if isinstance(other, int | float) else repr(str(other))
+        findings.notice(
+            f"the halves of the matrix {area} contradict each other: {used} is {show(number)}, and {across} is {said}; "
+            f"{used}, below the diagonal, is used. Make them equal, or clear one of them",
+            across,
+        )
+
+
+def _correlation(workbook: Workbook, weights: Mapping[Area, Area], first: _Row, second: _Row) -> Correlation:
     """The number below the diagonal; the one above where that cell is blank.
 
     Raises:
-        DefinitionError: neither holds a number from -1 to 1.
+        DefinitionError: neither holds a number from -1 to 1, or its weight is none.
     """
     area, (upper, lower) = first[1].area, sorted((first[1].position, second[1].position))
     below, above = (
@@ -116,12 +140,13 @@ def _correlation(workbook: Workbook, first: _Row, second: _Row) -> Correlation:
     if content.is_blank:
         hint = "Fill it in, or the one beside it across the diagonal"
         raise DefinitionError("The cell of a rank correlation is blank", where=below, hint=hint)
+    weight = weight_of(workbook, weights, area, lower, upper)
     if content.formula is not None and content.value is None:
-        return Correlation(first[0].name, second[0].name, cell, cell)
+        return Correlation(first[0].name, second[0].name, cell, cell, weight)
     value = number_in("The matrix of rank correlations", content, cell)
     _refuse_outside(value, cell)
     computed = content.formula is not None
-    return Correlation(first[0].name, second[0].name, cell if computed else value, cell)
+    return Correlation(first[0].name, second[0].name, cell if computed else value, cell, weight)
 
 
 def _refuse_outside(value: float, where: Cell) -> None:
@@ -193,11 +218,11 @@ def in_cell_copulas(
             message = f"{twice[0].name!r} has a position of the copula {twice[1].area} that another draw has"
             findings.problem(message, twice[0].row, "Give each draw its own position, or its own instance")
         elif len(group) > 1:
-            found.append(findings.attempt(_copula, workbook, group))
+            found.append(findings.attempt(_copula, workbook, group, findings))
     return tuple(each for each in found if each is not None)
 
 
-def _copula(workbook: Workbook, group: Sequence[_Row]) -> Copula:
+def _copula(workbook: Workbook, group: Sequence[_Row], findings: Findings) -> Copula:
     """What the range says.
 
     Raises:
@@ -224,7 +249,7 @@ def _copula(workbook: Workbook, group: Sequence[_Row]) -> Copula:
     if kind == "t" and (degrees is None or not 0.1 <= degrees <= 1e6):
         hint = "write Degrees of freedom into a cell of the range, and a number from 0.1 up into the cell right of it"
         raise DefinitionError(f"The copula {area} has no degrees of freedom", where=where, hint=hint)
-    matrix = _matrix(workbook, area, max(positions), where)
+    matrix = _matrix(workbook, area, max(positions), where, findings)
     chosen = tuple(tuple(matrix[i - 1][j - 1] for j in positions) for i in positions)
     return Copula(kind, names, where, degrees, chosen)
 
@@ -268,7 +293,7 @@ def _beside(workbook: Workbook, grid: Mapping[Cell, object], area: Area, labels:
     return None
 
 
-def _matrix(workbook: Workbook, area: Area, least: int, where: Cell) -> list[list[float]]:
+def _matrix(workbook: Workbook, area: Area, least: int, where: Cell, findings: Findings) -> list[list[float]]:
     """The largest square block of the range with a diagonal of 1, of which one half may be blank.
 
     Raises:
@@ -279,13 +304,17 @@ def _matrix(workbook: Workbook, area: Area, least: int, where: Cell) -> list[lis
         for r in range(area.top, area.bottom + 1)
     ]
     best: list[list[float]] = []
+    used: list[Cell] = []
+    square = area
     for top in range(len(rows)):
         for left in range(len(rows[0])):
             size = 0
             while top + size < len(rows) and left + size < len(rows[0]) and rows[top + size][left + size].value == 1:
                 size += 1
             if size > len(best):
-                best = [[1.0] * size for _ in range(size)]
+                best, used = [[1.0] * size for _ in range(size)], []
+                first, corner = area.top + top, area.left + left
+                square = Area(area.sheet, first, corner, first + size - 1, corner + size - 1)
                 for i, j in combinations(range(size), 2):
                     low, high = rows[top + j][left + i], rows[top + i][left + j]
                     content, cell_row, cell_column = (low, j, i) if not low.is_blank else (high, i, j)
@@ -296,7 +325,10 @@ def _matrix(workbook: Workbook, area: Area, least: int, where: Cell) -> list[lis
                     value = number_in("The matrix of the copula", content, cell)
                     _refuse_outside(value, cell)
                     best[i][j] = best[j][i] = value
+                    used.append(cell)
     if len(best) < least:
         message = f"The copula {area} has no matrix with {least} rows, with 1 along its diagonal"
         raise DefinitionError(message, where=where, hint="Put the correlations into the range, a row for each draw")
+    for cell in used:
+        _compare_halves(workbook, square, cell, findings)
     return best

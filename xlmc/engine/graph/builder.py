@@ -9,6 +9,7 @@ import math
 from functools import partial
 
 from xlmc.engine.graph.arrays import cell_by_cell, either, element, share_out, sizes_differ, spread
+from xlmc.engine.graph.circles import refuse_hidden
 from xlmc.engine.graph.dag import Dag
 from xlmc.engine.graph.nodes import Apply, Constant, Select
 from xlmc.engine.graph.number_lookups import NumberLookups
@@ -83,6 +84,8 @@ class NodeBuilder:
 
     def apply(self, function: Function, arguments: tuple[int, ...]) -> int:
         """The node of a function of nodes, cell by cell where it takes single values and is given many."""
+        if self.dag.missing:
+            refuse_hidden(self.dag, function, arguments)
         if function.facts.factor is not None:
             return self.call("*", (arguments[0], self.number(function.facts.factor)))
         if function.name == "/" and (factor := self._inverse(arguments[1])) is not None:

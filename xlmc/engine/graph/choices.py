@@ -8,9 +8,10 @@ where a range is wanted, its empty cells, texts and logicals are those of a rang
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 from xlmc.engine.graph.arrays import as_range, cell_by_cell, either_reference, sizes_differ
+from xlmc.engine.graph.circles import hidden_error
 from xlmc.engine.graph.computed_references import NoReference, areas_of
 from xlmc.engine.graph.dag import MANY
 from xlmc.engine.graph.lowering import Scope, TreeLowering
@@ -36,6 +37,8 @@ def _choose_branch(lowering: TreeLowering, condition: int, branches: Arguments, 
     known = lowering.lookup_condition(condition)
     if known is not None:
         return _branch(lowering, branches[0 if known else 1], scope)
+    if _is_error(lowering, condition):
+        return condition
     yes, no = (_branch(lowering, branch, scope) for branch in branches)
     return _select(lowering, condition, yes, no, scope)
 
@@ -110,22 +113,45 @@ def _beside_range(lowering: TreeLowering, node: int, other: int) -> int:
 def _ifs(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
     if len(arguments) % 2:
         raise FormulaError("IFS takes pairs of a condition and a value")
-    node = lowering.error(ErrorCode.NA)
-    pairs = list(zip(arguments[::2], arguments[1::2], strict=True))
-    for test, value in reversed(pairs):
-        condition = lowering.lower(test, scope.plainly())
-        node = _select(lowering, condition, _branch(lowering, value, scope.branch()), node, scope.branch())
+    pairs = zip(arguments[::2], arguments[1::2], strict=True)
+    conditions = ((lowering.lower(test, scope.plainly()), value) for test, value in pairs)
+    return _first_true(lowering, conditions, ir.ErrorLiteral(ErrorCode.NA), scope.branch())
+
+
+def _first_true(
+    lowering: TreeLowering, pairs: Iterator[tuple[int, ir.Expression]], last: ir.Expression, scope: Scope
+) -> int:
+    """The value behind the first condition that is true, else `last`; what known conditions exclude is not lowered."""
+    varying: list[tuple[int, int]] = []
+    node = None
+    for condition, value in pairs:
+        known = lowering.lookup_condition(condition)
+        if known is not None and not known:
+            continue
+        if known or _is_error(lowering, condition):
+            node = _branch(lowering, value, scope) if known else condition
+            break
+        varying.append((condition, _branch(lowering, value, scope)))
+    node = _branch(lowering, last, scope) if node is None else node
+    for condition, value_node in reversed(varying):
+        node = _select(lowering, condition, value_node, node, scope)
     return node
+
+
+def _is_error(lowering: TreeLowering, condition: int) -> bool:
+    known = lowering.lookup_constant(condition)
+    return known is not None and int(known.kinds[0]) >= ERROR
 
 
 def _switch(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
     subject, rest = lowering.lower(arguments[0], scope.plainly()), arguments[1:]
     last = rest[-1] if len(rest) % 2 else ir.ErrorLiteral(ErrorCode.NA)
-    node = _branch(lowering, last, scope.branch())
-    for match, result in reversed(list(zip(rest[: len(rest) // 2 * 2 : 2], rest[1::2], strict=True))):
-        same = lowering.apply(IS_CASE, (subject, lowering.lower(match, scope.plainly())))
-        node = _select(lowering, same, _branch(lowering, result, scope.branch()), node, scope.branch())
-    return node
+    pairs = zip(rest[: len(rest) // 2 * 2 : 2], rest[1::2], strict=True)
+    conditions = (
+        (lowering.apply(IS_CASE, (subject, lowering.lower(match, scope.plainly()))), result)
+        for match, result in pairs
+    )
+    return _first_true(lowering, conditions, last, scope.branch())
 
 
 def _choose(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
@@ -158,6 +184,8 @@ def _if_error(only_na: bool) -> Callable[[TreeLowering, Arguments, Scope], int]:
 
 def _lower_if_error(lowering: TreeLowering, value: int, instead: ir.Expression, scope: Scope, only_na: bool) -> int:
     value = lowering.zero_if_blank(value)
+    if value in lowering.dag.missing:
+        raise hidden_error("IFNA" if only_na else "IFERROR")
     known = lowering.lookup_constant(value)
     if known is not None:
         kind = int(known.kinds[0])

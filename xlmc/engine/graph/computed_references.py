@@ -92,7 +92,7 @@ def join_areas(areas: Sequence[Area]) -> ir.Expression:
 def _combine(
     lowering: TreeLowering, operator: str, left: ir.Expression, right: ir.Expression, scope: Scope
 ) -> list[Area] | None:
-    found = _end(lowering, left, scope), _end(lowering, right, scope)
+    found = _end(lowering, left, scope.pointed_at()), _end(lowering, right, scope.pointed_at())
     if operator == ":" and any(_may_be_picked(part, areas) for part, areas in zip((left, right), found, strict=True)):
         hint = "TAKE and DROP give as much of a range as a value that varies says"
         raise FormulaError("an end of a range must be fixed: no value that varies may change it", hint=hint)
@@ -102,8 +102,9 @@ def _combine(
     tops, lefts = (a[0].top, b[0].top), (a[0].left, b[0].left)
     bottoms, rights = (a[0].bottom, b[0].bottom), (a[0].right, b[0].right)
     if operator == " ":
-        return [cut(lowering, _intersect(Area(a[0].sheet, max(tops), max(lefts), min(bottoms), min(rights))))]
-    return [cut(lowering, Area(a[0].sheet, min(tops), min(lefts), max(bottoms), max(rights)))]
+        shared = _intersect(Area(a[0].sheet, max(tops), max(lefts), min(bottoms), min(rights)))
+        return [_led_to(lowering, shared, scope)]
+    return [_led_to(lowering, Area(a[0].sheet, min(tops), min(lefts), max(bottoms), max(rights)), scope)]
 
 
 def _end(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
@@ -130,6 +131,11 @@ def _intersect(area: Area) -> Area:
 def cut(lowering: TreeLowering, area: Area) -> Area:
     """The area, up to the last filled cell where it goes on far beyond it, once everything in it is lowered."""
     return require(lowering, lowering.resolver.to_the_last_cell(area.whole))
+
+
+def _led_to(lowering: TreeLowering, area: Area, scope: Scope) -> Area:
+    """What a reference leads to: as `cut` gives it, but where only its place counts."""
+    return lowering.resolver.to_the_last_cell(area.whole) if scope.pointing else cut(lowering, area)
 
 
 def require(lowering: TreeLowering, area: Area) -> Area:
@@ -182,7 +188,7 @@ def _known_number(lowering: TreeLowering, tree: ir.Expression, scope: Scope, fun
 
 
 def _offset(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
-    base = areas_of(lowering, arguments[0], scope)
+    base = areas_of(lowering, arguments[0], scope.pointed_at())
     if base is None or len(base) != 1:
         raise FormulaError("OFFSET starts from a reference to one area")
     numbers = [_known_number(lowering, argument, scope, "OFFSET") for argument in arguments[1:]]
@@ -194,7 +200,7 @@ def _offset(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[
         raise NoReference
     rows, columns = _span(top, height), _span(left, width)
     reached = _on_the_sheet(Area(base[0].sheet, rows[0], columns[0], rows[1], columns[1]))
-    return [cut(lowering, reached)]
+    return [_led_to(lowering, reached, scope)]
 
 
 def _span(start: int, count: float) -> tuple[int, int]:
@@ -213,7 +219,7 @@ def _on_the_sheet(area: Area) -> Area:
 
 
 def _indirect(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
-    known = lowering.lookup_constant(lowering.first_cell(lowering.lower(arguments[0], scope)))
+    known = lowering.lookup_constant(lowering.first_cell(lowering.lower(arguments[0], scope.inside())))
     if known is None:
         raise FormulaError("INDIRECT depends on a value that varies; where it leads must be fixed")
     texts, errors = known.to_texts()
@@ -224,12 +230,12 @@ def _indirect(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> lis
     found = None if tree is None or over_sheets else _resolve(lowering, tree, scope)
     if found is None:
         raise NoReference
-    return [require(lowering, area) for area in found]
+    return found if scope.pointing else [require(lowering, area) for area in found]
 
 
 def _is_true(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:
     """A known logical argument."""
-    known = lowering.lookup_constant(lowering.first_cell(lowering.lower(tree, scope)))
+    known = lowering.lookup_constant(lowering.first_cell(lowering.lower(tree, scope.inside())))
     if known is None:
         raise FormulaError("INDIRECT depends on a value that varies; where it leads must be fixed")
     logicals, errors = known.to_logicals()
@@ -309,7 +315,7 @@ def _index(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[A
         NoReference: the cell lies outside, or one number is given for several rows and columns: what is a row of an
             array is `#REF!` of a reference.
     """
-    areas = areas_of(lowering, arguments[0], scope)
+    areas = areas_of(lowering, arguments[0], scope.pointed_at())
     if areas and len(arguments) == 2 and areas[0].whole.rows > 1 and areas[0].whole.columns > 1:
         raise NoReference
     if areas is None or scope.array or many_numbers(lowering, arguments[1:], scope):
@@ -333,7 +339,7 @@ def _index(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[A
         raise NoReference
     top, bottom = (area.top, area.bottom) if row == 0 else (area.top + row - 1,) * 2
     left, right = (area.left, area.right) if column == 0 else (area.left + column - 1,) * 2
-    return [cut(lowering, Area(area.sheet, top, left, bottom, right))]
+    return [_led_to(lowering, Area(area.sheet, top, left, bottom, right), scope)]
 
 
 def _choose(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:

@@ -55,6 +55,7 @@ class Dag:
         sizes: the size of each.
         origins: constants that were computed here -> the node that each was computed from.
         recording: where it is a list, every node that is asked for is noted in it, whether it is new or not.
+        missing: the nodes that read, perhaps not in each trial, a value that is not there, of a cell in a circle.
         folded: a function of a long set -> the node that folds its cells one by one, to the same bits where nothing is
             an error.
         hosts, ends: the formula cells in the order in which they were lowered, and how many nodes there were then.
@@ -67,6 +68,7 @@ class Dag:
         self.sizes: list[Size] = []
         self.origins: dict[int, Apply | Select | IfErrorNode | Range] = {}
         self.recording: list[int] | None = None
+        self.missing: set[int] = set()
         self.folded: dict[int, int] = {}
         self._known: dict[object, int] = {}
         self._kept = 0
@@ -116,6 +118,16 @@ class Dag:
         node = Input(name)
         return self._register(node, node, Kind.NUMBER, None)
 
+    def circle(self) -> int:
+        """The node of a value that is not there: that of a cell which is asked for while it is computed."""
+        return self._register_missing(_CIRCLE, constant(ErrorCode.CALC))
+
+    def _register_missing(self, key: object, value: Value) -> int:
+        """A constant apart from those that are equal to it."""
+        node_id = self._register(key, Constant(value), _constant_type(value), value.shape[1:] or None)
+        self.missing.add(node_id)
+        return node_id
+
     def add(self, node: Apply | Select | IfErrorNode | Range) -> int:
         """The index of the node; a node whose parts are all constant becomes a constant at once.
 
@@ -123,9 +135,15 @@ class Dag:
             ValueError: parts of many cells have sizes that do not go together.
         """
         node_id = self._add(self._from_1904(node) if self._date1904 and isinstance(node, Apply) else node)
+        if self.missing and self._known.get(node) == node_id and not isinstance(self.nodes[node_id], Constant):
+            self._note_missing(node_id, uses(node))
         if self.recording is not None and not isinstance(self.nodes[node_id], Constant):
             self.recording.append(node_id)
         return node_id
+
+    def _note_missing(self, node_id: int, used: Sequence[int]) -> None:
+        if not self.missing.isdisjoint(used):
+            self.missing.add(node_id)
 
     def replay(self, steps: Sequence[Repeat], local: list[int]) -> None:
         """Add nodes like earlier ones, one after another, and append each to `local`.
@@ -144,6 +162,8 @@ class Dag:
                 nodes.append(node)
                 types.append(kind)
                 sizes.append(size)
+                if self.missing:
+                    self._note_missing(node_id, used)
             local.append(node_id)
 
     def _add(self, node: Apply | Select | IfErrorNode | Range) -> int:
@@ -158,7 +178,10 @@ class Dag:
         known = {p: part.value for p in uses(node) if isinstance(part := self.nodes[p], Constant)}
         if len(known) == len(set(uses(node))) and not _volatile(node):
             new = len(self.nodes)
-            node_id = self.constant(evaluate_node(node, known))
+            value = evaluate_node(node, known)
+            if not self.missing.isdisjoint(known) and (value.kinds == ERROR + ErrorCode.CALC).any():
+                return self._register_missing(node, value)
+            node_id = self.constant(value)
             self._known[node] = node_id
             if node_id == new:  # else it was typed in, or computed before
                 self.origins[node_id] = node
@@ -270,6 +293,10 @@ def _of_nodes(
     dag = Dag(date1904=date1904)
     dag.nodes, dag.types, dag.sizes, dag.folded, dag.hosts, dag.ends = nodes, types, sizes, folded, hosts, ends
     return dag
+
+
+_CIRCLE: Final = "circle"
+"""The key of a value that is not there."""
 
 
 def _volatile(node: Node) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from itertools import groupby
 from typing import Final, assert_never
@@ -18,7 +19,7 @@ from xlmc.engine.graph.nodes import Range
 from xlmc.engine.graph.reference_functions import REFERENCE_FUNCTIONS
 from xlmc.engine.graph.running_totals import FOLDS, RunningTotals
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.excel.address import Area, Cell
+from xlmc.excel.address import Area, Cell, host_of
 from xlmc.excel.formula import Graph, ir
 from xlmc.excel.functions import Function
 from xlmc.excel.functions.budget import CallCount, ask_for_reading
@@ -153,7 +154,8 @@ class ExpressionLowering(TreeLowering):
         if function.volatile and not self._audit:
             hint = "put it in a cell of its own: the value Excel saved for it is then used, and the run can be repeated"
             raise FormulaError(f"{name} gives another value each time", hint=hint)
-        if name in FOLDS and len(arguments) == 1 and isinstance(arguments[0], Area):
+        apart = host_of(scope.cell) in self.graph.circles  # whose cells may be lowered more than once
+        if name in FOLDS and len(arguments) == 1 and isinstance(arguments[0], Area) and not apart:
             area = arguments[0].filled
             return self._totals.of_area(name, area, lambda: self._call_function(function, (area,), scope, {}))
         scope = scope.inside()
@@ -226,8 +228,16 @@ class ExpressionLowering(TreeLowering):
             raise refusal("what takes all cells")
         if area not in self._ranges:
             ask_for_reading(area.rows, area.columns)
-            self._ranges[area] = self._range(area)
+            self.read_first(area)
+            node = self._range(area)
+            if node in self.dag.missing:
+                return node
+            self._ranges[area] = node
         return self._ranges[area]
+
+    @abstractmethod
+    def read_first(self, area: Area) -> None:
+        """Ask for all cells of an area that must be lowered before it."""
 
     def _range(self, area: Area) -> int:
         rows = range(area.top, area.bottom + 1)

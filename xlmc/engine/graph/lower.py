@@ -5,12 +5,13 @@ Where xlmc cannot compute a cell, and no assumption reaches it, the value that E
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import cached_property
 from typing import Final, TypeVar
 
 from xlmc.engine.graph import lambdas
 from xlmc.engine.graph.arrays import element
+from xlmc.engine.graph.circles import CircleError, lower_as_read
 from xlmc.engine.graph.computed_references import NotYetNeeded
 from xlmc.engine.graph.dag import MANY, Dag
 from xlmc.engine.graph.expressions import ExpressionLowering
@@ -20,7 +21,7 @@ from xlmc.engine.graph.nodes import Apply, Constant, Input, Target
 from xlmc.engine.graph.running_totals import RunningTotals
 from xlmc.engine.graph.spilled_cells import refuse_cells_beyond, spilled_cell, unneeded_arrays
 from xlmc.errors import ErrorCode, FormulaError, Notice
-from xlmc.excel.address import Cell, InFormula, host_of
+from xlmc.excel.address import Area, Cell, InFormula, host_of
 from xlmc.excel.formula import Filled, Graph, Resolver, build_graph, ir
 from xlmc.excel.formula.callables import gives_function
 from xlmc.excel.formula.graph import Spills
@@ -91,6 +92,7 @@ class Lowering(ExpressionLowering):
             are any, the graph must be built again with them.
         led_to: formula cell -> inputs and formula cells that OFFSET and its like lead to.
         notices: what the person should know.
+        circle: cells that are being lowered and were asked for meanwhile.
     """
 
     def __init__(
@@ -112,18 +114,73 @@ class Lowering(ExpressionLowering):
         self._cells: dict[Cell, int] = {cell: dag.input(name) for cell, name in inputs.items()}
         self._cells |= {cell: dag.constant(constant(value)) for cell, value in held.items()}
         self._fill_down = FillDownCache(dag)
-        for cell, placed in graph.formulas.ordered.items():
-            self._computed[cell] = node = self._lower_placed(cell, placed)
-            dag.host_ends(cell)
+        self.circle: set[Cell] = set()
+        if graph.circles:
+            lower_as_read(graph.formulas.ordered, self)
+        else:
+            for cell, placed in graph.formulas.ordered.items():
+                self._set(cell, self._lower_placed(cell, placed))
+
+    def _set(self, cell: Cell, node: int) -> None:
+        """Note the node of a formula cell, and what other formulas read of it."""
+        self._computed[cell] = node
+        self.dag.host_ends(cell)
+        self.calls.next_formula()
+        saved = self.graph.workbook.content(cell).value if self._audit and node not in self.dag.missing else None
+        self._cells[cell] = node if saved is None else self._held_cell(cell)
+
+    def is_lowered(self, cell: Cell) -> bool:
+        """Whether the node of a formula cell is there."""
+        return cell in self._computed or cell not in self.graph.formulas.ordered
+
+    def lower_next(self, cell: Cell) -> Collection[Cell]:
+        """Lower a formula cell; if that asks for others that are not lowered, return these instead."""
+        try:
+            self._set(cell, self._lower_placed(cell, self.graph.formulas.ordered[cell]))
+        except NotYetNeeded as needed:
             self.calls.next_formula()
-            saved = graph.workbook.content(cell).value if audit else None
-            self._cells[cell] = node if saved is None else self._held_cell(cell)
+            return needed.cells
+        return ()
+
+    def forget(self, cell: Cell) -> None:
+        """Have a formula cell lowered again."""
+        for known in (self._computed, self._cells, self._arrays):
+            known.pop(cell, None)
+
+    def node_of(self, cell: Cell) -> int:
+        """The node of a formula cell that is lowered."""
+        return self._computed[cell]
+
+    def refuse(self, cells: Sequence[Cell], error: FormulaError) -> None:
+        """Take cells for faulty that need each other in a circle; outside of an audit raise the error."""
+        if not self._audit:
+            raise error
+        for cell in cells:
+            self._set(cell, self._hold_saved(cell, error))
+
+    def tell_circle(self, cell: Cell) -> None:
+        """Note that some trials may read a cell while it is computed."""
+        said = "trials in which this cell needs itself in a circle are errors, #CALC!"
+        self.notices.append(Notice(said, cell))
 
     def cell(self, cell: Cell) -> int:
         """The node of a cell's value."""
         if cell not in self._cells:
+            if cell in self.circle:
+                return self.dag.circle()
+            if cell in self.graph.circles or (self.graph.circles and cell in self.graph.formulas.ordered):
+                raise NotYetNeeded([cell])
             self._cells[cell] = self._held_cell(cell)
         return self._cells[cell]
+
+    def read_first(self, area: Area) -> None:
+        """Ask for all cells of an area that must be lowered before it."""
+        if not self.graph.circles:
+            return
+        ordered, known = self.graph.formulas.ordered, self._cells
+        missing = [c for c in area.cells() if c in ordered and c not in known and c not in self.circle]
+        if missing:
+            raise NotYetNeeded(missing)
 
     def array(self, cell: Cell) -> int:
         """The node of all that an array formula in a cell gives."""
@@ -178,7 +235,7 @@ class Lowering(ExpressionLowering):
             self._led.add(cell)
         if cell in self.inputs:
             return cell not in self.graph.reached
-        if cell in self._cells:
+        if cell in self._cells or cell in self.circle:
             return False
         return self.graph.workbook.content(cell).formula is not None or self._spills.anchor(cell) is not None
 
@@ -191,7 +248,7 @@ class Lowering(ExpressionLowering):
         if not isinstance(placed, Filled):
             return self.lower_cell(cell, placed)
         stencil, cells = placed
-        if self._audit:
+        if self._audit or cell in self.graph.circles:
             return self.lower_cell(cell, stencil.at(cell))
         known = self._cells
         leaves = [known[leaf] if leaf in known else self.cell(leaf) for leaf in cells]
@@ -212,8 +269,12 @@ class Lowering(ExpressionLowering):
             node = self._show(self.first_cell(node))
             self._tell_unknown(cell, self.lookup_constant(node))
         except NotYetNeeded as needed:
-            self.more.setdefault(cell, set()).update(needed.cells)
+            if not self._wait_for_graph(cell, needed.cells):
+                raise
             return self._held_cell(cell)  # only until the graph is built again
+        except CircleError as error:
+            self.refuse([cell], error.at(cell))
+            return self._held_cell(cell)
         except FormulaError as error:
             return self._take_saved(cell, error)
         finally:
@@ -221,6 +282,14 @@ class Lowering(ExpressionLowering):
         if self._led:
             self.led_to[cell] = self._led
         return node
+
+    def _wait_for_graph(self, cell: Cell, needed: Collection[Cell]) -> bool:
+        """Note the cells that a formula needs and does not name; whether there are any."""
+        if self.graph.circles:
+            needed = [need for need in needed if not self.graph.needs.names(cell, need)]
+        if needed:
+            self.more.setdefault(cell, set()).update(needed)
+        return bool(needed)
 
     def _tell_unknown(self, cell: Cell, value: Value | None) -> None:
         """Report the names and functions in a cell that Excel does not know.

@@ -162,6 +162,7 @@ class Scope:
             takes the cell of a range that stands beside it.
         around: whether a function around the tree has it taken cell by cell also in a plain formula.
         whole: whether a range that is all of the tree, or a branch of a choice that is, is wanted whole.
+        pointing: whether it is asked only where the tree leads, not what its cells hold.
         variables: name -> a node, a tree to be lowered in its scope, or a LAMBDA.
         depth: how many LAMBDAs are being called.
     """
@@ -172,6 +173,7 @@ class Scope:
     whole: bool = False
     variables: Mapping[str, int | Thunk | Closure] = field(default_factory=dict)
     depth: int = 0
+    pointing: bool = False
 
     @property
     def array(self) -> bool:
@@ -189,11 +191,16 @@ class Scope:
 
     def plainly(self) -> Scope:
         """The same scope, but with ranges taken as in the formula, whatever the function around the tree wants."""
-        return replace(self, around=False, whole=False) if self.around or self.whole else self
+        changes = self.around or self.whole or self.pointing
+        return replace(self, around=False, whole=False, pointing=False) if changes else self
+
+    def pointed_at(self) -> Scope:
+        """The same scope, asking only where the tree leads."""
+        return self if self.pointing else replace(self, pointing=True)
 
     def inside(self) -> Scope:
         """The scope of a part of the tree."""
-        return replace(self, whole=False) if self.whole else self
+        return replace(self, whole=False, pointing=False) if self.whole or self.pointing else self
 
     def wanted_whole(self) -> Scope:
         """The same scope, but with a range that is all of the tree wanted whole."""

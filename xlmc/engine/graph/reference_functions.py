@@ -97,7 +97,7 @@ def _find_area(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> Ar
     if not arguments or isinstance(arguments[0], ir.Missing):
         cell = host_of(scope.cell)
         return Area(cell.sheet, cell.row, cell.column, cell.row, cell.column)
-    areas = areas_of(lowering, arguments[0], scope)
+    areas = areas_of(lowering, arguments[0], scope.pointed_at())
     if areas is None:
         raise FormulaError("a reference is needed here")
     return areas[0]
@@ -105,7 +105,7 @@ def _find_area(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> Ar
 
 def _count(name: str) -> Callable[[TreeLowering, Arguments, Scope], int | None]:
     def lower(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int | None:
-        areas = areas_of(lowering, arguments[0], scope) if len(arguments) == 1 else None
+        areas = areas_of(lowering, arguments[0], scope.pointed_at()) if len(arguments) == 1 else None
         if areas is None:
             return None
         counted = {"ROWS": areas[0].whole.rows, "COLUMNS": areas[0].whole.columns, "AREAS": len(areas)}
@@ -116,7 +116,7 @@ def _count(name: str) -> Callable[[TreeLowering, Arguments, Scope], int | None]:
 
 def _is_reference(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
     try:
-        found = areas_of(lowering, arguments[0], scope) is not None
+        found = areas_of(lowering, arguments[0], scope.pointed_at()) is not None
     except NoReference:
         return lowering.dag.constant(constant(False))
     if not found and _may_be_reference(lowering, arguments[0], scope):
@@ -175,7 +175,7 @@ def _sheet(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
 
 
 def _sheet_name(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> str:
-    if arguments and areas_of(lowering, arguments[0], scope) is None:
+    if arguments and areas_of(lowering, arguments[0], scope.pointed_at()) is None:
         known = lowering.lookup_constant(lowering.lower(arguments[0], scope))
         if known is None:
             raise FormulaError("SHEET needs a reference, or the name of a sheet that does not vary")
@@ -185,7 +185,7 @@ def _sheet_name(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> s
 
 def _sheets(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int | None:
     if arguments:
-        areas = areas_of(lowering, arguments[0], scope)
+        areas = areas_of(lowering, arguments[0], scope.pointed_at())
         return None if areas is None else lowering.number(float(len({area.sheet for area in areas})))
     return lowering.number(float(len(lowering.graph.workbook.sheets)))
 
@@ -241,7 +241,7 @@ def _spill(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
     areas = REFERENCES["ANCHORARRAY"](lowering, arguments, scope)
     if areas is not None:
         return lowering.lower(areas[0], scope)
-    area = _find_area(lowering, arguments, scope)
+    area = require(lowering, _find_area(lowering, arguments, scope))
     return lowering.spill(Cell(area.sheet, area.top, area.left))
 
 

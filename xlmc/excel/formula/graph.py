@@ -1,6 +1,7 @@
 """What the targets need: their formula cells in dependency order, and which of them vary with an assumption.
 
-Cells that need each other in a circle are faults. A cell may hold no formula and yet be computed: one that an array
+Cells that need each other in a circle are listed apart: what a formula names it need not read, so that such cells can
+often be computed. A cell may hold no formula and yet be computed: one that an array
 formula in another cell fills (`Spills`).
 """
 
@@ -22,7 +23,7 @@ from xlmc.excel.formula.stencil import Stencil
 from xlmc.excel.formula.strips import Needs, Part, Stretch, Strips
 from xlmc.excel.workbook.workbook import Workbook
 
-__all__ = ["Filled", "Graph", "Spills", "build_graph", "circular"]
+__all__ = ["Filled", "Graph", "Spills", "build_graph", "circle_error", "circular"]
 
 _MANY: Final = 64
 """Cells of a part that it is worth remembering."""
@@ -58,19 +59,21 @@ class Graph:
 
     Attributes:
         formulas: resolved trees of the needed formula cells, each after the cells it needs. A cell that an array
-            formula in another cell fills has that other cell for a tree.
+            formula in another cell fills has that other cell for a tree. Cells of a circle stand in any order.
         needs: every formula cell's own direct precedents that hold a formula or are inputs.
         varying: the cells among `formulas` and the inputs that depend on an input.
         reached: the inputs and held cells that something needs.
-        faults: formula cells that cannot be read or need themselves, where that was allowed.
+        faults: formula cells that cannot be read, where that was allowed.
+        circles: formula cells that need themselves by what their formulas name, with one circle that each is in.
     """
 
     workbook: Workbook
     formulas: _Trees
-    needs: Mapping[Cell, tuple[Cell, ...]]
+    needs: Needs
     varying: frozenset[Cell]
     reached: frozenset[Cell]
     faults: Mapping[Cell, FormulaError]
+    circles: Mapping[Cell, FormulaError]
 
     def text(self, cell: Cell) -> str:
         """The formula of a cell as the file holds it."""
@@ -98,16 +101,16 @@ def build_graph(
         strict: raise at the first faulty formula; collect the faults otherwise.
 
     Raises:
-        FormulaError: a needed formula cannot be read, or the needed cells form a cycle.
+        FormulaError: a needed formula cannot be read.
     """
     walk = _Walk(resolver, inputs | held, more or {}, strict)
     for target in targets:
         walk.upstream(target)
-    if walk.circular:
-        walk.faults.update(circular(walk.needs))
-    varying = _varying(walk.ordered, walk.needs, walk.reached & inputs)
+    circles = circular(walk.needs) if walk.circular else {}
+    drawn = walk.reached & inputs
+    varying = _downstream(walk.needs, drawn) if circles else _varying(walk.ordered, walk.needs, drawn)
     reached = frozenset(walk.reached)
-    return Graph(resolver.workbook, _Trees(walk.ordered), walk.needs, varying, reached, walk.faults)
+    return Graph(resolver.workbook, _Trees(walk.ordered), walk.needs, varying, reached, walk.faults, circles)
 
 
 class _Walk:
@@ -154,7 +157,7 @@ class _Walk:
         if cell in self._given:
             self.reached.add(cell)
         elif cell in self._trail:
-            self._close_circle(cell)
+            self.circular = True
         elif cell not in self.ordered and (found := self._rewritten(cell) or self._read(cell)) is not None:
             self._open[cell] = found
             self.needs.parts[cell] = parts = self._precedents(cell, found)
@@ -166,11 +169,6 @@ class _Walk:
             return iter(parts[0])
         left = (part.waiting() if isinstance(part, Stretch) else part for part in parts if id(part) not in self._walked)
         return chain.from_iterable(left)
-
-    def _close_circle(self, cell: Cell) -> None:
-        if self._strict:
-            raise _cycle([*self._trail][[*self._trail].index(cell) :])
-        self.circular = True
 
     def _read(self, cell: Cell) -> ir.Expression | Filled | None:
         formula = self._workbook.content(cell).formula
@@ -248,24 +246,46 @@ def _varying(formulas: Iterable[Cell], needs: Needs, inputs: Iterable[Cell]) -> 
     return frozenset(varying)
 
 
-def circular(needs: Mapping[Cell, Sequence[Cell]]) -> dict[Cell, FormulaError]:
+def _downstream(needs: Needs, inputs: Iterable[Cell]) -> frozenset[Cell]:
+    """The inputs and all cells that need one of them, in whatever order they stand."""
+    parts, links = needs.linked()
+    users: dict[Cell, list[int]] = {}
+    for number, part in enumerate(parts):
+        for need in part:
+            users.setdefault(need, []).append(number)
+    cells: list[list[Cell]] = [[] for _ in parts]
+    for cell, numbers in links.items():
+        for number in numbers:
+            cells[number].append(cell)
+    found, open_ = set(inputs), list(inputs)
+    while open_:
+        for number in users.pop(open_.pop(), ()):
+            new = [cell for cell in cells[number] if cell not in found]
+            cells[number] = []
+            found.update(new)
+            open_ += new
+    return frozenset(found)
+
+
+def circular(needs: Needs) -> dict[Cell, FormulaError]:
     """Every cell that needs itself, directly or through others, with one circle of those that it is in with.
 
     Args:
         needs: cell -> the cells it needs; those that are no keys need nothing.
     """
     cells = list(needs)
-    groups = _groups(cells, needs)
+    groups = _groups(needs)
     found: dict[Cell, FormulaError] = {}
     for cell in cells:
-        if cell not in found and (loop := _loop(cell, needs, groups)):
-            fault = _cycle(loop)
+        alone = len(groups[cell]) == 1 and not needs.names(cell, cell)
+        if cell not in found and not alone and (loop := _loop(cell, needs, groups)):
+            fault = circle_error(loop)
             found |= dict.fromkeys(groups[cell], fault)
     return found
 
 
-def _cycle(cells: Sequence[Cell]) -> FormulaError:
-    """What to tell of a circle."""
+def circle_error(cells: Sequence[Cell]) -> FormulaError:
+    """Make what is said of cells that need each other in a circle, each the next one."""
     loop = " → ".join(str(cell) for cell in [*cells, cells[0]])
     return FormulaError(
         f"the cells need each other in a circle: {loop}",
@@ -274,27 +294,31 @@ def _cycle(cells: Sequence[Cell]) -> FormulaError:
     )
 
 
-def _groups(cells: Sequence[Cell], needs: Mapping[Cell, Sequence[Cell]]) -> dict[Cell, dict[Cell, None]]:
+def _groups(needs: Needs) -> dict[Cell, dict[Cell, None]]:
     """The strongly connected component of every cell, in the order of the cells."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    numbers = {cell: number for number, cell in enumerate(cells)}
-    edges = [(numbers[cell], numbers[need]) for cell in cells for need in needs[cell] if need in numbers]
+    numbers = {cell: number for number, cell in enumerate(needs)}
+    parts, links = needs.linked()
+    edges = [(numbers[cell], len(numbers) + part) for cell, linked in links.items() for part in linked]
+    for number, part in enumerate(parts, len(numbers)):
+        edges += [(number, numbers[need]) for need in part if need in numbers]
     rows, columns = np.array(edges, np.int64).T
-    matrix = coo_array((np.ones(len(edges), np.int8), (rows, columns)), shape=(len(cells), len(cells)))
+    size = len(numbers) + len(parts)
+    matrix = coo_array((np.ones(len(edges), np.int8), (rows, columns)), shape=(size, size))
     _, labels = connected_components(matrix.tocsr(), connection="strong")
     members: dict[int, dict[Cell, None]] = {}
-    for cell, label in zip(cells, labels.tolist(), strict=True):
+    for cell, label in zip(numbers, labels.tolist(), strict=False):
         members.setdefault(label, {})[cell] = None
-    return {cell: members[label] for cell, label in zip(cells, labels.tolist(), strict=True)}
+    return {cell: members[label] for cell, label in zip(numbers, labels.tolist(), strict=False)}
 
 
-def _loop(start: Cell, needs: Mapping[Cell, Sequence[Cell]], groups: Mapping[Cell, dict[Cell, None]]) -> list[Cell]:
+def _loop(start: Cell, needs: Needs, groups: Mapping[Cell, dict[Cell, None]]) -> list[Cell]:
     """Follow needs within the group until a cell comes up again; nothing where the cell is in no circle."""
     group, trail = groups[start], {start: None}
     while True:
-        following = next((need for need in needs[next(reversed(trail))] if need in group), None)
+        following = next((need for need in needs.of(next(reversed(trail))) if need in group), None)
         if following is None:
             return []
         if following in trail:

@@ -65,6 +65,17 @@ class Stretch:
     def __iter__(self) -> Iterator[Cell]:
         return map(self.strip.cells.__getitem__, range(self.start, self.stop))
 
+    def __contains__(self, cell: object) -> bool:
+        if not isinstance(cell, Cell):
+            return False
+        index = bisect_left(self.strip.cells, cell, self.start, self.stop)
+        return index < self.stop and self.strip.cells[index] == cell
+
+    @property
+    def key(self) -> tuple[int, ...]:
+        """What stretches of the same cells have in common."""
+        return id(self.strip), self.start, self.stop
+
     def waiting(self) -> Iterator[Cell]:
         """The cells that are not in order yet, and perhaps some that are."""
         indices = chain(*self.strip.ordered.outside(self.start, self.stop))
@@ -149,10 +160,32 @@ class Needs(Mapping[Cell, tuple[Cell, ...]]):
         self.parts: dict[Cell, tuple[Part, ...]] = {}
 
     def __getitem__(self, cell: Cell) -> tuple[Cell, ...]:
-        return tuple(chain(*self.parts[cell]))
+        return tuple(self.of(cell))
 
     def __iter__(self) -> Iterator[Cell]:
         return iter(self.parts)
 
     def __len__(self) -> int:
         return len(self.parts)
+
+    def of(self, cell: Cell) -> Iterator[Cell]:
+        """The cells that a formula cell needs, one by one."""
+        return chain.from_iterable(self.parts[cell])
+
+    def names(self, cell: Cell, need: Cell) -> bool:
+        """Whether one cell's formula names another one, or has it in a range."""
+        return any(need in part for part in self.parts[cell])
+
+    def linked(self) -> tuple[list[Part], dict[Cell, list[int]]]:
+        """The different parts, and the indices of those of each cell: formulas that read one range share a part."""
+        found: list[Part] = []
+        numbers: dict[tuple[int, ...], int] = {}
+        links: dict[Cell, list[int]] = {}
+        for cell, parts in self.parts.items():
+            keys = [part.key if isinstance(part, Stretch) else (id(part),) for part in parts]
+            for key, part in zip(keys, parts, strict=True):
+                if key not in numbers:
+                    numbers[key] = len(found)
+                    found.append(part)
+            links[cell] = [numbers[key] for key in keys]
+        return found, links

@@ -81,7 +81,7 @@ def find_needed(
         more: cells that a formula cell turned out to need beside those its formula names.
 
     Raises:
-        FormulaError: a needed formula cannot be read, or needed cells form a circle.
+        FormulaError: a needed formula cannot be read.
         DefinitionError: assumptions need each other in a circle, or there are too many draws in cells.
     """
     needs = {a.cell: a.cells for a in definitions.assumptions if not a.frozen}

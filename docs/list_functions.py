@@ -122,6 +122,10 @@ DIFFERENCES = """## What differs from Excel on purpose
 - Refused are `OFFSET`, `INDIRECT` and `INDEX(…):INDEX(…)` that lead to other cells in each trial (use `TAKE` or `DROP`,
   which accept numbers that vary); `MAKEARRAY` of a size that varies (`SEQUENCE` accepts one); a `LAMBDA` that calls
   itself with changing ranges or arrays more than 60 calls deep; and formulas that need iteration.
+- A cell is in a circle where its own value is read while it is computed, in each trial anew: `SUM(A2:OFFSET(A6,-1,0))`
+  in A6 and `CHOOSE(2,B40,"x")` in B40 are computed. Where a condition or a criterion that varies has the own cell read,
+  the trials that read it are errors, `#CALC!`, with a notice. What would hide such an error (`IFERROR`, `COUNT`) is
+  refused.
 - Sums from the last row up are rounded in another order where 64 or more of them end at one cell (below).
 - Microsoft does not document these, and Excel may do otherwise: `AND("",…)`; `XLOOKUP` of the nearest across numbers
   and texts; which of several equal keys a binary search finds; `ACCRINT` with FALSE for its method after the first

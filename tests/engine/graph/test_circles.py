@@ -100,7 +100,7 @@ def test_a_switch_between_two_ways_round_is_no_circle(ways):
 def test_two_cells_that_read_each_other_in_turn_are_no_circle(trials):
     cells = {"B1": "=IF(A1>0.5,B2*2,5)", "B2": "=IF(A1>0.5,6,B1+1)"}
     found = trials(cells, "10*B1+B2+0*A1", [0.2, 0.7, 0.4], constants=False)
-    assert found == dict.fromkeys(found, [56.0, 126.0, 56.0])
+    assert set(map(tuple, found.values())) == {(56.0, 126.0, 56.0)}
 
 
 @pytest.mark.parametrize(
@@ -120,7 +120,7 @@ def test_two_cells_that_read_each_other_in_turn_are_no_circle(trials):
 def test_trials_that_read_the_own_cell_are_errors(trials, lower, formula):
     cells = {"B1": f"={formula}", "B2": 5.0, "C1": "y", "C2": "x"}
     found = trials(cells, "B1+A1*0", [0.2, 0.7, 0.4], constants=False)
-    assert found == dict.fromkeys(found, [5.0, "#CALC!", 5.0])
+    assert set(map(tuple, found.values())) == {(5.0, "#CALC!", 5.0)}
     lowering, _ = lower({"A1": 0.0, **cells}, ["A1"], ["B1"])
     assert [(str(notice.where), "#CALC!" in notice.message) for notice in lowering.notices] == [("S!B1", True)]
 

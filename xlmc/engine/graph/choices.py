@@ -148,8 +148,7 @@ def _switch(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
     last = rest[-1] if len(rest) % 2 else ir.ErrorLiteral(ErrorCode.NA)
     pairs = zip(rest[: len(rest) // 2 * 2 : 2], rest[1::2], strict=True)
     conditions = (
-        (lowering.apply(IS_CASE, (subject, lowering.lower(match, scope.plainly()))), result)
-        for match, result in pairs
+        (lowering.apply(IS_CASE, (subject, lowering.lower(match, scope.plainly()))), result) for match, result in pairs
     )
     return _first_true(lowering, conditions, last, scope.branch())
 

@@ -6,7 +6,6 @@ beforehand; `NotYetNeeded` then asks for a wider graph.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
@@ -14,8 +13,9 @@ from typing import Final
 from xlmc.engine.graph.called_functions import check_count
 from xlmc.engine.graph.lowering import Scope, Thunk, TreeLowering
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.excel.address import MAX_COLUMN, MAX_ROW, Area, Cell, column_number, host_of
-from xlmc.excel.formula import ir, parse
+from xlmc.excel.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of
+from xlmc.excel.formula import ir
+from xlmc.excel.formula.indirect_text import read_a1, read_r1c1
 from xlmc.excel.functions.budget import ask_for_reading
 from xlmc.excel.functions.values import Codes
 
@@ -35,10 +35,6 @@ Arguments = tuple[ir.Expression, ...]
 
 _NOT_ONE_CELL: Final = ir.ErrorLiteral(ErrorCode.VALUE)
 _CHOOSING: Final = ("IF", "CHOOSE")
-
-_STEP: Final = r"\[-?[0-9]{1,7}\]|[0-9]{1,7}"
-_R1C1: Final = re.compile(rf"(?P<row>R(?P<r>{_STEP})?)?(?P<column>C(?P<c>{_STEP})?)?", re.IGNORECASE)
-"""Matches a cell as Excel's other style writes it, `R2C[-1]`, a whole row, `R2`, or a whole column."""
 
 
 class NotYetNeeded(Exception):  # noqa: N818 - it asks for more; nothing is wrong
@@ -225,7 +221,7 @@ def _indirect(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> lis
     texts, errors = known.to_texts()
     _stop_at_error(errors)
     a1 = len(arguments) < 2 or _is_true(lowering, arguments[1], scope)
-    tree = _read(lowering, str(texts[0])) if a1 else _read_r1c1(lowering, str(texts[0]), scope.cell)
+    tree = read_a1(str(texts[0])) if a1 else read_r1c1(str(texts[0]), scope.cell)
     over_sheets = isinstance(tree, ir.Reference) and tree.last_sheet is not None  # which Excel does not read from texts
     found = None if tree is None or over_sheets else _resolve(lowering, tree, scope)
     if found is None:
@@ -243,63 +239,12 @@ def _is_true(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:
     return bool(logicals[0])
 
 
-_PADDED: Final = re.compile(r"(?P<before>\$?(?P<column>[A-Za-z]{1,3})\$?)0+(?=[1-9])")
-"""The row of a cell with zeros before it, `A02`, which Excel reads as `A2`."""
-_CELLS: Final = re.compile(r"\$?[A-Za-z]{1,3}\$?[0-9]+(?::\$?[A-Za-z]{1,3}\$?[0-9]+)?")
-
-
-def _unpad(found: re.Match[str]) -> str:
-    return found["before"] if column_number(found["column"].upper()) <= MAX_COLUMN else found[0]
-
-
-def _read(lowering: TreeLowering, text: str) -> ir.Expression | None:
-    sheet, mark, place = text.rpartition("!")
-    if _CELLS.fullmatch(place):
-        text = sheet + mark + _PADDED.sub(_unpad, place)
-    try:
-        return parse(text)
-    except FormulaError:
-        return None
-
-
 def _resolve(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
     """What a text refers to; None where it is no reference."""
     try:
         return areas_of(lowering, lowering.resolver.tree(tree, host_of(scope.cell)), scope)
     except FormulaError:
         return None
-
-
-def _read_r1c1(lowering: TreeLowering, text: str, host: Cell) -> ir.Expression | None:
-    """The reference `R1C1`, `Data!R[1]C:R3C` or `C2`; names and tables are written as in the usual style."""
-    sheet, _, place = text.strip().rpartition("!")
-    corners = [_r1c1_corner(end, host) for end in place.split(":")]
-    first, last = corners[0], corners[-1]
-    if first is not None and last is not None and len(corners) <= 2 and _go_together(first, last):
-        unquoted = sheet[1:-1].replace("''", "'") if sheet.startswith("'") and sheet.endswith("'") else sheet
-        return ir.Reference(first, last, sheet=unquoted or None)
-    tree = _read(lowering, text)
-    return tree if isinstance(tree, ir.Name | ir.TableReference) else None
-
-
-def _go_together(first: ir.Corner, last: ir.Corner) -> bool:
-    """Whether both are cells, both whole rows or both whole columns."""
-    return (first.row is None, first.column is None) == (last.row is None, last.column is None)
-
-
-def _r1c1_corner(text: str, host: Cell) -> ir.Corner | None:
-    found = _R1C1.fullmatch(text)
-    if found is None or not text:
-        return None
-    row = _step(found["r"], host.row) if found["row"] else None
-    column = _step(found["c"], host.column) if found["column"] else None
-    return ir.Corner(row, column, True, True)
-
-
-def _step(text: str | None, base: int) -> int:
-    if text is None:
-        return base
-    return base + int(text[1:-1]) if text.startswith("[") else int(text)
 
 
 def many_numbers(lowering: TreeLowering, numbers: Arguments, scope: Scope) -> bool:

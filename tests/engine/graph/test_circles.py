@@ -54,10 +54,64 @@ def test_what_is_only_pointed_into_is_not_read(gives, cell, formula, expected, h
     assert gives(SHEET | {cell: f"={formula}"}, [(cell, expected)], held) == []
 
 
+def test_subtotals_of_the_own_column(gives):
+    """A chart of accounts: each subtotal adds up the rows of its group, in the column that all subtotals are in."""
+    cells, expected, row = {"A1": 1.0}, [], 2
+    for group in range(12):
+        for _ in range(3):
+            cells |= {f"C{row}": "item", f"D{row}": f"g{group}", f"E{row}": f"=A1+{row}", f"F{row}": f"=A1*{row}"}
+            row += 1
+        cells |= {f"C{row}": "sum", f"D{row}": f"g{group}", f"E{row}": f'=SUMIFS(E:E,C:C,"item",D:D,D{row})'}
+        cells |= {f"G{row}": f"t{group}", f"F{row}": f'=SUMIF(D$2:D${row - 1},"g{group}",F$2:F${row - 1})'}
+        expected += [(f"E{row}", sum(range(row - 3, row), 3.0)), (f"F{row}", float(sum(range(row - 3, row))))]
+        row += 1
+    assert gives(cells, expected, ["A1"]) == gives(cells, expected) == []
+
+
+STEPS, BEFORE = 30, 3
+FINISHES = [
+    ("D{r}+B{r}", "IF(C{r}=0,0,VLOOKUP(C{r},A:E,5,FALSE))"),
+    ("D{r}+B{r}", "IF(C{r}=0,0,XLOOKUP(C{r},A$2:A$50,E$2:E$50))"),
+    ("B{r}+D{r}", "MAXIFS(E:E,A:A,C{r})"),
+    ("B{r}+SUMIF(A:A,C{r},E:E)", "0"),
+    ("B{r}+IF(C{r}=0,0,LOOKUP(C{r},A$2:A$50,E$2:E$50))", "0"),
+    ("B{r}+IFERROR(INDEX(E:E,MATCH(C{r},A:A,0)),0)", "0"),
+    ("B{r}+N(OFFSET(E$1,IF(C{r}=0,99,C{r}),0))", "0"),
+]
+
+
+@pytest.mark.parametrize(
+    ("finish", "start"), FINISHES, ids=["VLOOKUP", "XLOOKUP", "MAXIFS", "SUMIF", "LOOKUP", "INDEX", "OFFSET"]
+)
+def test_a_plan_that_looks_up_its_own_steps(gives, finish, start):
+    """Each step begins when the one that its row names has ended; that one stands below it. Durations are drawn."""
+    cells, ends = {"A1": "step"}, {0: 0.0}
+    for step in range(STEPS, 0, -1):
+        row, before = step + 1, step + BEFORE if step + BEFORE <= STEPS else 0
+        ends[step] = ends[before] + step % 5 + 1
+        cells |= {f"A{row}": float(step), f"B{row}": step % 5 + 1.0, f"C{row}": float(before)}
+        cells |= {f"D{row}": f"={start.format(r=row)}", f"E{row}": f"={finish.format(r=row)}"}
+    held = [address for address in cells if address[0] in "AC"]
+    assert gives(cells, [(f"E{step + 1}", ends[step]) for step in (1, 2, 9, STEPS)], held) == []
+
+
+def test_circles_over_sheets(gives):
+    cells = {"A1": 2.0, "T!A1": "=IF(S!A1>1,5,S!B1)", "B1": "=IF(A1>1,T!A1*2,3)"}
+    assert gives(cells, [("B1", 10.0)]) == []
+
+
+def test_too_many_cells_that_may_read_each_other(lower):
+    cells = {f"D{row}": float(row) for row in range(1, 11)} | {"E1": 5.0, "A1": 1.0}
+    cells |= {f"E{row}": f"=SUMIFS(E$1:E$10,D$1:D$10,A1+{row - 2})" for row in range(2, 11)}
+    with pytest.raises(FormulaError, match=r"more than 8 cells may need each other.*S!E2, S!E3"):
+        lower(cells, ["A1"], ["E10"])
+
+
 @pytest.mark.parametrize(
     "formula",
     [
         "A12+1",
+        "CHOOSE({1,2},A12,A1)",
         "SUM(A1:A12)",
         "COUNT(A1:A12)",
         "COUNTIF(A1:A12,5)",

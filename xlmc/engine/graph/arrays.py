@@ -71,7 +71,7 @@ def element(dag: Dag, node_id: int, row: int, column: int) -> int:
     if isinstance(node, Range):
         return node.rows[row][column]
     if isinstance(node, Constant):
-        return dag.constant(pick(node.value, row, column))
+        return dag.part_of(node_id, pick(node.value, row, column))
     chosen = _parts_of(dag, node_id)
     if chosen is not None:
         return dag.add(Select(chosen[0], *(element(dag, part, row, column) for part in chosen[1:])))

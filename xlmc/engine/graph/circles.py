@@ -17,6 +17,7 @@ import numpy as np
 
 from xlmc.engine.graph.dag import Dag
 from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Range, Select, uses
+from xlmc.engine.graph.picked_ranges import PICKING
 from xlmc.errors import FormulaError
 from xlmc.excel.address import Cell
 from xlmc.excel.formula.graph import circle_error
@@ -40,13 +41,6 @@ _HIDING: Final = frozenset(
 )
 """Functions whose result may be no error although an argument is one, or a cell of it."""
 
-_PICKING: Final[Mapping[str, int]] = {
-    **dict.fromkeys(("SUMIFS", "AVERAGEIFS", "MAXIFS", "MINIFS"), 0),
-    **dict.fromkeys(("SUMIF", "AVERAGEIF", "LOOKUP", "XLOOKUP"), 2),
-    **dict.fromkeys(("VLOOKUP", "HLOOKUP"), 1),
-}
-"""Functions that read of one argument only the cells which the others say."""
-
 
 class CircleError(FormulaError):
     """A formula reads, or may hide that it reads, the value of a cell that is being computed."""
@@ -60,7 +54,7 @@ def refuse_hidden(dag: Dag, function: Function, arguments: Sequence[int]) -> Non
     """
     if function.name not in _HIDING:
         return
-    picked = _PICKING.get(function.name)
+    picked = PICKING.get(function.name)
     for position, argument in enumerate(arguments):
         hides = function.parameter(position).kind is Kind.ANY and argument in dag.missing
         if hides and (position != picked or _is_searched(dag, function.name, argument)):
@@ -106,7 +100,7 @@ def _reads_here(dag: Dag, at: int, known: Mapping[int, bool]) -> bool:
             return known.get(value, False)
         case Range():
             return False
-        case Apply(function, arguments) if function.name in _PICKING or function.name == "INDEX":
+        case Apply(function, arguments) if function.name in PICKING or function.name == "INDEX":
             return any(known.get(each, False) for i, each in enumerate(arguments) if not function.parameter(i).ranged)
         case Apply(_, arguments):
             return any(known.get(cell, False) for each in arguments for cell in (each, *_cells(dag, each)))
@@ -191,8 +185,16 @@ def _is_open(need: Cell, at: _Open, open_: Mapping[Cell, _Open], lowers: Lowers)
     asked.loop = trail[trail.index(need) :]
     lowers.circle.add(need)
     if len(lowers.circle) > _MOST_OPEN:
-        lowers.refuse(asked.loop, circle_error(asked.loop))
+        lowers.refuse(asked.loop, _too_many(list(lowers.circle)))
     return True
+
+
+def _too_many(cells: Sequence[Cell]) -> FormulaError:
+    """What is said where too many cells may read each other."""
+    listed = ", ".join(map(str, sorted(cells)))
+    said = f"more than {_MOST_OPEN} cells may need each other in a circle, others in each trial: {listed}"
+    hint = "have numbers that do not vary decide which cells are read, or break the circle"
+    return FormulaError(said, where=min(cells), hint=hint)
 
 
 def _close(at: _Open, open_: dict[Cell, _Open], lowers: Lowers) -> None:

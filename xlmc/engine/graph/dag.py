@@ -122,6 +122,11 @@ class Dag:
         """The node of a value that is not there: that of a cell which is asked for while it is computed."""
         return self._register_missing(_CIRCLE, constant(ErrorCode.CALC))
 
+    def part_of(self, node_id: int, cell: Value) -> int:
+        """The node of one cell of a constant."""
+        here = node_id in self.missing and bool((cell.kinds == ERROR + ErrorCode.CALC).any())
+        return self.circle() if here else self.constant(cell)
+
     def _register_missing(self, key: object, value: Value) -> int:
         """A constant apart from those that are equal to it."""
         node_id = self._register(key, Constant(value), _constant_type(value), value.shape[1:] or None)

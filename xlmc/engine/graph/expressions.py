@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from itertools import groupby
 from typing import Final, assert_never
 
@@ -16,6 +16,7 @@ from xlmc.engine.graph.dag import Dag
 from xlmc.engine.graph.further_cells import refusal
 from xlmc.engine.graph.lowering import LambdaCalls, Scope, TreeLowering
 from xlmc.engine.graph.nodes import Range
+from xlmc.engine.graph.picked_ranges import PICKING, range_as_read
 from xlmc.engine.graph.reference_functions import REFERENCE_FUNCTIONS
 from xlmc.engine.graph.running_totals import FOLDS, RunningTotals
 from xlmc.errors import ErrorCode, FormulaError
@@ -174,18 +175,50 @@ class ExpressionLowering(TreeLowering):
     ) -> int:
         """A call of a function of the registry; some of its arguments go through another function first."""
         book = self.graph.workbook
-        found: list[int] = []
-        for position, argument in enumerate(arguments):
-            parameter = function.parameter(position)
-            beside = scope.of(parameter.ranges)
-            if parameter.ranges is Ranges.ONE_CELL:
-                argument = of_one_cell(self, argument, beside)
-            whole = parameter.ranged and (beside.array or parameter.ranges is not Ranges.SINGLE)
-            part = self.whole(argument, beside) if whole else [self.lower(argument, beside)]
-            if position in first:
-                part = [self.apply(first[position], (node,)) for node in part]
-            found += part if parameter.repeat else [self._stack(part)]
-        return self.apply(with_settings(function, book.date1904, book.macintosh), tuple(found))
+        function_here = with_settings(function, book.date1904, book.macintosh)
+        picked = PICKING.get(function.name) if self.graph.circles else None
+        parts = {
+            position: self._argument(function, position, argument, scope, first)
+            for position, argument in enumerate(arguments)
+            if position != picked
+        }
+        if picked is not None and picked < len(arguments):
+            node = self._as_read(function_here, picked, arguments[picked], scope, parts)
+            nodes = self._argument(function, picked, arguments[picked], scope, first) if node is None else [node]
+            parts[picked] = nodes
+        found = tuple(node for position in range(len(arguments)) for node in parts[position])
+        return self.apply(function_here, found)
+
+    def _as_read(
+        self, function: Function, picked: int, tree: ir.Expression, scope: Scope, given: Mapping[int, list[int]]
+    ) -> int | None:
+        """The node of a range of which a function reads a few cells; None where it is to be read whole."""
+        try:
+            areas = areas_of(self, tree, scope.of(function.parameter(picked).ranges).pointed_at())
+        except NoReference:
+            return None
+        if areas is None or len(areas) != 1 or areas[0].is_cut:
+            return None
+        return range_as_read(self, function, picked, areas[0], given)
+
+    def _argument(
+        self,
+        function: Function,
+        position: int,
+        argument: ir.Expression,
+        scope: Scope,
+        first: Mapping[int, Function],
+    ) -> list[int]:
+        """The nodes of an argument of a call: several of joined areas, where the function takes any number of them."""
+        parameter = function.parameter(position)
+        beside = scope.of(parameter.ranges)
+        if parameter.ranges is Ranges.ONE_CELL:
+            argument = of_one_cell(self, argument, beside)
+        whole = parameter.ranged and (beside.array or parameter.ranges is not Ranges.SINGLE)
+        nodes = self.whole(argument, beside) if whole else [self.lower(argument, beside)]
+        if position in first:
+            nodes = [self.apply(first[position], (node,)) for node in nodes]
+        return nodes if parameter.repeat else [self._stack(nodes)]
 
     def _special(self, name: str, arguments: tuple[ir.Expression, ...], scope: Scope) -> int | None:
         """The node of a function that takes more than values; None of one that takes values alone."""
@@ -228,7 +261,7 @@ class ExpressionLowering(TreeLowering):
             raise refusal("what takes all cells")
         if area not in self._ranges:
             ask_for_reading(area.rows, area.columns)
-            self.read_first(area)
+            self.read_first(area.cells())
             node = self._range(area)
             if node in self.dag.missing:
                 return node
@@ -236,8 +269,12 @@ class ExpressionLowering(TreeLowering):
         return self._ranges[area]
 
     @abstractmethod
-    def read_first(self, area: Area) -> None:
-        """Ask for all cells of an area that must be lowered before it."""
+    def not_there(self, area: Area) -> Collection[Cell]:
+        """The cells of an area that are in a circle and have no value yet."""
+
+    @abstractmethod
+    def read_first(self, cells: Iterable[Cell]) -> None:
+        """Ask for all cells that must be lowered first."""
 
     def _range(self, area: Area) -> int:
         rows = range(area.top, area.bottom + 1)

@@ -5,7 +5,7 @@ Where xlmc cannot compute a cell, and no assumption reaches it, the value that E
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Final, TypeVar
 
@@ -173,14 +173,19 @@ class Lowering(ExpressionLowering):
             self._cells[cell] = self._held_cell(cell)
         return self._cells[cell]
 
-    def read_first(self, area: Area) -> None:
-        """Ask for all cells of an area that must be lowered before it."""
+    def not_there(self, area: Area) -> Collection[Cell]:
+        """The cells of an area that are in a circle and have no value yet."""
+        known, missing = self._cells, self.dag.missing
+        return {c for c in self.graph.circles if c in area and (c not in known or known[c] in missing)}
+
+    def read_first(self, cells: Iterable[Cell]) -> None:
+        """Ask for all cells that must be lowered first."""
         if not self.graph.circles:
             return
         ordered, known = self.graph.formulas.ordered, self._cells
-        missing = [c for c in area.cells() if c in ordered and c not in known and c not in self.circle]
-        if missing:
-            raise NotYetNeeded(missing)
+        waiting = [cell for cell in cells if cell in ordered and cell not in known and cell not in self.circle]
+        if waiting:
+            raise NotYetNeeded(waiting)
 
     def array(self, cell: Cell) -> int:
         """The node of all that an array formula in a cell gives."""
@@ -235,8 +240,8 @@ class Lowering(ExpressionLowering):
             self._led.add(cell)
         if cell in self.inputs:
             return cell not in self.graph.reached
-        if cell in self._cells or cell in self.circle:
-            return False
+        if cell in self._cells or (self.graph.circles and cell in self.graph.formulas.ordered):
+            return False  # those of a circle are asked for when they are read
         return self.graph.workbook.content(cell).formula is not None or self._spills.anchor(cell) is not None
 
     @cached_property

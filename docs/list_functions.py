@@ -125,7 +125,7 @@ DIFFERENCES = """## What differs from Excel on purpose
 - A cell is in a circle where its own value is read while it is computed, in each trial anew: `SUM(A2:OFFSET(A6,-1,0))`
   in A6 and `CHOOSE(2,B40,"x")` in B40 are computed. Where a condition or a criterion that varies has the own cell read,
   the trials that read it are errors, `#CALC!`, with a notice. What would hide such an error (`IFERROR`, `COUNT`) is
-  refused.
+  refused, and so are more than eight cells that may each read another one in each trial.
 - Sums from the last row up are rounded in another order where 64 or more of them end at one cell (below).
 - Microsoft does not document these, and Excel may do otherwise: `AND("",…)`; `XLOOKUP` of the nearest across numbers
   and texts; which of several equal keys a binary search finds; `ACCRINT` with FALSE for its method after the first

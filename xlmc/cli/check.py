@@ -104,10 +104,11 @@ def _show_base_case(model: Model) -> list[str]:
 def _error_lines(model: Model, errors: BaseErrors) -> Iterator[str]:
     """The cells that errors come from with their formulas, then the cells that have theirs from these."""
     from xlmc.analysis.results.record.needed_cells import content_text
+    from xlmc.excel.address import host_of
 
     handled = "" if errors.answers else " (handled: no forecast, filter or check is an error)"
     for cell, code in list(errors.roots.items())[:_MOST_CELLS]:
-        yield f"{cell} {code.text}{handled}: {content_text(model.workbook, cell)}"
+        yield f"{cell} {code.text}{handled}: {content_text(model.workbook, host_of(cell))}"
     if len(errors.roots) > _MOST_CELLS:
         yield f"… and {len(errors.roots) - _MOST_CELLS:,} more cells with an error of their own"
     if errors.others:

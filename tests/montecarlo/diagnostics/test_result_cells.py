@@ -606,3 +606,24 @@ def test_a_draw_whose_base_case_is_not_known_is_named_as_that(tmp_path):
     book.save(path)
     warning = xlmc.load(path).simulate(200).shown_results.warning
     assert "Sheet!A2 (draws at random, and its base case is not known)" in warning
+
+
+def test_percentiles_of_values_that_repeat_are_among_them(tmp_path):
+    formulas = {
+        "A1": ('=RiskOutput("y")+RiskDiscrete({10,20,30},{1,1,1})', 20),
+        "A2": ('=RiskOutput("z")+RiskUniform(0,1)', 0.5),
+        "A3": ('=RiskOutput("cut")+MAX(0,RiskNormal(0,1))', 0),
+    }
+    asked = {"A1": 0.3334, "A2": 0.25, "A3": 0.75}
+    for row, (cell, p) in enumerate(asked.items(), start=1):
+        formulas |= {
+            f"B{row}": (f"=RiskPercentile({cell},{p})", 0),
+            f"C{row}": (f"=CB.GetForePercentFN({cell},{100 * p})", 0),
+            f"E{row}": (f"=RiskPercentileD({cell},1-{p})", 0),
+        }
+    run = xlmc.load(build(tmp_path / "book.xlsx", formulas)).simulate(3000)
+    found = {str(cell): value for cell, value in run.shown_results.values.items()}
+    for row, (cell, p) in enumerate(asked.items(), start=1):
+        x = np.sort(run[{"A1": "y", "A2": "z", "A3": "cut"}[cell]].values)
+        expected = np.percentile(x, 100 * p) if cell == "A2" else x[math.ceil(p * x.size - 1e-9) - 1]
+        assert [found[f"S!{column}{row}"] for column in "BCE"] == pytest.approx([expected] * 3, rel=1e-12)

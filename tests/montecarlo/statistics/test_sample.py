@@ -112,3 +112,27 @@ def test_positions_run_from_0_to_1(weights):
 @given(st.integers(2, 60))
 def test_equal_weights_stand_at_equal_distances(n):
     assert positions_of(np.full(n, 0.3)) == pytest.approx(np.linspace(0, 1, n))
+
+
+@pytest.mark.parametrize("weighted", [False, True], ids=["plain", "equal weights"])
+@pytest.mark.parametrize(
+    ("values", "p", "expected"),
+    [
+        ([10, 10, 20, 30], 0.0, 10),
+        ([10, 10, 20, 30], 0.5, 10),
+        ([10, 10, 20, 30], 0.51, 20),
+        ([10, 10, 20, 30], 0.75, 20),
+        ([10, 10, 20, 30], 1.0, 30),
+        (list(range(100)), 0.07, 6),  # 0.07 * 100 is a little more than 7
+        (list(range(100)), 0.29, 28),
+        (list(range(1000)), 1 - 0.9, 99),
+    ],
+)
+def test_the_first_value_that_a_share_does_not_exceed(values, p, expected, weighted):
+    sample = Sample.of(values, np.ones(len(values)) if weighted else None)
+    assert sample.reaching(p) == expected
+
+
+def test_it_counts_weights():
+    sample = Sample.of([10, 20, 30], [1, 2, 5])
+    assert [sample.reaching(p) for p in (0.1, 0.125, 0.126, 0.375, 0.376)] == [10, 10, 20, 20, 30]

@@ -343,7 +343,7 @@ class _Answers:
         if limits.percents:
             if not all(end is None or 0 <= end <= 1 for end in ends):
                 return None
-            ends = [None if end is None else result.percentile(100 * end).value for end in ends]
+            ends = [None if end is None else _percentile(result, 100 * end) for end in ends]
         low, high = (given if given is not None else end for given, end in zip(ends, (-np.inf, np.inf), strict=True))
         return result.between(low, high)
 
@@ -383,7 +383,7 @@ def _statistic(result: ForecastResult, asked: ResultCall, number: float | None) 
             return _by_name(result, CRYSTAL_BALL_STATISTICS[int(number) - 1]) if known else None
         case "percent" | "share" | "share from above":
             percent = number if what == "percent" else 100 * (number if what == "share" else 1 - number)
-            return result.percentile(percent).value if 0 <= percent <= 100 else None
+            return _percentile(result, percent) if 0 <= percent <= 100 else None
         case "certainty":
             return 1 - result.probability_above(number).value
         case "certainty in percent":
@@ -398,6 +398,13 @@ def _statistic(result: ForecastResult, asked: ResultCall, number: float | None) 
             return None if ends is None else ends[asked.upper]
         case _:
             raise ValueError(what)
+
+
+def _percentile(result: ForecastResult, percent: float) -> float:
+    """A percentile; where values repeat, as counts do, the add-ins show one of them: see `Sample.reaching`."""
+    found, sample = result.percentile(percent).value, result.sample
+    repeats = bool((sample.x[1:] == sample.x[:-1]).any())
+    return sample.reaching(percent / 100) if repeats and not np.isnan(found) else found
 
 
 def _correlation(first: ForecastResult, second: ForecastResult, kind: float | None) -> float | None:

@@ -180,9 +180,9 @@ def _changed(model: Model, changes: Iterable[Change]) -> Definitions:
 
 def _merged(again: Definitions, old: Definitions, new: Definitions) -> Definitions:
     """Definitions that were read again from changed cells, with the changes from `old` to `new` that no cell holds."""
+    pairs = {a.name: (a, b) for a, b in zip(old.assumptions, new.assumptions, strict=True) if a is not b}
     assumptions = tuple(
-        each if a is b else _with_difference(each, a, b)
-        for each, a, b in zip(again.assumptions, old.assumptions, new.assumptions, strict=True)
+        _with_difference(each, *pairs[each.name]) if each.name in pairs else each for each in again.assumptions
     )
     return replace(again, assumptions=assumptions)
 

@@ -29,7 +29,11 @@ from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.model.needed import upstream
 from xlmc.montecarlo.sampling.draws import Draw, DynamicParameters
 
-__all__ = ["base_point", "draw_of", "dynamic_parameters", "parameter_target", "with_numbers"]
+__all__ = ["VaryingError", "base_point", "draw_of", "dynamic_parameters", "parameter_target", "with_numbers"]
+
+
+class VaryingError(DefinitionError):
+    """What a distribution is made from varies with an assumption, and may not."""
 
 
 def parameter_target(cell: Cell) -> Target:
@@ -49,6 +53,7 @@ def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
     Numbers are checked, unless they were as the row was read.
 
     Raises:
+        VaryingError: the data, or what it is searched by, vary.
         DefinitionError: the numbers are not a distribution.
     """
     data = assumption.data
@@ -58,7 +63,7 @@ def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
     draw = Draw.of(assumption.name, family, given)
     if family.given_by and draw.varying:  # the member is searched for once
         message = f"{assumption.name}: a distribution given by {family.given_by} cannot depend on another assumption"
-        raise DefinitionError(message, where=draw.varying[0], hint="give it by its parameters, or by numbers")
+        raise VaryingError(message, where=draw.varying[0], hint="give it by its parameters, or by numbers")
     if draw != assumption.checked and (fault := draw.fault()) is not None:
         raise DefinitionError(f"{assumption.name}: {fault.message}", where=assumption.row, hint=fault.hint)
     return draw
@@ -79,8 +84,8 @@ def _from_data(family: Family, data: DataRange, name: str, lowering: Lowering) -
     return data_family(family, data, number)
 
 
-def _varying_data(name: str, cell: Cell) -> DefinitionError:
-    return DefinitionError(
+def _varying_data(name: str, cell: Cell) -> VaryingError:
+    return VaryingError(
         f"The data of {name!r} vary with an assumption in this cell, and data must be fixed",
         where=cell,
         hint="Draw from fixed data, and let the cell that uses the draw vary with the assumption",

@@ -38,6 +38,7 @@ from xlmc.montecarlo.model.forecast_filters import (
     conditions_of,
     filters_by_forecast,
 )
+from xlmc.montecarlo.model.impossible_draws import possible_draws, with_errors
 from xlmc.montecarlo.model.model_notices import example_notices, heavy_notices, still_notices
 from xlmc.montecarlo.model.needed import (
     Needed,
@@ -185,9 +186,14 @@ class Model:
         self._folded = definitions is not given
         self.workbook, self.path = workbook, path
         self.needed, self.lowering = lower_needed(workbook, definitions)
+        draws, faults = possible_draws(self.needed, self.lowering, definitions)
+        while faults:
+            definitions = with_errors(definitions, faults, self.lowering)
+            self.needed, self.lowering = lower_needed(workbook, definitions)
+            draws, faults = possible_draws(self.needed, self.lowering, definitions)
         self._nodes = len(self.lowering.dag.nodes)
         self._programs: dict[str, _Compiled] = {}
-        self._define(definitions, {})
+        self._define(definitions, draws)
         self._check_targets()
         self._checks = _lower_checks(workbook, definitions, frozenset(self.needed.live)) if self.checks else None
         self._take_notices()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -18,6 +19,9 @@ Groups = NDArray[np.intp]
 
 LEAST_WEIGHT = 1e-30
 """A weight below this share of the largest counts as 0: it would change no sum, and its powers would overflow."""
+
+_SLACK = 1e-9
+"""Trials by which a share of them may be rounded: 0.07 of 100 are 7, though 0.07 * 100 is a little more."""
 
 MOST_GROUPS = 64
 """More replicates than this are joined: 63 degrees of freedom are enough, and the work stays small."""
@@ -116,6 +120,12 @@ class Sample:
         low = np.floor(rank).astype(np.intp)
         left, right = picked(self.x, low), picked(self.x, np.minimum(low + 1, self.n - 1))
         return _interpolate(left, right, rank - low)
+
+    def reaching(self, p: float) -> float:
+        """Return the first of the values, in their order, that a share p of the trials do not exceed."""
+        least = p - _SLACK / self.n
+        place = math.ceil(least * self.n) - 1 if self.w is None else int(np.searchsorted(np.cumsum(self.w), least))
+        return float(self.x[min(max(place, 0), self.n - 1)])
 
     def per_unit(self, amounts: Floats) -> Floats:
         """Sum (n,) amounts over each independent unit: (replicates,), or (n,) as they are."""

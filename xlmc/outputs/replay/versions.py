@@ -218,6 +218,11 @@ RULES: Final = (
     Rule("0.12.0", "TEXTBEFORE and TEXTAFTER round the number of a delimiter down", _calls("TEXTBEFORE", "TEXTAFTER")),
     Rule("0.12.0", "OFFSET of less than one row or column leads where Excel's does", _calls("OFFSET")),
     Rule("0.12.0", "INDIRECT reads rows with zeros before them", _calls("INDIRECT")),
+    Rule(
+        "0.12.0",
+        "percentiles in cells of values that repeat are among the values",
+        _calls("RiskPercentile", "RiskPercentileD", "RiskPtoX", "RiskPtoXD", "RiskQtoX", "CB.GetForePercentFN"),
+    ),
     Rule("0.12.0", "texts of dates with spaces around them are no numbers", _ANY),
     Rule("0.12.0", "cells that draw or mark an answer below RiskTheo… or a result show their base case", _SHOWN),
     Rule("0.12.0", "adjustment weights of matrices of rank correlations are honoured", _calls("RiskCorrmat")),

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.record.needed_cells import content_text
-from xlmc.excel.address import Cell
+from xlmc.excel.address import Cell, host_of
 from xlmc.montecarlo.diagnostics.cell_errors import Root
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ def _lost(simulation: Simulation, met: ErrorMet) -> str:
     if met.root is None:
         return said
     cell, code = met.root
-    return f"{said}, from {cell} {code.text}: {content_text(simulation.model.workbook, cell)}"
+    return f"{said}, from {cell} {code.text}: {content_text(simulation.model.workbook, host_of(cell))}"
 
 
 def rest_sentences(simulation: Simulation) -> list[str]:

@@ -16,6 +16,7 @@ from websockets.sync.client import connect
 from xlmc.excel.workbook.package import read_parts
 from xlmc.excel.workbook.writer import package_bytes
 from xlmc.montecarlo.model.loading import load
+from xlmc.outputs.live.guard import SECRET, proof
 from xlmc.outputs.live.protocol import Said
 
 CASE = EXAMPLES["intersection"]
@@ -141,9 +142,14 @@ def settle(session, clock=lambda: 0.0):
 class Running:
     """A server in a thread, and what talks to it."""
 
-    def __init__(self, server, library):
-        self.server, self.library, self.port = server, library, server.port
+    def __init__(self, server, library, thread):
+        self.server, self.library, self.port, self._thread = server, library, server.port, thread
         self.host = f"127.0.0.1:{server.port}"
+
+    def ended(self):
+        """Wait until it listens no more."""
+        self._thread.join(120)
+        assert not self._thread.is_alive()
 
     def ask(self, path, method="GET", body=None, host=None, **headers):
         """Status, headers and body of an answer."""
@@ -159,31 +165,40 @@ class Running:
             connection.close()
 
     @property
-    def cookie(self):
-        return f"{self.server.guard.cookie}={self.server.guard.secret}"
-
-    @property
     def own(self):
-        """The headers of a page of this server."""
-        return {"Cookie": self.cookie, "Origin": f"http://{self.host}", "X-Xlmc-Page": self.server.guard.page}
+        """The headers with which a page of this server sends one file."""
+        return {"Origin": f"http://{self.host}", "X-Xlmc-Ticket": self.server.guard.new_ticket()}
+
+    def window(self, key, entering=True, **headers):
+        """A connected WebSocket on a workbook; `next(kind)` waits for a message."""
+        return self.connected(f"/live/{key}", entering=entering, **headers)
 
     @contextmanager
-    def window(self, key, hello=True, **headers):
-        """A connected WebSocket; `next(kind)` waits for a message."""
-        given = {"Cookie": self.cookie, "Origin": f"http://{self.host}", **headers}
+    def connected(self, path, entering=True, **headers):
+        """A connected WebSocket, on the start page's path or on a workbook's."""
+        given = {"Origin": f"http://{self.host}", **headers}
         origin = given.pop("Origin")
-        given = {name: value for name, value in given.items() if value is not None}
         with connect(
-            f"ws://{self.host}/live/{key}", origin=origin, additional_headers=given, max_size=None, proxy=None
+            f"ws://{self.host}{path}", origin=origin, additional_headers=given, max_size=None, proxy=None
         ) as socket:
-            if hello:
-                socket.send(json.dumps({"kind": "hello", "page": self.server.guard.page}))
-            yield Spoken(socket)
+            spoken = Spoken(socket)
+            if entering:
+                spoken.enter(SECRET, self.server.guard.secret)
+            yield spoken
 
 
 class Spoken:
     def __init__(self, socket):
         self.socket, self.heard = socket, []
+
+    def enter(self, name, key):
+        """Do as a page does that knows the key; what the server gives for it."""
+        nonce = "a page's"
+        self.say("hello", name=name, nonce=nonce)
+        theirs = self.next("proof")
+        assert theirs["proof"] == proof(key, "server", nonce, theirs["nonce"])
+        self.say("proof", proof=proof(key, "page", nonce, theirs["nonce"]))
+        return self.next("welcome")["secret"]
 
     def say(self, kind, **fields):
         self.socket.send(json.dumps({"kind": kind, **fields}))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import tempfile
 import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -38,11 +39,27 @@ def open_window(book: Path | None, no_browser: bool, port: int | None) -> None:
     server = LiveServer(bound_socket(port or 0), library)
     link = server.link
     say(f"The window is at {link}")
-    say("The link is good for one browser. Ctrl-C ends the window; so does closing it for ten minutes.")
-    if not no_browser:
-        threading.Thread(target=webbrowser.open, args=(link,), daemon=True).start()
-    _serve(server)
+    say("The link is good for one browser, for a minute. Ctrl-C ends the window; so does closing it for ten minutes.")
+    with tempfile.TemporaryDirectory(prefix="xlmc-open-") as folder:
+        if not no_browser:
+            address = _leading_to(link, Path(folder))
+            threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+        _serve(server)
     say("The window is closed. Scenarios are kept.")
+
+
+def _leading_to(link: str, folder: Path) -> str:
+    """Return the address of a page in the folder, closed to others, that goes on to the link.
+
+    A browser is started with an address that every user of this machine can read in the list of processes.
+    """
+    page = folder / "xlmc.html"
+    text = (
+        f'<!doctype html><meta charset="utf-8"><title>xlmc</title><meta http-equiv="refresh" content="0;url={link}">\n'
+    )
+    with open(os.open(page, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="utf-8") as file:
+        file.write(text)
+    return page.as_uri()
 
 
 def _library(book: Path | None) -> Library:

@@ -50,8 +50,8 @@ def _servers(state):
         server = LiveServer(bound_socket(0), library, idle=idle, clock=clock)
         thread = threading.Thread(target=lambda: asyncio.run(server.serve()))
         thread.start()
-        started.append((server, thread))
-        found = Running(server, library)
+        found = Running(server, library, thread)
+        started.append(found)
         end = time.monotonic() + 120
         while not server._server.started:
             assert time.monotonic() < end
@@ -59,11 +59,10 @@ def _servers(state):
         return found
 
     yield run
-    for server, _ in started:
-        server.end()
-    for _, thread in started:
-        thread.join(120)
-        assert not thread.is_alive()
+    for found in started:
+        found.server.end()
+    for found in started:
+        found.ended()
 
 
 @pytest.fixture

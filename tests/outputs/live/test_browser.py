@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import json
+import threading
 import time
+from contextlib import contextmanager
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from xml.etree import ElementTree
 
 import openpyxl
 from live_books import simple, wide_book
+from websockets.sync.server import serve
 
 import xlmc
 from xlmc.montecarlo.definitions.scenarios import Held, Limits, Numbers
 from xlmc.montecarlo.model.applied_changes import applied
+from xlmc.outputs.live.server import bound_socket
 
 FRICTION, DISTANCE = "Vehicle 1 friction on wet asphalt", "Vehicle 1 post-impact travel distance to rest"
 WIDTHS = ((1400, 1000), (1280, 900), (1024, 800), (768, 1024), (390, 844), (375, 812))
@@ -158,8 +165,8 @@ def test_by_mouse(chromium, running, tmp_path):
 
     case = wide_book(tmp_path / "case.xlsx", assumptions=6, forecasts=2, most=19.0)
     page = Page(chromium, running(book=case))
-    assert "token" not in chromium.current_url
-    assert chromium.get_cookies() == [] or all(each["httpOnly"] for each in chromium.get_cookies())
+    assert "#" not in chromium.current_url
+    assert chromium.get_cookies() == []
     assert accepted(case) in page.stand
 
     knob = page.slider(f"High of {FRICTION}")
@@ -409,6 +416,93 @@ def test_the_start_page_opens_what_is_there_and_what_is_dropped(chromium, runnin
         assert time.monotonic() < end
         time.sleep(0.05)
     assert chromium.find_element("id", "book").text == "other.xlsx"
+
+
+@contextmanager
+def listening(heard, answer, port=0):
+    """Another program of this machine that speaks WebSocket, on any port; it keeps what it hears."""
+
+    def speak(socket):
+        for text in socket:
+            heard.append(text)
+            socket.send(answer(json.loads(text)))
+
+    with serve(speak, sock=bound_socket(port)) as server:
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        yield
+        server.shutdown()
+    thread.join(120)
+
+
+class Quiet(SimpleHTTPRequestHandler):
+    """Serves a folder."""
+
+    def log_message(self, *_):
+        """Say nothing."""
+
+
+def test_a_page_of_another_local_server_gets_nothing(chromium, running, tmp_path):
+    server = running(book=simple(tmp_path / "case.xlsx"))
+    Page(chromium, server)
+    folder = tmp_path / "pages"
+    folder.mkdir()
+    folder.joinpath("index.html").write_text("<!doctype html><title>another</title>", encoding="utf-8")
+    with ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=folder)) as other:
+        thread = threading.Thread(target=other.serve_forever)
+        thread.start()
+        chromium.get(f"http://127.0.0.1:{other.server_port}/index.html")
+        other.shutdown()
+    thread.join(120)
+    found = chromium.execute_async_script(
+        "const [host, key, done] = arguments;"
+        "const tried = async (path, given) => {"
+        " try { return await (await fetch(`http://${host}${path}`, given)).text(); } catch { return null; } };"
+        "const opened = (path) => new Promise((end) => { const socket = new WebSocket(`ws://${host}${path}`);"
+        " socket.onopen = () => end(true); socket.onclose = () => end(false); });"
+        "(async () => done([document.cookie, sessionStorage.length, await tried('/'), await tried(`/book/${key}`),"
+        " await tried('/drop?name=a.xlsx', { method: 'POST', body: 'PK' }),"
+        " await opened(`/live/${key}`), await opened('/start')]))();",
+        server.host,
+        server.library.only,
+    )
+    assert found == ["", 0, None, None, None, False, False]
+    assert not server.library.keeper.dropped.exists()
+    assert {entry["level"] for entry in chromium.get_log("browser")} <= {"SEVERE"}  # that it was refused
+
+
+def test_a_page_says_nothing_to_another_server_on_its_port(chromium, running, tmp_path):
+    server = running(book=simple(tmp_path / "case.xlsx"))
+    page = Page(chromium, server)
+    secret = server.server.guard.secret
+    assert page.run("return sessionStorage.getItem('xlmc')") == secret
+    server.server.end()
+    page.until("document.body.classList.contains('over')")
+    server.ended()
+    heard = []
+    with listening(heard, lambda said: json.dumps({"kind": "proof", "nonce": "", "proof": "0" * 64}), server.port):
+        entered = chromium.execute_async_script(
+            "const done = arguments[0], socket = new WebSocket(`ws://${location.host}/live/any`);"
+            "socket.onopen = async () => done(await Entry.enter(socket)); socket.onerror = () => done('no connection');"
+        )
+    assert entered is False
+    assert [json.loads(each)["kind"] for each in heard] == ["hello"]
+    assert secret not in heard[0]
+
+
+def test_a_link_that_was_used_says_so(chromium, running, tmp_path):
+    server = running(folder=tmp_path)
+    link = server.server.link
+    chromium.get(link)
+    end = time.monotonic() + 120
+    while not chromium.find_element("id", "folder").text:
+        assert time.monotonic() < end
+    chromium.execute_script("sessionStorage.clear()")
+    for address, words in ((link, "used already"), (f"http://{server.host}/", "Open the link")):
+        chromium.get("about:blank")
+        chromium.get(address)
+        while words not in chromium.find_element("id", "troubles").text:
+            assert time.monotonic() < end
 
 
 def test_a_page_whose_program_has_ended_says_so_and_asks_no_more(chromium, running, tmp_path):

@@ -18,7 +18,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from xlmc.errors import XlmcError
 from xlmc.excel.workbook.writer import TakenError
-from xlmc.outputs.live.guard import MOST_UPLOADED, Guard
+from xlmc.outputs.live.guard import MOST_UPLOADED, SECRET, Guard, proof
 from xlmc.outputs.live.kept_scenarios import Keeper
 from xlmc.outputs.live.library import Library, Sample
 from xlmc.outputs.live.protocol import MOST_BYTES
@@ -38,39 +38,81 @@ def open_book(running_on, tmp_path_factory):
     return running_on(book=small(tmp_path_factory.mktemp("books") / "<b>case & co.xlsx"))
 
 
-def test_the_link_is_good_once_and_the_token_leaves_the_address(open_book):
-    token = open_book.server.link.partition("?")[2]
-    status, headers, body = open_book.ask(f"/?{token}")
-    assert status == 200
-    assert headers["set-cookie"].startswith(f"xlmc-{open_book.port}=")
-    assert {"HttpOnly", "SameSite=strict", "Path=/"} <= {*headers["set-cookie"].split("; ")}
-    assert "token" not in body
-    assert 'content="0;url=/"' in body
-    assert open_book.ask(f"/?{token}")[0] == 403
-    assert open_book.ask("/?token=")[0] == 403
-    cookie = headers["set-cookie"].partition(";")[0]
-    status, headers, _ = open_book.ask("/", Cookie=cookie)
-    assert (status, headers["location"]) == (303, f"/book/{open_book.library.only}")
+def code_of(server):
+    """Name and key of the code that a new link carries."""
+    return server.server.link.partition("#")[2].split(".")
 
 
-def test_without_the_cookie_nothing_is_shown(open_book):
-    for path in ("/", f"/book/{open_book.library.only}"):
-        for cookie in ("", f"{open_book.server.guard.cookie}=guess", "other=1"):
-            status, _, body = open_book.ask(path, Cookie=cookie)
-            assert status == 403
-            assert open_book.server.guard.page not in body
+def refused(open_book, name, *, proving):
+    """Whether a connection is closed to a page that names this key and answers with what `proving(nonce)` gives."""
+    with open_book.window(open_book.library.only, entering=False) as window:
+        window.say("hello", name=name, nonce="a page's")
+        try:
+            window.say("proof", proof=proving(window.next("proof")["nonce"]))
+            window.next("welcome")
+        except ConnectionClosed:
+            return True
+    return False
+
+
+def test_the_link_is_good_once_and_gives_the_secret(open_book):
+    name, key = code_of(open_book)
+    with open_book.window(open_book.library.only, entering=False) as window:
+        assert window.enter(name, key) == open_book.server.guard.secret
+        window.next("rest")
+    assert refused(open_book, name, proving=lambda nonce: proof(key, "page", "a page's", nonce))
+    with open_book.window(open_book.library.only, entering=False) as window:
+        window.enter(SECRET, open_book.server.guard.secret)
+
+
+def test_a_link_is_good_for_a_minute(running, book):
+    now = [0.0]
+    server = running(book=book, clock=lambda: now[0])
+    (early, early_key), (late, late_key) = code_of(server), code_of(server)
+    now[0] = 59.0
+    assert not refused(server, early, proving=lambda nonce: proof(early_key, "page", "a page's", nonce))
+    now[0] = 61.0
+    assert refused(server, late, proving=lambda nonce: proof(late_key, "page", "a page's", nonce))
+
+
+def test_a_page_that_cannot_prove_it_is_closed_and_the_code_stays_good(open_book):
+    """Among the proofs: the server's own, sent back to it."""
+    name, key = code_of(open_book)
+    for wrong in (
+        lambda nonce: proof("guess", "page", "a page's", nonce),
+        lambda nonce: proof(key, "server", "a page's", nonce),
+        lambda nonce: proof(key, "page", nonce, "a page's"),
+        lambda nonce: proof(key, "page", "a page's", "another time's"),
+        lambda nonce: "",
+        lambda nonce: "\ud800é",
+    ):
+        assert refused(open_book, name, proving=wrong)
+        assert refused(open_book, SECRET, proving=wrong)
+    assert refused(open_book, "", proving=lambda nonce: proof("", "page", "a page's", nonce))
+    assert refused(open_book, "no code", proving=lambda nonce: proof("", "page", "a page's", nonce))
+    assert not refused(open_book, name, proving=lambda nonce: proof(key, "page", "a page's", nonce))
+
+
+def test_no_page_holds_anything_of_a_workbook_or_of_the_secrets(open_book):
+    for path in ("/", f"/book/{open_book.library.only}", "/book/nothing"):
+        status, headers, body = open_book.ask(path)
+        assert (status, headers["content-type"]) == (200, "text/html; charset=utf-8")
+        assert "set-cookie" not in {name.lower() for name in headers}
+        assert "case" not in body
+        assert open_book.server.guard.secret not in body
+        assert open_book.library.only not in body
 
 
 def test_a_wrong_host_is_refused_everywhere(open_book):
     for host in ("evil.example", f"evil.example:{open_book.port}", "127.0.0.1", f"127.0.0.1:{open_book.port + 1}", ""):
         for path in ("/", f"/book/{open_book.library.only}", "/static/window.js"):
-            assert open_book.ask(path, host=host or " ", Cookie=open_book.cookie)[0] in (400, 421), (host, path)
+            assert open_book.ask(path, host=host or " ")[0] in (400, 421), (host, path)
     assert open_book.ask("/static/window.js", host=f"localhost:{open_book.port}")[0] == 200
 
 
 def test_every_answer_has_a_strict_policy(open_book):
     for path in ("/", f"/book/{open_book.library.only}", "/static/live.css", "/static/no.js", "/nowhere"):
-        _, headers, _ = open_book.ask(path, Cookie=open_book.cookie)
+        _, headers, _ = open_book.ask(path)
         policy = headers["content-security-policy"]
         assert "default-src 'none'" in policy
         assert "script-src 'self';" in policy
@@ -80,17 +122,14 @@ def test_every_answer_has_a_strict_policy(open_book):
         assert headers["cache-control"] == "no-store"
 
 
-def test_the_page_holds_names_as_text_and_loads_only_what_is_here(open_book):
-    status, headers, body = open_book.ask(f"/book/{open_book.library.only}", Cookie=open_book.cookie)
-    assert (status, headers["content-type"]) == (200, "text/html; charset=utf-8")
-    assert "<b>case" not in body
-    assert "&lt;b&gt;case &amp; co.xlsx" in body
-    assert "http" not in body.replace("http-equiv", "")
+def test_the_page_loads_only_what_is_here(open_book):
+    _, _, body = open_book.ask(f"/book/{open_book.library.only}")
+    assert "http" not in body
     for name in (*SCRIPTS, *STYLES):
         assert f"/static/{name}" in body
         assert open_book.ask(f"/static/{name}")[0] == 200
-    for path in ("/static/..%2fwindow.html", "/static/../server.py", "/static/window.html", "/book/nothing"):
-        assert open_book.ask(path, Cookie=open_book.cookie)[0] == 404
+    for path in ("/static/..%2fwindow.html", "/static/../server.py", "/static/window.html"):
+        assert open_book.ask(path)[0] == 404
 
 
 @pytest.mark.parametrize(
@@ -99,31 +138,30 @@ def test_the_page_holds_names_as_text_and_loads_only_what_is_here(open_book):
         {"Origin": ELSEWHERE},
         {"Origin": "null"},
         {"Origin": None},
-        {"Cookie": None},
-        {"Cookie": "xlmc-1=guess"},
         {"Host": "evil.example"},
     ],
 )
 def test_a_websocket_from_elsewhere_is_refused(open_book, headers):
-    with pytest.raises(InvalidStatus) as refused, open_book.window(open_book.library.only, **headers):
-        pass
-    assert refused.value.response.status_code in (400, 403)
+    for path in ("/start", f"/live/{open_book.library.only}"):
+        with pytest.raises(InvalidStatus) as refusal, open_book.connected(path, **headers):
+            pass
+        assert refusal.value.response.status_code in (400, 403)
 
 
 @pytest.mark.parametrize(
     "first",
     [
-        json.dumps({"kind": "hello", "page": "guess"}),
+        json.dumps({"kind": "proof", "proof": ""}),
         json.dumps({"kind": "stop"}),
         json.dumps({"kind": "hello"}),
         "no json",
         b"\x00",
         "x" * (MOST_BYTES + 1),
     ],
-    ids=["wrong token", "no hello", "no token", "no json", "bytes", "too long"],
+    ids=["proof", "no hello", "no nonce", "no json", "bytes", "too long"],
 )
-def test_a_websocket_must_first_show_the_pages_token(open_book, first):
-    with open_book.window(open_book.library.only, hello=False) as window:
+def test_a_websocket_must_first_say_hello(open_book, first):
+    with open_book.window(open_book.library.only, entering=False) as window:
         window.socket.send(first)
         with pytest.raises(ConnectionClosed):
             window.socket.recv(timeout=120)
@@ -138,13 +176,22 @@ def test_what_no_page_says_ends_the_connection_and_nothing_else(open_book):
         assert other.next("rest")["sentences"]
 
 
-@pytest.mark.parametrize("missing", ["Cookie", "Origin", "X-Xlmc-Page"])
-def test_a_change_needs_cookie_origin_and_the_pages_token(open_book, missing):
+@pytest.mark.parametrize("missing", ["Origin", "X-Xlmc-Ticket"])
+def test_a_file_needs_origin_and_ticket(open_book, missing):
     for wrong in ({}, {missing: ELSEWHERE}):
         headers = {name: value for name, value in open_book.own.items() if name != missing} | wrong
         status, _, _ = open_book.ask("/drop?name=a.xlsx", "POST", b"PK", Content_Length="2", **headers)
         assert status == 403
     assert not list(open_book.library.keeper.dropped.parent.glob("dropped/*"))
+
+
+def test_a_ticket_is_good_once_and_the_oldest_go(open_book):
+    guard = open_book.server.guard
+    tickets = [guard.new_ticket() for _ in range(150)]
+    good = [guard.use_ticket(each) for each in tickets]
+    assert good == [False] * 50 + [True] * 100
+    assert not any(map(guard.use_ticket, tickets))
+    assert not guard.use_ticket(None)
 
 
 def test_a_gigabyte_is_refused_before_it_is_sent(open_book):
@@ -161,10 +208,13 @@ def test_a_gigabyte_is_refused_before_it_is_sent(open_book):
 def test_a_workbook_that_is_dropped_is_opened(running, tmp_path):
     server = running(folder=tmp_path)
     data = small(tmp_path / "source.xlsx").read_bytes()
-    ask = {"method": "POST", "body": data, "Content_Length": str(len(data)), **server.own}
+    with server.connected("/start") as page:
+        page.say("ticket")
+        ticket = page.next("ticket")["ticket"]
+    ask = {"method": "POST", "body": data, "Content_Length": str(len(data)), **server.own, "X-Xlmc-Ticket": ticket}
     status, _, body = server.ask("/drop?name=..%2F..%2Fa%3Cb%3E.xlsx", **ask)
     assert status == 200
-    key = json.loads(body)["open"].rpartition("/")[2]
+    key = json.loads(body)["key"]
     path = server.library.path(key)
     assert path.name == "a_b_.xlsx"
     assert path.is_relative_to(server.library.keeper.dropped)
@@ -172,7 +222,7 @@ def test_a_workbook_that_is_dropped_is_opened(running, tmp_path):
     with server.window(key) as window:
         assert window.next("rest")["sentences"]
     for name, sent in (("a.exe", data), ("a.xlsx", b"no zip")):
-        ask |= {"body": sent, "Content_Length": str(len(sent))}
+        ask |= {"body": sent, "Content_Length": str(len(sent)), **server.own}
         status, _, body = server.ask(f"/drop?name={name}", **ask)
         assert status == 400
         assert "not an Excel workbook" in json.loads(body)["trouble"]
@@ -190,12 +240,12 @@ def test_a_folder_shows_its_workbooks_and_no_link_leads_out(running, tmp_path):
     server = running(folder=folder)
     assert [each["name"] for each in server.library.books()] == ["a.xlsx"]
     key = server.library._add(folder / "a.xlsx")
-    assert server.ask(f"/book/{key}", Cookie=server.cookie)[0] == 200
+    with server.window(key) as window:
+        window.next("book")
     (folder / "a.xlsx").unlink()
     (folder / "a.xlsx").symlink_to(outside / "secret.xlsx")  # after it was listed
-    assert server.ask(f"/book/{key}", Cookie=server.cookie)[0] == 404
-    with pytest.raises(InvalidStatus), server.window(key):
-        pass
+    with server.window(key) as window, pytest.raises(ConnectionClosed, match="4404"):
+        window.next("book")
 
 
 def test_a_template_is_copied_and_never_over_a_file(tmp_path, monkeypatch):
@@ -216,6 +266,22 @@ def test_a_template_is_copied_and_never_over_a_file(tmp_path, monkeypatch):
     with pytest.raises(TakenError, match="exists already"):
         library.copy_template(row["key"])
     assert path.read_bytes() == b"a person's"
+
+
+def test_the_start_page_copies_a_template(running, tmp_path):
+    samples = [Sample("skid", "How fast?", TEMPLATES["skid"]), Sample("lost", "?", tmp_path / "lost.xlsx")]
+    server = running(folder=tmp_path, samples=samples)
+    with server.connected("/start") as page:
+        skid, lost = page.next("books")["templates"]
+        page.say("copy", key=lost["key"])
+        assert "lost.xlsx" in page.next("trouble")["text"]
+        page.say("copy", key=skid["key"])
+        assert server.library.path(page.next("open")["key"]).name == "skid.xlsx"
+
+
+def test_the_start_page_goes_on_to_the_one_workbook(open_book):
+    with open_book.connected("/start") as page:
+        assert page.next("open")["key"] == open_book.library.only
 
 
 def test_two_windows_show_one_state_and_a_new_one_gets_it(running, book):
@@ -314,8 +380,8 @@ HALVES = {
     "half a head": b"GET / HTTP/1.1\r\nHost: ",
     "a request, and half of another": b"GET /static/live.css HTTP/1.1\r\nHost: {host}\r\n\r\nGET /",
     "half a body": (
-        b"POST /drop?name=a.xlsx HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nCookie: {cookie}\r\n"
-        b"X-Xlmc-Page: {page}\r\nContent-Length: 100\r\n\r\nPK"
+        b"POST /drop?name=a.xlsx HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\n"
+        b"X-Xlmc-Ticket: {ticket}\r\nContent-Length: 100\r\n\r\nPK"
     ),
 }
 
@@ -324,7 +390,7 @@ HALVES = {
 def test_half_a_request_is_given_up(open_book, monkeypatch, sent):
     monkeypatch.setattr("xlmc.outputs.live.timed_requests._HEAD_SECONDS", 0.2)
     monkeypatch.setattr("xlmc.outputs.live.server._BODY_SECONDS", 0.2)
-    words = {"host": open_book.host, "cookie": open_book.cookie, "page": open_book.server.guard.page}
+    words = {"host": open_book.host, "ticket": open_book.server.guard.new_ticket()}
     for word, value in words.items():
         sent = sent.replace(f"{{{word}}}".encode(), value.encode())
     with socket.create_connection(("127.0.0.1", open_book.port), timeout=120) as client:
@@ -368,7 +434,11 @@ def test_it_listens_on_the_loopback_address_alone(open_book):
 
 def test_secrets_are_long_and_all_different():
     guards = [Guard(1), Guard(1)]
-    secrets = [text for each in guards for text in (each.secret, each.page, each.new_token(), each.new_token())]
+    secrets = [
+        text
+        for each in guards
+        for text in (each.secret, each.new_ticket(), *(each.new_code().partition(".")[2] for _ in range(2)))
+    ]
     assert len({*secrets}) == len(secrets)
     assert min(map(len, secrets)) >= 40
-    assert not guards[0].exchange(guards[0].page)
+    assert not guards[0].use(guards[1].new_code().partition(".")[0])

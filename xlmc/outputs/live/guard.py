@@ -1,22 +1,34 @@
-"""Who may talk to the window: tokens, the cookie, Host and Origin, and the headers of every answer.
+"""Who may talk to the window: the link's code, proofs of the secret, Host and Origin, and the headers of every answer.
 
-Whoever has the link that was printed may come in, once: the token in it is exchanged for a cookie that scripts cannot
-read and that no other site's page brings along. A WebSocket, and every request that changes something, needs more: the
-token that stands in the page, which no other site's page can read. And it must come from this very address: `Host` is
-checked against names that lead elsewhere, `Origin` against pages from elsewhere.
+A browser sends cookies to every port of an address, and a port may belong to another program tomorrow; so there is no
+cookie, and no page ever says the secret. The link carries a code that is good once, for a minute. The two ends of a new
+connection prove to each other that they know the code, or the secret that the page got for it: each names a number
+that is used once, and the other answers with a keyed hash (HMAC) of both numbers. A file that is dropped comes by a
+request of its own; it carries a ticket that the page got over its connection, and that is good once. And everything
+must come from this very address: `Host` is checked against names that lead elsewhere, `Origin` against pages from
+elsewhere.
 """
 
 from __future__ import annotations
 
 import hmac
 import secrets
-from collections.abc import Mapping
-from typing import Final
+import time
+from collections.abc import Callable, Mapping
+from typing import Final, Literal
 
-__all__ = ["HEADERS", "MOST_UPLOADED", "Guard"]
+__all__ = ["HEADERS", "MOST_UPLOADED", "SECRET", "Guard", "proof"]
 
 MOST_UPLOADED: Final = 64 << 20
-"""Bytes of a workbook that is dropped; Excel's own largest ones are no larger on most desks."""
+"""Bytes of a workbook that is dropped; Excel's own largest ones are seldom larger."""
+
+SECRET: Final = "secret"
+"""What a page names that has the secret; other pages name the code of their link."""
+
+_CODE_SECONDS: Final = 60.0
+"""Seconds for which a link is good."""
+
+_MOST_TICKETS: Final = 100
 
 _POLICY: Final = "; ".join(
     (
@@ -43,49 +55,60 @@ HEADERS: Final[Mapping[str, str]] = {
 """Headers of every answer."""
 
 
+def proof(key: str, end: Literal["server", "page"], page_nonce: str, server_nonce: str) -> str:
+    """Return what only who knows the key can say to these two numbers: an HMAC with SHA-256, in hexadecimal."""
+    text = " ".join((end, page_nonce, server_nonce))
+    return hmac.new(key.encode(), text.encode("utf-8", "surrogatepass"), "sha256").hexdigest()
+
+
 class Guard:
     """The secrets of one server.
 
     Args:
         port: that it listens on.
+        clock: gives the seconds for which a link is good.
     """
 
-    def __init__(self, port: int) -> None:
-        self.cookie = f"xlmc-{port}"
-        self.secret, self.page = secrets.token_urlsafe(32), secrets.token_urlsafe(32)
-        self._tokens: set[str] = set()
+    def __init__(self, port: int, clock: Callable[[], float] = time.monotonic) -> None:
+        self.secret = secrets.token_urlsafe(32)
+        self._clock = clock
+        self._codes: dict[str, tuple[str, float]] = {}
+        self._tickets: dict[str, None] = {}
         self._hosts = (f"127.0.0.1:{port}", f"localhost:{port}")
 
-    def new_token(self) -> str:
-        """A token for a link, which is good for one browser."""
-        token = secrets.token_urlsafe(32)
-        self._tokens.add(token)
-        return token
+    def new_code(self) -> str:
+        """Return a code for a link: its name, a point, and its key."""
+        name, key = secrets.token_hex(8), secrets.token_urlsafe(32)
+        self._codes[name] = (key, self._clock() + _CODE_SECONDS)
+        return f"{name}.{key}"
 
-    def exchange(self, token: str) -> bool:
-        """Whether the token is good; it is not a second time."""
-        for known in self._tokens:
-            if _same(known, token):
-                self._tokens.discard(known)
-                return True
-        return False
+    def key(self, name: str) -> str | None:
+        """Return the key that a page must know which names `SECRET`, or a code that is still good."""
+        if name == SECRET:
+            return self.secret
+        key, until = self._codes.get(name, ("", 0.0))
+        return key if key and self._clock() <= until else None
+
+    def use(self, name: str) -> bool:
+        """Return whether what was named is still good; a code is not a second time."""
+        return name == SECRET or self._codes.pop(name, None) is not None
+
+    def new_ticket(self) -> str:
+        """Return a ticket for one file."""
+        ticket = secrets.token_urlsafe(32)
+        self._tickets[ticket] = None
+        if len(self._tickets) > _MOST_TICKETS:
+            del self._tickets[next(iter(self._tickets))]
+        return ticket
+
+    def use_ticket(self, ticket: str | None) -> bool:
+        """Return whether the ticket is good; it is not a second time."""
+        return ticket is not None and self._tickets.pop(ticket, ticket) is None
 
     def is_host(self, host: str | None) -> bool:
-        """Whether the address that was typed, or that a page asked for, is this server's own."""
+        """Return whether the address that was typed, or that a page asked for, is this server's own."""
         return host is not None and host.lower() in self._hosts
 
     def is_origin(self, origin: str | None, host: str | None) -> bool:
-        """Whether a request comes from a page of this server, by the same name."""
+        """Return whether a request comes from a page of this server, by the same name."""
         return origin is not None and host is not None and origin.lower() == f"http://{host.lower()}"
-
-    def is_known(self, cookies: Mapping[str, str]) -> bool:
-        """Whether the browser has the cookie."""
-        return _same(cookies.get(self.cookie, ""), self.secret)
-
-    def is_page(self, token: str | None) -> bool:
-        """Whether a page of this server asks."""
-        return token is not None and _same(token, self.page)
-
-
-def _same(first: str, second: str) -> bool:
-    return hmac.compare_digest(first.encode("utf-8", "surrogatepass"), second.encode("utf-8", "surrogatepass"))

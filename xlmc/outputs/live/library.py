@@ -112,7 +112,12 @@ class Library:
         if sample is None:
             raise WorkbookError("there is no such template")
         target = unused_path((self.folder or Path.cwd()) / sample.path.name)
-        write_workbook(target, sample.path.read_bytes(), lambda: refuse_existing(target))
+        try:
+            data = sample.path.read_bytes()
+        except OSError as error:
+            hint = "install xlmc again"
+            raise WorkbookError(f"the template is missing: {error.strerror}", where=sample.path, hint=hint) from error
+        write_workbook(target, data, lambda: refuse_existing(target))
         return self._add(target)
 
     def take(self, name: str, data: bytes) -> str:

@@ -4,7 +4,11 @@
 
 | kind | fields | meaning |
 |---|---|---|
-| `hello` | `page` | first of all: the token that stands in the page; anything else before it ends the connection |
+| `hello` | `name`, `nonce` | first of all: which key the page will prove that it knows, that of a link's code or the \
+secret, and a number that is used once; anything else before it ends the connection |
+| `proof` | `proof` | the answer to the server's `proof` (`xlmc.outputs.live.guard` says of what) |
+| `copy` | `key` | on the start page: copy a template into the folder and open it |
+| `ticket` | | on the start page: a file is to be sent |
 | `set` | `of`, `name`, `key`, `value`, `held`, `seq` | a number or a switch of an assumption or a filter; `value` \
 null: as in the book; `held`: a handle is still held; `seq`: counts the page's changes, and comes back with the frame |
 | `reset` | `of`, `name` | everything of one assumption or filter as in the book; with an empty `name`: of all |
@@ -28,6 +32,11 @@ on the state that is shown; `other`: the key of the workbook to compare it with 
 
 | kind | fields | meaning |
 |---|---|---|
+| `proof` | `nonce`, `proof` | first of all: a number of the server's own, and the proof that it knows the key |
+| `welcome` | `secret` | the page may look; it keeps the secret for its next connection |
+| `books` | `folder`, `books`, `recent`, `templates`, `trouble` | what the start page shows |
+| `open` | `key` | the start page goes on to this workbook |
+| `ticket` | `ticket` | one file may be sent with it |
 | `book` | `name`, `folder`, `forecasts`, `notices`, `settings`, `shapes` | the workbook as it is now |
 | `others` | `books` | the workbooks beside it that it can be compared with: `name` and `key` |
 | `state` | `version`, `assumptions`, `filters`, `changes`, `scenarios`, `shown`, `offered`, `behind` | what is set; \
@@ -121,7 +130,10 @@ def _one_of(*words: str) -> Callable[[object], bool]:
 _OF: Final = _one_of("assumption", "filter")
 
 _FIELDS: Final[Mapping[str, Mapping[str, Callable[[object], bool]]]] = {
-    "hello": {"page": _is_text},
+    "hello": {"name": _is_text, "nonce": _is_text},
+    "proof": {"proof": _is_text},
+    "copy": {"key": _is_text},
+    "ticket": {},
     "set": {
         "of": _OF,
         "name": _is_text,

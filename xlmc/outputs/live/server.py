@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-import json
+import contextlib
+import hmac
+import secrets
 import socket
 import sys
 import time
-from collections.abc import Callable
-from html import escape
+from collections.abc import Awaitable, Callable
 from importlib.resources import files
 from pathlib import Path
 from string import Template
@@ -18,16 +19,17 @@ import uvicorn
 from starlette.applications import Starlette
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse, RedirectResponse, Response
+from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route, WebSocketRoute
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
-from starlette.websockets import WebSocket, WebSocketDisconnect
+from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.types import Message as AsgiMessage
+from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from xlmc.errors import XlmcError
 from xlmc.outputs.live.desk import Desk
-from xlmc.outputs.live.guard import HEADERS, MOST_UPLOADED, Guard
+from xlmc.outputs.live.guard import HEADERS, MOST_UPLOADED, Guard, proof
 from xlmc.outputs.live.library import Library
-from xlmc.outputs.live.protocol import MOST_BYTES, ProtocolError, read_message
+from xlmc.outputs.live.protocol import MOST_BYTES, Message, ProtocolError, Said, read_message, written
 from xlmc.outputs.live.timed_requests import TimedRequests
 
 __all__ = ["IDLE_SECONDS", "LiveServer", "bound_socket"]
@@ -40,15 +42,14 @@ _HELLO_SECONDS: Final = 10.0
 _BODY_SECONDS: Final = 60.0
 """Seconds in which a window's first message, and the body of a request, must have arrived."""
 
+_ENDS: Final = 1012
 _UNKNOWN: Final = 4401
+_NO_BOOK: Final = 4404
 _FULL: Final = 4429
 """Why a WebSocket is closed."""
 
-_ENTERED: Final = (
-    '<!doctype html><html lang="en"><head><meta charset="utf-8"><title>xlmc</title>'
-    '<link rel="icon" href="data:,">'
-    '<meta http-equiv="refresh" content="0;url=/"></head><body><p><a href="/">To the window</a></p></body></html>'
-)
+_GOODBYE_SECONDS: Final = 1.0
+"""Seconds for which windows may take note that the server ends."""
 
 _REPORT: Final = "xlmc.outputs.page"
 _LIVE: Final = "xlmc.outputs.live.page"
@@ -60,6 +61,7 @@ STYLES: Final = {
     "live.css": (_LIVE, "live.css"),
 }
 SCRIPTS: Final = {
+    "entry.js": (_LIVE, "entry.js"),
     "sharp.js": (_REPORT, "sharp.js"),
     "uPlot.iife.min.js": (_REPORT, "uplot/uPlot.iife.min.js"),
     "numbers.js": (_REPORT, "numbers.js"),
@@ -79,7 +81,7 @@ SCRIPTS: Final = {
     "further_tabs.js": (_LIVE, "further_tabs.js"),
     "window.js": (_LIVE, "window.js"),
 }
-START_SCRIPTS: Final = {"making.js": (_LIVE, "making.js"), "start_page.js": (_LIVE, "start_page.js")}
+START_SCRIPTS: Final = {name: (_LIVE, name) for name in ("entry.js", "making.js", "wire.js", "start_page.js")}
 _ASSETS: Final = {**STYLES, **SCRIPTS, **START_SCRIPTS}
 
 
@@ -127,15 +129,16 @@ class LiveServer:
     ) -> None:
         self._socket, self._library, self._idle, self._clock = sock, library, idle, clock
         self.port: int = sock.getsockname()[1]
-        self.guard = Guard(self.port)
+        self.guard = Guard(self.port, clock)
         self._desks: dict[str, Desk] = {}
+        self._windows: set[WebSocket] = set()
         self._last_seen = clock()
         routes = [
             Route("/", self._start_page),
             Route("/book/{key}", self._book_page),
             Route("/static/{name}", _asset),
-            Route("/open/{key}", self._open, methods=["POST"]),
             Route("/drop", self._drop, methods=["POST"]),
+            WebSocketRoute("/start", self._start),
             WebSocketRoute("/live/{key}", self._live),
         ]
         self.app: ASGIApp = _Guarded(Starlette(routes=routes), self.guard)
@@ -152,12 +155,13 @@ class LiveServer:
             date_header=False,
             h11_max_incomplete_event_size=1 << 15,
         )
-        self._server = _Uvicorn(config)
+        self._server = _Uvicorn(config, self._say_goodbye)
 
     @property
     def link(self) -> str:
-        """A link that opens the window, once."""
-        return f"http://127.0.0.1:{self.port}/?token={self.guard.new_token()}"
+        """A link that opens the window, once, within a minute."""
+        only = self._library.only
+        return f"http://127.0.0.1:{self.port}/{'' if only is None else f'book/{only}'}#{self.guard.new_code()}"
 
     def end(self) -> None:
         """Stop listening, soon; also from a signal's handler."""
@@ -175,78 +179,34 @@ class LiveServer:
     async def _end_when_idle(self) -> None:
         while True:
             await asyncio.sleep(min(1.0, self._idle / 4))
-            if any(desk.windows for desk in self._desks.values()):
+            if self._windows:
                 self._last_seen = self._clock()
             elif self._clock() - self._last_seen > self._idle:
                 self.end()
 
-    # Pages
+    async def _say_goodbye(self) -> None:
+        """Close every window, and wait until it has answered: a connection that is cut meanwhile is only lost."""
+        await asyncio.gather(*(each.close(_ENDS) for each in self._windows), return_exceptions=True)
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(_GOODBYE_SECONDS):
+                while self._windows:
+                    await asyncio.sleep(0.01)
+
+    # Pages; they hold nothing of a workbook
 
     async def _start_page(self, request: Request) -> Response:
-        token = request.query_params.get("token")
-        if token is not None:
-            if not self.guard.exchange(token):
-                return _refusal(
-                    "This link was used already. Type xlmc open again, or go on in the browser that has it."
-                )
-            return self._entered()
-        if not self.guard.is_known(request.cookies):
-            return _refusal("Open the link that xlmc open has printed.")
-        first = self._library.only
-        if first is not None:
-            return RedirectResponse(f"/book/{first}", 303)
-        data = {
-            "folder": str(self._library.folder or ""),
-            "books": self._library.books(),
-            "recent": self._library.recent(),
-            "templates": self._library.templates(),
-            "trouble": self._library.trouble,
-        }
-        return self._page("start.html", START_SCRIPTS, {"title": "xlmc", "data": _as_data(data)})
-
-    def _entered(self) -> Response:
-        """The cookie, and a page that goes on to the window; a redirect from elsewhere would bring no cookie."""
-        answer = HTMLResponse(_ENTERED)
-        answer.set_cookie(self.guard.cookie, self.guard.secret, httponly=True, samesite="strict", path="/")
-        return answer
+        return _page("start.html", START_SCRIPTS)
 
     async def _book_page(self, request: Request) -> Response:
-        if not self.guard.is_known(request.cookies):
-            return _refusal("Open the link that xlmc open has printed.")
-        path = self._library.path(request.path_params["key"])
-        if path is None:
-            return _refusal("There is no such workbook here.", 404)
-        return self._page("window.html", SCRIPTS, {"title": escape(path.name), "key": request.path_params["key"]})
+        return _page("window.html", SCRIPTS)
 
-    def _page(self, name: str, scripts: dict[str, tuple[str, str]], more: dict[str, str]) -> Response:
-        styles = "".join(f'<link rel="stylesheet" href="/static/{each}">\n' for each in STYLES)
-        tags = "".join(f'<script src="/static/{each}" defer></script>\n' for each in scripts)
-        text = Template(files(_LIVE).joinpath(name).read_text(encoding="utf-8"))
-        return HTMLResponse(text.substitute(more, page=self.guard.page, styles=styles, scripts=tags))
-
-    # What changes something
-
-    def _may_change(self, request: Request) -> bool:
-        headers = request.headers
-        return (
-            self.guard.is_known(request.cookies)
-            and self.guard.is_page(headers.get("x-xlmc-page"))
-            and self.guard.is_origin(headers.get("origin"), headers.get("host"))
-        )
-
-    async def _open(self, request: Request) -> Response:
-        """Copy a template into the folder and open it."""
-        if not self._may_change(request):
-            return _refusal("This page may not do that.")
-        try:
-            key = await asyncio.to_thread(self._library.copy_template, request.path_params["key"])
-        except XlmcError as error:
-            return JSONResponse({"trouble": str(error)}, 400)
-        return JSONResponse({"open": f"/book/{key}"})
+    # Files
 
     async def _drop(self, request: Request) -> Response:
         """Take a workbook that was dropped onto the page."""
-        if not self._may_change(request):
+        headers = request.headers
+        is_own = self.guard.is_origin(headers.get("origin"), headers.get("host"))
+        if not is_own or not self.guard.use_ticket(headers.get("x-xlmc-ticket")):
             return _refusal("This page may not do that.")
         too_large = JSONResponse({"trouble": f"The file is larger than {MOST_UPLOADED >> 20} MB."}, 413)
         said = request.headers.get("content-length", "")
@@ -265,32 +225,93 @@ class LiveServer:
             key = await asyncio.to_thread(self._library.take, request.query_params.get("name", ""), bytes(data))
         except XlmcError as error:
             return JSONResponse({"trouble": str(error)}, 400)
-        return JSONResponse({"open": f"/book/{key}"})
+        return JSONResponse({"key": key})
 
     # Windows
 
-    async def _live(self, socket: WebSocket) -> None:
-        """Speak with one window."""
-        host = socket.headers.get("host")
-        path = self._library.path(socket.path_params["key"])
-        is_own = self.guard.is_origin(socket.headers.get("origin"), host) and self.guard.is_known(socket.cookies)
-        if not is_own or path is None:
-            await socket.close(_UNKNOWN)  # before it is accepted: the browser is told 403
-            return
-        await socket.accept()
+    async def _live(self, window: WebSocket) -> None:
+        """Speak with one window on a workbook."""
+        key = window.path_params["key"]
+
+        async def speak() -> None:
+            path = self._library.path(key)
+            if path is None:
+                await window.close(_NO_BOOK)
+            else:
+                await self._speak(window, self._desk(key, path))
+
+        await self._admit(window, speak)
+
+    async def _start(self, window: WebSocket) -> None:
+        """Speak with one start page."""
+
+        async def speak() -> None:
+            if self._library.only is not None:
+                await _tell(window, {"kind": "open", "key": self._library.only})
+            await _tell(window, self._books())
+            while True:
+                said = await _said(window)
+                if said.kind == "ticket":
+                    await _tell(window, {"kind": "ticket", "ticket": self.guard.new_ticket()})
+                elif said.kind == "copy":
+                    await _tell(window, await self._copied(said["key"]))
+
+        await self._admit(window, speak)
+
+    def _books(self) -> Message:
+        found = {
+            "books": self._library.books(),
+            "recent": self._library.recent(),
+            "templates": self._library.templates(),
+        }
+        folder = str(self._library.folder or "")
+        return {"kind": "books", "folder": folder, **found, "trouble": self._library.trouble}
+
+    async def _copied(self, key: str) -> Message:
+        """Copy a template into the folder, to be opened."""
         try:
-            said = read_message(await asyncio.wait_for(_heard(socket), _HELLO_SECONDS))
-            if said.kind != "hello" or not self.guard.is_page(said["page"]):
-                await socket.close(_UNKNOWN)
+            return {"kind": "open", "key": await asyncio.to_thread(self._library.copy_template, key)}
+        except XlmcError as error:
+            return {"kind": "trouble", "about": "copy", "text": str(error)}
+
+    async def _admit(self, window: WebSocket, speak: Callable[[], Awaitable[None]]) -> None:
+        """Speak with a page that proves that it may look; a page that says what none of xlmc's does is closed."""
+        if not self.guard.is_origin(window.headers.get("origin"), window.headers.get("host")):
+            await window.close(_UNKNOWN)  # before it is accepted: the browser is told 403
+            return
+        await window.accept()
+        try:
+            if not await self._is_known(window):
+                await window.close(_UNKNOWN)
                 return
-            if sum(desk.windows for desk in self._desks.values()) >= _MOST_WINDOWS:
-                await socket.close(_FULL)
+            if len(self._windows) >= _MOST_WINDOWS:
+                await window.close(_FULL)
                 return
-            await self._speak(socket, self._desk(socket.path_params["key"], path))
+            self._windows.add(window)
+            try:
+                await _tell(window, {"kind": "welcome", "secret": self.guard.secret})
+                await speak()
+            finally:
+                self._windows.discard(window)
+                self._last_seen = self._clock()
         except (ProtocolError, TimeoutError):
-            await socket.close(_UNKNOWN)
+            await window.close(_UNKNOWN)
         except WebSocketDisconnect:
             pass
+
+    async def _is_known(self, window: WebSocket) -> bool:
+        """Return whether the page has proved that it knows its key, to which this end has proved the same."""
+        async with asyncio.timeout(_HELLO_SECONDS):
+            hello = await _said(window, "hello")
+            key = self.guard.key(hello["name"])
+            if key is None:
+                return False
+            ends: tuple[str, str] = (hello["nonce"], secrets.token_hex(32))
+            await _tell(window, {"kind": "proof", "nonce": ends[1], "proof": proof(key, "server", *ends)})
+            said = (await _said(window, "proof"))["proof"]
+        wanted = proof(key, "page", *ends)
+        is_right = hmac.compare_digest(said.encode("utf-8", "surrogatepass"), wanted.encode())
+        return is_right and self.guard.use(hello["name"])
 
     def _desk(self, key: str, path: Path) -> Desk:
         if key not in self._desks:
@@ -301,7 +322,6 @@ class LiveServer:
 
     async def _speak(self, socket: WebSocket, desk: Desk) -> None:
         window = desk.join()
-        self._last_seen = self._clock()
 
         async def send() -> None:
             while True:
@@ -310,20 +330,19 @@ class LiveServer:
         sending = asyncio.create_task(send())
         try:
             while True:
-                desk.hear(window, read_message(await _heard(socket)))
+                desk.hear(window, await _said(socket))
         finally:
             desk.leave(window)
-            self._last_seen = self._clock()
             sending.cancel()
             await asyncio.gather(sending, return_exceptions=True)
 
 
-async def _heard(socket: WebSocket) -> str:
-    """The next message's text.
+async def _said(socket: WebSocket, kind: str | None = None) -> Said:
+    """Return the next message.
 
     Raises:
         WebSocketDisconnect: there is none any more.
-        ProtocolError: it is no text.
+        ProtocolError: no page says it, or it is of another kind.
     """
     message = await socket.receive()
     if message["type"] == "websocket.disconnect":
@@ -331,11 +350,27 @@ async def _heard(socket: WebSocket) -> str:
     text = message.get("text")
     if text is None:
         raise ProtocolError("a message is not text")
-    return str(text)
+    said = read_message(str(text))
+    if kind is not None and said.kind != kind:
+        raise ProtocolError(f"a message {said.kind!r} comes before {kind!r}")
+    return said
+
+
+async def _tell(socket: WebSocket, message: Message) -> None:
+    if socket.application_state is WebSocketState.CONNECTED:  # the server may have said goodbye meanwhile
+        await socket.send_text(written(message))
 
 
 class _Uvicorn(uvicorn.Server):
-    """Leaves signals to the command that started it."""
+    """Leaves signals to the command that started it, and closes connections after a goodbye."""
+
+    def __init__(self, config: uvicorn.Config, goodbye: Callable[[], Awaitable[None]]) -> None:
+        super().__init__(config)
+        self._goodbye = goodbye
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        await self._goodbye()
+        await super().shutdown(sockets)
 
     def capture_signals(self) -> Any:
         from contextlib import nullcontext
@@ -354,7 +389,7 @@ class _Guarded:
             await self._app(scope, receive, send)
             return
 
-        async def guarded(message: Message) -> None:
+        async def guarded(message: AsgiMessage) -> None:
             if message["type"] == "http.response.start":
                 headers = MutableHeaders(scope=message)
                 for name, value in HEADERS.items():
@@ -371,6 +406,13 @@ class _Guarded:
             await send({"type": "websocket.close", "code": _UNKNOWN, "reason": ""})
 
 
+def _page(name: str, scripts: dict[str, tuple[str, str]]) -> Response:
+    styles = "".join(f'<link rel="stylesheet" href="/static/{each}">\n' for each in STYLES)
+    tags = "".join(f'<script src="/static/{each}" defer></script>\n' for each in scripts)
+    text = Template(files(_LIVE).joinpath(name).read_text(encoding="utf-8"))
+    return HTMLResponse(text.substitute(styles=styles, scripts=tags))
+
+
 def _refusal(text: str, status: int = 403) -> Response:
     return PlainTextResponse(f"xlmc: {text}\n", status)
 
@@ -385,9 +427,3 @@ async def _asset(request: Request) -> Response:
         return _refusal("There is no such file.", 404)
     package, name = found
     return Response(files(package).joinpath(name).read_bytes(), media_type=_TYPES[Path(name).suffix])
-
-
-def _as_data(found: object) -> str:
-    """JSON that can stand in an element of a page."""
-    text = json.dumps(found)
-    return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")

@@ -1,21 +1,30 @@
 "use strict";
 // The start page: books of the folder, those opened last, templates, and a place to drop a file.
 
+const ENDED = "xlmc has ended; type xlmc open to go on.";
+
 const Start = {
   start() {
-    const found = JSON.parse(document.getElementById("data").textContent);
-    this.list("books", found.books, ({ name, key }) => [this.link(name, key)]);
-    this.list("recent", found.recent, ({ name, key, folder }) => [this.link(name, key), make("small", {}, " in ", named(folder))]);
-    this.list("templates", found.templates, ({ name, key, question }) => [
-      make("button", { type: "button", text: name, on: { click: () => this.ask(`/open/${key}`, null) } }), ` ${question}`]);
-    document.getElementById("folder").textContent = found.folder;
-    if (found.trouble) this.trouble(found.trouble);
+    this.wire = new Wire("/start", (message) => this[message.kind](message), () => {}, (why) => this.trouble({ text: why ?? ENDED }));
     document.getElementById("file").addEventListener("change", ({ target }) => this.take(target.files[0]));
     addEventListener("dragover", (event) => event.preventDefault());
     addEventListener("drop", (event) => {
       event.preventDefault();
       this.take(event.dataTransfer.files[0]);
     });
+  },
+
+  books(found) {
+    this.list("books", found.books, ({ name, key }) => [this.link(name, key)]);
+    this.list("recent", found.recent, ({ name, key, folder }) => [this.link(name, key), make("small", {}, " in ", named(folder))]);
+    this.list("templates", found.templates, ({ name, key, question }) => [
+      make("button", { type: "button", text: name, on: { click: () => this.wire.say({ kind: "copy", key }) } }), ` ${question}`]);
+    document.getElementById("folder").textContent = found.folder;
+    if (found.trouble) this.trouble({ text: found.trouble });
+  },
+
+  open({ key }) {
+    location.assign(`/book/${key}`);
   },
 
   list(id, rows, line) {
@@ -28,22 +37,26 @@ const Start = {
   },
 
   take(file) {
-    if (file) this.ask(`/drop?name=${encodeURIComponent(file.name)}`, file);
+    if (!file) return;
+    this.file = file;
+    this.wire.say({ kind: "ticket" });
   },
 
-  async ask(address, body) {
-    const headers = { "X-Xlmc-Page": document.body.dataset.page };
+  /** The server expects a file. */
+  async ticket({ ticket }) {
+    const { file } = this;
     try {
-      const answer = await fetch(address, { method: "POST", headers, body });
+      const answer = await fetch(`/drop?name=${encodeURIComponent(file.name)}`, {
+        method: "POST", headers: { "X-Xlmc-Ticket": ticket }, body: file });
       const found = await answer.json();
-      if (found.open) location.assign(found.open);
-      else this.trouble(found.trouble);
+      if (found.key) this.open(found);
+      else this.trouble({ text: found.trouble });
     } catch {
-      this.trouble("The file could not be handed over: is xlmc still running?");
+      this.trouble({ text: "The file could not be handed over: is xlmc still running?" });
     }
   },
 
-  trouble(text) {
+  trouble({ text }) {
     document.getElementById("troubles").replaceChildren(make("p", { class: "warning", text }));
   },
 };

@@ -9,8 +9,8 @@ const Live = {
   firsts: [], // likewise, of answers from fewer trials
 
   start() {
-    const { key, page } = document.body.dataset;
-    this.wire = new Wire(key, page, (message) => this.heard(message), (open) => this.stands(open), () => this.over());
+    const path = location.pathname.replace("/book/", "/live/");
+    this.wire = new Wire(path, (message) => this.heard(message), (open) => this.stands(open), (why) => this.over(why));
     this.left = new LeftSide(this.wire, (seq, event) => { if (event) this.moves.set(seq, event.timeStamp); });
     this.right = new RightSide(this.wire);
     const say = (id, message) => document.getElementById(id).addEventListener("click", () => this.wire.say(message));
@@ -25,10 +25,10 @@ const Live = {
   },
 
   /** The program has ended: nothing is taken any more, and what was answered stays. */
-  over() {
+  over(why) {
     document.body.classList.add("away", "over");
     document.querySelectorAll("#left, #offer, header .actions, #panel-scenarios, #panel-studies").forEach((each) => { each.inert = true; });
-    this.stand("xlmc has ended: changes are not taken any more. Scenarios are kept; type xlmc open to go on.");
+    this.stand(why ?? "xlmc has ended: changes are not taken any more. Scenarios are kept; type xlmc open to go on.");
   },
 
   stand(text) {

@@ -1,44 +1,54 @@
 "use strict";
 // The connection to the server, which comes back by itself after a sleep or a pause, until the program has ended.
 
-const ENDED_BY = [1012, 4401]; // the server ends; another one listens there now, and does not know this page
+const UNKNOWN = 4401; // another server listens there now, or the link is used up
+const ENDED_BY = [1012, UNKNOWN]; // the server ends, or does not know this page
+const REFUSED_BY = { 4404: "There is no such workbook here any more.", 4429: "Too many windows are open; close one, and load this page again." };
 const MOST_TRIES = 3; // on this machine a connection that is refused means that nothing listens any more
 
 class Wire {
   /**
-   * `heard(message)` takes what the server says; `stands(open)` hears whether there is a connection; `ended()` hears
-   * that there will be none any more.
+   * `heard(message)` takes what the server says; `stands(open)` hears whether there is a connection; `ended(why)` hears
+   * that there will be none any more: a text if there never was one.
    */
-  constructor(key, page, heard, stands, ended) {
-    Object.assign(this, { key, page, heard, stands, ended, seq: 0, delay: 250, tries: 0, over: false, waiting: [] });
-    this.connect();
+  constructor(path, heard, stands, ended) {
+    Object.assign(this, { path, heard, stands, ended, seq: 0, delay: 250, tries: 0, over: false, waiting: [] });
+    if (Entry.known()) this.connect();
+    else this.end(Entry.refusal(false));
     addEventListener("online", () => this.again());
     document.addEventListener("visibilitychange", () => this.again());
   }
 
   connect() {
-    const socket = new WebSocket(`ws://${location.host}/live/${this.key}`);
+    const socket = new WebSocket(`ws://${location.host}${this.path}`);
     this.socket = socket;
-    socket.addEventListener("open", () => {
+    this.entered = false;
+    socket.addEventListener("open", async () => {
+      if (!(await Entry.enter(socket))) return; // its end is heard below
+      this.entered = true;
       this.delay = 250;
       this.tries = 0;
-      socket.send(JSON.stringify({ kind: "hello", page: this.page }));
+      socket.addEventListener("message", ({ data }) => this.heard(JSON.parse(data)));
       for (const text of this.waiting.splice(0)) socket.send(text);
       this.stands(true);
     });
-    socket.addEventListener("message", ({ data }) => this.heard(JSON.parse(data)));
     socket.addEventListener("close", ({ code }) => {
       if (this.socket !== socket) return;
       this.tries += 1;
-      if (ENDED_BY.includes(code) || this.tries > MOST_TRIES) {
-        this.over = true;
-        this.ended();
+      if (code in REFUSED_BY || ENDED_BY.includes(code) || this.tries > MOST_TRIES) {
+        this.end(code === UNKNOWN && Entry.code ? Entry.refusal(true) : REFUSED_BY[code]);
         return;
       }
+      this.entered = false;
       this.stands(false);
       this.timer = setTimeout(() => this.connect(), this.delay);
       this.delay = Math.min(2 * this.delay, 5000);
     });
+  }
+
+  end(why) {
+    this.over = true;
+    this.ended(why);
   }
 
   /** Do not wait for the next try where something says that it would work now. */
@@ -51,7 +61,7 @@ class Wire {
   /** What is said while there is no connection is said when there is one. */
   say(message) {
     const text = JSON.stringify(message);
-    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(text);
+    if (this.entered && this.socket.readyState === WebSocket.OPEN) this.socket.send(text);
     else if (!this.over) this.waiting.push(text);
   }
 

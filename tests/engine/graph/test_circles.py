@@ -6,6 +6,7 @@ import pytest
 
 from xlmc.analysis.studies.verify import Status, verify
 from xlmc.errors import FormulaError
+from xlmc.montecarlo.diagnostics.cell_errors import errors_at_base
 
 SHEET = {"A1": 10.0, "A2": 12.0, "A3": 14.0, "A4": 16.0, "B1": 1.0, "B2": 2.0, "B3": 3.0, "D1": 1.0, "D2": 2.0}
 """The drawn cell is A1."""
@@ -205,3 +206,30 @@ def test_verify_computes_what_is_pointed_through_and_names_the_circles(workbook)
         "B2": Status.UNSUPPORTED,
     }
     assert "in a circle: S!B" in found["B1"].reason
+
+
+@pytest.fixture(scope="module")
+def turning(book):
+    """Of two cells each reads the other one in one trial of ten; also at the base case."""
+    cells = {"A1": 0.95, "B1": "=IF(A1>0.9,B2,5)", "B2": "=IF(A1>0.9,B1,5)+1", "C1": "=B1+A1"}
+    return book(cells, {"a": {"cell": "A1", "low": 0, "high": 1}}, {"sum": "C1"})
+
+
+@pytest.mark.parametrize("engine", ["numpy", "jit"])
+def test_a_run_names_the_cell_whose_trials_are_errors(turning, engine):
+    run = turning.simulate(trials=2_000, seed=1, engine=engine)
+    lost = int((run.prior["a"] > 0.9).sum())
+    assert dict(run["sum"].faults) == {"#CALC!": lost}
+    assert abs(lost / 2_000 - 0.1) < 4 * 0.3 / 2_000**0.5
+    assert [str(cell) for cell, _ in run.error_roots.values()] == ["S!B2"]
+
+
+def test_the_base_case_of_a_circle_has_its_errors(turning):
+    found = errors_at_base(turning)
+    assert {str(cell) for cell in found.roots} == {"S!B1", "S!B2"}
+    assert {str(cell) for cell in found.others} == {"S!C1"}
+
+
+def test_the_engine_formulas_refuses_circles(turning):
+    with pytest.raises(FormulaError, match="no cells that refer to themselves"):
+        turning.simulate(trials=10, engine="formulas")

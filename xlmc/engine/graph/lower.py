@@ -83,6 +83,7 @@ class Lowering(ExpressionLowering):
         held: cells held at a value of their own: frozen assumptions.
         audit: every formula reads what Excel saved in the cells it needs, so that each is checked on its own; one that
             cannot be computed is a fault, not an exception.
+        one_trial: a cell that reads itself is an error, as in a trial of many, and no reason to refuse the cells.
 
     Attributes:
         graph, inputs, held: as given.
@@ -96,12 +97,18 @@ class Lowering(ExpressionLowering):
     """
 
     def __init__(
-        self, graph: Graph, inputs: Mapping[Cell, str], held: Mapping[Cell, float], *, audit: bool = False
+        self,
+        graph: Graph,
+        inputs: Mapping[Cell, str],
+        held: Mapping[Cell, float],
+        *,
+        audit: bool = False,
+        one_trial: bool = False,
     ) -> None:
         dag = Dag(date1904=graph.workbook.date1904)
         trees = (placed for placed in graph.formulas.ordered.values() if not isinstance(placed, Filled))
         super().__init__(graph, dag, RunningTotals(dag, trees, self.cell), audit=audit)
-        self.inputs, self.held = inputs, held
+        self.inputs, self.held, self._one_trial = inputs, held, one_trial
         self.notices: list[Notice] = []
         self.saved: dict[Cell, object] = {}
         self.faults: dict[Cell, FormulaError] = {}
@@ -152,11 +159,11 @@ class Lowering(ExpressionLowering):
         return self._computed[cell]
 
     def refuse(self, cells: Sequence[Cell], error: FormulaError) -> None:
-        """Take cells for faulty that need each other in a circle; outside of an audit raise the error."""
-        if not self._audit:
+        """Take cells for faulty that need each other in a circle; of many trials raise the error."""
+        if not self._audit and not self._one_trial:
             raise error
         for cell in cells:
-            self._set(cell, self._hold_saved(cell, error))
+            self._set(cell, self._hold_saved(cell, error) if self._audit else self.dag.circle())
 
     def tell_circle(self, cell: Cell) -> None:
         """Note that some trials may read a cell while it is computed."""
@@ -279,7 +286,7 @@ class Lowering(ExpressionLowering):
             return self._held_cell(cell)  # only until the graph is built again
         except CircleError as error:
             self.refuse([cell], error.at(cell))
-            return self._held_cell(cell)
+            return self._computed[cell]
         except FormulaError as error:
             return self._take_saved(cell, error)
         finally:

@@ -32,6 +32,9 @@ class FormulasProgram:
         self, lowering: Lowering, filters: Sequence[Target], forecasts: Sequence[Target], may_err: frozenset[str]
     ) -> None:
         graph = lowering.graph
+        if graph.circles:
+            message = "the engine `formulas` has no cells that refer to themselves"
+            raise FormulaError(message, where=next(iter(graph.circles)), hint=_OTHER_ENGINE)
         self.inputs = {cell: name for cell, name in lowering.inputs.items() if cell in graph.reached}
         self.content = lambda cell: graph.workbook.content(cell).value
         self.held: Cells = {**lowering.saved, **lowering.held}

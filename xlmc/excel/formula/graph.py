@@ -23,7 +23,7 @@ from xlmc.excel.formula.stencil import Stencil
 from xlmc.excel.formula.strips import Needs, Part, Stretch, Strips
 from xlmc.excel.workbook.workbook import Workbook
 
-__all__ = ["Filled", "Graph", "Spills", "build_graph", "circle_error", "circular"]
+__all__ = ["Filled", "Graph", "Spills", "build_graph", "circle_error", "circular", "downstream"]
 
 _MANY: Final = 64
 """Cells of a part that it is worth remembering."""
@@ -108,7 +108,7 @@ def build_graph(
         walk.upstream(target)
     circles = circular(walk.needs) if walk.circular else {}
     drawn = walk.reached & inputs
-    varying = _downstream(walk.needs, drawn) if circles else _varying(walk.ordered, walk.needs, drawn)
+    varying = downstream(walk.needs, drawn) if circles else _varying(walk.ordered, walk.needs, drawn)
     reached = frozenset(walk.reached)
     return Graph(resolver.workbook, _Trees(walk.ordered), walk.needs, varying, reached, walk.faults, circles)
 
@@ -246,8 +246,8 @@ def _varying(formulas: Iterable[Cell], needs: Needs, inputs: Iterable[Cell]) -> 
     return frozenset(varying)
 
 
-def _downstream(needs: Needs, inputs: Iterable[Cell]) -> frozenset[Cell]:
-    """The inputs and all cells that need one of them, in whatever order they stand."""
+def downstream(needs: Needs, inputs: Iterable[Cell]) -> frozenset[Cell]:
+    """Find the inputs and all cells that need one of them, in whatever order they stand."""
     parts, links = needs.linked()
     users: dict[Cell, list[int]] = {}
     for number, part in enumerate(parts):

@@ -53,7 +53,9 @@ def errors_at_base(model: Model) -> BaseErrors:
         return BaseErrors({}, {}, answers=False)
     lowering = _held(model, {})
     found, needs = dict(_errors(lowering)), lowering.graph.needs
-    roots = {cell: code for cell, code in found.items() if not any(need in found for need in needs[cell])}
+    round_ = lowering.graph.circles  # whose cells all have their error from each other
+    wrong = {cell: [need for need in needs[cell] if need in found] for cell in found}
+    roots = {cell: found[cell] for cell, by in wrong.items() if not by or (cell in round_ and set(by) <= round_.keys())}
     others = {cell: code for cell, code in found.items() if cell not in roots}
     asked = {f.cell for f in definitions.forecasts} | {f.cell for f in definitions.filters}
     asked |= {check.cell for check in definitions.checks}
@@ -97,18 +99,19 @@ def _first_error(model: Model, cell: Cell, drawn: Mapping[str, Floats]) -> dict[
 
 
 def _root(lowering: Lowering, cell: Cell) -> Root | None:
-    """Go upstream from a cell in error for as long as a cell that it needs is one."""
-    found, needs = dict(_errors(lowering)), lowering.graph.needs
-    if cell not in found:
+    """Go upstream from a cell in error for as long as a cell that it needs is one, in a circle once round."""
+    left, needs = dict(_errors(lowering)), lowering.graph.needs
+    if cell not in left:
         return None
-    while (cause := next((need for need in needs[cell] if need in found), None)) is not None:
-        cell = cause
-    return cell, found[cell]
+    code = left.pop(cell)
+    while (cause := next((need for need in needs[cell] if need in left), None)) is not None:
+        cell, code = cause, left.pop(cause)
+    return cell, code
 
 
 def _held(model: Model, trial: Mapping[str, float]) -> Lowering:
     """The nodes of all that is asked for, every assumption held: at its draw in a trial, or at its base value."""
-    return lower_needed(model.workbook, _without_draws(model.definitions, trial))[1]
+    return lower_needed(model.workbook, _without_draws(model.definitions, trial), one_trial=True)[1]
 
 
 def _without_draws(definitions: Definitions, trial: Mapping[str, float]) -> Definitions:

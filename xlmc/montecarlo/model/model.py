@@ -75,8 +75,8 @@ def paused_collection() -> Iterator[None]:
             gc.enable()
 
 
-def lower_needed(workbook: Workbook, definitions: Definitions) -> tuple[Needed, Lowering]:
-    """What the forecasts and filters need, and its nodes.
+def lower_needed(workbook: Workbook, definitions: Definitions, *, one_trial: bool = False) -> tuple[Needed, Lowering]:
+    """What the forecasts and filters need, and its nodes; of `one_trial`, all assumptions being held, see `Lowering`.
 
     Raises:
         FormulaError, DefinitionError: as for `load`.
@@ -88,7 +88,7 @@ def lower_needed(workbook: Workbook, definitions: Definitions) -> tuple[Needed, 
 
     def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
         found.append(find_needed(workbook, definitions, more))
-        return Lowering(found[-1].graph, inputs, held)
+        return Lowering(found[-1].graph, inputs, held, one_trial=one_trial)
 
     lowering = lower_until_complete(lower)
     lowering.refuse_cells_beyond()

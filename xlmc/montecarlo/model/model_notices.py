@@ -9,6 +9,7 @@ from typing import Final
 from xlmc.errors import Notice
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import Graph
+from xlmc.excel.formula.graph import downstream
 from xlmc.montecarlo.definitions.definitions import Assumption, Forecast
 from xlmc.montecarlo.model.needed import Needed
 from xlmc.montecarlo.model.plain_words import list_of
@@ -74,6 +75,8 @@ def still_notices(needed: Needed, moving: Set[Cell], forecasts: Sequence[Forecas
 
 def _reached(graph: Graph, moving: Set[Cell]) -> set[Cell]:
     """The cells that depend on a moving one."""
+    if graph.circles:
+        return set(downstream(graph.needs, moving))
     found = set(moving)
     for cell in graph.formulas:  # each after the cells it needs
         if not found.isdisjoint(graph.needs[cell]):

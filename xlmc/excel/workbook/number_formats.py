@@ -11,9 +11,9 @@ from xlmc.excel.address import column_number
 from xlmc.excel.workbook.package import relationships
 from xlmc.excel.workbook.safe_xml import tree
 
-__all__ = ["NumberFormat", "number_formats"]
+__all__ = ["BUILT_IN", "NumberFormat", "number_formats"]
 
-_BUILT_IN: Final = {0: "General", 1: "0", 2: "0.00", 3: "#,##0", 4: "#,##0.00", 9: "0%", 10: "0.00%", 11: "0.00E+00"}
+BUILT_IN: Final = {0: "General", 1: "0", 2: "0.00", 3: "#,##0", 4: "#,##0.00", 9: "0%", 10: "0.00%", 11: "0.00E+00"}
 """The formats that a file names by their number alone and that result sheets use."""
 
 _CELL: Final = re.compile(rb'<(?:\w+:)?c\b[^>]*? r="([A-Z]{1,3})([0-9]+)"[^>]*? s="([0-9]+)"')
@@ -82,4 +82,4 @@ def number_formats(parts: Mapping[str, bytes], workbook: str, sheet: str) -> dic
 
 
 def _built_in(number: str) -> str:
-    return _BUILT_IN.get(int(number), "General") if number.isdecimal() else "General"
+    return BUILT_IN.get(int(number), "General") if number.isdecimal() else "General"

@@ -8,6 +8,7 @@ from xlmc.excel.workbook.injection.splice import parse_spans
 from xlmc.excel.workbook.injection.styles_merge import merge_styles
 
 MAIN = 'xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"'
+MC = 'xmlns:mc="http://schemas.openxmlformats.org/markup-compatibility/2006"'
 ORDER = [
     "numFmts",
     "fonts",
@@ -115,6 +116,34 @@ def test_a_number_that_styles_use_without_a_definition_is_not_free(built):
     host = without("numFmts").replace('<xf numFmtId="0"', '<xf numFmtId="200"')
     merged, _ = merge_styles(host.encode(), "styles", built)
     assert min(int(e.attributes["numFmtId"]) for e in entries(merged, "numFmts")) == 201
+
+
+@pytest.mark.parametrize(
+    ("defined", "number"),
+    [
+        ('<numFmt numFmtId="0" formatCode="[h]:mm:ss"/>', "171"),
+        ('<numFmt numFmtId="0" formatCode="General"/>', "0"),
+        ('<numFmt numFmtId="0" formatCode="General"/><numFmt numFmtId="0" formatCode="0%"/>', "171"),
+        ('<numFmt numFmtId="9" formatCode="0.0%"/><numFmt formatCode="0%"/>', "0"),
+        (f"<mc:AlternateContent {MC}><mc:Fallback><numFmt numFmtId='0' formatCode='@'/></mc:Fallback>"
+         "</mc:AlternateContent>", "171"),
+    ],
+)  # fmt: skip
+def test_a_built_in_format_that_the_workbook_defines_anew_gets_a_number_of_its_own(built, defined, number):
+    host = re.sub("(<numFmts[^>]*>)", rf"\1{defined}", ARIAL)
+    merged, places = merge_styles(host.encode(), "styles", built)
+    assert entries(built, "cellXfs")[0].attributes["numFmtId"] == "0"
+    assert entries(merged, "cellXfs")[places.cells[0]].attributes["numFmtId"] == number
+    shown = [e.attributes["formatCode"] for e in entries(merged, "numFmts") if e.attributes.get("numFmtId") == "171"]
+    assert (shown == ["General"]) == (number == "171")
+    assert merge_styles(merged, "styles", built) == (merged, places)
+
+
+def test_a_number_with_two_codes_is_not_used_again(built):
+    host = ARIAL.replace("</numFmts>", '<numFmt numFmtId="170" formatCode="@"/></numFmts>')
+    merged, _ = merge_styles(host.encode(), "styles", built)
+    formats = [(e.attributes["numFmtId"], e.attributes["formatCode"]) for e in entries(merged, "numFmts")]
+    assert formats[3:] == [("171", "0.000"), ("172", '0.0 "km/h"'), ("173", "0.0000")]
 
 
 def test_new_styles_rest_on_the_users_normal_style_and_say_where_they_differ(built):

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from xlmc.excel.workbook.injection.splice import MAIN, Element, SplicedXml, parse_spans, render
 from xlmc.excel.workbook.injection.strict import STRICT_MAIN
+from xlmc.excel.workbook.number_formats import BUILT_IN
 
 __all__ = [
     "PLAIN",
@@ -224,13 +225,17 @@ class _StyleList:
 
 
 class _NumberFormats:
-    """Number formats: built-in ones keep their number, others are found by their code or get a free number."""
+    """Number formats: built-in ones keep their number, others are found by their code or get a free number.
+
+    A workbook may define the number of a built-in format anew; that one is then looked for by its code, too.
+    """
 
     def __init__(self, document: SplicedXml, source: Element) -> None:
         self.list = _StyleList(document, "numFmts")
         root = document.root
         self._codes = {e.attributes["numFmtId"]: _code(e) for e in _style_entries(source, "numFmts")}
-        self._numbers = {_code(e): _number(e) for e in _style_entries(root, "numFmts")}
+        self._defined = _defined_formats(root)
+        self._numbers = {code: number for number, codes in self._defined.items() if len(codes) == 1 for code in codes}
         # A style may name a format that nothing defines; defining it now would change the user's cells.
         holders = [root.find(name) for name in ("numFmts", "cellXfs", "cellStyleXfs")]
         used = [_number(entry) for holder in holders if holder for entry in _descendants(holder)]
@@ -238,14 +243,28 @@ class _NumberFormats:
 
     def number(self, built: str, code: str | None = None) -> str:
         """The number of a built workbook's format; `code` where the format says it itself."""
-        if int(built) < _FIRST_CUSTOM_FORMAT:
+        if int(built) < _FIRST_CUSTOM_FORMAT and not self._is_redefined(int(built)):
             return built
-        code = code or self._codes[built]
+        code = code or self._codes.get(built) or BUILT_IN[int(built)]
         if code not in self._numbers:
             self._numbers[code] = self._next
             self.list.index_of(_StyleEntry("numFmt", {"numFmtId": str(self._next), "formatCode": code}))
             self._next += 1
         return str(self._numbers[code])
+
+    def _is_redefined(self, built: int) -> bool:
+        code = BUILT_IN.get(built)
+        return code is not None and self._defined.get(built, {code}) != {code}
+
+
+def _defined_formats(root: Element) -> dict[int, set[str]]:
+    """The codes of each number of a format; one that is defined twice, or in several forms, may have several."""
+    found: dict[int, set[str]] = {}
+    holder = root.find("numFmts")
+    for entry in _descendants(holder) if holder else ():
+        if entry.attributes.get("numFmtId", "").isdecimal():
+            found.setdefault(_number(entry), set()).add(_code(entry))
+    return found
 
 
 def _style_entries(root: Element, name: str) -> list[Element]:

@@ -32,6 +32,11 @@ class KnownBook:
     quantile: Callable[[Floats], Floats]
     above: float | None = None
 
+    @property
+    def accepted(self) -> float:
+        """The share of trials that the filter on A1, which is uniform, accepts."""
+        return 1.0 if self.above is None else 1.0 - self.above
+
     def write(self, folder: Path) -> Path:
         """The workbook, with A1 as its filter where there is one."""
         import openpyxl

@@ -3,8 +3,8 @@
 `python benchmarks/method_advice.py` measures every shipped workbook with 20 seeds, and writes
 `results/method-advice.json` as it goes: stopped, it goes on where it was. Its runs are shorter and fewer than those of
 `--quick`, and know less: what does not change with them does not change with more. `--table` only fills in the table of
-docs/methods.md. `--truth` compares what is stated of the eight books of `known_books.py` with what is true of them. The
-seconds in it depend on the machine; the advice must not.
+docs/methods.md. `--truth` compares what is said of the eight books of `known_books.py` with what is true of them
+(`method_truth.py`). The seconds in it depend on the machine; the advice must not.
 
 The bar: for every workbook one recommended method, and one method at least that is among the cheapest with every seed.
 """
@@ -19,17 +19,15 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, NoReturn
 
-import numpy as np
-from known_books import KNOWN, KnownBook
+from known_books import KNOWN
+from method_truth import compare_with_truth
 from tables import placed
 
 import xlmc
-from xlmc.analysis.studies.methods import quick_settings, study
+from xlmc.analysis.studies.methods import study
 from xlmc.analysis.studies.methods.need import choice
-from xlmc.analysis.studies.methods.quantile_need import quantile_need
-from xlmc.api import Model
 
 __all__ = ["BOOKS", "PAGE", "RESULTS", "SEEDS", "advice", "faults", "table"]
 
@@ -132,60 +130,6 @@ def table(records: dict[str, dict[str, Record]]) -> str:
     return "\n".join(rows)
 
 
-NORMAL_95, SHARES = 1.959964, (np.arange(1 << 22) + 0.5) / (1 << 22)
-
-
-def truth_of(book: KnownBook, share: float = 0.51) -> tuple[tuple[float, ...], float, float]:
-    """Mean, SD and both ends of a known forecast, the tolerance of 1 %, and the accepted trials that Monte Carlo
-    needs.
-    """
-    y = book.quantile(SHARES)
-    mean, deviation = float(y.mean()), float(y.std())
-    low, high, five, ninety_five = (float(q) for q in np.quantile(y, [(1 - share) / 2, (1 + share) / 2, 0.05, 0.95]))
-    tolerance = 0.01 * (ninety_five - five)
-    kurtosis = float(np.mean((y - mean) ** 4)) / deviation**4
-    needs = [(NORMAL_95 * deviation * each / tolerance) ** 2 for each in (1.0, (kurtosis - 1.0) ** 0.5 / 2.0)]
-    for p in ((1 - share) / 2, (1 + share) / 2):
-        found = quantile_need(y, p, tolerance, y.size, gain=1e-6)
-        assert found is not None
-        needs.append(found.trials)
-    return (mean, deviation, low, high), tolerance, max(needs)
-
-
-def kept_share(model: Model, method: Any, trials: int, truth: tuple[tuple[float, ...], float, float]) -> float:
-    """The share of 200 runs with all four numbers within the tolerance."""
-    numbers, tolerance, _ = truth
-    kept = 0.0
-    for seed in range(RUNS):
-        answer = method.run(model, trials, 10_000 + seed).answers["y"]
-        off = np.abs(np.subtract((answer.mean, answer.sd, answer.low, answer.high), numbers))
-        kept += bool((off <= tolerance).all())
-    return kept / RUNS
-
-
-RUNS, MOST_RUN = 200, 1_000_000
-
-
-def compare_with_truth(folder: Path) -> list[str]:
-    """A line a book: Monte Carlo's stated need over the true one, and what twice and half the stated needs keep."""
-    lines = []
-    for book in KNOWN:
-        model, truth = xlmc.load(book.write(folder)), truth_of(book)
-        found = study(model, seed=1, **quick_settings({}))
-        best = choice(found)
-        share = found.reference.acceptance.value
-        stated = next(each.trials for curve, each in best.needs.items() if curve.method.key == "mc")
-        line = f"{book.name}: {best.chosen and best.chosen.method.key}; mc stated/true {stated * share / truth[2]:.2f}"
-        for curve in found.curves:
-            need = best.needs[curve]
-            if curve.method.key in ("lhs", "sobol") and need.usable and 2 * need.trials <= MOST_RUN:
-                twice, half = (kept_share(model, curve.method, round(k * need.trials), truth) for k in (2.0, 0.5))
-                line += f"; {curve.method.key} {need.trials:,.0f}: twice keeps {twice:.3f}, half {half:.3f}"
-        lines.append(line)
-        print(line, flush=True)
-    return lines
-
-
 def main(given: Sequence[str] | None = None) -> None:
     """Measure, write the table, and say whether the bar is met."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -195,14 +139,16 @@ def main(given: Sequence[str] | None = None) -> None:
     asked = parser.parse_args(given)
     if asked.truth:
         with TemporaryDirectory() as folder:
-            compare_with_truth(Path(folder))
-        return
+            _end(compare_with_truth(Path(folder)), f"both bars are met, {len(KNOWN)} books")
     if not asked.table:
         measure(BOOKS, asked.seeds)
     records = _known()
     PAGE.write_text(placed(PAGE.read_text(encoding="utf-8"), "advice", table(records)), encoding="utf-8")
-    found = faults(records)
-    print("\n".join(found) or f"{len(records)} workbooks, one advice each")
+    _end(faults(records), f"{len(records)} workbooks, one advice each")
+
+
+def _end(found: Sequence[str], otherwise: str) -> NoReturn:
+    print("\n".join(found) or otherwise)
     raise SystemExit(1 if found else 0)
 
 

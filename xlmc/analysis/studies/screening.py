@@ -39,7 +39,6 @@ from xlmc.analysis.studies.comparison.tolerances import (
 from xlmc.analysis.studies.comparison.variations import with_changes, with_plain_sampling
 from xlmc.errors import SimulationError
 from xlmc.excel.address import Cell
-from xlmc.montecarlo import statistics
 from xlmc.montecarlo.definitions.definitions import Assumption, Forecast
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.model import Model
@@ -242,7 +241,7 @@ class _Screen:
         if not self._judged:
             message = "no forecast is a number in two accepted trials or more"
             raise SimulationError(message, hint="xlmc simulate tells in which cells the trials are lost to errors")
-        self._tolerances = {f.name: stated.of(f, _deviation(self._accepted[f.name])) for f in self._judged}
+        self._tolerances = {f.name: stated.of(f, self._accepted[f.name].scale) for f in self._judged}
         self._runs = 1
 
     def screening(self, sets: Sequence[tuple[str, ...]], *, ends: bool) -> Screening:
@@ -429,10 +428,6 @@ def _largest_move(
         limit = chance_tolerance(before) if chance is None else chance
         sizes.append(in_tolerances(Estimate(after - before), limit))
     return max(sizes)
-
-
-def _deviation(accepted: Accepted) -> float:
-    return statistics.standard_deviation(accepted.sample).value
 
 
 def _names_text(names: Sequence[str]) -> str:

@@ -180,7 +180,7 @@ def _numbers(study: Study) -> dict[str, Callable[[Runs], tuple[float, float, flo
         )
 
     def accepted(runs: Runs) -> tuple[float, float, float]:
-        if runs.acceptance is None:
+        if runs.acceptance is None or _every_trial_is_accepted(study):
             return (math.nan,) * 3
         return _with_interval(100.0 * runs.acceptance.value / study.reference.acceptance.value, [runs.acceptance])
 
@@ -198,8 +198,12 @@ def _with_interval(value: float, errors: list[Rms]) -> tuple[float, float, float
 
 def _nothing_text(study: Study, title: str) -> str:
     """Why a panel is empty, if it is."""
-    every = title == _ACCEPTED and study.reference.acceptance.value == 1.0
+    every = title == _ACCEPTED and _every_trial_is_accepted(study)
     return "every trial is accepted" if every else "nothing to show"
+
+
+def _every_trial_is_accepted(study: Study) -> bool:
+    return study.reference.acceptance.value == 1.0
 
 
 def _small(

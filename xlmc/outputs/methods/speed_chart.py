@@ -17,7 +17,7 @@ import numpy as np
 from xlmc.analysis.studies.methods import Curve, Study
 from xlmc.analysis.studies.methods.answer import seconds_text, trials_text
 from xlmc.analysis.studies.methods.law import law
-from xlmc.analysis.studies.methods.need import Choice, Need, choice, reach_of, seconds_of, shortfall, tied
+from xlmc.analysis.studies.methods.need import Choice, Need, choice, reach_of, seconds_of, shortfall
 from xlmc.outputs.methods.methods_tables import near_text
 
 __all__ = [
@@ -308,21 +308,20 @@ def _when(found: Need) -> str:
 
 
 def _mark(study: Study, height: float, accuracy: tuple[str, float, bool], found: Choice, more: str) -> tuple[str, ...]:
-    """The accuracy, the cheapest method there, and those that tie with it; also those that draw nothing."""
+    """The accuracy, the cheapest method there, and those that tie with it.
+
+    A method that draws nothing states no error. Only the reference shows whether it is near enough: it is named apart.
+    """
     text = f"{_accuracy_text(study, height)}{more}"
     asked = replace(study, accuracy=accuracy)
-    costs = {c.method.name: each.seconds for c, each in found.needs.items() if each.usable}
-    costs |= {
-        c.method.name: c.lengths[-1].seconds for c in study.once if c.answers and shortfall(asked, c).reaches == "yes"
-    }
-    if not costs:
-        return (text,)
-    first, *others = tied(costs)
-    said = (f"{text}; cheapest:", f"{first}, {seconds_text(costs[first])}")
-    if not others:
-        return said
-    named, rest = others[:_NAMED], len(others) - _NAMED
-    return (*said, *(f"tie: {name}" for name in named), *([f"and {rest} more"] if rest > 0 else []))
+    near = [c.method.name for c in study.once if c.answers and shortfall(asked, c).reaches == "yes"]
+    apart = tuple(f"near enough, as the reference shows: {name}" for name in near)
+    if not found.cheapest:
+        return (text, *apart)
+    first, *others = found.cheapest
+    said = (f"{text}; cheapest:", f"{first.method.name}, {seconds_text(found.needs[first].seconds)}")
+    named, rest = [f"tie: {each.method.name}" for each in others[:_NAMED]], len(others) - _NAMED
+    return (*said, *named, *([f"and {rest} more"] if rest > 0 else []), *apart)
 
 
 def _recommended_run(study: Study, found: Choice, work: Work, scale: float) -> tuple[float, float, str] | None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.stats import ks_2samp, wasserstein_distance
@@ -21,6 +21,7 @@ from xlmc.analysis.studies.comparison.paired_statistics import (
     quantile_of,
     standard_deviation_of,
 )
+from xlmc.montecarlo.statistics.yes_no import are_yes_no
 
 SAMPLES = arrays(np.float64, st.integers(2, 60), elements=st.floats(-1e6, 1e6).map(lambda x: round(x, 3)))
 
@@ -103,6 +104,7 @@ def test_a_quantile_that_no_trial_crosses_is_not_known_exactly():
 
 @given(SAMPLES)
 def test_a_run_does_not_differ_from_itself(values):
+    assume(not are_yes_no(values))  # of which no number of trials proves that they are the same
     found = difference(run_of(values), run_of(values), 0.51)
     numbers = [change.difference for _, change in found.changes]
     for estimate in (*numbers, found.kolmogorov, found.wasserstein):
@@ -144,3 +146,44 @@ def test_no_trials_are_no_number_and_no_crash():
     assert np.isnan(found.mean.difference.value)
     assert found.mean.difference.error is None
     assert np.isnan(found.wasserstein.value)
+
+
+@pytest.mark.parametrize(("share", "changes"), [(0.0, 0.0), (0.02, 0.001), (0.5, 0.03), (0.5, 0.0)])
+def test_the_interval_of_a_difference_of_yes_no_answers_holds_it(share, changes):
+    """Of trials, each yes with one probability, some change to yes and half as many to no: 400 runs of 2,000."""
+    rng, n, held = np.random.default_rng(7), 2_000, 0
+    for _ in range(400):
+        first, u = rng.random(n) < share, rng.random(n)
+        second = np.where(first, u >= changes / 2, u < changes)
+        found = difference(run_of(first.astype(float)), run_of(second.astype(float)), 0.51, 0.5)
+        truth = (1 - share) * changes - share * changes / 2
+        for each in (found.mean.difference, found.above.difference):
+            assert each.error > 0.0
+            assert each.interval[0] <= each.value <= each.interval[1]
+        held += found.mean.difference.interval[0] <= truth <= found.mean.difference.interval[1]
+        assert found.mean.difference == found.above.difference
+        assert found.kolmogorov.error == found.wasserstein.error == found.mean.difference.error
+        assert found.standard_deviation.difference.error > 0.0 or share == 0.5
+    assert held / 400 >= 0.95 - 3 * np.sqrt(0.95 * 0.05 / 400)
+
+
+def test_no_yes_in_any_trial_leaves_what_a_share_of_none_leaves():
+    found = difference(run_of(np.zeros(200_000)), run_of(np.zeros(200_000)), 0.51, 0.5)
+    assert found.mean.difference.interval == pytest.approx((-1.92e-5, 1.92e-5), rel=0.01)
+    assert found.standard_deviation.difference.error == pytest.approx(4.9e-6**0.5, rel=0.01)
+    assert found.kolmogorov.interval == pytest.approx((0.0, 1.92e-5), rel=0.01)
+
+
+def test_where_the_runs_accept_other_trials_a_share_is_not_known_exactly_either():
+    first = Accepted(np.arange(1_000), np.zeros(1_000))
+    second = Accepted(np.arange(1, 1_001), np.zeros(1_000))
+    found = difference(first, second, 0.51, 0.5)
+    assert found.mean.difference.interval == pytest.approx((-0.0038, 0.0038), rel=0.01)
+
+
+def test_equal_numbers_in_every_trial_are_on_the_same_side_of_a_threshold():
+    values = np.random.default_rng(3).normal(size=500)
+    found = difference(run_of(values), run_of(values.copy()), 0.51, 5.0)
+    assert found.above.difference.error == 0.0
+    moved = difference(run_of(values), run_of(values + 0.001), 0.51, 5.0)
+    assert moved.above.difference.error > 0.0

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from xlmc.analysis.studies.methods import recommendation, study
 from xlmc.analysis.studies.methods.need import choice
 from xlmc.excel.workbook.writer import package_bytes
 from xlmc.outputs.methods.matplotlib_figure import STYLES, draw
@@ -53,6 +54,30 @@ def test_the_words_alone_answer(picture, timed):
     assert any(each.startswith("Recommended: Monte Carlo, ") for each in said)
     assert any(each.startswith("Monte Carlo: 1 % in ") and ", 0.1 % in " in each for each in said)
     assert picture.absent[0].startswith("Monte Carlo, engine formulas is not drawn: 1 % in ")
+
+
+@pytest.fixture
+def straight(sum_of_normals):
+    """Of a book without filters, whose forecast is a sum of normals: Taylor's first order is exact."""
+    return study(sum_of_normals, reference_trials=1 << 18, trials=1 << 10, replicates=2, patience=0.1)
+
+
+def test_without_filters_one_panel_alone_says_that_every_trial_is_accepted(straight):
+    said = {axis.get_title(loc="left"): [text.get_text() for text in axis.texts] for axis in draw(straight).axes[1:]}
+    assert {title for title, texts in said.items() if "every trial is accepted" in texts} == {"Accepted share, % of it"}
+
+
+def test_a_method_that_states_no_error_is_never_the_cheapest(straight, timed):
+    """Exact or biased: only the reference tells, which costs more than any method."""
+    asked = picture_of(straight, "seconds").marks[0]
+    cheapest = choice(straight).cheapest[0].method.name
+    assert asked.words[1].startswith(f"{cheapest}, ")
+    assert not any("Taylor" in words for words in asked.words if "reference" not in words)
+    assert "near enough, as the reference shows: Taylor, first order" in asked.words
+    assert any(
+        "Taylor, first order" in said and "only the reference shows" in said for said in recommendation(straight)
+    )
+    assert not any("Taylor" in words for mark in picture_of(timed, "seconds").marks for words in mark.words)
 
 
 def test_an_accuracy_in_units_is_drawn_as_a_multiple_of_it(timed):

@@ -139,6 +139,91 @@ def test_times_never_fall_as_runs_grow(small):
     assert times == sorted(times)
 
 
+def test_beyond_the_longest_run_a_trial_costs_what_it_cost_there(small):
+    """Half a second for 10,000 trials: 5·10⁹ take 250,000 s, however little the longest run took more than another."""
+    first = small.curves[0].lengths[0]
+    lengths = tuple(replace(first, budget=n, seconds=s) for n, s in ((1_000, 0.45), (2_000, 0.49), (10_000, 0.5)))
+    assert seconds_of(replace(small.curves[0], lengths=lengths), 5e9) == pytest.approx(250_000.0)
+
+
+def priced(found, seconds):
+    """The study with runs that take so many seconds for the accuracy asked for, by method; the others take an hour."""
+
+    def clocked(curve):
+        each = seconds.get(curve.method.key, 3_600.0) / need(found, curve).trials
+        return replace(curve, lengths=tuple(replace(runs, seconds=each * runs.budget) for runs in curve.lengths))
+
+    return replace(found, curves=tuple(map(clocked, found.curves)), engines=tuple(map(clocked, found.engines)))
+
+
+RULE = [
+    ({"mc": 0.2, "lhs": 0.15}, "mc"),
+    ({"mc": 0.2, "lhs": 0.11}, "mc"),  # a tenth of a second does not matter
+    ({"mc": 2.0, "lhs": 1.4}, "mc"),
+    ({"mc": 2.0, "lhs": 1.3}, "lhs"),
+    ({"mc": 4.9, "mc/jit": 1.0}, "mc/jit"),
+    ({"mc": 0.9, "mc/jit": 0.2}, "mc"),  # to compile takes half a second
+    ({"mc": 1.2, "mc/jit": 0.2}, "mc/jit"),
+    ({"mc": 2.0, "lhs": 0.6, "mc/jit": 0.2}, "lhs"),
+    ({"mc": 2.0, "lhs": 1.0, "mc/jit": 0.2}, "mc/jit"),
+]
+
+
+@pytest.mark.parametrize(("seconds", "chosen"), RULE, ids=lambda each: str(each).strip("{}").replace("'", ""))
+def test_what_is_recommended_costs_at_most_one_and_a_half_times_the_cheapest(small, seconds, chosen):
+    found = choice(priced(small, seconds))
+    assert found.chosen.method.key == chosen
+    costs = {key: each + 0.5 * ("/" in key) for key, each in seconds.items()}
+    assert costs[chosen] <= max(1.5 * min(costs.values()), min(costs.values()) + 0.1)
+
+
+def test_an_engine_that_is_cheaper_by_the_clock_only_has_its_price_said(small):
+    (verdict, *_) = recommendation(priced(small, {"mc": 0.9, "mc/jit": 0.2}))
+    assert verdict.startswith("Recommended: Monte Carlo, about ")
+    assert "Monte Carlo, engine jit is cheapest, 0.2 s" in verdict
+    assert "it saves 0.7 s of the run, and takes about 0.5 s to compile." in verdict
+
+
+@pytest.mark.parametrize(
+    ("beyond", "error", "said"), [(3.0, 0.3, True), (3.0, 0.01, False), (0.5, 0.3, False), (1e4, 0.6, True)]
+)
+def test_a_number_of_trials_that_no_run_had_is_given_with_its_error(small, monkeypatch, beyond, error, said):
+    usual = choice(small)
+    wanted = replace(usual.needs[usual.chosen], beyond=beyond, error=error)
+    other = replace(usual, needs={**usual.needs, usual.chosen: wanted})
+    monkeypatch.setattr(import_module("xlmc.analysis.studies.methods.recommendation"), "choice", lambda _: other)
+    (verdict, *_) = recommendation(small)
+    factor = f"The number of trials is computed, and known to a factor of {np.exp(2 * error):.2g}."
+    assert (factor in verdict) == said
+    assert ("as many trials as the longest measured runs had" in verdict) == (beyond == 1e4)
+
+
+def with_reach(found, reach):
+    """A Latin hypercube whose runs of 128, 512 … trials keep within so many tolerances, and what it then needs."""
+    curve = curve_of(found, "lhs")
+    kind = ("Nissan impact speed", "mean")
+
+    def runs_of(place, times):
+        value = times * found.tolerance(kind[0]) / 1.959964
+        return replace(
+            curve.lengths[-1], budget=128 * 4**place, settled=True, errors={kind: Rms(value, value / 4, 0.0, value, 8)}
+        )
+
+    lengths = tuple(runs_of(place, times) for place, times in enumerate(reach))
+    return law(found, replace(curve, lengths=lengths), kind).trials(found.tolerance(kind[0]))
+
+
+def test_runs_beside_a_jump_give_the_need_between_those_that_miss_and_those_that_keep(small):
+    """As a percentile beside a gap: off by tens of tolerances up to 8,192 trials, by less than one from 32,768 on."""
+    assert 8_192 < with_reach(small, (55.0, 69.0, 52.0, 48.0, 0.96, 0.69)) < 32_768
+    assert with_reach(small, (60.0, 60.0, 60.0, 60.0, 60.0, 4.0)) == pytest.approx(16 * 131_072)
+    assert with_reach(small, (0.9, 0.01, 0.9, 0.01, 0.9, 0.01)) == pytest.approx(128)
+    line = [16.0 * 2.0**-place for place in range(6)]
+    assert with_reach(small, line) == pytest.approx(128 * 16**2, rel=1e-6)
+    bent = [times * (1.2, 0.85)[place % 2] for place, times in enumerate(line)]
+    assert with_reach(small, bent) == pytest.approx(128 * 16**2, rel=0.15)
+
+
 def test_methods_within_a_fifth_or_a_tenth_of_a_second_tie(timed):
     found = choice(timed)
     least = min(each.seconds for each in found.needs.values() if each.usable)

@@ -27,7 +27,6 @@ from xlmc.analysis.studies.comparison.tolerances import (
 )
 from xlmc.analysis.studies.comparison.variations import with_plain_sampling
 from xlmc.errors import SimulationError
-from xlmc.montecarlo import statistics
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.model import Model
@@ -234,8 +233,7 @@ class _Search:
         self._causes = causes
 
     def compare_pair(self, mine: Forecast, theirs: Forecast, factor: float, stated: Tolerances) -> ForecastComparison:
-        deviation = statistics.standard_deviation(_accepted_trials(self._books[0], mine, 1.0).sample).value
-        tolerance, was_stated = stated.of(mine, deviation)
+        tolerance, was_stated = stated.of(mine, _accepted_trials(self._books[0], mine, 1.0).scale)
         found = self._difference((), mine, theirs, factor)
         limits = found.tolerances(tolerance, self._chance)
         judgement = judge({name: (change.difference, limits[name]) for name, change in found.changes})

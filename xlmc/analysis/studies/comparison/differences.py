@@ -15,7 +15,7 @@ Barrio, Giné & Matrán 1999).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +33,7 @@ from xlmc.analysis.studies.comparison.tolerances import chance_tolerance
 from xlmc.montecarlo.simulation.simulation import Simulation
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import with_error
+from xlmc.montecarlo.statistics.proportions import least_error
 
 __all__ = ["Acceptance", "Change", "Difference", "acceptance", "difference"]
 
@@ -155,19 +156,46 @@ def difference(first: Accepted, second: Accepted, share: float, threshold: float
     def change(mine: Statistic, theirs: Statistic) -> Change:
         return Change(mine.estimate, theirs.estimate, pair.difference(mine, theirs))
 
+    mean = change(mean_of(first), mean_of(second))
+    deviation = change(standard_deviation_of(first), standard_deviation_of(second))
+    yes_no = first.sample.yes_no and second.sample.yes_no
     return Difference(
-        mean=change(mean_of(first), mean_of(second)),
-        standard_deviation=change(standard_deviation_of(first), standard_deviation_of(second)),
+        mean=mean,
+        standard_deviation=replace(deviation, difference=_of_deviations(deviation)) if yes_no else deviation,
         low=change(quantile_of(first, tail), quantile_of(second, tail)),
         high=change(quantile_of(first, 1.0 - tail), quantile_of(second, 1.0 - tail)),
         share=share,
-        kolmogorov=_kolmogorov(pair),
-        wasserstein=_wasserstein(pair),
+        kolmogorov=_distance_of_shares(mean.difference) if yes_no else _kolmogorov(pair),
+        wasserstein=_distance_of_shares(mean.difference) if yes_no else _wasserstein(pair),
         largest=float(np.abs(pair.apart).max()) if pair.apart.size else float("nan"),
         typical=float(np.sqrt(np.mean(pair.apart**2))) if pair.apart.size else float("nan"),
         threshold=threshold,
         above=None if threshold is None else change(share_above(first, threshold), share_above(second, threshold)),
     )
+
+
+def _of_deviations(change: Change) -> Estimate:
+    """The difference of the standard deviations of yes/no forecasts, known no better than either is after one more yes.
+
+    The deviation of shares p is √(p(1 − p)); a share is never known better than `least_error`.
+    """
+    found = change.difference
+    if found.error is None:
+        return found
+    variance = min(change.first.value, change.second.value) ** 2
+    share = 0.5 - max(0.25 - variance, 0.0) ** 0.5
+    moved = min(share + least_error(found.n), 0.5)
+    least = (moved * (1.0 - moved)) ** 0.5 - (share * (1.0 - share)) ** 0.5
+    return with_error(found.value, max(found.error, least), found.n - 1.0, 0.95, found.n)
+
+
+def _distance_of_shares(apart: Estimate) -> Estimate:
+    """Both distances of two yes/no forecasts: the shares of yes differ by so much, in either direction."""
+    if apart.interval is None:
+        return replace(apart, value=abs(apart.value))
+    low, high = sorted(abs(end) for end in apart.interval)
+    crosses = apart.interval[0] < 0.0 < apart.interval[1]
+    return replace(apart, value=abs(apart.value), interval=(0.0 if crosses else low, high))
 
 
 def _kolmogorov(pair: Pair) -> Estimate:

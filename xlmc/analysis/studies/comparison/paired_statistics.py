@@ -4,11 +4,16 @@ A statistic's error is the root of the sum of its squared influences, one an ind
 infinitesimal jackknife). Where two runs share their trials, a trial that both accept pulls both, and the error of
 the difference is the root of the sum of squares of the differences of these pulls: what the runs have in common then
 cancels, however many trials only one of the runs accepts.
+
+A share is the exception, and so is the mean of a forecast that is 0 or 1 in every trial: that no trial changed sides
+does not prove that none can. Of n trials that both runs accept, those that change to one side and those that change to
+the other are two counts; each has the interval of `proportions`, and the interval of their difference lies as far from
+it as the ends of both together (Newcombe 1998, method 10, for shares of the same trials).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -17,6 +22,7 @@ from numpy.typing import NDArray
 from xlmc.montecarlo import statistics
 from xlmc.montecarlo.statistics import Estimate, Sample
 from xlmc.montecarlo.statistics.estimate import with_error
+from xlmc.montecarlo.statistics.proportions import least_error
 
 __all__ = [
     "Accepted",
@@ -31,6 +37,7 @@ __all__ = [
 ]
 
 Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 Indices = NDArray[np.intp]
 
 
@@ -61,6 +68,12 @@ class Accepted:
     def m(self) -> int:
         return int(self.values.size)
 
+    @property
+    def scale(self) -> float:
+        """The standard deviation; of yes in all trials, or of no, the largest that yes and no can have."""
+        found = statistics.standard_deviation(self.sample).value
+        return 0.5 if found == 0.0 and self.sample.yes_no else found
+
 
 @dataclass(frozen=True)
 class Influence:
@@ -77,10 +90,17 @@ class Influence:
 
 @dataclass(frozen=True)
 class Statistic:
-    """A statistic of one run: its estimate and the influence of the trials; None where they are too few for one."""
+    """A statistic of one run.
+
+    Attributes:
+        estimate: of it.
+        influence: of the trials; None where they are too few for one.
+        hits: `(m,)` the trials that it is the share of; None where it is no share.
+    """
 
     estimate: Estimate
     influence: Influence | None
+    hits: Bools | None = None
 
 
 def mean_of(run: Accepted) -> Statistic:
@@ -88,7 +108,8 @@ def mean_of(run: Accepted) -> Statistic:
     found = statistics.mean(run.sample)
     if found.error is None:
         return Statistic(found, None)
-    return Statistic(found, Influence((run.values - found.value) / run.m))
+    pulls = (run.values - found.value) / run.m
+    return Statistic(found, Influence(pulls), run.values > 0.5 if run.sample.yes_no else None)
 
 
 def standard_deviation_of(run: Accepted) -> Statistic:
@@ -108,7 +129,7 @@ def share_above(run: Accepted, threshold: float) -> Statistic:
     if run.m < 2:
         return Statistic(Estimate(float(above.mean()) if run.m else np.nan), None)
     found = statistics.proportion(int(above.sum()), run.m)
-    return Statistic(found, Influence((above - float(above.mean())) / run.m))
+    return Statistic(found, Influence((above - float(above.mean())) / run.m), above)
 
 
 def quantile_of(run: Accepted, p: float) -> Statistic:
@@ -178,7 +199,32 @@ class Pair:
         if step and self.apart.size:
             error = max(error, min(step, float(self.apart.std())))
         units = min(n, self._replicates) if self._size else n
-        return with_error(value, error, units - 1.0, 0.95, n)
+        found = with_error(value, error, units - 1.0, 0.95, n)
+        if first.hits is None or second.hits is None or self._same_number:
+            return found
+        return self._of_shares(found, first.hits, second.hits)
+
+    @property
+    def _same_number(self) -> bool:
+        """Whether both runs accept the same trials and give the same number in each, which is not only yes or no."""
+        one_sided = any(rows.size for rows in self.only)
+        return not (one_sided or np.any(self.apart) or self.first.sample.yes_no)
+
+    def _of_shares(self, found: Estimate, first: Bools, second: Bools) -> Estimate:
+        """The difference of two shares, never 0 ± 0; its interval is that of two counts where nothing else differs."""
+        if found.error is None or found.interval is None:
+            return found
+        (mine, theirs), n = self.both, found.n
+        if self._size or any(rows.size for rows in self.only):
+            most = statistics.proportion(0, n).interval
+            assert most is not None
+            return replace(
+                found,
+                error=max(found.error, least_error(n)),
+                interval=(min(found.interval[0], found.value - most[1]), max(found.interval[1], found.value + most[1])),
+            )
+        went, came = int(np.sum(first[mine] & ~second[theirs])), int(np.sum(second[theirs] & ~first[mine]))
+        return replace(found, error=max(found.error, least_error(n)), interval=_interval_of_counts(went, came, n))
 
     def error(self, first: Floats, second: Floats) -> float:
         """The standard error of a difference, from the pulls `(m,)` on either side."""
@@ -193,6 +239,21 @@ class Pair:
     def _by_replicate(self, trials: NDArray[np.int64], pulls: Floats) -> Floats:
         """`(replicates,)` the sums of the pulls."""
         return np.asarray(np.bincount(trials // self._size, pulls, self._replicates), np.float64)
+
+
+def _interval_of_counts(went: int, came: int, n: int) -> tuple[float, float]:
+    """Of (came − went)/n.
+
+    >>> low, high = _interval_of_counts(0, 0, 1_000)
+    >>> round(low, 5), round(high, 5)
+    (-0.00383, 0.00383)
+    """
+    away, here = statistics.proportion(went, n), statistics.proportion(came, n)
+    assert away.interval is not None
+    assert here.interval is not None
+    value = here.value - away.value
+    low = value - float(np.hypot(here.value - here.interval[0], away.interval[1] - away.value))
+    return low, value + float(np.hypot(here.interval[1] - here.value, away.value - away.interval[0]))
 
 
 def _others(rows: Indices, m: int) -> Indices:

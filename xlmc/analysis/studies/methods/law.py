@@ -6,6 +6,8 @@ The error of `n` trials is c·n^s, and 95 of 100 runs lie within hypot(1.96·c·
   percentiles, c is that of the tolerance: what the reference's distribution within it says (`quantile_need`).
 - Latin hypercubes and scrambled nets: they converge too, in the long run at least as fast (Owen 1997, 1998). s is −1/2
   unless the runs fall faster by more than chance; c is that of the runs. The same for weighted trials, with s = −1/2.
+  Where the runs lie on no such line, as those of a percentile beside a gap, the law meets what the runs next to the
+  tolerance show.
 - Trials on a substitute for the workbook: as independent trials, down to a floor that more of them do not lower. The
   floor is bounded from both sides by the runs, for the number of comparisons that are made.
 """
@@ -86,17 +88,17 @@ def _comparisons(study: Study) -> int:
 
 def law(study: Study, curve: Curve, kind: Kind) -> Law:
     """The law of one number of a method that draws."""
-    theory = study.reference.theory(*kind, 1)
+    theory, tolerance = study.reference.theory(*kind, 1), study.tolerance(kind[0])
     lengths = curve.settled
     match curve.method.errors:
         case "independent":
-            return _law_of_quantile(study, lengths, kind) or _law_of_independent(lengths, kind, theory)
+            return _law_of_quantile(study, lengths, kind) or _law_of_independent(lengths, kind, theory, tolerance)
         case "floor":
             return _law_with_floor(study, lengths, kind, theory)
         case "weighted":
-            return _fit_law(lengths[-_WINDOW:], kind, may_be_steeper=False)
+            return _fit_law(lengths[-_WINDOW:], kind, tolerance, may_be_steeper=False)
         case _:
-            return _fit_law(lengths, kind, may_be_steeper=True)
+            return _fit_law(lengths, kind, tolerance, may_be_steeper=True)
 
 
 def _law_of_quantile(study: Study, lengths: Sequence[Runs], kind: Kind) -> Law | None:
@@ -108,16 +110,20 @@ def _law_of_quantile(study: Study, lengths: Sequence[Runs], kind: Kind) -> Law |
     found = study.reference.quantile_need(forecast, kind[1], tolerance)
     if found is None:
         return None
-    trials = found.trials / study.reference.acceptance.value
-    return Law(tolerance / NORMAL_95 * trials**0.5, _HALF, lengths[0].budget, error=found.error)
+    return _law_that_meets(found.trials / study.reference.acceptance.value, tolerance, lengths[0].budget, found.error)
 
 
-def _law_of_independent(lengths: Sequence[Runs], kind: Kind, theory: float) -> Law:
+def _law_that_meets(trials: float, tolerance: float, least: float, error: float) -> Law:
+    """The law by which so many trials keep the tolerance."""
+    return Law(tolerance / NORMAL_95 * trials**0.5, _HALF, least, error=error)
+
+
+def _law_of_independent(lengths: Sequence[Runs], kind: Kind, theory: float, tolerance: float) -> Law:
     """The law of theory, unless the runs contradict it: a quantile may lie where there is hardly any density."""
     from scipy.special import chdtr, chdtrc
 
     if not theory > 0.0:
-        return _fit_law(lengths, kind, may_be_steeper=False)
+        return _fit_law(lengths, kind, tolerance, may_be_steeper=False)
     ratios = [(each.n - 1, each.spread * runs.budget**0.5 / theory) for runs, each in _known_errors(lengths, kind)]
     free = sum(n for n, _ in ratios)
     squares = sum(n * ratio**2 for n, ratio in ratios)
@@ -127,7 +133,9 @@ def _law_of_independent(lengths: Sequence[Runs], kind: Kind, theory: float) -> L
     return Law(constant, _HALF, lengths[0].budget)
 
 
-def _fit_law(lengths: Sequence[Runs], kind: Kind, *, may_be_steeper: bool) -> Law:
+def _fit_law(lengths: Sequence[Runs], kind: Kind, tolerance: float, *, may_be_steeper: bool) -> Law:
+    from scipy.special import chdtrc
+
     exact = _exact_from(lengths, kind)
     if exact is not None:
         return Law(0.0, _HALF, exact)
@@ -140,7 +148,23 @@ def _fit_law(lengths: Sequence[Runs], kind: Kind, *, may_be_steeper: bool) -> La
     weights = np.array([2.0 * (each.n - 1) for _, each in known])
     slope = _slope(budgets, values, weights) if may_be_steeper else _HALF
     height = float(np.average(np.log(values) - slope * np.log(budgets), weights=weights))
+    off = np.log(values) - (height + slope * np.log(budgets))
+    if tolerance > 0.0 and len(known) > 2 and chdtrc(len(known) - 2, float(np.sum(weights * off**2))) < _HARDLY:
+        trials = _trials_between(budgets, NORMAL_95 * values / tolerance)
+        return _law_that_meets(trials, tolerance, least, float(weights[-1]) ** -0.5 / -_HALF)
     return Law(float(np.exp(height)), slope, least, error=float(np.sum(weights)) ** -0.5 / abs(slope))
+
+
+def _trials_between(budgets: Floats, reach: Floats) -> float:
+    """Where what runs keep within, in tolerances, is one from then on: between two lengths, or beyond the longest."""
+    beyond = np.flatnonzero(reach > 1.0)
+    if not beyond.size:
+        return float(budgets[0])
+    last = beyond[-1]
+    if last == len(budgets) - 1:
+        return float(budgets[-1] * reach[-1] ** (-1.0 / _HALF))
+    share = np.log(reach[last]) / np.log(reach[last] / reach[last + 1])
+    return float(budgets[last] * (budgets[last + 1] / budgets[last]) ** share)
 
 
 def _slope(budgets: Floats, values: Floats, weights: Floats) -> float:

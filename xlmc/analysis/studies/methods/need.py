@@ -18,6 +18,7 @@ from xlmc.analysis.studies.methods.sampled import MONTE_CARLO
 from xlmc.analysis.studies.methods.study import Study
 
 __all__ = [
+    "ENGINE_READY",
     "NO_TIME",
     "Choice",
     "Need",
@@ -44,11 +45,8 @@ NO_TIME: Final = 0.1
 _NO_MATTER: Final = 1.5
 """A method must be faster by this factor to be chosen instead of Monte Carlo."""
 
-_ENGINE_MATTERS: Final = 2.0
-"""The same for another engine, whose trials are the same."""
-
-_SOON: Final = 5.0
-"""A run that takes no longer is computed by the usual engine."""
+ENGINE_READY: Final = 0.5
+"""Seconds that another engine takes to compile a workbook of usual size, or less where it has kept the code."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,18 +213,17 @@ def choice(study: Study, accuracy: tuple[str, float, bool] | None = None) -> Cho
     """Choose for the accuracy of a study, or for another one.
 
     Monte Carlo, whose trials are independent and whose errors come out of the run itself, unless that takes more than
-    one and a half times what another method takes, and a tenth of a second more; or five seconds, and twice what
-    another engine takes.
+    one and a half times what another method takes, and a tenth of a second more. Another engine's seconds count with
+    those that it takes to get ready.
     """
     asked = study if accuracy is None else replace(study, accuracy=accuracy)
     needs = {curve: need(asked, curve) for curve in (*study.curves, *study.engines)}
     usable = sorted((curve for curve, found in needs.items() if found.usable), key=lambda curve: needs[curve].seconds)
     if not usable:
         return Choice(None, needs, ())
-    least = needs[usable[0]].seconds
     cheapest = tied({curve: needs[curve].seconds for curve in usable})
     plain = next((curve for curve in usable if curve.method.key == MONTE_CARLO.key), usable[0])
-    others = min((needs[curve].seconds for curve in usable if curve in asked.curves), default=least)
-    slow = needs[plain].seconds > max(_NO_MATTER * others, others + NO_TIME)
-    slow |= needs[plain].seconds > max(_SOON, _ENGINE_MATTERS * least)
-    return Choice(usable[0] if slow else plain, needs, cheapest)
+    costs = {curve: needs[curve].seconds + ENGINE_READY * (curve in asked.engines) for curve in usable}
+    best = min(usable, key=lambda curve: costs[curve])
+    slow = costs[plain] > max(_NO_MATTER * costs[best], costs[best] + NO_TIME)
+    return Choice(best if slow else plain, needs, cheapest)

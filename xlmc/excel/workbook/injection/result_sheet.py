@@ -50,6 +50,8 @@ _FORMULA = re.compile(
 )
 _LOCATION = re.compile(rb'(<(?:hyperlink|xdr:sp)\b[^>]*? (?:location|textlink)=")([^"]*)')
 
+_AT_ONCE: Final = 1 << 19
+
 
 @dataclass(frozen=True, slots=True)
 class Renames:
@@ -108,7 +110,7 @@ def rename_in_xml(xml: bytes, renames: Renames) -> bytes:
 
 def _cells(body: bytes, strings: Sequence[bytes], cells: Sequence[int]) -> bytes:
     if not cells[0] and b"<f" not in body and b"<is" not in body and _STYLED_ROW.search(body) is None:
-        return _plain_cells(body, strings, cells)
+        return b"".join(_plain_cells(rows, strings, cells) for rows in _in_parts(body))
     # A cell without a style has the built workbook's first one, which need not be the user's first.
     style = [b' s="%d"' % number if number else b"" for number in cells]
 
@@ -118,6 +120,16 @@ def _cells(body: bytes, strings: Sequence[bytes], cells: Sequence[int]) -> bytes
         return start if shared is None else b'%b t="inlineStr"><is>%b</is>' % (start, strings[int(index)])
 
     return _CELL.sub(new, body)
+
+
+def _in_parts(body: bytes) -> Iterator[bytes]:
+    """The rows in parts of about `_AT_ONCE` bytes: the pieces of cells take many times the memory of the text."""
+    start = 0
+    while start < len(body):
+        end = body.find(b"</row>", start + _AT_ONCE)
+        stop = len(body) if end < 0 else end + len(b"</row>")
+        yield body[start:stop]
+        start = stop
 
 
 def _plain_cells(body: bytes, strings: Sequence[bytes], cells: Sequence[int]) -> bytes:

@@ -81,7 +81,7 @@ MISSING = {
     "RiskTheoMean(A1,1)": "RiskTheoMean has 2 arguments",
     "RiskTheoXtoP(RiskCompound(RiskPoisson(5),RiskExpon(2)),5)": "RiskTheoXtoP of RiskCompound has no formula",
     "RiskSensitivity(A3,1)": "RiskSensitivity is not computed by xlmc",
-    "RiskMean(A3,2)": "RiskMean asks for another simulation than the first",
+    "RiskMean(A3,2)": "RiskMean asks for simulation 2, and RiskSimtable has no values",
     "RiskMean(A3,RiskShift(2))": "RiskMean has a property that it cannot have",
     "RiskCIMean(A3,0.95,RiskTruncate(1,2))": "RiskCIMean of a part of the values is not computed",
 }

@@ -20,6 +20,7 @@ from xlmc.excel.workbook.package import read_parts
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.writer import package_bytes
 from xlmc.montecarlo.diagnostics.result_cells import filled_sheets
+from xlmc.outputs.conversion.convert import convert
 
 FORMULAS = {
     "A1": ("=_xll.RiskNormal(5,1)", 5.25),
@@ -187,11 +188,115 @@ def test_results_of_an_assumption_are_those_of_its_accepted_draws(tmp_path):
     assert values["B3"] == 500
 
 
-def test_a_name_that_only_an_assumption_has_shows_nothing_and_is_named(tmp_path):
-    cells = {"A1": ('=RiskNormal(5,1,RiskName("Speed"))', 5), "B1": ('=RiskMean("Speed")', STALE)}
-    run = xlmc.load(build(tmp_path / "book.xlsx", {**INPUTS, **cells})).simulate(trials=500)
-    assert shown(run, tmp_path / "out.xlsx")["B1"] == "#N/A"
+OF_INPUTS = {
+    "A1": ('=10+RiskNormal(5,1,RiskName("Speed"))', 15),
+    "A2": ('=RiskUniform(0,1,RiskShift(5),RiskName("Share"))*A1+RiskOutput("y")', 80),
+    "B1": ('=RiskMean("speed")', 77),
+    "B2": ('=RiskPercentile("Share",0.9)', 77),
+    "B3": ('=RiskCorrel("Speed","y",1)', 77),
+    "B4": ('=RiskMean("nobody")', 77),
+}
+
+
+def test_results_of_an_input_by_its_name_are_those_of_its_draws(tmp_path):
+    """As drawn, shifted where the call says so, and without the rest of the formula."""
+    run = xlmc.load(build(tmp_path / "book.xlsx", OF_INPUTS)).simulate(trials=500)
+    found = {cell.a1: value for cell, value in run.shown_results.cells.items()}
+    speed, share = run.inputs["Speed"], run.inputs["Share"] + 5
+    assert found["B1"] == pytest.approx(speed.mean(), rel=1e-12)
+    assert found["B2"] == pytest.approx(np.percentile(share, 90), rel=1e-12)
+    assert found["B3"] == pytest.approx(np.corrcoef(speed, run.forecasts["y"])[0, 1], rel=1e-12)
+    assert found["B4"] == ErrorCode.NA
     assert "no forecast is called so: nothing is shown" in " ".join(str(notice) for notice in run.notices)
+
+
+def test_results_of_an_input_by_its_name_are_the_same_after_conversion(tmp_path):
+    model = xlmc.load(build(tmp_path / "book.xlsx", OF_INPUTS))
+    convert(model, tmp_path / "converted.xlsx")
+    runs = [each.simulate(trials=500) for each in (model, xlmc.load(tmp_path / "converted.xlsx"))]
+    one, other = ({c.a1: v for c, v in run.shown_results.cells.items() if c.sheet == "S"} for run in runs)
+    assert one == other
+
+
+ASKED_BY = {
+    "C1": ("=RiskMean(A2)", -50),
+    "C2": ("=RiskTarget(A2,C1)", 0.9),
+    "C3": ("=RiskTarget(A2,C1*2-MAX(C1,0))", 0.9),
+    "C4": ("=RiskPercentile(A2,C5)", 0.9),
+    "C5": ("=1-C2", 0),
+    "C6": ("=RiskTarget(A2,RiskMean(A2))", 0.9),
+    "C7": ("=RiskMean(A2,RiskTruncate(C1,))", 0.9),
+    "C8": ("=LET(p,0.9,RiskPercentile(A2,p))", 0.9),
+    "C9": ("=RiskPercentile(A2,RiskTheoXtoP(A1,5))", 0.9),
+    "C10": ("=RiskPercentile(A2,SUM($D$2:$D$3))", 0.9),
+    "D2": ("=D3*2", 0.6),
+    "D3": ("=RiskTheoXtoP(A1,4.4755995)", 0),
+    "E1": ("=RiskTarget(A2,E1)", 0.9),
+    "E2": ("=RiskTarget(A2,E3)", 0.9),
+    "E3": ("=E2+1", 0.9),
+    "E4": ("=RiskTarget(A2,RiskCpk(A2,1))", 0.9),
+    "E5": ("=RiskTarget(A2,E4)", 0.9),
+}
+
+
+@pytest.mark.parametrize("saved", [True, False], ids=["calculated", "never calculated"])
+def test_what_a_result_is_asked_by_is_computed_too(tmp_path, saved):
+    """A number that depends on results is that of this run, and not what Excel saved in another one."""
+    cells = {**MODEL, **ASKED_BY}
+    path = tmp_path / "book.xlsx"
+    if saved:
+        build(path, cells)
+    else:
+        book = openpyxl.Workbook()
+        book.active.title = "S"
+        book.create_sheet("Other")
+        for address, (formula, _) in cells.items():
+            book.active[address] = formula
+        book.save(path)
+    run = xlmc.load(path).simulate(trials=2000)
+    found = {cell.a1: value for cell, value in run.shown_results.cells.items()}
+    y = run["S!A2"]
+    mean, below = y.mean.value, float(np.mean(y.values <= y.values.mean()))
+    assert [found[each] for each in ("C1", "C2", "C3", "C6")] == pytest.approx([mean, below, below, below])
+    assert found["C4"] == pytest.approx(y.percentile(100 * (1 - below)).value)
+    assert found["C7"] == pytest.approx(y.values[y.values >= mean].mean())
+    assert found["C8"] == pytest.approx(y.percentile(90).value)
+    assert found["C9"] == pytest.approx(y.percentile(50).value)
+    assert found["C10"] == pytest.approx(y.percentile(90).value, rel=1e-4)
+    assert [found[each] for each in ("E1", "E2", "E3", "E4", "E5")] == [ErrorCode.NA] * 5
+    warning = run.shown_results.warning
+    assert "S!E1, S!E2 (asks for a result by a number that depends on itself)" in warning.replace("E1:E2", "E1, S!E2")
+
+
+SIMULATIONS = {
+    "A1": ("=RiskSimtable({10,20,30})+RiskNormal(0,1)", 10),
+    "A2": ("=A1*2+RiskOutput()", 20),
+    "B1": ("=RiskMean($A$2,C1)", 77),
+    "B2": ("=RiskMean($A$2,C2)", 77),
+    "B3": ("=RiskMean($A$2,C3)-B1", 77),
+    "B4": ("=RiskTarget(A2,RiskMean(A2,2),2)", 77),
+    "B5": ("=RiskMean(A2,4)", 77),
+    "C1": ("=1", 1),
+    "C2": ("=C1+1", 2),
+    "C3": ("=C2+1", 3),
+}
+
+
+def test_results_of_further_simulations_are_those_of_the_scenarios(tmp_path):
+    """Over the same random numbers, so that they differ by exactly twice what the table adds."""
+    model = xlmc.load(build(tmp_path / "book.xlsx", SIMULATIONS))
+    plain = model.simulate(trials=500)
+    found = shown(plain, tmp_path / "out.xlsx")
+    assert [found[each] for each in ("B2", "B3", "B4", "B5")] == ["#N/A"] * 4
+    assert "asks for simulation 2, and only simulate --scenarios runs further ones" in plain.shown_results.warning
+    assert "RiskMean asks for simulation 4, and RiskSimtable has 3 values" in plain.shown_results.warning
+    run = model.simulate(trials=500, scenarios=True)
+    assert len(run.scenarios) == 3
+    found = shown(run, tmp_path / "out.xlsx")
+    mean, below = run["S!A2"].mean.value, float(np.mean(run["S!A2"].values <= run["S!A2"].mean.value))
+    assert [found[f"B{row}"] for row in (1, 2, 3, 4)] == pytest.approx([mean, mean + 20, 40, below])
+    assert found["B5"] == "#N/A"
+    assert [each.warnings for each in run.scenarios[1:]] == [[], []]
 
 
 RELATIVE = {
@@ -274,7 +379,7 @@ NOT_COMPUTED = {
     "IFERROR(RiskCpk(A2,0.95),1)": "RiskCpk is not computed by xlmc",
     "RiskMean(A2)+RiskCpk(A2,0.95)": "RiskCpk is not computed by xlmc",
     "RiskMean(A2)+RAND()": "the formula both draws and shows results of the run",
-    "RiskMean(A2,2)": "RiskMean asks for another simulation than the first",
+    "RiskMean(A2,2)": "RiskMean asks for simulation 2, and RiskSimtable has no values",
     "RiskData(A2,1,RiskTruncate(1,2))": "RiskData of a part of the values is not computed",
     "CB.GetForeStatFN(A2,2,3)": "CB.GetForeStatFN has 1 arguments too many",
     "RiskMean(A1:A2)": "RiskMean must name the cell of an output first",

@@ -28,7 +28,7 @@ from xlmc.analysis.studies.comparison.paired_statistics import (
 )
 from xlmc.errors import DefinitionError, SimulationError, XlmcError
 from xlmc.montecarlo.definitions.definitions import Forecast
-from xlmc.montecarlo.definitions.scenarios import Scenario
+from xlmc.montecarlo.definitions.scenarios import Scenario, Tabulated
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.applied_changes import applied
 from xlmc.montecarlo.model.model import Model
@@ -92,7 +92,7 @@ class ScenarioAnswers:
     @property
     def warnings(self) -> list[str]:
         """Why its answers must not be used as they are."""
-        return self.run.warnings
+        return self.run.warnings_of_trials if self.scenario else self.run.warnings
 
 
 _FOUND: Final[WeakKeyDictionary[Simulation, tuple[ScenarioAnswers, ...]]] = WeakKeyDictionary()
@@ -119,6 +119,15 @@ def scenario_answers(
         return ()
     if run not in _FOUND:
         _FOUND[run] = tuple(_answers(run, jobs, told))
+        run.take_tabulated(
+            {
+                change.number: each.run
+                for each in _FOUND[run]
+                if each.scenario is not None
+                for change in each.scenario.changes
+                if isinstance(change, Tabulated) and len(each.scenario.changes) == 1
+            }
+        )
     return _FOUND[run]
 
 

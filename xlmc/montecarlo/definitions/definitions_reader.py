@@ -91,7 +91,8 @@ def read_definitions(workbook: Workbook, engines: Collection[str], tabulated: in
     correlations = *correlations, *_take_pairs(correlations, dialogs.correlations, findings)
     more = in_cell_correlations(workbook, calls.assumptions, calls.draws, correlations, findings)
     copulas = in_cell_copulas(workbook, calls.assumptions, calls.draws, (*correlations, *more), findings)
-    forecasts = *forecasts, *dialogs.forecasts, *in_cell_forecasts(calls, computed, central, answers, findings)
+    in_cells = in_cell_forecasts(calls, assumptions, computed, central, answers, findings)
+    forecasts = *forecasts, *dialogs.forecasts, *in_cells
     filters, own = _by_reach(filters, dialogs.filters, forecasts, findings)
     _remark_on_calls(calls, settings, findings)
     drawn = {each.cell for each in assumptions if not each.frozen}

@@ -99,7 +99,8 @@ def new_tables(workbook: Workbook, definitions: Definitions) -> list[NewTable]:
     rows = [each for each in calls if each.name not in joined and _can_be_a_row(each)]
     written = _Written(workbook, definitions)
     filters = [each for each in _filters(definitions) if is_new(each.row)]
-    answers = (*definitions.forecasts, *(each for each in definitions.left_out if isinstance(each, Forecast)))
+    every = (*definitions.forecasts, *(each for each in definitions.left_out if isinstance(each, Forecast)))
+    answers = [each for each in every if not isinstance(each.cell, InFormula)]  # no cell holds a draw of a formula
     made = [
         NewTable("xlmc_assumptions", tuple(map(written.dialog, (each for each in drawn if each not in calls)))),
         NewTable("xlmc_assumptions", tuple(map(written.call, rows))),

@@ -7,37 +7,25 @@ and all that depends on it, shows #N/A: what Excel happened to hold there belong
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Final
-
-import numpy as np
 
 from xlmc.engine.graph.arrays import size_of
 from xlmc.engine.graph.lower import Lowering, lower_until_complete
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.excel.address import Cell, host_of
+from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.formula import Graph, Resolver, build_graph, ir
-from xlmc.excel.formula.precedents import mentioned
-from xlmc.excel.formula.substitute import substitute
+from xlmc.excel.formula.precedents import mentioned, references
+from xlmc.excel.formula.substitute import substitute, unfold
 from xlmc.excel.workbook.injection.formula_values import with_values
 from xlmc.excel.workbook.workbook import CellValue, Workbook
-from xlmc.montecarlo.definitions.definitions import Assumption
 from xlmc.montecarlo.definitions.in_cells.call_arguments import number_of
-from xlmc.montecarlo.definitions.in_cells.result_functions import (
-    CRYSTAL_BALL_STATISTICS,
-    Limits,
-    ResultCall,
-    is_result,
-    result_call,
-)
+from xlmc.montecarlo.definitions.in_cells.result_functions import is_result, result_call
 from xlmc.montecarlo.definitions.unavailable import areas_text
-from xlmc.montecarlo.distributions.spelling import name_key
-from xlmc.montecarlo.loop.forecast_result import ForecastResult
-from xlmc.montecarlo.sampling.draws import Draw
-from xlmc.montecarlo.statistics import rank_correlation
+from xlmc.montecarlo.diagnostics.result_answers import Answers
 
-__all__ = ["RunFacts", "ShownResults", "filled_sheets", "recalculated", "shown_results"]
+__all__ = ["ShownResults", "filled_sheets", "recalculated", "shown_results"]
 
 _ANYWHERE: Final = re.compile(r"\b(?:OFFSET|INDIRECT|CELL)\s*\(", re.IGNORECASE)
 """Functions that look for their cells while they are computed."""
@@ -86,29 +74,11 @@ def filled_sheets(workbook: Workbook, shown: ShownResults) -> dict[str, bytes]:
     return {parts[name]: with_values(workbook.parts[parts[name]], parts[name], by_sheet[name]) for name in by_sheet}
 
 
-@dataclass(frozen=True, slots=True)
-class RunFacts:
-    """What of a run cells may ask for beside its forecasts.
-
-    Attributes:
-        trials: that were run.
-        most: that were asked for.
-        assumptions: of the workbook.
-        draws: name of an assumption -> how it is drawn, as far as it is.
-    """
-
-    trials: int
-    most: int
-    assumptions: Sequence[Assumption]
-    draws: Mapping[str, Draw]
-
-
 def shown_results(
     workbook: Workbook,
     formulas: Mapping[Cell, ir.Expression],
     unavailable: Mapping[Cell, str],
-    results: Iterable[ForecastResult],
-    run: RunFacts,
+    answers: Answers,
     at_base: Mapping[Cell, ir.Expression | FormulaError],
 ) -> ShownResults:
     """The values of the cells that show results, and of those that depend on them.
@@ -117,13 +87,12 @@ def shown_results(
         workbook: of the run.
         formulas: of the cells that show results.
         unavailable: those that should, and cannot -> why.
-        results: of the forecasts.
-        run: whose results they are.
+        answers: to the calls in them.
         at_base: the formulas of cells that draw or mark an answer, with base cases instead of draws; or why not.
     """
-    answers = _Answers(workbook, tuple(results), run)
-    trees = {cell: answers.formula(tree) for cell, tree in formulas.items() if cell not in unavailable}
-    return _Showing(workbook, trees, unavailable, at_base).found()
+    showing = _Showing(workbook, formulas.keys() - unavailable.keys(), unavailable, at_base)
+    showing.answer({cell: unfold(tree) for cell, tree in formulas.items() if cell not in unavailable}, answers)
+    return showing.found()
 
 
 def recalculated(workbook: Workbook, cells: Iterable[Cell]) -> ShownResults:
@@ -133,7 +102,7 @@ def recalculated(workbook: Workbook, cells: Iterable[Cell]) -> ShownResults:
         workbook: with the new contents.
         cells: that have them; no formulas.
     """
-    found = _Showing(workbook, {}, {}, {}, frozenset(cells)).found()
+    found = _Showing(workbook, frozenset(), {}, {}, frozenset(cells)).found()
     formulas = {cell: why for cell, why in found.missing.items() if workbook.content(cell).formula is not None}
     return ShownResults(found.values, formulas)
 
@@ -144,14 +113,14 @@ class _Showing:
     def __init__(
         self,
         workbook: Workbook,
-        trees: Mapping[Cell, ir.Expression],
+        shown: Collection[Cell],
         unavailable: Mapping[Cell, str],
         at_base: Mapping[Cell, ir.Expression | FormulaError],
         constants: frozenset[Cell] = frozenset(),
     ) -> None:
-        self._workbook, self._trees = workbook, {**at_base, **trees}
+        self._workbook, self._trees = workbook, dict(at_base)
         self._missing, self._constants = dict(unavailable), constants
-        self._start = constants | trees.keys()
+        self._start = constants | frozenset(shown)
         self._formulas = frozenset(_formulas(workbook))
         inputs = self._start | unavailable.keys()
         whole = build_graph(Resolver(workbook, strict=False), self._formulas, inputs, strict=False)
@@ -161,6 +130,83 @@ class _Showing:
         looking = [cell for cell in whole.formulas if cell in self._formulas and _ANYWHERE.search(self._text(cell))]
         for cell, found in self._looked_at(frozenset(looking)).items():
             self._needs.setdefault(cell, set()).update(found)
+
+    def answer(self, formulas: Mapping[Cell, ir.Expression], answers: Answers) -> None:
+        """Put results instead of the calls that ask for them; what one is asked by may depend on others.
+
+        Args:
+            formulas: of the cells that show results.
+            answers: to the calls in them.
+        """
+        waiting = dict(formulas)
+        while True:
+            self._trees |= {cell: tree for cell, tree in waiting.items() if not _innermost(tree)}
+            waiting = {cell: tree for cell, tree in waiting.items() if cell not in self._trees | self._missing}
+            blocked = self._downstream(waiting)
+            ready = {cell: self._known(tree, blocked) for cell, tree in waiting.items()}
+            asked = [(cell, call) for cell, calls in ready.items() for call in calls]
+            if not asked:
+                break
+            numbers = self._numbers(asked, blocked)
+            for cell, calls in ready.items():
+                waiting[cell] = self._answered(cell, waiting[cell], calls, answers, numbers)
+        self._missing |= dict.fromkeys(waiting, "asks for a result by a number that depends on itself")
+
+    def _known(self, tree: ir.Expression, blocked: frozenset[Cell]) -> list[ir.Call]:
+        """The calls in a formula whose arguments do not wait for other results."""
+        return [call for call in _innermost(tree) if blocked.isdisjoint(self._cells_of(result_call(call).arguments))]
+
+    def _cells_of(self, trees: Iterable[ir.Expression]) -> Iterator[Cell]:
+        """The formula cells that arguments read."""
+        for part in (part for tree in trees for part in references(tree)):
+            if isinstance(part, Cell):
+                yield part
+            else:
+                yield from (cell for cell in self._formulas if cell in part)
+
+    def _numbers(
+        self, asked: Iterable[tuple[Cell, ir.Call]], blocked: frozenset[Cell]
+    ) -> dict[tuple[Cell, ir.Expression], float | None]:
+        """What the arguments of calls are; None where one is no number."""
+        trees = [(cell, tree) for cell, call in asked for tree in result_call(call).arguments]
+        found = {each: number_of(each[1]) for each in trees}
+        open_ = [each for each, number in found.items() if number is None]
+        sites = {InFormula.of(cell, f"argument {k}"): (cell, tree) for k, (cell, tree) in enumerate(open_, start=1)}
+        if not sites:
+            return found
+        self._trees |= {site: tree for site, (_, tree) in sites.items()}
+        for cell, tree in sites.values():
+            self._needs.setdefault(cell, set()).update(self._cells_of([tree]))
+        changed = self._downstream(self._start - blocked) - self._downstream(self._missing) - blocked - self._constants
+        lowering, faults = self._lowered(changed | sites.keys())
+        for site, (cell, tree) in sites.items():
+            if site in faults:
+                self._missing[cell] = faults[site]
+            else:
+                value = _value(lowering, site)
+                found[cell, tree] = None if isinstance(value, bool | str | ErrorCode) or value is None else float(value)
+        return found
+
+    def _answered(
+        self,
+        cell: Cell,
+        tree: ir.Expression,
+        calls: Collection[ir.Call],
+        answers: Answers,
+        numbers: Mapping[tuple[Cell, ir.Expression], float | None],
+    ) -> ir.Expression:
+        """A formula with the results that these calls ask for."""
+
+        def change(part: ir.Expression) -> ir.Expression | None:
+            if not isinstance(part, ir.Call) or part not in calls:
+                return None
+            return answers.answer(result_call(part), lambda each: numbers[cell, each])
+
+        try:
+            return substitute(tree, change)
+        except FormulaError as error:
+            self._missing[cell] = error.message
+            return tree
 
     def found(self) -> ShownResults:
         """Compute until no further cell turns out to depend on a result, or to be one that cannot be computed."""
@@ -243,7 +289,7 @@ class _Showing:
             try:
                 lowering = lower_until_complete(lower)
             except FormulaError as error:  # Excel has saved no value that could stand in for it
-                found = [cell for cell in self._formulas - stuck.keys() if str(cell) == error.where]
+                found = [cell for cell in (self._formulas | targets) - stuck.keys() if str(cell) == error.where]
                 if not found:
                     raise
                 stuck |= dict.fromkeys(found, error.message)
@@ -257,6 +303,18 @@ class _Showing:
     def _is_uncalculated(self, cell: Cell) -> bool:
         """Whether a formula has no saved value, as in books that openpyxl or XlsxWriter wrote: it is computed, too."""
         return self._workbook.content(cell).value is None
+
+
+def _innermost(tree: ir.Expression) -> list[ir.Call]:
+    """The calls for results in a formula, those left out that hold others."""
+    found: list[ir.Call] = []
+
+    def look(part: ir.Expression) -> None:
+        if isinstance(part, ir.Call) and is_result(part) and not any(map(_innermost, part.arguments)):
+            found.append(part)
+
+    substitute(tree, look)
+    return found
 
 
 class _Watching(Lowering):
@@ -288,145 +346,6 @@ def _faults(lowering: Lowering) -> dict[Cell, str]:
             if size != (formula.array.rows, formula.array.columns):
                 found[cell] = "spills into another area than when Excel saved it"
     return found
-
-
-class _Answers:
-    """What the calls that ask for results get."""
-
-    def __init__(self, workbook: Workbook, results: Sequence[ForecastResult], run: RunFacts) -> None:
-        self._workbook, self._results, self._run = workbook, results, run
-
-    def formula(self, tree: ir.Expression) -> ir.Expression:
-        """A formula with the results instead of the calls that ask for them."""
-        return substitute(
-            tree,
-            lambda part: self._answer(result_call(part)) if isinstance(part, ir.Call) and is_result(part) else None,
-        )
-
-    def _answer(self, asked: ResultCall) -> ir.Expression:
-        """What a call shows: a number or a text, or an error where there is none."""
-        number = None
-        if asked.number is not None:
-            number = self._number(asked.number)
-            if number is None:
-                return ir.ErrorLiteral(ErrorCode.VALUE)
-        if asked.what in ("assumption", "percent of the assumption"):
-            return self._of_assumption(asked, number)
-        if asked.of is None:
-            if asked.what == "preference" and number != 1:
-                return ir.ErrorLiteral(ErrorCode.NA)
-            return ir.Number(float(self._run.trials if asked.what == "trials run" else self._run.most))
-        result = self._result(asked.of)
-        if result is not None and asked.limits is not None:
-            result = self._between(result, asked.limits)
-        other = None if asked.other is None else self._result(asked.other)
-        if result is None or result.values.size == 0 or (asked.other is not None and other is None):
-            return ir.ErrorLiteral(ErrorCode.NA)
-        value = _statistic(result, asked, number) if other is None else _correlation(result, other, number)
-        return ir.ErrorLiteral(ErrorCode.NUM) if value is None or not np.isfinite(value) else ir.Number(value)
-
-    def _number(self, tree: ir.Expression) -> float | None:
-        return number_of(tree, lambda cell: _saved_number(self._workbook, cell))
-
-    def _result(self, of: Cell | str) -> ForecastResult | None:
-        for result in self._results:
-            definition = result.definition
-            if definition.cell == of or (isinstance(of, str) and name_key(definition.name) == name_key(of)):
-                return result
-        return None
-
-    def _between(self, result: ForecastResult, limits: Limits) -> ForecastResult | None:
-        """The part of the values that a call asks about; None where its limits are no numbers."""
-        ends = [None if end is None else self._number(end) for end in (limits.lower, limits.upper)]
-        if any(end is None for end, tree in zip(ends, (limits.lower, limits.upper), strict=True) if tree is not None):
-            return None
-        if limits.percents:
-            if not all(end is None or 0 <= end <= 1 for end in ends):
-                return None
-            ends = [None if end is None else _percentile(result, 100 * end) for end in ends]
-        low, high = (given if given is not None else end for given, end in zip(ends, (-np.inf, np.inf), strict=True))
-        return result.between(low, high)
-
-    def _of_assumption(self, asked: ResultCall, number: float | None) -> ir.Expression:
-        """A percentile of an assumption's distribution; its name (1), or its cutoffs (6 and 7)."""
-        found = [
-            a
-            for a in self._run.assumptions
-            if asked.of in (a.cell, host_of(a.cell))
-            or (isinstance(asked.of, str) and name_key(asked.of) == name_key(a.name))
-        ]
-        if len(found) != 1 or number is None:
-            return ir.ErrorLiteral(ErrorCode.NA)
-        (assumption,) = found
-        draw = self._run.draws.get(assumption.name) or assumption.checked
-        if asked.what == "assumption":
-            if number == 1:
-                return ir.Text(assumption.name)
-            cutoff = assumption.cutoffs.get({6: "lower_cutoff", 7: "upper_cutoff"}.get(int(number), ""))
-            return ir.Number(cutoff) if isinstance(cutoff, float) else ir.ErrorLiteral(ErrorCode.NA)
-        if draw is None or not draw.fixed or not 0 <= number <= 100:
-            return ir.ErrorLiteral(ErrorCode.NUM)
-        value = float(draw.percentiles(np.array([number / 100]), {})[0])
-        return ir.Number(value) if np.isfinite(value) else ir.ErrorLiteral(ErrorCode.NUM)
-
-
-def _statistic(result: ForecastResult, asked: ResultCall, number: float | None) -> float | None:
-    """One number of a result; None where there is no such percentile, trial or statistic."""
-    what = asked.what
-    if what == "mean_absolute_deviation":
-        return float(np.mean(np.abs(result.values - result.values.mean())))
-    if number is None:
-        return _by_name(result, what)
-    match what:
-        case "statistic":
-            known = number.is_integer() and 1 <= number <= len(CRYSTAL_BALL_STATISTICS)
-            return _by_name(result, CRYSTAL_BALL_STATISTICS[int(number) - 1]) if known else None
-        case "percent" | "share" | "share from above":
-            percent = number if what == "percent" else 100 * (number if what == "share" else 1 - number)
-            return _percentile(result, percent) if 0 <= percent <= 100 else None
-        case "certainty":
-            return 1 - result.probability_above(number).value
-        case "certainty in percent":
-            return 100 * (1 - result.probability_above(number).value)
-        case "certainty from above":
-            return result.probability_above(number).value
-        case "trial":
-            held = number.is_integer() and 1 <= number <= result.values.size
-            return float(result.values[int(number) - 1]) if held else None
-        case "confidence":
-            ends = result.mean_interval(number) if 0 < number < 1 else None
-            return None if ends is None else ends[asked.upper]
-        case _:
-            raise ValueError(what)
-
-
-def _percentile(result: ForecastResult, percent: float) -> float:
-    """A percentile; where values repeat, as counts do, the add-ins show one of them: see `Sample.reaching`."""
-    found, sample = result.percentile(percent).value, result.sample
-    repeats = bool((sample.x[1:] == sample.x[:-1]).any())
-    return sample.reaching(percent / 100) if repeats and not np.isnan(found) else found
-
-
-def _correlation(first: ForecastResult, second: ForecastResult, kind: float | None) -> float | None:
-    """Pearson's (1) or Spearman's (2) of the trials in which both are numbers; None for any other kind."""
-    x, y = first.column, second.column
-    both = ~(np.isnan(x) | np.isnan(y))
-    if both.sum() < 2 or kind not in (1, 2):
-        return None
-    if kind == 2:
-        return rank_correlation(x[both], y[both]).value
-    with np.errstate(all="ignore"):
-        return float(np.corrcoef(x[both], y[both])[0, 1])
-
-
-def _by_name(result: ForecastResult, what: str) -> float:
-    found = getattr(result.statistics, what)
-    return float(found) if what == "trials" else float(found.value)
-
-
-def _saved_number(workbook: Workbook, cell: Cell) -> float | None:
-    value = workbook.content(cell).value
-    return float(value) if isinstance(value, int | float) and not isinstance(value, bool | ErrorCode) else None
 
 
 def _formulas(workbook: Workbook) -> Iterator[Cell]:

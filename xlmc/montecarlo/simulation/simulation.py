@@ -22,7 +22,8 @@ from xlmc.montecarlo.diagnostics.cell_errors import Root, error_roots
 from xlmc.montecarlo.diagnostics.checking import CheckResult, check_results
 from xlmc.montecarlo.diagnostics.digit_watch import lost_digits
 from xlmc.montecarlo.diagnostics.directions import direction_notices
-from xlmc.montecarlo.diagnostics.result_cells import RunFacts, ShownResults, shown_results
+from xlmc.montecarlo.diagnostics.result_answers import Answers, RunFacts
+from xlmc.montecarlo.diagnostics.result_cells import ShownResults, shown_results
 from xlmc.montecarlo.diagnostics.weighing import Weighting, weighting_of
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.loop.blocks import FilterTally
@@ -136,6 +137,7 @@ class Simulation:
             that several discard counts for the first.
         rare: where the accepted trials come from, where that is a learned proposal; None with plain trials.
         changed_from: where its workbook is a changed copy of another one that a person knows; None elsewhere.
+        tabulated: number of a further value of `RiskSimtable` -> the run with it, as far as they were made.
     """
 
     model: Model
@@ -156,6 +158,7 @@ class Simulation:
     rare: RareAccount | None = None
     discards: Mapping[str, Counter[str]] = field(default_factory=dict)
     changed_from: ChangedFrom | None = None
+    tabulated: dict[int, Simulation] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> ForecastResult:
         """The result of a forecast, by name whatever its case.
@@ -257,6 +260,12 @@ class Simulation:
     @property
     def warnings(self) -> list[str]:
         """Why the answer must not be used as it is; empty when it may be."""
+        missing = [self.shown_results.warning] if self.shown_results.warning else []
+        return [*self.warnings_of_trials, *missing]
+
+    @property
+    def warnings_of_trials(self) -> list[str]:
+        """The same, but for what the workbook's own cells cannot show."""
         found = []
         if self.accepted == 0 and self.stopped.by != "search":
             most = self.acceptance.interval
@@ -271,8 +280,7 @@ class Simulation:
         if self.agreement is not None and self.agreement.conflicts:
             failing.append(self.agreement.sentence)
         rare = () if self.rare is None else self.rare.warnings
-        missing = [self.shown_results.warning] if self.shown_results.warning else []
-        return [*self.refused, *failing, *found, *self._sparse(), *self._lost_digits, *rare, *missing]
+        return [*self.refused, *failing, *found, *self._sparse(), *self._lost_digits, *rare]
 
     @property
     def _by_itself(self) -> str:
@@ -296,9 +304,15 @@ class Simulation:
         if not (asked.results or asked.unavailable):
             return ShownResults()
         run = RunFacts(self.trials, self.plan.trials, self.model.assumptions, self.model.draws)
+        simulations = {1: self, **self.tabulated}
+        answers = Answers({n: tuple(each.results.values()) for n, each in simulations.items()}, run)
         at_base = base_formulas(asked, self.model.draws)
-        results = self.results.values()
-        return shown_results(self.model.workbook, asked.results, asked.unavailable, results, run, at_base)
+        return shown_results(self.model.workbook, asked.results, asked.unavailable, answers, at_base)
+
+    def take_tabulated(self, runs: Mapping[int, Simulation]) -> None:
+        """Take the runs with further values of `RiskSimtable`, about which cells may ask, too."""
+        self.tabulated.update(runs)
+        self.__dict__.pop("shown_results", None)
 
     @cached_property
     def error_roots(self) -> dict[Cell, Root]:

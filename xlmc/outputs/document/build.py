@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.record import make_record
+from xlmc.analysis.studies.scenario_answers import scenario_answers
 from xlmc.errors import SimulationError
 from xlmc.excel.workbook.printable import label
 from xlmc.montecarlo.distributions.spelling import name_key
@@ -80,6 +81,7 @@ def build(simulation: Simulation, wanted: Wanted, *, command: str | None = None)
     check_wanted(wanted)
     workbook = simulation.model.workbook
     case = case_of(workbook, wanted.case)
+    scenario_answers(simulation)  # cells may ask about them, and warnings tell of those that cannot
     material = Material(simulation, make_record(simulation, command), _forecasts(wanted, simulation.model))
     blocks: list[Block] = []
     for name, (heading, make) in SECTIONS.items():

@@ -15,6 +15,7 @@ from string import Template
 from typing import TYPE_CHECKING
 
 from xlmc.analysis.results.record import make_record
+from xlmc.analysis.studies.scenario_answers import scenario_answers
 from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.seal import sealed_text
@@ -137,6 +138,7 @@ def page_text(simulation: Simulation, *, beside: Simulation | None = None, comma
         beside: a second run, which stands beside it.
         command: what the person typed, for the record.
     """
+    scenario_answers(simulation)  # cells may ask about them, and warnings tell of those that cannot
     figures, name = figures_of(simulation), simulation.model.workbook.name
     found = None if simulation.weighting is not None else sensitivities(simulation)
     parts = {

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.record import changed_from_of
+from xlmc.analysis.studies.scenario_answers import scenario_answers
 from xlmc.errors import ErrorCode
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.workbook import CellContent
@@ -43,6 +44,7 @@ def compare_shown(
     if not same_run:
         said = "the result sheets: the model is no longer the one that they were computed from"
         return SheetComparison(left_out=(said,))
+    scenario_answers(run)  # cells may ask about them
     command = _entry(record, "run.command")
     sheets = compare_sheets(workbook, run, None if command is None else str(command), closeness)
     own = _compare_own_cells(workbook, run, closeness)

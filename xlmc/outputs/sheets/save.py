@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from xlmc.analysis.studies.scenario_answers import scenario_answers
 from xlmc.errors import SimulationError, WorkbookError
 from xlmc.excel.workbook.inject import inject, result_sheets
 from xlmc.excel.workbook.package_check import checked_bytes
@@ -59,6 +60,7 @@ def save(
     check = partial(_check, simulation, path, overwrite=overwrite)
     check_ending(path, simulation.model.path)
     check()
+    scenario_answers(simulation)  # cells may ask about them
     with paused_collection():
         sheets = build_sheets(simulation, command=command, rows=rows)
         own = {**book.parts, **filled_sheets(book, simulation.shown_results)}

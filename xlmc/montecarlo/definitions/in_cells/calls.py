@@ -16,16 +16,18 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from xlmc.errors import DefinitionError, FormulaError
-from xlmc.excel.address import Cell
+from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.formula import Resolver, ir
 from xlmc.excel.workbook.lazy_sheets import LazySheets
 from xlmc.excel.workbook.workbook import Formula, Workbook
 from xlmc.montecarlo.definitions.computed import Computed
 from xlmc.montecarlo.definitions.definitions import Assumption, Forecast
+from xlmc.montecarlo.definitions.in_cells.call_arguments import number_of
 from xlmc.montecarlo.definitions.in_cells.reading import CellDraw, CellReading, Output
 from xlmc.montecarlo.definitions.in_cells.result_functions import ResultCall, mentions_result
 from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.identity import Claims
+from xlmc.montecarlo.definitions.tables.table_rows import static_value
 from xlmc.montecarlo.distributions.spelling import name_key
 
 __all__ = ["InCells", "holds_call", "in_cell_forecasts", "read_in_cells"]
@@ -61,6 +63,7 @@ class InCells:
         lognorms: the cells with `RiskLognorm`.
         simtables: the cells with `RiskSimtable` -> the values of each.
         taken: the calls that rows of a table stand for.
+        shifted: the draws that are shifted, as cells -> the cell whose formula shifts them, and what it then says.
     """
 
     assumptions: list[Assumption] = field(default_factory=list)
@@ -74,6 +77,7 @@ class InCells:
     lognorms: list[Cell] = field(default_factory=list)
     simtables: dict[Cell, list[tuple[ir.Expression, ...]]] = field(default_factory=dict)
     taken: set[Cell] = field(default_factory=set)
+    shifted: dict[Cell, tuple[Cell, ir.Expression]] = field(default_factory=dict)
 
     def __bool__(self) -> bool:
         return bool(self.rewritten)
@@ -123,6 +127,7 @@ def read_in_cells(
             found.results[cell] = reading.asked
         if reading.shown is not None and (reading.asked or not isinstance(found.rewritten[cell], FormulaError)):
             found.shown[cell] = reading.shown
+    _refuse_simulations(workbook, found)
     for call, (name, cell) in claims.calls.items():
         if call not in found.taken:
             message = f"the row {name!r} replaces the call {call}, and there is no such call"
@@ -130,11 +135,25 @@ def read_in_cells(
     return found
 
 
+def _refuse_simulations(workbook: Workbook, found: InCells) -> None:
+    """Take results of a simulation that no value of a `RiskSimtable` makes for unavailable."""
+    most = max((len(values) for tables in found.simtables.values() for values in tables), default=1)
+    for cell, asked in found.results.items():
+        for each in asked:
+            number = (
+                None if each.simulation is None else number_of(each.simulation, lambda at: static_value(at, workbook))
+            )
+            if number is not None and number not in range(1, most + 1):
+                of = "RiskSimtable has no values" if most == 1 else f"RiskSimtable has {most} values"
+                found.unavailable.setdefault(cell, f"{each.function} asks for simulation {number:g}, and {of}")
+
+
 def _take(reading: CellReading, found: InCells, claims: Claims, findings: Findings) -> None:
     """Add what one cell says."""
     host = reading.host
     found.rewritten |= reading.trees
     found.taken |= reading.taken
+    found.shifted |= {site: (host, tree) for site, tree in reading.shifted.items()}
     for position in sorted(reading.draws):
         draw = reading.draws[position]
         assumption = replace(draw.assumption, name=_free_name(draw.assumption, claims, findings))
@@ -210,12 +229,18 @@ def _any_of(names: Collection[str]) -> re.Pattern[str] | None:
 
 
 def in_cell_forecasts(
-    found: InCells, computed: Computed, central: float, claims: Claims, findings: Findings
+    found: InCells,
+    assumptions: Iterable[Assumption],
+    computed: Computed,
+    central: float,
+    claims: Claims,
+    findings: Findings,
 ) -> list[Forecast]:
     """The cells with `RiskOutput`, then those of which `RiskMean(B9)` and its like show results.
 
     Args:
         found: the calls of the workbook.
+        assumptions: all, about which results may be asked for by their names.
         computed: which cells something gives a value.
         central: the share of the central range.
         claims: takes their names and cells; the rows of tables have taken theirs.
@@ -227,10 +252,13 @@ def in_cell_forecasts(
         if cell not in claims.cells
     ]
     shown = []
+    inputs = {name_key(each.name): each for each in assumptions}
     for cell, asked in found.results.items():
         for each in asked:
             for of in each.forecasts:
-                if isinstance(of, str):
+                if isinstance(of, str) and name_key(of) in inputs and name_key(of) not in claims.names:
+                    shown.append(_of_input(inputs[name_key(of)], found, each.function, cell, central, claims, findings))
+                elif isinstance(of, str):
                     _remark_on_name(of, each.function, cell, claims, findings)
                 elif not computed.at_all(of):
                     message = f"{each.function} asks for results of {of}, which nothing computes: nothing is shown"
@@ -241,6 +269,22 @@ def in_cell_forecasts(
                     name = _take_forecast(str(of), of, claims, findings)
                     shown.append(Forecast(name, of, cell, central=central))
     return [*outputs, *shown]
+
+
+def _of_input(
+    of: Assumption, found: InCells, function: str, cell: Cell, central: float, claims: Claims, findings: Findings
+) -> Forecast:
+    """A forecast that is a draw itself, shifted where its call says so."""
+    message = f"the draws of {of.name!r} are taken for a forecast, because {function} shows results of them"
+    findings.notice(message, cell)
+    site = of.cell
+    if site in found.shifted:
+        host, tree = found.shifted[site]
+        site = InFormula.of(host, f"{of.name} shifted")
+        found.rewritten[site] = tree
+    if site not in claims.cells:
+        claims.take_cell(site, cell)
+    return Forecast(claims.take_name(of.name, cell), site, cell, of.units, central)
 
 
 def _take_forecast(name: str, cell: Cell, claims: Claims, findings: Findings) -> str:

@@ -65,6 +65,7 @@ class CellReading:
         trees: of the arguments that are expressions, by the cells that stand for them.
         output, asked, idle, has_lognorm, taken: see `in_cells.InCells`.
         simtables: the values of each `RiskSimtable`.
+        shifted: the draws that are shifted, as cells -> with what is added.
         shown: the formula of a cell that shows results, or numbers of distributions, with these; None for another.
         unavailable: why it cannot show the results that it should show; empty where it can, or should show none.
     """
@@ -91,6 +92,7 @@ class CellReading:
         self.idle: tuple[str, ...] = ()
         self.has_lognorm = False
         self.simtables: list[tuple[ir.Expression, ...]] = []
+        self.shifted: dict[Cell, ir.Expression] = {}
         self._count = self._depth = 0
         self._has_theory = False
 
@@ -322,7 +324,10 @@ class CellReading:
         """Take the draw for an assumption, or for many; what stands in the formula instead of the call."""
         plan = self._plan(drawn, number)
         if drawn.grid is None:
-            return self._shift(drawn, self._drawn_at(plan, drawn, str(number), (number, 0)))
+            site = self._drawn_at(plan, drawn, str(number), (number, 0))
+            if drawn.properties.shift is not None:
+                self.shifted[site] = total(site, drawn.properties.shift)
+            return self.shifted.get(site, site)
         rows, columns = drawn.grid
         return ir.Array(
             tuple(
@@ -333,11 +338,6 @@ class CellReading:
                 for r in range(1, rows + 1)
             )
         )
-
-    @staticmethod
-    def _shift(drawn: Drawn, site: ir.Expression) -> ir.Expression:
-        shift = drawn.properties.shift
-        return site if shift is None else total(site, shift)
 
     def _drawn_at(self, plan: Assumption, drawn: Drawn, label: str, position: tuple[int, int]) -> Cell:
         site = InFormula.of(self.host, label)

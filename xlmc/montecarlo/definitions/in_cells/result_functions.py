@@ -162,6 +162,7 @@ class ResultCall:
         other: the second cell of a correlation.
         upper: it asks for the upper end of an interval.
         limits: it is about a part of the values.
+        simulation: the number of the simulation, from 1; None for the first.
     """
 
     function: str
@@ -171,6 +172,13 @@ class ResultCall:
     other: Cell | str | None = None
     upper: bool = False
     limits: Limits | None = None
+    simulation: ir.Expression | None = None
+
+    @property
+    def arguments(self) -> tuple[ir.Expression, ...]:
+        """The trees whose numbers it needs."""
+        ends = () if self.limits is None else (self.limits.lower, self.limits.upper)
+        return tuple(each for each in (self.number, *ends, self.simulation) if each is not None)
 
     @property
     def forecasts(self) -> tuple[Cell | str, ...]:
@@ -211,7 +219,7 @@ def result_call(call: ir.Call) -> ResultCall:
     """What a call shows.
 
     Raises:
-        FormulaError: its arguments are not what they must be, or ask for another simulation than the first.
+        FormulaError: its arguments are not what they must be.
     """
     function, what, count = _BY_NAME[call.name]
     arguments = tuple(argument for argument in call.arguments if not is_property(argument))
@@ -222,7 +230,7 @@ def result_call(call: ir.Call) -> ResultCall:
     upper = False
     if function == "RiskCIMean" and more and isinstance(more[0], ir.Logical | ir.Missing):
         upper, more = isinstance(more[0], ir.Logical) and not more[0].value, more[1:]
-    _refuse_more(function, more)
+    simulation = _simulation(function, more)
     if function in _OF_NO_CELL:
         return ResultCall(function, None, what, arguments[0] if count else None)
     of = _cell_or_name(function, arguments[0])
@@ -230,7 +238,8 @@ def result_call(call: ir.Call) -> ResultCall:
     if limits and (other is not None or what in ("trial", "confidence")):
         hint = "leave RiskTruncate out"
         raise FormulaError(f"{function} of a part of the values is not computed", hint=hint)
-    return ResultCall(function, of, what, arguments[count - 1] if count > 1 else None, other, upper, limits)
+    number = arguments[count - 1] if count > 1 else None
+    return ResultCall(function, of, what, number, other, upper, limits, simulation)
 
 
 _TAKES: Final = ("nothing", "the cell of an output", "the cell of an output, and a number", "two cells, and a number")
@@ -257,11 +266,9 @@ def _limits(function: str, given: list[ir.Expression]) -> Limits | None:
     return Limits(lower, upper, call.name == "RISKTRUNCATEP")
 
 
-def _refuse_more(function: str, more: tuple[ir.Expression, ...]) -> None:
-    """@RISK takes the number of a simulation, of which xlmc runs one."""
-    for index, argument in enumerate(more):
-        if index or function.startswith("CB."):
-            raise FormulaError(f"{function} has {len(more) - index} arguments too many", hint="take them out")
-        if not (is_left_out(argument) or argument == ir.Number(1.0)):
-            hint = "leave the number of the simulation out, or write 1; simulate --scenarios runs RiskSimtable's values"
-            raise FormulaError(f"{function} asks for another simulation than the first", hint=hint)
+def _simulation(function: str, more: tuple[ir.Expression, ...]) -> ir.Expression | None:
+    """@RISK takes the number of a simulation: the place of a value in every `RiskSimtable`."""
+    if len(more) > 1 or (more and function.startswith("CB.")):
+        few = len(more) if function.startswith("CB.") else len(more) - 1
+        raise FormulaError(f"{function} has {few} arguments too many", hint="take them out")
+    return more[0] if more and not is_left_out(more[0]) else None

@@ -57,6 +57,9 @@ the other approximate lookups halve the range, as Excel does also where it is in
 such as `{1;TRUE}`, `AVERAGEA` and its like count no logicals, and no texts but for `AVERAGEA`. In patterns a `~` takes
 the next character as it is.
 
+`GETPIVOTDATA` reads the cell of the pivot table, as Excel last refreshed it: a run refreshes nothing, and a pivot table
+whose source varies is refused. Items may vary; fields, and which pivot table, may not.
+
 `A1#` is the range that the dynamic array in A1 fills, or `#REF!` if there is none (an array formula entered with
 Ctrl-Shift-Enter does not spill). Where its size varies, it is what the formula gives in each trial.
 

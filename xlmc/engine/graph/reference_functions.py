@@ -17,6 +17,7 @@ from xlmc.engine.graph.computed_references import (
 )
 from xlmc.engine.graph.further_cells import beyond, level, refusal
 from xlmc.engine.graph.lowering import Scope, TreeLowering
+from xlmc.engine.graph.pivot_data import lower_pivot_data
 from xlmc.engine.graph.totals import without_totals
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of, quote_sheet
@@ -359,6 +360,7 @@ REFERENCE_FUNCTIONS: Mapping[str, Callable[[TreeLowering, Arguments, Scope], int
     "ISREF": _is_reference,
     "ISFORMULA": _is_formula,
     "FORMULATEXT": _formula_text,
+    "GETPIVOTDATA": lower_pivot_data,
     "SHEET": _sheet,
     "SHEETS": _sheets,
     "CELL": _cell,

@@ -67,7 +67,7 @@ class Resolver:
         self.workbook = workbook
         self.rewritten = rewritten or {}
         self._strict = strict
-        self._inputs = tuple(inputs)
+        self.inputs = tuple(inputs)
         self._used: dict[str, tuple[int, int]] = {}
         self._shapes = Shapes()
         self._open_names: list[str] = []
@@ -260,7 +260,7 @@ class Resolver:
     def _used_range(self, sheet: str) -> tuple[int, int]:
         """Last row and column that hold anything: a whole column ends there."""
         if sheet not in self._used:
-            cells = [(cell.row, cell.column) for cell in self._inputs if cell.sheet == sheet]
+            cells = [(cell.row, cell.column) for cell in self.inputs if cell.sheet == sheet]
             found = self.workbook.sheet_of(Cell(sheet, 1, 1))
             cells += () if found is None else found.cells
             self._used[sheet] = (max((r for r, _ in cells), default=1), max((c for _, c in cells), default=1))

@@ -22,6 +22,7 @@ from xlmc.excel.workbook.package import (
     read_parts,
     relationships,
 )
+from xlmc.excel.workbook.pivot_tables import pivot_tables
 from xlmc.excel.workbook.printable import label
 from xlmc.excel.workbook.safe_xml import REPAIR, decode, is_true, tree, whole_number
 from xlmc.excel.workbook.sheet import CellContext, convert
@@ -65,6 +66,7 @@ def _read(data: bytes, name: str, where: str) -> Workbook:
             tables=tuple(tables),
             links=Links(parts, structure),
             data_tables=tuple(sheets.data_tables()),
+            pivots=pivot_tables(parts, structure.worksheets, structure.date1904),
             date1904=structure.date1904,
             macintosh=b"Macintosh" in parts.get("docProps/app.xml", b""),
             may_be_stale=_may_be_stale(structure.calculation),

@@ -16,6 +16,9 @@ __all__ = [
     "DefinedName",
     "Formula",
     "LinkedBook",
+    "PivotField",
+    "PivotTable",
+    "Place",
     "Sheet",
     "Table",
     "Workbook",
@@ -159,6 +162,78 @@ class DataTable:
             yield Cell(self.area.sheet, row, left)
 
 
+@dataclass(frozen=True, slots=True)
+class Place:
+    """What a row or column of a pivot table shows.
+
+    Attributes:
+        items: (field, item), both counted from 0; what no pair names is added up.
+        data: which of several data fields, from 0; None where the other axis says that, or there is one.
+    """
+
+    items: frozenset[tuple[int, int]]
+    data: int | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PivotField:
+    """A field: its names, as shown and as in the source, and its items; `grouped` where these are parts of dates."""
+
+    names: tuple[str, ...]
+    items: tuple[tuple[int, CellValue], ...] = ()
+    grouped: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class PivotTable:
+    """A pivot table as it was last refreshed.
+
+    Attributes:
+        area: all its cells, those of report filters among them.
+        origin: the first cell with a value.
+        fields: of its source, in order.
+        data: the names of each data field, as shown and as in the source.
+        rows, columns: what the rows from the origin down, and the columns to the right, show; None for a blank one.
+        filters: field of a report filter -> its item; None where all are shown, or several.
+        source: the cells that it is made from, as text for `INDIRECT`; None where these are not in the workbook.
+    """
+
+    area: Area
+    origin: Cell
+    fields: tuple[PivotField, ...]
+    data: tuple[tuple[str, ...], ...]
+    rows: tuple[Place | None, ...]
+    columns: tuple[Place | None, ...]
+    filters: Mapping[int, int | None]
+    source: str | None
+
+    @cached_property
+    def cells(self) -> Mapping[tuple[int, frozenset[tuple[int, int]]], tuple[Cell, ...]]:
+        """Data field and the items that are shown -> where; a total may stand above its items, or below."""
+        found: dict[tuple[int, frozenset[tuple[int, int]]], tuple[Cell, ...]] = {}
+        for down, row in enumerate(self.rows):
+            for right, column in enumerate(self.columns):
+                if row is not None and column is not None:
+                    data = next((place.data for place in (row, column) if place.data is not None), 0)
+                    cell = Cell(self.origin.sheet, self.origin.row + down, self.origin.column + right)
+                    key = data, row.items | column.items
+                    found[key] = (*found.get(key, ()), cell)
+        return found
+
+    @cached_property
+    def _by_item(self) -> Mapping[tuple[int, int], list[tuple[int, frozenset[tuple[int, int]]]]]:
+        found: dict[tuple[int, int], list[tuple[int, frozenset[tuple[int, int]]]]] = {}
+        for key in self.cells:
+            for pair in key[1]:
+                found.setdefault(pair, []).append(key)
+        return found
+
+    def cells_with(self, data: int, items: frozenset[tuple[int, int]]) -> Iterator[tuple[Cell, ...]]:
+        """The cells that show these items of a data field, and items of other fields."""
+        among = min((self._by_item.get(pair, []) for pair in items), key=len, default=list(self.cells))
+        yield from (self.cells[key] for key in among if key[0] == data and items < key[1])
+
+
 @dataclass(frozen=True)
 class Workbook:
     """A workbook as read: nothing evaluated, nothing changed.
@@ -166,6 +241,7 @@ class Workbook:
     Attributes:
         sheets: worksheets in tab order, by name as written.
         data_tables: the what-if tables of all sheets.
+        pivots: the pivot tables, where a formula asks for one.
         links: to other workbooks, as formulas write them (`[1]`), with the values that Excel stored.
         macintosh: last saved by Excel for the Macintosh, whose CHAR and CODE use its own character set.
         may_be_stale: saved values may be older than the formulas: calculation is manual, or Excel has yet to do it.
@@ -180,6 +256,7 @@ class Workbook:
     names: tuple[DefinedName, ...] = ()
     tables: tuple[Table, ...] = ()
     data_tables: tuple[DataTable, ...] = ()
+    pivots: tuple[PivotTable, ...] = ()
     links: Mapping[str, LinkedBook] = field(default_factory=dict)
     date1904: bool = False
     macintosh: bool = False

@@ -222,3 +222,12 @@ def test_other_complaints_name_the_sheet_or_part(content, message):
 def test_a_document_type_is_refused():
     with pytest.raises(WorkbookError, match="declares a document type"):
         parse_sheet(b"<!DOCTYPE worksheet><worksheet/>", ENTRY, CONTEXT)
+
+
+@pytest.mark.parametrize(
+    ("namespace", "said"),
+    [("", "'My sheet' is in no XML namespace"), ("urn:other", "'My sheet' is in the XML namespace 'urn:")],
+)
+def test_a_worksheet_in_a_foreign_namespace_is_refused_and_not_blank(namespace, said):
+    with pytest.raises(WorkbookError, match=said):
+        parsed("<sheetData/>", namespace)

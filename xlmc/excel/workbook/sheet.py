@@ -54,11 +54,17 @@ def parse_sheet(xml: bytes, entry: SheetEntry, context: CellContext) -> Sheet:
     """Read the worksheet of one tab.
 
     Raises:
-        WorkbookError: the part is not XML, or a cell holds what no cell can; told of the cell.
+        WorkbookError: the part is not XML, or is a worksheet in a foreign namespace, whose cells would all be blank;
+            or a cell holds what no cell can; told of the cell.
     """
     reading = _Pass(entry.name, context)
     parser = expat_parser()
-    parser.StartElementHandler = reading.start
+
+    def start_part(tag: str, attributes: _Attributes) -> None:
+        parser.StartElementHandler = reading.start
+        reading.start_part(tag, attributes)
+
+    parser.StartElementHandler = start_part
     parser.EndElementHandler = reading.end
     parser.CharacterDataHandler = reading.text.append
     feed(parser, xml, entry.part)
@@ -103,6 +109,13 @@ class _Pass:
         self._phonetic = False
         self._filter: str | None = None
         self._has_condition = False
+
+    def start_part(self, tag: str, attributes: _Attributes) -> None:
+        namespace, _, local = tag.rpartition(" ")
+        if local == "worksheet" and namespace not in _NAMESPACES:
+            what = f"in the XML namespace {namespace!r}" if namespace else "in no XML namespace"
+            raise WorkbookError(f"the sheet {self._sheet!r} is {what}, and worksheets are not", hint=REPAIR)
+        self.start(tag, attributes)
 
     def start(self, tag: str, attributes: _Attributes) -> None:
         self._attributes = attributes

@@ -19,13 +19,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final, NamedTuple
 
-import xlmc
-from xlmc.api import Model
 from xlmc.excel.address import parse_address
 from xlmc.montecarlo.definitions.evidence import Evidence
 from xlmc.montecarlo.definitions.tables.evidence_rows import as_filter
 from xlmc.montecarlo.diagnostics import evidence_trials
 from xlmc.montecarlo.diagnostics.agreement import Agreement, agreement
+from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.montecarlo.statistics import Estimate
 
@@ -98,7 +98,7 @@ U_ROW: Final = ("1.0851", (11.962, 33.499, 4.790), 0.0023)
 """The first normal row by rejection: percent of all trials, its means, and the standard error of the percentage."""
 
 
-def with_evidence(model: Model, items: Sequence[Item]) -> Model:
+def with_evidence(model: CompiledModel, items: Sequence[Item]) -> CompiledModel:
     """The model with these rows of evidence."""
     rows = []
     for each in items:
@@ -106,10 +106,10 @@ def with_evidence(model: Model, items: Sequence[Item]) -> Model:
         name = f"{each.of} {each.reading:g}"
         rows.append(Evidence(name, cell, cell, each.reading, each.error, {"percent": each.percent}))
     definitions = replace(model.definitions, filters=(*model.filters, *map(as_filter, rows)), evidence=tuple(rows))
-    return Model(model.workbook, definitions, model.path)
+    return CompiledModel(model.workbook, definitions, model.path)
 
 
-def found(model: Model, row: Row, trials: int) -> Agreement:
+def found(model: CompiledModel, row: Row, trials: int) -> Agreement:
     """What a row of evidence does, by so many trials of the case study."""
     most, evidence_trials.MOST_TRIALS = evidence_trials.MOST_TRIALS, max(trials, evidence_trials.MOST_TRIALS)
     try:
@@ -154,7 +154,7 @@ def _line(row: Row, judged: Agreement) -> str:
     return f"{named} | {kept} | {shown} ({expected}) | {judged.verdict.value}"
 
 
-def _direct(model: Model, trials: int) -> Iterator[tuple[str, bool]]:
+def _direct(model: CompiledModel, trials: int) -> Iterator[tuple[str, bool]]:
     """The first normal row as runs: by rejection and by weights."""
     percent, means, error = U_ROW
     own = with_evidence(model, ROWS[1].items)
@@ -175,7 +175,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--trials", type=int, default=1 << 22)
     trials = parser.parse_args(argv).trials
-    model, wrong = xlmc.load(BOOK), 0
+    model, wrong = load(BOOK), 0
     print("evidence | kept of the trials past the filters (expected) | means (expected) | verdict")
     for row in ROWS:
         judged = found(model, row, trials)

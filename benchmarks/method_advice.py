@@ -25,9 +25,9 @@ from known_books import KNOWN
 from method_truth import compare_with_truth
 from tables import placed
 
-import xlmc
 from xlmc.analysis.studies.methods import study
 from xlmc.analysis.studies.methods.need import choice
+from xlmc.montecarlo.model.loading import load
 
 __all__ = ["BOOKS", "PAGE", "RESULTS", "SEEDS", "advice", "faults", "table"]
 
@@ -49,7 +49,7 @@ Record = dict[str, Any]
 
 def advice(book: str, seed: int) -> Record:
     """What the quick test says of one workbook with one seed."""
-    model = xlmc.load(ROOT / book)
+    model = load(ROOT / book)
     if not model.live:
         return {
             "recommended": NOTHING,

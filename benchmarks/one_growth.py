@@ -14,9 +14,10 @@ from typing import Any
 from contest import measured
 
 import xlmc
-from xlmc.api import load
 from xlmc.engine.engines import ENGINES
-from xlmc.montecarlo.simulation.simulate import BLOCK
+from xlmc.montecarlo.definitions.run_options import RunOptions
+from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.simulation.simulate import BLOCK, run_model
 
 
 def main() -> None:
@@ -33,7 +34,7 @@ def main() -> None:
     block = min(BLOCK, program.largest_block)
 
     def run(trials: int) -> None:
-        model.simulate(trials, 1, engine=engine)
+        run_model(model, RunOptions.of(trials=trials, seed=1, engine=engine))
 
     start = perf_counter()
     run(block)

@@ -21,12 +21,14 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
-import xlmc  # noqa: E402
 from xlmc.errors import XlmcError  # noqa: E402
 from xlmc.excel.workbook.inject import inject, result_sheets  # noqa: E402
 from xlmc.excel.workbook.package import read_parts  # noqa: E402
 from xlmc.excel.workbook.package_check import checked_bytes  # noqa: E402
 from xlmc.excel.workbook.seal import sealed_parts  # noqa: E402
+from xlmc.montecarlo.definitions.run_options import RunOptions  # noqa: E402
+from xlmc.montecarlo.model.loading import load  # noqa: E402
+from xlmc.montecarlo.simulation.simulate import run_model  # noqa: E402
 from xlmc.outputs.sheets.book import build_sheets  # noqa: E402
 
 
@@ -53,7 +55,7 @@ def main() -> int:
     parser.add_argument("--in-place", action="store_true")
     parser.add_argument("--first", type=int, help="only so many workbooks")
     given = parser.parse_args()
-    run = xlmc.load(HERE.parent / "examples" / "skid-100-ft.xlsx").simulate(trials=2_000)
+    run = run_model(load(HERE.parent / "examples" / "skid-100-ft.xlsx"), RunOptions.of(trials=2_000))
     sheets = build_sheets(run, rows=20)
     books = sorted(path for path in given.folder.iterdir() if path.suffix.casefold() in (".xlsx", ".xlsm"))
     checked, refused, worse = 0, 0, 0

@@ -150,15 +150,17 @@ def first_in_line() -> None:
 
 def in_turn(path: str, engine: str, trials: int, turns: int) -> dict[str, list[float]]:
     """Seconds of every way, in this process."""
-    import xlmc
+    from xlmc.montecarlo.definitions.run_options import RunOptions
+    from xlmc.montecarlo.model.loading import load
+    from xlmc.montecarlo.simulation.simulate import run_model
 
-    model, pools = xlmc.load(path), Pools()
+    model, pools = load(path), Pools()
 
     def timed(way: str) -> float:
         pools.choose(way)
         settings = {"jobs": 1} if way == ONE else {"jobs": 2, "scheduler": "processes"}
         start = perf_counter()
-        run = model.simulate(trials, 1, engine=engine, **settings)
+        run = run_model(model, RunOptions.of(trials=trials, seed=1, engine=engine, **settings))
         taken = perf_counter() - start
         digests.add(b"".join(values.tobytes() for values in run.forecasts.values()))
         return taken
@@ -182,9 +184,9 @@ def in_turn(path: str, engine: str, trials: int, turns: int) -> dict[str, list[f
 
 def once(path: str, engine: str, trials: int, way: str) -> None:
     """One run; nothing is ended, as a program leaves it."""
+    Pools().choose(way)
     import xlmc
 
-    Pools().choose(way)
     xlmc.load(path).simulate(trials, 1, engine=engine, jobs=2, scheduler="processes")
 
 

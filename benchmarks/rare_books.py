@@ -15,10 +15,10 @@ from typing import Any
 from scipy import integrate
 from scipy.special import ndtr, ndtri
 
-from xlmc.api import Model
 from xlmc.excel.address import parse_address
 from xlmc.excel.workbook.workbook import CellContent, Formula, Sheet, Workbook
 from xlmc.montecarlo.definitions.definitions import Assumption, Correlation, Definitions, Filter, Forecast
+from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["ORDINARY", "SEVERAL", "THIN", "RareBook"]
 
@@ -48,7 +48,7 @@ class RareBook:
     further: tuple[tuple[str, Mapping[str, float]], ...] = field(default=())
 
     @property
-    def model(self) -> Model:
+    def model(self) -> CompiledModel:
         """The book, read; its forecast is A1."""
         names = [f"A{place}" for place in range(1, len(self.drawn) + 1)]
         cells = {parse_address(name, SHEET): CellContent(1.0) for name in names}
@@ -79,7 +79,7 @@ class RareBook:
             for cell, _, limits in filters
         )
         forecasts = (Forecast("x", places[0], places[0]),)
-        return Model(book, Definitions(assumptions, forecasts, kept, asked), Path("b.xlsx"))
+        return CompiledModel(book, Definitions(assumptions, forecasts, kept, asked), Path("b.xlsx"))
 
 
 def normal(mean: float = 0.0, spread: float = 1.0) -> dict[str, Any]:

@@ -11,9 +11,11 @@ from typing import Any
 
 from rare_problems import STATISTICS
 
-import xlmc
 import xlmc.montecarlo.statistics as xs
-from xlmc.api import Model
+from xlmc.montecarlo.definitions.run_options import RunOptions
+from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.montecarlo.statistics import Estimate
 
 __all__ = ["CASE", "LABELS", "WORDS", "held", "model", "narrowed", "plain", "searched"]
@@ -34,27 +36,27 @@ Answers = list[Estimate]
 """By LABELS."""
 
 
-def narrowed(model: Model) -> Model:
+def narrowed(model: CompiledModel) -> CompiledModel:
     """The case study with CASE's limits."""
     filters = tuple(replace(f, **CASE.get(f.name, {})) for f in model.filters)
-    return Model(model.workbook, replace(model.definitions, filters=filters), model.path)
+    return CompiledModel(model.workbook, replace(model.definitions, filters=filters), model.path)
 
 
 @cache
-def model() -> Model:
+def model() -> CompiledModel:
     """The book with CASE's limits, once a process."""
-    return narrowed(xlmc.load(BOOK))
+    return narrowed(load(BOOK))
 
 
 def plain(trials: int, jobs: int) -> tuple[Answers, int]:
     """What plain trials say, and how many were accepted."""
-    run = model().simulate(trials, 1, engine="jit", jobs=jobs)
+    run = run_model(model(), RunOptions.of(trials=trials, seed=1, engine="jit", jobs=jobs))
     return _answers(run), run.accepted
 
 
 def searched(seed: int) -> tuple[Answers, int]:
     """What one search says, and how many trials it computed."""
-    run = model().simulate(5 * 10**8, seed, until_accepted=WANTED, rare="always", jobs=1)
+    run = run_model(model(), RunOptions.of(trials=5 * 10**8, seed=seed, until_accepted=WANTED, rare="always", jobs=1))
     assert run.rare is not None
     return _answers(run), run.rare.evaluations
 

@@ -19,6 +19,9 @@ from typing import Any, NamedTuple
 from rare_books import ORDINARY, SEVERAL, RareBook
 from tables import placed
 
+from xlmc.montecarlo.definitions.run_options import RunOptions
+from xlmc.montecarlo.simulation.simulate import run_model
+
 __all__ = ["Run", "faults", "lines", "table", "uncovered", "wrong"]
 
 HERE = Path(__file__).resolve().parent
@@ -52,7 +55,7 @@ class Run(NamedTuple):
 
 def one(book: RareBook, seed: int) -> Run:
     """A run of that seed."""
-    found = book.model.simulate(seed=seed, until_accepted=WANTED)
+    found = run_model(book.model, RunOptions.of(seed=seed, until_accepted=WANTED))
     low, high = found.acceptance.interval or (0.0, 0.0)
     return Run(found.acceptance.value, low, high, bool(found.warnings), found.evaluated)
 

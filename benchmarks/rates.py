@@ -26,14 +26,16 @@ Say = Callable[[str], None]
 
 def task_of(book: str, path: Path, seconds: float) -> Task:
     """A task on a book: its check trials are accepted ones, its rows are any."""
-    import xlmc
+    from xlmc.montecarlo.definitions.run_options import RunOptions
+    from xlmc.montecarlo.model.loading import load
+    from xlmc.montecarlo.simulation.simulate import run_model
 
-    model = xlmc.load(path)
+    model = load(path)
     drawn = model.sampler(7, ROWS).draw(0)
     rows = [list(row) for row in zip(*(drawn[a.name].tolist() for a in model.live), strict=True)]
     check = rows[:CHECK]
     if model.filters:
-        run = model.simulate(100 * ROWS, seed=7)
+        run = run_model(model, RunOptions.of(trials=100 * ROWS, seed=7))
         columns = [run.inputs[a.name][:CHECK].tolist() for a in model.live]
         check = [list(row) for row in zip(*columns, strict=True)]
     inputs = [CellPlace(a.cell.sheet, a.cell.row, a.cell.column) for a in model.live]
@@ -148,7 +150,7 @@ def _costs(records: dict[str, Any], cells: int) -> None:
 
 def _cells(path: Path) -> int:
     """Formula cells that the forecasts and filters of a book need and that depend on an assumption."""
-    import xlmc
+    from xlmc.montecarlo.model.loading import load
 
-    graph = xlmc.load(path).needed.graph
+    graph = load(path).needed.graph
     return sum(cell in graph.varying for cell in graph.formulas)

@@ -19,8 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 from tables import placed
 
-from xlmc.api import Model, load
+from xlmc.montecarlo.definitions.run_options import RunOptions
+from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
+from xlmc.montecarlo.simulation.simulate import run_model
 
 __all__ = ["gains", "means", "table"]
 
@@ -37,9 +40,9 @@ RESAMPLES = 4_000
 Floats = NDArray[np.float64]
 
 
-def means(model: Model, method: str, seeds: range, trials: int = TRIALS) -> Floats:
+def means(model: CompiledModel, method: str, seeds: range, trials: int = TRIALS) -> Floats:
     """(seeds, forecasts) the means of the accepted trials."""
-    runs = (model.simulate(trials, seed, sampling=method, keep_inputs=0) for seed in seeds)
+    runs = (run_model(model, RunOptions.of(trials=trials, seed=seed, sampling=method, keep_inputs=0)) for seed in seeds)
     return np.array([[np.nanmean(values) for values in run.forecasts.values()] for run in runs])
 
 
@@ -81,7 +84,7 @@ def main() -> None:
     parser.add_argument("--page", type=Path, default=PAGE)
     given = parser.parse_args()
     book = load(CASE_STUDY)
-    free = Model(book.workbook, replace(book.definitions, filters=()), book.path)
+    free = CompiledModel(book.workbook, replace(book.definitions, filters=()), book.path)
     measured: dict[str, dict[str, Any]] = {}
     for case, model in {"without filters": free, "with filters": book}.items():
         plain = means(model, "mc", range(SEEDS[case]))

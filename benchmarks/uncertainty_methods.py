@@ -18,11 +18,12 @@ import numpy as np
 from machine import describe
 from tables import placed
 
-import xlmc
 from xlmc.analysis.studies.methods import STATISTICS, Runs, Study, recommendation, study
 from xlmc.analysis.studies.methods.curve import runs_of
 from xlmc.analysis.studies.methods.sampled import MONTE_CARLO
 from xlmc.cli.methods import study_json
+from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.outputs.methods import methods_tables, save_methods
 
 __all__ = ["PAGE", "filled", "theory_rows", "theory_runs", "write"]
@@ -41,7 +42,7 @@ THEORY_TRIALS, THEORY_RUNS = (8_192, 32_768, 131_072), 200
 _SEED = 5_000_000
 
 
-def theory_runs(model: xlmc.Model, found: Study) -> list[Runs]:
+def theory_runs(model: CompiledModel, found: Study) -> list[Runs]:
     """Many runs by Monte Carlo of a few lengths, which theory is held against."""
     return [
         runs_of(
@@ -101,7 +102,7 @@ def _arguments(given: Sequence[str] | None) -> argparse.Namespace:
 def main(given: Sequence[str] | None = None) -> None:
     """Measure and write."""
     asked = _arguments(given)
-    model = xlmc.load(BOOK)
+    model = load(BOOK)
     found = study(
         model,
         reference_trials=asked.reference_trials,

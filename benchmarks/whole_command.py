@@ -84,11 +84,13 @@ def _real(argument: Any) -> Any:
 
 def record(path: Path, trials: int = TRIALS) -> int:
     """Write what xlmc asks of XlsxWriter for the result sheets of a run; how many calls that are."""
-    import xlmc
+    from xlmc.montecarlo.definitions.run_options import RunOptions
+    from xlmc.montecarlo.model.loading import load
+    from xlmc.montecarlo.simulation.simulate import run_model
     from xlmc.outputs.sheets import exact_book
     from xlmc.outputs.sheets.book import build_sheets
 
-    run = xlmc.load(CASE_STUDY).simulate(trials)
+    run = run_model(load(CASE_STUDY), RunOptions.of(trials=trials))
     calls: list[Call] = []
     real = exact_book.ExactBook
     exact_book.ExactBook = lambda: Recorder(real(), 0, calls)

@@ -25,7 +25,11 @@ from typing import Any, Final
 
 import numpy as np
 
-import xlmc
+from xlmc.api import Simulation
+from xlmc.montecarlo.definitions.run_options import RunOptions
+from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.simulation.simulate import run_model
+from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.outputs.json_document import document
 
 __all__ = ["differences", "features", "main", "recorded", "witnessed"]
@@ -71,17 +75,17 @@ def witnessed(path: Path, *, parts: bool = True, runs: Iterable[tuple[str, str]]
         parts: whether to look at the result workbook, which is that of the run `numpy mc`.
         runs: engine and sampling method of each.
     """
-    model = xlmc.load(path)
+    model = load(path)
     found: Json = {}
     for engine, sampling in runs:
-        run = model.simulate(trials=TRIALS, seed=SEED, engine=engine, sampling=sampling)
+        run = run_model(model, RunOptions.of(trials=TRIALS, seed=SEED, engine=engine, sampling=sampling))
         found[f"{engine} {sampling}"] = _of_run(run)
         if parts and (engine, sampling) == ("numpy", "mc"):
             found["parts"] = dict(_parts(run))
     return found
 
 
-def _of_run(run: xlmc.Simulation) -> Json:
+def _of_run(run: RunResult) -> Json:
     columns = {**run.inputs, **run.forecasts}
     trials = hashlib.sha256()
     for name, values in columns.items():
@@ -108,11 +112,11 @@ def _numbers(values: np.ndarray[Any, Any]) -> list[float | None]:
     return [float(number) if math.isfinite(number) else None for number in found]
 
 
-def _parts(run: xlmc.Simulation) -> Iterator[tuple[str, str]]:
+def _parts(run: RunResult) -> Iterator[tuple[str, str]]:
     """The parts of the result workbook and their digests, without those that name the day or the version."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "results.xlsx"
-        run.save(path)
+        Simulation(run).save(path)
         with zipfile.ZipFile(path) as package:
             for name in package.namelist():
                 if name.startswith(("xl/worksheets/", "xl/charts/", "xl/drawings/")) and name.endswith(".xml"):

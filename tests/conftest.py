@@ -13,12 +13,12 @@ import pytest
 from openpyxl.workbook.defined_name import DefinedName as WrittenName
 from workbook_files import workbook_of
 
-from xlmc.api import Model
 from xlmc.excel.address import Area, parse_address
 from xlmc.excel.workbook.workbook import CellContent, DefinedName, Formula, Sheet, Table, Workbook
 from xlmc.montecarlo.definitions.definitions import Assumption, Correlation, Definitions, Filter, Forecast
 from xlmc.montecarlo.definitions.evidence import Evidence
 from xlmc.montecarlo.definitions.tables.evidence_rows import as_filter
+from xlmc.montecarlo.model.model import CompiledModel
 
 
 def _content(value, row, column):
@@ -112,7 +112,7 @@ def definitions():
 def _model(cells, assumptions=None, forecasts=None, filters=None, correlations=None, evidence=None, **of_workbook):
     workbook = _workbook(cells, **of_workbook)
     given = assumptions or {}, forecasts or {}, filters or {}, correlations or {}, evidence or {}
-    return Model(workbook, _definitions(workbook, *given), Path("book.xlsx"))
+    return CompiledModel(workbook, _definitions(workbook, *given), Path("book.xlsx"))
 
 
 @pytest.fixture(scope="session")

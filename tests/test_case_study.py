@@ -9,8 +9,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from simulated import simulated
 
-import xlmc
+from xlmc.montecarlo.model.loading import load
 
 BOOK = Path(__file__).resolve().parents[1] / "examples" / "intersection.xlsx"
 
@@ -41,13 +42,13 @@ SIZES = None, 2_000_000
 
 @pytest.fixture(scope="module")
 def model():
-    return xlmc.load(BOOK)
+    return load(BOOK)
 
 
 @pytest.fixture(scope="module")
 def runs(model):
     """By the number of trials: the book's own, and ten times as many."""
-    return {trials: model.simulate(trials=trials, jobs=2) for trials in SIZES}
+    return {trials: simulated(model, trials=trials, jobs=2) for trials in SIZES}
 
 
 def near(estimate, value, error):
@@ -99,7 +100,7 @@ def test_more_trials_begin_with_the_200_000(runs):
 
 
 def test_threads_change_no_bit(model, runs):
-    one, two = model.simulate(jobs=1), runs[None]
+    one, two = simulated(model, jobs=1), runs[None]
     assert (one.trial_index == two.trial_index).all()
     for name in one.forecasts:
         assert (one.forecasts[name] == two.forecasts[name]).all()
@@ -109,7 +110,7 @@ def test_threads_change_no_bit(model, runs):
 
 def test_the_reference_engine_agrees(model):
     """`formulas` computes cell by cell with the same libm: the two differ by the order of a few operations."""
-    fast, slow = (model.simulate(3, 1959, engine=engine) for engine in ("numpy", "formulas"))
+    fast, slow = (simulated(model, 3, 1959, engine=engine) for engine in ("numpy", "formulas"))
     assert fast.accepted == 2
     assert (fast.trial_index == slow.trial_index).all()
     for name, values in fast.forecasts.items():

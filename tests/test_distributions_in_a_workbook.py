@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 import xlsxwriter
 from scipy import stats
+from simulated import simulated
 
-import xlmc
 from xlmc.analysis.results.statements.in_words import distribution_text
+from xlmc.montecarlo.model.loading import load
 
 TRIALS = 50_000
 COLUMNS = [
@@ -68,7 +69,7 @@ def path(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def run(path):
-    return xlmc.load(path).simulate(trials=TRIALS, seed=999)
+    return simulated(load(path), trials=TRIALS, seed=999)
 
 
 def test_the_mean_of_every_assumption(run):
@@ -92,7 +93,7 @@ def test_a_far_tail(run):
 
 
 def test_what_the_record_says(path):
-    assumptions = {each.name: each for each in xlmc.load(path).assumptions}
+    assumptions = {each.name: each for each in load(path).assumptions}
     assert distribution_text(assumptions["gamma"]) == "Gamma: Location 0, Scale 2, Shape 3"
     assert distribution_text(assumptions["by both"]) == "Triangular: Likeliest 2, P10 1, P90 3"
     assert distribution_text(assumptions["by percentiles"]) == "Normal: P10 1, P97.5 5"

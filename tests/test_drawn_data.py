@@ -10,9 +10,11 @@ import pytest
 from fewer_sheets import CHARTS, SENSITIVITY, leave_out
 from openpyxl.worksheet.table import Table
 from scipy import stats
+from simulated import simulated
 
-import xlmc
+from xlmc.api import Simulation
 from xlmc.errors import DefinitionError
+from xlmc.montecarlo.model.loading import load
 
 HEADINGS = ["Name", "Value", "Distribution", "Data", "Cumulative", "Bandwidth", "Low", "High"]
 UNIT_COST = [
@@ -56,7 +58,7 @@ def book(tmp_path):
 
 
 def test_custom_data_from_file_to_file(book, tmp_path, monkeypatch):
-    run = xlmc.load(book([["Unit cost", 45, "Custom", "Data!A1:D6"]])).simulate(trials=60_000, seed=999)
+    run = simulated(load(book([["Unit cost", 45, "Custom", "Data!A1:D6"]])), trials=60_000, seed=999)
     draws = run["x0"].values
     cells = [10, 20, 30, 40, 50, 60, *(np.arange(60, 81) + 0.5), 91, 101]
     counts, _ = np.histogram(draws, cells)
@@ -68,7 +70,7 @@ def test_custom_data_from_file_to_file(book, tmp_path, monkeypatch):
     mean = 0.2 * 15 + 0.1 * 25 + 0.3 * 45 + 0.3 * 70 + 0.05 * 190
     assert abs(run["x0"].mean.value - mean) < 4 * run["x0"].mean.error
     leave_out(monkeypatch, *CHARTS, *SENSITIVITY)
-    run.save(tmp_path / "results.xlsx")
+    Simulation(run).save(tmp_path / "results.xlsx")
     with closing(openpyxl.load_workbook(tmp_path / "results.xlsx", read_only=True)) as sheets:
         shown = [value for row in sheets["Assumptions"].iter_rows(values_only=True) for value in row]
     assert "Custom: Data Data!A1:D6" in shown
@@ -79,7 +81,7 @@ def test_empirical_data_as_they_are_and_smoothed(book):
         ["Resampled", 0.77, "Empirical", "Tests[Friction]"],
         ["Smoothed", 0.77, "Empirical smoothed", "Tests[Friction]", None, 0.02],
     ]
-    run = xlmc.load(book(rows)).simulate(trials=60_000, seed=999)
+    run = simulated(load(book(rows)), trials=60_000, seed=999)
     values, counts = np.unique(run["x0"].values, return_counts=True)
     np.testing.assert_array_equal(values, sorted(set(MEASURED)))
     expected = [60_000 / 7 * MEASURED.count(value) for value in values]
@@ -91,7 +93,7 @@ def test_empirical_data_as_they_are_and_smoothed(book):
 def test_many_draws(book):
     """Chi-square at 1e-4: pieces of Custom by their weights, Empirical smoothed in fifty equally likely cells."""
     rows = [["Unit cost", 45, "Custom", "Data!A1:D6"], ["Smoothed", 0.77, "Empirical smoothed", "Tests", None, 0.02]]
-    draws = xlmc.load(book(rows)).sampler(999, 60_000).draw(0)
+    draws = load(book(rows)).sampler(999, 60_000).draw(0)
     counts, _ = np.histogram(draws["Unit cost"], [10, 20, 30, 55, 85, 95, 101])
     assert stats.chisquare(counts, 60_000 * np.array([0.2, 0.1, 0.3, 0.3, 0.05, 0.05])).pvalue > 1e-4
     mixture = stats.norm(np.array(MEASURED)[:, None], 0.02)
@@ -103,14 +105,14 @@ def test_many_draws(book):
 
 def test_data_may_be_computed_from_what_does_not_vary(book):
     given = book([["Cost", 45, "Empirical", "Data!K1:K2"]], {"J1": 3, "K1": "=J1*2", "K2": "=K1+1"})
-    run = xlmc.load(given).simulate(trials=1000)
+    run = simulated(load(given), trials=1000)
     np.testing.assert_array_equal(np.unique(run["x0"].values), [6, 7])
 
 
 def test_faults_of_computed_data_are_told_with_their_cell(book):
     given = book([["Cost", 45, "Custom", "Data!K1:L2"]], {"K1": 1, "L1": "=0-2", "K2": 2, "L2": 1})
     with pytest.raises(DefinitionError, match=r"The weight \(-2\) is below 0") as caught:
-        xlmc.load(given)
+        load(given)
     assert caught.value.where == "Data!L1"
 
 
@@ -121,13 +123,13 @@ def test_data_that_vary_are_refused(book, formula, where):
     data = "Data!K1:K2" if formula else "Inputs!B3:B3"
     rows = [["Cost", 45, "Empirical", data], ["Other", 5, "Uniform", None, None, None, 0, 9]]
     with pytest.raises(DefinitionError, match="The data of 'Cost' vary with an assumption in this cell") as caught:
-        xlmc.load(book(rows, {"K1": formula, "K2": 7}))
+        load(book(rows, {"K1": formula, "K2": 7}))
     assert caught.value.where == where
     assert "Draw from fixed data" in caught.value.hint
 
 
 def test_the_same_draws_for_any_number_of_threads(book):
-    model = xlmc.load(book([["Unit cost", 45, "Custom", "Data!A1:D6"], ["F", 0.77, "Empirical smoothed", "Tests"]]))
-    one, two = model.simulate(trials=70_000), model.simulate(trials=70_000, jobs=2)
+    model = load(book([["Unit cost", 45, "Custom", "Data!A1:D6"], ["F", 0.77, "Empirical smoothed", "Tests"]]))
+    one, two = simulated(model, trials=70_000), simulated(model, trials=70_000, jobs=2)
     for name in ("x0", "x1"):
         np.testing.assert_array_equal(one[name].values, two[name].values)

@@ -14,14 +14,16 @@ import pytest
 import xlsxwriter
 from openpyxl import Workbook
 from scipy import stats
+from simulated import simulated
 
-import xlmc
-from xlmc.api import Model
+from xlmc.analysis.studies.scenario_answers import models_of, scenario_answers
 from xlmc.engine.engines import ENGINES
 from xlmc.errors import XlmcError
 from xlmc.excel.address import Area
 from xlmc.excel.workbook.workbook import CellContent, Formula
 from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.model.model import CompiledModel
 
 TRIALS = 25_000
 
@@ -39,7 +41,7 @@ def saved(cells, path):
 
 @pytest.fixture
 def model(tmp_path):
-    return lambda cells: xlmc.load(saved(cells, tmp_path / "book.xlsx"))
+    return lambda cells: load(saved(cells, tmp_path / "book.xlsx"))
 
 
 LOGNORMAL_SIGMA = math.sqrt(math.log(1.04))
@@ -174,7 +176,7 @@ BOOKS = {
 @pytest.mark.parametrize("name", BOOKS)
 def test_books_run_unchanged(model, name):
     cells, answers = BOOKS[name]
-    run = model(cells).simulate(trials=TRIALS, seed=999)
+    run = simulated(model(cells), trials=TRIALS, seed=999)
     for forecast, (mean, deviation) in answers.items():
         found = run[forecast]
         assert found.values.size == TRIALS
@@ -236,7 +238,7 @@ SHAPES = {
 def test_whole_distributions(model):
     """The share of draws below each decile that SciPy gives."""
     cells = {f"A{row}": f'=RiskOutput("{row}")+{formula}' for row, formula in enumerate(SHAPES, start=1)}
-    run = model(cells).simulate(trials=TRIALS, seed=999)
+    run = simulated(model(cells), trials=TRIALS, seed=999)
     for row, (formula, oracle) in enumerate(SHAPES.items(), start=1):
         values = run[str(row)].values
         for share in np.arange(0.1, 0.95, 0.1):
@@ -247,7 +249,7 @@ def test_whole_distributions(model):
 def test_rank_correlation_of_a_matrix(model):
     """Its standard error is below 1/√n."""
     cells, _ = BOOKS["matrix"]
-    run = model(cells).simulate(trials=TRIALS, seed=999)
+    run = simulated(model(cells), trials=TRIALS, seed=999)
     found = stats.spearmanr(run.inputs["S!A1#1"], run.inputs["S!A2#1"]).statistic
     assert abs(found - 0.6) < 5 / math.sqrt(TRIALS)
 
@@ -256,7 +258,7 @@ def test_another_cell_leaves_the_draws_of_all_others_untouched(model):
     cells = {"A1": "=RiskNormal(5,1)+RAND()", "A2": '=RiskUniform(0,1,RiskName("u"))', "A3": "=RiskOutput()+A1+A2"}
     more = {**cells, "A0": 1, "B9": "=RAND()*2", "A3": "=RiskOutput()+A1+A2+B9+RiskNormal(0,1)"}
     del more["A0"]
-    before, after = (model(each).simulate(trials=5000, seed=3) for each in (cells, more))
+    before, after = (simulated(model(each), trials=5000, seed=3) for each in (cells, more))
     assert set(after.inputs) > set(before.inputs) == {"S!A1#1", "S!A1#2", "u"}
     for name, draws in before.inputs.items():
         np.testing.assert_array_equal(draws, after.inputs[name])
@@ -264,7 +266,7 @@ def test_another_cell_leaves_the_draws_of_all_others_untouched(model):
 
 def test_draws_of_filled_down_cells_are_independent(model):
     cells = {f"A{i}": "=RAND()" for i in range(1, 5)} | {"B1": "=RiskOutput()+SUM(A1:A4)"}
-    inputs = model(cells).simulate(trials=TRIALS, seed=999).inputs
+    inputs = simulated(model(cells), trials=TRIALS, seed=999).inputs
     found = np.corrcoef([inputs[f"S!A{i}#1"] for i in range(1, 5)])
     assert np.abs(found - np.eye(4)).max() < 5 / math.sqrt(TRIALS)
 
@@ -272,8 +274,8 @@ def test_draws_of_filled_down_cells_are_independent(model):
 @pytest.mark.parametrize("name", ["nested", "matrix", "array"])
 def test_threads_and_processes_do_not_matter(model, name):
     made = model(BOOKS[name][0])
-    one = made.simulate(trials=70_000, seed=5)
-    others = (made.simulate(trials=70_000, seed=5, jobs=2, scheduler=s) for s in ("threads", "processes"))
+    one = simulated(made, trials=70_000, seed=5)
+    others = (simulated(made, trials=70_000, seed=5, jobs=2, scheduler=s) for s in ("threads", "processes"))
     for other in others:
         for forecast, values in one.forecasts.items():
             np.testing.assert_array_equal(values, other.forecasts[forecast])
@@ -282,7 +284,7 @@ def test_threads_and_processes_do_not_matter(model, name):
 @pytest.mark.parametrize("name", ["cost", "prefix", "nested", "properties", "lists"])
 def test_the_slow_reference_agrees(model, name):
     made = model(BOOKS[name][0])
-    fast, slow = made.simulate(trials=20), made.simulate(trials=20, engine="formulas")
+    fast, slow = simulated(made, trials=20), simulated(made, trials=20, engine="formulas")
     for forecast, values in fast.forecasts.items():
         np.testing.assert_allclose(values, slow.forecasts[forecast], rtol=1e-12)
 
@@ -291,7 +293,7 @@ def test_the_slow_reference_agrees(model, name):
 def test_the_compiled_engine_agrees(model, name):
     pytest.importorskip("llvmlite")
     made = model(BOOKS[name][0])
-    fast, compiled = made.simulate(trials=2000), made.simulate(trials=2000, engine="jit")
+    fast, compiled = simulated(made, trials=2000), simulated(made, trials=2000, engine="jit")
     for forecast, values in fast.forecasts.items():
         np.testing.assert_allclose(values, compiled.forecasts[forecast], rtol=1e-12)
 
@@ -300,7 +302,7 @@ def test_an_array_of_draws_spills(workbook):
     """The cells that a dynamic array fills draw on their own: the variance of their sum is the sum of theirs."""
     array = Formula("RANDARRAY(3,1,0,6)", 1, 1, Area("S", 1, 1, 3, 1), dynamic=True)
     held = workbook({"A1": CellContent(1.0, array), "A2": 1.0, "A3": 1.0, "B1": "=RiskOutput()+SUM(A1:A3)"})
-    run = Model(held, read_definitions(held, ENGINES), Path("book.xlsx")).simulate(trials=TRIALS, seed=999)
+    run = simulated(CompiledModel(held, read_definitions(held, ENGINES), Path("book.xlsx")), trials=TRIALS, seed=999)
     found = run["S!B1"]
     assert abs(found.mean.value - 9) < 5 * 3 / math.sqrt(TRIALS)
     assert abs(found.standard_deviation.value - 3) < 5 * found.standard_deviation.error
@@ -309,13 +311,13 @@ def test_an_array_of_draws_spills(workbook):
 def test_a_locked_draw_is_held(model):
     made = model({"A1": "=RiskNormal(5,1,RiskLock(),RiskShift(1))+RAND()", "A2": "=A1+RiskOutput()"})
     assert [a.name for a in made.live] == ["S!A1#2"]
-    values = made.simulate(trials=100)["S!A2"].values
+    values = simulated(made, trials=100)["S!A2"].values
     assert values.min() >= 6
     assert values.max() <= 7
 
 
 def test_parameters_that_are_no_distribution_are_error_trials(model):
-    run = model({"A1": "=RiskNormal(0,RAND()-0.5)", "A2": "=A1+RiskOutput()"}).simulate(trials=TRIALS)
+    run = simulated(model({"A1": "=RiskNormal(0,RAND()-0.5)", "A2": "=A1+RiskOutput()"}), trials=TRIALS)
     lost = run.error_trials / TRIALS
     assert abs(lost - 0.5) < 5 * 0.5 / math.sqrt(TRIALS)
 
@@ -359,7 +361,7 @@ def test_beside_tables(tmp_path):
         sheet.write("C8", 15)
         columns = [{"header": h} for h in ("Name", "Value", "Below")]
         sheet.add_table("A7:C8", {"name": "xlmc_filters", "columns": columns})
-    run = xlmc.load(path).simulate(trials=TRIALS, seed=999)
+    run = simulated(load(path), trials=TRIALS, seed=999)
     assert abs(run.acceptance.value - 0.5) < 5 * 0.5 / math.sqrt(TRIALS)
     deviation = math.sqrt(25 / 12 + 1 + 1 / 12)
     assert abs(run["answer"].mean.value - 13) < 5 * deviation / math.sqrt(run.accepted)
@@ -420,7 +422,7 @@ def test_sums_and_values(model):
     made = model({**cells, "C1": 7, "C2": 8, "C3": 9})
     told = [str(notice.where) for notice in made.notices if "a run uses the first" in notice.message]
     assert told == ["S!A9"]
-    run = made.simulate(trials=TRIALS, seed=999)
+    run = simulated(made, trials=TRIALS, seed=999)
     for name, (mean, deviation) in zip("abcdefghij", SUMS.values(), strict=True):
         assert abs(run[name].mean.value - mean) < 5 * deviation / math.sqrt(TRIALS), name
         assert abs(run[name].standard_deviation.value - deviation) < 5 * run[name].standard_deviation.error, name
@@ -437,7 +439,7 @@ def test_a_correlated_frequency(model):
         "A2": "=RiskNormal(0,1,RiskCorrmat(F1:G2,2))",
         "A3": "=A1+A2+RiskOutput()",
     }  # fmt: skip
-    inputs = model(cells).simulate(trials=TRIALS, seed=999).inputs
+    inputs = simulated(model(cells), trials=TRIALS, seed=999).inputs
     found = stats.spearmanr(inputs["S!A1#1"], inputs["S!A2#1"]).statistic
     assert abs(found - 0.7) < 5 / math.sqrt(TRIALS)
     for formula, message in (
@@ -464,8 +466,8 @@ def test_simtables_are_scenarios(model):
     }  # fmt: skip
     made = model(cells)
     assert [each.name for each in made.definitions.scenarios] == ["simulation 2", "simulation 3"]
-    run = made.simulate(trials=2000, seed=999, scenarios=True)
-    own, *others = run.scenarios
+    run = simulated(made, trials=2000, seed=999, scenarios=True)
+    own, *others = scenario_answers(run)
     assert own.forecasts[0].mean.value == run["S!A2"].mean.value
     for answer, difference in zip(others, (11, 32), strict=True):
         found = answer.forecasts[0].differences["mean"]
@@ -473,4 +475,4 @@ def test_simtables_are_scenarios(model):
         assert found.error < 1e-9
     short = model({**cells, "A2": "=A1+RiskSimtable(C1:C2)+RiskOutput()"})
     with pytest.raises(XlmcError, match="RiskSimtable has 2 values, and value 3 is asked for"):
-        short.simulate(trials=100, scenarios=True)
+        models_of(short)

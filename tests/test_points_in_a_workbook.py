@@ -7,9 +7,10 @@ import math
 import pytest
 import xlsxwriter
 from scipy import stats
+from simulated import simulated
 
-import xlmc
 from xlmc.analysis.results.statements.in_words import distribution_text
+from xlmc.montecarlo.model.loading import load
 
 TRIALS = 100_000
 HEADINGS = ["Name", "Value", "Distribution", "Low", "High", "Data"]
@@ -36,12 +37,12 @@ def model(tmp_path_factory):
         inputs.add_table(0, 0, len(ROWS), len(HEADINGS) - 1, {"name": "xlmc_assumptions", "columns": columns})
         columns = [{"header": "Name"}, {"header": "Value"}]
         answers.add_table(0, 0, len(ROWS), 1, {"name": "xlmc_forecasts", "columns": columns})
-    return xlmc.load(path)
+    return load(path)
 
 
 def test_means(model):
     """Within five standard errors of what SciPy says."""
-    run = model.simulate(trials=TRIALS, seed=999)
+    run = simulated(model, trials=TRIALS, seed=999)
     for name, (*_, oracle) in ROWS.items():
         assert abs(run[name].mean.value - oracle.mean()) < 5 * oracle.std() / math.sqrt(TRIALS), name
 

@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 from openpyxl import Workbook
 from scipy import integrate, stats
+from simulated import simulated
 
-import xlmc
+from xlmc.montecarlo.model.loading import load
 
 TRIALS = 20_000
 
@@ -210,7 +211,7 @@ def test_books_of_risk(tmp_path, name):
     for address, value in cells.items():
         sheet[address] = value
     book.save(tmp_path / "book.xlsx")
-    found = xlmc.load(tmp_path / "book.xlsx").simulate(trials=TRIALS, seed=999)[output]
+    found = simulated(load(tmp_path / "book.xlsx"), trials=TRIALS, seed=999)[output]
     assert found.values.size == TRIALS
     assert abs(found.mean.value - mean) < 4 * deviation / math.sqrt(TRIALS)
     assert abs(found.standard_deviation.value - deviation) < 4 * found.standard_deviation.error

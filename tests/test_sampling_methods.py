@@ -6,14 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 import xlmc.montecarlo.simulation.simulate
 from xlmc.analysis.results.record import make_record
-from xlmc.api import Model
 from xlmc.errors import SimulationError
 from xlmc.montecarlo import statistics
 from xlmc.montecarlo.definitions.definitions import Settings
 from xlmc.montecarlo.loop.sobol_order import plan_sampling
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 
 ROUNDED = ", whole ones, for the 1,000 trials that were asked for"
@@ -42,29 +43,29 @@ def everything(run):
 @pytest.mark.parametrize("method", STRATIFIED)
 @pytest.mark.parametrize("scheduler", ["threads", "processes"])
 def test_who_runs_the_blocks_changes_no_bit(model, method, scheduler):
-    alone = model.simulate(5_000, 3, sampling=method)
-    assert everything(model.simulate(5_000, 3, sampling=method, jobs=3, scheduler=scheduler)) == everything(alone)
+    alone = simulated(model, 5_000, 3, sampling=method)
+    assert everything(simulated(model, 5_000, 3, sampling=method, jobs=3, scheduler=scheduler)) == everything(alone)
 
 
 @pytest.mark.parametrize("method", STRATIFIED)
 def test_the_block_size_changes_no_bit(model, monkeypatch, method):
-    small = model.simulate(5_000, 3, sampling=method)
+    small = simulated(model, 5_000, 3, sampling=method)
     monkeypatch.setattr(xlmc.montecarlo.simulation.simulate, "BLOCK", 4_096)
-    assert everything(model.simulate(5_000, 3, sampling=method)) == everything(small)
+    assert everything(simulated(model, 5_000, 3, sampling=method)) == everything(small)
 
 
 @pytest.mark.parametrize("method", STRATIFIED)
 def test_whole_replicates_are_run_and_can_be_repeated(model, method):
-    run = model.simulate(5_001, 3, sampling=method)
+    run = simulated(model, 5_001, 3, sampling=method)
     assert run.trials == run.plan.trials == run.plan.size * run.plan.replicates > 5_001
-    assert everything(model.simulate(run.trials, 3, sampling=method)) == everything(run)
+    assert everything(simulated(model, run.trials, 3, sampling=method)) == everything(run)
     assert run.accepted_by_replicate.sum() == run.accepted
     assert np.array_equal(np.bincount(run.replicate), run.accepted_by_replicate)
 
 
 @pytest.mark.parametrize("method", STRATIFIED)
 def test_errors_come_from_the_replicates(model, method):
-    run = model.simulate(20_000, 3, sampling=method)
+    run = simulated(model, 20_000, 3, sampling=method)
     values, ids = run.forecasts["y"], run.replicate
     known = ~np.isnan(values)
     assert not known.all()
@@ -76,9 +77,9 @@ def test_errors_come_from_the_replicates(model, method):
 
 def test_without_filters_the_margins_are_stratified_and_the_means_are_better(book):
     model = book(CELLS, {key: GIVEN[key] for key in ("a", "c")}, {"x": "B2"})
-    plain = model.simulate(20_000, 3)["x"].mean.error
+    plain = simulated(model, 20_000, 3)["x"].mean.error
     for method, gain in (("lhs", 2), ("lhs500", 2), ("sobol", 50)):
-        run = model.simulate(20_000, 3, sampling=method)
+        run = simulated(model, 20_000, 3, sampling=method)
         assert run["x"].mean.error < plain / gain
         assert abs(run["x"].mean.value - 0.25) < 5 * run["x"].mean.error
         places = np.floor(run.inputs["a"][: run.plan.size] * run.plan.size + 1e-9)
@@ -87,19 +88,19 @@ def test_without_filters_the_margins_are_stratified_and_the_means_are_better(boo
 
 @pytest.mark.parametrize("method", ["mc", "lhs", "lhs500"])
 def test_other_assumptions_change_nothing(book, method):
-    both = book(CELLS, {key: GIVEN[key] for key in ("a", "c")}, {"x": "B2"}).simulate(2_000, 3, sampling=method)
-    alone = book(CELLS, {"a": GIVEN["a"]}, {"x": "B2"}).simulate(2_000, 3, sampling=method)
+    both = simulated(book(CELLS, {key: GIVEN[key] for key in ("a", "c")}, {"x": "B2"}), 2_000, 3, sampling=method)
+    alone = simulated(book(CELLS, {"a": GIVEN["a"]}, {"x": "B2"}), 2_000, 3, sampling=method)
     assert np.array_equal(both.inputs["a"], alone.inputs["a"])
 
 
 def test_too_few_accepted_trials_are_told(book):
     model = book(CELLS, GIVEN, {"x": "B1"}, {"f": {"cell": "A1", "below": 0.02}})
-    run = model.simulate(4_000, 3, sampling="lhs")
+    run = simulated(model, 4_000, 3, sampling="lhs")
     assert 0 < run.accepted < 160
     [warning] = run.warnings
     assert warning.startswith(f"only {run.accepted} trials were accepted in 16 replicates, fewer than 160, so errors")
-    assert not model.simulate(40_000, 3, sampling="lhs").warnings
-    assert not model.simulate(4_000, 3).warnings
+    assert not simulated(model, 40_000, 3, sampling="lhs").warnings
+    assert not simulated(model, 4_000, 3).warnings
 
 
 def test_long_tails_are_told(book):
@@ -108,7 +109,7 @@ def test_long_tails_are_told(book):
     given = {"z": {"cell": "A1", "distribution": "Normal", "mean": 0, "std_dev": 1}}
     model = book(cells, given, {"heavy": "B1", "less": "B2", "plain": "B3"})
     for method in ("mc", "lhs", "sobol"):
-        notices = [notice.message for notice in model.simulate(20_000, 1, sampling=method).notices_of_run]
+        notices = [notice.message for notice in simulated(model, 20_000, 1, sampling=method).notices_of_run]
         short = [message for message in notices if "too short" in message or "depend on a single trial" in message]
         assert "'heavy'" in " ".join(short)
         assert "'plain'" not in " ".join(notices)
@@ -137,22 +138,22 @@ def test_the_pilot_gets_along_with_nothing_accepted_and_with_errors(book):
 def test_engines_agree(model, engine):
     if engine == "jit":
         pytest.importorskip("llvmlite")
-    numpy, other = (model.simulate(400, 3, sampling="sobol", engine=each) for each in ("numpy", engine))
+    numpy, other = (simulated(model, 400, 3, sampling="sobol", engine=each) for each in ("numpy", engine))
     assert np.array_equal(other.trial_index, numpy.trial_index)
     assert other.forecasts["x"] == pytest.approx(numpy.forecasts["x"], rel=1e-12)
 
 
 def test_an_unknown_method(model):
     with pytest.raises(SimulationError, match="There is no sampling method 'dice'") as caught:
-        model.simulate(100, sampling="dice")
+        simulated(model, 100, sampling="dice")
     assert caught.value.hint == f"Choose one of {', '.join(METHODS)}"
 
 
 def test_the_books_own_setting(model):
     own = replace(model.definitions, settings=Settings(trials=1_000, seed=4, sampling="lhs500"))
-    run = Model(model.workbook, own, model.path).simulate()
+    run = simulated(CompiledModel(model.workbook, own, model.path))
     assert run.plan.method == "lhs500"
-    assert everything(run) == everything(model.simulate(1_000, 4, sampling="lhs500"))
+    assert everything(run) == everything(simulated(model, 1_000, 4, sampling="lhs500"))
 
 
 @pytest.mark.parametrize(
@@ -172,7 +173,7 @@ def test_the_books_own_setting(model):
     ],
 )
 def test_the_record_says_how_trials_were_drawn_and_errors_made(model, method, words, errors):
-    run = model.simulate(1_000, 3, sampling=method)
+    run = simulated(model, 1_000, 3, sampling=method)
     record = make_record(run)
     assert record["sampling.method"] == method
     assert record["sampling.method_in_words"] == words
@@ -188,5 +189,5 @@ def test_the_record_says_how_trials_were_drawn_and_errors_made(model, method, wo
 
 
 def test_many_replicates_are_grouped_for_their_errors(model):
-    record = make_record(model.simulate(50_000, 3, sampling="lhs500"))
+    record = make_record(simulated(model, 50_000, 3, sampling="lhs500"))
     assert record["sampling.errors"].startswith("from the differences between 64 groups of replicates")

@@ -12,10 +12,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from xlmc.analysis.studies.comparison import compare
-    from xlmc.analysis.studies.screening import screen
-    from xlmc.analysis.studies.sensitivity import sensitivities
-    from xlmc.api import Model, Simulation, load, open_run
+    from xlmc.api import Model, Simulation, compare, load, open_run, screen, sensitivities
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
     from xlmc.montecarlo.loop.version import __version__
 
@@ -31,23 +28,23 @@ __all__ = [
     "sensitivities",
 ]
 
-_HOMES = {
-    "ForecastResult": "montecarlo.simulation.simulation",
+_MODULES = {
+    "ForecastResult": "montecarlo.loop.forecast_result",
     "Model": "api",
     "Simulation": "api",
     "__version__": "montecarlo.loop.version",
-    "compare": "analysis.studies.comparison",
+    "compare": "api",
     "load": "api",
     "open_run": "api",
-    "screen": "analysis.studies.screening",
-    "sensitivities": "analysis.studies.sensitivity",
+    "screen": "api",
+    "sensitivities": "api",
 }
 
 
 def __getattr__(name: str) -> Any:
     """Import the public names when they are first used, so that `xlmc --help` answers at once."""
-    if name not in _HOMES:
+    if name not in _MODULES:
         raise AttributeError(f"module 'xlmc' has no attribute {name!r}")
     from importlib import import_module
 
-    return getattr(import_module(f"xlmc.{_HOMES[name]}"), name)
+    return getattr(import_module(f"xlmc.{_MODULES[name]}"), name)

@@ -1,35 +1,174 @@
 """What people use in Python: the model of a workbook, its runs, and all that can be asked of either.
 
-What a model and a run *are* is in `xlmc.montecarlo.loop`; the methods here call the rooms that do the work.
+A `Model` holds a `CompiledModel`, and a `Simulation` a `RunResult`, which do the work. What stands here is what
+docs/python.md lists, and stays as it is from version to version.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from xlmc.errors import Notice
 from xlmc.montecarlo.definitions.run_options import RunArguments, RunOptions
-from xlmc.montecarlo.model import loading, model
-from xlmc.montecarlo.simulation import simulation
+from xlmc.montecarlo.model import loading
 
 if TYPE_CHECKING:
+    import pandas
     from matplotlib.figure import Figure
 
+    from xlmc.analysis.studies.comparison import CompareArguments, Comparison
     from xlmc.analysis.studies.scenario_answers import ScenarioAnswers
+    from xlmc.analysis.studies.screening import ScreenArguments, Screening
+    from xlmc.analysis.studies.sensitivity import Sensitivities
+    from xlmc.excel.workbook.workbook import Workbook
+    from xlmc.montecarlo.definitions.definitions import Assumption, Check, Filter, Forecast
+    from xlmc.montecarlo.definitions.evidence import Evidence
+    from xlmc.montecarlo.definitions.run_settings import Settings
     from xlmc.montecarlo.definitions.scenarios import Scenario
+    from xlmc.montecarlo.diagnostics.agreement import Agreement
+    from xlmc.montecarlo.diagnostics.checking import CheckResult
+    from xlmc.montecarlo.loop.blocks import FilterTally
+    from xlmc.montecarlo.loop.forecast_result import ForecastResult
+    from xlmc.montecarlo.loop.stopping import Stopped
+    from xlmc.montecarlo.model.model import CompiledModel
+    from xlmc.montecarlo.rare.account import RareAccount
     from xlmc.montecarlo.simulation.simulate import OnProgress
+    from xlmc.montecarlo.simulation.simulation import RunResult
+    from xlmc.montecarlo.statistics import Estimate
 
-__all__ = ["Model", "Simulation", "load", "open_run"]
+__all__ = ["Model", "Simulation", "compare", "load", "open_run", "screen", "sensitivities"]
+
+Floats = NDArray[np.float64]
 
 
-class Simulation(simulation.Simulation):
-    """A finished run that can write files and draw figures.
+class Simulation:
+    """A finished run: accepted trials, counts, statistics, and the files that show them.
 
-    `xlmc.montecarlo.simulation.simulation.Simulation` says what it holds.
+    Of a large run the columns lie in temporary files, as read-only arrays, for as long as it lives. `m` is the number
+    of accepted trials.
     """
 
-    model: Model
+    def __init__(self, run: RunResult) -> None:
+        self._run = run
+
+    def __repr__(self) -> str:
+        if self.rare is not None:
+            return f"<Simulation: {self.accepted} accepted trials, found in {self.rare.evaluations} evaluations>"
+        return f"<Simulation: {self.accepted} of {self.trials} trials accepted>"
+
+    def __getitem__(self, name: str) -> ForecastResult:
+        """Return the result of a forecast, by name whatever its case.
+
+        Raises:
+            KeyError: there is no such forecast.
+        """
+        return self._run[name]
+
+    @property
+    def model(self) -> Model:
+        """The model that was run."""
+        return Model(self._run.model)
+
+    @property
+    def settings(self) -> Settings:
+        """The settings of the run: `trials`, `seed`, `sampling`, `engine`, `evidence`, …"""
+        return self._run.settings
+
+    @property
+    def trials(self) -> int:
+        """How many trials were run; where accepted ones are rare, those before the search, which the counts are of."""
+        return self._run.trials
+
+    @property
+    def accepted(self) -> int:
+        """How many trials were accepted."""
+        return self._run.accepted
+
+    @property
+    def acceptance(self) -> Estimate:
+        """The share of accepted trials, with its error."""
+        return self._run.acceptance
+
+    @property
+    def trial_index(self) -> NDArray[np.int64]:
+        """`(m,)` the numbers of the accepted trials, from 0; where they are rare, in the order they were drawn in."""
+        return self._run.trial_index
+
+    @property
+    def inputs(self) -> Mapping[str, Floats]:
+        """Assumption -> its accepted draws, `(m,)`, or fewer where not all were to be kept."""
+        return self._run.inputs
+
+    @property
+    def prior(self) -> Mapping[str, Floats]:
+        """Assumption -> its draws before filtering, of the first trials."""
+        return self._run.prior
+
+    @property
+    def forecasts(self) -> Mapping[str, Floats]:
+        """Forecast -> `(m,)`, NaN where it has no number."""
+        return self._run.forecasts
+
+    @property
+    def results(self) -> Mapping[str, ForecastResult]:
+        """Forecast -> its result, in the order of the workbook."""
+        return self._run.results
+
+    @property
+    def tally(self) -> FilterTally:
+        """What each filter rejected, alone and together with others."""
+        return self._run.tally
+
+    @property
+    def faults(self) -> Mapping[str, Counter[str]]:
+        """Forecast -> fault, such as `#DIV/0!` -> accepted trials in which it has no number."""
+        return self._run.faults
+
+    @property
+    def error_trials(self) -> int:
+        """Trials that were lost to errors; each counts once."""
+        return self._run.error_trials
+
+    @property
+    def stopped(self) -> Stopped:
+        """What ended the run: `by`, `reached`, and a `sentence`."""
+        return self._run.stopped
+
+    @property
+    def rare(self) -> RareAccount | None:
+        """Where accepted trials come from where a search found them; None with plain trials."""
+        return self._run.rare
+
+    @property
+    def agreement(self) -> Agreement | None:
+        """Whether the evidence agrees with the model and with itself; None where no evidence is used."""
+        return self._run.agreement
+
+    @property
+    def weights(self) -> Floats | None:
+        """`(m,)` the weights of the accepted trials; None where they count alike."""
+        return None if self._run.weighting is None else self._run.weighting.weights
+
+    @property
+    def checks(self) -> tuple[CheckResult, ...]:
+        """The workbook's checks, at the base case and in the accepted trials."""
+        return self._run.checks
+
+    @property
+    def warnings(self) -> list[str]:
+        """Why the answer must not be used as it is; empty when it may be."""
+        return self._run.warnings
+
+    @property
+    def notices(self) -> tuple[Notice, ...]:
+        """What else the reader of the answer should know."""
+        return self._run.notices
 
     @property
     def scenarios(self) -> tuple[ScenarioAnswers, ...]:
@@ -40,14 +179,21 @@ class Simulation(simulation.Simulation):
         """
         from xlmc.analysis.studies.scenario_answers import scenario_answers
 
-        return scenario_answers(self)
+        return scenario_answers(self._run)
 
-    @classmethod
-    def of(cls, run: simulation.Simulation) -> Simulation:
-        """The same run, and its model, with the methods of this module."""
-        found = cls.__new__(cls)
-        found.__dict__.update(run.__dict__, model=Model.of(run.model))
-        return found
+    def frame(self, *, inputs: bool = True) -> pandas.DataFrame:
+        """Return the accepted trials, one a row, indexed by trial: assumptions, then forecasts.
+
+        An assumption with the name of a forecast is called `name (assumption)`; what is called `Trial`, as the index
+        is, `Trial (assumption)` or `Trial (forecast)`.
+
+        Args:
+            inputs: with the assumptions.
+
+        Raises:
+            SimulationError: not all draws were kept.
+        """
+        return self._run.frame(inputs=inputs)
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -57,7 +203,7 @@ class Simulation(simulation.Simulation):
         """
         from xlmc.analysis.results.statements import statements
 
-        return tuple(each.text for each in statements(self))
+        return tuple(each.text for each in statements(self._run))
 
     def save(self, path: str | Path, *, overwrite: bool = False) -> Path:
         """Write the workbook with result sheets, and give the path back.
@@ -74,7 +220,7 @@ class Simulation(simulation.Simulation):
         """
         from xlmc.outputs import save
 
-        return save(self, Path(path), overwrite=overwrite)
+        return save(self._run, Path(path), overwrite=overwrite)
 
     def save_page(self, path: str | Path, *, beside: Simulation | None = None, overwrite: bool = False) -> Path:
         """Write the results as one page for a browser, which needs no network.
@@ -89,7 +235,8 @@ class Simulation(simulation.Simulation):
         """
         from xlmc.outputs.page import save_page
 
-        return save_page(self, Path(path), beside=beside, overwrite=overwrite)
+        second = None if beside is None else beside._run
+        return save_page(self._run, Path(path), beside=second, overwrite=overwrite)
 
     def keep(self, path: str | Path, *, overwrite: bool = False) -> Path:
         """Save the run in a file that ends in `.xlmcrun`; `xlmc.open_run` gives it back.
@@ -100,7 +247,7 @@ class Simulation(simulation.Simulation):
         """
         from xlmc.analysis.results.saved import keep
 
-        return keep(self, Path(path), overwrite=overwrite)
+        return keep(self._run, Path(path), overwrite=overwrite)
 
     def extract(self, path: str | Path, *, overwrite: bool = False) -> Path:
         """Write the accepted trials, with assumptions and forecasts, to a `.csv` or a `.parquet` file.
@@ -111,7 +258,7 @@ class Simulation(simulation.Simulation):
         """
         from xlmc.outputs.extract import extract
 
-        return extract(self, Path(path), overwrite=overwrite)
+        return extract(self._run, Path(path), overwrite=overwrite)
 
     def save_json(self, path: str | Path, *, overwrite: bool = False) -> Path:
         """Write all results as JSON; docs/json.md describes it.
@@ -121,7 +268,7 @@ class Simulation(simulation.Simulation):
         """
         from xlmc.outputs.json_document import save_json
 
-        return save_json(self, Path(path), overwrite=overwrite)
+        return save_json(self._run, Path(path), overwrite=overwrite)
 
     def save_report(
         self,
@@ -154,7 +301,7 @@ class Simulation(simulation.Simulation):
         from xlmc.outputs.document import Wanted, save_report
 
         wanted = Wanted(case or {}, sections, forecasts, paper)
-        return save_report(self, Path(path), wanted, overwrite=overwrite)
+        return save_report(self._run, Path(path), wanted, overwrite=overwrite)
 
     def plot(self) -> Figure:
         """A matplotlib figure: every forecast's histogram and cumulative share, with the central range shaded.
@@ -164,23 +311,97 @@ class Simulation(simulation.Simulation):
         """
         from xlmc.outputs.plot import plot
 
-        return plot(self)
+        return plot(self._run)
 
 
-class Model(model.Model):
-    """A workbook's assumptions, forecasts and filters, which can be simulated.
+class Model:
+    """A workbook's assumptions, forecasts and filters, which can be simulated and used as a function."""
 
-    See `xlmc.montecarlo.model.model.Model`.
-    """
+    def __init__(self, compiled: CompiledModel) -> None:
+        self._compiled = compiled
 
-    @classmethod
-    def of(cls, known: model.Model) -> Model:
-        """The same model, with the methods of this module."""
-        if isinstance(known, cls):
-            return known
-        found = cls.__new__(cls)
-        found.__dict__.update(known.__dict__)
-        return found
+    def __repr__(self) -> str:
+        return f"<Model: {self.workbook.name}>"
+
+    @property
+    def path(self) -> Path:
+        """Where the workbook is."""
+        return self._compiled.path
+
+    @property
+    def workbook(self) -> Workbook:
+        """What was read of the file: `xlmc.excel.load` describes it."""
+        return self._compiled.workbook
+
+    @property
+    def assumptions(self) -> tuple[Assumption, ...]:
+        """The assumptions as defined, each with `name`, `cell`, `distribution`, `base`, …"""
+        return self._compiled.assumptions
+
+    @property
+    def live(self) -> tuple[Assumption, ...]:
+        """The assumptions that are drawn: some forecast or filter needs them, and they are not frozen."""
+        return self._compiled.live
+
+    @property
+    def bases(self) -> Mapping[str, float | None]:
+        """Name of each live assumption -> its base value; None where its cell is blank."""
+        return self._compiled.bases
+
+    @property
+    def forecasts(self) -> tuple[Forecast, ...]:
+        """The forecasts as defined, each with `name`, `cell`, `units`, …"""
+        return self._compiled.forecasts
+
+    @property
+    def filters(self) -> tuple[Filter, ...]:
+        """The filters as defined, each with `name`, `cell` and its limits; those of some forecasts only come last."""
+        return (*self._compiled.filters, *self._compiled.forecast_filters)
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """The checks as defined."""
+        return self._compiled.checks
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        """The rows of `xlmc_evidence`, those that are not used among them."""
+        return self._compiled.evidence
+
+    @property
+    def notices(self) -> tuple[Notice, ...]:
+        """What the person should know before a run."""
+        return self._compiled.notices
+
+    def function(self, inputs: Mapping[str, ArrayLike]) -> dict[str, Floats]:
+        """Compute the workbook as a function: values of every live assumption in, every forecast out.
+
+        Filters are not asked.
+
+        Args:
+            inputs: name of the assumption -> `(n,)` or a number.
+
+        Returns:
+            Name of the forecast -> `(n,)`; NaN where the cell is an error, a text or blank.
+
+        Raises:
+            SimulationError: an assumption is missing, unknown or frozen, or the values are of different lengths.
+        """
+        return self._compiled.function(inputs)
+
+    def quantiles(self, probabilities: ArrayLike) -> dict[str, Floats]:
+        """Return the quantiles of every live assumption, before filtering and whatever it is correlated with.
+
+        Where parameters vary, they are those with all other assumptions at their base values, or at their medians where
+        they have none.
+
+        Args:
+            probabilities: `(q,)`, between 0 and 1.
+
+        Returns:
+            Name of the assumption -> `(q,)`; NaN where the parameters are not a distribution.
+        """
+        return self._compiled.quantiles(probabilities)
 
     def scenario(self, scenario: str | Scenario) -> Model:
         """The model of the workbook in a scenario: one of the table `xlmc_scenarios` by its name, or one made here.
@@ -192,7 +413,7 @@ class Model(model.Model):
         """
         from xlmc.analysis.studies.scenario_answers import model_of
 
-        return Model.of(model_of(self, scenario))
+        return Model(model_of(self._compiled, scenario))
 
     def save_scenario(self, scenario: str | Scenario, path: str | Path, *, overwrite: bool = False) -> Path:
         """Write a copy of the workbook with a scenario typed into its cells, and give the path back.
@@ -211,7 +432,7 @@ class Model(model.Model):
         """
         from xlmc.analysis.studies.scenario_workbook import edited_workbook, write_edited
 
-        return write_edited(edited_workbook(self, scenario), Path(path), overwrite=overwrite)
+        return write_edited(edited_workbook(self._compiled, scenario), Path(path), overwrite=overwrite)
 
     def simulate(
         self,
@@ -267,8 +488,8 @@ class Model(model.Model):
         if asked.scenarios:
             from xlmc.analysis.studies.scenario_answers import models_of
 
-            models_of(self)  # a scenario that is not possible is refused before the run
-        return Simulation.of(run_model(self, asked, progress=progress, tell=tell))
+            models_of(self._compiled)  # a scenario that is not possible is refused before the run
+        return Simulation(run_model(self._compiled, asked, progress=progress, tell=tell))
 
 
 def load(path: str | Path) -> Model:
@@ -279,7 +500,7 @@ def load(path: str | Path) -> Model:
         DefinitionError: a definition is not what it must be; all faulty ones are listed.
         FormulaError: a needed cell cannot be computed.
     """
-    return Model.of(loading.load(path))
+    return Model(loading.load(path))
 
 
 def open_run(path: str | Path) -> Simulation:
@@ -291,4 +512,57 @@ def open_run(path: str | Path) -> Simulation:
     """
     from xlmc.analysis.results.saved import open_run
 
-    return Simulation.of(open_run(path))
+    return Simulation(open_run(path))
+
+
+def sensitivities(run: Simulation) -> Sensitivities:
+    """Compute what the answers of a finished run depend on. Nothing random is in it but the run's own draws."""
+    from xlmc.analysis.studies.sensitivity import sensitivities
+
+    return sensitivities(run._run)
+
+
+def compare(
+    first: Model, second: Model, tolerance: Iterable[str] | str = (), **options: Unpack[CompareArguments]
+) -> Comparison:
+    """Run two books of one scene over the same trials, and judge whether their answers agree.
+
+    An assumption of the same name takes the same random numbers in both. Forecasts are paired by name. The trials are
+    plain Monte Carlo, whatever the books' settings say.
+
+    Args:
+        first: a book; numbers are given in its units.
+        second: the other; either may be the simpler.
+        tolerance: `0.5`, `0.5 mph`, `10 %` (of the forecast's SD in the first book), `Name=0.5 mph`; a tenth of the SD
+            where none is stated. It holds for mean, SD and both ends of the central range.
+        options: `pairs`, `feeds`, `trials`, `seed`, `engine`, `jobs`, `chance`, `causes` and `told`, which
+            `xlmc.analysis.studies.comparison.compare` describes.
+
+    Raises:
+        SimulationError: no forecast has a counterpart, a pair has units of two kinds, or an argument is out of its
+            range.
+    """
+    from xlmc.analysis.studies.comparison import compare
+
+    return compare(first._compiled, second._compiled, tolerance, **options)
+
+
+def screen(model: Model, tolerance: Iterable[str] | str = (), **options: Unpack[ScreenArguments]) -> Screening:
+    """Find which assumptions may be held, and which filters left out, without moving an answer beyond the tolerance.
+
+    The model and its workbook stay as they are. The trials are plain Monte Carlo, whatever its settings say.
+
+    Args:
+        model: to screen.
+        tolerance: `0.5`, `0.5 mph`, `10 %` (of the forecast's SD), `Name=0.5 mph`; a tenth of the SD where none is
+            stated. It holds for mean, SD and both ends of the central range.
+        options: `chance`, `acceptance_tolerance`, `sets`, `judged_by`, `ends`, `trials`, `seed`, `engine`, `jobs` and
+            `told`, which `xlmc.analysis.studies.screening.screen` describes.
+
+    Raises:
+        SimulationError: an argument is out of its range, no name fits a set, or fewer than two trials are accepted, or
+            give a number for any forecast.
+    """
+    from xlmc.analysis.studies.screening import screen
+
+    return screen(model._compiled, tolerance, **options)

@@ -15,15 +15,17 @@ class Xlmc:
         import numpy
 
         import xlmc
+        from xlmc.montecarlo.model.loading import load
         from xlmc.montecarlo.simulation.simulate import BLOCK
 
         self.engine = task.options["engine"]
         self._keeps = {"keep_inputs": None} if task.options.get("draws_kept") else {}
-        self._model = xlmc.load(task.path)
+        compiled = load(task.path)
+        self._model = xlmc.Model(compiled)
         self._names = {(a.cell.sheet, a.cell.row, a.cell.column): a.name for a in self._model.assumptions}
         self._task = task
         self.note = "model.simulate, one thread"
-        self._program = self._model.program(self.engine)
+        self._program = compiled.program(self.engine)
         self.fewest = min(BLOCK, self._program.largest_block)
         self.versions = {"xlmc": xlmc.__version__, "numpy": numpy.__version__} | _versions("numba", "formulas")
 

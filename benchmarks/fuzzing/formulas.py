@@ -15,15 +15,17 @@ from fuzzing import grammar
 from fuzzing.books import MAIN, Sheet, Table, cell, packed, parts_of
 from fuzzing.inputs import Disagreement, Input, Reached, steps_of
 from fuzzing.splicing import spliced
-from xlmc.api import Model
 from xlmc.engine.engines import ENGINES
 from xlmc.excel.address import Area
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.workbook import CellContent, Formula, Workbook
 from xlmc.montecarlo.definitions.definitions import Definitions
 from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.model.loading import build_model
-from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.simulation.simulate import run_model
+from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.outputs.summary import summarise, summary_text
 
 __all__ = ["book_of", "make", "run"]
@@ -132,28 +134,29 @@ def run(given: Input, folder: Path) -> Reached:
         XlmcError: as xlmc does.
     """
     model = _model(given, "varying")
-    found = model.simulate(TRIALS)
+    found = run_model(model, RunOptions.of(trials=TRIALS))
     if "summary" in given.steps:
         summary_text(summarise(found))
     if "jit" in given.steps:
-        _agree("numpy", found, "jit", model.simulate(TRIALS, engine="jit"))
+        _agree("numpy", found, "jit", run_model(model, RunOptions.of(trials=TRIALS, engine="jit")))
     if "constants" in given.steps and not _VOLATILE.search(given.said):
-        still, frozen = (_model(given, kind).simulate(8) for kind in ("still", "frozen"))
+        still, frozen = (run_model(_model(given, kind), RunOptions.of(trials=8)) for kind in ("still", "frozen"))
         _agree("varying by nothing", still, "frozen", frozen)
     return Reached.RAN
 
 
-def _model(given: Input, kind: str) -> Model:
+def _model(given: Input, kind: str) -> CompiledModel:
     """The model of the book; without the step `file` its other cells are not read again."""
     text, form = given.said.removeprefix("="), given.steps[0]
     if "file" in given.steps:
-        return Model.of(build_model(read_workbook(book_of(text, form, kind), NAME), Path(NAME)))
+        return build_model(read_workbook(book_of(text, form, kind), NAME), Path(NAME))
     workbook, definitions = _read(kind)
     area = None if form == "plain" else Area("S", 1, 6, *((2, 7) if form == "block" else (1, 6)))
     held = CellContent(0.0, Formula(text, 1, 6, area, dynamic=form == "dynamic"))
     sheet = workbook.sheets["S"]
     changed = dataclasses.replace(sheet, cells={**sheet.cells, (1, 6): held})
-    return Model(dataclasses.replace(workbook, sheets={**workbook.sheets, "S": changed}), definitions, Path(NAME))
+    whole = dataclasses.replace(workbook, sheets={**workbook.sheets, "S": changed})
+    return CompiledModel(whole, definitions, Path(NAME))
 
 
 @cache
@@ -163,7 +166,7 @@ def _read(kind: str) -> tuple[Workbook, Definitions]:
     return workbook, read_definitions(workbook, ENGINES)
 
 
-def _agree(one: str, first: Simulation, other: str, second: Simulation) -> None:
+def _agree(one: str, first: RunResult, other: str, second: RunResult) -> None:
     """Both runs gave the same numbers, and the same faults.
 
     Raises:

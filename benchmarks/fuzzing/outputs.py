@@ -10,12 +10,13 @@ from xml.parsers import expat
 
 from fuzzing.inputs import Disagreement
 from xlmc.api import Simulation
+from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.outputs.summary import summarise, summary_text
 
 __all__ = ["examined"]
 
 
-def examined(found: Simulation, folder: Path, steps: tuple[str, ...]) -> None:
+def examined(found: RunResult, folder: Path, steps: tuple[str, ...]) -> None:
     """Summarise the run with the step `summary`; `write` result workbook, page, JSON and run, and read them again.
 
     Raises:
@@ -32,12 +33,12 @@ def examined(found: Simulation, folder: Path, steps: tuple[str, ...]) -> None:
     book, page, document, run = (folder / f"out.{end}" for end in ("xlsx", "html", "json", "xlmcrun"))
     for path in (book, page, document, run):
         path.unlink(missing_ok=True)
-    found.save_json(document)
+    Simulation(found).save_json(document)
     json.loads(document.read_text("utf-8"), parse_constant=_refuse)
-    found.save_page(page)
+    Simulation(found).save_page(page)
     page.read_text("utf-8")
-    found.keep(run)
-    found.save(book)
+    Simulation(found).keep(run)
+    Simulation(found).save(book)
     _whole(book, found.model.workbook.parts)
     for path in (book, run):
         if not replay(path).to_the_last_bit:

@@ -22,8 +22,12 @@ from fuzzing.featured import featured
 from fuzzing.inputs import Input, Reached, steps_of
 from fuzzing.outputs import examined
 from fuzzing.xml_changes import changed
-from xlmc.api import load, open_run
+from xlmc.analysis.results.saved import open_run
+from xlmc.api import Simulation
 from xlmc.errors import XlmcError
+from xlmc.montecarlo.definitions.run_options import RunOptions
+from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.outputs.replay import replay
 
 __all__ = ["make", "run"]
@@ -47,7 +51,8 @@ def _saved() -> tuple[tuple[str, bytes, bytes], ...]:
 def _run_of(folder: Path, name: str, data: bytes, options: dict[str, Any]) -> tuple[str, bytes, bytes]:
     (folder / name).write_bytes(data)
     trials = {"until_accepted": None, "precision": None}.keys() & options.keys()
-    found = load(folder / name).simulate(5_000 if trials or name == _BOOKS[0] else TRIALS, **options)
+    most = 5_000 if trials or name == _BOOKS[0] else TRIALS
+    found = Simulation(run_model(load(folder / name), RunOptions.of(trials=most, **options)))
     run, book = folder / "made.xlmcrun", folder / f"{Path(name).stem}-results.xlsx"
     for path in (run, book):
         path.unlink(missing_ok=True)
@@ -94,10 +99,11 @@ def run(given: Input, folder: Path) -> Reached:
     opened = open_run(path)
     examined(opened, folder, given.steps)
     if "report" in given.steps:
-        opened.save_json(folder / "out.json")
-        opened.save_page(folder / "out.html")
+        written = Simulation(opened)
+        written.save_json(folder / "out.json")
+        written.save_page(folder / "out.html")
         (folder / "out-results.xlsx").unlink(missing_ok=True)
-        opened.save(folder / "out-results.xlsx")
+        written.save(folder / "out-results.xlsx")
     if "replay" in given.steps:
         replay(path)
     return Reached.RAN

@@ -11,8 +11,10 @@ from fuzzing.books import Sheet, Table, book, cell
 from fuzzing.commands import commanded
 from fuzzing.inputs import Input, Reached, steps_of
 from fuzzing.outputs import examined
-from xlmc.api import load
+from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.distributions import FAMILIES
+from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.simulation.simulate import run_model
 
 __all__ = ["make", "run"]
 
@@ -81,10 +83,10 @@ def run(given: Input, folder: Path) -> Reached:
     if {"check", "simulate"} & {*given.steps}:
         return commanded(path, given.steps)
     model = load(path)
-    found = model.simulate(TRIALS)
+    found = run_model(model, RunOptions.of(trials=TRIALS))
     examined(found, folder, given.steps)
     if "jit" in given.steps:
-        model.simulate(TRIALS, engine="jit")
+        run_model(model, RunOptions.of(trials=TRIALS, engine="jit"))
     return Reached.RAN
 
 

@@ -19,12 +19,14 @@ from fuzzing.featured import featured
 from fuzzing.inputs import Input, Reached, steps_of
 from fuzzing.outputs import examined
 from fuzzing.xml_changes import changed
-from xlmc.api import Model
 from xlmc.engine.engines import ENGINES
 from xlmc.errors import XlmcError
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.model.labels import calculate_labels
+from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.simulation.simulate import run_model
 
 __all__ = ["make", "run"]
 
@@ -93,7 +95,7 @@ def run(given: Input, folder: Path) -> Reached:
         verify(workbook, definitions)
     if definitions.problems:
         raise definitions.problems[0]
-    found = Model(calculated, definitions, path).simulate(TRIALS)
+    found = run_model(CompiledModel(calculated, definitions, path), RunOptions.of(trials=TRIALS))
     examined(found, folder, given.steps)
     return Reached.RAN
 

@@ -7,7 +7,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from stressing.workbook import book_of
-from xlmc.api import Model, Simulation
+from xlmc.montecarlo.definitions.run_options import RunOptions
+from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.simulation.simulate import run_model
+from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import rank_correlation
 
 __all__ = ["MATRICES", "book", "compared", "measure"]
@@ -29,7 +32,7 @@ SWAPS: Final = 1e-11
 """How far a rank correlation of 1 may be off because rounding lets neighbours change places."""
 
 
-def book(pairs: Pairs) -> Model:
+def book(pairs: Pairs) -> CompiledModel:
     """Assumptions of three families with these correlations, and their sum."""
     assumptions: dict[str, Sequence[object]] = {
         "first": (0.5, "Uniform", ("Low", 0.0), ("High", 1.0)),
@@ -42,12 +45,12 @@ def book(pairs: Pairs) -> Model:
     return book_of(held, {"total": f"={'+'.join(held)}"}, ["total"], correlations=rows)
 
 
-def measure(model: Model, pairs: Pairs, trials: int, seed: int, sampling: str = "mc") -> list[dict[str, Any]]:
+def measure(model: CompiledModel, pairs: Pairs, trials: int, seed: int, sampling: str = "mc") -> list[dict[str, Any]]:
     """Pair by pair: asked, aimed at (after repair), expected of so many draws, found in them, and its error."""
-    return compared(model, pairs, model.simulate(trials, seed, sampling=sampling))
+    return compared(model, pairs, run_model(model, RunOptions.of(trials=trials, seed=seed, sampling=sampling)))
 
 
-def compared(model: Model, pairs: Pairs, run: Simulation) -> list[dict[str, Any]]:
+def compared(model: CompiledModel, pairs: Pairs, run: RunResult) -> list[dict[str, Any]]:
     """The same of a run that was made."""
     trials = run.accepted
     (group,) = model.groups

@@ -8,7 +8,9 @@ import numpy as np
 from scipy import stats
 
 from stressing.workbook import book_of
-from xlmc.api import Model
+from xlmc.montecarlo.definitions.run_options import RunOptions
+from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.montecarlo.statistics import mode
 
 __all__ = ["LAWS", "book", "measure"]
@@ -24,7 +26,7 @@ LAWS: Final = {
 PERCENTS: Final = (10, 24.5, 50, 75.5, 90)
 
 
-def book(name: str) -> Model:
+def book(name: str) -> CompiledModel:
     """The assumption as forecast."""
     *parameters, _ = LAWS[name]
     return book_of({"x": (1, name, *parameters)}, {"y": "=x"}, ["y"])
@@ -37,7 +39,7 @@ def measure(name: str, trials: int, runs: int, first: int = 0) -> dict[str, Any]
     likely = float(np.argmax(law.pmf(np.arange(100))))
     held, modes = np.zeros(len(PERCENTS), int), 0
     for seed in range(first, first + runs):
-        result = model.simulate(trials, seed, keep_inputs=0)["y"]
+        result = run_model(model, RunOptions.of(trials=trials, seed=seed, keep_inputs=0))["y"]
         for place, (percent, true) in enumerate(zip(PERCENTS, truth, strict=True)):
             interval = result.percentile(percent).interval
             held[place] += interval is not None and interval[0] <= true <= interval[1]

@@ -14,7 +14,7 @@ from stressing.exact import DIGITS, conditioning, exact
 from stressing.forms import FORMS, INPUTS
 from stressing.sweeps import Point
 from stressing.workbook import values_of
-from xlmc.api import Model
+from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["BOUND", "UNIT", "Measured", "measured"]
 
@@ -46,7 +46,7 @@ class Measured:
         return np.asarray(self.errors[engine][cell] / (UNIT * (1.0 + self.conditions[rewritten])))
 
 
-def measured(model: Model, points: Sequence[Point], engines: Sequence[str]) -> Measured:
+def measured(model: CompiledModel, points: Sequence[Point], engines: Sequence[str]) -> Measured:
     """Compute every form at every point with every engine, and hold it against 80 digits."""
     columns = {name: np.array([point.evidence[name] for point in points]) for name in INPUTS}
     truths = [exact(point.evidence) for point in points]

@@ -6,7 +6,9 @@ import math
 from typing import Any, Final
 
 from stressing.workbook import book_of
-from xlmc.api import Model
+from xlmc.montecarlo.definitions.run_options import RunOptions
+from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.montecarlo.statistics import farthest_part
 
 __all__ = ["FORECASTS", "QUARTILE", "book", "measure"]
@@ -21,15 +23,15 @@ FORECASTS: Final = {
 QUARTILE: Final = 1.0
 
 
-def book() -> Model:
+def book() -> CompiledModel:
     """Two standard normal assumptions and the forecasts of them."""
     normal = (0.5, "Normal", ("Mean", 0.0), ("Std dev", 1.0))
     return book_of({"across": normal, "along": normal}, dict(FORECASTS), list(FORECASTS))
 
 
-def measure(model: Model, trials: int, seed: int) -> dict[str, Any]:
+def measure(model: CompiledModel, trials: int, seed: int) -> dict[str, Any]:
     """Of one run: mean and upper quartile with their errors, the farthest trial's part, and what xlmc said."""
-    run = model.simulate(trials, seed, keep_inputs=0)
+    run = run_model(model, RunOptions.of(trials=trials, seed=seed, keep_inputs=0))
     told = " ".join(notice.message for notice in run.notices_of_run if "depend on a single trial" in notice.message)
     found = {}
     for name in FORECASTS:

@@ -11,7 +11,8 @@ import xlsxwriter
 from numpy.typing import NDArray
 
 from stressing.forms import CONSTANTS, FORMS, INPUTS, PRINTED, REWRITTEN
-from xlmc.api import Model, load
+from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["FORMS_ENGINES", "book_of", "forms_book", "values_of"]
 
@@ -27,7 +28,7 @@ def book_of(
     forecasts: Sequence[str],
     filters: Sequence[Sequence[object]] = (),
     correlations: Sequence[Sequence[object]] = (),
-) -> Model:
+) -> CompiledModel:
     """A workbook written to disk and loaded.
 
     Args:
@@ -81,7 +82,7 @@ def _table(
     )
 
 
-def forms_book() -> Model:
+def forms_book() -> CompiledModel:
     """Every cell of `forms`, each form's two cells as forecasts."""
     assumptions = {
         name: ((low + high) / 2, "Uniform", ("Low", low), ("High", high)) for name, (low, high) in INPUTS.items()
@@ -94,7 +95,7 @@ def forms_book() -> Model:
     return book_of(assumptions, cells, [name for form in FORMS for name in (form.printed, form.rewritten)])
 
 
-def values_of(model: Model, inputs: Mapping[str, Floats], engine: str) -> dict[str, Floats]:
+def values_of(model: CompiledModel, inputs: Mapping[str, Floats], engine: str) -> dict[str, Floats]:
     """Every forecast of given draws, `(n,)`, NaN where it is an error; with numpy by `Model.function` itself."""
     if engine == "numpy":
         return model.function(inputs)

@@ -14,8 +14,8 @@ from accuracy import TRUTH, errors
 from contestants import formulas_model
 from line_up import line_up
 
-import xlmc
 from xlmc.montecarlo.loop.scheduling.processes import IdlePool, idle_pool
+from xlmc.montecarlo.model.loading import load
 
 CONTESTANTS = ("xlmc/numpy", "hand/NumPy")
 PEER = "formulas"
@@ -66,8 +66,8 @@ def test_the_package_formulas_gives_the_same_forecasts(name, tmp_path):
     task = rates.task_of(name, path, 0)
     assert len(task.check) == rates.CHECK
     assert len(task.forecasts) == (1 if name == "skid" else 2)
-    given = {a.name: column for a, column in zip(xlmc.load(path).live, np.transpose(task.check), strict=True)}
-    truth = np.transpose(list(xlmc.load(path).function(given).values()))
+    given = {a.name: column for a, column in zip(load(path).live, np.transpose(task.check), strict=True)}
+    truth = np.transpose(list(load(path).function(given).values()))
     assert rates.differing(task, formulas_model.prepare(task).answers(task.check), truth) == []
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from xlmc.montecarlo.model.loading import load
+
 
 @pytest.fixture(scope="module")
 def bench():
@@ -14,9 +16,8 @@ def bench():
 
 @pytest.fixture(scope="module")
 def model(bench):
-    import xlmc
 
-    return xlmc.load(bench.BOOK)
+    return load(bench.BOOK)
 
 
 def test_rows_of_the_case_study_are_as_an_independent_program_found_them(bench, model):

@@ -9,15 +9,16 @@ import hand_written_plain
 import numpy as np
 import pytest
 import tables
+from simulated import simulated
 
-import xlmc
+from xlmc.montecarlo.model.loading import load
 
 TRIALS = 300
 CELLS = (20, 60, 300)
 
 
 def drawn(path, rows):
-    run = xlmc.load(path).simulate(TRIALS, seed=3, engine="numpy", keep_inputs=None)
+    run = simulated(load(path), TRIALS, seed=3, engine="numpy", keep_inputs=None)
     inputs = np.array([run.inputs[name] for name, *_ in rows])
     return inputs, np.array([run[forecast.name].values for forecast in run.model.forecasts])
 
@@ -89,7 +90,7 @@ def test_powers_and_the_wide_book(name, tmp_path, monkeypatch):
 
 
 def test_every_power_cell_is_needed(tmp_path):
-    model = xlmc.load(books.make_books(tmp_path, ["powers"])["powers"])
+    model = load(books.make_books(tmp_path, ["powers"])["powers"])
     assert len(model.live) == len(books.POWERS)
     assert len(model.needed.graph.formulas) == len(books.POWER_CELLS) + len(books.POWER_FORECASTS)
 
@@ -98,7 +99,7 @@ def test_every_power_cell_is_needed(tmp_path):
 def test_a_wide_book_needs_every_assumption(tmp_path, assumptions, forecasts):
     path = tmp_path / "wide.xlsx"
     books.write_wide(path, assumptions, forecasts)
-    model = xlmc.load(path)
+    model = load(path)
     assert (len(model.live), len(model.forecasts)) == (assumptions, forecasts)
 
 

@@ -20,8 +20,8 @@ from fewer_sheets import SHORT, keep_few_trials, keep_sheets, leave_out_fits, le
 from workbook_files import workbook_of
 
 from xlmc.analysis.studies import fitting
-from xlmc.api import Model
 from xlmc.cli import main
+from xlmc.montecarlo.model.model import CompiledModel
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -201,7 +201,7 @@ def made_once(studies_made: dict[tuple[object, ...], object], monkeypatch: pytes
     def patch(module: ModuleType, name: str) -> None:
         study = getattr(module, name)
 
-        def once(model: Model, *given: object, told: object = None, **asked: object) -> object:
+        def once(model: CompiledModel, *given: object, told: object = None, **asked: object) -> object:
             key = name, model.path, model.workbook.sha256, *given, *asked.items()
             if key not in studies_made:
                 studies_made[key] = study(model, *given, told=told, **asked)

@@ -111,7 +111,7 @@ def test_a_name_that_was_given_is_refused_before_the_run(xlmc, book, written, tm
     written("-o", "mine.xlsx")
     change(tmp_path / "mine.xlsx")
     before = contents(tmp_path)
-    monkeypatch.setattr("xlmc.api.Model.simulate", lambda *_, **__: 1 / 0)
+    monkeypatch.setattr("xlmc.montecarlo.simulation.simulate.run_model", lambda *_, **__: 1 / 0)
     outcome = xlmc("simulate", book, "-o", "mine.xlsx", "--quiet")
     assert outcome.code == 2
     assert reason in outcome.err

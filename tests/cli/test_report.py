@@ -69,7 +69,7 @@ def test_nothing_is_simulated(xlmc, simulated, book, monkeypatch):
     def refuse(*_, **__):
         raise AssertionError("a run was simulated")
 
-    monkeypatch.setattr("xlmc.api.Model.simulate", refuse)
+    monkeypatch.setattr("xlmc.montecarlo.simulation.simulate.run_model", refuse)
     assert xlmc("report", "first.xlmcrun", "-o", "b.xlsx").code == 1  # errors in cells
 
 
@@ -212,7 +212,7 @@ def test_reports_are_written_of_a_run_and_of_a_saved_run_alike(xlmc, case_book, 
 
 
 def test_a_forecast_that_is_not_there_is_refused_before_the_run(xlmc, book, tmp_path, monkeypatch):
-    monkeypatch.setattr("xlmc.api.Model.simulate", lambda *_, **__: 1 / 0)
+    monkeypatch.setattr("xlmc.montecarlo.simulation.simulate.run_model", lambda *_, **__: 1 / 0)
     outcome = xlmc("simulate", book, "--pdf", "a.pdf", "--forecasts", "nothing")
     assert outcome.code == 2
     assert "there is no forecast 'nothing'" in outcome.err

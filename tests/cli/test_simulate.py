@@ -4,14 +4,15 @@ import shutil
 import subprocess
 import sys
 import zipfile
+from dataclasses import replace
 
 import openpyxl
 import pytest
 from fewer_sheets import keep_few_trials
 
-from xlmc.api import Model
 from xlmc.engine.llvm import REPAYS_FROM
 from xlmc.errors import SimulationError
+from xlmc.montecarlo.simulation import simulate
 
 pytestmark = pytest.mark.usefixtures("short_books")
 
@@ -200,7 +201,7 @@ def test_a_long_run_is_told_of_the_engine_jit(xlmc, book, monkeypatch, trials, o
     def stopped(*arguments, **named):
         raise SimulationError("stopped by the test")
 
-    monkeypatch.setattr("xlmc.api.Model.simulate", stopped)
+    monkeypatch.setattr("xlmc.montecarlo.simulation.simulate.run_model", stopped)
     monkeypatch.setattr("xlmc.engine.llvm.find_spec", lambda name: object() if installed else None)
     assert ("--engine jit" in xlmc("simulate", book, "-n", trials, *options).err) is hinted
 
@@ -263,12 +264,12 @@ def test_the_engine_jit_prints_the_same_answers_and_keeps_its_code_unless_it_is_
 
 
 def test_a_local_cluster_and_its_workers_are_asked_for(xlmc, book, monkeypatch):
-    asked, simulate = {}, Model.simulate
+    asked, run_model = [], simulate.run_model
 
-    def told(model, *given, **named):
-        asked.update(named)
-        return simulate(model, *given, **{**named, "scheduler": None, "workers": None})
+    def told(model, options, **named):
+        asked.append((options.scheduler, options.workers))
+        return run_model(model, replace(options, scheduler=None, workers=None), **named)
 
-    monkeypatch.setattr(Model, "simulate", told)
+    monkeypatch.setattr(simulate, "run_model", told)
     assert xlmc("simulate", book, "-n", 1_000, "--scheduler", "local", "--workers", 1).code == 0
-    assert (asked["scheduler"], asked["workers"]) == ("local", 1)
+    assert asked == [("local", 1)]

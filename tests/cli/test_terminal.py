@@ -16,11 +16,13 @@ import openpyxl
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from simulated import simulated
 
-from xlmc.api import Model, load
 from xlmc.cli import main, terminal
 from xlmc.cli.printing import table_lines
 from xlmc.excel.workbook.printable import printable
+from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.simulation import simulate
 
 pytestmark = pytest.mark.usefixtures("short_books")
 
@@ -210,8 +212,8 @@ def on_a_terminal(xlmc, monkeypatch):
 @pytest.mark.parametrize("arguments", [("simulate", "case.xlsx", "-n", "4000"), ("check", "case.xlsx"), ("new",)])
 def test_nothing_is_wider_than_the_terminal(case_study, tmp_path, on_a_terminal, monkeypatch, arguments):
     shutil.copy(case_study, tmp_path / "case.xlsx")
-    once = load(tmp_path / "case.xlsx").simulate(4_000) if arguments[0] == "simulate" else None
-    monkeypatch.setattr(Model, "simulate", lambda *_, **__: once)
+    once = simulated(load(tmp_path / "case.xlsx"), 4_000) if arguments[0] == "simulate" else None
+    monkeypatch.setattr(simulate, "run_model", lambda *_, **__: once)
     narrow = {columns: on_a_terminal(arguments, columns) for columns in (60, 80)}
     wide = on_a_terminal(arguments, 200) if arguments[0] == "simulate" else ""
     numbers = re.findall(r"\d[\d.,]*\d ± \d[\d.]*", wide)

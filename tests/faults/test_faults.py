@@ -25,12 +25,13 @@ from faults import (
     kill_at_call,
 )
 from faults import full_disk as fill_up
+from simulated import simulated
 
-import xlmc
 import xlmc.excel.workbook.writer as writer
 from xlmc.cli import main
 from xlmc.excel.workbook.target import Target
 from xlmc.montecarlo.columns import column_store
+from xlmc.montecarlo.model.loading import load
 
 ROOT = Path(__file__).resolve().parents[2]
 pytestmark = pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
@@ -203,5 +204,5 @@ def test_the_next_run_removes_the_columns_of_a_killed_one(small_book, tmp_path, 
     os.waitpid(child, 0)
     assert list(temporary.iterdir()) != []
     monkeypatch.setattr("tempfile.tempdir", str(temporary))
-    xlmc.load(small_book).simulate(100)
+    simulated(load(small_book), 100)
     assert list(temporary.iterdir()) == []

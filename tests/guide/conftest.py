@@ -11,12 +11,14 @@ from xml.sax.saxutils import escape
 
 import openpyxl
 import pytest
+from simulated import simulated
 from typed_cells import with_typed
 
-import xlmc
 from xlmc.excel.address import parse_address
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.workbook import Workbook
+from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.simulation.simulation import RunResult
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT))
@@ -105,9 +107,9 @@ def workbook(case) -> Workbook:
 
 
 @pytest.fixture(scope="session")
-def run(case) -> xlmc.Simulation:
+def run(case) -> RunResult:
     """The run of section 7."""
-    return xlmc.load(case).simulate()
+    return simulated(load(case))
 
 
 @pytest.fixture(scope="session")

@@ -12,11 +12,12 @@ import numpy as np
 import openpyxl
 import pytest
 from fewer_sheets import SHORT, fill_sheets, keep_few_trials, leave_out
+from simulated import simulated
 from typed_cells import model_of
 
-import xlmc
 from templates.writer.cached import computed
 from xlmc.cli import main
+from xlmc.montecarlo.model.loading import load
 
 ROOT = Path(__file__).resolve().parents[2]
 GUIDE = (ROOT / "docs" / "guide.md").read_text(encoding="utf-8")
@@ -132,7 +133,7 @@ def test_the_guide_tells_the_papers_ranges_and_filters(tables):
 
 
 def test_following_the_guide_is_the_worked_example(run):
-    example = xlmc.load(ROOT / "examples" / "intersection.xlsx").simulate()
+    example = simulated(load(ROOT / "examples" / "intersection.xlsx"))
     assert run.accepted == example.accepted
     for name, result in example.results.items():
         np.testing.assert_allclose(run[name].values, result.values, rtol=1e-12)
@@ -140,7 +141,7 @@ def test_following_the_guide_is_the_worked_example(run):
 
 @pytest.mark.parametrize("change", ["nothing", *CHANGES])
 def test_what_a_change_does(run, changed, change):
-    found = model_of(changed(CHANGES[change])).simulate() if change in CHANGES else run
+    found = simulated(model_of(changed(CHANGES[change]))) if change in CHANGES else run
     means = (found[name].mean.value for name in ("Nissan delta-V", "Nissan impact speed"))
     told = " | ".join([change, f"{found.accepted:,}", *(f"{mean:.2f}" for mean in means)])
     assert f"| {told} |" in GUIDE, told
@@ -156,9 +157,9 @@ def test_numbers_in_sentences(run):
     faster = chevrolet.probability_above(35).value
     inside = [within(result.values, *result.central(0.51)) for result in (nissan, chevrolet)]
     by_e_t, by_direction = int(run.tally.only[1]), int(run.tally.only[2])
-    few = run.model.simulate(trials=2000, seed=999)
+    few = simulated(run.model, trials=2000, seed=999)
     slow = few["Nissan impact speed"].mean
-    simpler = xlmc.load(ROOT / "examples" / "intersection-momentum.xlsx").simulate()
+    simpler = simulated(load(ROOT / "examples" / "intersection-momentum.xlsx"))
     base = run.model.workbook.sheets["Results wanted"].cells[22, 2].value
     beta = run.frame()["Chevrolet departure angle"].mean()
     told = [

@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
+from simulated import simulated
 from typed_cells import model_of, named_cells, with_typed
 
 from xlmc.excel.address import Cell
@@ -34,7 +35,7 @@ def camera():
         low, high = map(float, given)
         for column, value in zip((4, 7, 8), ((low + high) / 2, low, high), strict=True):
             typed[at[symbol]._replace(column=column)] = value
-    return model_of(with_typed(made, typed)).simulate()
+    return simulated(model_of(with_typed(made, typed)))
 
 
 @pytest.fixture(scope="module")
@@ -67,7 +68,7 @@ def test_the_case_gives_what_the_page_says(book):
     model = book()
     (edr,) = [each for each in model.filters if "EDR delta-V" in each.name]
     assert f"a delta-V from {edr.at_least:.6g} to {edr.at_most:.6g} mph" in PROSE
-    run = model.simulate()
+    run = simulated(model)
     found = run.agreement
     assert f"accepts fewer trials, {run.accepted}, and" in PROSE
     assert f"together they keep {found.ratio.value:.3g} times" in PROSE
@@ -86,7 +87,7 @@ def test_the_case_gives_what_the_page_says(book):
 
 
 def test_the_contradicting_video_is_out_of_reach(book):
-    run = book(39.5).simulate()
+    run = simulated(book(39.5))
     assert run.settings.evidence == "weights"
     assert "the evidence is inconsistent" in run.warnings[0]
     assert "is out of reach of the model given the other evidence" in run.warnings[0]

@@ -7,11 +7,12 @@ from types import SimpleNamespace
 import openpyxl
 import pytest
 from packed_sheets import packed_sheets
+from simulated import simulated
 
-from xlmc.api import Model
 from xlmc.excel.address import parse_address
 from xlmc.excel.workbook.workbook import CellContent, Formula, Sheet, Workbook
 from xlmc.montecarlo.definitions.definitions import Assumption, Definitions, Filter, Forecast, Settings
+from xlmc.montecarlo.model.model import CompiledModel
 
 
 def _cell(address):
@@ -47,7 +48,7 @@ def simulate(cells, assumptions, forecasts, filters=(), correlations=(), *, tria
     definitions = Definitions(
         tuple(assumptions), tuple(forecasts), tuple(filters), tuple(correlations), settings=settings
     )
-    return Model(_workbook(cells), definitions, Path("book.xlsx")).simulate()
+    return simulated(CompiledModel(_workbook(cells), definitions, Path("book.xlsx")))
 
 
 @pytest.fixture(scope="session")

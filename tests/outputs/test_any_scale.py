@@ -7,10 +7,12 @@ import json
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from simulated import simulated
 from workbook_files import workbook_of
 
-import xlmc
 from xlmc.analysis.studies.fitting import fit
+from xlmc.api import Simulation
+from xlmc.montecarlo.model.loading import load
 
 
 @pytest.fixture(scope="module")
@@ -39,13 +41,13 @@ def test_every_output_is_written(folder, exponent, spread, sign, curved):
     rows += [["Name", "Value"], ["y", f"=({scale}*B2){power}"]]
     book = folder / "book.xlsx"
     workbook_of({"S": rows}, {"xlmc_assumptions": "S!A1:D2", "xlmc_forecasts": "S!A4:B5"}).save(book)
-    run = xlmc.load(book).simulate(trials=2000)
+    run = simulated(load(book), trials=2000)
     assert run.accepted == 2000
-    document = json.loads(
-        run.save_json(folder / "o.json", overwrite=True).read_text(encoding="utf-8"), parse_constant=refuse
-    )
+    whole = Simulation(run)
+    written = whole.save_json(folder / "o.json", overwrite=True)
+    document = json.loads(written.read_text(encoding="utf-8"), parse_constant=refuse)
     assert document["forecasts"]
-    for save, name in ((run.save, "o.xlsx"), (run.save_page, "o.html"), (run.keep, "o.xlmcrun")):
+    for save, name in ((whole.save, "o.xlsx"), (whole.save_page, "o.html"), (whole.keep, "o.xlmcrun")):
         assert save(folder / name, overwrite=True).exists()
     values = run["y"].values
     if values.min() < values.max() and abs(values).max() < 1e100:

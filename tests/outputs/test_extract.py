@@ -11,10 +11,12 @@ import pandas
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from simulated import simulated
 
-import xlmc
 from xlmc.analysis.results.record import make_record
+from xlmc.api import Simulation
 from xlmc.errors import SimulationError, WorkbookError
+from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.extract import safe_heading
 
 parquet = pytest.importorskip("pyarrow.parquet")
@@ -25,7 +27,7 @@ PART = 512
 
 @pytest.fixture(scope="session")
 def model(small_book):
-    return xlmc.load(small_book)
+    return load(small_book)
 
 
 @pytest.fixture
@@ -46,9 +48,9 @@ def read_parquet(path):
 @pytest.mark.parametrize(("ending", "read"), [("csv", read_csv), ("parquet", read_parquet)])
 @pytest.mark.usefixtures("few_at_once")
 def test_it_reads_back_as_the_frame_to_the_last_bit(model, tmp_path, ending, read):
-    many = model.simulate(2_000)
+    many = simulated(model, 2_000)
     assert many.accepted > 2 * PART
-    many.extract(tmp_path / f"trials.{ending}")
+    Simulation(many).extract(tmp_path / f"trials.{ending}")
     expected = many.frame()
     if ending == "csv":
         expected = expected.rename(columns=safe_heading)
@@ -59,13 +61,13 @@ def test_it_reads_back_as_the_frame_to_the_last_bit(model, tmp_path, ending, rea
 @pytest.mark.parametrize("ending", ["csv", "parquet"])
 def test_the_same_run_gives_the_same_bytes(model, tmp_path, ending):
     for name in ("a", "b"):
-        model.simulate().extract(tmp_path / f"{name}.{ending}")
+        Simulation(simulated(model)).extract(tmp_path / f"{name}.{ending}")
     assert (tmp_path / f"a.{ending}").read_bytes() == (tmp_path / f"b.{ending}").read_bytes()
 
 
 def test_headings_are_no_formulas_and_missing_numbers_are_blank(model, tmp_path):
-    run = model.simulate()
-    run.extract(tmp_path / "trials.csv")
+    run = simulated(model)
+    Simulation(run).extract(tmp_path / "trials.csv")
     with (tmp_path / "trials.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))
     assert rows[0] == ["Trial", "width", "'=length", "area", "inverse"]
@@ -82,22 +84,22 @@ def test_no_heading_begins_a_formula(name):
 
 def test_names_beyond_ascii_have_a_byte_order_mark_for_excel(make, tmp_path):
     run = make.simulate({"A1": 1.0, "B1": "=A1"}, [make.uniform("μ", "A1", 0.0, 1.0)], [make.forecast("ΔV", "B1")])
-    run.extract(tmp_path / "trials.csv")
+    Simulation(run).extract(tmp_path / "trials.csv")
     assert (tmp_path / "trials.csv").read_bytes().startswith("\ufeffTrial,μ,ΔV\r\n".encode())
     assert list(read_csv(tmp_path / "trials.csv")) == ["μ", "ΔV"]
 
 
 def test_an_assumption_with_the_name_of_a_forecast(make, tmp_path):
     run = make.simulate({"A1": 1.0, "B1": "=A1"}, [make.uniform("v", "A1", 0.0, 1.0)], [make.forecast("v", "B1")])
-    run.extract(tmp_path / "trials.csv")
+    Simulation(run).extract(tmp_path / "trials.csv")
     assert list(read_csv(tmp_path / "trials.csv")) == ["v (assumption)", "v"] == list(run.frame())
 
 
 @pytest.mark.parametrize(("ending", "read"), [("csv", read_csv), ("parquet", read_parquet)])
 @pytest.mark.parametrize("kept", [0, 100])
 def test_draws_that_were_not_kept_are_blank(model, tmp_path, ending, read, kept):
-    run = model.simulate(keep_inputs=kept)
-    run.extract(tmp_path / f"trials.{ending}")
+    run = simulated(model, keep_inputs=kept)
+    Simulation(run).extract(tmp_path / f"trials.{ending}")
     found = read(tmp_path / f"trials.{ending}")
     assert found["width"].notna().tolist() == [index < kept for index in range(run.accepted)]
     assert np.array_equal(found["area"], run.forecasts["area"])
@@ -105,7 +107,7 @@ def test_draws_that_were_not_kept_are_blank(model, tmp_path, ending, read, kept)
 
 @pytest.mark.parametrize("ending", ["csv", "parquet"])
 def test_no_accepted_trial_is_a_table_without_rows(model, tmp_path, ending):
-    model.simulate(1).extract(tmp_path / f"trials.{ending}")
+    Simulation(simulated(model, 1)).extract(tmp_path / f"trials.{ending}")
     read = read_csv if ending == "csv" else read_parquet
     found = read(tmp_path / f"trials.{ending}")
     assert found.empty
@@ -113,8 +115,8 @@ def test_no_accepted_trial_is_a_table_without_rows(model, tmp_path, ending):
 
 
 def test_parquet_knows_the_record_and_the_units(model, tmp_path):
-    run = model.simulate()
-    run.extract(tmp_path / "trials.parquet")
+    run = simulated(model)
+    Simulation(run).extract(tmp_path / "trials.parquet")
     schema = parquet.read_schema(tmp_path / "trials.parquet")
     assert json.loads(schema.metadata[b"xlmc"]) == json.loads(json.dumps(make_record(run).as_dict()))
     assert schema.field("width").metadata == {b"kind": b"assumption", b"units": b"ft", b"cell": b"Inputs!B2"}
@@ -124,9 +126,9 @@ def test_parquet_knows_the_record_and_the_units(model, tmp_path):
 
 
 def test_columns_on_disk_give_the_same_files(model, tmp_path, monkeypatch):
-    model.simulate().extract(tmp_path / "a.csv")
+    Simulation(simulated(model)).extract(tmp_path / "a.csv")
     monkeypatch.setattr("xlmc.montecarlo.columns.column_store.IN_MEMORY", 0)
-    model.simulate().extract(tmp_path / "b.csv")
+    Simulation(simulated(model)).extract(tmp_path / "b.csv")
     assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
 
 
@@ -134,7 +136,7 @@ def test_columns_on_disk_give_the_same_files(model, tmp_path, monkeypatch):
 @pytest.mark.parametrize("ending", ["csv", "parquet"])
 def test_it_takes_no_more_memory_for_more_trials(model, tmp_path, ending, monkeypatch):
     monkeypatch.setattr("xlmc.outputs.extract.make_record", lambda *_: _Empty())
-    run = model.simulate(50)
+    run = simulated(model, 50)
     peaks = []
     for n in (8 * PART, 32 * PART):
         large = replace(
@@ -144,7 +146,7 @@ def test_it_takes_no_more_memory_for_more_trials(model, tmp_path, ending, monkey
             forecasts=dict.fromkeys(run.forecasts, np.full(n, 0.1)),
         )
         tracemalloc.start()
-        large.extract(tmp_path / f"trials.{ending}", overwrite=True)
+        Simulation(large).extract(tmp_path / f"trials.{ending}", overwrite=True)
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
     table = 8 * 5 * 24 * PART  # bytes of what the second has more
@@ -161,7 +163,7 @@ class _Empty:
 @pytest.mark.parametrize("name", ["trials.xlsx", "trials", "no/trials.csv"])
 def test_where_it_cannot_be_written(model, tmp_path, name):
     with pytest.raises(WorkbookError):
-        model.simulate(5).extract(tmp_path / name)
+        Simulation(simulated(model, 5)).extract(tmp_path / name)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -169,7 +171,7 @@ def test_parquet_without_pyarrow_is_a_message(model, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     monkeypatch.setattr("xlmc.outputs.extract.find_spec", lambda name: None)
     with pytest.raises(SimulationError, match=r"need pyarrow, which is not installed.*xlmc\[parquet\]"):
-        model.simulate(5).extract(tmp_path / "trials.parquet")
+        Simulation(simulated(model, 5)).extract(tmp_path / "trials.parquet")
 
 
 def test_a_failed_write_leaves_the_old_file(model, tmp_path, monkeypatch):
@@ -177,7 +179,7 @@ def test_a_failed_write_leaves_the_old_file(model, tmp_path, monkeypatch):
     path.write_bytes(b"old")
     monkeypatch.setattr("xlmc.outputs.extract._fields", lambda values: 1 / 0)
     with pytest.raises(ZeroDivisionError):
-        model.simulate().extract(path, overwrite=True)
+        Simulation(simulated(model)).extract(path, overwrite=True)
     assert [(each.name, each.read_bytes()) for each in tmp_path.iterdir()] == [("trials.csv", b"old")]
 
 
@@ -193,7 +195,7 @@ def test_nothing_else_is_called_as_the_trials_are(make, tmp_path, whose):
     expected = run.frame()
     assert f"Trial ({whose})" in expected.columns
     for ending, read in (("csv", read_csv), ("parquet", read_parquet)):
-        run.extract(tmp_path / f"trials.{ending}")
+        Simulation(run).extract(tmp_path / f"trials.{ending}")
         pandas.testing.assert_frame_equal(read(tmp_path / f"trials.{ending}"), expected, check_exact=True)
 
 

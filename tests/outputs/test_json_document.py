@@ -7,12 +7,14 @@ import re
 import jsonschema
 import numpy as np
 import pytest
+from simulated import simulated
 
-import xlmc
 from xlmc.analysis.results.record import make_record
 from xlmc.analysis.results.statements import certainties, pairs_of, statements
 from xlmc.analysis.studies.sensitivity import sensitivities
+from xlmc.api import Simulation
 from xlmc.errors import WorkbookError
+from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.outputs.json_document import (
     NO_ERROR,
@@ -40,17 +42,17 @@ def runs(run, none_accepted, one_accepted, make, small_book):
         [make.uniform("a", "A1", 0.0, 1.0), make.uniform("b", "A2", 0.0, 1.0, base=0.5)],
         [make.forecast("x", "B1", asked=(0.5, math.inf))],
     )
-    model = xlmc.load(small_book)
+    model = load(small_book)
     return {
         "a run": run,
         "nothing accepted": none_accepted,
         "one trial": one_accepted,
         "no base case": correlated,
-        "errors in cells": model.simulate(),
-        "Latin hypercube": model.simulate(sampling="lhs"),
-        "until accepted": model.simulate(until_accepted=50),
-        "too few accepted": model.simulate(30, until_accepted=100),
-        "some draws": model.simulate(keep_inputs=10),
+        "errors in cells": simulated(model),
+        "Latin hypercube": simulated(model, sampling="lhs"),
+        "until accepted": simulated(model, until_accepted=50),
+        "too few accepted": simulated(model, 30, until_accepted=100),
+        "some draws": simulated(model, keep_inputs=10),
     }
 
 
@@ -182,14 +184,14 @@ def test_it_is_written_whole_in_utf8(run, tmp_path):
     )
     assert found == json.loads(json.dumps(document(run)))
     before = path.read_bytes()
-    run.save_json(path)
+    Simulation(run).save_json(path)
     assert path.read_bytes() == before
 
 
 @pytest.mark.parametrize("name", ["book.xlsx", "run", "no/run.json"])
 def test_where_it_cannot_be_written(run, tmp_path, name):
     with pytest.raises(WorkbookError):
-        run.save_json(tmp_path / name)
+        Simulation(run).save_json(tmp_path / name)
     assert list(tmp_path.iterdir()) == []
 
 

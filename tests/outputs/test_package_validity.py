@@ -18,8 +18,9 @@ from pathlib import Path
 import openpyxl
 import pytest
 from needed_programs import missing
+from simulated import simulated
 
-import xlmc
+from xlmc.montecarlo.model.loading import load
 from xlmc.outputs import save
 from xlmc.outputs.sheets.book import SHEETS
 
@@ -43,7 +44,7 @@ def saved(tmp_path_factory):
 
     @cache
     def made(name):
-        run = xlmc.load(EXAMPLES / f"{name}.xlsx").simulate(trials=20_000)
+        run = simulated(load(EXAMPLES / f"{name}.xlsx"), trials=20_000)
         return save(run, folder / f"{name}.xlsx", rows=40)
 
     return made
@@ -66,7 +67,7 @@ def test_the_validator_sees_what_does_not(saved, tmp_path):
 
 
 def test_another_reader_finds_every_sheet_and_chart(small_book, tmp_path):
-    path = save(xlmc.load(small_book).simulate(), tmp_path / "small.xlsx")
+    path = save(simulated(load(small_book)), tmp_path / "small.xlsx")
     book = openpyxl.load_workbook(path)
     assert set(book.sheetnames) > {sheet.name for sheet in SHEETS} - {"Evidence results", "Scenarios"}
     with zipfile.ZipFile(path) as package:

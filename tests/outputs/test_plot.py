@@ -5,6 +5,7 @@ import sys
 import numpy as np
 import pytest
 
+from xlmc.api import Simulation
 from xlmc.errors import SimulationError
 from xlmc.outputs.histogram import figures_of
 
@@ -18,7 +19,7 @@ def leave_out_layout(patch):
 
 @pytest.fixture(scope="module")
 def figure(run):
-    return run.plot()
+    return Simulation(run).plot()
 
 
 def test_every_forecast_has_a_histogram_and_a_cumulative_curve(run, figure):
@@ -58,7 +59,7 @@ def test_it_can_be_written(figure, tmp_path, monkeypatch):
 
 
 def test_it_opens_no_window_and_leaves_nothing_behind(run):
-    run.plot()
+    Simulation(run).plot()
     assert "matplotlib.pyplot" not in sys.modules or not sys.modules["matplotlib.pyplot"].get_fignums()
 
 
@@ -66,7 +67,7 @@ def test_names_and_units_are_taken_as_they_are(make, tmp_path):
     r"""A dollar sign would begin a formula of matplotlib's, and a `\frac` without an end raise an error."""
     cells = {"A1": 0.5, "B1": "=A1*2"}
     forecast = make.forecast(r"cost $\frac " + "long " * 30, "B1", units="$/$", threshold=1.0)
-    figure = make.simulate(cells, [make.uniform("a", "A1", 0.0, 1.0)], [forecast]).plot()
+    figure = Simulation(make.simulate(cells, [make.uniform("a", "A1", 0.0, 1.0)], [forecast])).plot()
     figure.savefig(tmp_path / "run.png", dpi=30)
     assert figure.axes[0].get_title("left").endswith("…")
 
@@ -77,18 +78,18 @@ def test_odd_forecasts_are_drawn_without_a_warning(make, tmp_path, monkeypatch, 
     run = make.simulate(
         {"A1": 0.3, "B1": formula}, [make.uniform("a", "A1", 0.0, 1.0)], [make.forecast("x", "B1", threshold=5.0)]
     )
-    run.plot().savefig(tmp_path / "run.png", dpi=30)
+    Simulation(run).plot().savefig(tmp_path / "run.png", dpi=30)
 
 
 def test_nothing_to_draw_is_a_message(none_accepted):
     with pytest.raises(SimulationError, match="nothing to draw"):
-        none_accepted.plot()
+        Simulation(none_accepted).plot()
 
 
 def test_without_matplotlib_it_is_a_message(run, monkeypatch):
     monkeypatch.setattr("xlmc.outputs.plot.find_spec", lambda name: None)
     with pytest.raises(SimulationError, match=r"need matplotlib, which is not installed.*xlmc\[plots\]"):
-        run.plot()
+        Simulation(run).plot()
 
 
 @pytest.mark.filterwarnings("error")
@@ -97,6 +98,6 @@ def test_numbers_that_span_all_doubles_are_drawn(make, tmp_path, monkeypatch, en
     if ends != (-1.7e8, 1.7e8):  # which has the widest labels
         leave_out_layout(monkeypatch)
     run = make.simulate({"A1": 0.0, "B1": "=A1*1E300"}, [make.uniform("x", "A1", *ends)], [make.forecast("vast", "B1")])
-    run.plot().savefig(tmp_path / "run.png", dpi=50)
+    Simulation(run).plot().savefig(tmp_path / "run.png", dpi=50)
     assert (tmp_path / "run.png").stat().st_size > 10_000
     assert np.isfinite(run["vast"].statistics.mode.value)

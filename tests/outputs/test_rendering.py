@@ -18,11 +18,12 @@ from document_texts import squeezed, texts_of
 from fewer_sheets import leave_out, leave_out_drawings
 from needed_programs import missing
 from packed_sheets import packed_sheets
+from simulated import simulated
 
-import xlmc
 from xlmc.engine.engines import ENGINES
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+from xlmc.montecarlo.model.loading import load
 from xlmc.outputs import save
 from xlmc.outputs.document import Wanted
 from xlmc.outputs.document.build import build
@@ -79,7 +80,7 @@ def converted(to, folder, *books):
 
 @pytest.fixture(scope="module")
 def case():
-    return xlmc.load(EXAMPLE).simulate(trials=50_000)
+    return simulated(load(EXAMPLE), trials=50_000)
 
 
 @pytest.fixture(scope="module")
@@ -145,7 +146,7 @@ def longest_printed(longest, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         leave_out_drawings(patch)
         books = [
-            _without_charts(save(xlmc.load(BOOKS[name]).simulate(trials=5_000), folder / f"{name}.xlsx", rows=60))
+            _without_charts(save(simulated(load(BOOKS[name]), trials=5_000), folder / f"{name}.xlsx", rows=60))
             for name in longest
         ]
     return {file.stem: file for file in converted(FIRST_PAGE, folder, *books)}

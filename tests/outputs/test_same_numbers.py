@@ -7,8 +7,11 @@ import json
 import openpyxl
 import pytest
 from fewer_sheets import CHARTS, SENSITIVITY, leave_out
+from simulated import simulated
 
-import xlmc
+from xlmc.analysis.results.saved import open_run
+from xlmc.api import Simulation
+from xlmc.montecarlo.model.loading import load
 
 NAMES = {
     "Mean": "mean",
@@ -31,14 +34,14 @@ NAMES = {
 def told(request, small_book, tmp_path_factory):
     """The run, its document, its sheets, and the run after it was saved and opened."""
     folder = tmp_path_factory.mktemp("same")
-    run = xlmc.load(small_book).simulate(**request.param)
+    run = simulated(load(small_book), **request.param)
     with pytest.MonkeyPatch.context() as patch:
         leave_out(patch, *CHARTS, *SENSITIVITY)
-        run.save(folder / "run.xlsx")
-    run.save_json(folder / "run.json")
-    run.keep(folder / "run.xlmcrun")
+        Simulation(run).save(folder / "run.xlsx")
+    Simulation(run).save_json(folder / "run.json")
+    Simulation(run).keep(folder / "run.xlmcrun")
     document = json.loads((folder / "run.json").read_text(encoding="utf-8"))
-    return run, document, openpyxl.load_workbook(folder / "run.xlsx"), xlmc.open_run(folder / "run.xlmcrun")
+    return run, document, openpyxl.load_workbook(folder / "run.xlsx"), open_run(folder / "run.xlmcrun")
 
 
 def plain(value):

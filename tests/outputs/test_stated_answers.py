@@ -9,9 +9,12 @@ import openpyxl
 import pytest
 from click.testing import CliRunner
 from openpyxl.worksheet.table import Table
+from simulated import simulated
 
-import xlmc
+from xlmc.analysis.results.saved import open_run
+from xlmc.api import Simulation
 from xlmc.cli import xlmc as command
+from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.live.frames import rest_of
 
 ROWS = [
@@ -35,11 +38,11 @@ def outputs(tmp_path_factory):
     sheet.add_table(Table(displayName="xlmc_forecasts", ref="A1:G5"))
     sheet.add_table(Table(displayName="xlmc_assumptions", ref="A6:D7"))
     book.save(folder / "book.xlsx")
-    run = xlmc.load(folder / "book.xlsx").simulate(20_000)
-    run.save_page(folder / "out.html")
-    run.save_json(folder / "out.json")
-    run.save_report(folder / "out.docx")
-    run.keep(folder / "out.xlmcrun")
+    run = simulated(load(folder / "book.xlsx"), 20_000)
+    Simulation(run).save_page(folder / "out.html")
+    Simulation(run).save_json(folder / "out.json")
+    Simulation(run).save_report(folder / "out.docx")
+    Simulation(run).keep(folder / "out.xlmcrun")
     found = CliRunner().invoke(command, ["simulate", str(folder / "book.xlsx"), "-n20000", f"-o{folder / 'out.xlsx'}"])
     assert found.exit_code == 0, found.output
     return folder, " ".join(found.output.split())
@@ -48,7 +51,7 @@ def outputs(tmp_path_factory):
 @pytest.fixture(scope="module")
 def said(outputs):
     """What Python says of the saved run."""
-    return xlmc.open_run(outputs[0] / "out.xlmcrun").sentences
+    return Simulation(open_run(outputs[0] / "out.xlmcrun")).sentences
 
 
 def test_each_answer_is_stated_as_its_row_asks(said):
@@ -70,7 +73,7 @@ def test_every_output_says_the_same(outputs, said):
     sheet = openpyxl.load_workbook(folder / "out.xlsx")["Certainty"]
     cells = [cell.value for row in sheet for cell in row]
     document = json.loads((folder / "out.json").read_text(encoding="utf-8"))
-    window = rest_of(xlmc.open_run(folder / "out.xlmcrun"))
+    window = rest_of(open_run(folder / "out.xlmcrun"))
     assert [each["text"] for each in document["statements"]] == window["sentences"] == list(said)
     for each in said:
         assert f"{each}." in cells

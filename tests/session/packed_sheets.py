@@ -8,13 +8,13 @@ import pytest
 from fewer_sheets import keep_sheets
 
 from xlmc.excel.workbook.writer import package_bytes
-from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.outputs.sheets.book import build_sheets
 
 __all__ = ["packed_sheets"]
 
 
-def packed_sheets(simulation: Simulation, *names: str, **options: Any) -> bytes:
+def packed_sheets(simulation: RunResult, *names: str, **options: Any) -> bytes:
     """A workbook of the result sheets of a run, as `build_sheets` makes its parts: those of these names, or all."""
     with pytest.MonkeyPatch.context() as patch:
         if names:

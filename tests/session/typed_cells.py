@@ -6,17 +6,17 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from xlmc.api import Model
 from xlmc.excel.address import Cell, parse_address
 from xlmc.excel.workbook.workbook import CellContent, CellValue, Workbook
 from xlmc.montecarlo.model.loading import build_model
+from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["model_of", "named_cells", "with_typed"]
 
 
-def model_of(workbook: Workbook) -> Model:
-    """Its model, as `xlmc.load` makes it of a file."""
-    return Model.of(build_model(workbook, Path("typed.xlsx")))
+def model_of(workbook: Workbook) -> CompiledModel:
+    """Its model, as `load` makes it of a file."""
+    return build_model(workbook, Path("typed.xlsx"))
 
 
 def named_cells(workbook: Workbook) -> dict[str, Cell]:

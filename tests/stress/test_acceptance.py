@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 
 @pytest.mark.parametrize("rate", [1e-2, 1e-6])
@@ -41,7 +42,7 @@ def strict(book):
 def test_runs_of_a_strict_filter(strict):
     """100 runs with 2 accepted trials expected: the interval of the acceptance holds 1 in 2,000 in 95 % less 4
     standard errors of them; the average share is right to 4 standard errors."""
-    runs = [strict.simulate(4_000, seed, keep_inputs=0) for seed in range(100)]
+    runs = [simulated(strict, 4_000, seed, keep_inputs=0) for seed in range(100)]
     held = sum(run.acceptance.interval[0] <= 5e-4 <= run.acceptance.interval[1] for run in runs)
     assert held / 100 > 0.95 - 4 * math.sqrt(0.95 * 0.05 / 100)
     assert np.mean([run.accepted for run in runs]) == pytest.approx(2.0, abs=4 * math.sqrt(2.0 / 100))
@@ -49,14 +50,14 @@ def test_runs_of_a_strict_filter(strict):
 
 
 def test_none_accepted_says_how_many_may_be(strict):
-    run = next(run for run in (strict.simulate(1_000, seed) for seed in range(20)) if run.accepted == 0)
+    run = next(run for run in (simulated(strict, 1_000, seed) for seed in range(20)) if run.accepted == 0)
     assert run.acceptance.interval[1] > 5e-4
     assert "or accept fewer than 0.0038 of the trials. " in run.warnings[0]
 
 
 def test_waiting_for_accepted_trials(strict):
     """40 runs until 20 are accepted: the share is right to 4 standard errors, and so is what was accepted."""
-    runs = [strict.simulate(seed=seed, until_accepted=20, keep_inputs=0) for seed in range(40)]
+    runs = [simulated(strict, seed=seed, until_accepted=20, keep_inputs=0) for seed in range(40)]
     assert {run.accepted for run in runs} == {20}
     shares = np.array([run.acceptance.value for run in runs])
     assert shares.mean() == pytest.approx(5e-4, abs=4 * shares.std(ddof=1) / math.sqrt(40))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy import stats
+from simulated import simulated
 
 TRIALS = 50_000
 
@@ -24,7 +25,7 @@ def test_pairs_near_one(asked, sampling):
 
     named = {("first", "second"): asked}
     model = book(named)
-    run = model.simulate(TRIALS, 3, sampling=sampling)
+    run = simulated(model, TRIALS, 3, sampling=sampling)
     (found,) = compared(model, named, run)
     assert model.notices == ()
     assert found["aimed"] == pytest.approx(asked, abs=1e-12)
@@ -38,7 +39,7 @@ def test_pairs_near_one(asked, sampling):
 def test_exactly_one_is_one_draw_seen_twice(sign):
     from stressing.dependence import book
 
-    draws = book({("first", "second"): sign}).simulate(TRIALS, 4).inputs
+    draws = simulated(book({("first", "second"): sign}), TRIALS, 4).inputs
     u = draws["first"] if sign > 0 else 1.0 - draws["first"]
     np.testing.assert_allclose(draws["second"], stats.norm(5.0, 2.0).ppf(u), rtol=1e-9, atol=1e-9)
 

@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 import xlsxwriter
 from click.testing import CliRunner
+from simulated import simulated
 
 import xlmc.montecarlo.statistics as xs
-from xlmc.api import load
 from xlmc.cli import xlmc as command
+from xlmc.montecarlo.model.loading import load
 
 RUNS = 150
 NOISE = 4 * math.sqrt(0.95 * 0.05 / RUNS)
@@ -83,7 +84,7 @@ def test_intervals_are_as_honest_as_the_docs_say(n, place):
 def folder(tmp_path_factory):
     """Books whose filter accepts so many of 2,000 trials."""
     folder = tmp_path_factory.mktemp("few")
-    draws = _load(folder, 1.0).simulate(2_000, 1).inputs["u"]
+    draws = simulated(_load(folder, 1.0), 2_000, 1).inputs["u"]
     limits = np.sort(draws)
     for n in COUNTS:
         _write(folder / f"{n}.xlsx", float((limits[n - 1] + limits[n]) / 2 if n else -1.0))
@@ -136,5 +137,5 @@ def test_the_command_writes_its_sheets_and_says_that_they_are_few(folder, n):
 def test_the_notice_ends_where_there_are_enough(book):
     given = {"u": {"cell": "A1", "low": 0.0, "high": 1.0}}
     model = book({"A1": 0.5, "B1": "=A1"}, given, {"x": "B1"})
-    assert "Only 99 trials were accepted" in str(model.simulate(99).notices_of_run[0])
-    assert model.simulate(100).notices_of_run == ()
+    assert "Only 99 trials were accepted" in str(simulated(model, 99).notices_of_run[0])
+    assert simulated(model, 100).notices_of_run == ()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from simulated import simulated
 
 RUNS = 60
 
@@ -33,7 +34,7 @@ def test_fewer_are_not_to_be_trusted_and_the_run_says_so(book, method):
         {"sum": "B1"},
         {"f": {"cell": "B2", "above": 0.855}},
     )
-    run = model.simulate(3_200, 1, sampling=method)
+    run = simulated(model, 3_200, 1, sampling=method)
     assert 0 < run.accepted < 160
     assert "not to be trusted" in run.warnings[0]
-    assert model.simulate(3_200, 1).warnings == []  # Monte Carlo has no replicates to be too few in
+    assert simulated(model, 3_200, 1).warnings == []  # Monte Carlo has no replicates to be too few in

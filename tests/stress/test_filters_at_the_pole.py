@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 ACROSS = {"cell": "A1", "low": -2.0, "high": 2.0}
 WHOLE = {"cell": "A2", "distribution": "Discrete Uniform", "low": -2.0, "high": 2.0}
@@ -23,7 +24,7 @@ TRIALS = 20_000
 @pytest.fixture(scope="module")
 def runs(book):
     def run(**filter_):
-        return book(CELLS, {"s": ACROSS, "c": WHOLE}, {"kept": "B4"}, {"e": filter_}).simulate(TRIALS, 5)
+        return simulated(book(CELLS, {"s": ACROSS, "c": WHOLE}, {"kept": "B4"}, {"e": filter_}), TRIALS, 5)
 
     return {
         "divided": run(cell="B1", at_least=0.0, at_most=0.25),

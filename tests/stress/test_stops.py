@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 RUNS = 120
 NOISE = 4 * math.sqrt(0.95 * 0.05 / RUNS)
@@ -78,7 +79,7 @@ def model(book):
 
 def test_whole_runs_until_so_many_are_accepted(model):
     """60 runs: neither the share nor the mean is moved by more than 4 standard errors."""
-    runs = [model.simulate(seed=seed, until_accepted=50, keep_inputs=0) for seed in range(60)]
+    runs = [simulated(model, seed=seed, until_accepted=50, keep_inputs=0) for seed in range(60)]
     shares = np.array([run.acceptance.value for run in runs])
     means = np.array([run["x"].mean.value for run in runs])
     assert shares.mean() == pytest.approx(0.1, abs=4 * shares.std(ddof=1) / math.sqrt(60))
@@ -90,7 +91,7 @@ def test_whole_runs_until_so_many_are_accepted(model):
 def test_whole_runs_until_the_mean_is_known(model, monkeypatch):
     """40 runs in small blocks, which give the rule as many chances to stop by luck as it can have."""
     monkeypatch.setattr("xlmc.montecarlo.simulation.simulate.BLOCK", 2_048)
-    runs = [model.simulate(seed=seed, precision=0.012, precision_of="mean", keep_inputs=0) for seed in range(40)]
+    runs = [simulated(model, seed=seed, precision=0.012, precision_of="mean", keep_inputs=0) for seed in range(40)]
     assert {run.stopped.by for run in runs} == {"precision"}
     held = sum(run["x"].mean.interval[0] <= 10.5 <= run["x"].mean.interval[1] for run in runs)
     assert held / 40 > 0.95 - 4 * math.sqrt(0.95 * 0.05 / 40)

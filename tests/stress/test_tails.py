@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from scipy import stats
+from simulated import simulated
 
 from xlmc.montecarlo.statistics import farthest_part
 
@@ -50,7 +51,7 @@ def test_its_percentiles_do(runs):
 
 
 def test_the_notice_stands_in_notices_and_is_no_warning(model):
-    run = model.simulate(2_000, 1)
+    run = simulated(model, 2_000, 1)
     (notice,) = [each for each in run.notices_of_run if "'ratio'" in each.message]
     assert notice in run.notices
     assert "depend on a single trial" in notice.message
@@ -58,7 +59,7 @@ def test_the_notice_stands_in_notices_and_is_no_warning(model):
 
 
 def test_few_trials_say_nothing_of_tails(model):
-    assert not any("hang" in notice.message for notice in model.simulate(900, 1).notices_of_run)
+    assert not any("hang" in notice.message for notice in simulated(model, 900, 1).notices_of_run)
 
 
 @pytest.mark.parametrize("weights", [None, [1.0, 1.0, 1.0, 1.0], [2.0, 2.0, 2.0, 2.0]])

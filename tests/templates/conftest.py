@@ -15,14 +15,15 @@ import typed_cells
 from committed_books import BOOKS
 from needed_programs import missing
 from recalculated_books import RECALCULATED
+from simulated import simulated
 from typed_cells import named_cells, with_typed
 
-import xlmc
 from xlmc.engine.engine import Target
 from xlmc.engine.engines import ENGINES
 from xlmc.engine.graph.lower import Lowering, lower_until_complete
 from xlmc.excel.formula import Resolver, build_graph
 from xlmc.excel.workbook.reader import read_workbook
+from xlmc.montecarlo.model.loading import load
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT))
@@ -83,7 +84,7 @@ def read(book_path):
 @pytest.fixture(scope="session")
 def model_of(book_path):
     """`model_of(name)`: the model of a committed workbook."""
-    return cache(lambda name: xlmc.load(book_path[name]))
+    return cache(lambda name: load(book_path[name]))
 
 
 @pytest.fixture(scope="session")
@@ -95,7 +96,7 @@ def typed(read):
 @pytest.fixture(scope="session")
 def run_of(model_of):
     """`run_of(name)`: 20,000 trials of a committed workbook."""
-    return cache(lambda name: model_of(name).simulate(20_000))
+    return cache(lambda name: simulated(model_of(name), 20_000))
 
 
 @pytest.fixture(scope="session")

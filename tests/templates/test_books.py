@@ -9,6 +9,7 @@ import zipfile
 import pytest
 from committed_books import BOOKS, EXAMPLES, TEMPLATES
 from recalculated_books import RECALCULATED
+from simulated import simulated
 from xlsxwriter.workbook import Workbook
 
 from templates.vehicles import label_formula, name_cell, names_a_vehicle
@@ -217,7 +218,7 @@ def test_the_other_edition_runs_and_keeps_trials(name, model_of):
     """Its ranges and limits are typed by hand for its units. Of planar impact some 1 in 90 trials is kept."""
     model = model_of(name)
     assert not model.definitions.problems
-    assert model.simulate(4_000).accepted > 20
+    assert simulated(model, 4_000).accepted > 20
 
 
 @pytest.mark.parametrize("name", TEMPLATES)

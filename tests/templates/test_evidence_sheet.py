@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from committed_books import BOOKS
 from recalculated_books import RECALCULATED
+from simulated import simulated
 from typed_cells import model_of, named_cells, with_typed
 
 from xlmc.engine.engines import ENGINES
@@ -69,7 +70,7 @@ CASES = [
 
 @pytest.mark.parametrize(("template", "row", "reading", "forecast", "holds"), CASES)
 def test_a_reading_keeps_what_agrees_with_it(template, row, reading, forecast, holds, read_in, run_of):
-    with_it, without = read_in(template, row, reading).simulate(20_000), run_of(template)
+    with_it, without = simulated(read_in(template, row, reading), 20_000), run_of(template)
     assert 0 < with_it.accepted < without.accepted
     assert holds(with_it[forecast].values)
 
@@ -103,15 +104,15 @@ def test_a_blow_from_behind_is_compared_as_an_angle(read, read_in):
         for column, end in zip((7, 8), ends, strict=True)
     }
     rear = model_of(with_typed(read("momentum"), ranges))
-    apart = rear.simulate(20_000)[pdof].values
+    apart = simulated(rear, 20_000)[pdof].values
     assert np.mean(apart > 170) > 0.3
     assert np.mean(apart < -170) > 0.3
     kept = set()
     for reading in (179, -181, 539):
-        run = read_in("momentum", row, {4: reading}, ranges).simulate(20_000)
+        run = simulated(read_in("momentum", row, {4: reading}, ranges), 20_000)
         kept.add(run.accepted)
         assert abs(run[pdof].values - reading).max() < 15
     assert len(kept) == 1
     assert min(kept) > 0.95 * 20_000  # within some 4° of 179, σ 12.6: exp(-z²/2) > .95
-    unused = read_in("momentum", row, {4: 180, 10: False}, ranges).simulate(20_000)
+    unused = simulated(read_in("momentum", row, {4: 180, 10: False}, ranges), 20_000)
     np.testing.assert_allclose(unused[pdof].values, apart % 360, atol=1e-9)

@@ -5,7 +5,7 @@ from decimal import Decimal, getcontext
 import numpy as np
 import pytest
 
-import xlmc
+from xlmc.montecarlo.model.loading import load
 
 getcontext().prec = 60
 PI = Decimal("3.14159265358979323846264338327950288419716939937510582097494459")
@@ -16,7 +16,7 @@ FORECASTS = ("Vehicle 1 delta-V", "Vehicle 2 delta-V", "Vehicle 1 impact speed",
 def test_every_trial_gives_what_planar_impact_gives(book_path, units):
     """The same draws by name, before filters: equal to 1e-12 of the width of the central 51 % range."""
     trials = 20_000
-    simple, full = (xlmc.load(book_path[name + units]) for name in ("momentum", "planar-impact"))
+    simple, full = (load(book_path[name + units]) for name in ("momentum", "planar-impact"))
     rng = np.random.default_rng(5)
     draws = {a.name: rng.uniform(a.parameters["low"], a.parameters["high"], trials) for a in full.live}
     needed = {a.name for a in simple.live}

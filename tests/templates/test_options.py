@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 TURNING = ("momentum", "planar-impact")
 
@@ -13,7 +14,7 @@ TURNING = ("momentum", "planar-impact")
 @pytest.mark.parametrize("name", TURNING)
 def test_the_turn_limits_speed_once_its_radius_is_entered(name, typed, run_of):
     off = run_of(name)
-    on = typed(name, {"R_turn_2": 5.0}).simulate(20_000)
+    on = simulated(typed(name, {"R_turn_2": 5.0}), 20_000)
     limit = math.sqrt(0.95 * 32.174 * 5.0) * 3600 / 5280
     assert off["Vehicle 2 impact speed"].values.max() > limit
     assert 0 < on.accepted < off.accepted

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-import xlmc
 from xlmc.montecarlo.definitions.stating import Kind, Role
+from xlmc.montecarlo.model.loading import load
 
 BOUNDS = [
     ("time-distance", "Highest speed that still stops (without braking: at most)", Role.UPPER, None),
@@ -24,6 +24,6 @@ BOUNDS = [
 @pytest.mark.parametrize(("template", "name", "role", "kind"), BOUNDS, ids=[f"{row[0]}: {row[1]}" for row in BOUNDS])
 @pytest.mark.parametrize("edition", ["", "-si"], ids=["US", "SI"])
 def test_forecast_of_template_says_what_it_is(template, name, role, kind, edition):
-    model = xlmc.load(f"templates/{template}{edition}.xlsx")
+    model = load(f"templates/{template}{edition}.xlsx")
     found = {each.name: each for each in model.forecasts}[name]
     assert (found.role, found.kind) == (role, kind)

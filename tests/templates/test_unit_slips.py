@@ -7,6 +7,7 @@ import re
 import numpy as np
 import pytest
 from recalculated_books import RECALCULATED
+from simulated import simulated
 
 from templates.checks import ALL_CHECKS
 from templates.description import Role
@@ -83,7 +84,7 @@ def test_a_template_as_it_comes_raises_no_alarm(run_of, name):
 
 def test_a_filled_range_in_percent_fails_in_the_accepted_trials(typed):
     row = dict(zip("FGHIJKL", ("Uniform", 60, 95, *(None,) * 4), strict=True))
-    run = typed("skid", {parse_address(f"Inputs!{column}6"): value for column, value in row.items()}).simulate(20_000)
+    run = simulated(typed("skid", {parse_address(f"Inputs!{column}6"): value for column, value in row.items()}), 20_000)
     friction = next(check for check in run.checks if "Friction" in check.name)
     assert friction.holds
     assert friction.failed == friction.trials == run.accepted

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from simulated import simulated
 
-import xlmc
+from xlmc.montecarlo.model.loading import load
 
 MPH = 3600 / 5280
 KMH = 3.6
@@ -340,7 +341,7 @@ def test_example_book_shows_the_published_figures(name, shown):
 
 @pytest.mark.parametrize("name", BOOKS)
 def test_example_book_runs(name, book_path):
-    run = xlmc.load(book_path[name]).simulate(1_000)
+    run = simulated(load(book_path[name]), 1_000)
     assert run.accepted == 1_000
 
 
@@ -359,7 +360,7 @@ UNFILTERED = {
 
 def test_the_case_study_by_momentum_has_the_unfiltered_moments(book_path):
     """200,000 trials: within four standard errors, and half a unit of the last digit of the reference."""
-    model, n = xlmc.load(book_path["intersection-momentum"]), 200_000
+    model, n = load(book_path["intersection-momentum"]), 200_000
     rng = np.random.default_rng(6)
     found = model.function({a.name: rng.uniform(a.parameters["low"], a.parameters["high"], n) for a in model.live})
     for name, (mean, deviation) in UNFILTERED.items():

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Correlation, Definitions, Forecast
     from xlmc.montecarlo.diagnostics.cell_errors import BaseErrors
     from xlmc.montecarlo.diagnostics.checking import CheckResult
-    from xlmc.montecarlo.model.model import Model
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.model.model import CompiledModel
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["check", "check_table", "failing_lines", "scenario_table", "show_first"]
 
@@ -44,15 +44,15 @@ def check(book: Path) -> None:
     from xlmc.montecarlo.definitions.definitions_reader import read_definitions
     from xlmc.montecarlo.model.labels import calculate_labels
     from xlmc.montecarlo.model.loading import filter_faults
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
     workbook = calculate_labels(read_workbook(book))
     definitions = read_definitions(workbook, ENGINES)
     problems: list[XlmcError] = list(definitions.problems)
-    model: Model | None = None
+    model: CompiledModel | None = None
     if not problems:
         try:
-            model = Model(workbook, definitions, book)
+            model = CompiledModel(workbook, definitions, book)
             problems += filter_faults(model)
             if definitions.scenarios and not problems:
                 models_of(model)
@@ -80,7 +80,7 @@ def check(book: Path) -> None:
     say("No problem found.")
 
 
-def _show_base_case(model: Model) -> list[str]:
+def _show_base_case(model: CompiledModel) -> list[str]:
     """Print the checks that fail and the cells in error; return why the answer must not be used as it is."""
     from xlmc.montecarlo.diagnostics.cell_errors import errors_at_base
     from xlmc.montecarlo.diagnostics.checking import base_checks
@@ -101,7 +101,7 @@ def _show_base_case(model: Model) -> list[str]:
     return [*failing, f"at the base case {cell} is {code.text}, and a forecast, filter or check is an error with it"]
 
 
-def _error_lines(model: Model, errors: BaseErrors) -> Iterator[str]:
+def _error_lines(model: CompiledModel, errors: BaseErrors) -> Iterator[str]:
     """The cells that errors come from with their formulas, then the cells that have theirs from these."""
     from xlmc.analysis.results.record.needed_cells import content_text
     from xlmc.excel.address import host_of
@@ -117,7 +117,7 @@ def _error_lines(model: Model, errors: BaseErrors) -> Iterator[str]:
         yield f"Cells that are errors because of these: {named}{more}."
 
 
-def _show_definitions(definitions: Definitions, model: Model | None) -> None:
+def _show_definitions(definitions: Definitions, model: CompiledModel | None) -> None:
     from xlmc.analysis.results.statements.in_words import distribution_text, evidence_text, limits_text
     from xlmc.cli.printing import table
     from xlmc.montecarlo.distributions.parameters import show
@@ -176,14 +176,14 @@ def scenario_table(definitions: Definitions) -> None:
         table("Scenarios", ("Name", "Changes", "Note"), changes)
 
 
-def _drawn_with(model: Model | None, correlation: Correlation) -> str:
+def _drawn_with(model: CompiledModel | None, correlation: Correlation) -> str:
     from xlmc.montecarlo.model.correlating import drawn_correlation
 
     found = None if model is None else drawn_correlation(model.groups, correlation.first, correlation.second)
     return "-" if found is None else f"{found:.3g}"
 
 
-def _show_need(model: Model, workbook: Workbook) -> None:
+def _show_need(model: CompiledModel, workbook: Workbook) -> None:
     formulas = sum(c.formula is not None for sheet in workbook.sheets.values() for c in sheet.cells.values())
     needed, varying = model.needed.graph.formulas, model.needed.graph.varying
     count = sum(cell in varying for cell in needed)
@@ -193,7 +193,7 @@ def _show_need(model: Model, workbook: Workbook) -> None:
         say(paragraph("No forecast or filter needs: " + ", ".join(a.name for a in model.needed.idle) + "."))
 
 
-def show_first(run: Simulation) -> None:
+def show_first(run: RunResult) -> None:
     """Print the checks that fail, then evidence that contradicts, then the cells that trials were lost in."""
     from xlmc.analysis.results.record.errors_met import lost_sentences
 
@@ -204,7 +204,7 @@ def show_first(run: Simulation) -> None:
     _show_lines(f"{name}: trials lost to errors", [f"{sentence}." for sentence in lost_sentences(run)])
 
 
-def failing_lines(run: Simulation) -> list[str]:
+def failing_lines(run: RunResult) -> list[str]:
     """One line for each check that fails, at the base case or in too many accepted trials."""
     return [sentence(f"{warning[0].upper()}{warning[1:]}") for check in run.checks for warning in check.warnings]
 
@@ -218,7 +218,7 @@ def _show_lines(title: str, lines: Sequence[str]) -> None:
     say()
 
 
-def check_table(run: Simulation) -> None:
+def check_table(run: RunResult) -> None:
     """Print how many accepted trials fail each check; only how many checks there are where no trial fails one."""
     from xlmc.cli.printing import table
     from xlmc.montecarlo.diagnostics.checking import checks_sentence

@@ -17,7 +17,8 @@ from xlmc.errors import WorkbookError
 
 if TYPE_CHECKING:
     from xlmc.api import Simulation
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
+    from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.document import Wanted
 
 __all__ = ["Outputs", "Reports", "Wishes", "output_options", "results_beside"]
@@ -165,7 +166,7 @@ class Outputs(NamedTuple):
     wishes: Wishes = Wishes()
     beside: Path | None = None
 
-    def check_against(self, model: Model) -> None:
+    def check_against(self, model: CompiledModel) -> None:
         """Refuse what cannot be written about this workbook.
 
         Raises:
@@ -267,14 +268,16 @@ class Outputs(NamedTuple):
             say(f"note: {self.book}: {reason}; it stays as it is, and results go to {found}.", err=True)
         return self._replace(book=found)
 
-    def write(self, run: Simulation) -> tuple[bool, list[str]]:
+    def write(self, run: RunResult) -> tuple[bool, list[str]]:
         """Write them all: whether all could be, and what to say of where they are when the answer has been printed.
 
         If one cannot be written, that is said, and the others are written all the same: the run may have taken hours.
         Where a name was taken since the run began, or a program holds the file, a free name beside it is used.
         """
+        from xlmc.api import Simulation
+
         written, lines = True, []
-        for path, said, write in self._files(run):
+        for path, said, write in self._files(Simulation(run)):
             found = written_or_told(path, partial(self._write_beside, path, write))
             if found is None:
                 written = False

@@ -12,7 +12,7 @@ from xlmc.cli.terminal import say
 from xlmc.cli.writing import NOT_WRITTEN
 
 if TYPE_CHECKING:
-    from xlmc.api import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["report"]
 
@@ -51,7 +51,7 @@ def report(
         raise click.UsageError(
             "A second run is shown on a page, and there alone: give --html PAGE.html, and no other file."
         )
-    from xlmc.api import open_run
+    from xlmc.analysis.results.saved import open_run
     from xlmc.cli.printing import notices, warnings
     from xlmc.cli.simulate import show_run
     from xlmc.excel.workbook.package import WORKBOOKS
@@ -90,15 +90,14 @@ def report(
         raise click.exceptions.Exit(NOT_TO_BE_USED)
 
 
-def _repeated(results: Path, quiet: bool) -> Simulation:
+def _repeated(results: Path, quiet: bool) -> RunResult:
     """The run that a result workbook records.
 
     Raises:
         WorkbookError: it holds no record, or its run cannot be repeated as it was.
     """
-    from xlmc.api import Simulation
     from xlmc.cli.progress_bar import progress_bar
     from xlmc.outputs.replay import recorded_run
 
     with progress_bar(quiet) as progress:
-        return Simulation.of(recorded_run(results, progress=progress))
+        return recorded_run(results, progress=progress)

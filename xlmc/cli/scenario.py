@@ -11,7 +11,7 @@ from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.scenario_workbook import EditedWorkbook
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["scenario"]
 
@@ -57,7 +57,7 @@ def scenario(book: Path, name: str | None, output: Path | None, in_place: bool, 
     say(f"Written: {target}")
 
 
-def _show(edited: EditedWorkbook, model: Model) -> None:
+def _show(edited: EditedWorkbook, model: CompiledModel) -> None:
     """Print the cells with what they held and hold, and what could not be computed."""
     from xlmc.cli.printing import table
     from xlmc.montecarlo.definitions.tables.table_rows import as_text

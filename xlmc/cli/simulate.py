@@ -20,9 +20,9 @@ from xlmc.cli.writing import NOT_WRITTEN
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.scenario_answers import ScenarioAnswers
-    from xlmc.api import Simulation
     from xlmc.errors import Notice
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["show_run", "simulate"]
 
@@ -74,10 +74,11 @@ def simulate(
 ) -> None:
     """Run BOOK, print the summary, and write result sheets and charts into a copy of it."""
     from xlmc.analysis.studies.scenario_answers import models_of
-    from xlmc.api import load
     from xlmc.cli.printing import notices, warnings
     from xlmc.cli.progress_bar import progress_bar
-    from xlmc.montecarlo.simulation.simulation import KEPT_INPUTS
+    from xlmc.montecarlo.definitions.run_options import KEPT_INPUTS, RunOptions
+    from xlmc.montecarlo.model.loading import load
+    from xlmc.montecarlo.simulation.simulate import run_model
 
     if in_place and output is not None:
         raise click.UsageError("--in-place and --output cannot both be given.")
@@ -107,10 +108,10 @@ def simulate(
     if not quiet:
         notices([*model.notices, *_hints(model, asked["trials"], asked["engine"])])
     with progress_bar(quiet) as progress:
-        run = model.simulate(
-            **asked,
-            keep_inputs=None if extract else KEPT_INPUTS,
-            keep_interrupted=True,
+        keep_inputs = None if extract else KEPT_INPUTS
+        run = run_model(
+            model,
+            RunOptions.of(**asked, keep_inputs=keep_inputs, keep_interrupted=True),
             progress=progress,
             tell=None if quiet else lambda sentence: say(sentence, err=True),
         )
@@ -132,7 +133,7 @@ def simulate(
         raise click.exceptions.Exit(NOT_TO_BE_USED)
 
 
-def _with_scenarios(run: Simulation, jobs: int, quiet: bool) -> tuple[Simulation, Sequence[ScenarioAnswers]]:
+def _with_scenarios(run: RunResult, jobs: int, quiet: bool) -> tuple[RunResult, Sequence[ScenarioAnswers]]:
     """The answers of the scenarios; after Ctrl-C none, and the run as one that was made without them."""
     from dataclasses import replace
 
@@ -157,7 +158,7 @@ def _of_scenarios(answers: Sequence[ScenarioAnswers]) -> list[str]:
     return [f"scenario {each.name!r}: {said}" for each in answers[1:] for said in each.warnings if said not in own]
 
 
-def _hints(model: Model, trials: int | None, engine: str | None) -> list[Notice]:
+def _hints(model: CompiledModel, trials: int | None, engine: str | None) -> list[Notice]:
     """What could make the run shorter."""
     from xlmc.engine.llvm import REPAYS_FROM, available
     from xlmc.errors import Notice
@@ -168,7 +169,7 @@ def _hints(model: Model, trials: int | None, engine: str | None) -> list[Notice]
     return [Notice("a run of so many trials may be shorter with `--engine jit`, which compiles the model first")]
 
 
-def show_run(run: Simulation) -> None:
+def show_run(run: RunResult) -> None:
     """Print the paper's table, the acceptance and what each filter rejected."""
     from xlmc.analysis.results.statements.in_words import sampling_sentence
     from xlmc.cli.check import check_table, show_first
@@ -197,7 +198,7 @@ def show_run(run: Simulation) -> None:
         say(paragraph(f"{notice}."))
 
 
-def _show_sentences(run: Simulation) -> None:
+def _show_sentences(run: RunResult) -> None:
     """Print what may be quoted, where a forecast says how it is to be stated."""
     from xlmc.analysis.results.statements import statements
 
@@ -206,7 +207,7 @@ def _show_sentences(run: Simulation) -> None:
         say("\n".join([*said, ""]) if said else "")
 
 
-def _show_evidence(run: Simulation) -> None:
+def _show_evidence(run: RunResult) -> None:
     """Print whether the evidence agrees, and what each item moves; nothing where none is used."""
     from xlmc.cli.printing import table
     from xlmc.outputs.evidence_tables import ITEM_HEADS, item_rows, move_rows, trials_sentence
@@ -222,7 +223,7 @@ def _show_evidence(run: Simulation) -> None:
     table("What each item of evidence moves", heads, move_rows(found, names), right=range(1, len(heads)))
 
 
-def _show_scenarios(run: Simulation) -> None:
+def _show_scenarios(run: RunResult) -> None:
     """Print what each scenario changes and accepts, then a table for each forecast; nothing where they were not run."""
     from xlmc.analysis.studies.scenario_answers import scenario_answers
     from xlmc.cli.printing import table
@@ -239,7 +240,7 @@ def _show_scenarios(run: Simulation) -> None:
     say(paragraph(" ".join(scenario_sentences(found))) + "\n")
 
 
-def _acceptance_sentence(run: Simulation) -> str:
+def _acceptance_sentence(run: RunResult) -> str:
     from xlmc.analysis.results.record.errors_met import rest_sentences
     from xlmc.outputs.summary import share_text
 
@@ -255,7 +256,7 @@ def _acceptance_sentence(run: Simulation) -> str:
     return f"Accepted {run.accepted:,} of {run.trials:,} trials, {share_text(run.acceptance)}"
 
 
-def _discards(run: Simulation) -> list[tuple[str, ...]]:
+def _discards(run: RunResult) -> list[tuple[str, ...]]:
     from xlmc.analysis.results.statements.in_words import discards_of, limits_text
     from xlmc.outputs.summary import share_text
 
@@ -265,7 +266,7 @@ def _discards(run: Simulation) -> list[tuple[str, ...]]:
     ]
 
 
-def _rejections(run: Simulation) -> list[tuple[str, ...]]:
+def _rejections(run: RunResult) -> list[tuple[str, ...]]:
     from xlmc.analysis.results.statements.in_words import limits_text
 
     counts = zip(run.model.filters, run.tally.rejected, run.tally.only, strict=True)

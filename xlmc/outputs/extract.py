@@ -23,7 +23,7 @@ from xlmc.montecarlo.columns import PART, release
 from xlmc.montecarlo.simulation.simulation import TRIAL, assumption_heading, forecast_heading, weight_heading
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["check_extract_path", "extract", "safe_heading"]
 
@@ -53,7 +53,7 @@ class Column:
     values: NDArray[np.float64]
 
 
-def extract(simulation: Simulation, path: Path, *, command: str | None = None, overwrite: bool = False) -> Path:
+def extract(simulation: RunResult, path: Path, *, command: str | None = None, overwrite: bool = False) -> Path:
     """Write the accepted trials, one in each row: the trial's number, the assumptions, the forecasts.
 
     Args:
@@ -103,7 +103,7 @@ def safe_heading(name: str) -> str:
     return f"'{apart}" if apart.startswith(_STARTS_A_FORMULA) else apart
 
 
-def _writer(path: Path) -> Callable[[Simulation, BinaryIO, str | None], None]:
+def _writer(path: Path) -> Callable[[RunResult, BinaryIO, str | None], None]:
     found = {".csv": _write_csv, ".parquet": _write_parquet}.get(path.suffix.casefold())
     if found is None:
         hint = f"Name it {path.stem + '.csv'!r} or {path.stem + '.parquet'!r}"
@@ -111,7 +111,7 @@ def _writer(path: Path) -> Callable[[Simulation, BinaryIO, str | None], None]:
     return found
 
 
-def _columns(simulation: Simulation) -> list[Column]:
+def _columns(simulation: RunResult) -> list[Column]:
     """Assumptions, then forecasts."""
     forecasts = {forecast.name for forecast in simulation.model.forecasts}
     found = [
@@ -129,7 +129,7 @@ def _columns(simulation: Simulation) -> list[Column]:
 
 
 def _chunks(
-    simulation: Simulation, columns: list[Column], size: int
+    simulation: RunResult, columns: list[Column], size: int
 ) -> Iterator[tuple[NDArray[np.int64], list[NDArray[np.float64]]]]:
     """The trials a part at a time, and with them a part of every column, filled up with NaN."""
     index = simulation.trial_index
@@ -146,7 +146,7 @@ def _fill_up(values: NDArray[np.float64], size: int) -> NDArray[np.float64]:
     return np.concatenate([values, np.full(size - values.size, np.nan)])
 
 
-def _write_csv(simulation: Simulation, file: BinaryIO, command: str | None) -> None:
+def _write_csv(simulation: RunResult, file: BinaryIO, command: str | None) -> None:
     """RFC 4180 in UTF-8; with a byte order mark where the headings need it, for Excel takes other files for ANSI."""
     columns = _columns(simulation)
     headings = [safe_heading(name) for name in (TRIAL, *(column.name for column in columns))]
@@ -167,7 +167,7 @@ def _fields(values: NDArray[np.float64]) -> list[float | str]:
     return ["" if value != value else value for value in found] if np.isnan(values).any() else found
 
 
-def _write_parquet(simulation: Simulation, file: BinaryIO, command: str | None) -> None:
+def _write_parquet(simulation: RunResult, file: BinaryIO, command: str | None) -> None:
     """Doubles, null where there is no number; units and cells with the columns, the record with the table."""
     import pyarrow as pa
     from pyarrow import parquet

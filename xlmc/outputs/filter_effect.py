@@ -21,7 +21,7 @@ from xlmc.montecarlo.columns import numbers
 from xlmc.montecarlo.statistics import Estimate
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = [
     "PERCENTS",
@@ -41,7 +41,7 @@ _BINS = 24
 _LONG = 1.3
 """If all draws cover more than this multiple of their middle 99.6 %, the chart leaves out their tails."""
 
-_FOUND: Final[WeakKeyDictionary[Simulation, dict[str, FilterEffect]]] = WeakKeyDictionary()
+_FOUND: Final[WeakKeyDictionary[RunResult, dict[str, FilterEffect]]] = WeakKeyDictionary()
 """By assumption. Sheets, page, document and JSON of one run want the same."""
 
 
@@ -128,7 +128,7 @@ def marginal(
     )
 
 
-def filter_effect_of(simulation: Simulation, assumption: str) -> FilterEffect | None:
+def filter_effect_of(simulation: RunResult, assumption: str) -> FilterEffect | None:
     """What the filters of a run did to one of its assumptions; None where the assumption is not drawn."""
     if assumption not in simulation.inputs:
         return None
@@ -141,7 +141,7 @@ def filter_effect_of(simulation: Simulation, assumption: str) -> FilterEffect | 
     return found[assumption]
 
 
-def shapes_of(simulation: Simulation, assumption: str) -> Shapes | None:
+def shapes_of(simulation: RunResult, assumption: str) -> Shapes | None:
     """The shapes of one of a run's assumptions; None where it is not drawn, or is one value."""
     prior, accepted = simulation.prior.get(assumption), simulation.inputs.get(assumption)
     if prior is None or accepted is None:

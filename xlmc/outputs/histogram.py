@@ -29,7 +29,7 @@ from xlmc.montecarlo.statistics.sample import Sample, Values
 from xlmc.outputs.summary import SummaryRow, central_text, estimate_text, percent, summarise
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["Figure", "Histogram", "figures_of", "histogram", "multiples", "varying"]
 
@@ -257,7 +257,7 @@ class Figure:
         return text
 
 
-def figures_of(simulation: Simulation, names: Collection[str] | None = None) -> list[Figure]:
+def figures_of(simulation: RunResult, names: Collection[str] | None = None) -> list[Figure]:
     """Every forecast that has a number in an accepted trial.
 
     Args:

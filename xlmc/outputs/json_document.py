@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.diagnostics.checking import CheckResult
     from xlmc.montecarlo.diagnostics.weighing import Weighting
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.montecarlo.statistics import Estimate
 
 __all__ = [
@@ -92,7 +92,7 @@ Json = dict[str, Any]
 _EstimateJson = dict[str, float | str | None]
 
 
-def document(simulation: Simulation, *, command: str | None = None) -> Json:
+def document(simulation: RunResult, *, command: str | None = None) -> Json:
     """The results of a run, every number as it is in Python and on the sheets.
 
     Args:
@@ -142,7 +142,7 @@ def document(simulation: Simulation, *, command: str | None = None) -> Json:
     }
 
 
-def save_json(simulation: Simulation, path: Path, *, command: str | None = None, overwrite: bool = False) -> Path:
+def save_json(simulation: RunResult, path: Path, *, command: str | None = None, overwrite: bool = False) -> Path:
     """Write the document, and behind it the seal by which xlmc knows it again.
 
     Args:
@@ -208,7 +208,7 @@ def _estimate_or_none(found: Estimate | None) -> _EstimateJson | None:
     return None if found is None else estimate_json(found)
 
 
-def _trials(simulation: Simulation) -> Json:
+def _trials(simulation: RunResult) -> Json:
     return {
         "run": simulation.trials,
         "accepted": simulation.accepted,
@@ -245,7 +245,7 @@ def _forecast(result: ForecastResult, base: BaseCase | None) -> Json:
     }
 
 
-def _filter(simulation: Simulation, index: int, each: Filter) -> Json:
+def _filter(simulation: RunResult, index: int, each: Filter) -> Json:
     tally, filters = simulation.tally, simulation.model.filters
     rejected, only = int(tally.rejected[index]), int(tally.only[index])
     together = zip(filters, tally.together[index].tolist(), strict=True)
@@ -330,7 +330,7 @@ def _check(each: CheckResult) -> Json:
     }
 
 
-def _assumption(simulation: Simulation, each: Assumption) -> Json:
+def _assumption(simulation: RunResult, each: Assumption) -> Json:
     entry: Json = {
         "name": each.name,
         "cell": str(each.cell),

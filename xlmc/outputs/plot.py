@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["plot"]
 
@@ -35,7 +35,7 @@ _LONGEST: Final = 55
 Floats = NDArray[np.float64]
 
 
-def plot(simulation: Simulation) -> Figure:
+def plot(simulation: RunResult) -> Figure:
     """The figure, one row for each forecast that has a number in an accepted trial: histogram and cumulative share.
 
     It belongs to no window: `figure.savefig("run.png")` writes it, and a notebook shows it.
@@ -60,7 +60,7 @@ def plot(simulation: Simulation) -> Figure:
     return figure
 
 
-def _title(simulation: Simulation) -> str:
+def _title(simulation: RunResult) -> str:
     name = textwrap.shorten(simulation.model.workbook.name, 60, placeholder="…")
     return f"{name}: {simulation.accepted:,} of {simulation.trials:,} trials accepted, seed {simulation.settings.seed}"
 
@@ -84,7 +84,7 @@ def _draw_histogram(axes: Axes, each: Drawn) -> None:
     _dress(axes, each, edges)
 
 
-def _draw_cumulative(axes: Axes, each: Drawn, simulation: Simulation) -> None:
+def _draw_cumulative(axes: Axes, each: Drawn, simulation: RunResult) -> None:
     answer, share = each.answer, np.linspace(0.0, 1.0, _POINTS)
     values = simulation.results[answer.name].sample.quantile(share)
     low, high = _near(each, np.array([answer.low.value, answer.high.value]))

@@ -22,7 +22,7 @@ from xlmc.montecarlo.statistics.estimate import finite
 if TYPE_CHECKING:
     from xlmc.engine.engine import Column
     from xlmc.montecarlo.definitions.definitions import Filter
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = [
     "ERROR_SENTENCE",
@@ -82,7 +82,7 @@ class SummaryRow:
     certainty: Estimate | None = None
 
 
-def summarise(simulation: Simulation, names: Collection[str] | None = None) -> list[SummaryRow]:
+def summarise(simulation: RunResult, names: Collection[str] | None = None) -> list[SummaryRow]:
     """One row for each forecast, in the order of the workbook.
 
     Args:
@@ -203,7 +203,7 @@ class BaseCase:
     rejected_by: tuple[str, ...]
 
 
-def base_case(simulation: Simulation) -> BaseCase | None:
+def base_case(simulation: RunResult) -> BaseCase | None:
     """The base case of a run's model; None where an assumption has none.
 
     It is computed, not read: a file may hold no cached values, or stale ones.
@@ -239,7 +239,7 @@ class Said(NamedTuple):
     is_name: bool = False
 
 
-def question(simulation: Simulation) -> Iterator[Said]:
+def question(simulation: RunResult) -> Iterator[Said]:
     """What was asked of the workbook, in sentences: how many answers, from what, and which trials count."""
     model = simulation.model
     yield Said(
@@ -262,14 +262,14 @@ def question(simulation: Simulation) -> Iterator[Said]:
     yield from _of_some(simulation)
 
 
-def _asked(simulation: Simulation) -> list[Filter]:
+def _asked(simulation: RunResult) -> list[Filter]:
     """The filters that trials can break, or have broken."""
     may = {each.name for each in breakable(simulation.model)}
     rejected = zip(simulation.model.filters, simulation.tally.rejected, strict=True)
     return [each for each, trials in rejected if trials or each.name in may]
 
 
-def _counted(simulation: Simulation, filters: bool, evidence: bool) -> str:
+def _counted(simulation: RunResult, filters: bool, evidence: bool) -> str:
     """How many trials do what is asked of them, by filters, by evidence or by both."""
     count, share, one = f"{simulation.accepted:,}", share_text(simulation.acceptance), simulation.accepted == 1
     does = ["passes all filters" if one else "pass all filters"] * filters
@@ -292,7 +292,7 @@ def _listed(opening: str, filters: Sequence[Filter]) -> Iterator[Said]:
         yield Said(f" {limits_text(filter_)}" + "." * (filter_ is filters[-1]))
 
 
-def _of_some(simulation: Simulation) -> Iterator[Said]:
+def _of_some(simulation: RunResult) -> Iterator[Said]:
     """What the filters of some forecasts only ask."""
     for each in discards_of(simulation):
         yield Said(" Of ")

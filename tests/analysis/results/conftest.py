@@ -4,12 +4,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from simulated import simulated
 
-from xlmc.api import Model
 from xlmc.errors import Notice
 from xlmc.excel.address import parse_address
 from xlmc.excel.workbook.workbook import CellContent, Formula, Sheet, Workbook
 from xlmc.montecarlo.definitions.definitions import Assumption, Correlation, Definitions, Filter, Forecast, Settings
+from xlmc.montecarlo.model.model import CompiledModel
 
 CELLS = {
     "A1": 2.0,
@@ -69,9 +70,9 @@ def _definitions():
 @pytest.fixture(scope="session")
 def model():
     """A model with every kind of definition, and every kind of error."""
-    return Model(_workbook(), _definitions(), Path("my book.xlsx"))
+    return CompiledModel(_workbook(), _definitions(), Path("my book.xlsx"))
 
 
 @pytest.fixture(scope="session")
 def run(model):
-    return model.simulate()
+    return simulated(model)

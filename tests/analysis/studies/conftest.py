@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-import xlmc
+from xlmc.montecarlo.model.loading import load
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 
@@ -12,10 +12,10 @@ EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 @pytest.fixture(scope="session")
 def planar():
     """The paper's case study: momentum, rotation, restitution filters."""
-    return xlmc.load(EXAMPLES / "intersection.xlsx")
+    return load(EXAMPLES / "intersection.xlsx")
 
 
 @pytest.fixture(scope="session")
 def momentum():
     """The same crash without rotation."""
-    return xlmc.load(EXAMPLES / "intersection-momentum.xlsx")
+    return load(EXAMPLES / "intersection-momentum.xlsx")

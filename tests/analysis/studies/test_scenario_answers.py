@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from xlmc.analysis.studies.scenario_answers import model_of, scenario_answers
-from xlmc.api import Model
 from xlmc.errors import DefinitionError, SimulationError
 from xlmc.montecarlo.definitions.scenarios import Held, Limits, Range, Scenario
 from xlmc.montecarlo.definitions.stopping import stopping
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import simulate
 
 CELLS = {"A1": 0.5, "A2": 0.5, "B1": "=A1+A2^2", "B2": "=A1-A2"}
@@ -30,7 +30,7 @@ def model(book):
     plain = book(CELLS, GIVEN, {"x": "B1"}, {"f": {"cell": "B2", "at_most": 0.3}})
     forecasts = tuple(replace(each, threshold=0.9) for each in plain.forecasts)
     definitions = replace(plain.definitions, scenarios=SCENARIOS, forecasts=forecasts)
-    return Model(plain.workbook, definitions, plain.path)
+    return CompiledModel(plain.workbook, definitions, plain.path)
 
 
 def answers(model, trials=2_000, seed=3, **more):
@@ -79,7 +79,7 @@ def test_errors_of_differences_are_those_of_many_seeds(model):
     Student's t of 15 degrees of freedom, for replicates, has a root mean square of 1.074; step functions of few trials
     leave their error up to 10 % too large.
     """
-    model = Model(model.workbook, replace(model.definitions, scenarios=SCENARIOS[:3]), model.path)
+    model = CompiledModel(model.workbook, replace(model.definitions, scenarios=SCENARIOS[:3]), model.path)
     truth = answers(model, trials=50_000, seed=99)
     off = {}
     for sampling, widest in (("mc", 1.0), ("lhs", 1.074)):
@@ -123,4 +123,4 @@ def test_what_is_not_there(book, model):
         model_of(model, "none")
     with pytest.raises(DefinitionError, match=r"In the scenario 'bad': a: Low \(2\) is above High \(1\)"):
         model_of(model, Scenario("bad", (Range("a", 2, 1),)))
-    assert model.scenario("NARROW").assumptions[0].parameters == {"low": 0.2, "high": 0.6}
+    assert model_of(model, "NARROW").assumptions[0].parameters == {"low": 0.2, "high": 0.6}

@@ -11,15 +11,17 @@ from pathlib import Path
 import openpyxl
 import pytest
 from openpyxl.worksheet.table import Table
+from simulated import simulated
 
 from xlmc.analysis.studies.scenario_workbook import edited_workbook, write_edited
 from xlmc.analysis.studies.verify import Status, verify
-from xlmc.api import load
+from xlmc.api import Model, Simulation
 from xlmc.errors import DefinitionError, SimulationError, WorkbookError
 from xlmc.excel.address import parse_address
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.montecarlo.definitions.scenarios import Band, Held, Limits, Range, Scenario, Typed
 from xlmc.montecarlo.model.applied_changes import applied
+from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.simulation.simulate import simulate
 
 CASE = Path("examples/intersection.xlsx")
@@ -148,7 +150,7 @@ def test_what_cannot_be_computed_is_left_to_excel(small):
 def test_what_cannot_be_typed_is_refused(small, changes, error, message):
     before = small.path.read_bytes()
     with pytest.raises(error) as caught:
-        small.save_scenario(Scenario("x", changes), small.path.with_name("copy.xlsx"))
+        Model(small).save_scenario(Scenario("x", changes), small.path.with_name("copy.xlsx"))
     assert message in str(caught.value)
     assert caught.value.hint
     assert not small.path.with_name("copy.xlsx").exists()
@@ -178,9 +180,9 @@ def test_a_workbook_is_typed_into_only_on_request_and_while_nobody_else_has_it(s
 def test_a_file_that_is_there_is_not_replaced(small):
     copy = shutil.copy(small.path, small.path.with_name("copy.xlsx"))
     with pytest.raises(WorkbookError, match="exists already"):
-        small.save_scenario(rate(5.0), copy)
+        Model(small).save_scenario(rate(5.0), copy)
     with pytest.raises(WorkbookError, match=r"a copy of a \.xlsx workbook must end in \.xlsx"):
-        small.save_scenario(rate(5.0), copy.with_suffix(".xlsm"))
+        Model(small).save_scenario(rate(5.0), copy.with_suffix(".xlsm"))
     assert copy.read_bytes() == small.path.read_bytes()
 
 
@@ -191,11 +193,11 @@ def test_a_scenario_asks_for_the_same_forecasts(case):
 
 
 def test_the_run_of_a_scenario_is_not_saved_as_a_run_of_the_file(small, tmp_path):
-    run = small.scenario(rate(5.0)).simulate(200)
+    run = simulated(small.scenario(rate(5.0)), 200)
     with pytest.raises(SimulationError, match="no file holds the workbook of this run"):
-        run.save(tmp_path / "r.xlsx")
+        Simulation(run).save(tmp_path / "r.xlsx")
     with pytest.raises(SimulationError):
-        run.keep(tmp_path / "r.xlmcrun")
+        Simulation(run).keep(tmp_path / "r.xlmcrun")
 
 
 def test_a_correlated_assumption_is_held():

@@ -13,8 +13,8 @@ import pytest
 from xlmc.analysis.studies.comparison import Verdict, compare
 from xlmc.analysis.studies.comparison.verdicts import undecided_text
 from xlmc.analysis.studies.screening import screen
-from xlmc.api import Model
 from xlmc.errors import SimulationError
+from xlmc.montecarlo.model.model import CompiledModel
 
 SIZE = {"trials": 20_000, "seed": 1}
 
@@ -190,7 +190,7 @@ def test_the_model_stays_as_it_is(weighted):
 def test_the_trials_are_independent_whatever_the_book_says(weighted):
     model = weighted({"a": 1.0, "b": 0.01})
     settings = replace(model.definitions.settings, sampling="sobol")
-    other = Model(model.workbook, replace(model.definitions, settings=settings), model.path)
+    other = CompiledModel(model.workbook, replace(model.definitions, settings=settings), model.path)
     found, plain = screen(other, **SIZE), screen(model, **SIZE)
     assert found.run.settings.sampling == "mc"
     assert cost_of(found, "b").size == cost_of(plain, "b").size
@@ -264,7 +264,7 @@ def test_an_assumption_that_alone_decides_the_probability_is_needed(book):
     }
     model = book(cells, given, {"y": "D1"})
     above = replace(model.definitions.forecasts[0], threshold=12.0)
-    asked = Model(model.workbook, replace(model.definitions, forecasts=(above,)), model.path)
+    asked = CompiledModel(model.workbook, replace(model.definitions, forecasts=(above,)), model.path)
     plain, honoured = (screen(one, "2", **SIZE) for one in (model, asked))
     assert {"switch", "tail"} <= set(plain.joint.names)
     assert not {"switch", "tail"} & set(honoured.joint.names if honoured.joint else ())
@@ -282,7 +282,9 @@ def test_an_assumption_that_alone_decides_the_probability_is_needed(book):
 def test_the_range_of_each_forecast_is_its_own(book):
     model = book({"A1": 0.5, "D1": "=A1"}, {"a": {"cell": "A1", "low": 0, "high": 1}}, {"y": "D1"})
     wide = replace(model.definitions.forecasts[0], central=0.9)
-    found = screen(Model(model.workbook, replace(model.definitions, forecasts=(wide,)), model.path), "0.1", **SIZE)
+    found = screen(
+        CompiledModel(model.workbook, replace(model.definitions, forecasts=(wide,)), model.path), "0.1", **SIZE
+    )
     each = cost_of(found, "a").forecasts["y"]
     assert each.share == 0.9
     assert each.low.first.value == pytest.approx(0.05, abs=0.01)

@@ -8,7 +8,8 @@ from committed_books import BOOKS
 
 pytest.importorskip("llvmlite")
 
-import xlmc
+from simulated import simulated
+
 from xlmc.engine.engine import Room
 from xlmc.engine.llvm import block_runner, phase
 from xlmc.engine.llvm.loop import compile_loop
@@ -17,6 +18,7 @@ from xlmc.engine.llvm.program import JitProgram
 from xlmc.montecarlo.loop.blocks import Task
 from xlmc.montecarlo.loop.scheduling.run_spec import model_runner
 from xlmc.montecarlo.model.forecast_filters import FilteringProgram
+from xlmc.montecarlo.model.loading import load
 
 BLOCK = 4096
 UNIT = {"low": 0, "high": 1}
@@ -138,8 +140,8 @@ def _check_first_trials(model, draws_given):
 def test_trials_behind_those_that_count_are_not_counted(book):
     """The last chunk has trials that the run does not: what the filters reject of them is not told."""
     model = book(CELLS, GIVEN, {"x": "B3"}, {"f": "C1", "g": BELOW})
-    few, more = (model.simulate(trials, seed=3, engine="jit") for trials in (1_000, 100_000))
-    again = model.simulate(1_000, seed=3, engine="numpy")
+    few, more = (simulated(model, trials, seed=3, engine="jit") for trials in (1_000, 100_000))
+    again = simulated(model, 1_000, seed=3, engine="numpy")
     assert few.accepted == again.accepted < more.accepted
     assert few.tally.rejected.tolist() == again.tally.rejected.tolist()
     assert few.trial_index.tolist() == more.trial_index[: few.accepted].tolist()
@@ -166,7 +168,7 @@ def test_examples_and_templates_are_computed_in_loops_and_in_whole_blocks(number
     monkeypatch.setattr(phase, "compile_loop", of_loops)
     if not compiled:
         monkeypatch.setattr(block_runner, "compile_kernel", lambda *_: NativeLoop(0, None))
-    model = xlmc.load(path)
+    model = load(path)
     program = model.program("jit")
     program = program._program if isinstance(program, FilteringProgram) else program
     assert isinstance(program, JitProgram)

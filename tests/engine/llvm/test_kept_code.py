@@ -10,6 +10,7 @@ import pytest
 pytest.importorskip("llvmlite")
 
 from llvmlite import binding, ir
+from simulated import simulated
 
 from xlmc.engine.llvm import kept_code
 from xlmc.engine.llvm.kept_code import SWITCH, code_key, load_code, save_code
@@ -221,6 +222,6 @@ def test_a_run_with_kept_code_gives_the_same_bits(book, folder):
 
         for kept in (machine.machine, block_kernel.compile_kernel, uniforms._loop):
             kept.cache_clear()
-        runs.append(model.simulate(200_000, engine="jit"))
+        runs.append(simulated(model, 200_000, engine="jit"))
     assert runs[0].forecasts["x"].tobytes() == runs[1].forecasts["x"].tobytes()
     assert runs[0].accepted > 0

@@ -8,6 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 from exact_numbers import Exact
+from simulated import simulated
 
 from xlmc.engine.llvm.loop_arithmetic import HALF_PI
 from xlmc.excel.functions.denormals import tiny_to_zero
@@ -208,7 +209,7 @@ def test_errors_are_those_of_the_careful_path(book, side_by_side, cell):
     given = {"a": {"cell": "A1", "low": 0, "high": 1}, "b": {"cell": "A2", "low": 0, "high": 1}}
     model = book(CELLS, given, {"x": cell})
     with side_by_side(0):
-        runs = [model.simulate(2000, engine="numpy"), model.simulate(2000, engine="jit")]
+        runs = [simulated(model, 2000, engine="numpy"), simulated(model, 2000, engine="jit")]
     numpy, jit = (run.forecasts["x"] for run in runs)
     assert runs[0].faults == runs[1].faults
     assert set(runs[0].faults["x"]) == {ERRORS[cell]}

@@ -7,6 +7,7 @@ import pytest
 
 pytest.importorskip("llvmlite")
 
+from simulated import simulated
 from table_books import CELLS, GIVEN, TABLE, TRIALS, some_book, told
 
 from xlmc.engine.llvm import machine as machines
@@ -33,10 +34,10 @@ def computing(patch):
 def test_the_bits_of_random_books_are_the_same(book, monkeypatch, side_by_side, processor, number):
     """These two books have every lookup of `table_books` and all but one of its functions, a power."""
     with side_by_side(1):
-        found = told(some_book(book, number).simulate(TRIALS, 5, engine="jit"))
+        found = told(simulated(some_book(book, number), TRIALS, 5, engine="jit"))
     with monkeypatch.context() as patch, side_by_side(0):
         computing(patch)
-        assert found == told(some_book(book, number).simulate(TRIALS, 5, engine="jit"))
+        assert found == told(simulated(some_book(book, number), TRIALS, 5, engine="jit"))
 
 
 ROWS = range(1, 13)
@@ -80,13 +81,13 @@ def built(book, formula):
 def test_rows_of_a_sheet_share_tables_and_code(book, monkeypatch, side_by_side, processor, formula):
     with side_by_side(1):
         model, names, codes = built(book, formula)
-        found = told(model.simulate(TRIALS, 5, engine="jit"))
+        found = told(simulated(model, TRIALS, 5, engine="jit"))
     assert "picked" in names
     assert not {"ATAN", "SIN", "EXP", "^", "LN", "the cell found"} & {*names}
     with monkeypatch.context() as patch, side_by_side(0):
         computing(patch)
         computed, _, codes_of_computed = built(book, formula)
-        assert found == told(computed.simulate(TRIALS, 5, engine="jit"))
+        assert found == told(simulated(computed, TRIALS, 5, engine="jit"))
     assert len(codes) <= len(codes_of_computed) + 1
 
 
@@ -110,7 +111,7 @@ def test_rows_with_a_constant_of_their_own_are_computed(book, side_by_side):
 )
 def test_a_row_that_errs_errs_in_its_trials_alone(book, formula, is_error):
     model = book(CELLS | {"B1": f"={formula}"}, GIVEN, {"x": "B1"})
-    run = model.simulate(TRIALS, 5, engine="jit")
+    run = simulated(model, TRIALS, 5, engine="jit")
     row = np.minimum(run.inputs["a"].astype(int), 8)
     wrong = np.array([is_error(TABLE[f"O{each + 1}"]) for each in range(9)])[row]
     np.testing.assert_array_equal(np.isnan(run.forecasts["x"]), wrong)

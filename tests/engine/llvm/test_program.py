@@ -10,20 +10,23 @@ import pytest
 
 pytest.importorskip("llvmlite")
 
-import xlmc
+from simulated import simulated
+
 from xlmc.engine.llvm import program as programs
 from xlmc.engine.llvm.machine import Machine
 from xlmc.engine.llvm.program import JitProgram
 from xlmc.engine.tracking import TrackingEvaluator
+from xlmc.montecarlo.model.loading import load
 
 CASE_STUDY = Path(__file__).resolve().parents[3] / "examples" / "intersection.xlsx"
 
 
 @pytest.fixture(scope="module")
 def runs():
-    model = xlmc.load(CASE_STUDY)
+    model = load(CASE_STUDY)
     return [
-        model.simulate(100_000, 5, engine=engine, jobs=jobs) for engine, jobs in (("numpy", 1), ("jit", 1), ("jit", 2))
+        simulated(model, 100_000, 5, engine=engine, jobs=jobs)
+        for engine, jobs in (("numpy", 1), ("jit", 1), ("jit", 2))
     ]
 
 

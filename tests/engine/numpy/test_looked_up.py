@@ -6,6 +6,7 @@ from itertools import cycle
 
 import numpy as np
 import pytest
+from simulated import simulated
 from table_books import CELLS, GIVEN, TABLE, TRIALS, some_book, told
 
 from xlmc.engine.graph.nodes import Apply
@@ -21,7 +22,7 @@ def tangents(request, monkeypatch):
 
 
 def runs(model):
-    return [told(model.simulate(trials, 5)) for trials in (1, 2_049)]
+    return [told(simulated(model, trials, 5)) for trials in (1, 2_049)]
 
 
 @pytest.mark.parametrize(("number", "tangents"), [*zip(range(6), cycle([True, False]))], indirect=["tangents"])
@@ -66,7 +67,7 @@ def test_what_is_computed_in_every_trial(book, formula, why):
 
 def test_a_row_that_errs_errs_in_its_trials_alone(book):
     model = book(CELLS | {"B1": "=LN(VLOOKUP(A1,$K$1:$P$9,5))"}, GIVEN, {"x": "B1"})
-    run = model.simulate(TRIALS, 5)
+    run = simulated(model, TRIALS, 5)
     row = np.minimum(run.inputs["a"].astype(int), 8)
     numbers = np.array([TABLE[f"O{each + 1}"] for each in range(9)])[row]
     np.testing.assert_array_equal(np.isnan(run.forecasts["x"]), numbers <= 0)

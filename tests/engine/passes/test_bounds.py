@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from simulated import simulated
 
 from xlmc.engine.graph.dag import Dag
 from xlmc.engine.graph.nodes import Apply, Select
@@ -137,7 +138,7 @@ def test_a_guard_is_asked_only_where_the_assumptions_do_not_answer(book, monkeyp
     call = Within.__call__
     monkeypatch.setattr(Within, "__call__", lambda self, x: (calls.append(x.size), call(self, x))[1])
     model = book({"A1": 1.0, "B1": "=SIN(A1)"}, {"a": {"cell": "A1", **assumption}}, {"x": "B1"})
-    run = model.simulate(1000, seed=1)
+    run = simulated(model, 1000, seed=1)
     assert bool(calls) == bool(asked)
     assert np.array_equal(np.isnan(run.forecasts["x"]), np.abs(run.inputs["a"]) >= 2.0**27)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 DRAWN = {f"a{row}": {"cell": f"A{row}", "low": 0, "high": 1} for row in range(1, 6)}
 CELLS = {f"A{row}": 0.1 * row for row in range(1, 6)}
@@ -22,7 +23,7 @@ RANKS = {
 def test_five_ranks_sum_to_15_in_every_trial(book, formula, engine):
     ranks = {f"B{row}": f"={formula.format(r=row)}" for row in range(1, 6)}
     model = book(CELLS | ranks | {"C1": "=SUM(B1:B5)"}, DRAWN, {"sum": "C1"})
-    values = model.simulate(500, seed=3, engine=engine).forecasts["sum"]
+    values = simulated(model, 500, seed=3, engine=engine).forecasts["sum"]
     np.testing.assert_array_equal(values, 15.0)
 
 
@@ -49,4 +50,4 @@ def test_both_sides_have_15_digits(book, formula, expected):
         f"{column}{row + 1}": f"={source}{row}" for row in (1, 2, 3) for column, source in (("G", "D"), ("H", "E"))
     }
     model = book(cells | {"A1": 0.5, "C1": f"={formula}+0*A1"}, {"a": DRAWN["a1"]}, {"x": "C1"})
-    np.testing.assert_array_equal(model.simulate(5).forecasts["x"], expected)
+    np.testing.assert_array_equal(simulated(model, 5).forecasts["x"], expected)

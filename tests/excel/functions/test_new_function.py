@@ -13,6 +13,7 @@ import openpyxl
 import pytest
 from click.testing import CliRunner
 from openpyxl.worksheet.table import Table
+from simulated import simulated
 
 import xlmc.excel.functions
 from xlmc.analysis.studies.derivatives import derivatives
@@ -21,6 +22,7 @@ from xlmc.errors import FormulaError
 from xlmc.excel.functions.facts import Facts
 from xlmc.excel.functions.families import REGISTRY
 from xlmc.excel.functions.registry import Function, Kind, Number
+from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.sheets import book
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -130,7 +132,7 @@ def path(door, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def frames(path):
-    return {engine: xlmc.load(path).simulate(trials=2_000, seed=5, engine=engine).frame() for engine in ENGINES}
+    return {engine: simulated(load(path), trials=2_000, seed=5, engine=engine).frame() for engine in ENGINES}
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -187,7 +189,7 @@ def test_a_whole_column_is_refused_by_name(door, tmp_path, formula):
 
 
 def test_what_nobody_said_of_it_is_taken_with_care(path):
-    model = xlmc.load(path)
+    model = load(path)
     found = derivatives(model, {"x": np.array([1.25, 1.75])})
     told = {one.function for one in found.numerical}
     assert told == {"MADEUP.CURVE", "MADEUP.PARTS", "MADEUP.SIZE"}

@@ -8,12 +8,14 @@ from fewer_sheets import SHORT, keep_sheets
 from openpyxl.packaging.relationship import Relationship
 from openpyxl.workbook.external_link import ExternalLink
 from openpyxl.xml.functions import fromstring
+from simulated import simulated
 
-import xlmc
 from xlmc.analysis.studies.verify import Status, verify
+from xlmc.api import Simulation
 from xlmc.errors import ErrorCode, FormulaError, WorkbookError
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.workbook import CellContent
+from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.replay import Change, replay
 
 MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
@@ -182,9 +184,9 @@ def test_a_run_records_what_it_read_of_another_workbook_and_a_replay_names_a_cha
     book._external_links.append(link)
     path = tmp_path / "linked.xlsx"
     book.save(path)
-    run = xlmc.load(path).simulate(300)
-    assert run["area"].mean.value == pytest.approx(142 + xlmc.load(small_book).simulate(300)["area"].mean.value)
-    results = run.save(tmp_path / "r.xlsx")
+    run = simulated(load(path), 300)
+    assert run["area"].mean.value == pytest.approx(142 + simulated(load(small_book), 300)["area"].mean.value)
+    results = Simulation(run).save(tmp_path / "r.xlsx")
     assert replay(results).to_the_last_bit
     book = openpyxl.load_workbook(results, keep_links=True)
     [cell] = [c for c in book._external_links[0].externalBook.sheetDataSet.sheetData[0].row[1].cell if c.r == "B2"]

@@ -8,10 +8,11 @@ from dataclasses import replace
 
 import pytest
 from scipy.special import ndtr
+from simulated import simulated
 
-from xlmc.api import Model
 from xlmc.montecarlo.definitions.definitions import Filter
 from xlmc.montecarlo.diagnostics.agreement import Verdict, agreement
+from xlmc.montecarlo.model.model import CompiledModel
 
 CELLS = {"A1": 0.0, "B1": 0.0, "C1": "=A1*1", "D1": "=A1+B1", "E1": "=A1-B1", "F1": "=IF(A1>-9,B1*1,0)"}
 NORMAL = {"distribution": "Normal", "mean": 0, "std_dev": 1}
@@ -217,7 +218,7 @@ def test_filters_of_some_forecasts_hold_for_what_evidence_moves(book):
     cell = model.forecasts[0].cell
     own = Filter("positive", cell, cell, at_least=0.0, only_for=("a",))
     definitions = replace(model.definitions, forecast_filters=(own,))
-    found = agreement(Model(model.workbook, definitions, model.path), SEED, TRIALS)
+    found = agreement(CompiledModel(model.workbook, definitions, model.path), SEED, TRIALS)
     means = {each.forecast: each.mean for each in found.answers if each.used == "no evidence"}
     assert close(means["a"], math.sqrt(2 / math.pi))  # of the half of N(0, 1) above 0
     assert close(means["sum"], 0.0)
@@ -230,5 +231,5 @@ def test_what_is_an_error_agrees_with_nothing(book):
     found = agreement(model, SEED, TRIALS)
     alone = next(each for each in found.answers if each.used == "all evidence")
     assert alone.mean.value > 0.3
-    run = model.simulate(trials=TRIALS, seed=SEED)
+    run = simulated(model, trials=TRIALS, seed=SEED)
     assert run.accepted / run.trials == pytest.approx(found.together.value, rel=0.03)

@@ -6,12 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from simulated import simulated
 
-from xlmc.api import Model
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.excel.address import parse_address
 from xlmc.montecarlo.definitions.definitions import Check
 from xlmc.montecarlo.diagnostics.checking import LEAST_CHECKED, base_checks, checks_sentence
+from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.model.model import CompiledModel
 
 CELLS = {"A1": 0.75, "A2": 3.0, "A3": 0.5, "B1": "=A1*2", "C1": "=A1<0.9", "C2": "=1/(A1-0.75)>0", "C3": "=A1"}
 INPUTS = {"friction": {"cell": "A1", "low": 0.6, "high": 1.0}}
@@ -28,7 +30,7 @@ def checked(book):
             Check(name, parse_address(address, "S"), parse_address(address, "S"), because)
             for name, (address, because) in given.items()
         )
-        return Model(plain.workbook, replace(plain.definitions, checks=rows), plain.path)
+        return CompiledModel(plain.workbook, replace(plain.definitions, checks=rows), plain.path)
 
     return make
 
@@ -66,7 +68,7 @@ def test_the_reason_is_said_without_its_false(checked, because):
 
 def test_failing_trials_are_counted_as_numpy_counts_them(checked):
     model = checked({**CELLS, "C2": "=SQRT(A1-0.7)>0"}, {"below": "C1", "rooted": "C2"})
-    run = model.simulate(trials=30_000, seed=4)
+    run = simulated(model, trials=30_000, seed=4)
     below, rooted = run.checks
     drawn = run.inputs["friction"]
     assert below.trials == rooted.trials == run.accepted == 30_000
@@ -80,7 +82,7 @@ def test_failing_trials_are_counted_as_numpy_counts_them(checked):
 
 def test_only_accepted_trials_count(checked):
     filters = {"low": {"cell": "A1", "below": 0.9}}
-    run = checked(CELLS, {"below": "C1"}, filters=filters).simulate(trials=5_000)
+    run = simulated(checked(CELLS, {"below": "C1"}, filters=filters), trials=5_000)
     assert run.checks[0].failed == 0
     assert run.checks[0].trials == run.accepted < 5_000
     assert run.warnings == []
@@ -88,22 +90,22 @@ def test_only_accepted_trials_count(checked):
 
 def test_a_share_above_a_thousandth_is_a_warning_and_stands_first(checked):
     cells = {**CELLS, "B1": "=1/ROUND(A1-0.8,2)"}
-    run = checked(cells, {"below": "C1"}, forecasts={"twice": "B1"}).simulate(trials=5_000)
+    run = simulated(checked(cells, {"below": "C1"}, forecasts={"twice": "B1"}), trials=5_000)
     assert "accepted trials" in run.warnings[0]
     assert "fail the check" in run.warnings[0]
     assert any("lost to errors" in warning for warning in run.warnings[1:])
 
 
 def test_a_share_below_a_thousandth_is_listed_only(checked):
-    run = checked({**CELLS, "C1": "=A1<0.99995"}, {"below": "C1"}).simulate(trials=60_000)
+    run = simulated(checked({**CELLS, "C1": "=A1<0.99995"}, {"below": "C1"}), trials=60_000)
     assert 0 < run.checks[0].failed <= 60
     assert run.warnings == []
 
 
 @pytest.mark.parametrize("engine", ["numpy", "formulas"])
 def test_checks_leave_the_run_as_it_was(book, checked, engine):
-    plain = book(CELLS, INPUTS, {"twice": "B1"}).simulate(trials=300, engine=engine)
-    with_checks = checked(CELLS, {"below": "C1"}).simulate(trials=300, engine=engine)
+    plain = simulated(book(CELLS, INPUTS, {"twice": "B1"}), trials=300, engine=engine)
+    with_checks = simulated(checked(CELLS, {"below": "C1"}), trials=300, engine=engine)
     np.testing.assert_array_equal(plain.trial_index, with_checks.trial_index)
     np.testing.assert_array_equal(plain.forecasts["twice"], with_checks.forecasts["twice"])
     assert list(plain.inputs) == list(with_checks.inputs)
@@ -112,7 +114,7 @@ def test_checks_leave_the_run_as_it_was(book, checked, engine):
 def test_an_assumption_that_only_a_check_needs_is_held_at_its_base_value(checked):
     cells = {**CELLS, "C1": "=AND(A1<2,A3<0.6)"}
     inputs = {**INPUTS, "extra": {"cell": "A3", "low": 0, "high": 1}}
-    run = checked(cells, {"both": "C1"}, inputs).simulate(trials=2_000)
+    run = simulated(checked(cells, {"both": "C1"}, inputs), trials=2_000)
     assert list(run.inputs) == ["friction"]
     assert run.checks[0].failed == 0
     assert run.checks[0].holds
@@ -142,27 +144,27 @@ def test_what_the_checks_hold_is_said(checked):
 )
 def test_the_sentence_agrees_with_the_number_of_checks(checked, checks, sentence):
     cells = {**CELLS, "C1": "=A1<2", "C2": "=A1>2", "C3": "=A1>0"}
-    assert checks_sentence(checked(cells, checks).simulate(trials=300).checks) == sentence
+    assert checks_sentence(simulated(checked(cells, checks), trials=300).checks) == sentence
 
 
 def test_it_is_said_that_not_all_accepted_trials_were_looked_at(checked):
-    run = checked(CELLS, {"below": "C1"}).simulate(trials=40_000, keep_inputs=0)
+    run = simulated(checked(CELLS, {"below": "C1"}), trials=40_000, keep_inputs=0)
     check = run.checks[0]
     assert check.looked_at == "the first 10,000 accepted trials"
     assert f"of the first 10,000 accepted trials ({check.share.value:.2%}) fail the check" in check.warnings[0]
 
 
 def test_without_a_base_case_the_trials_are_looked_at_alone(checked):
-    run = checked({**CELLS, "A1": None}, {"below": "C1"}).simulate(trials=2_000)
+    run = simulated(checked({**CELLS, "A1": None}, {"below": "C1"}), trials=2_000)
     check = run.checks[0]
     assert (check.base.found, check.holds) == (None, None)
     assert check.failed > 0
 
 
 def test_enough_draws_are_kept_for_the_checks(checked):
-    run = checked(CELLS, {"below": "C1"}).simulate(trials=40_000, keep_inputs=0)
+    run = simulated(checked(CELLS, {"below": "C1"}), trials=40_000, keep_inputs=0)
     assert run.checks[0].trials >= LEAST_CHECKED
-    few = checked(CELLS, {"below": "C1"}).simulate(trials=400, keep_inputs=0)
+    few = simulated(checked(CELLS, {"below": "C1"}), trials=400, keep_inputs=0)
     assert few.checks[0].trials == few.accepted == 400
 
 
@@ -172,7 +174,7 @@ def test_a_check_that_cannot_be_computed_is_refused_with_its_cell(checked):
 
 
 def test_a_model_without_checks_has_none(book):
-    run = book(CELLS, INPUTS, {"twice": "B1"}).simulate(trials=100)
+    run = simulated(book(CELLS, INPUTS, {"twice": "B1"}), trials=100)
     assert run.checks == ()
     assert base_checks(run.model) == ()
 
@@ -181,8 +183,6 @@ def test_a_draw_in_a_cell_that_only_a_check_needs_is_held_at_its_mean(tmp_path):
     import openpyxl
     from openpyxl.worksheet.table import Table
 
-    import xlmc
-
     book = openpyxl.Workbook()
     sheet = book.active
     for row in (['=RiskOutput("twice")+A2*2'], ["=RiskUniform(1,2)"], ["=RiskUniform(0,1)<0.7"], [], ["Name", "Cell"]):
@@ -190,7 +190,7 @@ def test_a_draw_in_a_cell_that_only_a_check_needs_is_held_at_its_mean(tmp_path):
     sheet.append(["low", "=A3"])
     sheet.add_table(Table(displayName="xlmc_checks", ref="A5:B6"))
     book.save(tmp_path / "calls.xlsx")
-    run = xlmc.load(tmp_path / "calls.xlsx").simulate(trials=500)
+    run = simulated(load(tmp_path / "calls.xlsx"), trials=500)
     assert len(run.inputs) == 1
     assert run.checks[0].holds  # held at its mean, 0.5
     assert run.checks[0].failed == 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from simulated import simulated
 
 X = {"x": {"cell": "A1", "low": 1, "high": 2}}
 
@@ -11,7 +12,7 @@ X = {"x": {"cell": "A1", "low": 1, "high": 2}}
 def warned(book):
     def make(formula, assumptions=X, **cells):
         model = book({"A1": 1.5, "Z1": formula} | cells, assumptions, {"f": "Z1"})
-        return model.simulate(trials=2_000, seed=1).warnings
+        return simulated(model, trials=2_000, seed=1).warnings
 
     return make
 

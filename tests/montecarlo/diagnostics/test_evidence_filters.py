@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 from xlmc.errors import DefinitionError
 from xlmc.montecarlo.simulation.simulate import simulate
@@ -27,7 +28,7 @@ def close(found, truth):
 
 def test_a_normal_error_gives_the_known_posterior(normal):
     """X ~ N(0, 1) and a reading of 1 with a standard deviation of 0.5: mean 0.8, SD √0.2, share √0.2·exp(-0.4)."""
-    run = normal.simulate(trials=400_000)
+    run = simulated(normal, trials=400_000)
     assert close(run.acceptance, 0.299776)
     assert close(run["y"].mean, 0.8)
     assert close(run["y"].standard_deviation, 0.447214)
@@ -36,7 +37,7 @@ def test_a_normal_error_gives_the_known_posterior(normal):
 
 def test_a_uniform_error_gives_the_known_posterior(book):
     reading = {"cell": "B1", "reading": 1, "plus_minus": 0.5}
-    run = book(CELLS, OTHERS, FORECASTS, evidence={"EDR": reading}).simulate(trials=400_000)
+    run = simulated(book(CELLS, OTHERS, FORECASTS, evidence={"EDR": reading}), trials=400_000)
     assert close(run.acceptance, 0.241730)
     assert close(run["y"].mean, 0.920645)
 
@@ -45,16 +46,16 @@ def test_a_lognormal_error_gives_the_known_posterior(book):
     """ln m ~ N(0, 0.5) and ln R = 0.5 with σ 0.5: ln m given R ~ N(0.25, 0.5/√2)."""
     cells = {"A1": 0.0, "B1": "=EXP(A1/2)", "C1": "=IF(A1>-9,B1,-1)"}
     reading = {"cell": "C1", "reading": float(np.exp(0.5)), "error": "lognormal", "std_dev": 0.5}
-    run = book(cells, {"x": X}, {"log": "A1"}, evidence={"damage": reading}).simulate(trials=200_000)
+    run = simulated(book(cells, {"x": X}, {"log": "A1"}, evidence={"damage": reading}), trials=200_000)
     assert close(run["log"].mean, 0.5)  # x = 2·ln m
     assert close(run["log"].standard_deviation, 0.5**0.5)
 
 
 def test_evidence_moves_no_draw_and_every_engine_keeps_the_same_trials(book, normal):
-    plain = book(CELLS, OTHERS, FORECASTS).simulate(trials=5_000)
+    plain = simulated(book(CELLS, OTHERS, FORECASTS), trials=5_000)
     both = {"video": {**READING, "reading": 2}, "EDR": READING}
     for method in ("mc", "lhs", "sobol"):
-        one, two = normal.simulate(trials=5_000, sampling=method), None
+        one, two = simulated(normal, trials=5_000, sampling=method), None
         assert list(one.inputs) == list(one.prior) == ["x", "c"]
         if method == "mc":
             assert all(np.array_equal(one.prior[name], plain.prior[name]) for name in plain.prior)
@@ -62,22 +63,22 @@ def test_evidence_moves_no_draw_and_every_engine_keeps_the_same_trials(book, nor
                 book(CELLS, OTHERS, FORECASTS, evidence=both), trials=5_000
             )  # which rejects, few as it keeps
             assert set(two.trial_index) < set(one.trial_index)  # the number that EDR draws is its own
-            assert np.array_equal(one.trial_index, normal.simulate(trials=5_000, engine="jit").trial_index)
-            assert np.array_equal(one.inputs["c"], normal.simulate(trials=5_000, engine="jit").inputs["c"])
+            assert np.array_equal(one.trial_index, simulated(normal, trials=5_000, engine="jit").trial_index)
+            assert np.array_equal(one.inputs["c"], simulated(normal, trials=5_000, engine="jit").inputs["c"])
 
 
 def test_what_keeps_no_trial_without_its_chance_is_told_at_the_base_case(normal):
     from xlmc.outputs.summary import base_case
 
-    found = base_case(normal.simulate(trials=200))
+    found = base_case(simulated(normal, trials=200))
     assert found.rejected_by == ()
     assert found.forecasts == {"y": 0.0, "sum": 2.0}
 
 
 def test_a_reading_may_be_a_formula_but_not_one_of_an_assumption(book):
     cells = {**CELLS, "E1": "=10/10", "F1": "=C1/2"}
-    run = book(cells, OTHERS, FORECASTS, evidence={"EDR": {**READING, "reading": "E1"}}).simulate(trials=5_000)
-    same = book(cells, OTHERS, FORECASTS, evidence={"EDR": READING}).simulate(trials=5_000)
+    run = simulated(book(cells, OTHERS, FORECASTS, evidence={"EDR": {**READING, "reading": "E1"}}), trials=5_000)
+    same = simulated(book(cells, OTHERS, FORECASTS, evidence={"EDR": READING}), trials=5_000)
     assert np.array_equal(run.trial_index, same.trial_index)
     with pytest.raises(DefinitionError, match="varies with an assumption") as raised:
         book(cells, OTHERS, FORECASTS, evidence={"EDR": {**READING, "reading": "F1"}})

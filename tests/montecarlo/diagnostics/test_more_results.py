@@ -10,10 +10,11 @@ import openpyxl
 import pytest
 from openpyxl import Workbook
 from scipy import stats
+from simulated import simulated
 
-import xlmc
 from xlmc.excel.workbook.writer import package_bytes
 from xlmc.montecarlo.diagnostics.result_cells import filled_sheets
+from xlmc.montecarlo.model.loading import load
 
 MODEL = {
     "A1": "=RiskNormal(5,1)",
@@ -107,7 +108,7 @@ def shown(tmp_path_factory):
     book.save(folder / "book.xlsx")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("xlmc.montecarlo.definitions.in_cells.theory._GRID", 1 << 16)
-        run = xlmc.load(folder / "book.xlsx").simulate(trials=5000, seed=999)
+        run = simulated(load(folder / "book.xlsx"), trials=5000, seed=999)
     filled = {**run.model.workbook.parts, **filled_sheets(run.model.workbook, run.shown_results)}
     values = openpyxl.load_workbook(io.BytesIO(package_bytes(filled)), data_only=True)["S"]
     return run, {formula: values[f"B{row}"].value for row, formula in enumerate(asked, start=1)}

@@ -12,14 +12,16 @@ import openpyxl
 import pytest
 import xlsxwriter
 from fewer_sheets import CHARTS, SENSITIVITY, leave_out
+from simulated import simulated
 
-import xlmc
+from xlmc.api import Simulation
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.workbook.inject import original_hash
 from xlmc.excel.workbook.package import read_parts
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.writer import package_bytes
 from xlmc.montecarlo.diagnostics.result_cells import filled_sheets
+from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.conversion.convert import convert
 
 FORMULAS = {
@@ -66,10 +68,10 @@ def build(path, formulas, extra=()):
 def filled(tmp_path_factory):
     folder = tmp_path_factory.mktemp("books")
     source = build(folder / "book.xlsx", FORMULAS)
-    run = xlmc.load(source).simulate(trials=20_000, seed=999)
+    run = simulated(load(source), trials=20_000, seed=999)
     with pytest.MonkeyPatch.context() as patch:
         leave_out(patch, *CHARTS, *SENSITIVITY)
-        run.save(folder / "out.xlsx")
+        Simulation(run).save(folder / "out.xlsx")
     return source, folder / "out.xlsx", run
 
 
@@ -156,11 +158,11 @@ def test_another_formula_is_another_workbook(filled, tmp_path):
 
 def test_a_run_of_the_result_workbook_gives_the_same(filled, tmp_path):
     _, target, run = filled
-    again = xlmc.load(target).simulate(trials=20_000, seed=999)
+    again = simulated(load(target), trials=20_000, seed=999)
     assert again["x"].mean == run["x"].mean
     with pytest.MonkeyPatch.context() as patch:
         leave_out(patch, *CHARTS, *SENSITIVITY)
-        again.save(tmp_path / "again.xlsx")
+        Simulation(again).save(tmp_path / "again.xlsx")
     with zipfile.ZipFile(tmp_path / "again.xlsx") as once, zipfile.ZipFile(target) as first:
         assert once.read("xl/worksheets/sheet1.xml") == first.read("xl/worksheets/sheet1.xml")
 
@@ -168,7 +170,7 @@ def test_a_run_of_the_result_workbook_gives_the_same(filled, tmp_path):
 def test_results_of_a_run_without_accepted_trials_are_not_available(tmp_path):
     cells = {"A1": ("=RiskNormal(5,1)+RiskOutput()", 5), "A2": ("=RiskMean(A1)", 5), "A3": ("=A1/0+RiskOutput()", 0)}
     cells["A4"] = ("=RiskMean(A3)", 1)
-    run = xlmc.load(build(tmp_path / "book.xlsx", cells)).simulate(trials=100)
+    run = simulated(load(build(tmp_path / "book.xlsx", cells)), trials=100)
     values = {cell.a1: value for cell, value in run.shown_results.cells.items()}
     assert values["A4"] is ErrorCode.NA
     assert values["A2"] == run["S!A1"].mean.value
@@ -179,7 +181,7 @@ INPUTS = {"A1": ("=RiskNormal(5,1)", 5), "A2": ("=A1*2+RiskUniform(0,1)+RiskOutp
 
 def test_results_of_an_assumption_are_those_of_its_accepted_draws(tmp_path):
     cells = {"B1": ("=RiskMean(A1)", 5), "B2": ("=RiskPercentile(A1,0.9)", 5), "B3": ("=CB.GetForeStatFN(A1,1)", 5)}
-    run = xlmc.load(build(tmp_path / "book.xlsx", {**INPUTS, **cells})).simulate(trials=500)
+    run = simulated(load(build(tmp_path / "book.xlsx", {**INPUTS, **cells})), trials=500)
     draws = run.inputs["S!A1#1"]
     assert draws.size == 500
     values = {cell.a1: value for cell, value in run.shown_results.cells.items()}
@@ -200,7 +202,7 @@ OF_INPUTS = {
 
 def test_results_of_an_input_by_its_name_are_those_of_its_draws(tmp_path):
     """As drawn, shifted where the call says so, and without the rest of the formula."""
-    run = xlmc.load(build(tmp_path / "book.xlsx", OF_INPUTS)).simulate(trials=500)
+    run = simulated(load(build(tmp_path / "book.xlsx", OF_INPUTS)), trials=500)
     found = {cell.a1: value for cell, value in run.shown_results.cells.items()}
     speed, share = run.inputs["Speed"], run.inputs["Share"] + 5
     assert found["B1"] == pytest.approx(speed.mean(), rel=1e-12)
@@ -211,9 +213,9 @@ def test_results_of_an_input_by_its_name_are_those_of_its_draws(tmp_path):
 
 
 def test_results_of_an_input_by_its_name_are_the_same_after_conversion(tmp_path):
-    model = xlmc.load(build(tmp_path / "book.xlsx", OF_INPUTS))
+    model = load(build(tmp_path / "book.xlsx", OF_INPUTS))
     convert(model, tmp_path / "converted.xlsx")
-    runs = [each.simulate(trials=500) for each in (model, xlmc.load(tmp_path / "converted.xlsx"))]
+    runs = [simulated(each, trials=500) for each in (model, load(tmp_path / "converted.xlsx"))]
     one, other = ({c.a1: v for c, v in run.shown_results.cells.items() if c.sheet == "S"} for run in runs)
     assert one == other
 
@@ -253,7 +255,7 @@ def test_what_a_result_is_asked_by_is_computed_too(tmp_path, saved):
         for address, (formula, _) in cells.items():
             book.active[address] = formula
         book.save(path)
-    run = xlmc.load(path).simulate(trials=2000)
+    run = simulated(load(path), trials=2000)
     found = {cell.a1: value for cell, value in run.shown_results.cells.items()}
     y = run["S!A2"]
     mean, below = y.mean.value, float(np.mean(y.values <= y.values.mean()))
@@ -284,13 +286,13 @@ SIMULATIONS = {
 
 def test_results_of_further_simulations_are_those_of_the_scenarios(tmp_path):
     """Over the same random numbers, so that they differ by exactly twice what the table adds."""
-    model = xlmc.load(build(tmp_path / "book.xlsx", SIMULATIONS))
-    plain = model.simulate(trials=500)
+    model = load(build(tmp_path / "book.xlsx", SIMULATIONS))
+    plain = simulated(model, trials=500)
     found = shown(plain, tmp_path / "out.xlsx")
     assert [found[each] for each in ("B2", "B3", "B4", "B5")] == ["#N/A"] * 4
     assert "asks for simulation 2, and only simulate --scenarios runs further ones" in plain.shown_results.warning
     assert "RiskMean asks for simulation 4, and RiskSimtable has 3 values" in plain.shown_results.warning
-    run = model.simulate(trials=500, scenarios=True)
+    run = simulated(model, trials=500, scenarios=True)
     assert len(run.scenarios) == 3
     found = shown(run, tmp_path / "out.xlsx")
     mean, below = run["S!A2"].mean.value, float(np.mean(run["S!A2"].values <= run["S!A2"].mean.value))
@@ -316,7 +318,7 @@ def test_an_argument_of_a_draw_may_look_for_its_cell_on_its_own_sheet(tmp_path, 
         sheet = book.add_worksheet("S")
         sheet.write_formula("A1", f"={formula}", None, 5)
         sheet.write("C1", 50)
-    run = xlmc.load(path).simulate(trials=500)
+    run = simulated(load(path), trials=500)
     assert 40 < run["S!A1"].mean.value < 60
 
 
@@ -327,8 +329,8 @@ def test_an_array_formula_of_results_fills_its_area(tmp_path):
         sheet.write_formula("A1", "=RiskNormal(5,1)+RiskOutput()", None, 5)
         sheet.write_array_formula("B1:B2", "{=RiskMean(A1)*{1;2}}", None, 0)
         sheet.write_number("B2", 0)
-    run = xlmc.load(path).simulate(trials=1000)
-    run.save(tmp_path / "out.xlsx")
+    run = simulated(load(path), trials=1000)
+    Simulation(run).save(tmp_path / "out.xlsx")
     sheet = read_workbook(tmp_path / "out.xlsx").sheets["S"]
     mean = run["S!A1"].mean.value
     assert [sheet.cells[row, 2].value for row in (1, 2)] == pytest.approx([mean, 2 * mean], rel=1e-15)
@@ -336,7 +338,7 @@ def test_an_array_formula_of_results_fills_its_area(tmp_path):
 
 def test_a_book_without_such_cells_is_not_touched(tmp_path):
     cells = {"A1": ("=RiskNormal(5,1)+RiskOutput()", 5)}
-    run = xlmc.load(build(tmp_path / "book.xlsx", cells)).simulate(trials=100)
+    run = simulated(load(build(tmp_path / "book.xlsx", cells)), trials=100)
     assert run.shown_results.cells == {}
 
 
@@ -346,7 +348,7 @@ STALE = 77.0
 
 
 def run_of(path, cells, **more):
-    return xlmc.load(build(path, {**MODEL, **cells}, **more)).simulate(trials=200)
+    return simulated(load(build(path, {**MODEL, **cells}, **more)), trials=200)
 
 
 def shown(run, path):
@@ -454,7 +456,7 @@ def test_whatever_depends_on_such_a_cell_shows_not_available(tmp_path, formula, 
         other.write_formula("A20", f"={formula}", None, STALE)
         other.write_formula("A21", "=A20&A20", None, "stale")
         other.write_formula("A22", "=S!A2", None, 10)
-    run = xlmc.load(path).simulate(trials=200)
+    run = simulated(load(path), trials=200)
     found = shown(run, tmp_path / "out.xlsx")
     assert [found[address] for address in ("B1", "Other!A1", "Other!A20", "Other!A21")] == ["#N/A"] * 4
     assert found["Other!A22"] == 10
@@ -487,7 +489,7 @@ def test_results_are_followed_wherever_they_go(tmp_path, formula):
         other.write_formula("A1", f"={formula}", None, STALE)
         other.write_formula("A2", "=A1+1", None, STALE)
         other.write_formula("A3", 'INDIRECT("S!A1")', None, 5)
-    run = xlmc.load(path).simulate(trials=200)
+    run = simulated(load(path), trials=200)
     assert run.warnings == []
     found, mean = shown(run, tmp_path / "out.xlsx"), run["S!A2"].mean.value
     assert (found["Other!A1"], found["Other!A2"], found["Other!A3"]) == (2 * mean, 2 * mean + 1, 5)
@@ -500,7 +502,7 @@ def test_a_name_that_draws_is_drawn(tmp_path):
         book.define_name("Speed", "=RiskNormal(5,1)")
         sheet = book.add_worksheet("S")
         sheet.write_formula("A1", "=Speed*2+RiskOutput()", None, 10)
-    run = xlmc.load(path).simulate(trials=200)
+    run = simulated(load(path), trials=200)
     assert [a.name for a in run.model.assumptions] == ["S!A1#1"]
     assert run["S!A1"].standard_deviation.value > 1
 
@@ -519,7 +521,7 @@ def test_an_array_formula_that_cannot_be_computed(tmp_path):
         sheet.write_dynamic_array_formula("E1:E2", "=SEQUENCE(ROUND(D1,0))", None, STALE)
         sheet.write_number("E2", STALE)
         sheet.write_formula("F1", "=SUM(E1:E2)", None, STALE)
-    run = xlmc.load(path).simulate(trials=200)
+    run = simulated(load(path), trials=200)
     found = shown(run, tmp_path / "out.xlsx")
     assert [found[address] for address in ("B1", "B2", "C1", "E1", "E2", "F1")] == ["#N/A"] * 6
     assert found["D1"] == run["S!A2"].statistics.maximum.value
@@ -537,7 +539,7 @@ def test_the_fingerprint_of_the_original_stays(tmp_path):
     run = run_of(tmp_path / "book.xlsx", {"B1": ("=RiskCpk(A2,0.95)", STALE), "B2": ("=B1*2", STALE)})
     with pytest.MonkeyPatch.context() as patch:
         leave_out(patch, *CHARTS, *SENSITIVITY)
-        run.save(tmp_path / "out.xlsx")
+        Simulation(run).save(tmp_path / "out.xlsx")
     hashes = [original_hash(read_parts((tmp_path / name).read_bytes())) for name in ("book.xlsx", "out.xlsx")]
     assert hashes[0] == hashes[1]
 
@@ -545,7 +547,7 @@ def test_the_fingerprint_of_the_original_stays(tmp_path):
 def test_a_forecast_cannot_depend_on_such_a_cell(tmp_path):
     cells = {"A3": ("=A1+B1+RiskOutput()", 1), "B1": ("=RiskCpk(A2,0.95)", STALE)}
     with pytest.raises(FormulaError, match="S!B1: RiskCpk is not computed by xlmc"):
-        xlmc.load(build(tmp_path / "book.xlsx", {**MODEL, **cells}))
+        load(build(tmp_path / "book.xlsx", {**MODEL, **cells}))
 
 
 # What-if data tables.
@@ -591,7 +593,7 @@ VARYING = {
 @pytest.mark.parametrize("made", OF_THE_RUN.values(), ids=OF_THE_RUN)
 def test_a_data_table_of_the_run_shows_not_available_and_is_named(tmp_path, made):
     path = with_table(tmp_path / "book.xlsx", **{"cells": {}, **made})
-    run = xlmc.load(path).simulate(trials=200)
+    run = simulated(load(path), trials=200)
     found = shown(run, tmp_path / "out.xlsx")
     assert [found[address] for address in ("D2", "D3", "E1")] == ["#N/A"] * 3
     [warning] = run.warnings
@@ -604,7 +606,7 @@ def test_a_data_table_of_the_run_shows_not_available_and_is_named(tmp_path, made
 
 
 def test_a_data_table_that_has_nothing_to_do_with_the_run_keeps_its_values(tmp_path):
-    run = xlmc.load(with_table(tmp_path / "book.xlsx", {}, "F1", ("=F1*2", 0))).simulate(trials=200)
+    run = simulated(load(with_table(tmp_path / "book.xlsx", {}, "F1", ("=F1*2", 0))), trials=200)
     found = shown(run, tmp_path / "out.xlsx")
     assert [found[address] for address in ("D2", "D3", "E1")] == [77, 77, 154]
     assert run.warnings == []
@@ -614,7 +616,7 @@ def test_a_data_table_that_has_nothing_to_do_with_the_run_keeps_its_values(tmp_p
 
 @pytest.mark.parametrize("made", VARYING.values(), ids=VARYING)
 def test_a_data_table_over_what_varies_keeps_its_base_case_like_every_other_cell(tmp_path, made):
-    run = xlmc.load(with_table(tmp_path / "book.xlsx", **{"cells": {}, **made})).simulate(trials=200)
+    run = simulated(load(with_table(tmp_path / "book.xlsx", **{"cells": {}, **made})), trials=200)
     found = shown(run, tmp_path / "out.xlsx")
     assert [found[address] for address in ("D2", "D3", "E1")] == [77, 77, 154]
     assert run.warnings == []
@@ -626,14 +628,14 @@ def test_a_data_table_over_what_varies_keeps_its_base_case_like_every_other_cell
 def test_a_forecast_cannot_depend_on_any_data_table_that_varies(tmp_path, made):
     cells = {**made.get("cells", {}), "A5": ("=E1+A1+RiskOutput()", 1)}
     with pytest.raises(FormulaError, match="what-if data tables that depend on the run are not computed"):
-        xlmc.load(with_table(tmp_path / "book.xlsx", **{**made, "cells": cells}))
+        load(with_table(tmp_path / "book.xlsx", **{**made, "cells": cells}))
 
 
 @pytest.mark.parametrize("answer", ["=E1+A1+RiskOutput()", "=D3+A1+RiskOutput()"])
 def test_a_forecast_cannot_depend_on_a_data_table_of_the_run(tmp_path, answer):
     """Its cells hold no formulas, and so they would pass for constants."""
     with pytest.raises(FormulaError, match="what-if data tables that depend on the run are not computed"):
-        xlmc.load(with_table(tmp_path / "book.xlsx", {"A5": (answer, 1)}))
+        load(with_table(tmp_path / "book.xlsx", {"A5": (answer, 1)}))
 
 
 @pytest.mark.parametrize("writer", ["openpyxl", "XlsxWriter"])
@@ -662,7 +664,7 @@ def test_cells_that_were_never_calculated_are_computed_and_not_taken_for_0(tmp_p
             sheet = book.add_worksheet("Sheet")
             for address, content in formulas.items():
                 sheet.write(address, content)
-    run = xlmc.load(path).simulate(2000, seed=4)
+    run = simulated(load(path), 2000, seed=4)
     shown = {cell.a1: value for cell, value in run.shown_results.cells.items()}
     mean = run.results[next(iter(run.results))].mean.value
     assert shown["C1"] == pytest.approx(mean, rel=1e-12)
@@ -693,7 +695,7 @@ def test_cells_that_draw_or_mark_an_answer_keep_their_base_case_below_a_number_o
     for address, content in AT_BASE.items():
         book.active[address] = content
     book.save(path)
-    run = xlmc.load(path).simulate(2000, seed=4, engine=engine)
+    run = simulated(load(path), 2000, seed=4, engine=engine)
     shown = {cell.a1: value for cell, value in run.shown_results.cells.items()}
     y, total = run["y"].mean.value, run["sum"].mean.value
     assert [shown[each] for each in ("A2", "A3", "A4", "A5")] == pytest.approx([100, 7, 150, 110])
@@ -709,7 +711,7 @@ def test_a_draw_whose_base_case_is_not_known_is_named_as_that(tmp_path):
     for address, content in cells.items():
         book.active[address] = content
     book.save(path)
-    warning = xlmc.load(path).simulate(200).shown_results.warning
+    warning = simulated(load(path), 200).shown_results.warning
     assert "Sheet!A2 (draws at random, and its base case is not known)" in warning
 
 
@@ -726,7 +728,7 @@ def test_percentiles_of_values_that_repeat_are_among_them(tmp_path):
             f"C{row}": (f"=CB.GetForePercentFN({cell},{100 * p})", 0),
             f"E{row}": (f"=RiskPercentileD({cell},1-{p})", 0),
         }
-    run = xlmc.load(build(tmp_path / "book.xlsx", formulas)).simulate(3000)
+    run = simulated(load(build(tmp_path / "book.xlsx", formulas)), 3000)
     found = {str(cell): value for cell, value in run.shown_results.values.items()}
     for row, (cell, p) in enumerate(asked.items(), start=1):
         x = np.sort(run[{"A1": "y", "A2": "z", "A3": "cut"}[cell]].values)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from simulated import simulated
 
 from xlmc.errors import DefinitionError, SimulationError
 from xlmc.montecarlo.distributions import FAMILIES, Truncated
@@ -150,7 +151,7 @@ def test_measurements_at_the_ends_of_what_a_number_can_be_are_smoothed_or_refuse
 def test_a_book_with_them_is_refused(book, name, params, message):
     given_ = {"cell": "A1", "distribution": name, **dict(zip(FAMILIES[name].keys, params, strict=True))}
     with pytest.raises(DefinitionError, match=re.escape(message)) as refused:
-        book({"A1": 1.0}, {"a": given_}, {"x": "A1"}).simulate(100)
+        simulated(book({"A1": 1.0}, {"a": given_}, {"x": "A1"}), 100)
     assert refused.value.where is not None
 
 
@@ -160,7 +161,7 @@ def test_parameters_that_vary_count_the_draws_that_are_no_numbers(book):
         "a": {"cell": "A1", "low": 0, "high": 1},
         "b": {"cell": "A2", "distribution": "Pareto", "location": 1.0, "shape": "B1"},
     }
-    run = book(cells, assumptions, {"x": "A2"}).simulate(2000)
+    run = simulated(book(cells, assumptions, {"x": "A2"}), 2000)
     assert run.invalid["b"] > 100
     assert run.accepted == 2000 - run.invalid["b"]
     assert np.isfinite(run.forecasts["x"]).all()
@@ -179,4 +180,4 @@ def test_a_fixed_draw_that_is_no_number_ends_the_run(book, monkeypatch):
     monkeypatch.setattr(type(pareto), "_ppf", holed)
     given_ = {"cell": "A1", "distribution": "Pareto", "location": 1.0, "shape": 3.0}
     with pytest.raises(SimulationError, match="Pareto of the assumption 'a' gives draws that are not numbers"):
-        book({"A1": 1.0}, {"a": given_}, {"x": "A1"}).simulate(2000)
+        simulated(book({"A1": 1.0}, {"a": given_}, {"x": "A1"}), 2000)

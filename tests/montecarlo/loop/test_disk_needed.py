@@ -4,6 +4,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from simulated import simulated
 
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.columns import column_store
@@ -34,7 +35,7 @@ def written(run):
 
 def told(model, *given, **more):
     sentences = []
-    return sentences, model.simulate(*given, tell=sentences.append, **more)
+    return sentences, simulated(model, *given, tell=sentences.append, **more)
 
 
 @pytest.mark.parametrize("inputs", [0, 5_000, None])
@@ -71,19 +72,19 @@ def test_a_disk_with_too_little_room_refuses_the_run_before_it_starts(model, sma
     monkeypatch.setattr(module, "room_on_disk", lambda: (Path("small"), 300_000))
     said, begun = [], []
     with pytest.raises(SimulationError, match="the run needs about") as refused:
-        model.simulate(TRIALS, tell=said.append, progress=begun.append)
+        simulated(model, TRIALS, tell=said.append, progress=begun.append)
     assert (said, begun) == ([], [])
     assert refused.value.where == "small"
     assert "TMPDIR" in str(refused.value)
     monkeypatch.setattr(module, "room_on_disk", lambda: (Path("large"), 3_000_000))
-    model.simulate(TRIALS, tell=said.append)
+    simulated(model, TRIALS, tell=said.append)
     assert len(said) == 1
 
 
 def test_the_first_trials_are_counted_and_change_no_bit(model, small_memory, monkeypatch):
     counted = told(model, TRIALS)[1]
     monkeypatch.setattr("xlmc.montecarlo.simulation.simulate.disk_needed", lambda *_: None)
-    plain = model.simulate(TRIALS)
+    plain = simulated(model, TRIALS)
     assert counted.trial_index.tolist() == plain.trial_index.tolist()
     assert counted.forecasts["x"].tobytes() == plain.forecasts["x"].tobytes()
     assert counted.tally.rejected.tolist() == plain.tally.rejected.tolist()

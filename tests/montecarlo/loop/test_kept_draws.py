@@ -10,6 +10,7 @@ import importlib.util
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 from xlmc.montecarlo.columns import column_store
 from xlmc.montecarlo.definitions.stopping import stopping
@@ -71,7 +72,7 @@ def test_kept_draws_are_those_that_were_drawn(cases, monkeypatch, engine, name):
         monkeypatch.setattr(module, "PRIOR_TRIALS", block + block // 2)
         for trials in {1, 65, block - 1, block, block + 1, min(2 * block + 7, MOST)}:
             for kept in (None, 0, 100) if trials == block + 1 else (None,):
-                run = model.simulate(trials, 3, engine=engine, keep_inputs=kept)
+                run = simulated(model, trials, 3, engine=engine, keep_inputs=kept)
                 check(run, drawn, block, kept)
 
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy import stats
+from simulated import simulated
 
 import xlmc.montecarlo.statistics as xs
 from xlmc.analysis.results.record.definition_tables import correlations_met
@@ -91,7 +92,7 @@ def test_unfiltered_runs_have_the_correlations_and_the_margins(book, method, cor
     """Spearman's matrix within family-wise 99.9 % limits of the target: 6 pairs of independent trials, whose errors no
     method exceeds; margins by Kolmogorov and Smirnov at 99.9 % for each of the 4 (family-wise 99.6 %)."""
     model = book(CELLS, GIVEN, {"x": "B1"}, correlations=correlations)
-    run = model.simulate(10_000, 11, sampling=method)
+    run = simulated(model, 10_000, 11, sampling=method)
     n, names = run.accepted, list(GIVEN)
     seen = np.corrcoef(stats.rankdata([run.inputs[name] for name in names], axis=1))
     z = stats.norm.isf(0.001 / 6 / 2)
@@ -110,7 +111,7 @@ def test_with_filters_the_accepted_correlation_stands_beside_the_target(book, me
     cells = {"A1": 1.0, "A2": 1.0, "B1": "=A1+A2"}
     given = {name: GIVEN[name] for name in ("A1", "A2")}
     model = book(cells, given, {"x": "B1"}, {"f": {"cell": "B1", "above": 1.2}}, {("A1", "A2"): 0.3})
-    run = model.simulate(20_000, 1, sampling=method)
+    run = simulated(model, 20_000, 1, sampling=method)
     [met] = correlations_met(run)
     assert (met.asked, met.used) == (0.3, pytest.approx(0.3))
     assert met.accepted.value == pytest.approx(stats.spearmanr(run.inputs["A1"], run.inputs["A2"]).statistic)
@@ -125,7 +126,7 @@ MIXED = {"A1": {"cell": "A1", **UNIT}, "A2": {"cell": "A2", "distribution": "Yes
 @pytest.mark.parametrize("method", METHODS)
 def test_a_yes_no_has_the_correlation_asked_for_where_it_can(book, method):
     model = book({"A1": 1.0, "A2": 1.0, "B1": "=A1+A2"}, MIXED, {"x": "B1"}, correlations={("A1", "A2"): 0.4})
-    [met] = correlations_met(model.simulate(40_000, 3, sampling=method))
+    [met] = correlations_met(simulated(model, 40_000, 3, sampling=method))
     assert met.used == pytest.approx(0.4, abs=1e-9)
     assert met.accepted.value == pytest.approx(0.4, abs=4 * 1.2 / np.sqrt(40_000))
     assert not [each for each in model.notices if "rank correlation" in each.message]
@@ -136,7 +137,7 @@ def test_a_correlation_out_of_reach_is_named_with_what_is_attainable(book):
     [notice] = [each for each in model.notices if "rank correlation" in each.message]
     assert "'A1' and 'A2' cannot have the rank correlation 0.9" in notice.message
     assert "0.52 is the most that any two can have" in notice.message
-    [met] = correlations_met(model.simulate(40_000, 3))
+    [met] = correlations_met(simulated(model, 40_000, 3))
     assert met.used == pytest.approx(0.5196, abs=1e-4)
     assert met.accepted.value == pytest.approx(0.52, abs=0.01)
 

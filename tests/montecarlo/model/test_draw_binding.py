@@ -7,9 +7,9 @@ import openpyxl
 import pytest
 from openpyxl.workbook.defined_name import DefinedName
 from openpyxl.worksheet.table import Table
+from simulated import simulated
 
 from xlmc.analysis.studies.comparison.variations import with_changes
-from xlmc.api import Model, load
 from xlmc.engine.engines import ENGINES
 from xlmc.errors import DefinitionError
 from xlmc.excel.address import Cell
@@ -18,6 +18,8 @@ from xlmc.excel.workbook.workbook import CellContent
 from xlmc.montecarlo.definitions.definitions import Assumption
 from xlmc.montecarlo.definitions.definitions_reader import read_definitions
 from xlmc.montecarlo.distributions import FAMILIES, ByPercentiles, Family
+from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.model.model import CompiledModel
 
 UNIT = {"low": 0, "high": 1}
 
@@ -65,7 +67,7 @@ def by_percentiles(book, p10, **cutoffs):
     family = ByPercentiles(FAMILIES["Normal"], (), (10.0, 90.0))
     a = Assumption("a", Cell("S", 1, 1), "Normal", given, Cell("S", 1, 1), base=1.0, own_family=family)
     definitions = replace(model.definitions, assumptions=(a, *model.definitions.assumptions))
-    return Model(model.workbook, definitions, model.path)
+    return CompiledModel(model.workbook, definitions, model.path)
 
 
 @pytest.mark.parametrize("p10", [1.0, Cell("S", 1, 2)])
@@ -172,7 +174,7 @@ def parameters(model):
 def test_a_limit_of_the_own_cell_is_one_of_its_base_value(book, cells, of_workbook):
     model = book(CELLS | cells, {"v": MEASURED}, {"x": "B1"}, **of_workbook)
     assert parameters(model) == {"low": 97.0, "high": 103.0}
-    values = model.simulate(2000, seed=1).results["x"].values
+    values = simulated(model, 2000, seed=1).results["x"].values
     assert values.size == 2000
     assert 97 <= values.min() < 97.1 < 102.9 < values.max() <= 103
 
@@ -202,14 +204,14 @@ def test_a_limit_that_indirect_leads_to_another_assumption_waits_for_it(book):
     given = {"v": MEASURED | {"high": 120}, "w": {"cell": "A2", "low": 1, "high": 3}}
     model = book(cells, given, {"v": "B1", "w": "A2"})
     assert [list(stage) for stage in model.needed.stages] == [["w"], ["v"]]
-    results = model.simulate(1000, seed=1).results
+    results = simulated(model, 1000, seed=1).results
     assert (results["v"].values >= 30 * results["w"].values).all()
 
 
 def test_a_limit_of_another_assumption_stays_dynamic(book):
     cells = CELLS | {"C3": "=A1*2"}
     model = book(cells, {"v": MEASURED, "w": {"cell": "A2", "low": 0, "high": "C3"}}, {"x": "A2", "y": "B1"})
-    simulation = model.simulate(2000, seed=1)
+    simulation = simulated(model, 2000, seed=1)
     assert list(model.needed.stages[1]) == ["w"]
     ratio = simulation.results["x"].values / simulation.results["y"].values
     assert 1.99 < ratio.max() <= 2.0
@@ -217,7 +219,7 @@ def test_a_limit_of_another_assumption_stays_dynamic(book):
 
 def test_the_cell_of_a_limit_keeps_its_formula_for_the_forecasts(book):
     model = book(CELLS, {"v": MEASURED}, {"x": "C1", "y": "B1"})
-    results = model.simulate(100, seed=1).results
+    results = simulated(model, 100, seed=1).results
     assert np.allclose(results["x"].values, 0.97 * results["y"].values, rtol=1e-15)
 
 
@@ -225,7 +227,7 @@ def test_a_notice_says_what_was_done(book):
     model = book(CELLS, {"v": MEASURED}, {"x": "B1"})
     said = "S!A1: computed from the base value of the assumption's own cell (100): Low 97, High 103"
     assert [str(notice) for notice in model.notices] == [said]
-    again = Model(model.workbook, model.definitions, model.path)
+    again = CompiledModel(model.workbook, model.definitions, model.path)
     assert [str(notice) for notice in again.notices] == [said]
 
 
@@ -334,7 +336,7 @@ def test_numbers_are_checked_once(tmp_path, monkeypatch):
     monkeypatch.setattr(Family, "broken_rule", rule)
     monkeypatch.setattr(Family, "valid", lambda *given: pytest.fail(f"checked again: {given}") and valid(*given))
     path = saved_book(tmp_path / "a.xlsx", FAMILIES_READ, CUT, answer="=Inputs!B2+Inputs!B3")
-    load(path).simulate(1000, seed=1)
+    simulated(load(path), 1000, seed=1)
     assert checks == [("Uniform", (38.0, 42.0)), ("Discrete Uniform", (1.0, 6.0))]
 
 
@@ -358,7 +360,7 @@ def test_numbers_that_take_the_place_of_those_that_were_read_are_checked(read_bo
     speed, *others = read_book.assumptions
     definitions = replace(read_book.definitions, assumptions=(replace(speed, **changed), *others))
     with pytest.raises(DefinitionError) as caught:
-        Model(read_book.workbook, definitions, read_book.path)
+        CompiledModel(read_book.workbook, definitions, read_book.path)
     assert (caught.value.message, caught.value.where) == (message, "Inputs!A2")
 
 
@@ -367,8 +369,8 @@ def test_numbers_of_other_types_are_taken_as_floats(read_book, number):
     speed, *others = read_book.assumptions
     same = replace(speed, given={"low": number(38), "high": number(42)})
     definitions = replace(read_book.definitions, assumptions=(same, *others))
-    found = Model(read_book.workbook, definitions, read_book.path).simulate(100, seed=1)
-    assert found.inputs["speed"].tolist() == read_book.simulate(100, seed=1).inputs["speed"].tolist()
+    found = simulated(CompiledModel(read_book.workbook, definitions, read_book.path), 100, seed=1)
+    assert found.inputs["speed"].tolist() == simulated(read_book, 100, seed=1).inputs["speed"].tolist()
 
 
 @pytest.mark.parametrize(
@@ -393,5 +395,5 @@ def test_a_number_that_excel_saved_does_not_vouch_for_the_one_that_is_computed(t
     definitions = read_definitions(book, ENGINES)
     assert not definitions.problems
     with pytest.raises(DefinitionError) as caught:
-        Model(book, definitions, path)
+        CompiledModel(book, definitions, path)
     assert (caught.value.message, caught.value.where) == ("speed: Low (44) is above High (42)", "Inputs!A2")

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from simulated import simulated
 
 from xlmc.analysis.results.record import make_record
-from xlmc.api import Model
 from xlmc.excel.address import parse_address
 from xlmc.montecarlo.definitions.definitions import Filter
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.outputs.json_document import document
 
 CELLS = {"A1": 0.5, "B1": "=A1*10", "B2": "=A1+1", "B3": "=1/MAX(A1-0.9,0)", "C1": "=1/MAX(0.2-A1,0)", "C2": "=A1<0.8"}
@@ -38,12 +39,12 @@ OWN = (
 @pytest.fixture(scope="module")
 def model(book):
     plain = book(CELLS, INPUTS, FORECASTS, {"most": {"cell": "A1", "below": 0.95}})
-    return Model(plain.workbook, replace(plain.definitions, forecast_filters=OWN), plain.path)
+    return CompiledModel(plain.workbook, replace(plain.definitions, forecast_filters=OWN), plain.path)
 
 
 @pytest.fixture(scope="module")
 def run(model):
-    return model.simulate(TRIALS)
+    return simulated(model, TRIALS)
 
 
 def test_a_trial_is_discarded_for_its_forecast_alone_and_counted_by_name(model, run):
@@ -66,7 +67,7 @@ def test_a_trial_is_discarded_for_its_forecast_alone_and_counted_by_name(model, 
 
 def test_engines_blocks_and_threads_do_not_matter(model, run):
     for more in ({"engine": "jit"}, {"jobs": 2}, {"scheduler": "processes", "jobs": 2}):
-        again = model.simulate(TRIALS, **more)
+        again = simulated(model, TRIALS, **more)
         assert again.discards == run.discards
         for name, values in run.forecasts.items():
             np.testing.assert_array_equal(again.forecasts[name], values)
@@ -89,7 +90,7 @@ def test_engines_discard_the_same_trials(book, filters):
     cells = CELLS | {"B3": "=IF(A1<0.3,A1,B2)", "C3": "=1/MAX(0.9995-A1,0)"}
     named = {f"f{i}": {k: v for k, v in f.items() if k != "limits"} | f["limits"] for i, f in enumerate(filters)}
     model = book(cells, INPUTS, FORECASTS, named)
-    runs = [model.simulate(TRIALS, engine=engine) for engine in ("numpy", "jit")]
+    runs = [simulated(model, TRIALS, engine=engine) for engine in ("numpy", "jit")]
     told = [(r.discards, r.faults, r.accepted, r.error_trials, r.tally.rejected.tolist()) for r in runs]
     assert told[0] == told[1]
     for name, values in runs[0].forecasts.items():
@@ -100,14 +101,14 @@ def test_sixty_filters_of_a_forecast_are_counted_each(book):
     own = {f"f{i}": {"cell": "A1", "at_least": (i + 1) / 80, "only_for": ("ten",)} for i in range(60)}
     model = book(CELLS, INPUTS, FORECASTS, own)
     for engine in ("numpy", "jit"):
-        run = model.simulate(TRIALS, engine=engine)
+        run = simulated(model, TRIALS, engine=engine)
         u = model.sampler(run.settings.seed, TRIALS).draw(0)["u"]
         first, _ = np.histogram(u, np.arange(61) / 80)
         assert run.discards["ten"] == Counter({f"f{i}": int(count) for i, count in enumerate(first)})
 
 
 def test_without_such_filters_nothing_changes(book, model, run):
-    plain = book(CELLS, INPUTS, FORECASTS, {"most": {"cell": "A1", "below": 0.95}}).simulate(TRIALS)
+    plain = simulated(book(CELLS, INPUTS, FORECASTS, {"most": {"cell": "A1", "below": 0.95}}), TRIALS)
     assert plain.discards == {}
     np.testing.assert_array_equal(plain.trial_index, run.trial_index)
     kept = ~np.isnan(run.forecasts["ten"])
@@ -126,7 +127,7 @@ def test_record_json_and_sheets_say_what_was_discarded(run):
 
 def test_a_base_case_that_is_discarded_is_told_all_the_same(model):
     hidden = replace(model.definitions, forecast_filters=(own("low", "B1", "ten", at_least=6.0),))
-    run = Model(model.workbook, hidden, model.path).simulate(200)
+    run = simulated(CompiledModel(model.workbook, hidden, model.path), 200)
     base = {each["name"]: each["base_case"] for each in document(run)["forecasts"]}
     assert base["ten"] == 5.0
 
@@ -134,7 +135,7 @@ def test_a_base_case_that_is_discarded_is_told_all_the_same(model):
 def test_an_error_that_is_discarded_is_no_base_case(model):
     """B3 divides by 0 at the base case: it has no value there, not 0."""
     hidden = replace(model.definitions, forecast_filters=(own("low", "B1", "odd", at_least=6.0),))
-    run = Model(model.workbook, hidden, model.path).simulate(200)
+    run = simulated(CompiledModel(model.workbook, hidden, model.path), 200)
     base = {each["name"]: each["base_case"] for each in document(run)["forecasts"]}
     assert base["odd"] is None
     assert base["ten"] == 5.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from simulated import simulated
 
 from xlmc.montecarlo.model.loading import filter_faults
 
@@ -88,4 +89,4 @@ def test_looking_changes_no_run(book):
     cells, filters = {**CELLS, "C1": "=A1<1"}, {"possible": "C1"}
     plain, seen = (book(cells, INPUTS, {"answer": "B1"}, filters) for _ in range(2))
     assert filter_faults(seen) == []
-    assert plain.simulate(500).forecasts["answer"].tobytes() == seen.simulate(500).forecasts["answer"].tobytes()
+    assert simulated(plain, 500).forecasts["answer"].tobytes() == simulated(seen, 500).forecasts["answer"].tobytes()

@@ -3,10 +3,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.api import load
 from xlmc.engine.engines import ENGINES
 from xlmc.errors import DefinitionError, FormulaError, SimulationError
 from xlmc.montecarlo.definitions.definitions import Settings
+from xlmc.montecarlo.model.loading import load
 
 CELLS = {"A1": 1.0, "A2": 2.0, "A3": 3.0, "B1": "=A1+A2", "B2": "=SQRT(A1)", "B3": '=IF(A1>0,"x",A1)', "C1": "=B1>0"}
 GIVEN = {"Mass": {"cell": "A1", "low": 0, "high": 1}, "speed": {"cell": "A2", "low": 0, "high": 1}}

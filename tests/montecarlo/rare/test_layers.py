@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy import integrate
 from scipy.special import ndtr
+from simulated import simulated
 
 from xlmc.analysis.results.record import make_record
 from xlmc.montecarlo.rare import learning
@@ -121,7 +122,7 @@ def test_the_answer_of_two_sheets_beside_another_filter_is_the_truth(book):
     filters = {"f": {"cell": "B4", "at_least": -1e-6, "at_most": 1e-6}, "h": {"cell": "B5", "at_most": 1}}
     cells = {**CELLS, "B4": "=A1^2+A3-4", "B5": "=A1+A2"}
     given = {name: GIVEN[name] for name in "abc"}
-    run = book(cells, given, {"x": "A1", "z": "A3"}, filters).simulate(seed=3, until_accepted=3_000, rare="always")
+    run = simulated(book(cells, given, {"x": "A1", "z": "A3"}, filters), seed=3, until_accepted=3_000, rare="always")
 
     def sheet(sign):
         return lambda z: density(s := math.sqrt(4 - z)) / s * ndtr(1 - sign * s)
@@ -151,6 +152,6 @@ def test_a_layer_that_cannot_be_solved_ends_with_a_warning(book, monkeypatch):
     monkeypatch.setattr(learning, "_ROUNDS", 2)
     layer = {"at_least": -1e-4, "at_most": 1e-4}
     model = book({**CELLS, "B4": "=A1-A2^2/4"}, GIVEN, {"x": "A1"}, {"f": {"cell": "B4", **layer}}, {("a", "b"): 0.5})
-    run = model.simulate(1 << 25, seed=1, until_accepted=1_000_000, rare="always")
+    run = simulated(model, 1 << 25, seed=1, until_accepted=1_000_000, rare="always")
     assert "gave up" in run.warnings[0]
     assert run.rare is None

@@ -12,6 +12,7 @@ import pytest
 from click.testing import CliRunner
 from packed_sheets import packed_sheets
 from scipy import optimize, stats
+from simulated import simulated
 
 from xlmc.analysis.results.record import make_record
 from xlmc.analysis.results.record.make import fingerprint
@@ -38,7 +39,7 @@ def model(book):
 
 @pytest.fixture(scope="module")
 def run(model):
-    return model.simulate(seed=4, until_accepted=2000, rare="always")
+    return simulated(model, seed=4, until_accepted=2000, rare="always")
 
 
 def test_the_answer_is_the_truth(run):
@@ -51,7 +52,7 @@ def test_the_answer_is_the_truth(run):
 
 def test_plain_rejection_gives_the_same_answer(model, run):
     """The test of the one is the other: 3,000,000 plain trials, 150 of them accepted."""
-    plain = model.simulate(3_000_000, seed=9)
+    plain = simulated(model, 3_000_000, seed=9)
     for name in ("sum", "difference"):
         ours, theirs = run[name].statistics, plain[name].statistics
         for mine, other in ((ours.mean, theirs.mean), (ours.standard_deviation, theirs.standard_deviation)):
@@ -60,7 +61,7 @@ def test_plain_rejection_gives_the_same_answer(model, run):
 
 
 def test_counts_are_those_of_plain_trials(model, run):
-    plain = model.simulate(rare_switch.ALWAYS_FIRST, seed=4)
+    plain = simulated(model, rare_switch.ALWAYS_FIRST, seed=4)
     assert run.trials == plain.trials == rare_switch.ALWAYS_FIRST
     assert run.tally.rejected.tolist() == plain.tally.rejected.tolist()
     assert run.prior["a"].tobytes() == plain.prior["a"].tobytes()
@@ -90,14 +91,14 @@ def test_the_record_says_what_was_done(run):
 
 
 def test_the_same_run_is_the_same_with_threads(model, run):
-    again = model.simulate(seed=4, until_accepted=2000, rare="always", jobs=2)
+    again = simulated(model, seed=4, until_accepted=2000, rare="always", jobs=2)
     assert fingerprint(again) == fingerprint(run)
     assert again.rare == run.rare
 
 
 def test_plain_trials_give_way_where_they_would_not_do(model, monkeypatch):
     monkeypatch.setattr(rare_switch, "FIRST_LOOK", 1 << 16)
-    found = model.simulate(1 << 22, seed=4, until_accepted=500)
+    found = simulated(model, 1 << 22, seed=4, until_accepted=500)
     assert found.rare is not None
     assert found.trials >= 1 << 16
     assert shlex.split(make_record(found)["run.repeat"])[3:] == [
@@ -107,7 +108,7 @@ def test_plain_trials_give_way_where_they_would_not_do(model, monkeypatch):
 
 def test_plain_trials_stay_where_they_do(model, monkeypatch):
     monkeypatch.setattr(rare_switch, "FIRST_LOOK", 1 << 14)
-    found = model.simulate(1 << 22, seed=4, until_accepted=10)
+    found = simulated(model, 1 << 22, seed=4, until_accepted=10)
     assert found.rare is None
     assert found.accepted == 10
 
@@ -123,7 +124,7 @@ def test_a_search_is_made_where_it_is_cheaper(model, costly, run):
     share = run.rare.acceptance.value
     limit, wanted = 1 << 26, 1000
     assert limit / 64 < wanted / share < limit, "plain trials would do, at a higher cost"
-    found = model.simulate(limit, seed=4, until_accepted=wanted)
+    found = simulated(model, limit, seed=4, until_accepted=wanted)
     assert found.rare is not None
     assert found.rare.evaluations < wanted / share
 
@@ -138,8 +139,8 @@ def test_plain_trials_go_on_after_a_search_that_failed(model, costly, monkeypatc
         return module.Search(np.empty((0, 1)), None, "it failed", 0)
 
     monkeypatch.setattr(module, "search", fails)
-    found = model.simulate(1 << 24, seed=4, until_accepted=300)
-    plain = model.simulate(1 << 24, seed=4, until_accepted=300, rare="never")
+    found = simulated(model, 1 << 24, seed=4, until_accepted=300)
+    plain = simulated(model, 1 << 24, seed=4, until_accepted=300, rare="never")
     assert tried == [1]
     assert found.rare is None
     assert found.stopped.reached
@@ -148,14 +149,14 @@ def test_plain_trials_go_on_after_a_search_that_failed(model, costly, monkeypatc
 
 def test_never_is_never(model, monkeypatch):
     monkeypatch.setattr(rare_switch, "FIRST_LOOK", 1 << 14)
-    found = model.simulate(1 << 18, seed=4, until_accepted=5000, rare="never")
+    found = simulated(model, 1 << 18, seed=4, until_accepted=5000, rare="never")
     assert found.rare is None
     assert not found.stopped.reached
 
 
 def test_filters_that_contradict_each_other_end_the_run(book):
     filters = {"high": {"cell": "B1", "above": 0.9}, "low": {"cell": "C1", "below": 1.0}}
-    found = book(CELLS, GIVEN, {"sum": "C1"}, filters).simulate(seed=4, until_accepted=10, rare="always")
+    found = simulated(book(CELLS, GIVEN, {"sum": "C1"}, filters), seed=4, until_accepted=10, rare="always")
     assert found.rare is None
     assert found.accepted == 0
     assert found.stopped.by == "search"
@@ -174,7 +175,7 @@ def test_dynamic_correlated_and_whole_numbers_come_along(book):
     }
     filters = {"f": {"cell": "C1", "above": 4.5}, "g": {"cell": "A3", "at_least": 3}}
     model = book(cells, given, {"x": "C2"}, filters, {("a", "b"): 0.5})
-    found = model.simulate(seed=4, until_accepted=1000, rare="always")
+    found = simulated(model, seed=4, until_accepted=1000, rare="always")
     assert np.all(found.inputs["c"] >= 3)
     assert np.all(found.inputs["c"] == np.round(found.inputs["c"]))
     rho, counts = 2 * math.sin(math.pi * 0.5 / 6), np.arange(3, 30)  # 0.5 is of the ranks
@@ -201,7 +202,7 @@ def test_a_search_keeps_the_posterior_of_a_reading_that_is_far_off(book):
     x = {"x": {"cell": "A1", "distribution": "Normal", "mean": 0, "std_dev": 1}, "c": {"cell": "C1", **UNIT}}
     reading = {"EDR": {"cell": "B1", "reading": 4.5, "error": "normal", "std_dev": 0.5}}
     cells = {"A1": 0.0, "B1": "=A1*1", "C1": 2.0, "D1": "=A1+C1"}
-    found = book(cells, x, {"y": "B1", "sum": "D1"}, evidence=reading).simulate(until_accepted=2_000, rare="always")
+    found = simulated(book(cells, x, {"y": "B1", "sum": "D1"}, evidence=reading), until_accepted=2_000, rare="always")
     assert found.rare is not None
     for mine, true in ((found["y"].mean, 3.6), (found["y"].standard_deviation, math.sqrt(0.2))):
         assert abs(mine.value - true) < 4 * mine.error

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.special import ndtr
+from simulated import simulated
 
 from xlmc.montecarlo.rare.account import RareAccount, probability_text
 from xlmc.montecarlo.rare.landscape import points_of
@@ -45,7 +46,7 @@ def test_plain_trials_are_found_again_by_their_numbers(book):
     }
     filters = {"f": {"cell": "A1", "above": 3.99}, "g": {"cell": "A2", "above": 0}, "h": {"cell": "A3", "above": 0}}
     model = book(cells, given, {"x": "A2"}, filters, {("b", "c"): 0.6})
-    run = model.simulate(20_000, seed=3)
+    run = simulated(model, 20_000, seed=3)
     points = points_of(plain_uniforms(model, 3, run.trial_index))
     places = [a.name for group in model.groups for a in model.live if a.name in group.names] or ["b", "c"]
     order = [*places, "a"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 from xlmc.montecarlo.rare.landscape import Landscape
 from xlmc.montecarlo.rare.ways import MOST_WAYS
@@ -113,7 +114,7 @@ def test_branches_of_other_scales_are_all_found(book):
     """Half of the coin's trials each; without ways the smaller scale takes all."""
     cells = {**CELLS, "B1": "=IF(A3=1,0.001*(-A1-4),1000*(A2-4))"}
     model = book(cells, {name: GIVEN[name] for name in "abc"}, {"x": "A3"}, {"f": {"cell": "B1", "at_least": 0}})
-    run = model.simulate(seed=2, until_accepted=900, rare="always")
+    run = simulated(model, seed=2, until_accepted=900, rare="always")
     assert run.warnings == []
     assert abs(run.acceptance.value - 3.167124e-05) < 4.5 * run.acceptance.error
     assert abs(run.inputs["c"].mean() - 1 / 2) < 4.5 * np.sqrt(1 / 4 / 900)

@@ -5,6 +5,7 @@ import tempfile
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 from xlmc.analysis.results.record.make import fingerprint
 from xlmc.errors import FormulaError, SimulationError
@@ -53,12 +54,12 @@ def bits(run):
 @pytest.mark.parametrize("jobs", [2, 3, 4])
 @pytest.mark.parametrize("trials", [1, 127, 128, 129, 1000, 5000])
 def test_threads_change_no_bit(model, trials, jobs):
-    assert bits(model.simulate(trials, jobs=jobs)) == bits(model.simulate(trials, jobs=1))
+    assert bits(simulated(model, trials, jobs=jobs)) == bits(simulated(model, trials, jobs=1))
 
 
 @pytest.mark.parametrize(("short", "long"), [(1, 2), (128, 129), (200, 400), (1000, 5000)])
 def test_a_longer_run_begins_with_the_shorter(model, short, long):
-    one, two = model.simulate(short), model.simulate(long)
+    one, two = simulated(model, short), simulated(model, long)
     m = one.accepted
     assert two.trial_index[:m].tolist() == one.trial_index.tolist()
     assert two.accepted == m or two.trial_index[m] >= short
@@ -70,7 +71,7 @@ def test_a_longer_run_begins_with_the_shorter(model, short, long):
 
 @pytest.mark.parametrize("trials", [1, 100, 128, 300, 1000])
 def test_just_as_many_trials_as_asked_for(model, trials):
-    run = model.simulate(trials)
+    run = simulated(model, trials)
     assert run.trials == trials
     assert run.accepted <= trials
     assert run.accepted == 0 or run.trial_index[-1] < trials
@@ -80,17 +81,17 @@ def test_just_as_many_trials_as_asked_for(model, trials):
 
 def test_on_disk_a_forecast_that_does_not_vary(book, monkeypatch):
     monkeypatch.setattr(column_store, "IN_MEMORY", 0)
-    run = book({"A1": 1.0, "B1": "=2>1"}, {"a": {"cell": "A1", **UNIT}}, {"x": "B1", "y": "A1"}).simulate(300)
+    run = simulated(book({"A1": 1.0, "B1": "=2>1"}, {"a": {"cell": "A1", **UNIT}}, {"x": "B1", "y": "A1"}), 300)
     assert run.forecasts["x"].tolist() == [1.0] * 300
     assert run["x"].mean.value == 1.0
 
 
 @pytest.mark.parametrize("trials", [100, 5000])
 def test_on_disk_no_bit_is_different(model, monkeypatch, trials):
-    in_memory = model.simulate(trials)
+    in_memory = simulated(model, trials)
     monkeypatch.setattr(column_store, "IN_MEMORY", 0)
     monkeypatch.setattr(column_store, "WRITTEN", 4000)
-    run = model.simulate(trials)
+    run = simulated(model, trials)
     assert on_disk(run.trial_index)
     assert all(on_disk(values) for part in (run.inputs, run.prior, run.forecasts) for values in part.values())
     assert bits(run) == bits(in_memory)
@@ -103,7 +104,7 @@ def test_on_disk_no_bit_is_different(model, monkeypatch, trials):
 
 def test_on_disk_a_forecast_without_a_number_is_left_out(book, monkeypatch):
     monkeypatch.setattr(column_store, "IN_MEMORY", 0)
-    run = book({"A1": 1.0, "B1": "=SQRT(A1-0.5)"}, {"a": {"cell": "A1", **UNIT}}, {"x": "B1"}).simulate(1000)
+    run = simulated(book({"A1": 1.0, "B1": "=SQRT(A1-0.5)"}, {"a": {"cell": "A1", **UNIT}}, {"x": "B1"}), 1000)
     kept = run.inputs["a"] >= 0.5
     assert on_disk(run["x"].values)
     assert run["x"].values.tolist() == np.sqrt(run.inputs["a"][kept] - 0.5).tolist()
@@ -113,7 +114,7 @@ def test_on_disk_a_forecast_without_a_number_is_left_out(book, monkeypatch):
 def test_the_temporary_files_go_with_the_run(model, monkeypatch, tmp_path):
     monkeypatch.setattr(column_store, "IN_MEMORY", 0)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    run = model.simulate(1000)
+    run = simulated(model, 1000)
     assert list(tmp_path.iterdir())
     assert run["x"].statistics.trials == run.accepted
     del run
@@ -129,12 +130,12 @@ def test_a_full_disk_ends_the_run(model, monkeypatch, scheduler):
     monkeypatch.setattr(column_store, "IN_MEMORY", 0)
     monkeypatch.setattr(tempfile, "tempdir", "/there/is/none")
     with pytest.raises(SimulationError, match="temporary folder"):
-        model.simulate(1000, jobs=2, scheduler=scheduler)
+        simulated(model, 1000, jobs=2, scheduler=scheduler)
 
 
 @pytest.mark.parametrize("kept", [0, 1, 200, 10**6, None])
 def test_draws_of_the_first_accepted_trials_are_kept(model, kept):
-    run, full = model.simulate(3000, jobs=2, keep_inputs=kept), model.simulate(3000)
+    run, full = simulated(model, 3000, jobs=2, keep_inputs=kept), simulated(model, 3000)
     count = run.accepted if kept is None else min(kept, run.accepted)
     assert run.kept_inputs == count
     for name in GIVEN:
@@ -143,7 +144,7 @@ def test_draws_of_the_first_accepted_trials_are_kept(model, kept):
 
 
 def test_a_frame_never_holds_fewer_trials_than_were_accepted(model):
-    run = model.simulate(3000, keep_inputs=10)
+    run = simulated(model, 3000, keep_inputs=10)
     with pytest.raises(SimulationError, match="the draws of 10 of"):
         run.frame()
     frame = run.frame(inputs=False)
@@ -155,7 +156,7 @@ def test_draws_do_not_depend_on_the_block_size(model, monkeypatch):
     runs = []
     for block in (64, 100, 4096):
         monkeypatch.setattr(module, "BLOCK", block)
-        runs.append(model.simulate(1000))
+        runs.append(simulated(model, 1000))
     for run in runs[1:]:
         assert run.trial_index.tolist() == runs[0].trial_index.tolist()
         for name in GIVEN:
@@ -164,13 +165,13 @@ def test_draws_do_not_depend_on_the_block_size(model, monkeypatch):
 
 
 def test_the_seed_matters(model):
-    assert model.simulate(500, 1).trial_index.tolist() != model.simulate(500, 2).trial_index.tolist()
-    assert bits(model.simulate(500, 1)) == bits(model.simulate(500, 1))
+    assert simulated(model, 500, 1).trial_index.tolist() != simulated(model, 500, 2).trial_index.tolist()
+    assert bits(simulated(model, 500, 1)) == bits(simulated(model, 500, 1))
 
 
 def test_freezing_one_assumption_leaves_the_draws_of_the_others(book):
-    free = book(CELLS, GIVEN, FORECASTS).simulate(500)
-    frozen = book(CELLS, GIVEN | {"A2": GIVEN["A2"] | {"frozen": True}}, FORECASTS).simulate(500)
+    free = simulated(book(CELLS, GIVEN, FORECASTS), 500)
+    frozen = simulated(book(CELLS, GIVEN | {"A2": GIVEN["A2"] | {"frozen": True}}, FORECASTS), 500)
     assert sorted(frozen.inputs) == ["A1", "A3"]
     for name in ("A1", "A3"):
         assert frozen.inputs[name].tobytes() == free.inputs[name].tobytes()
@@ -179,31 +180,31 @@ def test_freezing_one_assumption_leaves_the_draws_of_the_others(book):
 
 
 def test_adding_an_assumption_leaves_the_draws_of_the_others(book):
-    few = book(CELLS, GIVEN, FORECASTS).simulate(300)
-    many = book(CELLS, {"A4": {"cell": "A4", **UNIT}} | GIVEN, FORECASTS | {"w": "A4"}).simulate(300)
+    few = simulated(book(CELLS, GIVEN, FORECASTS), 300)
+    many = simulated(book(CELLS, {"A4": {"cell": "A4", **UNIT}} | GIVEN, FORECASTS | {"w": "A4"}), 300)
     for name in GIVEN:
         assert many.inputs[name].tobytes() == few.inputs[name].tobytes()
 
 
 def test_an_idle_assumption_is_not_drawn(book):
-    run = book(CELLS, GIVEN | {"A4": {"cell": "A4", **UNIT}}, FORECASTS).simulate(100)
+    run = simulated(book(CELLS, GIVEN | {"A4": {"cell": "A4", **UNIT}}, FORECASTS), 100)
     assert sorted(run.inputs) == sorted(run.prior) == ["A1", "A2", "A3"]
 
 
 def test_names_are_matched_whatever_their_case(book):
-    run = book(CELLS, {"Mass ": GIVEN["A1"]}, {"X": "A1"}).simulate(50)
+    run = simulated(book(CELLS, {"Mass ": GIVEN["A1"]}, {"X": "A1"}), 50)
     assert run.inputs["Mass "].tolist() == run["x"].values.tolist()
 
 
 def test_forecasts_are_what_the_function_gives_of_the_inputs(model):
-    run = model.simulate(2000)
+    run = simulated(model, 2000)
     found = model.function(run.inputs)
     for name in FORECASTS:
         assert run.forecasts[name] == pytest.approx(found[name], rel=1e-15)
 
 
 def test_filters_are_joined_with_and(model):
-    run, free = model.simulate(3000), model.simulate(3000)
+    run, free = simulated(model, 3000), simulated(model, 3000)
     model_prior = {name: run.prior[name] for name in GIVEN}
     found = model.function(model_prior)
     lean = model_prior["A1"] - model_prior["A2"]
@@ -213,7 +214,7 @@ def test_filters_are_joined_with_and(model):
 
 
 def test_the_accounting_is_that_of_a_recount(model):
-    run = model.simulate(3000)
+    run = simulated(model, 3000)
     found, prior = model.function(run.prior), run.prior
     lean = prior["A1"] - prior["A2"]
     fails = [~(found["x"] > 0.6), ~((lean >= -0.5) & (lean < 0.5))]
@@ -227,7 +228,7 @@ def test_the_accounting_is_that_of_a_recount(model):
 def test_an_error_in_a_filter_rejects_the_trial(book):
     cells = {"A1": 1.0, "B1": "=SQRT(A1)", "B2": "=A1>-0.5"}
     given = {"a": {"cell": "A1", "low": -1, "high": 1}}
-    run = book(cells, given, {"x": "A1"}, {"f": {"cell": "B1", "at_least": 0.1}, "g": "B2"}).simulate(2000)
+    run = simulated(book(cells, given, {"x": "A1"}, {"f": {"cell": "B1", "at_least": 0.1}, "g": "B2"}), 2000)
     a = run.prior["a"]
     assert run.trial_index.tolist() == np.flatnonzero(a >= 0.1**2).tolist()
     assert run.tally.errors == [{"#NUM!": (a < 0).sum()}, {}]
@@ -244,7 +245,7 @@ def test_an_error_in_a_filter_rejects_the_trial(book):
 )
 def test_an_error_in_a_forecast_removes_the_trial_from_that_forecast_only(book, formula, fault):
     model = book({"A1": 1.0, "B1": formula, "B2": "=A1*2"}, {"a": {"cell": "A1", **UNIT}}, {"x": "B1", "y": "B2"})
-    run = model.simulate(1000)
+    run = simulated(model, 1000)
     bad = run.inputs["a"] <= 0.5 if "A1" in formula else np.ones(1000, bool)
     assert run.accepted == 1000
     assert np.isnan(run.forecasts["x"]).tolist() == bad.tolist()
@@ -255,28 +256,28 @@ def test_an_error_in_a_forecast_removes_the_trial_from_that_forecast_only(book, 
 
 
 def test_a_blank_forecast(book):
-    run = book({"A1": 1.0}, {"a": {"cell": "A1", **UNIT}}, {"x": "B7", "y": "A1"}).simulate(10)
+    run = simulated(book({"A1": 1.0}, {"a": {"cell": "A1", **UNIT}}, {"x": "B7", "y": "A1"}), 10)
     assert run.faults["x"] == {"blank": 10}
     assert np.isnan(run.forecasts["x"]).all()
 
 
 def test_logicals_count_as_one_and_zero(book):
-    run = book({"A1": 1.0, "B1": "=A1>0.5"}, {"a": {"cell": "A1", **UNIT}}, {"x": "B1"}).simulate(500)
+    run = simulated(book({"A1": 1.0, "B1": "=A1>0.5"}, {"a": {"cell": "A1", **UNIT}}, {"x": "B1"}), 500)
     assert run.forecasts["x"].tolist() == (run.inputs["a"] > 0.5).astype(float).tolist()
 
 
 @pytest.mark.parametrize(("formula", "kept"), [("=TRUE", 100), ("=FALSE", 0), ("=2", 100), ("=C9", 0), ('="x"', 0)])
 def test_a_filter_that_does_not_vary(book, formula, kept):
-    run = book({"A1": 1.0, "B1": formula}, {"a": {"cell": "A1", **UNIT}}, {"x": "A1"}, {"f": "B1"}).simulate(100)
+    run = simulated(book({"A1": 1.0, "B1": formula}, {"a": {"cell": "A1", **UNIT}}, {"x": "A1"}, {"f": "B1"}), 100)
     assert run.accepted == kept
     assert run.tally.rejected.tolist() == [100 - kept]
 
 
 def test_a_limit_that_varies(book):
     given = {"a": {"cell": "A1", **UNIT}, "b": {"cell": "A2", **UNIT}}
-    run = book(
-        {"A1": 1.0, "A2": 1.0, "B1": "=A2/2"}, given, {"x": "A1"}, {"f": {"cell": "A1", "above": "B1"}}
-    ).simulate(500)
+    run = simulated(
+        book({"A1": 1.0, "A2": 1.0, "B1": "=A2/2"}, given, {"x": "A1"}, {"f": {"cell": "A1", "above": "B1"}}), 500
+    )
     assert run.trial_index.tolist() == np.flatnonzero(run.prior["a"] > run.prior["b"] / 2).tolist()
 
 
@@ -290,7 +291,7 @@ DYNAMIC = {
 
 class TestDynamicParameters:
     def run(self, book, trials=1000, **more):
-        return book(DYNAMIC_CELLS, DYNAMIC, {"x": "C1"}, **more).simulate(trials)
+        return simulated(book(DYNAMIC_CELLS, DYNAMIC, {"x": "C1"}, **more), trials)
 
     def test_a_chain(self, book):
         run = self.run(book)
@@ -315,7 +316,7 @@ class TestDynamicParameters:
 
     def test_threads_change_no_bit(self, book):
         model = book(DYNAMIC_CELLS, DYNAMIC, {"x": "C1"})
-        assert bits(model.simulate(3000, jobs=3)) == bits(model.simulate(3000))
+        assert bits(simulated(model, 3000, jobs=3)) == bits(simulated(model, 3000))
 
     def test_correlated_with_a_dynamic_one(self, book):
         run = self.run(book, 4000, correlations={("a", "c"): 0.9})
@@ -327,7 +328,7 @@ class TestDynamicParameters:
 def test_progress_tells_of_every_block_in_order(model):
     for jobs in (1, 3):
         seen = []
-        run = model.simulate(1000, jobs=jobs, progress=seen.append)
+        run = simulated(model, 1000, jobs=jobs, progress=seen.append)
         assert [standing.trials for standing in seen] == [128, 256, 384, 512, 640, 768, 896, 1000]
         accepted = [standing.accepted for standing in seen]
         assert accepted == sorted(accepted)
@@ -340,19 +341,19 @@ def test_an_interruption_ends_the_run(model, jobs):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        model.simulate(10**6, jobs=jobs, progress=stop)
-    assert model.simulate(10, jobs=jobs).trials == 10
+        simulated(model, 10**6, jobs=jobs, progress=stop)
+    assert simulated(model, 10, jobs=jobs).trials == 10
 
 
 def test_the_prior_is_kept_of_the_first_trials_only(model, monkeypatch):
     monkeypatch.setattr(module, "PRIOR_TRIALS", 256)
-    run = model.simulate(1000)
+    run = simulated(model, 1000)
     assert {values.size for values in run.prior.values()} == {256}
-    assert run.prior["A1"].tobytes() == model.simulate(256).prior["A1"].tobytes()
+    assert run.prior["A1"].tobytes() == simulated(model, 256).prior["A1"].tobytes()
 
 
 def test_the_slow_engine_agrees(model):
-    fast, slow = model.simulate(50), model.simulate(50, engine="formulas")
+    fast, slow = simulated(model, 50), simulated(model, 50, engine="formulas")
     assert slow.trial_index.tolist() == fast.trial_index.tolist()
     assert 0 < slow.accepted < 50
     for name in FORECASTS:
@@ -365,9 +366,9 @@ def test_the_slow_engine_agrees(model):
 
 
 def test_settings_of_the_book_and_of_the_call(model):
-    run = model.simulate(10)
+    run = simulated(model, 10)
     assert (run.settings.trials, run.settings.seed, run.settings.engine) == (10, 999, "numpy")
-    assert model.simulate(10, 0).settings.seed == 0
+    assert simulated(model, 10, 0).settings.seed == 0
 
 
 @pytest.mark.parametrize(
@@ -387,7 +388,7 @@ def test_settings_of_the_book_and_of_the_call(model):
 )
 def test_arguments_out_of_range(model, arguments, message):
     with pytest.raises(SimulationError) as caught:
-        model.simulate(**{"trials": 10, **arguments})
+        simulated(model, **{"trials": 10, **arguments})
     assert caught.value.message == message
     assert caught.value.hint
 

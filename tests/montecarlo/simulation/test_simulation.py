@@ -2,8 +2,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from simulated import simulated
 
+from xlmc.api import Simulation
 from xlmc.montecarlo import statistics
+from xlmc.montecarlo.model.model import CompiledModel
 
 CELLS = {"A1": 0.5, "A2": 0.5, "B1": "=A1+A2", "B2": "=SQRT(A1-0.0005)"}
 GIVEN = {"Mass": {"cell": "A1", "low": 0, "high": 1}, "Speed": {"cell": "A2", "low": 0, "high": 1}}
@@ -11,7 +14,7 @@ GIVEN = {"Mass": {"cell": "A1", "low": 0, "high": 1}, "Speed": {"cell": "A2", "l
 
 @pytest.fixture
 def run(book):
-    return book(CELLS, GIVEN, {"Sum": "B1", "Root": "B2"}, {"f": {"cell": "B1", "above": 0.5}}).simulate(20_000, 1)
+    return simulated(book(CELLS, GIVEN, {"Sum": "B1", "Root": "B2"}, {"f": {"cell": "B1", "above": 0.5}}), 20_000, 1)
 
 
 @pytest.mark.parametrize("name", ["Sum", "sum", " SUM "])
@@ -56,7 +59,7 @@ def test_values_that_are_no_numbers_are_left_out(run):
 
 
 def test_a_run_in_short(run):
-    assert repr(run) == f"<Simulation: {run.accepted} of 20000 trials accepted>"
+    assert repr(Simulation(run)) == f"<Simulation: {run.accepted} of 20000 trials accepted>"
     assert run.acceptance == statistics.proportion(run.accepted, 20_000)
 
 
@@ -69,7 +72,7 @@ def test_a_frame_of_accepted_trials(run):
 
 
 def test_an_assumption_and_a_forecast_of_one_name(book):
-    frame = book(CELLS, GIVEN, {"Mass": "B1"}).simulate(10).frame()
+    frame = simulated(book(CELLS, GIVEN, {"Mass": "B1"}), 10).frame()
     assert list(frame.columns) == ["Mass (assumption)", "Speed", "Mass"]
     assert frame["Mass"].tolist() == (frame["Mass (assumption)"] + frame["Speed"]).tolist()
 
@@ -83,8 +86,8 @@ def test_few_errors_are_no_warning(run):
 def test_errors_above_a_thousandth_are(book, level, warned):
     """How many trials err is known beforehand: it is the rank of the draws that decides."""
     model = book(CELLS | {"B2": "=SQRT(A1-B9)", "B9": 0.0}, GIVEN, {"x": "B2", "y": "A1"})
-    threshold = np.quantile(model.simulate(10_000).inputs["Mass"], level)
-    run = book(CELLS | {"B2": "=SQRT(A1-B9)", "B9": float(threshold)}, GIVEN, {"x": "B2", "y": "A1"}).simulate(10_000)
+    threshold = np.quantile(simulated(model, 10_000).inputs["Mass"], level)
+    run = simulated(book(CELLS | {"B2": "=SQRT(A1-B9)", "B9": float(threshold)}, GIVEN, {"x": "B2", "y": "A1"}), 10_000)
     assert run.error_trials == pytest.approx(10_000 * level, abs=1)
     assert bool(run.warnings) is warned
     if warned:
@@ -94,7 +97,7 @@ def test_errors_above_a_thousandth_are(book, level, warned):
 
 
 def test_no_accepted_trial_is_a_warning(book):
-    run = book(CELLS, GIVEN, {"x": "B1"}, {"f": {"cell": "B1", "above": 5}, "g": "A1"}).simulate(100)
+    run = simulated(book(CELLS, GIVEN, {"x": "B1"}, {"f": {"cell": "B1", "above": 5}, "g": "A1"}), 100)
     assert run.accepted == 0
     assert run.warnings == [
         "no trial was accepted: the filters contradict the assumptions, or accept fewer than 0.037 of the trials. "
@@ -107,10 +110,8 @@ def test_no_accepted_trial_is_a_warning(book):
 def test_a_central_range_of_the_forecasts_own(book):
     from dataclasses import replace
 
-    from xlmc import Model
-
     model = book(CELLS, GIVEN, {"x": "B1"})
     forecasts = (replace(model.forecasts[0], central=0.9, threshold=1.0),)
-    run = Model(model.workbook, replace(model.definitions, forecasts=forecasts), model.path).simulate(1000)
+    run = simulated(CompiledModel(model.workbook, replace(model.definitions, forecasts=forecasts), model.path), 1000)
     assert run["x"].central() == statistics.central_interval(run["x"].values, 0.9)
     assert run["x"].statistics == statistics.describe(run["x"].values, central=0.9, threshold=1.0)

@@ -9,11 +9,12 @@ import openpyxl
 import pytest
 from crystal_ball_book import Asked, Drawn, Tied, read_parts, save, write_parts
 from fewer_sheets import keep_sheets
+from simulated import simulated
 
-from xlmc.api import load
 from xlmc.cli import xlmc as command
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.package import read_parts as parts_of
+from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.conversion.convert import convert
 
 CHANGED = {"[Content_Types].xml", "xl/workbook.xml", "xl/_rels/workbook.xml.rels", "xl/styles.xml", "docProps/app.xml"}
@@ -142,7 +143,7 @@ def converted(path, left=()):
     old, parts = (parts_of(each.read_bytes()) for each in (path, new))
     assert {name for name in old if old[name] != parts[name]} <= CHANGED
     made = load(new)
-    one, other = model.simulate(2_000, 5), made.simulate(2_000, 5)
+    one, other = simulated(model, 2_000, 5), simulated(made, 2_000, 5)
     np.testing.assert_array_equal(one.trial_index, other.trial_index)
     assert list(one.forecasts) == list(other.forecasts)
     for columns, others in ((one.inputs, other.inputs), (one.forecasts, other.forecasts)):
@@ -324,7 +325,7 @@ def test_what_excel_adds_to_a_workbook_of_dialogs_stays(tmp_path, change):
 def test_a_strict_workbook_is_converted(tmp_path):
     path = tmp_path / "book.xlsx"
     save(path, CELLS, [[SKID, OFFSET, Asked(S, "$B$5", "Total")]])
-    expected = load(path).simulate(100).forecasts["Total"]
+    expected = simulated(load(path), 100).forecasts["Total"]
     pairs = [(f"{OPEN}/spreadsheetml/2006/main", f"{STRICT}/spreadsheetml/main")]
     pairs += [(f"{OPEN}/officeDocument/2006/relationships", f"{STRICT}/officeDocument/relationships")]
     parts = read_parts(path)
@@ -333,9 +334,9 @@ def test_a_strict_workbook_is_converted(tmp_path):
             parts[name] = parts[name].replace(old.encode(), new.encode())
     write_parts(path, parts)
     model = load(path)
-    np.testing.assert_array_equal(model.simulate(100).forecasts["Total"], expected)
+    np.testing.assert_array_equal(simulated(model, 100).forecasts["Total"], expected)
     new = convert(model, tmp_path / "new.xlsx").path
-    np.testing.assert_array_equal(load(new).simulate(100).forecasts["Total"], expected)
+    np.testing.assert_array_equal(simulated(load(new), 100).forecasts["Total"], expected)
 
 
 def test_the_workbook_itself_is_not_replaced_by_whatever_name(tmp_path):

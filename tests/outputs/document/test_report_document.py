@@ -8,10 +8,11 @@ from pathlib import Path
 
 import pytest
 from document_texts import squeezed, texts_of
+from simulated import simulated
 
-import xlmc
 from xlmc.api import Simulation
 from xlmc.errors import SimulationError, WorkbookError
+from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.document import SECTIONS, Wanted
 from xlmc.outputs.document.build import build
 from xlmc.outputs.document.glossary import GLOSSARY, WORDS_OF_EVIDENCE, WORDS_OF_SCENARIOS
@@ -31,7 +32,7 @@ NUMBER = re.compile(r"(?<![\w.,])[-−]?\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?(?![\w]|
 
 @pytest.fixture(scope="module")
 def case_study():
-    return xlmc.load(BOOK).simulate(trials=20_000)
+    return simulated(load(BOOK), trials=20_000)
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +43,7 @@ def built(case_study):
 @pytest.fixture(scope="module")
 def files(case_study, tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
-    return [case_study.save_report(folder / f"report{ending}", case=CASE) for ending in (".pdf", ".docx")]
+    return [Simulation(case_study).save_report(folder / f"report{ending}", case=CASE) for ending in (".pdf", ".docx")]
 
 
 @pytest.fixture(scope="module")
@@ -225,12 +226,12 @@ def test_the_pdf_is_pdf_a_with_an_intent_embedded_fonts_and_tags(files):
 def test_a_word_file_asks_no_clock(run, tmp_path, monkeypatch, year):
     """A zip holds no date before 1980 or after 2107."""
     monkeypatch.setattr("time.localtime", lambda *_: time.struct_time((year, 1, 2, 3, 4, 5, 4, 2, 0)))
-    path = run.save_report(tmp_path / f"{year}.docx")
-    assert path.read_bytes() == run.save_report(tmp_path / "again.docx").read_bytes()
+    path = Simulation(run).save_report(tmp_path / f"{year}.docx")
+    assert path.read_bytes() == Simulation(run).save_report(tmp_path / "again.docx").read_bytes()
 
 
 def test_the_same_run_gives_the_same_bytes(run, tmp_path):
-    first, again = Simulation.of(run), Simulation.of(run.model.simulate())
+    first, again = Simulation(run), Simulation(simulated(run.model))
     for ending in (".pdf", ".docx"):
         fewer = {"sections": ["answer", "forecasts", "assumptions"]} if ending == ".pdf" else {}  # pictures and tables
         asked = {"case": CASE, **fewer}
@@ -263,7 +264,7 @@ def test_sections_forecasts_and_paper_can_be_chosen(case_study, tmp_path):
     ]
     (table,) = [each for each in found.blocks if isinstance(each, Table)]
     assert [row[0] for row in table.rows] == ["Nissan delta-V"]
-    path = case_study.save_report(tmp_path / "a.pdf", sections=["answer"], paper="a4")
+    path = Simulation(case_study).save_report(tmp_path / "a.pdf", sections=["answer"], paper="a4")
     box = pypdf.PdfReader(path).pages[0].mediabox
     assert (round(float(box.width)), round(float(box.height))) == (595, 842)
 
@@ -279,7 +280,7 @@ def test_sections_forecasts_and_paper_can_be_chosen(case_study, tmp_path):
 )
 def test_what_no_report_has_is_refused(case_study, tmp_path, asked, said):
     with pytest.raises(SimulationError, match=said):
-        case_study.save_report(tmp_path / "report.pdf", **asked)
+        Simulation(case_study).save_report(tmp_path / "report.pdf", **asked)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -287,18 +288,18 @@ def test_no_file_is_replaced_unless_asked(case_study, tmp_path):
     path = tmp_path / "report.docx"
     path.write_bytes(b"a person's")
     with pytest.raises(WorkbookError, match="exists already"):
-        case_study.save_report(path)
+        Simulation(case_study).save_report(path)
     assert path.read_bytes() == b"a person's"
-    case_study.save_report(path, sections=["answer"], overwrite=True)
+    Simulation(case_study).save_report(path, sections=["answer"], overwrite=True)
     assert docx.Document(path).tables
     with pytest.raises(WorkbookError, match=r"must end in \.pdf or \.docx"):
-        case_study.save_report(tmp_path / "report.txt")
+        Simulation(case_study).save_report(tmp_path / "report.txt")
 
 
 def test_a_missing_library_is_named_with_what_to_install(case_study, tmp_path, monkeypatch):
     monkeypatch.setattr("xlmc.outputs.document.report_file.find_spec", lambda name: None)
     with pytest.raises(SimulationError, match="typst, which is not installed") as refused:
-        case_study.save_report(tmp_path / "report.pdf")
+        Simulation(case_study).save_report(tmp_path / "report.pdf")
     assert "pip install 'xlmc[report]'" in str(refused.value)
 
 

@@ -6,9 +6,9 @@ from xml.etree import ElementTree
 
 import pytest
 
-import xlmc
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.workbook import Workbook
+from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.document.scene_drawing import scene_drawing
 
 TEMPLATES = Path(__file__).parents[3] / "templates"
@@ -95,6 +95,6 @@ def test_a_chart_that_is_no_xml_is_refused():
 
 @pytest.mark.parametrize("name", ["planar-impact", "planar-forward-si", "skid", "critical-speed-yaw"])
 def test_the_scene_of_a_template_is_drawn(name):
-    drawing = scene_drawing(xlmc.load(TEMPLATES / f"{name}.xlsx").workbook)
+    drawing = scene_drawing(load(TEMPLATES / f"{name}.xlsx").workbook)
     assert paths(drawing)
     assert drawing.said.startswith("The scene, with ")

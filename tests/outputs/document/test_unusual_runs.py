@@ -19,7 +19,7 @@ pytest.importorskip("typst")
 
 def written(simulation, folder, **options):
     """The texts of both files."""
-    run = Simulation.of(simulation)
+    run = Simulation(simulation)
     pdf = pypdf.PdfReader(run.save_report(folder / "report.pdf", **options))
     word = docx.Document(run.save_report(folder / "report.docx", **options))
     cells = [cell.text for table in word.tables for row in table.rows for cell in row.cells]
@@ -72,7 +72,7 @@ def test_a_letter_that_no_font_has_is_said_and_no_file_is_written(make, tmp_path
         {"A1": 1.0, "B1": "=A1*2"}, [make.uniform("a", "A1", 0, 1)], [make.forecast("b \U00011bff", "B1")]
     )
     with pytest.raises(SimulationError, match="a PDF cannot be made") as refused:
-        Simulation.of(simulation).save_report(tmp_path / "report.pdf")
+        Simulation(simulation).save_report(tmp_path / "report.pdf")
     assert "--docx" in str(refused.value)
     assert list(tmp_path.iterdir()) == []
 
@@ -84,7 +84,7 @@ def test_reports_need_no_network_no_font_of_the_system_and_no_library_of_plots(r
     for what in ("socket.connect", "getaddrinfo"):
         monkeypatch.setattr(f"socket.{what}", refuse)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    path = Simulation.of(run).save_report(tmp_path / "report.pdf", sections=["answer", "forecasts"])
+    path = Simulation(run).save_report(tmp_path / "report.pdf", sections=["answer", "forecasts"])
     fonts = {
         str(font["/BaseFont"]).partition("+")[2]
         for page in pypdf.PdfReader(path).pages

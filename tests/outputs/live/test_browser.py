@@ -13,11 +13,12 @@ from xml.etree import ElementTree
 
 import openpyxl
 from live_books import simple, wide_book
+from simulated import simulated
 from websockets.sync.server import serve
 
-import xlmc
 from xlmc.montecarlo.definitions.scenarios import Held, Limits, Numbers
 from xlmc.montecarlo.model.applied_changes import applied
+from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.live.server import bound_socket
 
 FRICTION, DISTANCE = "Vehicle 1 friction on wet asphalt", "Vehicle 1 post-impact travel distance to rest"
@@ -148,7 +149,7 @@ class Page:
 
 def accepted(book, *changes):
     """What the line at the top says of a run of the workbook with changes."""
-    run = applied(xlmc.load(book), changes).simulate()
+    run = simulated(applied(load(book), changes))
     return f"{run.trials:,} trials, {run.accepted:,} accepted"
 
 

@@ -8,8 +8,10 @@ import shutil
 import pytest
 from fewer_sheets import SHORT, keep_sheets, leave_out_fits
 from live_books import change, edited, small
+from simulated import simulated
 
-import xlmc
+from xlmc.analysis.results.saved import open_run
+from xlmc.montecarlo.model.loading import load
 
 
 @pytest.fixture
@@ -124,8 +126,8 @@ def test_results_are_written_beside_the_workbook_and_changes_into_it(running, bo
             text = window.next("news")["text"]
             assert text == f"Written: {book.with_name(f'case-results{ending}')}"
             assert book.with_name(f"case-results{ending}").exists()
-        kept = xlmc.open_run(book.with_name("case-results.xlmcrun"))
-        again = xlmc.load(book).simulate()
+        kept = open_run(book.with_name("case-results.xlmcrun"))
+        again = simulated(load(book))
         for forecast, values in again.forecasts.items():
             assert kept.forecasts[forecast].tobytes() == values.tobytes()
         window.say("set", **change(name, number["key"], number["value"] * 1.01).fields)

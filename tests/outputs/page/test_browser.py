@@ -10,8 +10,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from simulated import simulated
 
-import xlmc
+from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.statistics import format_estimate, proportion
 from xlmc.montecarlo.statistics.estimate import t_quantile
 
@@ -612,7 +613,7 @@ def test_the_case_study_prints_on_15_pages(shown):
     """There is no sixteenth one: to ask for that alone takes half as long as to print all."""
     from selenium.common.exceptions import WebDriverException
 
-    browser = shown(xlmc.load(CASE).simulate(trials=50_000))
+    browser = shown(simulated(load(CASE), trials=50_000))
     with pytest.raises(WebDriverException, match="Page range exceeds page count"):
         browser.execute_cdp_cmd("Page.printToPDF", {"printBackground": True, "pageRanges": "16"})
 

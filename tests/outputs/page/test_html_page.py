@@ -6,8 +6,10 @@ import re
 
 import pytest
 from fewer_sheets import leave_out_fits
+from simulated import simulated
 
 from xlmc.analysis.results.record import make_record
+from xlmc.api import Simulation
 from xlmc.errors import WorkbookError
 from xlmc.montecarlo.columns import column_store, on_disk
 from xlmc.outputs.page import page_text, payload, save_page
@@ -73,7 +75,7 @@ def test_the_same_run_gives_the_same_page(request, text_of, name):
 
 def test_another_run_threads_and_results_on_disk_give_the_same_page(run, text_of, monkeypatch):
     monkeypatch.setattr(column_store, "IN_MEMORY", 0)
-    again = run.model.simulate(jobs=2)
+    again = simulated(run.model, jobs=2)
     assert on_disk(again.trial_index)
     assert page_text(again) == text_of(run)
 
@@ -209,7 +211,9 @@ def test_it_is_written_whole_and_replaced(none_accepted, text_of, tmp_path):
 
 def test_half_a_surrogate_pair_can_be_written(make, tmp_path):
     cells, assumptions, _ = _plain(make)
-    make.simulate(cells, assumptions, [make.forecast("\ud800", "B1")], trials=10).save_page(tmp_path / "p.html")
+    Simulation(make.simulate(cells, assumptions, [make.forecast("\ud800", "B1")], trials=10)).save_page(
+        tmp_path / "p.html"
+    )
     assert "&#55296;" in (tmp_path / "p.html").read_text("utf-8")
 
 

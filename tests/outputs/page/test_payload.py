@@ -7,6 +7,7 @@ import pytest
 from fewer_sheets import leave_out_fits
 from hypothesis import given
 from hypothesis import strategies as st
+from simulated import simulated
 
 from xlmc.montecarlo.columns import column_store
 from xlmc.outputs.histogram import figures_of
@@ -131,7 +132,7 @@ def test_trials_on_disk_give_the_same_table(make, monkeypatch):
     run = make.simulate({"A1": 0.5, "B1": "=A1*2"}, assumptions, [make.forecast("x", "B1")], trials=5000)
     in_memory = rank_table(run["x"].sample.x, 100, [1.0])
     monkeypatch.setattr(column_store, "IN_MEMORY", 0)
-    on_disk = rank_table(run.model.simulate()["x"].sample.x, 100, [1.0])
+    on_disk = rank_table(simulated(run.model)["x"].sample.x, 100, [1.0])
     for name in ("values", "counts", "gaps"):
         assert getattr(in_memory, name).tolist() == getattr(on_disk, name).tolist()
 

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 from fewer_sheets import leave_out_fits
+from simulated import simulated
 
-import xlmc
+from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.page import page_text
 
 BOOKS = Path(__file__).resolve().parents[3] / "examples"
@@ -16,8 +17,8 @@ BOOKS = Path(__file__).resolve().parents[3] / "examples"
 
 @pytest.fixture(scope="module")
 def runs():
-    first, second = (xlmc.load(BOOKS / name) for name in ("intersection.xlsx", "intersection-momentum.xlsx"))
-    return first.simulate(30_000), second.simulate(2_000, seed=7)
+    first, second = (load(BOOKS / name) for name in ("intersection.xlsx", "intersection-momentum.xlsx"))
+    return simulated(first, 30_000), simulated(second, 2_000, seed=7)
 
 
 @pytest.fixture(scope="module")

@@ -3,12 +3,14 @@ from __future__ import annotations
 import openpyxl
 import pytest
 from fewer_sheets import CHARTS, SENSITIVITY, keep_few_trials, leave_out, leave_out_drawings, leave_out_shapes
+from simulated import simulated
 
-import xlmc
+from xlmc.api import Simulation
 from xlmc.excel.workbook.injection.cell_edit import with_contents
 from xlmc.excel.workbook.package import read_parts
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.writer import package_bytes
+from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.sheets import book as result_sheets
 
 _WHOLE = result_sheets.SHEETS
@@ -29,13 +31,13 @@ def _short_books():
 
 @pytest.fixture(scope="module")
 def run(small_book):
-    return xlmc.load(small_book).simulate()
+    return simulated(load(small_book))
 
 
 @pytest.fixture(scope="module")
 def results(run, tmp_path_factory):
     """A result workbook as xlmc wrote it."""
-    return run.save(tmp_path_factory.mktemp("results") / "small-results.xlsx")
+    return Simulation(run).save(tmp_path_factory.mktemp("results") / "small-results.xlsx")
 
 
 @pytest.fixture
@@ -72,7 +74,7 @@ def drawn(run, tmp_path, monkeypatch):
     monkeypatch.setattr(result_sheets, "SHEETS", _WHOLE)
     leave_out(monkeypatch, *SENSITIVITY)
     leave_out_drawings(monkeypatch)
-    return run.save(tmp_path / "small-results.xlsx")
+    return Simulation(run).save(tmp_path / "small-results.xlsx")
 
 
 @pytest.fixture

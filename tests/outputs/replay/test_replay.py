@@ -7,14 +7,16 @@ from pathlib import Path
 
 import pytest
 from fewer_sheets import SHORT, keep_sheets
+from simulated import simulated
 
-import xlmc
 from xlmc.analysis.results.record import Entry, Record, RecordTable, make_record
 from xlmc.analysis.results.record.record_parts import read_record
+from xlmc.api import Simulation
 from xlmc.errors import WorkbookError, XlmcError
 from xlmc.excel.workbook.package import read_parts
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.writer import package_bytes
+from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.rare import learning, search
 from xlmc.montecarlo.simulation import simulate
 from xlmc.outputs.replay import Change, replay
@@ -39,7 +41,7 @@ def _shortest_books():
 
 @pytest.fixture(scope="session")
 def model(small_book):
-    return xlmc.load(small_book)
+    return load(small_book)
 
 
 def put(sheet, address, value):
@@ -52,7 +54,7 @@ def put(sheet, address, value):
 def test_the_case_study_is_identical_and_a_changed_cell_is_named(tmp_path):
     """The bar of this command."""
     path = tmp_path / "results.xlsx"
-    xlmc.load(EXAMPLE).simulate(20_000).save(path)
+    Simulation(simulated(load(EXAMPLE), 20_000)).save(path)
     found = replay(path)
     assert found.identical
     assert found.to_the_last_bit
@@ -120,15 +122,15 @@ AS_IN_THE_WORKBOOK = {
 @pytest.fixture(scope="module")
 def run_of(model):
     """Name among `RUNS` -> the run, which is made once."""
-    return cache(lambda kind: model.simulate(**(RUNS | OF_ALL)[kind]))
+    return cache(lambda kind: simulated(model, **(RUNS | OF_ALL)[kind]))
 
 
 @pytest.mark.parametrize("kind", RUNS)
 def test_every_kind_of_run_is_repeated_to_the_last_bit(run_of, tmp_path, kind):
     run = run_of(kind)
-    paths = [run.save(tmp_path / "r.xlsx")]
+    paths = [Simulation(run).save(tmp_path / "r.xlsx")]
     if kind not in AS_IN_THE_WORKBOOK:
-        paths.append(run.keep(tmp_path / "r.xlmcrun"))
+        paths.append(Simulation(run).keep(tmp_path / "r.xlmcrun"))
     for path in paths:
         found = replay(path)
         assert found.to_the_last_bit, (path, found.changes, found.numbers)
@@ -158,7 +160,7 @@ def test_a_record_without_the_goal_that_was_reached_is_refused(run_of, kind, key
 
 @pytest.mark.parametrize("asked", [{"until_accepted": 10_000}, {"precision": 1e-6}, {"adaptive": 6}])
 def test_a_record_without_the_goal_that_was_not_reached_is_refused(model, asked):
-    run = model.simulate(trials=200, **asked)
+    run = simulated(model, trials=200, **asked)
     assert not run.stopped.reached
     refused_without(run, f"settings.{next(iter(asked))}", "the record lacks the setting that asked for its goal, ")
 
@@ -170,8 +172,8 @@ def test_nothing_was_accepted_in_the_run_that_should_have_accepted_nothing(run_o
 def test_an_interrupted_run_is_repeated(model, tmp_path):
     from xlmc.montecarlo.loop.stopping import Stopped
 
-    run = replace(model.simulate(500), stopped=Stopped("interruption", "it was interrupted"))
-    run.save(tmp_path / "r.xlsx")
+    run = replace(simulated(model, 500), stopped=Stopped("interruption", "it was interrupted"))
+    Simulation(run).save(tmp_path / "r.xlsx")
     assert replay(tmp_path / "r.xlsx").to_the_last_bit
 
 
@@ -285,7 +287,7 @@ def test_a_workbook_that_cannot_be_run_any_more_still_names_the_cell(edited):
 def test_a_formula_that_was_filled_down_reads_as_it_does_in_its_cell(tmp_path, small_book):
     """Excel moves the text of a shared formula to another cell when it saves."""
     path = tmp_path / "r.xlsx"
-    xlmc.load(small_book).simulate(100).save(path)
+    Simulation(simulated(load(small_book), 100)).save(path)
     old = read_record(read_workbook(path))
     workbook = read_workbook(path)
     cells = dict(workbook.sheets["Model"].cells)

@@ -13,11 +13,14 @@ import pytest
 import xlsxwriter
 from fewer_sheets import FEW, SHORT, keep_sheets
 from needed_programs import missing
+from simulated import simulated
 
 import xlmc
+from xlmc.api import Simulation
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.excel.workbook.package import read_parts
 from xlmc.excel.workbook.reader import read_workbook
+from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.replay import replay
 from xlmc.outputs.sheets.save import save
 
@@ -175,7 +178,7 @@ def with_numbers(results, folder, values):
 def test_a_warning_that_was_taken_off_the_record_is_named(tmp_path, edited, small_book, monkeypatch):
     keep_sheets(monkeypatch, *SHORT)
     source = tmp_path / "warned.xlsx"
-    xlmc.load(small_book).simulate(trials=100, until_accepted=90).save(source)
+    Simulation(simulated(load(small_book), trials=100, until_accepted=90)).save(source)
 
     def change(book):
         row = next(row for row in book["Record"].iter_rows() if row[0].value == "warnings[0]")
@@ -197,7 +200,7 @@ def test_results_in_the_workbook_itself_beside_a_sheet_of_their_name(small_book,
     path, book = tmp_path / "book.xlsx", openpyxl.load_workbook(small_book)
     book.create_sheet("Results")["A1"] = "mine"
     book.save(path)
-    xlmc.load(path).simulate().save(path, overwrite=True)
+    Simulation(simulated(load(path))).save(path, overwrite=True)
     found = replay(path)
     assert found.to_the_last_bit
     assert "Results (2)" in found.shown.sheets
@@ -268,8 +271,8 @@ def own(tmp_path_factory):
         sheet = book.add_worksheet("S")
         for address, (formula, value) in CELLS.items():
             sheet.write_formula(address, formula, None, value)
-    run = xlmc.load(folder / "book.xlsx").simulate(trials=500)
-    run.save(folder / "r.xlsx")
+    run = simulated(load(folder / "book.xlsx"), trials=500)
+    Simulation(run).save(folder / "r.xlsx")
     return folder / "r.xlsx", run
 
 

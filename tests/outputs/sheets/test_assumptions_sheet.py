@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 from xlmc.montecarlo.definitions.definitions import Correlation
 from xlmc.montecarlo.statistics import rank_correlation
@@ -80,7 +81,7 @@ def test_the_sheets_of_a_run_in_replicates(make, opened, rows_of):
     assumptions = [make.uniform(name, cell, 0.0, 1.0, base=0.5) for name, cell in (("a", "A1"), ("b", "A2"))]
     cells = {"A1": 0.5, "A2": 0.5, "B1": "=A1+A2", "C1": "=A1>0.3"}
     model = make.simulate(cells, assumptions, [make.forecast("x", "B1")], [make.filter("f", "C1")]).model
-    run = model.simulate(4_000, 1, sampling="lhs")
+    run = simulated(model, 4_000, 1, sampling="lhs")
     book = opened(run, "Results", "Assumptions", "Curves")
     results = [row[0] for row in rows_of(book["Results"]) if row]
     sentence = "Latin hypercube: 16 independent replicates of 250 trials; errors come from the differences between "

@@ -12,9 +12,10 @@ import openpyxl
 import pytest
 from openpyxl.worksheet.table import Table
 from packed_sheets import packed_sheets
+from simulated import simulated
 
-import xlmc
 from xlmc.montecarlo.columns import column_store, on_disk
+from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.sheets.book import SHEETS, build_sheets
 
 OF_SOME = ("Evidence results", "Scenarios")  # which these books do not have
@@ -44,13 +45,13 @@ def test_the_same_run_gives_the_same_bytes(request, package_of, name):
 
 def test_another_run_threads_and_results_on_disk_do_not_change_a_byte(run, package_of, monkeypatch):
     monkeypatch.setattr(column_store, "IN_MEMORY", 0)
-    again = run.model.simulate(jobs=2)
+    again = simulated(run.model, jobs=2)
     assert on_disk(again.trial_index)
     assert packed_sheets(again) == package_of(run)
 
 
 def test_draws_that_were_not_kept_are_told(run, opened, rows_of):
-    again = run.model.simulate(keep_inputs=100)
+    again = simulated(run.model, keep_inputs=100)
     book = opened(again, "Assumptions", "Curves", "Trials", "Record")
     told = [str(row[0]) for row in rows_of(book["Assumptions"]) if row]
     assert f"Accepted: the first 100 of {again.accepted:,} accepted trials." in told
@@ -125,7 +126,7 @@ def test_the_case_stands_on_top_of_every_printed_page(small_book, tmp_path):
         sheet.append(row)
     sheet.add_table(Table(displayName="xlmc_case", ref="A1:B4"))
     book.save(tmp_path / "book.xlsx")
-    run = xlmc.load(tmp_path / "book.xlsx").simulate(trials=300)
+    run = simulated(load(tmp_path / "book.xlsx"), trials=300)
     sheets = [part for name, part in build_sheets(run).items() if name.startswith("xl/worksheets/sheet")]
     heads = [re.findall(rb"<oddHeader>(.*?)</oddHeader>", sheet) for sheet in sheets]
     assert heads == [[b"&amp;R2026-17 &amp;&amp; 18, J. Doe"]] * len(NAMES)

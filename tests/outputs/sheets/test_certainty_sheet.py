@@ -6,6 +6,7 @@ import numpy as np
 import openpyxl
 import pytest
 from packed_sheets import packed_sheets
+from simulated import simulated
 
 from xlmc.analysis.results.statements import certainties, statements
 from xlmc.montecarlo import statistics
@@ -76,7 +77,7 @@ def test_nothing_is_offered_without_trials_to_count(run, none_accepted, opened):
 
 
 def test_replicates_get_no_error_of_independent_trials(run, opened):
-    again = run.model.simulate(trials=4000, sampling="lhs")
+    again = simulated(run.model, trials=4000, sampling="lhs")
     sheet = opened(again, *SHEETS)["Certainty"]
     texts = [str(cell.value) for cell in sheet["A"]]
     assert any("no error is given" in text for text in texts)

@@ -8,11 +8,13 @@ from pathlib import Path
 import openpyxl
 import pytest
 from fewer_sheets import CHARTS, FEW, SENSITIVITY, SHORT, fill_sheets, keep_few_trials, leave_out
+from simulated import simulated
 
-import xlmc
+from xlmc.api import Simulation
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.package import read_parts
 from xlmc.excel.workbook.reader import read_workbook
+from xlmc.montecarlo.model.loading import load
 from xlmc.outputs import save
 from xlmc.outputs.sheets.book import SHEETS
 
@@ -33,7 +35,7 @@ def book(small_book, tmp_path):
 
 @pytest.fixture
 def case(book):
-    return xlmc.load(book).simulate()
+    return simulated(load(book))
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +43,7 @@ def whole(tmp_path_factory):
     """A workbook, a run of it, and the file that this was saved in with all its sheets, most of them empty."""
     folder = tmp_path_factory.mktemp("whole")
     book = Path(shutil.copy(EXAMPLE, folder / "scene.xlsx"))
-    run = xlmc.load(book).simulate(trials=5_000)
+    run = simulated(load(book), trials=5_000)
     with pytest.MonkeyPatch.context() as patch:
         fill_sheets(patch, *SHORT)
         return book, run, save(run, folder / "out.xlsx", rows=FEW)
@@ -93,7 +95,7 @@ def test_saving_twice_gives_the_same_file(case, short_books, tmp_path):
 
 def test_a_run_of_a_result_workbook_replaces_its_sheets(case, short_books, tmp_path):
     path = save(case, tmp_path / "out.xlsx")
-    again = xlmc.load(path).simulate()
+    again = simulated(load(path))
     assert sheets(save(again, tmp_path / "again.xlsx")) == sheets(path)
 
 
@@ -141,5 +143,5 @@ def test_the_record_names_the_file_the_run_came_from(case, short_books, book, tm
 
 
 def test_a_simulation_saves_itself(case, short_books, tmp_path):
-    case.save(tmp_path / "out.xlsx")
+    Simulation(case).save(tmp_path / "out.xlsx")
     assert "Record" in sheets(tmp_path / "out.xlsx")

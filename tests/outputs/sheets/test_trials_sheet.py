@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 from xlmc.outputs.sheets import trials_sheet
 from xlmc.outputs.sheets.trials_sheet import HEADER
@@ -29,7 +30,7 @@ def test_a_trial_can_be_keyed_in_again(run, book):
 @pytest.fixture(scope="module")
 def few(run):
     """300 trials of `run`."""
-    return run.model.simulate(300)
+    return simulated(run.model, 300)
 
 
 @pytest.mark.parametrize(("rows", "shown"), [(7, 7), (0, 0), (-1, 0), (10**9, None)])

@@ -18,7 +18,7 @@ from xlmc.excel.functions.values import BLANK, ERROR, TEXT, Floats, Value
 
 if TYPE_CHECKING:
     from xlmc.engine.graph.lower import Lowering
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["derivatives"]
 
@@ -27,7 +27,7 @@ _PORTION: Final = 1 << 21
 
 
 def derivatives(
-    model: Model, inputs: Mapping[str, ArrayLike], *, order: int = 1, cells: Iterable[Cell] = ()
+    model: CompiledModel, inputs: Mapping[str, ArrayLike], *, order: int = 1, cells: Iterable[Cell] = ()
 ) -> Derivatives:
     """First, and second, derivatives of every forecast and of every filter's cell, at the points given.
 

@@ -31,9 +31,9 @@ from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.scenarios import Scenario, Tabulated
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.applied_changes import applied
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import run_model
-from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import with_error
 
@@ -78,7 +78,7 @@ class ScenarioAnswers:
     """
 
     scenario: Scenario | None
-    run: Simulation
+    run: RunResult
     acceptance: Estimate
     acceptance_difference: Estimate | None
     forecasts: tuple[ForecastAnswer, ...]
@@ -95,12 +95,12 @@ class ScenarioAnswers:
         return self.run.warnings_of_trials if self.scenario else self.run.warnings
 
 
-_FOUND: Final[WeakKeyDictionary[Simulation, tuple[ScenarioAnswers, ...]]] = WeakKeyDictionary()
+_FOUND: Final[WeakKeyDictionary[RunResult, tuple[ScenarioAnswers, ...]]] = WeakKeyDictionary()
 """Terminal, sheets, page and JSON of one run want the same."""
 
 
 def scenario_answers(
-    run: Simulation, *, jobs: int = 1, told: Callable[[str], None] | None = None
+    run: RunResult, *, jobs: int = 1, told: Callable[[str], None] | None = None
 ) -> tuple[ScenarioAnswers, ...]:
     """The answers of the workbook itself, then of each scenario; none where the run was made without them.
 
@@ -131,7 +131,7 @@ def scenario_answers(
     return _FOUND[run]
 
 
-def models_of(model: Model) -> dict[str, Model]:
+def models_of(model: CompiledModel) -> dict[str, CompiledModel]:
     """Name of a scenario -> the model of the workbook in it.
 
     Raises:
@@ -145,7 +145,7 @@ def models_of(model: Model) -> dict[str, Model]:
     return {scenario.name: model_of(model, scenario) for scenario in scenarios}
 
 
-def model_of(model: Model, scenario: Scenario | str) -> Model:
+def model_of(model: CompiledModel, scenario: Scenario | str) -> CompiledModel:
     """The model of the workbook in a scenario, given itself or by its name.
 
     Raises:
@@ -165,7 +165,7 @@ def model_of(model: Model, scenario: Scenario | str) -> Model:
         raise type(error)(message, where=where, hint=error.hint) from error
 
 
-def scenario_named(model: Model, scenario: Scenario | str) -> Scenario:
+def scenario_named(model: CompiledModel, scenario: Scenario | str) -> Scenario:
     """The scenario of this name, or itself.
 
     Raises:
@@ -181,7 +181,7 @@ def scenario_named(model: Model, scenario: Scenario | str) -> Scenario:
     return known[name_key(scenario)]
 
 
-def _answers(run: Simulation, jobs: int, told: Callable[[str], None] | None) -> Iterator[ScenarioAnswers]:
+def _answers(run: RunResult, jobs: int, told: Callable[[str], None] | None) -> Iterator[ScenarioAnswers]:
     models = models_of(run.model)
     yield _of(run, None, run)
     for scenario in run.model.definitions.scenarios:
@@ -190,11 +190,11 @@ def _answers(run: Simulation, jobs: int, told: Callable[[str], None] | None) -> 
         yield _of(_run(models[scenario.name], run, jobs), scenario, run)
 
 
-def _run(model: Model, base: Simulation, jobs: int) -> Simulation:
+def _run(model: CompiledModel, base: RunResult, jobs: int) -> RunResult:
     return run_model(model, replace(base.repeating, scenarios=False, jobs=jobs, keep_inputs=0))
 
 
-def _of(run: Simulation, scenario: Scenario | None, base: Simulation) -> ScenarioAnswers:
+def _of(run: RunResult, scenario: Scenario | None, base: RunResult) -> ScenarioAnswers:
     paired = _share_trials(run, base)
     return ScenarioAnswers(
         scenario=scenario,
@@ -206,13 +206,13 @@ def _of(run: Simulation, scenario: Scenario | None, base: Simulation) -> Scenari
     )
 
 
-def _share_trials(first: Simulation, second: Simulation) -> bool:
+def _share_trials(first: RunResult, second: RunResult) -> bool:
     """Whether trials, or replicates, of the same number were drawn from the same uniforms."""
     plain = first.rare is None and second.rare is None
     return plain and first.plan.size == second.plan.size
 
 
-def _forecast(run: Simulation, base: Simulation, forecast: Forecast, differs: bool, paired: bool) -> ForecastAnswer:
+def _forecast(run: RunResult, base: RunResult, forecast: Forecast, differs: bool, paired: bool) -> ForecastAnswer:
     result = run.results[forecast.name]
     low, high = result.central()
     above = None if forecast.threshold is None else result.probability_above(forecast.threshold)
@@ -222,7 +222,7 @@ def _forecast(run: Simulation, base: Simulation, forecast: Forecast, differs: bo
 
 
 def _differences(
-    run: Simulation, base: Simulation, forecast: Forecast, found: Mapping[str, Estimate], *, paired: bool
+    run: RunResult, base: RunResult, forecast: Forecast, found: Mapping[str, Estimate], *, paired: bool
 ) -> dict[str, Estimate]:
     """The difference of each number from the workbook's own."""
     own = base.results[forecast.name]
@@ -258,7 +258,7 @@ def _independent(first: Estimate, second: Estimate) -> Estimate:
     return with_error(value, hypot(first.error, second.error), n - 1.0, 0.95, n)
 
 
-def _acceptance_difference(first: Simulation, second: Simulation, *, paired: bool) -> Estimate:
+def _acceptance_difference(first: RunResult, second: RunResult, *, paired: bool) -> Estimate:
     """The second's share of accepted trials less the first's."""
     mine, theirs = first.acceptance, second.acceptance
     if not paired or mine.error is None or theirs.error is None:
@@ -274,14 +274,14 @@ def _acceptance_difference(first: Simulation, second: Simulation, *, paired: boo
     return with_error(theirs.value - mine.value, square**0.5, (count if first.plan.size else n) - 1.0, 0.95, n)
 
 
-def _pulls(run: Simulation, count: int, size: int) -> NDArray[np.float64]:
+def _pulls(run: RunResult, count: int, size: int) -> NDArray[np.float64]:
     """`(count,)` how far each replicate pulls the share of accepted trials."""
     share = run.accepted / run.trials
     accepted = np.bincount(run.trial_index // size, minlength=count)
     return np.asarray((accepted - share * size) / run.trials)
 
 
-def _square_of_trials(first: Simulation, second: Simulation) -> float:
+def _square_of_trials(first: RunResult, second: RunResult) -> float:
     """The sum of the squared differences of the pulls of single trials; of the longer run the last have no partner.
 
     A trial pulls the share p of n trials by (1 - p)/n where it is accepted, and by -p/n where it is not.

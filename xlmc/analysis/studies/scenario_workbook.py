@@ -31,7 +31,7 @@ from xlmc.montecarlo.definitions.tables.changed_cells import NO_TABLE
 from xlmc.montecarlo.diagnostics.result_cells import ShownResults, filled_sheets, recalculated
 from xlmc.montecarlo.model.applied_changes import edits
 from xlmc.montecarlo.model.loading import build_model
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["EditedWorkbook", "edited_workbook", "write_edited"]
 
@@ -66,7 +66,7 @@ class EditedWorkbook:
         return bool(self.left)
 
 
-def edited_workbook(model: Model, scenario: Scenario | str) -> EditedWorkbook:
+def edited_workbook(model: CompiledModel, scenario: Scenario | str) -> EditedWorkbook:
     """Type a scenario into the workbook of a model.
 
     Args:
@@ -129,7 +129,7 @@ def _holds(book: Workbook, cell: Cell, value: CellValue) -> bool:
     return content.formula is None and type(content.value) is type(value) and content.value == value
 
 
-def _refuse_lacking(scenario: Scenario, lacking: Mapping[str, list[str]], model: Model) -> None:
+def _refuse_lacking(scenario: Scenario, lacking: Mapping[str, list[str]], model: CompiledModel) -> None:
     for name, headings in lacking.items():
         rows: tuple[Assumption | Filter, ...] = (*model.assumptions, *model.filters, *model.forecast_filters)
         where = next(each.row for each in rows if each.name == name)
@@ -165,7 +165,7 @@ def _of_what_if_tables(book: Workbook) -> list[Cell]:
     return [Cell(table.area.sheet, table.area.top, table.area.left) for table in book.data_tables]
 
 
-def _refuse_difference(wanted: Model, found: Model, scenario: Scenario) -> None:
+def _refuse_difference(wanted: CompiledModel, found: CompiledModel, scenario: Scenario) -> None:
     """Refuse a file that would say something else than the scenario, for whatever reason.
 
     Raises:
@@ -176,7 +176,7 @@ def _refuse_difference(wanted: Model, found: Model, scenario: Scenario) -> None:
         raise WorkbookError(message, where=wanted.path, hint="Nothing was written; please report this")
 
 
-def _said(model: Model) -> list[object]:
+def _said(model: CompiledModel) -> list[object]:
     assumptions = [(a.name, a.frozen, a.base, a.distribution, a.parameters, a.cutoffs) for a in model.assumptions]
     filters = [(f.name, f.at_least, f.at_most, f.above, f.below) for f in (*model.filters, *model.forecast_filters)]
     frozen = {a.name for a in model.assumptions if a.frozen}  # whose correlations have no effect, and are not read

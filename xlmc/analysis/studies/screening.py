@@ -19,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
-from typing import Final
+from typing import Final, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,12 +41,12 @@ from xlmc.errors import SimulationError
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import Assumption, Forecast
 from xlmc.montecarlo.distributions.spelling import name_key
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import simulate
-from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate
 
-__all__ = ["ACCEPTANCE_TOLERANCE", "ENDS", "AtEnds", "Cost", "Expected", "Screening", "screen"]
+__all__ = ["ACCEPTANCE_TOLERANCE", "ENDS", "AtEnds", "Cost", "Expected", "ScreenArguments", "Screening", "screen"]
 
 ACCEPTANCE_TOLERANCE: Final = 0.1
 """The change of the share of accepted trials, as a share of it, that counts as none."""
@@ -69,6 +69,21 @@ _FEWEST: Final = 2
 
 Floats = NDArray[np.float64]
 Told = Callable[[str], None]
+
+
+class ScreenArguments(TypedDict, total=False):
+    """The arguments of `screen` beside the model and the tolerance."""
+
+    chance: float | None
+    acceptance_tolerance: float
+    sets: Iterable[str]
+    judged_by: Iterable[str]
+    ends: bool
+    trials: int | None
+    seed: int | None
+    engine: str | None
+    jobs: int
+    told: Told | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +141,7 @@ class Screening:
         ends: those of `single` that are within the tolerance, held at either end; None where that was not asked.
     """
 
-    run: Simulation
+    run: RunResult
     tolerances: Mapping[str, tuple[float, bool]]
     chance: float | None
     acceptance_tolerance: float
@@ -163,7 +178,7 @@ class Screening:
 
 
 def screen(
-    model: Model,
+    model: CompiledModel,
     tolerance: Iterable[str] | str = (),
     *,
     chance: float | None = None,
@@ -222,7 +237,7 @@ class _Screen:
 
     def __init__(
         self,
-        run: Simulation,
+        run: RunResult,
         stated: Tolerances,
         chance: float | None,
         acceptance_tolerance: float,
@@ -314,7 +329,7 @@ class _Screen:
         )
         return self._compare(tuple(names), run)
 
-    def _compare(self, names: tuple[str, ...], run: Simulation) -> Cost:
+    def _compare(self, names: tuple[str, ...], run: RunResult) -> Cost:
         accepted = acceptance(self._run, run)
         found = {
             f.name: difference(

@@ -26,7 +26,7 @@ from xlmc.montecarlo.statistics import Estimate, Sample
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.evidence import Evidence, Law
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = [
     "INCONSISTENT",
@@ -177,7 +177,7 @@ class Agreement:
         best_z: the distance of all readings with a bell in the trial that agrees best; None where there is none.
     """
 
-    model: Model
+    model: CompiledModel
     items: tuple[ItemAgreement, ...]
     trials: int
     past: int
@@ -243,7 +243,7 @@ class Agreement:
         )
 
 
-def agreement(model: Model, seed: int, trials: int) -> Agreement | None:
+def agreement(model: CompiledModel, seed: int, trials: int) -> Agreement | None:
     """Judge the evidence of a workbook; None where none is used.
 
     Args:

@@ -19,7 +19,7 @@ from xlmc.montecarlo.model.model import lower_needed
 if TYPE_CHECKING:
     from xlmc.engine.graph.lower import Lowering
     from xlmc.montecarlo.definitions.definitions import Assumption, Definitions
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["BaseErrors", "Root", "error_roots", "errors_at_base"]
 
@@ -46,7 +46,7 @@ class BaseErrors:
     answers: bool
 
 
-def errors_at_base(model: Model) -> BaseErrors:
+def errors_at_base(model: CompiledModel) -> BaseErrors:
     """Look at every cell that the forecasts, filters and checks need; at none where a draw has no base value."""
     definitions = model.definitions
     if any(a.base is None and isinstance(a.cell, InFormula) for a in model.live):
@@ -62,7 +62,7 @@ def errors_at_base(model: Model) -> BaseErrors:
     return BaseErrors(roots, others, answers=not asked.isdisjoint(found))
 
 
-def error_roots(model: Model, cells: Sequence[Cell], drawn: Sequence[Mapping[str, Floats]]) -> dict[Cell, Root]:
+def error_roots(model: CompiledModel, cells: Sequence[Cell], drawn: Sequence[Mapping[str, Floats]]) -> dict[Cell, Root]:
     """The origin of errors in trials: cell -> the first cell upstream that is an error by itself, and its error.
 
     One trial is looked at for each cell, the first that shows the error. A cell whose error no trial shows is left out.
@@ -83,7 +83,7 @@ def error_roots(model: Model, cells: Sequence[Cell], drawn: Sequence[Mapping[str
     return found
 
 
-def _first_error(model: Model, cell: Cell, drawn: Mapping[str, Floats]) -> dict[str, float] | None:
+def _first_error(model: CompiledModel, cell: Cell, drawn: Mapping[str, Floats]) -> dict[str, float] | None:
     """The draws of the first trial in which a cell is an error."""
     trials = min((values.size for values in drawn.values()), default=0)
     evaluator = model.evaluator([Target(cell, cell)], _BLOCK)
@@ -109,7 +109,7 @@ def _root(lowering: Lowering, cell: Cell) -> Root | None:
     return cell, code
 
 
-def _held(model: Model, trial: Mapping[str, float]) -> Lowering:
+def _held(model: CompiledModel, trial: Mapping[str, float]) -> Lowering:
     """The nodes of all that is asked for, every assumption held: at its draw in a trial, or at its base value."""
     return lower_needed(model.workbook, _without_draws(model.definitions, trial), one_trial=True)[1]
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from xlmc.engine.engine import Column
     from xlmc.excel.address import Cell
     from xlmc.montecarlo.definitions.definitions import Check
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = [
     "FAILING_SHARE",
@@ -137,7 +137,7 @@ def meaning(check: Check) -> str:
     return f": {text}" if text else ""
 
 
-def base_checks(model: Model) -> tuple[BaseCheck, ...]:
+def base_checks(model: CompiledModel) -> tuple[BaseCheck, ...]:
     """The checks at the base case, computed, not read: a file may hold no cached values, or stale ones."""
     if not model.checks:
         return ()
@@ -148,7 +148,7 @@ def base_checks(model: Model) -> tuple[BaseCheck, ...]:
     return tuple(BaseCheck(check, _held(column, 0)) for check, column in zip(model.checks, columns, strict=True))
 
 
-def check_results(model: Model, inputs: Mapping[str, Floats], accepted: int) -> tuple[CheckResult, ...]:
+def check_results(model: CompiledModel, inputs: Mapping[str, Floats], accepted: int) -> tuple[CheckResult, ...]:
     """The checks of a run, in the order of the workbook.
 
     Args:
@@ -186,7 +186,7 @@ def _counted(checks: int) -> str:
     return "1 check" if checks == 1 else f"{checks} checks"
 
 
-def _failures(model: Model, draws: Mapping[str, Floats], trials: int) -> tuple[NDArray[np.int64], list[str]]:
+def _failures(model: CompiledModel, draws: Mapping[str, Floats], trials: int) -> tuple[NDArray[np.int64], list[str]]:
     """How many trials fail each check, and what the first of them holds."""
     failed, held = np.zeros(len(model.checks), np.int64), [""] * len(model.checks)
     program = model.check_program()

@@ -17,7 +17,7 @@ from xlmc.engine.passes.random_rounding import RandomRounding, closure, evaluate
 from xlmc.excel.functions.budget import TooLargeError
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["DUST", "MOST_OF_SPREAD", "lost_digits"]
 
@@ -54,7 +54,7 @@ _SHARE: Final = 0.01
 """A share of the trials examined: a few that are next to a jump say nothing about the digits."""
 
 
-def lost_digits(model: Model, inputs: Mapping[str, Floats]) -> list[str]:
+def lost_digits(model: CompiledModel, inputs: Mapping[str, Floats]) -> list[str]:
     """Sentences on the forecasts whose digits rounding has taken.
 
     Args:
@@ -80,7 +80,7 @@ def _cells(size: tuple[int, ...] | None) -> int:
 
 
 def _lost(
-    model: Model, draws: Mapping[str, Floats], n: int, nodes: Mapping[str, int], needed: Sequence[int]
+    model: CompiledModel, draws: Mapping[str, Floats], n: int, nodes: Mapping[str, int], needed: Sequence[int]
 ) -> list[str]:
     """The sentences of `lost_digits` on forecasts at these nodes, which need those at `needed`."""
     plain = evaluate(model.lowering.dag, needed, draws)
@@ -120,7 +120,7 @@ def _lost(
     ]
 
 
-def _stands_still(model: Model, node: int, plain: Floats) -> bool:
+def _stands_still(model: CompiledModel, node: int, plain: Floats) -> bool:
     """Whether a number is the same in all trials although it depends on an assumption."""
     if not np.isfinite(plain).all() or plain.size < 2 or (plain != plain[0]).any():
         return False
@@ -129,7 +129,7 @@ def _stands_still(model: Model, node: int, plain: Floats) -> bool:
 
 
 def _absorbed(
-    model: Model, node: int, draws: Mapping[str, Floats], plain: Floats, dust: float
+    model: CompiledModel, node: int, draws: Mapping[str, Floats], plain: Floats, dust: float
 ) -> list[tuple[float, float]]:
     """What a number that stands still shows, and what it is; nothing where 50 digits give the same.
 
@@ -153,7 +153,7 @@ def _is_blurred(plain: Floats, moved: Floats) -> bool:
     return by > MOST_OF_SPREAD / 2 * (high - low) and by > _WORTH_A_LOOK * float(np.median(np.abs(half)))
 
 
-def _blur(model: Model, node: int, draws: Mapping[str, Floats], plain: Floats) -> list[tuple[float, float]]:
+def _blur(model: CompiledModel, node: int, draws: Mapping[str, Floats], plain: Floats) -> list[tuple[float, float]]:
     """How far off a number is in the median of some trials, and how wide the exact ones spread; empty if unknown."""
     exact = _exact(model, node, draws, np.flatnonzero(np.isfinite(plain))[:_CONFIRMED_SPREAD])
     known = {trial: number for trial, number in exact.items() if np.isfinite(number)}
@@ -164,7 +164,7 @@ def _blur(model: Model, node: int, draws: Mapping[str, Floats], plain: Floats) -
     return [(float(np.median(np.abs(plain[list(known)] - found))), float(high - low))]
 
 
-def _exact(model: Model, node: int, draws: Mapping[str, Floats], trials: NDArray[np.intp]) -> dict[int, float]:
+def _exact(model: CompiledModel, node: int, draws: Mapping[str, Floats], trials: NDArray[np.intp]) -> dict[int, float]:
     """Trial -> the number computed with 50 digits."""
     from xlmc.engine.passes.exact import Exact, as_double  # mpmath is slow to import, and hardly ever needed
 
@@ -176,7 +176,7 @@ def _exact(model: Model, node: int, draws: Mapping[str, Floats], trials: NDArray
 
 
 def _is_confirmed(
-    model: Model, node: int, draws: Mapping[str, Floats], plain: Floats, lost: NDArray[np.bool_], dust: float
+    model: CompiledModel, node: int, draws: Mapping[str, Floats], plain: Floats, lost: NDArray[np.bool_], dust: float
 ) -> bool:
     """Whether 50 digits give another number in one of the first lost trials, 0 apart where dust stands for it."""
     trials = np.flatnonzero(lost)[:_CONFIRMED]

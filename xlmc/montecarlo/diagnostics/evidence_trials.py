@@ -25,7 +25,7 @@ from xlmc.montecarlo.model.needed import filter_condition
 if TYPE_CHECKING:
     from xlmc.engine.engine import Column, Program
     from xlmc.montecarlo.definitions.evidence import Law
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["MOST_TRIALS", "EvidenceTrials", "evidence_trials"]
 
@@ -79,7 +79,7 @@ class EvidenceTrials:
         return int(self.log_weights.shape[1])
 
 
-def evidence_trials(model: Model, seed: int, trials: int) -> EvidenceTrials:
+def evidence_trials(model: CompiledModel, seed: int, trials: int) -> EvidenceTrials:
     """Draw and evaluate them.
 
     Args:
@@ -185,7 +185,7 @@ class _Ends:
     distribution has no limit.
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: CompiledModel) -> None:
         quantiles = model.quantiles([0.0, OUTER, 1.0 - OUTER, 1.0])
         fixed = [a.name for a in model.live if model.draws[a.name].fixed and model.draws[a.name].ties() is None]
         self._sides: dict[str, tuple[_Outer | None, _Outer | None]] = {}

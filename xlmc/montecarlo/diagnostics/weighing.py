@@ -23,7 +23,7 @@ from xlmc.montecarlo.model.draw_binding import parameter_target
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Settings
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["Weighting", "chosen_way", "weighing", "weighting_of"]
 
@@ -71,7 +71,7 @@ class Weighting:
         )
 
 
-def chosen_way(model: Model, settings: Settings) -> str:
+def chosen_way(model: CompiledModel, settings: Settings) -> str:
     """How a run uses evidence whose error is no limit: `rejection` or `weights`; empty where there is none.
 
     By itself it takes weights where the first trials say that rejection would keep fewer than a thousand in the whole
@@ -102,7 +102,7 @@ def chosen_way(model: Model, settings: Settings) -> str:
     return "weights" if few and effective >= GAIN * kept else "rejection"
 
 
-def weighing(model: Model) -> Model:
+def weighing(model: CompiledModel) -> CompiledModel:
     """The same model, whose evidence rejects nothing that has a weight above 0."""
     filters = tuple(_weighed(each) for each in model.filters)
     return type(model)(model.workbook, replace(model.definitions, filters=filters), model.path)
@@ -115,7 +115,7 @@ def _weighed(filter_: Filter) -> Filter:
     return replace(filter_, evidence=replace(evidence, weighed=True))
 
 
-def weighting_of(model: Model, inputs: Mapping[str, Floats]) -> Weighting | None:
+def weighting_of(model: CompiledModel, inputs: Mapping[str, Floats]) -> Weighting | None:
     """The weights of accepted trials; None where they are all equal.
 
     Args:

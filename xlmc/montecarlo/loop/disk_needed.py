@@ -18,7 +18,7 @@ from xlmc.montecarlo.loop.blocks import Task
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.stopping import Stopping
     from xlmc.montecarlo.loop.blocks import ModelRunner
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["DiskNeeded", "disk_needed"]
 
@@ -72,7 +72,12 @@ class DiskNeeded:
 
 
 def disk_needed(
-    model: Model, stopping: Stopping, trials: int, block: int, most_inputs: int, runner: Callable[[], ModelRunner]
+    model: CompiledModel,
+    stopping: Stopping,
+    trials: int,
+    block: int,
+    most_inputs: int,
+    runner: Callable[[], ModelRunner],
 ) -> DiskNeeded | None:
     """What a run will write, from the acceptance of its first trials; None where it stays in memory, or nobody can say.
 

@@ -1,6 +1,6 @@
 """What the runs of one workbook have in common while its ranges and limits are moved, kept from run to run.
 
-A `KeptRunner` holds for all models that `Model.changed` makes of one model by other numbers, because
+A `KeptRunner` holds for all models that `CompiledModel.changed` makes of one model by other numbers, because
 
 * limits of filters are data to it, not code: its program computes the quantities that filters look at, and the limits
   are compared with them afterwards;
@@ -27,7 +27,7 @@ from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import Filter
 from xlmc.montecarlo.loop.blocks import ModelRunner
 from xlmc.montecarlo.model.draw_binding import base_point, parameter_target
-from xlmc.montecarlo.model.model import Model, paused_collection
+from xlmc.montecarlo.model.model import CompiledModel, paused_collection
 from xlmc.montecarlo.model.needed import filter_condition, filter_limits
 from xlmc.montecarlo.sampling.draws import Draw, DrawStage, Sampler
 from xlmc.montecarlo.statistics.estimate import finite
@@ -60,7 +60,7 @@ class KeptRunner:
         trials: of the longest run.
     """
 
-    def __init__(self, model: Model, engine: str, seed: int, trials: int) -> None:
+    def __init__(self, model: CompiledModel, engine: str, seed: int, trials: int) -> None:
         self.engine, self._seed, self._trials = engine, seed, trials
         self._lowering = model.lowering
         self._questions = [_targets(each) for each in model.filters]
@@ -71,11 +71,11 @@ class KeptRunner:
         self._runners: dict[int, tuple[_Draws, _MovedEvaluator]] = {}
         self._bases: dict[tuple[float, ...], dict[str, float | None]] = {}
 
-    def holds_for(self, model: Model) -> bool:
+    def holds_for(self, model: CompiledModel) -> bool:
         """Whether it can run a model: one that shares its nodes, and asks of its filters what the first one does."""
         return model.lowering is self._lowering and [_targets(each) for each in model.filters] == self._questions
 
-    def runner(self, model: Model, block: int) -> ModelRunner:
+    def runner(self, model: CompiledModel, block: int) -> ModelRunner:
         """What runs blocks of so many trials of a model that it holds for, until it is asked for another one."""
         if block not in self._runners:
             draws = _Draws(self._seed, block, self._trials)
@@ -85,7 +85,7 @@ class KeptRunner:
         evaluator.take(model.filters, self._questions)
         return ModelRunner(draws, model.filtered(evaluator), block, len(model.forecasts), model.fallible)
 
-    def base(self, model: Model) -> dict[str, float | None] | None:
+    def base(self, model: CompiledModel) -> dict[str, float | None] | None:
         """The forecasts of a model that it holds for where each assumption has its base value, by name.
 
         None for a forecast that is no number; None for all where an assumption has no base value.
@@ -135,7 +135,7 @@ class _Draws:
         self.known: Known | None = None
         """The blocks of the last draws; None where they were not kept."""
 
-    def take(self, model: Model) -> None:
+    def take(self, model: CompiledModel) -> None:
         """Draw this model from now on."""
         self._draws = tuple(model.draws[name] for names in model.needed.stages for name in names)
         large = 8 * len(self._draws) * self._trials > _MOST_BYTES

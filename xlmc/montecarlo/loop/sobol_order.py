@@ -23,7 +23,7 @@ from xlmc.montecarlo.statistics import rank_correlation
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Settings
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["PILOT_TRIALS", "plan_sampling"]
 
@@ -38,13 +38,13 @@ _DECIMALS = 6
 Floats = NDArray[np.float64]
 
 
-def plan_sampling(model: Model, settings: Settings) -> SamplingPlan:
+def plan_sampling(model: CompiledModel, settings: Settings) -> SamplingPlan:
     """The plan of a run, with the order of its dimensions where the method has any."""
     plan = SamplingPlan.of(settings.sampling, settings.trials)
     return replace(plan, order=_order_by_importance(model, settings.seed)) if METHODS[plan.method].ordered else plan
 
 
-def _order_by_importance(model: Model, seed: int) -> tuple[str, ...]:
+def _order_by_importance(model: CompiledModel, seed: int) -> tuple[str, ...]:
     """The names of the drawn assumptions; those that matter alike stay in the order of the workbook."""
     chances = {a.name for a in model.chances}  # last, so that evidence moves no other draw
     program = model.program("numpy")  # whatever runs the trials, so that every engine has the same order

@@ -38,7 +38,7 @@ from xlmc.montecarlo.definitions.tables.filters import LIMITS, contradiction
 from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 from xlmc.montecarlo.model.draw_binding import draw_of
 from xlmc.montecarlo.model.loading import build_model, filter_faults
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.draws import Draw
 
 __all__ = ["applied", "changed_cells", "edits"]
@@ -48,7 +48,7 @@ _OF_ALL: Final = ("xlmc_settings", "xlmc_scenarios", "xlmc_case")
 """Tables that a scenario cannot change."""
 
 
-def applied(model: Model, changes: Iterable[Change]) -> Model:
+def applied(model: CompiledModel, changes: Iterable[Change]) -> CompiledModel:
     """The model with these changes; several of one assumption are made one after another.
 
     Raises:
@@ -72,7 +72,7 @@ def applied(model: Model, changes: Iterable[Change]) -> Model:
     return found
 
 
-def edits(model: Model, changes: Iterable[Change]) -> tuple[dict[Cell, CellValue], dict[str, list[str]]]:
+def edits(model: CompiledModel, changes: Iterable[Change]) -> tuple[dict[Cell, CellValue], dict[str, list[str]]]:
     """What to type into the workbook, so that it says what the changes say.
 
     Returns:
@@ -91,7 +91,7 @@ def _typed(changes: Iterable[Change]) -> dict[Cell, CellValue]:
     return {change.cell: change.value for change in changes if isinstance(change, Typed)}
 
 
-def _with_typed(model: Model, changes: Sequence[Change]) -> Model:
+def _with_typed(model: CompiledModel, changes: Sequence[Change]) -> CompiledModel:
     """The model with what is typed into cells, or tabulated, before any other change."""
     for change in changes:
         if isinstance(change, Typed):
@@ -107,11 +107,11 @@ def _tabulated(changes: Iterable[Change]) -> int:
     return next((change.number for change in changes if isinstance(change, Tabulated)), 1)
 
 
-def _filters_of(model: Model) -> tuple[Filter, ...]:
+def _filters_of(model: CompiledModel) -> tuple[Filter, ...]:
     return (*model.filters, *model.forecast_filters)
 
 
-def changed_cells(model: Model, definitions: Definitions) -> tuple[dict[Cell, CellValue], dict[str, list[str]]]:
+def changed_cells(model: CompiledModel, definitions: Definitions) -> tuple[dict[Cell, CellValue], dict[str, list[str]]]:
     """The cells that would hold something else in a workbook with these definitions.
 
     Args:
@@ -138,7 +138,7 @@ def changed_cells(model: Model, definitions: Definitions) -> tuple[dict[Cell, Ce
     return cells, lacking
 
 
-def _refuse_cell(model: Model, change: Typed) -> None:
+def _refuse_cell(model: CompiledModel, change: Typed) -> None:
     """Refuse a cell of a sheet that is not there, and of the tables that say how all states are run."""
     for table in model.workbook.tables:
         if table.name.casefold().startswith(_OF_ALL) and change.cell in table.area:
@@ -149,7 +149,7 @@ def _refuse_cell(model: Model, change: Typed) -> None:
         raise DefinitionError(message, where=change.where, hint=did_you_mean(change.cell.sheet, model.workbook.sheets))
 
 
-def _changed(model: Model, changes: Iterable[Change]) -> Definitions:
+def _changed(model: CompiledModel, changes: Iterable[Change]) -> Definitions:
     """The definitions with the changes of assumptions and filters."""
     assumptions = {name_key(each.name): each for each in model.assumptions}
     filters = {name_key(each.name): each for each in (*model.filters, *model.forecast_filters)}

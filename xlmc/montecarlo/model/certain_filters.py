@@ -12,12 +12,12 @@ from xlmc.montecarlo.model.needed import filter_condition, filter_limits
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Filter
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["breakable"]
 
 
-def breakable(model: Model) -> tuple[Filter, ...]:
+def breakable(model: CompiledModel) -> tuple[Filter, ...]:
     """Return the filters that a trial may break, as far as the graph of the workbook tells.
 
     Left out are those whose condition holds and no assumption reaches, such as one that a switch turns off, and those
@@ -29,7 +29,7 @@ def breakable(model: Model) -> tuple[Filter, ...]:
     return tuple(each for each in model.filters if not _is_certain(model, each, bounds))
 
 
-def _is_certain(model: Model, filter_: Filter, bounds: NodeBounds) -> bool:
+def _is_certain(model: CompiledModel, filter_: Filter, bounds: NodeBounds) -> bool:
     known = model.lowering.known(Target(filter_condition(filter_), filter_.cell))
     if known is not None:
         return int(known.kinds.flat[0]) in (NUMBER, LOGICAL) and bool(known.numbers.flat[0] != 0.0)

@@ -25,7 +25,7 @@ from xlmc.montecarlo.definitions.definitions_reader import read_definitions
 from xlmc.montecarlo.definitions.tables.filters import LIMIT_HINT
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.model.labels import calculate_labels
-from xlmc.montecarlo.model.model import Model, paused_collection
+from xlmc.montecarlo.model.model import CompiledModel, paused_collection
 from xlmc.montecarlo.model.needed import filter_limits
 
 __all__ = ["build_model", "filter_faults", "load"]
@@ -34,7 +34,7 @@ _DRAWN: Final = 64
 """Trials that are looked at beside the base case, in which a quantity may happen to be 0 or 1."""
 
 
-def load(path: str | Path) -> Model:
+def load(path: str | Path) -> CompiledModel:
     """Read a workbook and compile what its forecasts and filters need.
 
     Raises:
@@ -45,7 +45,7 @@ def load(path: str | Path) -> Model:
         return build_model(read_workbook(path), Path(path))
 
 
-def build_model(workbook: Workbook, path: Path, tabulated: int = 1) -> Model:
+def build_model(workbook: Workbook, path: Path, tabulated: int = 1) -> CompiledModel:
     """The model of a workbook that was read.
 
     Args:
@@ -62,7 +62,7 @@ def build_model(workbook: Workbook, path: Path, tabulated: int = 1) -> Model:
         definitions = read_definitions(workbook, ENGINES, tabulated)
         if definitions.problems:
             raise _joined(definitions.problems)
-        model = Model(workbook, definitions, path)
+        model = CompiledModel(workbook, definitions, path)
         if faults := filter_faults(model):
             raise _joined(faults)
         return model
@@ -72,7 +72,7 @@ def _joined(problems: Sequence[DefinitionError]) -> DefinitionError:
     return problems[0] if len(problems) == 1 else DefinitionError("\n".join(str(p) for p in problems).rstrip("."))
 
 
-def filter_faults(model: Model) -> list[DefinitionError]:
+def filter_faults(model: CompiledModel) -> list[DefinitionError]:
     """The filters whose cells are no tests, each with its cell: a quantity without a limit, a text.
 
     The base case is looked at, where there is one; then, for quantities, some trials.
@@ -94,7 +94,7 @@ def filter_faults(model: Model) -> list[DefinitionError]:
     return [found[each.cell] for each in filters if each.cell in found]
 
 
-def _may_be_text(model: Model, filter_: Filter) -> bool:
+def _may_be_text(model: CompiledModel, filter_: Filter) -> bool:
     """Whether the file does not say that the cell holds a number."""
     saved = model.workbook.content(filter_.cell).value
     return saved is None or isinstance(saved, str)

@@ -53,7 +53,7 @@ from xlmc.montecarlo.model.needed import (
 from xlmc.montecarlo.sampling.draws import CorrelatedGroup, Draw, DrawStage, Filler, Sampler
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 
-__all__ = ["Model", "lower_needed", "paused_collection"]
+__all__ = ["CompiledModel", "lower_needed", "paused_collection"]
 
 _MOST_GROWN: Final = 4
 """Nodes that changed limits of filters may have added, as a multiple of the first ones, before all are made anew."""
@@ -165,7 +165,7 @@ def _lower_checks(workbook: Workbook, definitions: Definitions, live: Collection
     return lowering
 
 
-class Model:
+class CompiledModel:
     """A workbook's assumptions, forecasts and filters, and the function that computes them.
 
     Attributes:
@@ -184,6 +184,10 @@ class Model:
     def __init__(self, workbook: Workbook, definitions: Definitions, path: Path) -> None:
         given, definitions = definitions, with_numbers(workbook, definitions)
         self._folded = definitions is not given
+        self._compile(workbook, definitions, path)
+
+    def _compile(self, workbook: Workbook, definitions: Definitions, path: Path) -> None:
+        """Make the nodes of what the definitions ask for, and all that depends on them."""
         self.workbook, self.path = workbook, path
         self.needed, self.lowering = lower_needed(workbook, definitions)
         draws, faults = possible_draws(self.needed, self.lowering, definitions)
@@ -276,9 +280,7 @@ class Model:
 
     def _make_anew(self) -> None:
         """Leave the nodes that changed limits added to the models that have them, and go on with nodes of one's own."""
-        folded = self._folded
-        self.__dict__.update(type(self)(self.workbook, self.definitions, self.path).__dict__)
-        self._folded = folded
+        self._compile(self.workbook, self.definitions, self.path)
 
     def _sources(self) -> list[tuple[str, Cell, str]]:
         """What is needed of assumptions and filters, the row of each, and its source or reason."""

@@ -20,7 +20,7 @@ from xlmc.montecarlo.rare.splitting import Distance
 from xlmc.montecarlo.rare.ways import ways_of
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.sampling.streams import Stream
 
 __all__ = ["OUTSIDE", "Drawing", "GivenUniforms", "Landscape", "points_of", "uniforms_of"]
@@ -83,7 +83,7 @@ class Drawing:
         row_of: name of an assumption -> its row among the uniforms.
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: CompiledModel) -> None:
         self.block = model.program("numpy").largest_block
         self._given = GivenUniforms()
         self._sampler = model.sampler(0, self.block, filler=self._given.filler)
@@ -114,7 +114,7 @@ class Landscape:
         lost: of them, those in which a filter or a draw is an error.
     """
 
-    def __init__(self, model: Model, random: np.random.Generator) -> None:
+    def __init__(self, model: CompiledModel, random: np.random.Generator) -> None:
         formulas = model.needed.graph.formulas
         self.dimensions = len(model.draws)
         self._filters = [shortfall(filter_condition(f), f.cell, formulas) for f in model.filters]

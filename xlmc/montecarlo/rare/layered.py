@@ -20,7 +20,7 @@ from xlmc.montecarlo.rare.layers import Layer, layers_of
 from xlmc.montecarlo.rare.splitting import Distance
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["Ground", "Layered", "ground_of"]
 
@@ -130,7 +130,7 @@ Ground = Landscape | Layered
 """What a search sees of a model."""
 
 
-def ground_of(model: Model, landscape: Landscape, random: np.random.Generator) -> Ground:
+def ground_of(model: CompiledModel, landscape: Landscape, random: np.random.Generator) -> Ground:
     """The landscape itself where no layer is thin, or none can be solved.
 
     Args:

@@ -26,7 +26,7 @@ from xlmc.montecarlo.rare.spans import Rearranged, Spans, intersection
 if TYPE_CHECKING:
     from xlmc.engine.engine import Evaluator
     from xlmc.montecarlo.definitions.definitions import Assumption
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.rare.landscape import Drawing
     from xlmc.montecarlo.sampling.draws import Draw
 
@@ -95,7 +95,7 @@ class Layer:
         return _rearranged(self.draw, self.spans(self.known(draws, n)))
 
 
-def layers_of(model: Model, filters: Sequence[Shortfall], drawing: Drawing, uniforms: Floats) -> list[Layer]:
+def layers_of(model: CompiledModel, filters: Sequence[Shortfall], drawing: Drawing, uniforms: Floats) -> list[Layer]:
     """The thin layers, in the order in which they can be solved: none asks about an assumption of a later one.
 
     Args:
@@ -117,7 +117,7 @@ def layers_of(model: Model, filters: Sequence[Shortfall], drawing: Drawing, unif
 class _Looking:
     """A search for assumptions that a thin layer can be solved for."""
 
-    def __init__(self, model: Model, filters: Sequence[Shortfall], drawing: Drawing, uniforms: Floats) -> None:
+    def __init__(self, model: CompiledModel, filters: Sequence[Shortfall], drawing: Drawing, uniforms: Floats) -> None:
         self._model, self._block = model, drawing.block
         draws, self._n, _ = drawing.draw_at(uniforms)
         self._draws = {name: values.copy() for name, values in draws.items()}

@@ -12,7 +12,7 @@ from xlmc.errors import SimulationError
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Settings
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = [
     "ALWAYS_FIRST",
@@ -94,7 +94,7 @@ class RareSwitch:
         self._wanted = None
 
 
-def rare_switch(model: Model, settings: Settings) -> RareSwitch:
+def rare_switch(model: CompiledModel, settings: Settings) -> RareSwitch:
     """Whether, and when, a run turns to a search.
 
     Raises:
@@ -111,7 +111,7 @@ def rare_switch(model: Model, settings: Settings) -> RareSwitch:
     return RareSwitch(wanted if possible else None, settings.trials, certain=asked == "always")
 
 
-def _fault(model: Model, settings: Settings) -> str | None:
+def _fault(model: CompiledModel, settings: Settings) -> str | None:
     if not model.filters:
         return "the workbook has no filters, so every trial is accepted"
     if not model.live:

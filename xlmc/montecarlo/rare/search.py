@@ -25,7 +25,7 @@ from xlmc.montecarlo.statistics.estimate import Estimate, with_relative_error
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Settings
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["Found", "Search", "accepted_blocks", "find", "plain_uniforms", "search"]
 
@@ -157,7 +157,7 @@ class Search:
 
 
 def search(
-    model: Model, settings: Settings, plain: int, accepted: NDArray[np.int64], say: Callable[[int], None]
+    model: CompiledModel, settings: Settings, plain: int, accepted: NDArray[np.int64], say: Callable[[int], None]
 ) -> Search:
     """Look for as many accepted trials as the settings ask for; a pure function of the model and these.
 
@@ -217,7 +217,9 @@ def search(
     return Search(landscape.uniforms(drawn.points), account, "", landscape.evaluations)
 
 
-def _plain(model: Model, settings: Settings, trials: int, accepted: NDArray[np.int64], landscape: Ground) -> Evidence:
+def _plain(
+    model: CompiledModel, settings: Settings, trials: int, accepted: NDArray[np.int64], landscape: Ground
+) -> Evidence:
     """The plain trials, or the first of them where many were accepted."""
     few = accepted[:_MOST_PLAIN]
     counted = int(few[-1]) + 1 if few.size < accepted.size else trials
@@ -240,7 +242,7 @@ def _random(seed: int, purpose: str) -> np.random.Generator:
     return np.random.Generator(np.random.PCG64DXSM(np.random.SeedSequence(seed, spawn_key=words)))
 
 
-def _failure(model: Model, landscape: Ground, found: Found, wanted: int, left: int) -> str:
+def _failure(model: CompiledModel, landscape: Ground, found: Found, wanted: int, left: int) -> str:
     """Why there are no trials, in words."""
     reached = [each for each in found.learned.descents if each.reached]
     if not reached:
@@ -263,7 +265,9 @@ def _failure(model: Model, landscape: Ground, found: Found, wanted: int, left: i
     )
 
 
-def accepted_blocks(model: Model, uniforms: Floats, block: int, wants_inputs: Callable[[], bool]) -> Iterator[Block]:
+def accepted_blocks(
+    model: CompiledModel, uniforms: Floats, block: int, wants_inputs: Callable[[], bool]
+) -> Iterator[Block]:
     """The trials at accepted uniforms, evaluated and filtered like any others: no filter is taken for granted."""
     given = GivenUniforms()
     given.uniforms = uniforms
@@ -275,7 +279,7 @@ def accepted_blocks(model: Model, uniforms: Floats, block: int, wants_inputs: Ca
         yield runner.run(Task(start, count, prior=False, inputs=wants_inputs()))
 
 
-def plain_uniforms(model: Model, seed: int, accepted: NDArray[np.int64]) -> Floats:
+def plain_uniforms(model: CompiledModel, seed: int, accepted: NDArray[np.int64]) -> Floats:
     """(k, d) the uniforms of plain trials with these numbers, (k,)."""
     streams = model.sampler(seed, 1).streams
     uniforms = np.empty((len(streams), accepted.size))

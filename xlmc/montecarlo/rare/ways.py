@@ -21,7 +21,7 @@ from xlmc.montecarlo.rare.shortfall import Shortfall
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Assumption
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 from collections import deque
 from collections.abc import Mapping
 from itertools import product
@@ -37,7 +37,7 @@ _RANKS: Final = np.concatenate([[1e-12, 1e-9, 1e-6], np.linspace(1e-4, 1.0 - 1e-
 """The probabilities at which values of a discrete assumption are looked for."""
 
 
-def ways_of(model: Model, filters: Sequence[Shortfall]) -> list[tuple[Shortfall, ...]]:
+def ways_of(model: CompiledModel, filters: Sequence[Shortfall]) -> list[tuple[Shortfall, ...]]:
     """What each way asks, beside the filters; one that asks nothing where there is nothing to tell apart.
 
     Args:
@@ -58,7 +58,7 @@ def ways_of(model: Model, filters: Sequence[Shortfall]) -> list[tuple[Shortfall,
     return _combine(switches)
 
 
-def _strata(model: Model, assumption: Assumption) -> Switch | None:
+def _strata(model: CompiledModel, assumption: Assumption) -> Switch | None:
     """The values of an assumption that has few; None of any other."""
     draw = model.draws[assumption.name]
     if not draw.fixed:

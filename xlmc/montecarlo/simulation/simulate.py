@@ -34,11 +34,11 @@ from xlmc.montecarlo.loop.stopping import (
 )
 from xlmc.montecarlo.model.forecast_filters import discards_by_name
 from xlmc.montecarlo.rare.rare_switch import RareSwitch, rare_switch
-from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.simulation.simulation import RunResult
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Settings
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.rare.search import Search
     from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 
@@ -59,14 +59,14 @@ OnProgress = Callable[[Progress], None]
 
 
 def simulate(
-    model: Model,
+    model: CompiledModel,
     *,
     progress: OnProgress | None = None,
     tell: Callable[[str], None] | None = None,
     own_runner: ModelRunner | None = None,
     pieces: int = BLOCK,
     **asked: Any,
-) -> Simulation:
+) -> RunResult:
     """Run a model with options given by name, the fields of `RunOptions`; without `evidence` it rejects trials.
 
     See `run_model`, and `Model.simulate`.
@@ -76,14 +76,14 @@ def simulate(
 
 
 def run_model(
-    model: Model,
+    model: CompiledModel,
     options: RunOptions,
     *,
     progress: OnProgress | None = None,
     tell: Callable[[str], None] | None = None,
     own_runner: ModelRunner | None = None,
     pieces: int = BLOCK,
-) -> Simulation:
+) -> RunResult:
     """Run a model; see `Model.simulate`.
 
     A runner that is given, of this model, seed and sampling method, runs the blocks. A run of a given number of trials
@@ -178,7 +178,7 @@ class _EndedError(Exception):
 
 
 def _searched(
-    model: Model,
+    model: CompiledModel,
     settings: Settings,
     plain: int,
     accepted: NDArray[np.int64],
@@ -204,7 +204,7 @@ def _searched(
     return found if found.account is not None else Stopped("search", found.failure, watch.goal_reached.goal)
 
 
-def _with_search(plain: Simulation, found: Search, most_inputs: int) -> Simulation:
+def _with_search(plain: RunResult, found: Search, most_inputs: int) -> RunResult:
     """The run with the trials that were found, instead of those few that plain trials had left."""
     from xlmc.montecarlo.rare.search import accepted_blocks
 
@@ -228,7 +228,7 @@ def _with_search(plain: Simulation, found: Search, most_inputs: int) -> Simulati
 class _Gathered:
     """The blocks so far: the counts of all trials, and the columns of the accepted ones."""
 
-    def __init__(self, model: Model, block: int, piece: int, keep_inputs: int, trials: int) -> None:
+    def __init__(self, model: CompiledModel, block: int, piece: int, keep_inputs: int, trials: int) -> None:
         self._model, self._block, self._piece, self._keep_inputs = model, block, piece, keep_inputs
         real, whole = np.dtype(np.float64), np.dtype(np.int64)
         self._inputs = {name: ("input", name) for name in model.draws}
@@ -308,9 +308,9 @@ class _Gathered:
         """A forecast's accepted trials so far, `(m,)`, NaN where it has no number."""
         return self._keeper.columns({"": ("forecast", number)})[""]
 
-    def simulation(self, settings: Settings, plan: SamplingPlan, stopped: Stopped) -> Simulation:
+    def simulation(self, settings: Settings, plan: SamplingPlan, stopped: Stopped) -> RunResult:
         prior = self._inputs if self._prior_is_inputs else self._prior
-        return Simulation(
+        return RunResult(
             model=self._model,
             settings=settings,
             plan=plan,

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     import pandas
 
     from xlmc.excel.address import Cell
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.rare.account import RareAccount
 
 __all__ = [
@@ -49,7 +49,7 @@ __all__ = [
     "TRIAL",
     "ChangedFrom",
     "Origin",
-    "Simulation",
+    "RunResult",
     "assumption_heading",
     "forecast_heading",
     "weight_heading",
@@ -114,8 +114,8 @@ def _trials(count: int) -> str:
     return "1 trial was" if count == 1 else f"{count:,} trials were"
 
 
-@dataclass(frozen=True, eq=False)
-class Simulation:
+@dataclass(frozen=True, eq=False, repr=False)
+class RunResult:
     """A finished run. Of a large one the columns lie in temporary files, as read-only arrays, for as long as it lives.
 
     Attributes:
@@ -140,7 +140,7 @@ class Simulation:
         tabulated: number of a further value of `RiskSimtable` -> the run with it, as far as they were made.
     """
 
-    model: Model
+    model: CompiledModel
     settings: Settings
     plan: SamplingPlan
     block: int
@@ -170,11 +170,6 @@ class Simulation:
             if name_key(definition.name) == name_key(name):
                 return self.results[definition.name]
         raise KeyError(f"there is no forecast {name!r}; there are {', '.join(map(repr, self.forecasts))}")
-
-    def __repr__(self) -> str:
-        if self.rare is not None:
-            return f"<Simulation: {self.accepted} accepted trials, found in {self.rare.evaluations} evaluations>"
-        return f"<Simulation: {self.accepted} of {self.trials} trials accepted>"
 
     @cached_property
     def results(self) -> dict[str, ForecastResult]:

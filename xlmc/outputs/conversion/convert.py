@@ -26,9 +26,9 @@ from xlmc.excel.workbook.writer import write_workbook
 from xlmc.montecarlo.definitions.definitions import Definitions
 from xlmc.montecarlo.definitions.new_tables import NewTable, new_tables
 from xlmc.montecarlo.model.loading import build_model
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import simulate
-from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.outputs.conversion.converted_sheet import SHEET, Left, built_sheet
 
 __all__ = ["Converted", "convert"]
@@ -52,7 +52,7 @@ class Converted:
     left: tuple[Left, ...]
 
 
-def convert(model: Model, path: Path, *, overwrite: bool = False) -> Converted:
+def convert(model: CompiledModel, path: Path, *, overwrite: bool = False) -> Converted:
     """Write the workbook with its definitions as tables.
 
     Args:
@@ -109,7 +109,7 @@ def _left(workbook: Workbook, definitions: Definitions, tables: tuple[NewTable, 
         yield Left("refused", "", str(refused.where or ""), "", refused.message)
 
 
-def _compare(old: Model, new: Model) -> None:
+def _compare(old: CompiledModel, new: CompiledModel) -> None:
     """Run both.
 
     Raises:
@@ -122,7 +122,7 @@ def _compare(old: Model, new: Model) -> None:
         raise DefinitionError(f"the converted workbook would draw {different} otherwise", where=old.path, hint=hint)
 
 
-def _difference(one: Simulation, other: Simulation) -> str:
+def _difference(one: RunResult, other: RunResult) -> str:
     """The first thing that differs between two runs; empty where they are the same to the last bit."""
     if not np.array_equal(one.trial_index, other.trial_index):
         return "the accepted trials"

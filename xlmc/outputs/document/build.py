@@ -16,8 +16,8 @@ from xlmc.outputs.document.parts import Block, Document, Heading
 from xlmc.outputs.document.report_sections import SECTIONS, Material
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.model.model import Model
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.model.model import CompiledModel
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["PAPERS", "Wanted", "build", "check_wanted", "check_wanted_of"]
 
@@ -54,7 +54,7 @@ def check_wanted(wanted: Wanted) -> None:
         raise SimulationError(f"there is no paper {label(wanted.paper)!r}", hint=f"choose from {', '.join(PAPERS)}")
 
 
-def check_wanted_of(wanted: Wanted, model: Model) -> None:
+def check_wanted_of(wanted: Wanted, model: CompiledModel) -> None:
     """Refuse, before a long run, what the report of this workbook cannot hold.
 
     Raises:
@@ -66,7 +66,7 @@ def check_wanted_of(wanted: Wanted, model: Model) -> None:
     _forecasts(wanted, model)
 
 
-def build(simulation: Simulation, wanted: Wanted, *, command: str | None = None) -> Document:
+def build(simulation: RunResult, wanted: Wanted, *, command: str | None = None) -> Document:
     """The report of a run; the same run and the same wishes give the same document.
 
     Args:
@@ -105,7 +105,7 @@ def build(simulation: Simulation, wanted: Wanted, *, command: str | None = None)
     )
 
 
-def _forecasts(wanted: Wanted, model: Model) -> tuple[str, ...]:
+def _forecasts(wanted: Wanted, model: CompiledModel) -> tuple[str, ...]:
     """The names of the forecasts that are wanted, as the workbook spells them.
 
     Raises:

@@ -9,7 +9,7 @@ from xlmc.excel.address import Cell
 from xlmc.excel.workbook.workbook import CellContent, Sheet, Workbook
 from xlmc.montecarlo.definitions.tables.table_rows import as_text
 from xlmc.montecarlo.model.labels import calculated_texts
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["Equation", "equations_of"]
 
@@ -29,7 +29,7 @@ class Equation(NamedTuple):
     source: str
 
 
-def equations_of(model: Model) -> list[Equation]:
+def equations_of(model: CompiledModel) -> list[Equation]:
     """The equations of the cells that the answers need, where a sheet has the columns Quantity and Equation.
 
     A row counts if one of its cells is a forecast or a filter, or is read by one.

@@ -13,7 +13,7 @@ from xlmc.outputs.document.build import Wanted, build
 from xlmc.outputs.document.parts import Document
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["check_report_path", "document_bytes", "save_report"]
 
@@ -22,7 +22,7 @@ _LIBRARIES: Final = {".pdf": {"typst": "typst"}, ".docx": {"docx": "python-docx"
 
 
 def save_report(
-    simulation: Simulation, path: Path, wanted: Wanted, *, command: str | None = None, overwrite: bool = False
+    simulation: RunResult, path: Path, wanted: Wanted, *, command: str | None = None, overwrite: bool = False
 ) -> Path:
     """Write the report whole or not at all.
 

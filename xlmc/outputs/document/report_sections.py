@@ -54,7 +54,7 @@ if TYPE_CHECKING:
     from xlmc.analysis.results.record import Record
     from xlmc.analysis.studies.sensitivity import ForecastSensitivity, Influence
     from xlmc.montecarlo.definitions.definitions import Assumption
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["SECTIONS", "Material"]
 
@@ -77,7 +77,7 @@ class Material:
         figures, tables: how many have been numbered so far.
     """
 
-    simulation: Simulation
+    simulation: RunResult
     record: Record
     forecasts: tuple[str, ...]
     figures: int = field(default=0)
@@ -314,7 +314,7 @@ def _assumptions(material: Material) -> Iterator[Block]:
         yield material.table("Rank correlations of assumptions.", heads, lines, (3, 3, 1, 1, 1.5), (2, 3, 4))
 
 
-def _assumption_row(simulation: Simulation, each: Assumption) -> list[Content]:
+def _assumption_row(simulation: RunResult, each: Assumption) -> list[Content]:
     name = f"{each.name}, {each.units}" if each.units else each.name
     words = f"{distribution_text(each)}. {each.source}".strip()
     found = filter_effect_of(simulation, each.name)

@@ -25,7 +25,7 @@ from xlmc.outputs.live.study_run import OF_THE_FILE, StudyRun
 from xlmc.outputs.live.what_changed import what_changed
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["Desk", "Window"]
 
@@ -210,7 +210,7 @@ class Desk:
     async def _in_thread(self, what: Callable[[], T]) -> T:
         return await asyncio.get_running_loop().run_in_executor(self._pool, what)
 
-    async def _read(self) -> Model | None:
+    async def _read(self) -> CompiledModel | None:
         """The workbook's model; None where it cannot be read or understood, which is told."""
         trouble = ""
         for seconds in _SETTLING:

@@ -46,8 +46,8 @@ from xlmc.outputs.summary import ERROR_SENTENCE, SummaryRow, base_case, share_te
 if TYPE_CHECKING:
     from xlmc.montecarlo.diagnostics.weighing import Weighting
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
-    from xlmc.montecarlo.model.model import Model
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.model.model import CompiledModel
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["bases_of", "frame_of", "matters_html", "pair_of", "rest_of", "scenarios_html", "tables_html"]
 
@@ -68,8 +68,8 @@ Bases = Mapping[str, float | None]
 
 
 def frame_of(
-    simulation: Simulation,
-    behind: Simulation | None,
+    simulation: RunResult,
+    behind: RunResult | None,
     names: Collection[str],
     base: Bases | None,
     *,
@@ -101,7 +101,7 @@ def frame_of(
     }
 
 
-def bases_of(simulation: Simulation) -> Bases | None:
+def bases_of(simulation: RunResult) -> Bases | None:
     """The base case of a run."""
     found = base_case(simulation)
     return None if found is None else found.forecasts
@@ -133,7 +133,7 @@ def _figure(result: ForecastResult, base: float | None) -> Figure | None:
     return Figure(1, row, bins)
 
 
-def _beside(figure: Figure, now: ForecastResult, behind: Simulation | None) -> dict[str, Any]:
+def _beside(figure: Figure, now: ForecastResult, behind: RunResult | None) -> dict[str, Any]:
     """The numbers beside a chart, and the state behind it."""
     before = None if behind is None else behind.results.get(figure.answer.name)
     if before is None or not before.sample.n:
@@ -205,7 +205,7 @@ def _bars_behind(figure: Figure, sample: Sample) -> dict[str, Any]:
     }
 
 
-def rest_of(simulation: Simulation) -> Message:
+def rest_of(simulation: RunResult) -> Message:
     """What is said of a run that is done: the answer in sentences, warnings, checks, what the filters rejected."""
     counts = zip(simulation.model.filters, simulation.tally.rejected, simulation.tally.only, strict=True)
     return {
@@ -223,7 +223,7 @@ def rest_of(simulation: Simulation) -> Message:
     }
 
 
-def matters_html(simulation: Simulation) -> str:
+def matters_html(simulation: RunResult) -> str:
     """Which assumptions the answer depends on, and what another limit of a filter would change."""
     if simulation.weighting is not None:
         said = "Each trial has a weight of its own, by the evidence; what matters is not known of such trials."
@@ -232,13 +232,13 @@ def matters_html(simulation: Simulation) -> str:
     return join([dependence(found), limits(found)]).source
 
 
-def tables_html(simulation: Simulation) -> str:
+def tables_html(simulation: RunResult) -> str:
     """All tables that the page of results has."""
     parts = (statistics, certainty, assumptions, filters, checks, notices)
     return join([*(part(simulation) for part in parts), record(make_record(simulation, None))]).source
 
 
-def scenarios_html(model: Model, run: Callable[[Model], Simulation], told: Callable[[str], None]) -> str:
+def scenarios_html(model: CompiledModel, run: Callable[[CompiledModel], RunResult], told: Callable[[str], None]) -> str:
     """The answers of the scenarios of a model beside its own, in tables.
 
     Args:
@@ -254,7 +254,7 @@ def scenarios_html(model: Model, run: Callable[[Model], Simulation], told: Calla
     return scenarios(base).source
 
 
-def pair_of(simulation: Simulation, first: str, second: str) -> dict[str, Any] | None:
+def pair_of(simulation: RunResult, first: str, second: str) -> dict[str, Any] | None:
     """Two quantities in the same accepted trials, for a scatter and an overlay; None where either is unknown.
 
     Args:
@@ -291,7 +291,7 @@ def _evenly(weighting: Weighting, n: int) -> NDArray[np.intp]:
     return np.asarray(np.searchsorted(reached, (np.arange(count) + 0.5) / count * reached[-1]))
 
 
-def _together(simulation: Simulation, names: tuple[str, str]) -> list[dict[str, Any]]:
+def _together(simulation: RunResult, names: tuple[str, str]) -> list[dict[str, Any]]:
     """Both as charts to be laid over each other; none where they are not two forecasts in one unit."""
     figures = figures_of(simulation, names) if names[0] != names[1] else []
     if len(figures) < 2 or len({figure.answer.units for figure in figures}) > 1:
@@ -299,7 +299,7 @@ def _together(simulation: Simulation, names: tuple[str, str]) -> list[dict[str, 
     return [forecast_payload(simulation, figure, _VALUES_MOVING, fits=False) for figure in figures]
 
 
-def _units(simulation: Simulation, name: str) -> str:
+def _units(simulation: RunResult, name: str) -> str:
     model = simulation.model
     found = {each.name: each.units for each in model.assumptions} | {each.name: each.units for each in model.forecasts}
     return found.get(name, "")

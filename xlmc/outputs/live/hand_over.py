@@ -29,8 +29,8 @@ from xlmc.outputs.live.adjustments import Adjustments, in_words, scenario_of
 from xlmc.outputs.page import save_page
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.model.model import Model
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.model.model import CompiledModel
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["KINDS", "AtRest", "edited_state", "save_result", "write_changes"]
 
@@ -43,7 +43,7 @@ class _Kind(NamedTuple):
     """The ending of its file, where that is not the workbook's own; and what writes it."""
 
     ending: str
-    write: Callable[[Simulation, Path], Path]
+    write: Callable[[RunResult, Path], Path]
 
 
 KINDS: Final[Mapping[str, _Kind]] = {
@@ -65,10 +65,10 @@ class AtRest:
         run: its run.
     """
 
-    own: Model
+    own: CompiledModel
     adjustments: Adjustments
     name: str
-    run: Simulation
+    run: RunResult
 
     @property
     def changes(self) -> tuple[str, ...]:
@@ -102,7 +102,7 @@ def _label(state: AtRest) -> str:
     return f"-{_NO_NAME.sub('_', state.name).strip(' .')[:_LONGEST].strip(' .') or 'changed'}"
 
 
-def edited_state(own: Model, adjustments: Adjustments, name: str) -> EditedWorkbook:
+def edited_state(own: CompiledModel, adjustments: Adjustments, name: str) -> EditedWorkbook:
     """A copy of the workbook with a state typed into it, not written yet.
 
     Raises:
@@ -111,7 +111,7 @@ def edited_state(own: Model, adjustments: Adjustments, name: str) -> EditedWorkb
     return edited_workbook(own, scenario_of(own.definitions, name or "shown in the window", adjustments))
 
 
-def _run_of_copy(state: AtRest) -> Simulation:
+def _run_of_copy(state: AtRest) -> RunResult:
     """The run of a copy of the workbook with the state typed into it."""
     edited, book = edited_state(state.own, state.adjustments, state.name), state.own.workbook
     run = run_model(build_model(read_workbook(edited.data, book.name), state.own.path), RunOptions())
@@ -121,7 +121,7 @@ def _run_of_copy(state: AtRest) -> Simulation:
     return replace(run, changed_from=ChangedFrom(book.name, book.sha256, state.changes))
 
 
-def _is_same(first: Simulation, second: Simulation) -> bool:
+def _is_same(first: RunResult, second: RunResult) -> bool:
     """Whether two runs have the same accepted trials, to the last bit."""
     columns = [(run.trial_index, *run.inputs.values(), *run.forecasts.values()) for run in (first, second)]
     return len(columns[0]) == len(columns[1]) and all(

@@ -21,8 +21,8 @@ from xlmc.outputs.page.element import element, join
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.loop.stopping import Progress
-    from xlmc.montecarlo.model.model import Model
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.model.model import CompiledModel
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = [
     "MOVING_TRIALS",
@@ -92,7 +92,7 @@ class Outcome:
     """
 
     messages: tuple[Message, ...] = ()
-    simulation: Simulation | None = None
+    simulation: RunResult | None = None
     seconds: float | None = None
     problem: str | None = None
 
@@ -123,7 +123,7 @@ class Job:
     done: Mapping[str, object]
 
 
-PARTS: Final[Mapping[str, Callable[[Simulation, Tab], Message]]] = {
+PARTS: Final[Mapping[str, Callable[[RunResult, Tab], Message]]] = {
     "matters": lambda run, _: {"html": matters_html(run)},
     "tables": lambda run, _: {"html": tables_html(run)},
     "pairs": lambda run, tab: {"pair": pair_of(run, tab.first, tab.second)},
@@ -158,7 +158,7 @@ class StateRun:
     adjustments: Adjustments
     models: KnownModels
     view: View
-    behind: Simulation | None
+    behind: RunResult | None
     way: str | None
     trials: int
     piece: int
@@ -205,7 +205,7 @@ class StateRun:
         return Outcome(tuple(messages), found, seconds)
 
 
-def charts_of(simulation: Simulation, behind: Simulation | None, seq: int, sight: Sight) -> Work:
+def charts_of(simulation: RunResult, behind: RunResult | None, seq: int, sight: Sight) -> Work:
     """The charts of a run that is done, for what can be seen now."""
     version, names, fits, _ = sight
 
@@ -216,7 +216,7 @@ def charts_of(simulation: Simulation, behind: Simulation | None, seq: int, sight
     return run
 
 
-def sketched_tab(simulation: Simulation, version: int) -> Work:
+def sketched_tab(simulation: RunResult, version: int) -> Work:
     """What matters, of the run of a state that moves."""
 
     def run(_wanted: Wanted, _tell: Tell, clock: Clock) -> Outcome:
@@ -227,7 +227,7 @@ def sketched_tab(simulation: Simulation, version: int) -> Work:
     return run
 
 
-def tab_of(simulation: Simulation, version: int, tab: Tab) -> Work:
+def tab_of(simulation: RunResult, version: int, tab: Tab) -> Work:
     """The contents of an open tab."""
 
     def run(*_: object) -> Outcome:
@@ -236,7 +236,7 @@ def tab_of(simulation: Simulation, version: int, tab: Tab) -> Work:
     return run
 
 
-def scenario_table(own: Model, kept: Mapping[str, Adjustments], asked: int) -> Work:
+def scenario_table(own: CompiledModel, kept: Mapping[str, Adjustments], asked: int) -> Work:
     """All scenarios in one table, those of the workbook and those that are kept in the window.
 
     Args:
@@ -272,5 +272,5 @@ def _frame(stage: str, version: int, seq: int, charts: Message) -> Message:
     return {"kind": "frame", "stage": stage, "version": version, "seq": seq, **charts}
 
 
-def _part(simulation: Simulation, version: int, tab: Tab) -> Message:
+def _part(simulation: RunResult, version: int, tab: Tab) -> Message:
     return {"kind": "part", "tab": tab.key, "version": version, **PARTS[tab.key](simulation, tab)}

@@ -20,7 +20,7 @@ from xlmc.montecarlo.definitions.definitions import Assumption, Definitions
 from xlmc.montecarlo.loop.blocks import ModelRunner
 from xlmc.montecarlo.loop.kept_runner import KeptRunner
 from xlmc.montecarlo.model.applied_changes import applied, changed_cells
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.outputs.live.adjustments import Adjustments, changes_of
 
 __all__ = ["MANY_FORMULAS", "KnownModels", "Moving"]
@@ -49,7 +49,7 @@ class Moving:
         kept: what it has in common with the states before.
     """
 
-    model: Model
+    model: CompiledModel
     kept: KeptRunner
 
     def runner(self, block: int) -> ModelRunner:
@@ -70,12 +70,12 @@ class KnownModels:
         trials: of the longest run of a state that moves.
     """
 
-    def __init__(self, own: Model, trials: int) -> None:
+    def __init__(self, own: CompiledModel, trials: int) -> None:
         self.own, self._trials = own, trials
-        self._holding: dict[_Held, Model] = {(): own}
+        self._holding: dict[_Held, CompiledModel] = {(): own}
         self._kept: dict[_Held, KeptRunner] = {}
 
-    def at_rest(self, adjustments: Adjustments) -> Model:
+    def at_rest(self, adjustments: Adjustments) -> CompiledModel:
         """The model of a state.
 
         Raises:
@@ -110,11 +110,11 @@ class KnownModels:
         kept = self._kept_runner(held, self._holding.get(held, model))
         return Moving(model, kept if kept.holds_for(model) else self._new_runner(model))
 
-    def _moved(self, model: Model, adjustments: Adjustments) -> Model:
+    def _moved(self, model: CompiledModel, adjustments: Adjustments) -> CompiledModel:
         changes = changes_of(model.definitions, adjustments)
         return applied(model, changes) if changes else model
 
-    def _of_held(self, held: _Held, adjustments: Adjustments) -> Model:
+    def _of_held(self, held: _Held, adjustments: Adjustments) -> CompiledModel:
         """The workbook's own model but for what is held; the last ones are kept."""
         if held not in self._holding:
             changes = changes_of(self.own.definitions, adjustments.held(self.own.definitions))
@@ -124,16 +124,16 @@ class KnownModels:
                 self._kept.pop(old, None)
         return self._holding[held]
 
-    def _kept_runner(self, held: _Held, model: Model) -> KeptRunner:
+    def _kept_runner(self, held: _Held, model: CompiledModel) -> KeptRunner:
         if held not in self._kept or not self._kept[held].holds_for(model):
             self._kept[held] = self._new_runner(model)
         return self._kept[held]
 
-    def _new_runner(self, model: Model) -> KeptRunner:
+    def _new_runner(self, model: CompiledModel) -> KeptRunner:
         return KeptRunner(model, _engine(model), model.definitions.settings.seed, self._trials)
 
 
-def _engine(model: Model) -> str:
+def _engine(model: CompiledModel) -> str:
     """What computes states that move: the compiled engine where the workbook asks for it, or where it soon pays."""
     compiled = find_spec("llvmlite") is not None
     if model.definitions.settings.engine == "jit" and compiled:
@@ -158,7 +158,7 @@ def _held(definitions: Definitions, adjustments: Adjustments) -> _Held:
     return tuple(found)
 
 
-def _held_values(own: Model, held: _Held) -> dict[str, float] | None:
+def _held_values(own: CompiledModel, held: _Held) -> dict[str, float] | None:
     """The value of each assumption that is held; None where holding it changes more than the values of draws."""
     named = {each.name: each for each in own.live}
     grouped = {name for group in own.groups for name in group.names}

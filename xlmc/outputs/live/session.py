@@ -48,8 +48,8 @@ from xlmc.outputs.live.window_book import assumption_rows, filter_rows, forecast
 from xlmc.outputs.page.payload import CONFIDENCE
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.model.model import Model
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.model.model import CompiledModel
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["Replies", "Session"]
 
@@ -93,7 +93,7 @@ class Session:
     """
 
     def __init__(
-        self, model: Model, kept: Mapping[str, Adjustments] | None = None, offered: Adjustments | None = None
+        self, model: CompiledModel, kept: Mapping[str, Adjustments] | None = None, offered: Adjustments | None = None
     ) -> None:
         self.own = model
         self.adjustments = Adjustments()
@@ -101,8 +101,8 @@ class Session:
         self.offered = offered or Adjustments()
         self.shown = ""
         self.version = 0
-        self.rest: Simulation | None = None
-        self.behind: Simulation | None = None
+        self.rest: RunResult | None = None
+        self.behind: RunResult | None = None
         self.behind_is = "the workbook as it was opened"
         self._behind_of: tuple[int, Adjustments] | None = None
         self.view = View(tuple(each.name for each in model.forecasts[:OPENS_WITH]))
@@ -114,7 +114,7 @@ class Session:
         self._problem: str | None = None
         self._last: dict[str, Message] = {}
         self._seconds: dict[bool, float] = {}
-        self._moving: Simulation | None = None
+        self._moving: RunResult | None = None
         self._sketch_seconds = 0.0
         self._stopped_at = -1
         self._ended = False
@@ -249,7 +249,7 @@ class Session:
         self.shown = name
         return Replies(all=[self._state()])
 
-    def replace_book(self, model: Model, news: Sequence[str]) -> list[Message]:
+    def replace_book(self, model: CompiledModel, news: Sequence[str]) -> list[Message]:
         """Take the workbook as it was saved meanwhile.
 
         Args:
@@ -313,7 +313,7 @@ class Session:
         return id(self.own), self.adjustments
 
     @property
-    def _compared(self) -> Simulation | None:
+    def _compared(self) -> RunResult | None:
         """The state to be drawn behind; None where it is the one in front."""
         return None if self._behind_of == self._now else self.behind
 
@@ -441,7 +441,7 @@ class Session:
                 self._last[f"{each['kind']} {each.get('tab', '')}"] = each
 
 
-def _settings_text(model: Model) -> str:
+def _settings_text(model: CompiledModel) -> str:
     """`200,000 trials, Monte Carlo, seed 999`."""
     from xlmc.montecarlo.sampling.sampling_methods import METHODS
 

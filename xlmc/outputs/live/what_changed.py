@@ -10,7 +10,7 @@ from xlmc.outputs.live.adjustments import LIMITS, assumption_numbers
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Assumption, Filter
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["what_changed"]
 
@@ -19,7 +19,7 @@ _MOST_CELLS: Final = 4
 Row = TypeVar("Row", bound="_HasName")
 
 
-def what_changed(before: Model, after: Model) -> list[str]:
+def what_changed(before: CompiledModel, after: CompiledModel) -> list[str]:
     """Phrases, those on assumptions first; none where nothing that a run depends on is other."""
     found = [
         *_rows("assumption", _named(before.assumptions), _named(after.assumptions), _assumption),
@@ -78,7 +78,7 @@ def _filter(before: Filter, after: Filter) -> Iterator[str]:
         yield f"{limits_text(before)} → {limits_text(after)}"
 
 
-def _correlations(before: Model, after: Model) -> Iterator[str]:
+def _correlations(before: CompiledModel, after: CompiledModel) -> Iterator[str]:
     old, new = (
         {(row.first, row.second): row.value for row in model.definitions.correlations} for model in (before, after)
     )
@@ -88,7 +88,7 @@ def _correlations(before: Model, after: Model) -> Iterator[str]:
             yield f"correlation of {pair[0]} with {pair[1]} {values[0]} → {values[1]}"
 
 
-def _settings(before: Model, after: Model) -> Iterator[str]:
+def _settings(before: CompiledModel, after: CompiledModel) -> Iterator[str]:
     old, new = before.definitions.settings, after.definitions.settings
     for name in ("trials", "seed", "sampling", "engine"):
         first, second = getattr(old, name), getattr(new, name)
@@ -98,7 +98,7 @@ def _settings(before: Model, after: Model) -> Iterator[str]:
         yield "when a run ends"
 
 
-def _cells(before: Model, after: Model) -> Iterator[str]:
+def _cells(before: CompiledModel, after: CompiledModel) -> Iterator[str]:
     """The needed cells that hold another formula or another typed number; those of assumptions are told above."""
     told = {each.cell for model in (before, after) for each in model.assumptions}
     cells = [
@@ -110,7 +110,7 @@ def _cells(before: Model, after: Model) -> Iterator[str]:
         yield f"{named}{more} changed"
 
 
-def _content(model: Model, cell: object) -> object:
+def _content(model: CompiledModel, cell: object) -> object:
     """The formula, where there is one: its saved value may be other because an assumption's is."""
     held = model.workbook.content(cell)  # type: ignore[arg-type]  # a cell
     return held.formula or held.value

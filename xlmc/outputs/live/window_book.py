@@ -13,7 +13,7 @@ from xlmc.analysis.results.statements.in_words import distribution_text, limits_
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Filter, Parameter
 from xlmc.montecarlo.distributions.whole_numbers import WholeNumbers
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.statistics.estimate import finite
 from xlmc.outputs.live.adjustments import (
     BAND,
@@ -40,7 +40,7 @@ _STEPS: Final = 50.0
 """A step of a key is a power of ten, the largest of which a range has at least so many."""
 
 
-def assumption_rows(own: Model, adjustments: Adjustments) -> list[dict[str, Any]]:
+def assumption_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[str, Any]]:
     """Every assumption with its numbers as they are now.
 
     Args:
@@ -53,7 +53,9 @@ def assumption_rows(own: Model, adjustments: Adjustments) -> list[dict[str, Any]
     return [_assumption(own, each, before, changed.get(each.name, {})) for each, before in pairs]
 
 
-def _assumption(model: Model, assumption: Assumption, own: Assumption, changed: Mapping[str, Any]) -> dict[str, Any]:
+def _assumption(
+    model: CompiledModel, assumption: Assumption, own: Assumption, changed: Mapping[str, Any]
+) -> dict[str, Any]:
     numbers = [_number(assumption, own, key, heading, value) for key, heading, value in _numbers(assumption)]
     values = [each["value"] for each in numbers if each["drags"] and each["value"] is not None]
     values += [] if assumption.base is None else [assumption.base]
@@ -98,7 +100,7 @@ def _step(span: float, size: float) -> float:
     return float(f"1e{math.floor(math.log10(wanted) + 1e-9)}") if wanted > 0.0 else 0.01
 
 
-def shapes_of(model: Model, names: Sequence[str] | None = None) -> dict[str, dict[str, Any]]:
+def shapes_of(model: CompiledModel, names: Sequence[str] | None = None) -> dict[str, dict[str, Any]]:
     """The distributions that are drawn, small: name -> `low`, `high` and the heights of bars of equal width, up to 1.
 
     Args:
@@ -127,7 +129,7 @@ def _shape(values: NDArray[np.float64]) -> dict[str, Any] | None:
     return {"low": first, "high": last, "heights": [round(float(h), 3) for h in counts / counts.max()]}
 
 
-def filter_rows(own: Model, adjustments: Adjustments) -> list[dict[str, Any]]:
+def filter_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[str, Any]]:
     """Every filter with its limits as they are now; see `assumption_rows`."""
     now = adjusted_definitions(own.definitions, adjustments)
     return [_filter(each, before) for each, before in zip(now.filters, own.filters, strict=True)]
@@ -157,6 +159,6 @@ def _filter(filter_: Filter, own: Filter) -> dict[str, Any]:
     }
 
 
-def forecast_rows(model: Model) -> list[dict[str, Any]]:
+def forecast_rows(model: CompiledModel) -> list[dict[str, Any]]:
     """Every forecast: its name and units."""
     return [{"name": each.name, "units": each.units, "cell": str(each.cell)} for each in model.forecasts]

@@ -16,12 +16,12 @@ from xlmc.outputs.summary import ERROR_SENTENCE, SummaryRow, base_text, percent,
 
 if TYPE_CHECKING:
     from xlmc.analysis.results.statements import Statement
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["answers"]
 
 
-def answers(simulation: Simulation) -> Html:
+def answers(simulation: RunResult) -> Html:
     """Warnings, the question, the answers in words and as the paper's table, and the meaning of ±."""
     rows = summarise(simulation)
     return element(
@@ -41,12 +41,12 @@ def _warning(sentence: str) -> Html:
     return element("p", sentence, class_="warning", role="alert")
 
 
-def _question(simulation: Simulation) -> Iterator[Html | str]:
+def _question(simulation: RunResult) -> Iterator[Html | str]:
     for said in question(simulation):
         yield element("bdi", said.text) if said.is_name else said.text
 
 
-def _statements(simulation: Simulation) -> Iterator[Html]:
+def _statements(simulation: RunResult) -> Iterator[Html]:
     """The sentences and what they mean; nothing where all forecasts are diagnostics."""
     if said := statements(simulation):
         yield element("ul", *(element("li", *_statement(each)) for each in said), class_="statements")
@@ -95,7 +95,7 @@ def _line(row: SummaryRow, mixed: bool, thresholds: bool) -> Html:
     return element("tr", element("th", row.name, scope="row"), element("td", row.units), *found)
 
 
-def _remarks(simulation: Simulation, rows: Sequence[SummaryRow]) -> Iterator[str]:
+def _remarks(simulation: RunResult, rows: Sequence[SummaryRow]) -> Iterator[str]:
     yield sampling_sentence(simulation)
     yield from range_sentences(rows)
     yield from base_sentences(simulation)

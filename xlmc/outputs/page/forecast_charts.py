@@ -16,7 +16,7 @@ from xlmc.outputs.summary import SummaryRow, percent
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["charts", "overlays"]
 
@@ -38,7 +38,7 @@ _PLAIN_SHARE = (
 _NOTHING = "No forecast has a number in an accepted trial: nothing to draw."
 
 
-def charts(simulation: Simulation, figures: Sequence[Figure]) -> Html:
+def charts(simulation: RunResult, figures: Sequence[Figure]) -> Html:
     """The section with a chart for every forecast."""
     return element(
         "section",
@@ -50,7 +50,7 @@ def charts(simulation: Simulation, figures: Sequence[Figure]) -> Html:
     )
 
 
-def _how_to_read(simulation: Simulation, figures: Sequence[Figure]) -> Iterator[Html]:
+def _how_to_read(simulation: RunResult, figures: Sequence[Figure]) -> Iterator[Html]:
     yield element("p", _HOW, class_="how")
     if simulation.plan.size:
         yield element("p", _PLAIN_SHARE, class_="remark")

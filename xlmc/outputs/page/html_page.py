@@ -42,7 +42,7 @@ from xlmc.outputs.page.sheet_sections import (
 )
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["check_page_path", "page_text", "save_page"]
 
@@ -86,10 +86,10 @@ _LINKS = {
 
 
 def save_page(
-    simulation: Simulation,
+    simulation: RunResult,
     path: Path,
     *,
-    beside: Simulation | None = None,
+    beside: RunResult | None = None,
     command: str | None = None,
     overwrite: bool = False,
 ) -> Path:
@@ -130,7 +130,7 @@ def check_page_path(path: Path) -> None:
     check_folder(path)
 
 
-def page_text(simulation: Simulation, *, beside: Simulation | None = None, command: str | None = None) -> str:
+def page_text(simulation: RunResult, *, beside: RunResult | None = None, command: str | None = None) -> str:
     """The page of a run; the same run gives the same text.
 
     Args:
@@ -194,7 +194,7 @@ def _hashes(texts: list[str]) -> Iterator[str]:
         yield f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 
-def _header(simulation: Simulation, keys: list[str]) -> Html:
+def _header(simulation: RunResult, keys: list[str]) -> Html:
     run = f"{simulation.evaluated:,} trials, {simulation.accepted:,} accepted; seed {simulation.settings.seed}"
     links = (element("a", label, href=f"#{key}") for key, label in _LINKS.items() if key in keys)
     return element(

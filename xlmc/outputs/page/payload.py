@@ -32,7 +32,7 @@ from xlmc.outputs.summary import percent
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = [
     "ALL_VALUES",
@@ -59,13 +59,13 @@ Floats = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
 
-def payload_text(simulation: Simulation, figures: Sequence[Figure], beside: Simulation | None = None) -> str:
+def payload_text(simulation: RunResult, figures: Sequence[Figure], beside: RunResult | None = None) -> str:
     """The JSON, which holds no character that could end the element it stands in."""
     text = json.dumps(payload(simulation, figures, beside), allow_nan=False, separators=(",", ":"))
     return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
 
 
-def payload(simulation: Simulation, figures: Sequence[Figure], beside: Simulation | None = None) -> dict[str, Any]:
+def payload(simulation: RunResult, figures: Sequence[Figure], beside: RunResult | None = None) -> dict[str, Any]:
     """The payload as plain values; `beside` is a second run."""
     most = most_values(len(figures) * (1 if beside is None else 2))
     return {
@@ -85,7 +85,7 @@ def overlays_of(figures: Sequence[Figure]) -> list[list[int]]:
     return [group for group in by_units.values() if len(group) > 1]
 
 
-def forecast_payload(simulation: Simulation, figure: Figure, most: int, *, fits: bool = True) -> dict[str, Any]:
+def forecast_payload(simulation: RunResult, figure: Figure, most: int, *, fits: bool = True) -> dict[str, Any]:
     """What one forecast's chart is drawn and counted from.
 
     Args:
@@ -126,7 +126,7 @@ def _trials(result: ForecastResult, most: int, marks: Iterable[float] = ()) -> d
     }
 
 
-def _second(figure: Figure, beside: Simulation | None, most: int) -> dict[str, Any] | None:
+def _second(figure: Figure, beside: RunResult | None, most: int) -> dict[str, Any] | None:
     """The trials of the same forecast in the second run; None where there is none."""
     partner = None if beside is None else partner_of(figure.answer, beside)
     if beside is None or partner is None:

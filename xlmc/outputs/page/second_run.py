@@ -15,7 +15,7 @@ from xlmc.outputs.page.flow import estimate_html, share_html
 from xlmc.outputs.summary import SummaryRow, percent, summarise
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["partner_of", "second_run"]
 
@@ -32,7 +32,7 @@ _Given = dict[tuple[str, str], tuple[str, str]]
 """What a run was given: kind and key -> its name, and what is said of it."""
 
 
-def second_run(first: Simulation, second: Simulation) -> Html:
+def second_run(first: RunResult, second: RunResult) -> Html:
     """The section that says what the second run is, and how its answers differ."""
     model, rows = second.model, summarise(first)
     said = (
@@ -54,7 +54,7 @@ def second_run(first: Simulation, second: Simulation) -> Html:
     )
 
 
-def partner_of(row: SummaryRow, second: Simulation) -> SummaryRow | None:
+def partner_of(row: SummaryRow, second: RunResult) -> SummaryRow | None:
     """The forecast of the second run that has the same name and units, and a number in some accepted trial."""
     for each in summarise(second):
         if name_key(each.name) == name_key(row.name) and each.units == row.units and each.trials:
@@ -98,7 +98,7 @@ def _difference(first: Estimate, second: Estimate) -> Estimate:
     return Estimate(second.value - first.value, error)
 
 
-def _alone(rows: list[SummaryRow], second: Simulation) -> Iterator[str]:
+def _alone(rows: list[SummaryRow], second: RunResult) -> Iterator[str]:
     shown = {name_key(row.name) for row in rows if partner_of(row, second) is not None}
     others = ("first", rows), ("second", summarise(second))
     for which, found in others:
@@ -107,7 +107,7 @@ def _alone(rows: list[SummaryRow], second: Simulation) -> Iterator[str]:
             yield f"Of the {which} run alone, by name and units: {'; '.join(names)}."
 
 
-def _given_to(run: Simulation) -> _Given:
+def _given_to(run: RunResult) -> _Given:
     model = run.model
     found = {("Run", what): (what, said) for what, said in _settings(run)}
     for a in model.assumptions:
@@ -117,7 +117,7 @@ def _given_to(run: Simulation) -> _Given:
     return found | {("Filter", name_key(f.name)): (f.name, limits_text(f)) for f in model.filters}
 
 
-def _settings(run: Simulation) -> Iterator[tuple[str, str]]:
+def _settings(run: RunResult) -> Iterator[tuple[str, str]]:
     yield "Workbook", run.model.workbook.name
     yield "Fingerprint", run.model.workbook.sha256[:16]
     yield "Seed", str(run.settings.seed)
@@ -127,7 +127,7 @@ def _settings(run: Simulation) -> Iterator[tuple[str, str]]:
     yield "Engine", run.settings.engine
 
 
-def _given(first: Simulation, second: Simulation) -> Html:
+def _given(first: RunResult, second: RunResult) -> Html:
     mine, theirs = _given_to(first), _given_to(second)
     rows = [
         (kind, (mine.get((kind, key)) or theirs[kind, key])[0], *(_said(each, kind, key) for each in (mine, theirs)))

@@ -27,7 +27,7 @@ from xlmc.outputs.sheets.statistics_sheet import write_forecast
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Assumption
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = [
     "assumptions",
@@ -53,7 +53,7 @@ _OPEN = frozenset({"run", "file", "trials", "sampling", "software"})
 _CODE = frozenset({"repeat", "command", "fingerprint", "sha256", "original_sha256"})
 
 
-def certainty(simulation: Simulation) -> Html:
+def certainty(simulation: RunResult) -> Html:
     """How certain the central ranges are."""
     flow = Flow()
     write_ranges(flow, simulation)
@@ -63,7 +63,7 @@ def certainty(simulation: Simulation) -> Html:
     )
 
 
-def pairs(simulation: Simulation) -> Html:
+def pairs(simulation: RunResult) -> Html:
     """Forecasts two at a time; nothing where there are no two that vary."""
     found = pairs_of(simulation) if simulation.weighting is None else []
     if not found:
@@ -74,7 +74,7 @@ def pairs(simulation: Simulation) -> Html:
     return element("section", element("h2", "Forecasts two at a time"), flow.html, *remarks, id="pairs")
 
 
-def scenarios(simulation: Simulation) -> Html:
+def scenarios(simulation: RunResult) -> Html:
     """The answers of the workbook's scenarios beside its own; nothing where they were not run."""
     found = scenario_answers(simulation)
     if not found:
@@ -84,7 +84,7 @@ def scenarios(simulation: Simulation) -> Html:
     return element("section", element("h2", "Scenarios"), flow.html, id="scenarios")
 
 
-def statistics(simulation: Simulation) -> Html:
+def statistics(simulation: RunResult) -> Html:
     """Everything about the accepted trials of each forecast."""
     forecasts = []
     for result in simulation.results.values():
@@ -97,7 +97,7 @@ def statistics(simulation: Simulation) -> Html:
     )
 
 
-def checks(simulation: Simulation) -> Html:
+def checks(simulation: RunResult) -> Html:
     """The checks; nothing where the workbook has none."""
     if not simulation.checks:
         return EMPTY
@@ -106,7 +106,7 @@ def checks(simulation: Simulation) -> Html:
     return element("section", element("h2", "Checks"), flow.html, id="checks")
 
 
-def evidence(simulation: Simulation) -> Html:
+def evidence(simulation: RunResult) -> Html:
     """Whether the evidence agrees, and what each item moves; nothing where none is used."""
     if simulation.agreement is None:
         return EMPTY
@@ -115,7 +115,7 @@ def evidence(simulation: Simulation) -> Html:
     return element("section", element("h2", "Evidence"), flow.html, id="evidence")
 
 
-def filters(simulation: Simulation) -> Html:
+def filters(simulation: RunResult) -> Html:
     """How many trials were run and accepted, and what each filter rejected."""
     flow = Flow()
     write_counts(flow, simulation)
@@ -123,7 +123,7 @@ def filters(simulation: Simulation) -> Html:
     return element("section", element("h2", "Trials and filters"), flow.html, id="filters")
 
 
-def assumptions(simulation: Simulation) -> Html:
+def assumptions(simulation: RunResult) -> Html:
     """Every assumption before and after filtering, as the sheet Assumptions has it."""
     correlations = Flow()
     write_correlations(correlations, simulation)
@@ -142,7 +142,7 @@ def assumptions(simulation: Simulation) -> Html:
     )
 
 
-def _remarks(simulation: Simulation) -> Iterator[str]:
+def _remarks(simulation: RunResult) -> Iterator[str]:
     early = max((values.size for values in simulation.prior.values()), default=0)
     yield f"Before filtering: the first {early:,} trials. ± is the standard error."
     if simulation.plan.size:
@@ -151,7 +151,7 @@ def _remarks(simulation: Simulation) -> Iterator[str]:
         yield f"Accepted: the first {simulation.kept_inputs:,} of {simulation.accepted:,} accepted trials."
 
 
-def _assumption(simulation: Simulation, assumption: Assumption) -> Html:
+def _assumption(simulation: RunResult, assumption: Assumption) -> Html:
     """An assumption's name above two rows, in a table body of their own so that they stay together."""
     found = filter_effect_of(simulation, assumption.name)
     shape = EMPTY if found is None else _shape(simulation, assumption.name)
@@ -163,7 +163,7 @@ def _assumption(simulation: Simulation, assumption: Assumption) -> Html:
     return element("tbody", named, before, element("tr", *_marginal(found.accepted, "accepted"), *_changes(found)))
 
 
-def _shape(simulation: Simulation, name: str) -> Html:
+def _shape(simulation: RunResult, name: str) -> Html:
     """A small picture of the draws before filtering and of the accepted ones; nothing where all draws are one value."""
     found = shapes_of(simulation, name)
     if found is None:
@@ -195,7 +195,7 @@ def _change(found: Estimate, marked: bool) -> Html:
     return element("td", estimate_html(found), class_="number moved" if marked else "number")
 
 
-def notices(simulation: Simulation) -> Html:
+def notices(simulation: RunResult) -> Html:
     """The notices; nothing where there are none."""
     if not simulation.notices:
         return EMPTY

@@ -40,9 +40,9 @@ if TYPE_CHECKING:
     from xlmc.excel.address import Cell
     from xlmc.excel.workbook.workbook import Workbook
     from xlmc.montecarlo.definitions.definitions import Settings
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.simulation.simulate import OnProgress
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["Replayed", "recorded_run", "replay"]
 
@@ -75,7 +75,7 @@ class Replayed:
     """
 
     record: Record
-    repeated: Simulation | None
+    repeated: RunResult | None
     fault: XlmcError | None
     changes: tuple[Change, ...]
     environment: tuple[Change, ...]
@@ -126,7 +126,7 @@ def replay(path: str | Path, *, jobs: int = 1, progress: OnProgress | None = Non
         return _replay(workbook, read_record(workbook), None, jobs, progress, path)
 
 
-def recorded_run(path: str | Path, *, progress: OnProgress | None = None) -> Simulation:
+def recorded_run(path: str | Path, *, progress: OnProgress | None = None) -> RunResult:
     """The run that a result workbook records, repeated: under the name and with the SHA-256 of its workbook.
 
     Args:
@@ -149,7 +149,7 @@ def recorded_run(path: str | Path, *, progress: OnProgress | None = None) -> Sim
 def _replay(
     workbook: Workbook,
     record: Record,
-    model: Model | None,
+    model: CompiledModel | None,
     jobs: int,
     progress: OnProgress | None,
     path: Path | None = None,
@@ -251,7 +251,9 @@ def _repeat_command(record: Record) -> str:
         return ""
 
 
-def _repeat(model: Model, record: Record, settings: Settings, jobs: int, progress: OnProgress | None) -> Simulation:
+def _repeat(
+    model: CompiledModel, record: Record, settings: Settings, jobs: int, progress: OnProgress | None
+) -> RunResult:
     """The run again: up to the trial that ended it, whatever did."""
     trials, accepted, kept = (_count(record, key) for key in ("trials", "accepted", "inputs_kept"))
     by = str(record["end.by"])

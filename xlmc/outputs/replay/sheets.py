@@ -28,7 +28,7 @@ from xlmc.outputs.sheets.trials_sheet import HEADER, TRIAL_ROWS
 
 if TYPE_CHECKING:
     from xlmc.excel.workbook.workbook import Sheet, Workbook
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["CellDifference", "SheetComparison", "compare_sheets"]
 
@@ -89,7 +89,7 @@ class SheetComparison:
         return not (self.differences or self.missing)
 
 
-def compare_sheets(workbook: Workbook, run: Simulation, command: str | None, closeness: Closeness) -> SheetComparison:
+def compare_sheets(workbook: Workbook, run: RunResult, command: str | None, closeness: Closeness) -> SheetComparison:
     """Compare all result sheets of a file.
 
     Args:
@@ -114,7 +114,7 @@ def compare_sheets(workbook: Workbook, run: Simulation, command: str | None, clo
     )
 
 
-def _build(run: Simulation, command: str | None, rows: int) -> Workbook:
+def _build(run: RunResult, command: str | None, rows: int) -> Workbook:
     return read_workbook(package_bytes(build_sheets(run, command=command, rows=rows)), "the result sheets")
 
 

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from xlmc.analysis.results.record import Record, Value
     from xlmc.excel.workbook.workbook import Workbook
     from xlmc.montecarlo.definitions.definitions import Settings
-    from xlmc.montecarlo.model.model import Model
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.model.model import CompiledModel
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["as_recorded", "compare_shown"]
 
@@ -30,7 +30,7 @@ _BLANK: Final = CellContent()
 
 
 def compare_shown(
-    workbook: Workbook, run: Simulation, record: Record, closeness: Closeness, *, same_run: bool
+    workbook: Workbook, run: RunResult, record: Record, closeness: Closeness, *, same_run: bool
 ) -> SheetComparison:
     """Compare the result sheets, and the workbook's own cells that show results.
 
@@ -73,7 +73,7 @@ def _of_version(found: SheetComparison, version: str) -> SheetComparison:
     return replace(found, differences=differences, missing=(), left_out=(*found.left_out, *said))
 
 
-def _compare_own_cells(workbook: Workbook, run: Simulation, closeness: Closeness) -> SheetComparison:
+def _compare_own_cells(workbook: Workbook, run: RunResult, closeness: Closeness) -> SheetComparison:
     """Compare the cells that show results, and those that depend on them.
 
     A program without the add-in shows `#NAME?` in cells that call its functions, and computes from that what depends on
@@ -109,7 +109,7 @@ def _left_out_text(count: int, empty: list[Cell]) -> tuple[str, ...]:
     return (f"{cells} results of the run: a program without the add-in saved them ({empty[0]})",)
 
 
-def as_recorded(run: Simulation, record: Record, settings: Settings) -> Simulation:
+def as_recorded(run: RunResult, record: Record, settings: Settings) -> RunResult:
     """The run under the name of the recorded one's workbook, with its settings, ended by what ended that.
 
     Args:
@@ -134,7 +134,7 @@ def _entry(record: Record, key: str) -> Value:
         return None
 
 
-def _rename(model: Model, name: str) -> Model:
+def _rename(model: CompiledModel, name: str) -> CompiledModel:
     found = copy.copy(model)
     found.workbook = replace(model.workbook, name=name)
     own = (str(model.path), model.workbook.name)

@@ -13,7 +13,7 @@ from xlmc.outputs.sheets.cells import Shown
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.diagnostics.checking import CheckResult
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.sheets.page import Page
 
 __all__ = ["write_accounting", "write_checks"]
@@ -31,7 +31,7 @@ _CHECK_HEADERS = ("Check", "Cell", "Base case", "Trials failing", "Share", "±",
 _CHECK_STARTS = (0, 1, 3, 5, 6, 7, 8)
 
 
-def write_accounting(page: Page, simulation: Simulation, last: int) -> None:
+def write_accounting(page: Page, simulation: RunResult, last: int) -> None:
     """Write the filters, what they rejected, and the errors.
 
     Args:
@@ -57,7 +57,7 @@ def write_accounting(page: Page, simulation: Simulation, last: int) -> None:
     _write_errors(page, simulation)
 
 
-def _write_filters(page: Page, simulation: Simulation, last: int) -> None:
+def _write_filters(page: Page, simulation: RunResult, last: int) -> None:
     headers = ("Filter", "Cell", "Must be", "Because")
     page.line([Shown(header, look="header left") for header in headers], _FILTER_STARTS, last)
     for number, filter_ in enumerate(simulation.model.filters, 1):
@@ -66,7 +66,7 @@ def _write_filters(page: Page, simulation: Simulation, last: int) -> None:
         page.line([name, *(Shown(text) for text in texts)], _FILTER_STARTS, last)
 
 
-def _write_rejections(page: Page, simulation: Simulation) -> None:
+def _write_rejections(page: Page, simulation: RunResult) -> None:
     tally, filters = simulation.tally, simulation.model.filters
     pairs = len(filters) if len(filters) > 1 else 0
     headers = ["Filter", "Error in it", "Rejected", "Share", "±", "Only by it", "Share", "±"]
@@ -85,11 +85,11 @@ def _write_rejections(page: Page, simulation: Simulation) -> None:
     )
 
 
-def _pair(simulation: Simulation, index: int, other: int) -> Shown:
+def _pair(simulation: RunResult, index: int, other: int) -> Shown:
     return Shown("") if index == other else cells.count(int(simulation.tally.together[index, other]))
 
 
-def _write_discards(page: Page, simulation: Simulation, last: int) -> None:
+def _write_discards(page: Page, simulation: RunResult, last: int) -> None:
     page.heading("Filters for some forecasts only")
     said = (
         f"These filters reject no trial. Of the {simulation.accepted:,} accepted trials, a forecast named here counts "
@@ -114,7 +114,7 @@ def _count_and_share(trials: int, of: int) -> list[Shown]:
     return [cells.count(trials), *cells.share(proportion(trials, of))]
 
 
-def _write_errors(page: Page, simulation: Simulation) -> None:
+def _write_errors(page: Page, simulation: RunResult) -> None:
     found = errors_met(simulation)
     if not found:
         return
@@ -134,12 +134,12 @@ def _write_errors(page: Page, simulation: Simulation) -> None:
     )
 
 
-def _among(simulation: Simulation, met: ErrorMet) -> int:
+def _among(simulation: RunResult, met: ErrorMet) -> int:
     """How many trials an error was counted in; after a search, forecasts were computed in accepted trials alone."""
     return simulation.accepted if simulation.rare is not None and met.kind == "forecast" else simulation.trials
 
 
-def write_checks(page: Page, simulation: Simulation, last: int) -> None:
+def write_checks(page: Page, simulation: RunResult, last: int) -> None:
     """Write the checks, and how many accepted trials fail each; nothing where the workbook has none.
 
     Args:

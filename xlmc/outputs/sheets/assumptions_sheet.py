@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from xlsxwriter.workbook import Workbook
 
     from xlmc.montecarlo.definitions.definitions import Assumption
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.sheets.curves_sheet import Curves, TableAt
     from xlmc.outputs.sheets.page import Page
 
@@ -82,7 +82,7 @@ _CORRELATIONS = (
 )
 
 
-def write_assumptions(page: Page, book: Workbook, simulation: Simulation, curves: Curves) -> None:
+def write_assumptions(page: Page, book: Workbook, simulation: RunResult, curves: Curves) -> None:
     """Write the sheet; `curves` takes the numbers that its small charts draw."""
     name = simulation.model.workbook.name
     of = f" of {simulation.trials:,}" if simulation.rare is None else ""
@@ -112,7 +112,7 @@ def write_assumptions(page: Page, book: Workbook, simulation: Simulation, curves
     page.set_up_printing(name, repeat=HEADER)
 
 
-def _draw_shapes(page: Page, book: Workbook, simulation: Simulation, curves: Curves) -> None:
+def _draw_shapes(page: Page, book: Workbook, simulation: RunResult, curves: Curves) -> None:
     """Draw how often each assumption has each value, beside its lines."""
     drawn = []
     for index, assumption in enumerate(simulation.model.assumptions[:_DRAWN]):
@@ -159,7 +159,7 @@ def _shape_chart(book: Workbook, table: TableAt, column: int) -> Chart:
     return chart
 
 
-def _write_assumption(page: Page, simulation: Simulation, assumption: Assumption) -> None:
+def _write_assumption(page: Page, simulation: RunResult, assumption: Assumption) -> None:
     """Write the lines of an assumption."""
     before, accepted, change = _statistics(simulation, assumption)
     starts = [0, *range(_NAMED - 1, _NAMED + len(before))]
@@ -171,7 +171,7 @@ def _write_assumption(page: Page, simulation: Simulation, assumption: Assumption
     page.line([Shown(assumption.source or cells.NONE), *change], [0, *range(_NAMED, _NAMED + len(change))])
 
 
-def _statistics(simulation: Simulation, assumption: Assumption) -> tuple[list[Shown], list[Shown], list[Shown]]:
+def _statistics(simulation: RunResult, assumption: Assumption) -> tuple[list[Shown], list[Shown], list[Shown]]:
     """The cells of the draws before filtering, of the accepted ones and of the change; or why it is not drawn."""
     found = filter_effect_of(simulation, assumption.name)
     if found is None:
@@ -213,7 +213,7 @@ def _blank(columns: int, look: str = "number") -> list[Shown]:
     return [Shown(None, look=look)] * columns
 
 
-def write_correlations(page: Page, simulation: Simulation) -> None:
+def write_correlations(page: Page, simulation: RunResult) -> None:
     """Write the rank correlations, where there are any."""
     met = correlations_met(simulation)
     if not met:

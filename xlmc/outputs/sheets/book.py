@@ -37,7 +37,7 @@ from xlmc.outputs.sheets.styles import CREATED, Styles
 from xlmc.outputs.sheets.trials_sheet import TrialsAt
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.sheets.exact_book import ExactBook
 
 __all__ = ["SHEETS", "ResultSheet", "Writing", "build_sheets"]
@@ -59,7 +59,7 @@ class Writing:
     trials: TrialsAt
     bins: Sequence[BinsAt]
 
-    def __init__(self, book: ExactBook, simulation: Simulation, command: str | None, rows: int) -> None:
+    def __init__(self, book: ExactBook, simulation: RunResult, command: str | None, rows: int) -> None:
         self.book, self.simulation, self.command, self.rows = book, simulation, command, rows
         self.name = simulation.model.workbook.name
         styles, header = Styles(book), case_of(simulation.model.workbook, {}).in_a_line
@@ -188,7 +188,7 @@ SHEETS: Final[tuple[ResultSheet, ...]] = (
 
 
 def build_sheets(
-    simulation: Simulation, *, command: str | None = None, rows: int = trials_sheet.TRIAL_ROWS
+    simulation: RunResult, *, command: str | None = None, rows: int = trials_sheet.TRIAL_ROWS
 ) -> dict[str, bytes]:
     """The result sheets of a run, as the parts of a workbook that holds them alone.
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from xlmc.analysis.results.statements import Certainty
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.sheets.page import Page
     from xlmc.outputs.sheets.trials_sheet import TrialsAt
 
@@ -39,7 +39,7 @@ _PERCENT = "0.0%"
 _Z = "1.96"
 
 
-def write_certainty(page: Page, simulation: Simulation, trials: TrialsAt) -> None:
+def write_certainty(page: Page, simulation: RunResult, trials: TrialsAt) -> None:
     """Write the sheet; `trials` is where the trials stand that its formulas count."""
     name = simulation.model.workbook.name
     page.title("Certainty", f"{name}: {simulation.accepted:,} accepted trials")
@@ -55,7 +55,7 @@ def write_certainty(page: Page, simulation: Simulation, trials: TrialsAt) -> Non
     page.set_up_printing(name)
 
 
-def write_ranges(page: Page, simulation: Simulation) -> None:
+def write_ranges(page: Page, simulation: RunResult) -> None:
     """Write the certainty of every forecast's central range and threshold."""
     rows = [_line(name, each) for name, result in simulation.results.items() for each in certainties(result)]
     if not rows:
@@ -75,7 +75,7 @@ def _line(name: str, found: Certainty) -> list[Shown]:
     ]
 
 
-def _write_own_ranges(page: Page, simulation: Simulation, trials: TrialsAt) -> None:
+def _write_own_ranges(page: Page, simulation: RunResult, trials: TrialsAt) -> None:
     """Write a line for each forecast that has a number on the sheet Trials; nothing where there is none."""
     found = [
         (index, result, simulation.forecasts[name][: trials.shown])
@@ -95,7 +95,7 @@ def _write_own_ranges(page: Page, simulation: Simulation, trials: TrialsAt) -> N
         _write_line(page, result, values, xl_range_formula(*trials.column(index)), errors)
 
 
-def _instructions(simulation: Simulation, trials: TrialsAt) -> str:
+def _instructions(simulation: RunResult, trials: TrialsAt) -> str:
     which = f"all {trials.shown:,} accepted trials"
     if trials.shown < simulation.accepted:
         which = f"the first {trials.shown:,} of {simulation.accepted:,} accepted trials, which stand"

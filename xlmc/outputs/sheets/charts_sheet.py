@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from xlsxwriter.chart import Chart
     from xlsxwriter.workbook import Workbook
 
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.sheets.page import Page
 
 __all__ = ["WIDTHS", "Drawing", "place_drawings", "write_charts"]
@@ -60,7 +60,7 @@ class Drawing:
 def write_charts(
     page: Page,
     book: Workbook,
-    simulation: Simulation,
+    simulation: RunResult,
     figures: Sequence[Figure],
     bins: Sequence[BinsAt],
     curves: Curves,
@@ -111,7 +111,7 @@ def _place_row(page: Page, drawings: Sequence[Drawing], rows: int) -> None:
 
 
 def _comparison_drawings(
-    book: Workbook, curves: Curves, simulation: Simulation, figures: Sequence[Figure]
+    book: Workbook, curves: Curves, simulation: RunResult, figures: Sequence[Figure]
 ) -> Iterator[Drawing]:
     number = len(figures)
     for group in group_by_units(varying(figures)):
@@ -125,7 +125,7 @@ def _comparison_drawings(
 
 
 def _cumulative_drawings(
-    book: Workbook, curves: Curves, simulation: Simulation, figures: Sequence[Figure]
+    book: Workbook, curves: Curves, simulation: RunResult, figures: Sequence[Figure]
 ) -> Iterator[Drawing]:
     varied = varying(figures)
     first = len(figures) + 2 * len(group_by_units(varied))

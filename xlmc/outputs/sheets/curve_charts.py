@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from xlsxwriter.chart_stock import ChartStock
     from xlsxwriter.workbook import Workbook
 
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["MOST", "cumulative_charts", "group_by_units", "overlay_chart", "trend_chart"]
 
@@ -56,7 +56,7 @@ _BOX: Final = {"fill": {"color": DARK}, "border": {"none": True}}
 Floats = NDArray[np.float64]
 
 
-def cumulative_charts(book: Workbook, curves: Curves, simulation: Simulation, figure: Figure) -> list[ChartArea]:
+def cumulative_charts(book: Workbook, curves: Curves, simulation: RunResult, figure: Figure) -> list[ChartArea]:
     """Write the curve's table, and draw the cumulative chart and the reverse cumulative one."""
     result, answer = simulation.results[figure.answer.name], figure.answer
     curve = _cumulative(result.sample, figure.bins, answer.low.value, answer.high.value)
@@ -185,7 +185,7 @@ def _polygon(figure: Figure) -> Iterator[list[Shown]]:
         yield [Shown(middle), Shown(height, "0.0000")]
 
 
-def trend_chart(book: Workbook, curves: Curves, simulation: Simulation, group: Sequence[Figure]) -> ChartStock:
+def trend_chart(book: Workbook, curves: Curves, simulation: RunResult, group: Sequence[Figure]) -> ChartStock:
     """The central range of each figure as a box, with a line from its 5th to its 95th percentile."""
     units, shares = group[0].answer.units, {figure.answer.share for figure in group}
     central = f"{percent(shares.pop())} range" if len(shares) == 1 else "Central range"
@@ -202,7 +202,7 @@ def trend_chart(book: Workbook, curves: Curves, simulation: Simulation, group: S
     return chart
 
 
-def _ranges(simulation: Simulation, group: Sequence[Figure]) -> Iterator[list[Shown]]:
+def _ranges(simulation: RunResult, group: Sequence[Figure]) -> Iterator[list[Shown]]:
     """The ranges in the order of a stock chart: open, high, low, close."""
     for figure in group:
         low, high = (each.value for each in percentiles(simulation.results[figure.answer.name].sample, _TAILS).values())

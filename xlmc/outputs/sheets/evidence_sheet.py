@@ -12,7 +12,7 @@ from xlmc.outputs.sheets.cells import Shown
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.diagnostics.agreement import Agreement, Answer, ItemAgreement
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.sheets.page import Page
 
 __all__ = ["WIDTHS", "write_agreement", "write_evidence"]
@@ -23,7 +23,7 @@ _BAD: Final = (Verdict.INCONSISTENT, Verdict.STRAINED, Verdict.TOO_FEW)
 _SOURCE_STARTS: Final = (0, 1, 2, 6)
 
 
-def write_evidence(page: Page, simulation: Simulation) -> None:
+def write_evidence(page: Page, simulation: RunResult) -> None:
     """Write the sheet."""
     name = simulation.model.workbook.name
     page.title("Evidence: what was measured, and whether it agrees", name)
@@ -31,7 +31,7 @@ def write_evidence(page: Page, simulation: Simulation) -> None:
     page.set_up_printing(name)
 
 
-def write_agreement(page: Page, simulation: Simulation) -> None:
+def write_agreement(page: Page, simulation: RunResult) -> None:
     """Write all but the title: onto the sheet, or onto the page for a browser."""
     found = simulation.agreement
     if found is not None:
@@ -103,7 +103,7 @@ def _move(answer: Answer) -> list[Shown]:
     ]
 
 
-def _write_sources(page: Page, simulation: Simulation) -> None:
+def _write_sources(page: Page, simulation: RunResult) -> None:
     page.heading("The rows of xlmc_evidence")
     heads = ("Evidence", "Cell", "Reading and error", "Source")
     page.line([Shown(head, look="header left") for head in heads], _SOURCE_STARTS, _LAST)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from xlsxwriter.workbook import Workbook
 
     from xlmc.montecarlo.definitions.definitions import Forecast
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.sheets.page import Page
     from xlmc.outputs.sheets.trials_sheet import TrialsAt
 
@@ -50,7 +50,7 @@ class _Points:
     limits: dict[str, float]
 
 
-def write_pairs(page: Page, book: Workbook, simulation: Simulation, curves: Curves, trials: TrialsAt) -> None:
+def write_pairs(page: Page, book: Workbook, simulation: RunResult, curves: Curves, trials: TrialsAt) -> None:
     """Write the sheet; its charts draw the trials where `trials` says, or points that `curves` takes."""
     name = simulation.model.workbook.name
     page.title("Forecasts two at a time", f"{name}: {simulation.accepted:,} accepted trials")
@@ -106,7 +106,7 @@ def _name_and_limit(pair: Pair, index: int) -> str:
     return f"{forecast.name}, {what} {limit:.6g}{units}"
 
 
-def pair_sentences(simulation: Simulation, pairs: Sequence[Pair]) -> list[str]:
+def pair_sentences(simulation: RunResult, pairs: Sequence[Pair]) -> list[str]:
     """What the table is of."""
     trials, ranked = {pair.trials for pair in pairs}, {pair.ranked for pair in pairs}
     said = "A limit is the forecast's threshold or, if it has none, its median; it is used as the number printed here."
@@ -122,7 +122,7 @@ def pair_sentences(simulation: Simulation, pairs: Sequence[Pair]) -> list[str]:
 
 
 def _drawings(
-    book: Workbook, curves: Curves, simulation: Simulation, pairs: Sequence[Pair], trials: TrialsAt
+    book: Workbook, curves: Curves, simulation: RunResult, pairs: Sequence[Pair], trials: TrialsAt
 ) -> list[Drawing]:
     """A scatter chart for each pair, from the first trials in which all forecasts of these pairs are numbers."""
     names = {forecast.name for pair in pairs for forecast in (pair.first, pair.second)}
@@ -150,7 +150,7 @@ def _trials_with_numbers(columns: Sequence[NDArray[np.float64]]) -> NDArray[np.i
 
 
 def _points(
-    curves: Curves, simulation: Simulation, trials: TrialsAt, forecast: Forecast, known: NDArray[np.intp]
+    curves: Curves, simulation: RunResult, trials: TrialsAt, forecast: Forecast, known: NDArray[np.intp]
 ) -> _Points:
     """A forecast's values in these trials: where they stand on the sheet Trials, or else in a table of their own."""
     values = simulation.forecasts[forecast.name][known]

@@ -15,7 +15,7 @@ from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.summary import ERROR_SENTENCE, SummaryRow, base_case, percent, range_heading, summarise
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.sheets.page import Page
 
 __all__ = ["LAST", "WIDTHS", "base_sentences", "opening_sentences", "range_sentences", "write_counts", "write_results"]
@@ -25,7 +25,7 @@ LAST = 11
 _ROW = 15.75
 
 
-def write_results(page: Page, simulation: Simulation) -> None:
+def write_results(page: Page, simulation: RunResult) -> None:
     """Write the sheet."""
     book = simulation.model.workbook.name
     settings = simulation.settings
@@ -41,7 +41,7 @@ def write_results(page: Page, simulation: Simulation) -> None:
     page.set_up_printing(book)
 
 
-def opening_sentences(simulation: Simulation) -> list[str]:
+def opening_sentences(simulation: RunResult) -> list[str]:
     """What stands before the answers: of what they are, where that is no workbook that a person knows; why not to use
     them, checks that fail first; then the trials lost to errors.
     """
@@ -56,7 +56,7 @@ def opening_sentences(simulation: Simulation) -> list[str]:
     ]
 
 
-def _write_answers(page: Page, simulation: Simulation) -> None:
+def _write_answers(page: Page, simulation: RunResult) -> None:
     rows = summarise(simulation)
     page.heading("Answers, from the accepted trials")
     page.table(_headers(rows), [_answer(row, rows) for row in rows])
@@ -121,7 +121,7 @@ def range_sentences(rows: Sequence[SummaryRow]) -> list[str]:
     return [f"The {percent(share)} range is central: {outside} of the accepted trials lie below it, {outside} above."]
 
 
-def base_sentences(simulation: Simulation) -> list[str]:
+def base_sentences(simulation: RunResult) -> list[str]:
     """What the base case is, and which filters it would not pass."""
     found = base_case(simulation)
     if found is None:
@@ -132,7 +132,7 @@ def base_sentences(simulation: Simulation) -> list[str]:
     return [f"{meaning}. As a trial it would be rejected by: {', '.join(found.rejected_by)}."]
 
 
-def write_counts(page: Page, simulation: Simulation) -> None:
+def write_counts(page: Page, simulation: RunResult) -> None:
     """Write how many trials were run, accepted and lost."""
     page.heading("Trials")
     total, rare = simulation.trials, simulation.rare
@@ -161,7 +161,7 @@ def write_counts(page: Page, simulation: Simulation) -> None:
         page.wide(f"The run ended when {simulation.stopped.sentence}.", "remark", LAST)
 
 
-def _weight_lines(simulation: Simulation) -> list[list[Shown]]:
+def _weight_lines(simulation: RunResult) -> list[list[Shown]]:
     """How many trials of equal weight carry as much, where evidence weights them."""
     found = simulation.weighting
     if found is None:
@@ -169,7 +169,7 @@ def _weight_lines(simulation: Simulation) -> list[list[Shown]]:
     return [[Shown("Effective", look="name"), cells.count(round(found.effective)), *[cells.BLANK] * 4]]
 
 
-def _search_lines(simulation: Simulation) -> list[list[Shown]]:
+def _search_lines(simulation: RunResult) -> list[list[Shown]]:
     """What was evaluated where accepted trials are rare."""
     if simulation.rare is None:
         return []
@@ -180,7 +180,7 @@ def _share(found: Estimate) -> list[Shown]:
     return [*cells.share(found), *cells.interval(found, percent=True)]
 
 
-def _write_notices(page: Page, simulation: Simulation) -> None:
+def _write_notices(page: Page, simulation: RunResult) -> None:
     if not simulation.notices:
         return
     page.heading("Notices")

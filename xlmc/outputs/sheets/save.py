@@ -19,13 +19,13 @@ from xlmc.outputs.sheets.book import build_sheets
 from xlmc.outputs.sheets.trials_sheet import TRIAL_ROWS
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["check_ending", "save"]
 
 
 def save(
-    simulation: Simulation,
+    simulation: RunResult,
     path: Path,
     *,
     command: str | None = None,
@@ -87,7 +87,7 @@ def check_ending(path: Path, source: Path) -> None:
         raise WorkbookError(f"results of a {source.suffix} workbook must end in {ending}", where=path, hint=hint)
 
 
-def _check(simulation: Simulation, path: Path, *, overwrite: bool) -> None:
+def _check(simulation: RunResult, path: Path, *, overwrite: bool) -> None:
     """Refuse to replace somebody's file, or the workbook itself where it has changed since it was read."""
     if overwrite and _is_source(simulation, path):
         refuse_into_source(path, simulation.model.workbook.sha256, "Run again, or write to another file")
@@ -97,5 +97,5 @@ def _check(simulation: Simulation, path: Path, *, overwrite: bool) -> None:
     Target(path, simulation.model.workbook.name, overwrite).check()
 
 
-def _is_source(simulation: Simulation, path: Path) -> bool:
+def _is_source(simulation: RunResult, path: Path) -> bool:
     return is_same_file(path, simulation.model.path)

@@ -15,7 +15,7 @@ from xlmc.outputs.sheets.cells import BLANK, Shown
 from xlmc.outputs.summary import percent
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.sheets.page import Page
 
 __all__ = [
@@ -39,7 +39,7 @@ _CHANGES: Final = 6
 """The column that what a scenario changes begins in; it reaches to the last one."""
 
 
-def write_scenarios(page: Page, simulation: Simulation) -> None:
+def write_scenarios(page: Page, simulation: RunResult) -> None:
     """Write the sheet."""
     name = simulation.model.workbook.name
     found = scenario_answers(simulation)

@@ -12,7 +12,7 @@ from xlmc.outputs.summary import ERROR_SENTENCE, percent
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.montecarlo.statistics import Estimate
     from xlmc.outputs.sheets.page import Page
 
@@ -37,7 +37,7 @@ _RIGHT = 7
 """The column of the percentiles, where they stand beside the statistics of one forecast."""
 
 
-def write_statistics(page: Page, simulation: Simulation) -> None:
+def write_statistics(page: Page, simulation: RunResult) -> None:
     """Write the sheet: forecasts side by side, their statistics and below these their percentiles."""
     name = simulation.model.workbook.name
     below = f"{name}: {simulation.accepted:,} accepted trials. From … to: the 95 % interval of each number"

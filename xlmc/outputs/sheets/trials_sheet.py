@@ -14,7 +14,7 @@ from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.sheets.styles import Reference
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.sheets.page import Page
 
 __all__ = ["HEADER", "MOST_ROWS", "TRIAL_ROWS", "WIDTHS", "TrialsAt", "write_trials"]
@@ -60,7 +60,7 @@ class TrialsAt:
         return [self.sheet, HEADER + 1, column, HEADER + rows, column]
 
 
-def write_trials(page: Page, simulation: Simulation, rows: int = TRIAL_ROWS) -> TrialsAt:
+def write_trials(page: Page, simulation: RunResult, rows: int = TRIAL_ROWS) -> TrialsAt:
     """Write the sheet with the first `rows` accepted trials, and say so where there are more."""
     live, forecasts = simulation.model.live, simulation.model.forecasts
     if rows == TRIAL_ROWS:
@@ -89,7 +89,7 @@ def _count_line(shown: int, accepted: int) -> Shown:
     return Shown(f"Only the first {shown:,} of {accepted:,} accepted trials stand here.", look="alarm")
 
 
-def _columns(simulation: Simulation, shown: int) -> list[tuple[Shown, NDArray[np.float64]]]:
+def _columns(simulation: RunResult, shown: int) -> list[tuple[Shown, NDArray[np.float64]]]:
     """Headings with units, green for assumptions and blue for forecasts, and `(shown,)` values in memory."""
 
     def column(heading: Shown, values: NDArray[np.float64]) -> tuple[Shown, NDArray[np.float64]]:

@@ -12,14 +12,15 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from simulated import simulated
 
-import xlmc
 from xlmc.analysis.results.record import make_record
 from xlmc.analysis.results.record.errors_met import errors_met
 from xlmc.analysis.results.record.make import fingerprint, quoted_argument, repeat_command
 from xlmc.excel.workbook.inject import original_hash
 from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.definitions.run_settings import Settings
+from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.statistics import rank_correlation
 
 EXAMPLE = Path(__file__).resolve().parents[4] / "examples/intersection.xlsx"
@@ -157,20 +158,20 @@ def test_errors_are_told_by_definition_cell_and_code(run, record):
 
 def test_a_record_is_plain_and_the_same_for_the_same_run(model, run, record):
     found = json.dumps(record.as_dict(), allow_nan=False)
-    again = make_record(model.simulate(jobs=2), "xlmc simulate 'my book.xlsx'")
+    again = make_record(simulated(model, jobs=2), "xlmc simulate 'my book.xlsx'")
     assert json.dumps(again.as_dict(), allow_nan=False) == found
 
 
 def test_without_accepted_trials_there_is_no_mean_to_record(model):
-    empty = next(run for seed in range(200) if (run := model.simulate(1, seed=seed)).accepted == 0)
+    empty = next(run for seed in range(200) if (run := simulated(model, 1, seed=seed)).accepted == 0)
     record = make_record(empty)
     assert record.rows("forecasts")[0]["mean"] is None
     json.dumps(record.as_dict(), allow_nan=False)
 
 
 def test_a_file_is_known_by_two_hashes():
-    model = xlmc.load(EXAMPLE)
-    record = make_record(model.simulate(100))
+    model = load(EXAMPLE)
+    record = make_record(simulated(model, 100))
     assert record["file.sha256"] == model.workbook.sha256
     assert record["file.original_sha256"] == original_hash(model.workbook.parts)
 
@@ -194,8 +195,8 @@ def test_every_missing_number_counts_the_same():
 
 
 def test_it_depends_on_the_seed_and_not_on_the_threads(model, run):
-    assert fingerprint(model.simulate(jobs=2)) == fingerprint(run)
-    assert fingerprint(model.simulate(seed=6)) != fingerprint(run)
+    assert fingerprint(simulated(model, jobs=2)) == fingerprint(run)
+    assert fingerprint(simulated(model, seed=6)) != fingerprint(run)
 
 
 def test_one_bit_changes_it():
@@ -227,4 +228,4 @@ def test_other_settings_are_said_where_the_workbook_does_not_say_them():
 
 
 def test_the_settings_of_a_run_by_another_engine_are_said(model):
-    assert repeat_command(model.simulate(10, engine="formulas")).endswith("--trials 10 --seed 5 --engine formulas")
+    assert repeat_command(simulated(model, 10, engine="formulas")).endswith("--trials 10 --seed 5 --engine formulas")

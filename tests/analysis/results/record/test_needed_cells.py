@@ -10,8 +10,8 @@ from fewer_sheets import leave_out
 from hypothesis import given
 from hypothesis import strategies as st
 from packed_sheets import packed_sheets
+from simulated import simulated
 
-import xlmc
 from xlmc.analysis.results.record.needed_cells import (
     MOST_ROWS,
     cell_section,
@@ -27,6 +27,7 @@ from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula.shape import shape_of, text_at
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.workbook import CellContent, Formula
+from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.sheets import book
 
 TEXTS = {
@@ -119,7 +120,7 @@ def test_calls_in_cells_are_recorded_as_they_stand(tmp_path):
     written.active["B1"] = 2
     written.active["C1"] = '=RiskOutput("x")+A1'
     written.save(tmp_path / "risk.xlsx")
-    assert needed_contents(xlmc.load(tmp_path / "risk.xlsx")) == {
+    assert needed_contents(load(tmp_path / "risk.xlsx")) == {
         Cell("Sheet", 1, 1): "=10+RiskNormal(5,1)*B1",
         Cell("Sheet", 1, 2): "2",
         Cell("Sheet", 1, 3): '=RiskOutput("x")+A1',
@@ -214,7 +215,7 @@ def test_settings_are_read_back_exactly(model, monkeypatch):
         {"adaptive": 1, "forecasts": "area", "trials": 500},
         {"sampling": "sobol", "seed": 10**30},
     ):
-        run = model.simulate(**{"trials": 100} | asked)
+        run = simulated(model, **{"trials": 100} | asked)
         record = read_record(read_workbook(packed_sheets(run)))
         assert recorded_settings(record) == run.settings
         assert recorded_settings(Record((settings_section(run),))) == run.settings

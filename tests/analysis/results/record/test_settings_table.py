@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from simulated import simulated
 
-import xlmc
 from xlmc.analysis.results.record.record_parts import Entry, Record, Section
 from xlmc.analysis.results.record.settings_table import recorded_settings, settings_section
 from xlmc.errors import WorkbookError
 from xlmc.montecarlo.definitions.stopping import stopping
+from xlmc.montecarlo.model.loading import load
 
 LABELS = {
     "trials": "Trials at most",
@@ -49,7 +50,7 @@ ASKED = [
 
 @pytest.fixture(scope="module")
 def run(small_book):
-    return xlmc.load(small_book).simulate(20)
+    return simulated(load(small_book), 20)
 
 
 def section_of(run, asked):

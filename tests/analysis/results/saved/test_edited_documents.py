@@ -10,11 +10,12 @@ import zipfile
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 from xlmc.analysis.results.saved import keep, open_run
 from xlmc.analysis.results.saved.archive import RUN
-from xlmc.api import load
 from xlmc.errors import XlmcError
+from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.summary import summarise, summary_text
 
 OTHERS = [None, True, -1, 0.5, 10**30, "x", [], {}, [None], {"a": 1}, float("nan")]
@@ -23,7 +24,7 @@ OF_PYTHON = re.compile(r"NoneType|None\b|argument|object|subscript|dtype|array|d
 
 @pytest.fixture(scope="session")
 def tiny_run(small_book, tmp_path_factory):
-    return keep(load(small_book).simulate(20), tmp_path_factory.mktemp("edited") / "tiny.xlmcrun")
+    return keep(simulated(load(small_book), 20), tmp_path_factory.mktemp("edited") / "tiny.xlmcrun")
 
 
 def places(found, path=()):

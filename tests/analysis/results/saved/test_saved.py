@@ -11,13 +11,15 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, event, given, settings
 from hypothesis import strategies as st
+from simulated import simulated
 
-import xlmc
 from xlmc.analysis.results.record import make_record
 from xlmc.analysis.results.saved import is_saved_run, keep, open_run
 from xlmc.analysis.results.saved.archive import RUN, WORKBOOK
+from xlmc.api import Simulation
 from xlmc.errors import SimulationError, WorkbookError, XlmcError
 from xlmc.montecarlo.columns import on_disk
+from xlmc.montecarlo.model.loading import load
 
 RUNS = {
     "Monte Carlo": {},
@@ -37,12 +39,12 @@ RUNS = {
 
 @pytest.fixture(scope="session")
 def model(small_book):
-    return xlmc.load(small_book)
+    return load(small_book)
 
 
 @pytest.fixture(scope="session")
 def run(model):
-    return model.simulate()
+    return simulated(model)
 
 
 @pytest.fixture(scope="session")
@@ -83,17 +85,17 @@ def same(first, second):
 
 @pytest.mark.parametrize("asked", RUNS.values(), ids=RUNS)
 def test_a_saved_run_is_the_same_run_again(model, tmp_path, asked):
-    run = model.simulate(**asked)
-    run.keep(tmp_path / "a.xlmcrun")
-    again = xlmc.open_run(tmp_path / "a.xlmcrun")
+    run = simulated(model, **asked)
+    Simulation(run).keep(tmp_path / "a.xlmcrun")
+    again = open_run(tmp_path / "a.xlmcrun")
     assert same(run, again)
-    again.keep(tmp_path / "b.xlmcrun")
+    Simulation(again).keep(tmp_path / "b.xlmcrun")
     assert (tmp_path / "a.xlmcrun").read_bytes() == (tmp_path / "b.xlmcrun").read_bytes()
 
 
 def test_its_result_workbook_is_the_same_byte_for_byte(run, saved, tmp_path):
-    run.save(tmp_path / "a.xlsx")
-    xlmc.open_run(saved).save(tmp_path / "b.xlsx")
+    Simulation(run).save(tmp_path / "a.xlsx")
+    Simulation(open_run(saved)).save(tmp_path / "b.xlsx")
     assert (tmp_path / "a.xlsx").read_bytes() == (tmp_path / "b.xlsx").read_bytes()
 
 
@@ -108,9 +110,9 @@ def test_it_holds_the_workbook_as_it_was(saved, small_book):
 
 def test_columns_on_disk_are_saved_and_opened_on_disk(model, tmp_path, saved, monkeypatch):
     monkeypatch.setattr("xlmc.montecarlo.columns.column_store.IN_MEMORY", 0)
-    run = model.simulate()
+    run = simulated(model)
     assert on_disk(run.trial_index)
-    run.keep(tmp_path / "a.xlmcrun")
+    Simulation(run).keep(tmp_path / "a.xlmcrun")
     assert (tmp_path / "a.xlmcrun").read_bytes() == saved.read_bytes()
     again = open_run(saved)
     assert on_disk(again.trial_index)
@@ -145,9 +147,9 @@ def test_it_names_where_it_was_made(saved, monkeypatch):
 
 
 def test_a_run_whose_workbook_is_no_file_is_refused(book, tmp_path):
-    run = book({"A1": 1.0}, {"a": {"cell": "A1", "low": 0, "high": 1}}, {"x": "A1"}).simulate(100)
+    run = simulated(book({"A1": 1.0}, {"a": {"cell": "A1", "low": 0, "high": 1}}, {"x": "A1"}), 100)
     with pytest.raises(SimulationError, match="was not read from a file"):
-        run.keep(tmp_path / "a.xlmcrun")
+        Simulation(run).keep(tmp_path / "a.xlmcrun")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -157,7 +159,7 @@ def test_a_run_whose_workbook_is_no_file_is_refused(book, tmp_path):
 )
 def test_where_it_cannot_be_written(run, tmp_path, name, message):
     with pytest.raises(WorkbookError, match=message):
-        run.keep(tmp_path / name)
+        Simulation(run).keep(tmp_path / name)
 
 
 def test_a_failed_write_leaves_the_old_file(run, saved, tmp_path, monkeypatch):
@@ -165,7 +167,7 @@ def test_a_failed_write_leaves_the_old_file(run, saved, tmp_path, monkeypatch):
     path.write_bytes(saved.read_bytes())
     monkeypatch.setattr("xlmc.analysis.results.saved.keeping.tally_document", lambda tally: 1 / 0)
     with pytest.raises(ZeroDivisionError):
-        run.keep(path)
+        Simulation(run).keep(path)
     assert [(each.name, each.read_bytes()) for each in tmp_path.iterdir()] == [("run.xlmcrun", saved.read_bytes())]
 
 
@@ -290,8 +292,8 @@ GOALS = {
 
 @pytest.mark.parametrize(("asked", "written"), GOALS.values(), ids=GOALS)
 def test_goals_are_saved_and_opened_as_in_version_0_4(model, tmp_path, asked, written):
-    run = model.simulate(**asked)
-    path = run.keep(tmp_path / "now.xlmcrun")
+    run = simulated(model, **asked)
+    path = Simulation(run).keep(tmp_path / "now.xlmcrun")
     with zipfile.ZipFile(path) as package:
         assert json.dumps(json.loads(package.read(RUN))["settings"]["stopping"]) == written
 
@@ -409,7 +411,7 @@ def test_what_is_no_file_of_ours(tmp_path, data, message):
 @pytest.fixture(scope="session")
 def tiny(model, tmp_path_factory):
     """A saved run of few trials, for many faults."""
-    return keep(model.simulate(20), tmp_path_factory.mktemp("tiny") / "tiny.xlmcrun")
+    return keep(simulated(model, 20), tmp_path_factory.mktemp("tiny") / "tiny.xlmcrun")
 
 
 @pytest.mark.usefixtures("read_once")

@@ -6,8 +6,8 @@ from pathlib import Path
 import openpyxl
 import pytest
 
-import xlmc
-from xlmc.api import Model
+from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.model.model import CompiledModel
 
 TEMPLATES = Path(__file__).resolve().parents[4] / "templates"
 _HEADINGS = {"base": 4, "low": 7, "high": 8}
@@ -23,7 +23,7 @@ def answering(book):
         forecasts = tuple(replace(f, units=units) for f in made.forecasts)
         assumptions = tuple(replace(a, units=units) for a in made.assumptions)
         definitions = replace(made.definitions, forecasts=forecasts, assumptions=assumptions)
-        return Model(made.workbook, definitions, Path(f"{name}.xlsx"))
+        return CompiledModel(made.workbook, definitions, Path(f"{name}.xlsx"))
 
     return make
 
@@ -44,6 +44,6 @@ def filled_in(tmp_path):
                 sheet.cell(rows[symbol], _HEADINGS[heading]).value = number
         path = tmp_path / f"{template}.xlsx"
         made.save(path)
-        return xlmc.load(path)
+        return load(path)
 
     return make

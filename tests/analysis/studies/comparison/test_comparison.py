@@ -13,8 +13,8 @@ import pytest
 
 from xlmc.analysis.studies.comparison import Verdict, compare
 from xlmc.analysis.studies.comparison.verdicts import book_names, inputs_text, verdict_text
-from xlmc.api import Model
 from xlmc.errors import SimulationError
+from xlmc.montecarlo.model.model import CompiledModel
 
 SIZE = {"trials": 20_000, "seed": 1}
 
@@ -31,7 +31,7 @@ def linear(book):
         cells = {"A1": 0.5, "B1": 0.5, "D1": formula, **dict((more or {}).values())}
         made = book(cells, given, forecasts, filters or {})
         forecasts = tuple(replace(f, units=units) for f in made.forecasts)
-        return Model(made.workbook, replace(made.definitions, forecasts=forecasts), Path(name))
+        return CompiledModel(made.workbook, replace(made.definitions, forecasts=forecasts), Path(name))
 
     return make
 
@@ -176,7 +176,7 @@ def test_pairs_that_are_not_there(linear):
     second = linear(name="y.xlsx")
     renamed = replace(second.definitions, forecasts=(replace(second.forecasts[0], name="q"),))
     with pytest.raises(SimulationError, match="no forecast has the same name in both books"):
-        compare(linear(), Model(second.workbook, renamed, second.path))
+        compare(linear(), CompiledModel(second.workbook, renamed, second.path))
 
 
 def test_undecided_and_decided_by_as_many_trials_as_it_asks_for(linear):
@@ -250,7 +250,7 @@ def test_the_probability_of_being_above_the_threshold_is_compared(book):
     given = {"a": {"cell": "A1", "low": 0, "high": 1}}
     first, second = (book({"A1": 0.5, "D1": f"=A1+IF(A1>0.98,{more},0)"}, given, {"y": "D1"}) for more in (0, 3))
     asked = replace(first.definitions.forecasts[0], threshold=2.0)
-    first = Model(first.workbook, replace(first.definitions, forecasts=(asked,)), first.path)
+    first = CompiledModel(first.workbook, replace(first.definitions, forecasts=(asked,)), first.path)
     found = compare(first, second, "1", trials=20_000, seed=1)
     (each,) = found.forecasts
     assert each.judgement.verdict is Verdict.BEYOND

@@ -5,12 +5,13 @@ from __future__ import annotations
 import openpyxl
 import pytest
 from openpyxl.worksheet.table import Table
+from simulated import simulated
 
-import xlmc
 from xlmc.analysis.studies.comparison import Verdict, compare
 from xlmc.analysis.studies.comparison.feeding import fed_model
 from xlmc.analysis.studies.comparison.verdicts import verdict_text
 from xlmc.errors import SimulationError
+from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.simulation.simulate import simulate
 
 SIZE = {"trials": 20_000, "seed": 1}
@@ -57,7 +58,7 @@ def test_a_draw_that_its_formula_may_shift_is_refused(answering, tmp_path):
     book.active["A1"], book.active["A2"] = '=RiskNormal(5,1,RiskShift(3),RiskName("a"))', '=A1+RiskOutput("y")'
     book.save(tmp_path / "shifted.xlsx")
     with pytest.raises(SimulationError, match="drawn by a call in a formula") as refused:
-        compare(xlmc.load(tmp_path / "shifted.xlsx"), answering("b", 0, 1), feeds={"a": "y"}, **SIZE)
+        compare(load(tmp_path / "shifted.xlsx"), answering("b", 0, 1), feeds={"a": "y"}, **SIZE)
     assert str(refused.value.where) == "Sheet!A1"
 
 
@@ -85,7 +86,7 @@ def joint(tmp_path):
                 sheet.cell(10, column, heading)
             sheet.add_table(Table(displayName="xlmc_correlations", ref=f"A10:C{10 + len(correlations)}"))
         book.save(tmp_path / f"{name}.xlsx")
-        return xlmc.load(tmp_path / f"{name}.xlsx")
+        return load(tmp_path / f"{name}.xlsx")
 
     return make
 
@@ -104,14 +105,14 @@ def test_several_assumptions_are_drawn_from_the_same_trial(joint):
         number = each.difference.mean.second, each.difference.standard_deviation.second
         assert abs(number[0].value - mean) < 5 * 2**0.5 * number[0].error, each.first.name
         assert number[1].value == pytest.approx(sd, rel=0.02), each.first.name
-    answers = source.simulate(**SIZE)
+    answers = simulated(source, **SIZE)
     run = simulate(fed_model(first, answers, {"v": "y0", "w": "y1"}), engine="numpy", **SIZE)
     pairs = set(zip(*(answers.forecasts[name].tolist() for name in ("y0", "y1")), strict=True))
     assert set(zip(run.inputs["v"].tolist(), run.inputs["w"].tolist(), strict=True)) <= pairs
 
 
 def test_trials_in_which_one_answer_is_no_number_feed_nothing(joint):
-    source = joint("b", "=IF(B2<0.5,NA(),B2)", "=IF(B3<0.5,NA(),B2)").simulate(**SIZE)
+    source = simulated(joint("b", "=IF(B2<0.5,NA(),B2)", "=IF(B3<0.5,NA(),B2)"), **SIZE)
     run = simulate(fed_model(joint("a", "=B2", "=B3"), source, {"v": "y0", "w": "y1"}), **SIZE)
     assert run.inputs["v"].tolist() == run.inputs["w"].tolist()
     assert run.inputs["v"].min() >= 0.5

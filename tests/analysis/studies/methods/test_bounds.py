@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 from xlmc.analysis.studies.methods import Corners, ImportanceGrid, Optimised, WorstCase
 from xlmc.analysis.studies.methods import corners as corners_file
@@ -181,7 +182,7 @@ def test_no_drawn_trial_lies_outside_the_optimised_bounds(small, searched):
 def test_bounds_are_widened_by_trials_that_lie_outside_and_searched_from_there(book):
     """y = cos x + x/40: from its middle the search ends at a nearer hill; a trial on the next one leads it up there."""
     model = book({"A1": 0.1, "B1": "=COS(A1)+A1/40"}, {"x": {"cell": "A1", "low": -1, "high": 7}}, {"y": "B1"})
-    run = model.simulate(4_096, 1)
+    run = simulated(model, 4_096, 1)
     extremes = extremes_of(run.forecasts, run.trial_index, 1, run.plan)
     answers, ends = widen_bounds(model, 1, {"y": (-1.0, 1.0003)}, extremes)
     top = float(np.arcsin(1 / 40)) + 2 * np.pi

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 from xlmc.analysis.studies.methods import ImportanceGrid, Sampled, Surrogate
 from xlmc.analysis.studies.methods.importance_grid import BINS, DEFENSIVE, _density
@@ -95,7 +96,7 @@ def test_the_grid_respects_correlations(book):
         {"high": {"cell": "C1", "above": 1}},
         correlations={("a", "b"): 0.8},
     )
-    plain = model.simulate(1 << 18, 3)["S"].mean
+    plain = simulated(model, 1 << 18, 3)["S"].mean
     found = ImportanceGrid().run(model, 1 << 16, 3).answers["S"].mean
     assert abs(found - plain.value) < 5 * np.hypot(plain.error, 2 * plain.error)
 

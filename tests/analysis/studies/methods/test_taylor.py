@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 from xlmc.analysis.studies.methods import FirstOrder, SecondOrder
 from xlmc.errors import SimulationError
@@ -59,7 +60,7 @@ def test_second_order_of_a_quadratic_polynomial_is_exact(book):
     )
     answer = SecondOrder().run(model, 0, 1).answers["f"]
     assert answer.mean == pytest.approx(4 / 3 + 5 + 2.5, rel=1e-12)
-    run = model.simulate(1 << 18, 5, sampling="sobol")["f"]
+    run = simulated(model, 1 << 18, 5, sampling="sobol")["f"]
     assert answer.sd == pytest.approx(run.standard_deviation.value, rel=1e-4)
     low, high = run.central()
     assert (answer.low, answer.high) == pytest.approx((low.value, high.value), rel=1e-3)

@@ -8,10 +8,11 @@ import math
 from pathlib import Path
 
 import pytest
+from simulated import simulated
 
-import xlmc
 from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.analysis.studies.sensitivity.influences import MOST_ASSUMPTIONS
+from xlmc.montecarlo.model.loading import load
 
 EXAMPLES = Path(__file__).resolve().parents[4] / "examples"
 
@@ -19,7 +20,7 @@ EXAMPLES = Path(__file__).resolve().parents[4] / "examples"
 @pytest.fixture(scope="module")
 def case():
     """The paper's case study."""
-    return sensitivities(xlmc.load(EXAMPLES / "intersection.xlsx").simulate())
+    return sensitivities(simulated(load(EXAMPLES / "intersection.xlsx")))
 
 
 def influence(found, forecast, assumption):
@@ -70,7 +71,7 @@ def test_correlated_assumptions_share_what_they_explain(book, normal):
         {"y": "B1", "z": "A2"},
         correlations={("a", "b"): 0.7},
     )
-    found = sensitivities(model.simulate(20_000, 2))
+    found = sensitivities(simulated(model, 20_000, 2))
     rho = 2.0 * math.sin(math.pi * 0.7 / 6.0)
     for name, truth in (("a", 0.2), ("b", 0.2 * rho**2), ("c", 0.8)):
         each = influence(found, "y", name).explained
@@ -85,7 +86,7 @@ def many(book, n):
 def test_of_very_many_assumptions_the_influential_are_kept(book):
     """Also the last one, whose effect falls and rises."""
     n = MOST_ASSUMPTIONS + 60
-    found = sensitivities(many(book, n).simulate(4000, 1))
+    found = sensitivities(simulated(many(book, n), 4000, 1))
     assert found.omitted == 60
     assert len(found["y"].influences) == len(found["y"].bars) == MOST_ASSUMPTIONS
     assert {each.assumption for each in found["y"].influences[:2]} == {"a1", f"a{n}"}
@@ -100,15 +101,15 @@ def test_replicated_runs_have_errors_of_their_own(book, sampling):
         {"y": "B1"},
         {"f": {"cell": "B1", "below": 1.5}},
     )
-    plain = influence(sensitivities(model.simulate(40_000, 1)), "y", "a")
-    each = influence(sensitivities(model.simulate(40_000, 1, sampling=sampling)), "y", "a")
+    plain = influence(sensitivities(simulated(model, 40_000, 1)), "y", "a")
+    each = influence(sensitivities(simulated(model, 40_000, 1, sampling=sampling)), "y", "a")
     assert 0.0 < each.explained.error < 2.0 * plain.explained.error
     assert each.explained.value == pytest.approx(plain.explained.value, abs=4 * plain.explained.error * 5**0.5)
     assert each.rank_correlation.value == pytest.approx(plain.rank_correlation.value, abs=0.04)
 
 
 def test_draws_that_were_not_kept(book):
-    found = sensitivities(many(book, 3).simulate(1000, 1, keep_inputs=0))
+    found = sensitivities(simulated(many(book, 3), 1000, 1, keep_inputs=0))
     assert found["y"].influences == ()
     assert len(found["y"].bars) == 3
 
@@ -120,11 +121,11 @@ def test_no_accepted_trial_and_no_live_assumption(book):
         {"y": "B1"},
         {"f": "C1", "g": {"cell": "B1", "below": 0.5}},
     )
-    found = sensitivities(none.simulate(500, 1))
+    found = sensitivities(simulated(none, 500, 1))
     assert found["y"].influences == ()
     assert found.filter_limits == ()
     still = book({"A1": 0.5, "B1": "=A1"}, {"a": {"cell": "A1", "low": 0, "high": 1, "frozen": True}}, {"y": "B1"})
-    found = sensitivities(still.simulate(10, 1))
+    found = sensitivities(simulated(still, 10, 1))
     assert (found["y"].influences, found["y"].bars, found["y"].base) == ((), (), 0.5)
     assert "no assumption is drawn" in found.sobol_reason
 
@@ -135,7 +136,7 @@ def test_trials_without_a_number_are_left_out_of_that_forecast_only(book):
         {"a": {"cell": "A1", "low": 0.0, "high": 1.0}, "b": {"cell": "A2", "low": 0.0, "high": 1.0}},
         {"root": "B1", "sum": "B2"},
     )
-    run = model.simulate(4000, 1)
+    run = simulated(model, 4000, 1)
     found = sensitivities(run)
     assert found["sum"].trials == 4000
     assert found["root"].trials == run["root"].values.size

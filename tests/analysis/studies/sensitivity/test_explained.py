@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 import pytest
+from simulated import simulated
 
-import xlmc
+from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.analysis.studies.sensitivity.explained import explained
 from xlmc.analysis.studies.sensitivity.given_data import explained_share
 from xlmc.analysis.studies.sensitivity.pull_errors import Units
@@ -101,8 +102,8 @@ def test_in_a_workbook(book, formula, ends, truth, sampling):
     model = book(
         {"A1": 0.5, "A2": 0.5, "B1": formula}, {n: {"cell": f"A{n[1]}", **ends} for n in ("x1", "x2")}, {"y": "B1"}
     )
-    run = model.simulate(trials=100_000, seed=1, sampling=sampling)
-    (first, *_) = xlmc.sensitivities(run)["y"].influences
+    run = simulated(model, trials=100_000, seed=1, sampling=sampling)
+    (first, *_) = sensitivities(run)["y"].influences
     assert first.assumption == "x1"
     low, high = first.explained.interval
     assert low <= truth <= high + 1e-9

@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.analysis.studies.sensitivity.limit_trials import limit_trials
 from xlmc.analysis.studies.sensitivity.moved_limit import grid, moved_limit
-from xlmc.api import Model
+from xlmc.montecarlo.model.model import CompiledModel
 
 CELLS = {"A1": 0.5, "A2": 0.5, "A3": 0.5, "B1": "=A1+A2", "B2": "=A1*A3", "C1": "=A1", "C2": "=A2-A3", "C3": "=A3<0.9"}
 FIELDS = {"at least": "at_least", "at most": "at_most", "above": "above", "below": "below"}
@@ -29,12 +30,12 @@ def model(book):
 def moved(model, limit, to):
     """The book with this limit at another value."""
     filters = tuple(replace(f, **{FIELDS[limit.relation]: to}) if f.name == limit.filter else f for f in model.filters)
-    return Model(model.workbook, replace(model.definitions, filters=filters), model.path)
+    return CompiledModel(model.workbook, replace(model.definitions, filters=filters), model.path)
 
 
 @pytest.fixture(scope="module")
 def limits(model):
-    return sensitivities(model.simulate(6000, 4)).filter_limits
+    return sensitivities(simulated(model, 6000, 4)).filter_limits
 
 
 def test_every_numeric_limit_is_moved(limits):
@@ -53,7 +54,7 @@ def test_every_numeric_limit_is_moved(limits):
 def test_moved_limits_give_what_a_run_with_them_gives(model, limits, number):
     limit = limits[number]
     for point in limit.points:
-        run = moved(model, limit, point.limit).simulate(6000, 4)
+        run = simulated(moved(model, limit, point.limit), 6000, 4)
         assert point.trials == run.accepted
         assert point.acceptance.value == pytest.approx(run.accepted / 6000)
         for answer in point.answers:
@@ -88,7 +89,7 @@ def below(book):
 
 def test_a_case_in_closed_form(below):
     """a below L, uniform: the mean of a + b is (L + 1)/2, the share L, the slope ½; within 4 standard errors."""
-    (limit,) = sensitivities(below.simulate(40_000, 1)).filter_limits
+    (limit,) = sensitivities(simulated(below, 40_000, 1)).filter_limits
     assert limit.loosened_trials == 10_000
     for point in limit.points:
         assert abs(point.acceptance.value - point.limit) < 4.0 * point.acceptance.error
@@ -104,7 +105,7 @@ def test_errors_are_the_spread_between_runs(below, monkeypatch):
     monkeypatch.setattr("xlmc.analysis.studies.sensitivity.limit_trials.LEAST_AGAIN", 4000)
     runs = []
     for seed in range(40):
-        (tried,) = limit_trials(below.simulate(16_000, seed), 1, 1).tried
+        (tried,) = limit_trials(simulated(below, 16_000, seed), 1, 1).tried
         runs.append(moved_limit(tried.trials, tried.grid, ["y"], [0.51]))
     numbers = {
         "slope": lambda limit: limit[1][0].mean,
@@ -122,12 +123,16 @@ def test_errors_are_the_spread_between_runs(below, monkeypatch):
 
 def test_a_limit_in_a_cell_is_moved_and_one_that_varies_is_named(book):
     found = sensitivities(
-        book(
-            {"A1": 0.5, "A2": 0.5, "B1": "=A1+A2", "D1": "=0.25+0.25", "D2": "=0.9+A2"},
-            {"a": {"cell": "A1", "low": 0.0, "high": 1.0}, "b": {"cell": "A2", "low": 0.0, "high": 1.0}},
-            {"y": "B1"},
-            {"fixed": {"cell": "A1", "at_most": "D1"}, "varying": {"cell": "B1", "below": "D2"}},
-        ).simulate(2000, 1)
+        simulated(
+            book(
+                {"A1": 0.5, "A2": 0.5, "B1": "=A1+A2", "D1": "=0.25+0.25", "D2": "=0.9+A2"},
+                {"a": {"cell": "A1", "low": 0.0, "high": 1.0}, "b": {"cell": "A2", "low": 0.0, "high": 1.0}},
+                {"y": "B1"},
+                {"fixed": {"cell": "A1", "at_most": "D1"}, "varying": {"cell": "B1", "below": "D2"}},
+            ),
+            2000,
+            1,
+        )
     )
     assert [(each.filter, each.limit) for each in found.filter_limits] == [("fixed", 0.5)]
     assert found.varying_limits == ("varying",)
@@ -135,9 +140,9 @@ def test_a_limit_in_a_cell_is_moved_and_one_that_varies_is_named(book):
 
 @pytest.mark.parametrize("sampling", ["lhs", "sobol"])
 def test_replicated_runs(model, sampling):
-    run = model.simulate(6000, 4, sampling=sampling)
+    run = simulated(model, 6000, 4, sampling=sampling)
     limit = sensitivities(run).filter_limits[0]
-    again = moved(model, limit, limit.points[0].limit).simulate(6000, 4, sampling=sampling)
+    again = simulated(moved(model, limit, limit.points[0].limit), 6000, 4, sampling=sampling)
     if sampling == "lhs":  # the order of Sobol dimensions may change with the limit
         assert limit.points[0].trials == again.accepted
     result, answer = run["y"].mean, limit.points[3].answers[0].mean

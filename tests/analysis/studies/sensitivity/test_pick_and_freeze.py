@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.analysis.studies.sensitivity.pick_and_freeze import pick_and_freeze, sobol_indices
@@ -14,7 +15,7 @@ ISHIGAMI = {"x1": (0.31391, 0.55759), "x2": (0.44241, 0.44241), "x3": (0.0, 0.24
 
 @pytest.fixture(scope="module")
 def found(ishigami):
-    return sensitivities(ishigami.simulate(50_000, 3))
+    return sensitivities(simulated(ishigami, 50_000, 3))
 
 
 @pytest.mark.parametrize("name", ISHIGAMI)
@@ -83,7 +84,7 @@ CELLS = {"A1": 0.5, "A2": 0.5, "B1": "=A1+A2", "C1": "=A1"}
     ],
 )
 def test_it_is_said_why_there_are_none(book, definitions, why):
-    found = sensitivities(book(CELLS, uniforms("a", "b"), {"y": "B1"}, **definitions).simulate(2000, 1))
+    found = sensitivities(simulated(book(CELLS, uniforms("a", "b"), {"y": "B1"}, **definitions), 2000, 1))
     assert why in found.sobol_reason
     assert found.sobol_trials == 0
     assert all(each.total is None for each in found["y"].influences)
@@ -92,12 +93,12 @@ def test_it_is_said_why_there_are_none(book, definitions, why):
 def test_none_where_a_parameter_depends_on_an_assumption(book):
     given = uniforms("a", "b")
     given["b"]["high"] = "C2"
-    found = sensitivities(book({**CELLS, "C2": "=A1+1"}, given, {"y": "B1"}).simulate(2000, 1))
+    found = sensitivities(simulated(book({**CELLS, "C2": "=A1+1"}, given, {"y": "B1"}), 2000, 1))
     assert "parameters of assumptions depend" in found.sobol_reason
 
 
 def test_a_filter_that_rejects_nothing_is_no_reason(book):
     model = book(CELLS, uniforms("a", "b"), {"y": "B1"}, {"f": {"cell": "C1", "below": 2.0}})
-    found = sensitivities(model.simulate(2000, 1))
+    found = sensitivities(simulated(model, 2000, 1))
     assert found.sobol_reason == ""
     assert found.sobol_trials > 0

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from xlmc.api import load
+from xlmc.montecarlo.model.loading import load
 
 ROOT = Path(__file__).resolve().parents[4]
 

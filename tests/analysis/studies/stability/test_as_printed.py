@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 from xlmc.analysis.studies.stability import Level, stability
 from xlmc.analysis.studies.stability.case import Case
@@ -67,10 +68,10 @@ def test_at_270_degrees_a_plausible_speed_without_an_error_is_called_wrong(as_pr
 
 def test_at_270_degrees_a_plain_run_is_flagged(as_printed):
     model = as_printed({"alpha_2": (270, 270)})
-    warnings = model.simulate(trials=20_000).warnings
+    warnings = simulated(model, trials=20_000).warnings
     assert any("the digits of 'Nissan impact speed' cannot be trusted" in warning for warning in warnings)
     better = as_printed({"alpha_2": (270, 270)}, {"V2i": BETTER})
-    assert better.simulate(trials=20_000).warnings == []
+    assert simulated(better, trials=20_000).warnings == []
 
 
 BETTER = "=-(V2f*SIN(RADIANS(beta_2-alpha_1))+m_1/m_2*V1f*SIN(RADIANS(beta_1-alpha_1)))/SIN(RADIANS(alpha_1-alpha_2))"

@@ -12,11 +12,11 @@ from pathlib import Path
 import openpyxl
 import pytest
 
-import xlmc
 from xlmc.analysis.studies.stability import Level, rounding_errors, stability
-from xlmc.api import Model
 from xlmc.excel.address import parse_address
 from xlmc.montecarlo.definitions.definitions import Forecast
+from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.model.model import CompiledModel
 
 ROOT = Path(__file__).resolve().parents[4]
 SPARE = "AD"
@@ -111,9 +111,9 @@ def with_naive_forms(path, template, given, forms):
         book["Model"][f"{SPARE}{number}"] = f"={form}"
         cells.append(parse_address(f"{SPARE}{number}", "Model"))
     book.save(path)
-    model = xlmc.load(path)
+    model = load(path)
     more = tuple(Forecast(form, cell, cell) for form, cell in zip(forms, cells, strict=True))
-    return Model(model.workbook, replace(model.definitions, forecasts=(*model.forecasts, *more)), path)
+    return CompiledModel(model.workbook, replace(model.definitions, forecasts=(*model.forecasts, *more)), path)
 
 
 @pytest.mark.parametrize(("template", "given", "forms"), CASES, ids=[f"{n} {c[0]}" for n, c in enumerate(CASES)])
@@ -127,5 +127,5 @@ def test_naive_forms_are_named_and_the_templates_are_not(template, given, forms,
 
 @pytest.mark.parametrize("template", ["edr-speed", "video-speed"])
 def test_the_templates_lose_no_digits_within_their_own_ranges(template):
-    found = stability(xlmc.load(ROOT / "templates" / f"{template}.xlsx"), trials=2_000, seed=1)
+    found = stability(load(ROOT / "templates" / f"{template}.xlsx"), trials=2_000, seed=1)
     assert {one.level for one in found.findings} <= {Level.NOTE}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 
 import pytest
+from simulated import simulated
 
 from xlmc.analysis.studies.stability.case import Case
 from xlmc.analysis.studies.stability.formula_trees import Trees, factors
@@ -31,7 +32,7 @@ ONE = {"a": {"cell": "A5", "low": 181, "high": 191}, "b": {"cell": "A7", "low": 
 def case(book):
     def make(formula, filters=None, **cells):
         model = book(CELLS | {"Z1": formula} | cells, ONE, {"f": "Z1"}, filters or {}, names=NAMES)
-        return Case(model, model.simulate(trials=200, seed=1)), parse_address("Z1", "S")
+        return Case(model, simulated(model, trials=200, seed=1)), parse_address("Z1", "S")
 
     return make
 

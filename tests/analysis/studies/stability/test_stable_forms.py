@@ -9,7 +9,7 @@ import pytest
 from openpyxl.worksheet.table import Table
 
 from xlmc.analysis.studies.stability import Level, stability
-from xlmc.api import load
+from xlmc.montecarlo.model.loading import load
 
 pytestmark = pytest.mark.usefixtures("few_points")
 

@@ -10,7 +10,7 @@ import pytest
 from mpmath import mpf
 
 from xlmc.analysis.studies.derivatives import derivatives
-from xlmc.api import load
+from xlmc.montecarlo.model.loading import load
 
 ROOT = Path(__file__).resolve().parents[4]
 MPH = mpf(3600) / 5280

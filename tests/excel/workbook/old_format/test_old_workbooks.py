@@ -16,8 +16,9 @@ from click.testing import CliRunner
 from crystal_ball_book import Asked, Drawn, read_parts, save, write_parts
 from needed_programs import missing
 from old_format_book import art, drawing, number, plain_book, record, shape, shapes_of, with_shapes
+from simulated import simulated
 
-from xlmc.api import load
+from xlmc.api import Simulation
 from xlmc.cli import xlmc as command
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.hidden_scripts import HiddenScript, hidden_scripts
@@ -25,6 +26,7 @@ from xlmc.excel.workbook.old_format import joined_package, libreoffice
 from xlmc.excel.workbook.old_format.old_stream import read_old_workbook
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.structure import read_structure
+from xlmc.montecarlo.model.loading import load
 
 TEXTS = [("CB_Block_0", "㜸㠰"), ("CB_Block_7.0.0.0:1", "㜸" * 9000), ("CB_Block_7.0.0.0:2", "㜸㐱")]
 SHAPES = [shape(*each, n) for n, each in enumerate(TEXTS, 1)]
@@ -238,8 +240,8 @@ def test_a_workbook_of_crystal_ball_gives_the_draws_of_its_xlsx(tmp_path):
     shapes = shapes_of(read_parts(new), ["CB_DATA_", "Other's"])
     old.write_bytes(with_shapes(WRITTEN.read_bytes(), shapes, size=500))
     before = old.read_bytes()
-    expected, model = load(new).simulate(500), load(old)
-    run = model.simulate(500)
+    expected, model = simulated(load(new), 500), load(old)
+    run = simulated(model, 500)
     for column in ("inputs", "forecasts"):
         for name, values in getattr(expected, column).items():
             np.testing.assert_array_equal(getattr(run, column)[name], values)
@@ -248,10 +250,10 @@ def test_a_workbook_of_crystal_ball_gives_the_draws_of_its_xlsx(tmp_path):
         n.message for n in model.notices if "converted from an old Excel workbook (.xls) by LibreOffice" in n.message
     ]
     result = tmp_path / "case-results.xlsx"
-    run.save(result)
+    Simulation(run).save(result)
     replayed = CliRunner().invoke(command, ["replay", str(result)])
     assert "identical" in replayed.output, replayed.output
-    again = load(result).simulate(500)  # the results are a workbook of Crystal Ball, too
+    again = simulated(load(result), 500)  # the results are a workbook of Crystal Ball, too
     np.testing.assert_array_equal(again.forecasts["Total"], expected.forecasts["Total"])
     refused = CliRunner().invoke(command, ["simulate", str(old), "--in-place", "-n", "500"])
     assert "must end in .xlsx" in str(refused.exception)

@@ -10,13 +10,14 @@ import openpyxl
 import pytest
 from crystal_ball_book import Asked, Decided, Drawn, Tied, block, object_guid, read_parts, save, write_parts
 from openpyxl.worksheet.table import Table
+from simulated import simulated
 
 from xlmc.analysis.results.saved import keep, open_run
-from xlmc.api import load
 from xlmc.engine.engines import ENGINES
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.montecarlo.definitions.definitions import Settings
 from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+from xlmc.montecarlo.model.loading import load
 
 S = "Sheet1"
 SKID = Drawn(S, "$B$2", "Skid", "Normal", {"Mean": 100.0, "StdDev": 15.0})
@@ -204,7 +205,7 @@ def test_the_answers_are_those_of_the_distributions(tmp_path):
     drawing = next(name for name in parts if name.startswith("xl/drawings/comments"))
     parts[drawing] = parts[drawing].replace(b"<xml>", b"<xml><div>Excel leaves it open<br></div>")
     write_parts(path, parts)
-    found = load(path).simulate(20_000)
+    found = simulated(load(path), 20_000)
     spread = 0.8 * math.sqrt(2 * 5 / 8) / 7
     mean, sd = 100 + 10 * (0.1 + 0.8 * 2 / 7), math.hypot(15, 10 * spread)
     assert abs(found["Sum"].mean.value - mean) < 4 * found["Sum"].mean.error
@@ -250,7 +251,7 @@ def test_a_filter_of_one_forecast_is_saved_and_repeated(tmp_path):
         CELLS,
         [[SKID, OFFSET, filtered, replace(TOTAL, cell="$B$6", name="Other", prefs={"fFilterPrefs": inside})]],
     )
-    run = load(path).simulate(3000)
+    run = simulated(load(path), 3000)
     total, other = run.forecasts["Total"], run.forecasts["Other"]
     skid, offset = run.inputs["Skid"], run.inputs["Offset"]
     np.testing.assert_array_equal(np.isnan(total), (total_of(skid, offset) < 180) | (total_of(skid, offset) > 200))

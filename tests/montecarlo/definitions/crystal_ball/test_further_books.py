@@ -6,13 +6,14 @@ import re
 
 import pytest
 from crystal_ball_book import Asked, Drawn, Tied, add_shapes, block, guid, object_guid, read_parts, save, write_parts
+from simulated import simulated
 
 from xlmc.analysis.results.record import make_record
-from xlmc.api import load
 from xlmc.engine.engines import ENGINES
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+from xlmc.montecarlo.model.loading import load
 
 S = "Model"
 A = Drawn(S, "$B$2", "Mass", "Normal", {"Mean": 100.0, "StdDev": 15.0})
@@ -179,7 +180,7 @@ def test_a_book(title, tmp_path):
     assert len(found.refused) == len(refused)
     for error, why in zip(found.refused, refused, strict=True):
         assert why in error.message
-    run = load(path).simulate(100)
+    run = simulated(load(path), 100)
     assert all(run[name].values.size == 100 for name in answers)
     assert make_record(run).rows("assumptions")
 

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from openpyxl import Workbook
 from scipy import stats
+from simulated import simulated
 
-import xlmc
 from xlmc.errors import XlmcError
+from xlmc.montecarlo.model.loading import load
 
 TRIALS = 20_000
 TWO = {
@@ -31,7 +32,7 @@ def model(tmp_path):
         for address, value in cells.items():
             sheet[address] = value
         book.save(tmp_path / "book.xlsx")
-        return xlmc.load(tmp_path / "book.xlsx")
+        return load(tmp_path / "book.xlsx")
 
     return made
 
@@ -62,7 +63,7 @@ def test_what_is_drawn(model, cells, message, tau):
         return
     made = model(cells)
     assert any(message in notice.message for notice in made.notices)
-    run = made.simulate(trials=TRIALS, seed=999)
+    run = simulated(made, trials=TRIALS, seed=999)
     first, second = run.inputs["S!A1#1"], run.inputs["S!A2#1"]
     found = stats.kendalltau(first[:4000], second[:4000]).statistic
     assert abs(found - tau) < 4 * 2 * math.sqrt((1 - tau**2) / 4000)
@@ -106,7 +107,7 @@ def test_what_is_refused(model, change, where, message):
 def test_the_record_has_the_correlation_of_each_pair(model):
     from xlmc.analysis.results.record.definition_tables import correlations_met
 
-    (met,) = correlations_met(model({**TWO, **CLAYTON}).simulate(trials=TRIALS, seed=999))
+    (met,) = correlations_met(simulated(model({**TWO, **CLAYTON}), trials=TRIALS, seed=999))
     assert str(met.row) == "S!L1"
     assert met.asked == met.used == pytest.approx(0.6822, abs=2e-3)
     assert abs(met.accepted.value - met.used) < 5 / math.sqrt(TRIALS)
@@ -124,7 +125,7 @@ def test_partners(model):
     """Both have their rank correlation with the first, and what follows from it with each other: no repair."""
     made = model(PARTNERS)
     assert not any("nearest" in notice.message for notice in made.notices)
-    inputs = made.simulate(trials=TRIALS, seed=999).inputs
+    inputs = simulated(made, trials=TRIALS, seed=999).inputs
     columns = [inputs[f"S!A{row}#1"] for row in (1, 2, 3)]
     found = stats.spearmanr(np.stack(columns, axis=1)).statistic
     implied = 6 / math.pi * math.asin(2 * math.sin(math.pi / 6 * 0.8) * math.sin(math.pi / 6 * -0.5))
@@ -156,7 +157,7 @@ def test_a_coefficient_may_be_a_formula_that_was_never_calculated(model):
         "B2": '=RiskNormal(0,1,RiskDepC("p",-G1/2))',
         "A3": "=A1+A2+B1+B2+RiskOutput()",
     }  # fmt: skip
-    inputs = model(cells).simulate(trials=TRIALS, seed=999).inputs
+    inputs = simulated(model(cells), trials=TRIALS, seed=999).inputs
     for column, wanted in (("A", 0.6), ("B", -0.3)):
         found = stats.spearmanr(inputs[f"S!{column}1#1"], inputs[f"S!{column}2#1"]).statistic
         assert abs(found - wanted) < 5 / math.sqrt(TRIALS)

@@ -10,6 +10,7 @@ import time
 import pytest
 from distributed import Client, LocalCluster
 from psutil import STATUS_ZOMBIE, Process
+from simulated import simulated
 
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.loop.scheduling import cluster as scheduling
@@ -45,14 +46,14 @@ def cluster():
 @pytest.mark.parametrize(("workers", "threads"), [(3, 1), (1, 3)])
 def test_workers_change_no_bit(model, bits, workers, threads):
     with in_one_process(workers, threads) as found:
-        run = model.simulate(3050, scheduler=found.scheduler_address)
-    assert bits(run) == bits(model.simulate(3050))
+        run = simulated(model, 3050, scheduler=found.scheduler_address)
+    assert bits(run) == bits(simulated(model, 3050))
 
 
 def test_processes_change_no_bit(model, bits, cluster):
     seen = []
-    run = model.simulate(3050, scheduler=cluster[0], progress=seen.append)
-    assert bits(run) == bits(model.simulate(3050))
+    run = simulated(model, 3050, scheduler=cluster[0], progress=seen.append)
+    assert bits(run) == bits(simulated(model, 3050))
     assert [standing.trials for standing in seen] == [*range(100, 3001, 100), 3050]
 
 
@@ -69,10 +70,10 @@ def test_ctrl_c_in_a_local_cluster_keeps_what_was_accepted(model, bits, capfd):
             alive.extend(worker for worker in told if worker.is_running() and worker.status() != STATUS_ZOMBIE)
             signal.raise_signal(signal.SIGINT)
 
-    run = model.simulate(10**9, scheduler="local", workers=1, keep_interrupted=True, progress=press)
+    run = simulated(model, 10**9, scheduler="local", workers=1, keep_interrupted=True, progress=press)
     assert run.stopped.by == "interruption"
     assert run.trials >= 300
-    assert bits(run) == bits(model.simulate(run.trials))
+    assert bits(run) == bits(simulated(model, run.trials))
     assert alive == told != []
     assert "Traceback" not in capfd.readouterr().err
 
@@ -85,9 +86,9 @@ def test_a_worker_that_is_killed_costs_only_time(model, bits, cluster):
         if standing.trials > 300:
             other.kill()
 
-    run = model.simulate(8000, scheduler=address, progress=kill)
+    run = simulated(model, 8000, scheduler=address, progress=kill)
     assert other.wait(timeout=120) != 0
-    assert bits(run) == bits(model.simulate(8000))
+    assert bits(run) == bits(simulated(model, 8000))
 
 
 def test_few_tasks_are_under_way_at_once(model, monkeypatch):
@@ -96,7 +97,7 @@ def test_few_tasks_are_under_way_at_once(model, monkeypatch):
         seen, made = [], []
         task = module.Task
         monkeypatch.setattr(module, "Task", lambda *given: made.append(given) or task(*given))
-        model.simulate(10_000, scheduler=found.scheduler_address, progress=lambda *_: seen.append(len(made)))
+        simulated(model, 10_000, scheduler=found.scheduler_address, progress=lambda *_: seen.append(len(made)))
     ahead = [there - done for done, there in enumerate(seen, 1)]
     assert max(ahead) <= 8 * scheduling.MOST_BLOCKS
     assert len(made) == 100
@@ -108,8 +109,8 @@ def test_the_workbook_is_understood_once_a_worker(model, monkeypatch):
     monkeypatch.setattr(scheduling, "_Runners", lambda packed: made.append(packed) or runners(packed))
     scheduling._runners.cache_clear()
     with in_one_process(1) as found:
-        model.simulate(3000, seed=4, scheduler=found.scheduler_address)
-        model.simulate(2000, seed=4, scheduler=found.scheduler_address)
+        simulated(model, 3000, seed=4, scheduler=found.scheduler_address)
+        simulated(model, 2000, seed=4, scheduler=found.scheduler_address)
     assert len(made) == 1
 
 
@@ -118,7 +119,7 @@ def test_workers_with_other_software_are_refused(model, monkeypatch, name):
     own = scheduling.software()
     monkeypatch.setattr(scheduling, "software", lambda: own | {name: "0.0.1"})
     with in_one_process(1) as found, pytest.raises(SimulationError, match=f"worker .*{name} is .* and 0.0.1 here"):
-        model.simulate(1000, scheduler=found.scheduler_address)
+        simulated(model, 1000, scheduler=found.scheduler_address)
 
 
 def test_a_worker_that_joins_later_is_asked_too(model, monkeypatch):
@@ -131,14 +132,14 @@ def test_a_worker_that_joins_later_is_asked_too(model, monkeypatch):
         other = packed(scheduling.RunSpec.of(model, "numpy", 999, 100))
     monkeypatch.setattr(scheduling.RunSpec, "pack", lambda _: other)
     with in_one_process(1) as found, pytest.raises(SimulationError, match=r"numpy is .* there and 0\.0\.1 here"):
-        model.simulate(1000, scheduler=found.scheduler_address)
+        simulated(model, 1000, scheduler=found.scheduler_address)
 
 
 def test_no_scheduler(model, monkeypatch):
     monkeypatch.setattr(scheduling, "PATIENCE", 0.05)
     for scheme in ("tcp", "tls", "http"):
         with pytest.raises(SimulationError, match=rf"{scheme}://127\.0\.0\.1:9: no scheduler answers") as caught:
-            model.simulate(1000, scheduler=f"{scheme}://127.0.0.1:9")
+            simulated(model, 1000, scheduler=f"{scheme}://127.0.0.1:9")
         assert "dask scheduler" in caught.value.hint
     clients = [thing for thing in gc.get_objects() if type(thing).__name__ == "Closing"]
     assert all(client.status in ("closed", "newly-created") for client in clients)
@@ -147,7 +148,7 @@ def test_no_scheduler(model, monkeypatch):
 def test_no_workers(model, monkeypatch):
     monkeypatch.setattr(scheduling, "PATIENCE", 0.1)
     with in_one_process(0) as found, pytest.raises(SimulationError, match="the scheduler has no workers") as caught:
-        model.simulate(1000, scheduler=found.scheduler_address)
+        simulated(model, 1000, scheduler=found.scheduler_address)
     assert f"dask worker {found.scheduler_address}" in caught.value.hint
 
 
@@ -161,7 +162,7 @@ def test_without_dask(model, monkeypatch):
 
     monkeypatch.setattr(builtins, "__import__", without)
     with pytest.raises(SimulationError, match="Dask is not installed") as caught:
-        model.simulate(1000, scheduler="local", workers=1)
+        simulated(model, 1000, scheduler="local", workers=1)
     assert "xlmc[distributed]" in caught.value.hint
 
 

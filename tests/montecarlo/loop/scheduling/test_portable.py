@@ -10,9 +10,9 @@ import sys
 import pytest
 from committed_books import EXAMPLES
 
-import xlmc
 from xlmc.montecarlo.loop.blocks import Task
 from xlmc.montecarlo.loop.scheduling.run_spec import model_runner
+from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 
 FORMULAS = {
@@ -40,7 +40,7 @@ def workers(model, method="mc", block=200):
 
 @pytest.mark.parametrize("path", EXAMPLES.values(), ids=EXAMPLES)
 def test_examples(path):
-    mine, theirs = workers(xlmc.load(path), block=1000)
+    mine, theirs = workers(load(path), block=1000)
     for task in (Task(0, 1000, True), Task(1000, 900, False)):
         assert pickle.dumps(theirs.run(task)) == pickle.dumps(mine.run(task))
 
@@ -64,7 +64,7 @@ def test_draws_of_every_kind(book, method):
 
 def test_little_is_imported(case_study, tmp_path):
     """Neither the parser nor the reader of workbooks: half of the time to start would be theirs."""
-    model = xlmc.load(case_study)
+    model = load(case_study)
     file = tmp_path / "worker"
     file.write_bytes(pickle.dumps(model_runner(model, model.program("numpy"), "numpy", 1, 32_768)))
     unpack = f"import pickle, sys; pickle.load(open({str(file)!r}, 'rb')); print(' '.join(sys.modules))"

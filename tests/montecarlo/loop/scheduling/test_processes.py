@@ -9,6 +9,7 @@ from threading import Event
 
 import pytest
 from light_runners import Adding
+from simulated import simulated
 
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.loop.blocks import Task
@@ -42,16 +43,16 @@ def children(monkeypatch):
 
 @pytest.mark.parametrize("jobs", [1, 3])
 def test_processes_change_no_bit(model, bits, children, jobs):
-    run = model.simulate(950, jobs=jobs, scheduler="processes")
-    assert bits(run) == bits(model.simulate(950))
+    run = simulated(model, 950, jobs=jobs, scheduler="processes")
+    assert bits(run) == bits(simulated(model, 950))
     assert len(children) == jobs - 1  # this process is one of them
 
 
 @pytest.mark.parametrize(("trials", "started"), [(900, 0), (1000, 1)])
 def test_a_long_run_with_jobs_starts_processes(model, monkeypatch, children, trials, started):
     monkeypatch.setitem(worker_pool.ENGINES, "numpy", worker_pool.ENGINES["numpy"]._replace(process_blocks=10))
-    assert model.simulate(trials).trials == trials
-    assert model.simulate(trials, jobs=2).trials == trials
+    assert simulated(model, trials).trials == trials
+    assert simulated(model, trials, jobs=2).trials == trials
     assert len(children) == started
 
 
@@ -60,7 +61,7 @@ def test_an_interruption_ends_the_processes(model, children):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        model.simulate(10**6, jobs=2, scheduler="processes", progress=stop)
+        simulated(model, 10**6, jobs=2, scheduler="processes", progress=stop)
     assert len(children) == 1
     assert all(one.returncode is not None for one in children)
 
@@ -99,9 +100,9 @@ def test_blocks_of_another_process_are_the_same(model, process, engine):
 
 def test_processes_wait_for_the_next_run(model, bits, children):
     """Another model, and other settings, get what they asked for."""
-    expected = [bits(model.simulate(950, seed=seed)) for seed in (1, 2)]
+    expected = [bits(simulated(model, 950, seed=seed)) for seed in (1, 2)]
     for seed in (1, 2, 1):
-        run = model.simulate(950, seed=seed, jobs=2, scheduler="processes")
+        run = simulated(model, 950, seed=seed, jobs=2, scheduler="processes")
         assert bits(run) == expected[seed - 1]
     assert len(children) <= 3  # one that had no time to start before the run was over is ended
     assert all(one.returncode is not None for one in children[:-1])
@@ -201,7 +202,7 @@ def test_a_process_that_dies_is_told(model, children):
 def test_a_process_that_cannot_be_started_is_told(model, monkeypatch):
     monkeypatch.setattr(sys, "executable", "/there/is/no/python")
     with pytest.raises(SimulationError, match="no process can be started: No such file") as caught:
-        model.simulate(1000, jobs=2, scheduler="processes")
+        simulated(model, 1000, jobs=2, scheduler="processes")
     assert "--scheduler threads" in caught.value.hint
 
 

@@ -13,13 +13,17 @@ import pytest
 from click.testing import CliRunner
 from described import undescribed
 from fewer_sheets import SHORT, keep_sheets
+from simulated import simulated
 
 import xlmc
 import xlmc.cli
 from xlmc.analysis.results.record import make_record
+from xlmc.analysis.results.saved import open_run
+from xlmc.api import Simulation
 from xlmc.errors import DefinitionError, SimulationError
 from xlmc.montecarlo.definitions.stopping import GOALS, MOST_TRIALS, Option, WholeGoal
 from xlmc.montecarlo.loop.stopping import RULES
+from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.replay import replay
 
 
@@ -92,29 +96,29 @@ def commands(doors):
 @pytest.fixture
 def model(small_book):
     """About a third of the trials are rejected."""
-    return xlmc.load(small_book)
+    return load(small_book)
 
 
 @pytest.mark.parametrize("engine", ["numpy", "jit"])
 def test_it_runs_is_recorded_and_repeated(model, tmp_path, engine):
     if engine == "jit":
         pytest.importorskip("llvmlite")
-    run = model.simulate(until_rejected=100, engine=engine)
+    run = simulated(model, until_rejected=100, engine=engine)
     assert run.trials - run.accepted == run.tally.rejected[0] == 100
     assert run.trials - 1 not in run.trial_index
     assert (run.stopped.by, run.stopped.sentence) == ("rejected", "100 trials were rejected")
-    plain = model.simulate(run.trials, engine=engine)
+    plain = simulated(model, run.trials, engine=engine)
     assert plain.trial_index.tolist() == run.trial_index.tolist()
     record = make_record(run)
     assert record["end.by"] == "rejected"
     assert record["end.goal"] == record["end.in_words"] == "100 trials were rejected"
     assert record["settings.until_rejected"] == 100
-    kept = [run.keep(tmp_path / "a.xlmcrun")]
-    again = xlmc.open_run(kept[0])
+    kept = [Simulation(run).keep(tmp_path / "a.xlmcrun")]
+    again = open_run(kept[0])
     assert (again.settings, again.stopped) == (run.settings, run.stopped)
     if engine == "numpy":
         kept.append(tmp_path / "a-results.xlsx")
-        run.save(kept[1])
+        Simulation(run).save(kept[1])
     for path in kept:
         repeated = replay(path)
         assert repeated.to_the_last_bit, (repeated.changes, repeated.numbers)
@@ -122,7 +126,7 @@ def test_it_runs_is_recorded_and_repeated(model, tmp_path, engine):
 
 
 def test_it_may_not_be_reached(model):
-    run = model.simulate(50, until_rejected=100)
+    run = simulated(model, 50, until_rejected=100)
     assert run.trials == 50
     assert run.stopped.sentence == "the limit of 50 trials was reached before 100 trials were rejected"
     assert run.stopped.sentence in run.warnings
@@ -140,7 +144,7 @@ def test_it_may_not_be_reached(model):
 )
 def test_what_cannot_be_meant(model, asked, message):
     with pytest.raises(SimulationError, match=message):
-        model.simulate(**asked)
+        simulated(model, **asked)
 
 
 def book_with(small_book, path, setting, value):
@@ -174,7 +178,7 @@ def test_the_command_line_and_the_settings_ask_for_it(commands, small_book, tmp_
 def test_a_wrong_row_is_told_with_its_cell(small_book, tmp_path):
     row = book_with(small_book, tmp_path / "row.xlsx", "Until rejected", 0)
     with pytest.raises(DefinitionError, match=r"Wanted!B9: Until rejected must be a whole number from 1"):
-        xlmc.load(row)
+        load(row)
 
 
 def test_the_documents_lack_it_by_name():

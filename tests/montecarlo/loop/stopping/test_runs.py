@@ -11,6 +11,7 @@ import click
 import numpy as np
 import pytest
 from distributed import LocalCluster
+from simulated import simulated
 
 from xlmc.analysis.results.record import make_record
 from xlmc.analysis.results.record.make import fingerprint
@@ -71,10 +72,10 @@ def short_sequences(monkeypatch):
     ids=str,
 )
 def test_who_runs_the_blocks_changes_nothing(model, end, crew):
-    alone = model.simulate(seed=3, **end)
+    alone = simulated(model, seed=3, **end)
     assert alone.stopped.reached
     assert not alone.warnings
-    run = model.simulate(seed=3, **end, **crew)
+    run = simulated(model, seed=3, **end, **crew)
     assert run.stopped == alone.stopped
     assert bits(run) == bits(alone)
 
@@ -82,8 +83,8 @@ def test_who_runs_the_blocks_changes_nothing(model, end, crew):
 @pytest.mark.usefixtures("short_sequences")
 @pytest.mark.parametrize("end", ENDS, ids=str)
 def test_a_run_of_as_many_trials_has_the_same_trials(model, end):
-    run = model.simulate(seed=3, **end)
-    assert bits(model.simulate(run.trials, 3)) == bits(run)
+    run = simulated(model, seed=3, **end)
+    assert bits(simulated(model, run.trials, 3)) == bits(run)
 
 
 @pytest.mark.filterwarnings("ignore::ResourceWarning")  # Dask's, when it closes
@@ -91,15 +92,15 @@ def test_a_run_of_as_many_trials_has_the_same_trials(model, end):
 def test_a_cluster_ends_at_the_same_trial(model):
     asked = {"n_workers": 2, "threads_per_worker": 1, "processes": False, "dashboard_address": ":0"}
     with LocalCluster(**asked) as found:
-        run = model.simulate(until_accepted=700, scheduler=found.scheduler_address)
-    assert bits(run) == bits(model.simulate(until_accepted=700))
+        run = simulated(model, until_accepted=700, scheduler=found.scheduler_address)
+    assert bits(run) == bits(simulated(model, until_accepted=700))
 
 
 @pytest.mark.parametrize("engine", ["jit", "formulas"])
 def test_another_engine_ends_at_the_same_trial(model, engine):
     if engine == "jit":
         pytest.importorskip("llvmlite")
-    run, usual = model.simulate(until_accepted=15, engine=engine), model.simulate(until_accepted=15)
+    run, usual = simulated(model, until_accepted=15, engine=engine), simulated(model, until_accepted=15)
     assert run.trial_index.tolist() == usual.trial_index.tolist()
     assert run.trials == usual.trials
     assert run.tally.rejected.tolist() == usual.tally.rejected.tolist()
@@ -107,7 +108,7 @@ def test_another_engine_ends_at_the_same_trial(model, engine):
 
 def test_it_ends_with_the_accepted_trial_that_was_waited_for(model):
     for wanted in (2, 3, 77, 78, 1000):
-        run = model.simulate(until_accepted=wanted)
+        run = simulated(model, until_accepted=wanted)
         assert run.accepted == wanted
         assert run.trials == run.trial_index[-1] + 1
         assert {values.size for values in run.prior.values()} == {min(run.trials, module.PRIOR_TRIALS)}
@@ -117,7 +118,7 @@ def test_it_ends_with_the_accepted_trial_that_was_waited_for(model):
 
 def test_the_share_accepted_is_unbiased(model):
     """Of 144 runs, within 4 standard errors of their mean; accepted over trials would be 25 % too large."""
-    runs = [model.simulate(seed=seed, until_accepted=5) for seed in range(144)]
+    runs = [simulated(model, seed=seed, until_accepted=5) for seed in range(144)]
     accepted = [f.acceptance.value for f in runs]
     error = np.std(accepted) / 12
     assert abs(np.mean(accepted) - ACCEPTANCE) < 4 * error
@@ -126,16 +127,16 @@ def test_the_share_accepted_is_unbiased(model):
 
 def test_on_disk_it_ends_at_the_same_trial(model, monkeypatch):
     asked = {"precision": "2%", "precision_of": "mean,range,p90"}
-    in_memory = model.simulate(**asked)
+    in_memory = simulated(model, **asked)
     monkeypatch.setattr(column_store, "IN_MEMORY", 0)
     monkeypatch.setattr(column_store, "WRITTEN", 4000)
-    run = model.simulate(**asked)
+    run = simulated(model, **asked)
     assert on_disk(run.trial_index)
     assert bits(run) == bits(in_memory)
 
 
 def test_the_precision_asked_for_is_there(model):
-    run = model.simulate(precision="1%", precision_of="mean,sd,p10")
+    run = simulated(model, precision="1%", precision_of="mean,sd,p10")
     for result in run.results.values():
         for estimate in (result.mean, result.standard_deviation, result.percentile(10)):
             low, high = estimate.interval
@@ -157,7 +158,7 @@ def test_the_precision_asked_for_is_there(model):
     ],
 )
 def test_a_goal_that_was_not_reached_is_a_warning(model, asked, sentence):
-    run = model.simulate(**asked)
+    run = simulated(model, **asked)
     assert run.trials == asked["trials"]
     assert run.warnings == [run.stopped.sentence] == [sentence]
     assert run.acceptance == statistics.proportion(run.accepted, run.trials)
@@ -166,17 +167,17 @@ def test_a_goal_that_was_not_reached_is_a_warning(model, asked, sentence):
 def test_the_time_ends_a_run_with_a_whole_block(model, monkeypatch):
     clock = itertools.count()
     monkeypatch.setattr(module.time, "monotonic", lambda: float(next(clock)))
-    run = model.simulate(10**6, time_limit=7)
+    run = simulated(model, 10**6, time_limit=7)
     assert (run.trials, run.stopped.by, run.warnings) == (3500, "time", [])
-    assert bits(model.simulate(3500)) == bits(run)
+    assert bits(simulated(model, 3500)) == bits(run)
     record = make_record(run)
     assert (record["end.by"], record["end.blocks"], record["end.time_limit"]) == ("time", 7, 7.0)
     assert "--trials 3500 " in record["run.repeat"]
 
 
 def test_the_limit_of_a_run_with_a_goal(model):
-    assert model.simulate(until_accepted=5).settings.trials == LIMIT
-    assert model.simulate(10**4, until_accepted=5).settings.trials == 10**4
+    assert simulated(model, until_accepted=5).settings.trials == LIMIT
+    assert simulated(model, 10**4, until_accepted=5).settings.trials == 10**4
 
 
 def with_settings(model, **changes):
@@ -187,12 +188,12 @@ def with_settings(model, **changes):
 
 def test_what_the_workbook_says_of_the_length_holds_until_the_call_says_something(model):
     model = with_settings(model, trials=4000, stopping=stopping(until_accepted=50, time_limit=1000))
-    assert model.simulate().accepted == 50
-    assert model.simulate(time_limit=500).accepted == 50
-    assert model.simulate(time_limit=500).settings.stopping.seconds == 500
-    other = model.simulate(until_accepted=60)
+    assert simulated(model).accepted == 50
+    assert simulated(model, time_limit=500).accepted == 50
+    assert simulated(model, time_limit=500).settings.stopping.seconds == 500
+    other = simulated(model, until_accepted=60)
     assert (other.accepted, other.settings.trials, other.settings.stopping.seconds) == (60, LIMIT, None)
-    plain = model.simulate(1234)
+    plain = simulated(model, 1234)
     assert (plain.trials, plain.stopped.by, plain.settings.stopping.asked) == (1234, "trials", False)
 
 
@@ -202,28 +203,28 @@ def test_what_the_workbook_says_of_the_length_holds_until_the_call_says_somethin
 def test_the_command_in_the_record_repeats_the_same_trials(model, asked):
     """Whatever the workbook itself asks for."""
     model = with_settings(model, trials=900, stopping=stopping(until_accepted=30, time_limit=1000))
-    run = model.simulate(seed=8, **asked)
+    run = simulated(model, seed=8, **asked)
     words = shlex.split(make_record(run)["run.repeat"])
     assert words[:2] == ["xlmc", "simulate"]
     with click.Context(command) as context:
         command.parse_args(context, words[2:])
         typed = {name: context.params[name] for name in ("trials", "seed", "until_accepted")}
-    assert fingerprint(model.simulate(**typed)) == fingerprint(run)
-    assert model.simulate(**typed).trials == run.trials
+    assert fingerprint(simulated(model, **typed)) == fingerprint(run)
+    assert simulated(model, **typed).trials == run.trials
 
 
 def test_the_record_says_what_ended_the_run(model):
-    record = make_record(model.simulate(until_accepted=40))
+    record = make_record(simulated(model, until_accepted=40))
     assert record["end.in_words"] == record["end.goal"] == "40 trials were accepted"
     assert (record["end.by"], record["end.reached"], record["end.most_trials"]) == ("accepted", True, LIMIT)
     assert record["end.share_accepted"].startswith("(N − 1)/(n − 1)")
-    plain = make_record(model.simulate(400))
+    plain = make_record(simulated(model, 400))
     assert (plain["end.by"], plain["end.goal"], plain["end.blocks"]) == ("trials", None, 1)
 
 
 def test_progress_tells_how_the_run_stands(model):
     seen = []
-    run = model.simulate(until_accepted=400, progress=seen.append)
+    run = simulated(model, until_accepted=400, progress=seen.append)
     assert seen[-1].trials == run.trials
     assert seen[-1].accepted == 400
     shares = [standing.share for standing in seen]
@@ -244,21 +245,21 @@ def test_an_interrupted_run_keeps_what_it_has(model, crew, end):
         if standing.trials == 1500:
             signal.raise_signal(signal.SIGINT)
 
-    run = model.simulate(**end, **crew, keep_interrupted=True, progress=press)
+    run = simulated(model, **end, **crew, keep_interrupted=True, progress=press)
     assert run.stopped.interrupted
     assert run.stopped.by == "interruption"
     assert run.trials == 2000
-    assert bits(model.simulate(2000)) == bits(run)
+    assert bits(simulated(model, 2000)) == bits(run)
     assert run.warnings == []
     assert make_record(run)["end.by"] == "interruption"
-    assert model.simulate(10).trials == 10
+    assert simulated(model, 10).trials == 10
 
 
 def test_an_interruption_before_there_is_anything_is_one(model, monkeypatch):
     program = model.program
     monkeypatch.setattr(model, "sampler", lambda *given: signal.raise_signal(signal.SIGINT) or program)
     with pytest.raises(KeyboardInterrupt):
-        model.simulate(10**6, keep_interrupted=True)
+        simulated(model, 10**6, keep_interrupted=True)
 
 
 def test_without_being_asked_to_keep_it_an_interruption_is_one(model):
@@ -266,16 +267,16 @@ def test_without_being_asked_to_keep_it_an_interruption_is_one(model):
         signal.raise_signal(signal.SIGINT)
 
     with pytest.raises(KeyboardInterrupt):
-        model.simulate(10**6, progress=press)
+        simulated(model, 10**6, progress=press)
 
 
 @pytest.mark.parametrize("asked", [{"until_accepted": 10}, {"precision": 1}, {"adaptive": 1}, {"time_limit": 5}])
 def test_other_sampling_runs_its_trials(model, asked):
     with_settings(model, sampling="lhs")
     with pytest.raises(SimulationError, match="a run with lhs sampling cannot end before all its trials are run"):
-        model.simulate(**asked)
+        simulated(model, **asked)
 
 
 def test_a_forecast_that_is_not_there(model):
     with pytest.raises(SimulationError, match="there is no forecast 'z'"):
-        model.simulate(precision=1, forecasts="z")
+        simulated(model, precision=1, forecasts="z")

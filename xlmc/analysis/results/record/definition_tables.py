@@ -26,7 +26,7 @@ from xlmc.montecarlo.statistics.estimate import finite
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Filter, Forecast
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = [
     "CorrelationMet",
@@ -121,7 +121,7 @@ _CORRELATION = (
 )
 
 
-def forecast_section(simulation: Simulation) -> Section:
+def forecast_section(simulation: RunResult) -> Section:
     """Every forecast with its main results at full precision, for a repeat to be compared with."""
     results = simulation.results.values()
     columns: tuple[tuple[str, str], ...] = _FORECAST
@@ -161,13 +161,13 @@ def _forecast_row(result: ForecastResult) -> tuple[Value, ...]:
     )
 
 
-def filter_section(simulation: Simulation) -> Section:
+def filter_section(simulation: RunResult) -> Section:
     """Every filter with its limits, its reason, and the trials it rejected."""
     rows = tuple(_filter_row(simulation, *found) for found in enumerate(simulation.model.filters))
     return Section("filters", "Filters", table=RecordTable(_FILTER, rows))
 
 
-def _filter_row(simulation: Simulation, index: int, filter_: Filter) -> tuple[Value, ...]:
+def _filter_row(simulation: RunResult, index: int, filter_: Filter) -> tuple[Value, ...]:
     tally = simulation.tally
     return (
         filter_.name,
@@ -181,7 +181,7 @@ def _filter_row(simulation: Simulation, index: int, filter_: Filter) -> tuple[Va
     )
 
 
-def forecast_filter_section(simulation: Simulation) -> Section:
+def forecast_filter_section(simulation: RunResult) -> Section:
     """Every filter of some forecasts only, a row for each of them, with the accepted trials that it discards."""
     rows = tuple(
         (
@@ -198,7 +198,7 @@ def forecast_filter_section(simulation: Simulation) -> Section:
     return Section("forecast_filters", "Filters for some forecasts only", table=RecordTable(_FORECAST_FILTER, rows))
 
 
-def evidence_section(simulation: Simulation) -> Section:
+def evidence_section(simulation: RunResult) -> Section:
     """Every row of `xlmc_evidence`, and what was found of those that are used."""
     found = {} if simulation.agreement is None else {each.name: each for each in simulation.agreement.items}
     rows = []
@@ -212,7 +212,7 @@ def evidence_section(simulation: Simulation) -> Section:
     return Section("evidence", "Evidence", table=RecordTable(_EVIDENCE, tuple(rows)))
 
 
-def check_section(simulation: Simulation) -> Section:
+def check_section(simulation: RunResult) -> Section:
     """Every check with what its cell holds at the base case, and the accepted trials that fail it."""
     rows = tuple(
         (
@@ -229,7 +229,7 @@ def check_section(simulation: Simulation) -> Section:
     return Section("checks", "Checks", table=RecordTable(_CHECK, rows))
 
 
-def assumption_section(simulation: Simulation) -> Section:
+def assumption_section(simulation: RunResult) -> Section:
     """Every assumption, drawn or not."""
     rows: list[tuple[Value, ...]] = []
     for assumption in simulation.model.assumptions:
@@ -240,7 +240,7 @@ def assumption_section(simulation: Simulation) -> Section:
     return Section("assumptions", "Assumptions", table=RecordTable(_ASSUMPTION, tuple(rows)))
 
 
-def correlation_section(simulation: Simulation) -> Section:
+def correlation_section(simulation: RunResult) -> Section:
     """The rank correlations asked for, those drawn with, and those of the accepted trials."""
     rows = tuple(
         (
@@ -277,14 +277,14 @@ class CorrelationMet:
     accepted: Estimate | None = None
 
 
-def correlations_met(simulation: Simulation) -> list[CorrelationMet]:
+def correlations_met(simulation: RunResult) -> list[CorrelationMet]:
     """The pairs in the order of the rows, then those that a repair changed without a row."""
     model = simulation.model
     pairs = [(c.first, c.second, c.number, c.row) for c in model.definitions.correlations]
     return [_met(simulation, *pair) for pair in (*pairs, *_unnamed(simulation))]
 
 
-def _unnamed(simulation: Simulation) -> Iterator[tuple[str, str, float, Cell | None]]:
+def _unnamed(simulation: RunResult) -> Iterator[tuple[str, str, float, Cell | None]]:
     model = simulation.model
     named = {frozenset((c.first, c.second)) for c in model.definitions.correlations}
     for group in model.groups:
@@ -294,7 +294,7 @@ def _unnamed(simulation: Simulation) -> Iterator[tuple[str, str, float, Cell | N
                 yield first, second, 0.0 if group.where is None else found, group.where
 
 
-def _met(simulation: Simulation, first: str, second: str, asked: float, row: Cell | None) -> CorrelationMet:
+def _met(simulation: RunResult, first: str, second: str, asked: float, row: Cell | None) -> CorrelationMet:
     drawn = drawn_correlation(simulation.model.groups, first, second)
     if drawn is None:
         return CorrelationMet(first, second, asked, row)

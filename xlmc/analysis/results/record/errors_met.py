@@ -12,7 +12,7 @@ from xlmc.excel.address import Cell, host_of
 from xlmc.montecarlo.diagnostics.cell_errors import Root
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["ErrorMet", "errors_met", "lost_sentences", "rest_sentences"]
 
@@ -48,12 +48,12 @@ class ErrorMet:
         return f"{self.cell} {_WORDS.get(self.error, self.error)}"
 
 
-def errors_met(simulation: Simulation) -> list[ErrorMet]:
+def errors_met(simulation: RunResult) -> list[ErrorMet]:
     """Every kind of error met, in the order of the definitions."""
     return list(_errors(simulation))
 
 
-def _errors(simulation: Simulation) -> Iterator[ErrorMet]:
+def _errors(simulation: RunResult) -> Iterator[ErrorMet]:
     model, roots = simulation.model, simulation.error_roots
     for filter_, errors in zip(model.filters, simulation.tally.errors, strict=True):
         yield from _of("filter", filter_.name, filter_.cell, errors, roots)
@@ -72,7 +72,7 @@ def _of(kind: str, name: str, cell: Cell, errors: Counter[str], roots: Mapping[C
             yield ErrorMet(kind, name, cell, error, count, root if comes else None)
 
 
-def lost_sentences(simulation: Simulation) -> list[str]:
+def lost_sentences(simulation: RunResult) -> list[str]:
     """The cells in which trials were lost, most trials first, and how many trials are left; nothing without losses.
 
     Sentences have no full stop.
@@ -85,7 +85,7 @@ def lost_sentences(simulation: Simulation) -> list[str]:
     return [*lines, *rest_sentences(simulation)]
 
 
-def _lost(simulation: Simulation, met: ErrorMet) -> str:
+def _lost(simulation: RunResult, met: ErrorMet) -> str:
     accepted = met.kind == "forecast" and bool(simulation.model.filters)
     of = simulation.accepted if met.kind == "forecast" else simulation.trials
     share = float(f"{100 * met.trials / max(of, 1):.2g}")
@@ -96,7 +96,7 @@ def _lost(simulation: Simulation, met: ErrorMet) -> str:
     return f"{said}, from {cell} {code.text}: {content_text(simulation.model.workbook, host_of(cell))}"
 
 
-def rest_sentences(simulation: Simulation) -> list[str]:
+def rest_sentences(simulation: RunResult) -> list[str]:
     """How many trials the statistics rest on, one sentence a number of trials."""
     counts: dict[int, list[str]] = {}
     for name, result in simulation.results.items():

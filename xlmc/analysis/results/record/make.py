@@ -34,7 +34,7 @@ from xlmc.montecarlo.simulation.simulation import KEPT_INPUTS, ChangedFrom
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.rare.account import RareAccount
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 import platform
 from importlib.metadata import version
 
@@ -117,7 +117,7 @@ _PLAIN = re.compile(r"[\w.,:+@%/=-]+")
 _SAFE_IN_DOUBLE_QUOTES = re.compile(r'[^"\\$`!%\n]+')
 
 
-def make_record(simulation: Simulation, command: str | None = None) -> Record:
+def make_record(simulation: RunResult, command: str | None = None) -> Record:
     """The record of a run; the same run on the same machine has the same record.
 
     Args:
@@ -155,7 +155,7 @@ def make_record(simulation: Simulation, command: str | None = None) -> Record:
     )
 
 
-def _environment(simulation: Simulation) -> tuple[Mapping[str, str], Mapping[str, str]]:
+def _environment(simulation: RunResult) -> tuple[Mapping[str, str], Mapping[str, str]]:
     """The software and the processor of the run: those it was saved with, or those here."""
     origin = simulation.origin
     if origin is not None:
@@ -163,7 +163,7 @@ def _environment(simulation: Simulation) -> tuple[Mapping[str, str], Mapping[str
     return versions(simulation.settings.engine), processor()
 
 
-def _run(simulation: Simulation, command: str | None) -> Section:
+def _run(simulation: RunResult, command: str | None) -> Section:
     given = () if command is None else (Entry("command", "Command that was given", command),)
     entries = (
         Entry("repeat", "Command that repeats it", repeat_command(simulation)),
@@ -174,7 +174,7 @@ def _run(simulation: Simulation, command: str | None) -> Section:
     return Section("run", "This run", entries)
 
 
-def _file(simulation: Simulation) -> Section:
+def _file(simulation: RunResult) -> Section:
     book = simulation.model.workbook
     entries = (
         Entry("name", "Name", book.name),
@@ -207,7 +207,7 @@ def changed_from_of(record: Record) -> ChangedFrom | None:
     return ChangedFrom(str(record["changed.name"]), str(record["changed.sha256"]), changes)
 
 
-def _counts(simulation: Simulation) -> Section:
+def _counts(simulation: RunResult) -> Section:
     entries = (
         Entry("trials", "Trials", simulation.trials),
         Entry("accepted", "Accepted", simulation.accepted),
@@ -222,7 +222,7 @@ def _counts(simulation: Simulation) -> Section:
     return Section("counts", "Trials", entries)
 
 
-def _weight_entries(simulation: Simulation) -> tuple[Entry, ...]:
+def _weight_entries(simulation: RunResult) -> tuple[Entry, ...]:
     """The weights that evidence gives the accepted trials, where they do not count alike."""
     found = simulation.weighting
     if found is None:
@@ -234,7 +234,7 @@ def _weight_entries(simulation: Simulation) -> tuple[Entry, ...]:
     )
 
 
-def _end(simulation: Simulation) -> Section:
+def _end(simulation: RunResult) -> Section:
     stopped, asked = simulation.stopped, simulation.settings.stopping
     entries = (
         Entry("by", "Ended by", stopped.by),
@@ -249,13 +249,13 @@ def _end(simulation: Simulation) -> Section:
     return Section("end", "What ended the run", entries)
 
 
-def _share_words(simulation: Simulation) -> str:
+def _share_words(simulation: RunResult) -> str:
     if simulation.rare is not None:
         return _RARE_SHARE
     return _SHARES.get(simulation.stopped.by, _SHARES["trials"])
 
 
-def _sampling(simulation: Simulation) -> Section:
+def _sampling(simulation: RunResult) -> Section:
     settings, plan = simulation.settings, simulation.plan
     replicates = (
         Entry("asked", "Trials that were asked for", settings.trials),
@@ -315,13 +315,13 @@ def _rare(found: RareAccount) -> Section:
     return Section("rare", "Search for rare accepted trials", entries)
 
 
-def _errors(simulation: Simulation) -> Section:
+def _errors(simulation: RunResult) -> Section:
     columns = (("kind", "In a"), ("name", "Name"), ("cell", "Cell"), ("error", "Error"), ("trials", "Trials"))
     rows = tuple((met.kind, met.name, str(met.cell), met.error, met.trials) for met in errors_met(simulation))
     return Section("errors", "Errors in cells", table=RecordTable(columns, rows))
 
 
-def _conventions(simulation: Simulation) -> Section:
+def _conventions(simulation: RunResult) -> Section:
     replicates = "of a sample: the mean square about the mean, and the squared error of the mean"
     variance = replicates if simulation.plan.size else "of a sample: divided by n − 1, as Excel's VAR.S"
     entries = [Entry(*convention) for convention in _CONVENTIONS]
@@ -338,7 +338,7 @@ def _entries(found: Mapping[str, str]) -> tuple[Entry, ...]:
     return tuple(Entry(key, _LABELS.get(key, key), text) for key, text in found.items())
 
 
-def fingerprint(simulation: Simulation) -> str:
+def fingerprint(simulation: RunResult) -> str:
     """SHA-256 (lower-case hex) of the accepted trials: indices, then inputs, then forecasts, in the workbook's order.
 
     Inputs are those of the first 1,048,576 accepted trials, or what the run kept of them. Indices are 8-byte
@@ -359,7 +359,7 @@ def _update(digest: hashlib._Hash, values: NDArray[np.float64]) -> None:
         digest.update(np.where(np.isnan(part), np.nan, part).astype("<f8", copy=False).data)
 
 
-def repeat_command(simulation: Simulation) -> str:
+def repeat_command(simulation: RunResult) -> str:
     """What to type, in the workbook's folder, to get the same numbers: `xlmc simulate book.xlsx --trials … --seed …`.
 
     See `RunOptions.repeating` and `RunOptions.arguments`. Of a changed copy, which may stand in no file, it is said how

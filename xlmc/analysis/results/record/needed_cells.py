@@ -28,7 +28,7 @@ from xlmc.montecarlo.distributions.spelling import name_key
 
 if TYPE_CHECKING:
     from xlmc.excel.workbook.workbook import DefinedName, Table, Workbook
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = [
     "MOST_ROWS",
@@ -64,7 +64,7 @@ _LONGEST_MEANING: Final = 30_000
 _STRUCTURE_COLUMNS: Final = (("name", "Name"), ("what", "Is a"), ("means", "Means"))
 
 
-def needed_contents(model: Model) -> dict[Cell, str]:
+def needed_contents(model: CompiledModel) -> dict[Cell, str]:
     """The cells that a run of the model is a function of, with their contents, by sheets, rows and columns.
 
     These are the cells that forecasts and filters read, those of assumptions and of their data, and the reserved
@@ -211,7 +211,7 @@ def _cell(address: str) -> Cell:
     return found
 
 
-def structure_section(model: Model, contents: Collection[str]) -> Section:
+def structure_section(model: CompiledModel, contents: Collection[str]) -> Section:
     """The names and tables that the needed cells mention, and the hidden rows where a function asks for them.
 
     Args:
@@ -253,7 +253,7 @@ def _find_mentioned(names: Collection[DefinedName], words: set[str]) -> Iterator
         words = words | _words([name.text for name in found])
 
 
-def _sheets_read(model: Model) -> list[str]:
+def _sheets_read(model: CompiledModel) -> list[str]:
     """The sheets with hidden rows that a needed cell stands on."""
     read = {cell.sheet for cell in model.read}
     sheets = model.workbook.sheets  # parsed when looked up: those not read are left alone

@@ -13,7 +13,7 @@ from xlmc.montecarlo.definitions.run_settings import ENDS, SETTINGS, Setting, Se
 from xlmc.montecarlo.definitions.stopping import GOALS, Goal, Stopping, only_one
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["FLOAT64", "in_float32", "recorded_settings", "settings_section"]
 
@@ -33,7 +33,7 @@ def in_float32(version: str, where: Path | None = None) -> WorkbookError:
     return WorkbookError(message, where=where, hint=f"Open or repeat it with {made.replace('An', 'an', 1)}")
 
 
-def settings_section(simulation: Simulation) -> Section:
+def settings_section(simulation: RunResult) -> Section:
     """What the run was asked to do, each setting so that it reads back as the same one."""
     settings = simulation.settings
     of_run, of_end = ([row for row in SETTINGS.values() if bool(row.field) is ends] for ends in (False, True))

@@ -23,7 +23,7 @@ from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.simulation.simulation import Origin
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["check_run_path", "keep"]
 
@@ -37,7 +37,7 @@ class _Column(NamedTuple):
     values: NDArray[Any]
 
 
-def keep(simulation: Simulation, path: Path, *, overwrite: bool = False) -> Path:
+def keep(simulation: RunResult, path: Path, *, overwrite: bool = False) -> Path:
     """Save the run: the workbook it was made from, its settings and counts, and its columns.
 
     The same run gives the same bytes. Columns on disk are copied a part at a time.
@@ -78,7 +78,7 @@ def check_run_path(path: Path) -> None:
         raise WorkbookError(f"a saved run must end in {SUFFIX}", where=path, hint=hint)
 
 
-def _entries(simulation: Simulation) -> Iterator[tuple[str, int, Iterator[bytes]]]:
+def _entries(simulation: RunResult) -> Iterator[tuple[str, int, Iterator[bytes]]]:
     """Name, size and bytes of every entry; the last one holds the checksums of the others."""
     data = simulation.model.workbook.data
     yield WORKBOOK, len(data), iter([data])
@@ -94,7 +94,7 @@ def _entries(simulation: Simulation) -> Iterator[tuple[str, int, Iterator[bytes]
     yield RUN, len(document), iter([document])
 
 
-def _columns(simulation: Simulation) -> Iterator[_Column]:
+def _columns(simulation: RunResult) -> Iterator[_Column]:
     yield _Column("trial", "", "<i8", simulation.trial_index)
     for kind, columns in (
         ("input", simulation.inputs),
@@ -105,7 +105,7 @@ def _columns(simulation: Simulation) -> Iterator[_Column]:
             yield _Column(kind, name, "<f8", columns[name])
 
 
-def _document(simulation: Simulation, columns: list[dict[str, Any]]) -> dict[str, Any]:
+def _document(simulation: RunResult, columns: list[dict[str, Any]]) -> dict[str, Any]:
     model, origin, changed = simulation.model, _origin(simulation), simulation.changed_from
     return {
         "format": FORMAT,
@@ -128,5 +128,5 @@ def _document(simulation: Simulation, columns: list[dict[str, Any]]) -> dict[str
     }
 
 
-def _origin(simulation: Simulation) -> Origin:
+def _origin(simulation: RunResult) -> Origin:
     return simulation.origin or Origin(versions(simulation.settings.engine), processor())

@@ -1,4 +1,4 @@
-"""Open a saved run as the same `Simulation`, without simulating again."""
+"""Open a saved run as the same `RunResult`, without simulating again."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ from xlmc.montecarlo.diagnostics.weighing import weighing
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.forecast_filters import filters_by_forecast
 from xlmc.montecarlo.model.loading import build_model
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
-from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["is_saved_run", "open_run"]
 
@@ -64,7 +64,7 @@ def is_saved_run(path: Path) -> bool:
         return False
 
 
-def open_run(path: str | Path) -> Simulation:
+def open_run(path: str | Path) -> RunResult:
     """The run that was saved in a file, with the model of its workbook: every statistic is the same to the last bit.
 
     Columns go into memory, or, where they are large together, into temporary files.
@@ -117,7 +117,7 @@ def _in_float64(found: dict[str, Any], path: Path) -> Document:
     return found
 
 
-def _model(package: Package, found: Document, path: Path) -> Model:
+def _model(package: Package, found: Document, path: Path) -> CompiledModel:
     try:
         about = build(_Book, found["workbook"], "its workbook")
     except (KeyError, ValueError) as error:
@@ -159,7 +159,7 @@ class _Columns:
         ValueError: they are not those of the model.
     """
 
-    def __init__(self, found: object, model: Model, path: Path) -> None:
+    def __init__(self, found: object, model: CompiledModel, path: Path) -> None:
         require(isinstance(found, list), "its columns")
         assert isinstance(found, list)
         listed = [build(_Column, each, "a column") for each in found]
@@ -203,7 +203,7 @@ class _Columns:
         return self._keeper.columns({name: (kind, name) for name in self._names[kind]})
 
 
-def _simulation(found: Document, model: Model, columns: _Columns) -> Simulation:
+def _simulation(found: Document, model: CompiledModel, columns: _Columns) -> RunResult:
     settings, spelt = settings_of(found["settings"]), {name_key(name): name for name in model.draws}
     order, invalid = texts(found["order"], "its order of dimensions"), counts(found["invalid"], "its invalid draws")
     require(set(order) <= spelt.keys(), "its order of dimensions")
@@ -220,7 +220,7 @@ def _simulation(found: Document, model: Model, columns: _Columns) -> Simulation:
     inputs, prior = columns.of("input"), columns.of("prior")
     for name in inputs:
         require(not _holds_infinity(inputs[name]) and not _holds_infinity(prior[name]), f"the draws of {name!r}")
-    return Simulation(
+    return RunResult(
         model=model,
         settings=settings,
         plan=plan,
@@ -242,7 +242,7 @@ def _simulation(found: Document, model: Model, columns: _Columns) -> Simulation:
     )
 
 
-def _discards(found: object, model: Model) -> dict[str, Counter[str]]:
+def _discards(found: object, model: CompiledModel) -> dict[str, Counter[str]]:
     """The counts of filters of some forecasts only; runs saved before there were any have none."""
     given = mapping(found, "its discarded trials")
     own = filters_by_forecast(model.forecasts, model.forecast_filters)

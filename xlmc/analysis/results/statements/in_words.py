@@ -28,8 +28,8 @@ from xlmc.montecarlo.statistics import Estimate, proportion
 from xlmc.montecarlo.statistics.sample import MOST_GROUPS
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.model.model import Model
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.model.model import CompiledModel
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = [
     "REJECTED_SENTENCE",
@@ -123,7 +123,7 @@ class Discarded:
     share: Estimate
 
 
-def discards_of(simulation: Simulation) -> list[Discarded]:
+def discards_of(simulation: RunResult) -> list[Discarded]:
     """What such filters discard, filter by filter, forecast by forecast."""
     found = []
     for filter_ in simulation.model.forecast_filters:
@@ -187,14 +187,14 @@ def notes_text(notes: Mapping[str, str]) -> str:
     return "; ".join(f"{heading}: {text}" for heading, text in notes.items())
 
 
-def status(model: Model, name: str, frozen: bool) -> str:
+def status(model: CompiledModel, name: str, frozen: bool) -> str:
     """What a run does with the assumption: `drawn`, `frozen`, or `not needed` by any forecast or filter."""
     if frozen:
         return "frozen"
     return "drawn" if name in model.draws else "not needed"
 
 
-def method_text(simulation: Simulation) -> str:
+def method_text(simulation: RunResult) -> str:
     """`Latin hypercube: 16 independent replicates of 12,500 trials`."""
     plan = simulation.plan
     if simulation.rare is not None:
@@ -206,7 +206,7 @@ def method_text(simulation: Simulation) -> str:
     return f"{METHODS[plan.method].name}: {plan.replicates} independent replicates of {plan.size:,} trials{more}"
 
 
-def errors_text(simulation: Simulation) -> str:
+def errors_text(simulation: RunResult) -> str:
     """What the standard errors and intervals are made from."""
     plan = simulation.plan
     if not plan.size:
@@ -216,7 +216,7 @@ def errors_text(simulation: Simulation) -> str:
     return f"from the differences between {what}, with Student's t of {groups - 1} degrees of freedom"
 
 
-def sampling_sentence(simulation: Simulation) -> str:
+def sampling_sentence(simulation: RunResult) -> str:
     """How the run was sampled and where its errors come from, in one sentence."""
     done = "" if simulation.rare is None else f" {simulation.rare.sentence}"
     weighting = simulation.weighting
@@ -226,7 +226,7 @@ def sampling_sentence(simulation: Simulation) -> str:
     return f"{method_text(simulation)}; errors come {errors_text(simulation)}.{done}{weighed}"
 
 
-def generator_text(simulation: Simulation) -> str:
+def generator_text(simulation: RunResult) -> str:
     """The source of the random numbers, in words."""
     if simulation.rare is not None:
         return f"{GENERATOR}, seeded by (seed, purpose): a stream to learn with, and one to draw the trials with"

@@ -21,7 +21,7 @@ from xlmc.montecarlo.statistics import Estimate, proportion, rank_correlation, r
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Forecast
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["PAIRS", "Pair", "pairs_of"]
 
@@ -65,7 +65,7 @@ class Pair:
     ranked: int
 
 
-def pairs_of(simulation: Simulation, most: int = PAIRS) -> list[Pair]:
+def pairs_of(simulation: RunResult, most: int = PAIRS) -> list[Pair]:
     """The first `most` pairs of forecasts that vary and have trials in common, in the order of the workbook."""
     results = simulation.results
     forecasts = [each for each in simulation.model.forecasts if results[each.name].statistics.range_width.value > 0.0]
@@ -73,7 +73,7 @@ def pairs_of(simulation: Simulation, most: int = PAIRS) -> list[Pair]:
     return list(islice((pair for pair in found if pair is not None), most))
 
 
-def _pair(simulation: Simulation, first: Forecast, second: Forecast) -> Pair | None:
+def _pair(simulation: RunResult, first: Forecast, second: Forecast) -> Pair | None:
     columns = (simulation.forecasts[first.name], simulation.forecasts[second.name])
     limits, replicate = (_limit(simulation, first), _limit(simulation, second)), simulation.replicate
     counts = _count_trials(columns, limits, replicate)
@@ -96,7 +96,7 @@ def _pair(simulation: Simulation, first: Forecast, second: Forecast) -> Pair | N
     )
 
 
-def _limit(simulation: Simulation, forecast: Forecast) -> float:
+def _limit(simulation: RunResult, forecast: Forecast) -> float:
     if forecast.threshold is not None:
         return forecast.threshold
     median = simulation.results[forecast.name].statistics.median

@@ -23,7 +23,7 @@ from xlmc.montecarlo.statistics import Estimate, probability_above, probability_
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.montecarlo.statistics import Sample
 
 __all__ = ["MEANING", "Certainty", "Statement", "certainties", "stated_range", "statements"]
@@ -54,7 +54,7 @@ class Statement:
     text: str
 
 
-def statements(simulation: Simulation) -> list[Statement]:
+def statements(simulation: RunResult) -> list[Statement]:
     """Say of every forecast, but diagnostics, where its central range lies or how probable a yes is, and how probable
     values above its threshold and in the range that was asked for are.
     """

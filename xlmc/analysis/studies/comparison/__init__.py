@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
-from xlmc.analysis.studies.comparison.comparison import Cause, Comparison, ForecastComparison, compare
+from xlmc.analysis.studies.comparison.comparison import (
+    Cause,
+    CompareArguments,
+    Comparison,
+    ForecastComparison,
+    compare,
+)
 from xlmc.analysis.studies.comparison.differences import Acceptance, Change, Difference, difference
 from xlmc.analysis.studies.comparison.tolerances import Judgement, Verdict, judge
 
@@ -10,6 +16,7 @@ __all__ = [
     "Acceptance",
     "Cause",
     "Change",
+    "CompareArguments",
     "Comparison",
     "Difference",
     "ForecastComparison",

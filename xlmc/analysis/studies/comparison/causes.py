@@ -24,9 +24,9 @@ from xlmc.analysis.studies.comparison.variations import with_changes
 from xlmc.montecarlo.definitions.definitions import Assumption, Filter
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.distributions.spelling import name_key
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.model.needed import filter_limits
-from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["Inputs", "Step", "Unlike", "Variations", "cause_of", "inputs_of", "steps_between"]
 
@@ -36,7 +36,7 @@ _SAME: Final = 1e-9
 
 Floats = NDArray[np.float64]
 
-Run = Callable[[Model, str], Simulation]
+Run = Callable[[CompiledModel, str], RunResult]
 
 _KINDS = ("filter", "assumption", "distribution")
 
@@ -69,7 +69,7 @@ class Inputs:
     filters: tuple[tuple[str, ...], tuple[str, ...]]
 
 
-def inputs_of(first: Simulation, second: Simulation) -> Inputs:
+def inputs_of(first: RunResult, second: RunResult) -> Inputs:
     """Compare the inputs of two runs over the same trials; what no forecast or filter needs is left out."""
     mine, theirs = (_needed(run.model) for run in (first, second))
     both = [(mine[key], theirs[key]) for key in mine if key in theirs]
@@ -85,7 +85,7 @@ def inputs_of(first: Simulation, second: Simulation) -> Inputs:
     )
 
 
-def _needed(model: Model) -> dict[str, Assumption]:
+def _needed(model: CompiledModel) -> dict[str, Assumption]:
     return {name_key(a.name): a for a in model.assumptions if a not in model.needed.idle}
 
 
@@ -119,7 +119,7 @@ def _words(assumption: Assumption) -> str:
     return f"{what} {assumption.units}".rstrip()
 
 
-def _filters_only(mine: Model, theirs: Model) -> tuple[str, ...]:
+def _filters_only(mine: CompiledModel, theirs: CompiledModel) -> tuple[str, ...]:
     known = {name_key(f.name): _limits(f) for f in theirs.filters}
     return tuple(f.name for f in mine.filters if known.get(name_key(f.name)) != _limits(f))
 
@@ -152,7 +152,7 @@ class Step:
         return "evidence" if self.of_evidence else self.kind
 
 
-def steps_between(inputs: Inputs, first: Simulation, second: Simulation) -> tuple[Step, ...]:
+def steps_between(inputs: Inputs, first: RunResult, second: RunResult) -> tuple[Step, ...]:
     """The steps that can be taken: filters that reject a trial, assumptions with a base value, plain distributions."""
     found = []
     for side, run in enumerate((first, second)):
@@ -169,7 +169,7 @@ def steps_between(inputs: Inputs, first: Simulation, second: Simulation) -> tupl
     return tuple(found)
 
 
-def _by_key(model: Model) -> dict[str, Assumption]:
+def _by_key(model: CompiledModel) -> dict[str, Assumption]:
     return {name_key(a.name): a for a in model.assumptions}
 
 
@@ -186,19 +186,19 @@ class Variations:
         run: simulates a model over the same trials.
     """
 
-    def __init__(self, first: Simulation, second: Simulation, run: Run) -> None:
+    def __init__(self, first: RunResult, second: RunResult, run: Run) -> None:
         self._books, self._run = (first, second), run
-        self._made: dict[tuple[int, frozenset[Step]], Simulation] = {
+        self._made: dict[tuple[int, frozenset[Step]], RunResult] = {
             (side, frozenset()): book for side, book in enumerate(self._books)
         }
 
-    def pair(self, steps: Iterable[Step]) -> tuple[Simulation, Simulation]:
+    def pair(self, steps: Iterable[Step]) -> tuple[RunResult, RunResult]:
         """The runs of both books after these steps."""
         taken = frozenset(steps)
         first, second = (self._side(side, frozenset(s for s in taken if s.side == side)) for side in (0, 1))
         return first, second
 
-    def _side(self, side: int, steps: frozenset[Step]) -> Simulation:
+    def _side(self, side: int, steps: frozenset[Step]) -> RunResult:
         if (side, steps) not in self._made:
             book, other = self._books[side].model, _by_key(self._books[1 - side].model)
             names = {kind: [s.name for s in steps if s.kind == kind] for kind in _KINDS}

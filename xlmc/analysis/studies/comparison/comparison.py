@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import ceil, inf
+from typing import TypedDict
 
 from xlmc.analysis.studies.comparison.causes import Inputs, Step, Variations, cause_of, inputs_of, steps_between
 from xlmc.analysis.studies.comparison.differences import Acceptance, Difference, acceptance, difference
@@ -29,12 +30,26 @@ from xlmc.analysis.studies.comparison.variations import with_plain_sampling
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.distributions.spelling import name_key
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import simulate
-from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate
 
-__all__ = ["Cause", "Comparison", "ForecastComparison", "compare"]
+__all__ = ["Cause", "CompareArguments", "Comparison", "ForecastComparison", "compare"]
+
+
+class CompareArguments(TypedDict, total=False):
+    """The arguments of `compare` beside the books and the tolerance."""
+
+    pairs: Mapping[str, str] | None
+    feeds: Mapping[str, str] | None
+    trials: int | None
+    seed: int | None
+    engine: str | None
+    jobs: int
+    chance: float | None
+    causes: bool
+    told: Callable[[str], None] | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,15 +123,15 @@ class Comparison:
         source: the run of the book whose answers feed the second, which is the first with other draws; None elsewhere.
     """
 
-    first: Simulation
-    second: Simulation
+    first: RunResult
+    second: RunResult
     simpler: int | None
     acceptance: Acceptance
     inputs: Inputs
     forecasts: tuple[ForecastComparison, ...]
     unpaired: tuple[tuple[str, ...], tuple[str, ...]]
     runs: int
-    source: Simulation | None = None
+    source: RunResult | None = None
 
     def of(self, verdict: Verdict) -> tuple[ForecastComparison, ...]:
         """The forecasts of which this is the verdict, but for those of which the books are rival models."""
@@ -135,8 +150,8 @@ class Comparison:
 
 
 def compare(
-    first: Model,
-    second: Model,
+    first: CompiledModel,
+    second: CompiledModel,
     tolerance: Iterable[str] | str = (),
     *,
     pairs: Mapping[str, str] | None = None,
@@ -181,7 +196,7 @@ def compare(
     seed = first.definitions.settings.seed if seed is None else seed
     made = 0
 
-    def run(model: Model, purpose: str, keep_inputs: int = 0) -> Simulation:
+    def run(model: CompiledModel, purpose: str, keep_inputs: int = 0) -> RunResult:
         nonlocal made
         made += 1
         if told is not None:
@@ -222,7 +237,7 @@ class _Search:
 
     def __init__(
         self,
-        books: tuple[Simulation, Simulation],
+        books: tuple[RunResult, RunResult],
         inputs: Inputs,
         variations: Variations,
         chance: float | None,
@@ -273,11 +288,13 @@ def _threshold(mine: Forecast, theirs: Forecast, factor: float) -> float | None:
     return theirs.threshold * factor
 
 
-def _accepted_trials(run: Simulation, forecast: Forecast, factor: float) -> Accepted:
+def _accepted_trials(run: RunResult, forecast: Forecast, factor: float) -> Accepted:
     return Accepted.of(run.trial_index, run.forecasts[forecast.name] * factor)
 
 
-def _match_forecasts(first: Model, second: Model, pairs: Mapping[str, str]) -> list[tuple[Forecast, Forecast]]:
+def _match_forecasts(
+    first: CompiledModel, second: CompiledModel, pairs: Mapping[str, str]
+) -> list[tuple[Forecast, Forecast]]:
     """The forecasts of the first book with their counterparts, in its order.
 
     Raises:
@@ -313,7 +330,7 @@ def _factor(mine: Forecast, theirs: Forecast) -> float:
 
 
 def _unpaired_forecasts(
-    first: Model, second: Model, matched: Sequence[tuple[Forecast, Forecast]]
+    first: CompiledModel, second: CompiledModel, matched: Sequence[tuple[Forecast, Forecast]]
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     mine, theirs = {a.name for a, _ in matched}, {b.name for _, b in matched}
     return (
@@ -322,7 +339,7 @@ def _unpaired_forecasts(
     )
 
 
-def _simpler(first: Model, second: Model) -> int | None:
+def _simpler(first: CompiledModel, second: CompiledModel) -> int | None:
     mine, theirs = (
         (len(model.live), len(model.needed.graph.formulas), len(model.filters)) for model in (first, second)
     )

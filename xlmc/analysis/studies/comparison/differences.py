@@ -30,7 +30,7 @@ from xlmc.analysis.studies.comparison.paired_statistics import (
     standard_deviation_of,
 )
 from xlmc.analysis.studies.comparison.tolerances import chance_tolerance
-from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import with_error
 from xlmc.montecarlo.statistics.proportions import least_error
@@ -122,7 +122,7 @@ class Acceptance:
     relative: Estimate
 
 
-def acceptance(first: Simulation, second: Simulation) -> Acceptance:
+def acceptance(first: RunResult, second: RunResult) -> Acceptance:
     """Compare what is accepted; the error of the ratio comes from the trials that one run alone accepts."""
     both = int(np.intersect1d(first.trial_index, second.trial_index, assume_unique=True).size)
     mine, theirs = first.accepted - both, second.accepted - both

@@ -23,8 +23,8 @@ from xlmc.excel.address import InFormula
 from xlmc.montecarlo.definitions.definitions import Assumption, Copula, Definitions, Forecast
 from xlmc.montecarlo.distributions.empirical import Empirical
 from xlmc.montecarlo.distributions.spelling import name_key
-from xlmc.montecarlo.model.model import Model
-from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["fed_model"]
 
@@ -36,7 +36,7 @@ _FEWEST: Final = 100
 """Accepted trials that stand for a distribution."""
 
 
-def fed_model(model: Model, source: Simulation, feeds: Mapping[str, str]) -> Model:
+def fed_model(model: CompiledModel, source: RunResult, feeds: Mapping[str, str]) -> CompiledModel:
     """The model with assumptions drawn from the accepted trials of another book.
 
     Args:
@@ -75,10 +75,10 @@ def fed_model(model: Model, source: Simulation, feeds: Mapping[str, str]) -> Mod
     definitions = replace(model.definitions, assumptions=tuple(drawn.get(a.name, a) for a in model.assumptions))
     if len(fed) > 1:
         definitions = _together(definitions, fed, trials, source, frozenset(model.needed.live))
-    return Model(model.workbook, definitions, Path(f"{model.path.name} fed by {source.model.path.name}"))
+    return CompiledModel(model.workbook, definitions, Path(f"{model.path.name} fed by {source.model.path.name}"))
 
 
-def _found(name: str, known: Mapping[str, Named], kind: str, model: Model) -> Named:
+def _found(name: str, known: Mapping[str, Named], kind: str, model: CompiledModel) -> Named:
     if name_key(name) not in known:
         hint = f"there are {', '.join(repr(each.name) for each in known.values())}"
         raise SimulationError(f"there is no {kind} {name.strip()!r}", where=model.path.name, hint=hint)
@@ -99,7 +99,7 @@ def _factor(assumption: Assumption, forecast: Forecast) -> float:
     return factor
 
 
-def _drawn_from(assumption: Assumption, values: Floats, source: Simulation) -> Assumption:
+def _drawn_from(assumption: Assumption, values: Floats, source: RunResult) -> Assumption:
     return replace(
         assumption,
         distribution=f"from {source.model.path.name}",
@@ -113,7 +113,7 @@ def _drawn_from(assumption: Assumption, values: Floats, source: Simulation) -> A
 
 
 def _together(
-    definitions: Definitions, fed: Mapping[str, Assumption], trials: Floats, source: Simulation, live: Set[str]
+    definitions: Definitions, fed: Mapping[str, Assumption], trials: Floats, source: RunResult, live: Set[str]
 ) -> Definitions:
     """The definitions with assumptions that are drawn from the same trial, in place of rank correlations among them.
 

@@ -30,7 +30,7 @@ from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.diagnostics.agreement import INCONSISTENT, STRAINED
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.needed import upstream
-from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["RivalVerdict", "Rivalry", "rivalry"]
 
@@ -97,7 +97,7 @@ class Rivalry:
         return self.sharper is not None and _smaller(self.deviation) is None
 
 
-def _own_inputs(run: Simulation, forecast: Forecast) -> Mapping[str, str]:
+def _own_inputs(run: RunResult, forecast: Forecast) -> Mapping[str, str]:
     """The drawn assumptions that a forecast is computed from: key -> name. Filters are not asked."""
     model = run.model
     reached = upstream(model.needed.graph, [forecast.cell], model.lowering.led_to)
@@ -105,7 +105,7 @@ def _own_inputs(run: Simulation, forecast: Forecast) -> Mapping[str, str]:
 
 
 def rivalry(
-    runs: tuple[Simulation, Simulation],
+    runs: tuple[RunResult, RunResult],
     forecasts: tuple[Forecast, Forecast],
     answers: tuple[Accepted, Accepted],
 ) -> Rivalry | None:

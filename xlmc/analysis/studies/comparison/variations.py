@@ -12,19 +12,19 @@ from dataclasses import replace
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.definitions import Assumption
 from xlmc.montecarlo.definitions.stopping import NO_GOAL
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["with_changes", "with_plain_sampling"]
 
 
 def with_changes(
-    model: Model,
+    model: CompiledModel,
     *,
     frozen: Collection[str] = (),
     without: Collection[str] = (),
     drawn_as: Mapping[str, Assumption] | None = None,
     held_at: Mapping[str, float] | None = None,
-) -> Model:
+) -> CompiledModel:
     """A model with changed definitions, and without the book's checks: these move no number of a run.
 
     Args:
@@ -43,10 +43,10 @@ def with_changes(
         filters=tuple(f for f in model.filters if f.name not in without),
         checks=(),
     )
-    return Model(model.workbook, definitions, model.path)
+    return CompiledModel(model.workbook, definitions, model.path)
 
 
-def with_plain_sampling(model: Model) -> Model:
+def with_plain_sampling(model: CompiledModel) -> CompiledModel:
     """The model with plain Monte Carlo for its sampling, and runs of a given length.
 
     Differences are judged from trials that are independent, the same trials of each model.
@@ -56,7 +56,7 @@ def with_plain_sampling(model: Model) -> Model:
     if settings == plain:
         return model
     definitions = replace(model.definitions, settings=plain)
-    return Model(model.workbook, definitions, model.path)
+    return CompiledModel(model.workbook, definitions, model.path)
 
 
 def _assumption(

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.montecarlo import statistics
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 from xlmc.montecarlo.statistics import Sample
 
@@ -139,7 +139,7 @@ class Method(Protocol):
     @property
     def cannot(self) -> str: ...
 
-    def run(self, model: Model, budget: int, seed: int) -> MethodResult:
+    def run(self, model: CompiledModel, budget: int, seed: int) -> MethodResult:
         """Run it once.
 
         Args:

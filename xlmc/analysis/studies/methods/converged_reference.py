@@ -16,9 +16,9 @@ from xlmc.analysis.studies.methods.quantile_need import QuantileNeed, quantile_n
 from xlmc.errors import SimulationError
 from xlmc.montecarlo import statistics
 from xlmc.montecarlo.definitions.definitions import Forecast
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import simulate
-from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate, Sample
 from xlmc.montecarlo.statistics.heavy_tails import heavy_tail
 
@@ -99,7 +99,7 @@ class Reference:
         return float(getattr(self.single[forecast], statistic)) / float(np.sqrt(trials * self.acceptance.value))
 
 
-def fastest_engine(model: Model) -> str:
+def fastest_engine(model: CompiledModel) -> str:
     """`jit` where it is installed and knows the model, or else `numpy`."""
     try:
         model.program("jit")
@@ -108,7 +108,7 @@ def fastest_engine(model: Model) -> str:
     return "jit"
 
 
-def reference_size(model: Model, engine: str, seed: int, seconds: float) -> tuple[int, str]:
+def reference_size(model: CompiledModel, engine: str, seed: int, seconds: float) -> tuple[int, str]:
     """How many trials take about so many seconds, a power of two, and by which sampling."""
     run = partial(simulate, model, seed=seed, engine=engine, sampling="mc", keep_inputs=0)
     run(trials=_PROBE // 16)  # compiles what must be compiled
@@ -120,7 +120,7 @@ def reference_size(model: Model, engine: str, seed: int, seconds: float) -> tupl
     return size, "sobol" if probe.accepted == probe.trials else "mc"
 
 
-def reference_of(model: Model, trials: int, sampling: str, engine: str, seed: int) -> Reference:
+def reference_of(model: CompiledModel, trials: int, sampling: str, engine: str, seed: int) -> Reference:
     """Run the reference.
 
     Raises:
@@ -159,7 +159,7 @@ def reference_of(model: Model, trials: int, sampling: str, engine: str, seed: in
     )
 
 
-def unfiltered_of(model: Model, reference: Reference) -> Reference | None:
+def unfiltered_of(model: CompiledModel, reference: Reference) -> Reference | None:
     """The forecasts without the filters, by a run of up to 1,048,576 trials.
 
     None where no filter rejects anything, or where forecasts are no numbers in trials that the filters reject: then
@@ -167,7 +167,7 @@ def unfiltered_of(model: Model, reference: Reference) -> Reference | None:
     """
     if not model.filters or reference.accepted == reference.trials:
         return None
-    free = Model(model.workbook, replace(model.definitions, filters=(), checks=()), model.path)
+    free = CompiledModel(model.workbook, replace(model.definitions, filters=(), checks=()), model.path)
     trials = min(reference.trials, _UNFILTERED)
     try:
         found = reference_of(free, trials, "mc", reference.engine, reference.seed)
@@ -200,7 +200,7 @@ def _lost(x: NDArray[np.float64]) -> tuple[str, ...]:
     return ("mean", "sd") if index - 2 * error <= 1.0 else ("sd",)
 
 
-def _numbers(run: Simulation, forecast: Forecast) -> tuple[Answer, Answer, Answer]:
+def _numbers(run: RunResult, forecast: Forecast) -> tuple[Answer, Answer, Answer]:
     sample = run[forecast.name].sample
     if sample.n < 2:
         return Answer(), Answer(), Answer()

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from xlmc.analysis.studies.methods.answer import Answer, Errors, MethodResult
 from xlmc.analysis.studies.methods.points import Evaluation, assumptions_of, box_of
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["Corners"]
 
@@ -36,7 +36,7 @@ class Corners:
         "gives two ends and no likelihood in between, does not see filters, and misses extremes inside the box"
     )
 
-    def run(self, model: Model, budget: int, seed: int) -> MethodResult:
+    def run(self, model: CompiledModel, budget: int, seed: int) -> MethodResult:
         """See `Method`; the budget is not looked at."""
         started = time.perf_counter()
         box, evaluate = box_of(model, seed), Evaluation(model)

@@ -19,7 +19,7 @@ from xlmc.analysis.studies.methods.answer import Answer, Errors, MethodResult, a
 from xlmc.analysis.studies.methods.expansion import draw_assumptions, expansion_of
 from xlmc.analysis.studies.methods.points import box_of
 from xlmc.engine.passes.derivatives import Derivative
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["FirstOrder", "SecondOrder", "WorstCase"]
 
@@ -37,7 +37,7 @@ class WorstCase:
         "gives two ends and no likelihood in between, does not see filters, and takes every curve for straight"
     )
 
-    def run(self, model: Model, budget: int, seed: int) -> MethodResult:
+    def run(self, model: CompiledModel, budget: int, seed: int) -> MethodResult:
         """See `Method`; it evaluates one point, with its first derivatives."""
         started = time.perf_counter()
         expansion, box = expansion_of(model, seed, 1), box_of(model, seed)
@@ -59,7 +59,7 @@ class FirstOrder:
     errors: Errors = "once"
     cannot: str = "does not see filters; takes every curve for straight and every answer for normally distributed"
 
-    def run(self, model: Model, budget: int, seed: int) -> MethodResult:
+    def run(self, model: CompiledModel, budget: int, seed: int) -> MethodResult:
         """See `Method`; it evaluates one point, with its first derivatives."""
         from scipy.special import ndtri
 
@@ -84,7 +84,7 @@ class SecondOrder:
     errors: Errors = "once"
     cannot: str = "does not see filters; misses what the third and higher derivatives do over the ranges"
 
-    def run(self, model: Model, budget: int, seed: int) -> MethodResult:
+    def run(self, model: CompiledModel, budget: int, seed: int) -> MethodResult:
         """See `Method`; it evaluates one point, with its first and second derivatives."""
         started = time.perf_counter()
         expansion = expansion_of(model, seed, 2)

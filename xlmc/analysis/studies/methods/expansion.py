@@ -13,7 +13,7 @@ from xlmc.analysis.studies.derivatives import derivatives
 from xlmc.engine.passes.derivatives import Derivative, Derivatives
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.distributions.base import Member
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.draws import Draw
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 
@@ -41,7 +41,7 @@ class Expansion:
     remarks: tuple[str, ...]
 
 
-def expansion_of(model: Model, seed: int, order: int) -> Expansion:
+def expansion_of(model: CompiledModel, seed: int, order: int) -> Expansion:
     """Expand a model's forecasts.
 
     Raises:
@@ -80,7 +80,7 @@ class Moments:
     remarks: tuple[str, ...]
 
 
-def _moments_of(model: Model, seed: int) -> Moments:
+def _moments_of(model: CompiledModel, seed: int) -> Moments:
     """The moments of a model's assumptions.
 
     Raises:
@@ -107,7 +107,7 @@ def _moments_of(model: Model, seed: int) -> Moments:
     return Moments(found[:, 0], correlations * np.outer(sd, sd), tuple(remarks))
 
 
-def draw_assumptions(model: Model, seed: int) -> Iterator[Floats]:
+def draw_assumptions(model: CompiledModel, seed: int) -> Iterator[Floats]:
     """65,536 Sobol draws of the assumptions, before any filter, `(n, k)` block by block."""
     plan = SamplingPlan.of("sobol", _DRAWN)
     made = model.sampler(seed, plan.size, plan=plan)
@@ -127,7 +127,7 @@ def _of_draw(draw: Draw) -> tuple[float, float]:
     return float(np.mean(middles)), float(np.var(middles))
 
 
-def _correlations(model: Model, draws: Floats, varying: list[int]) -> Floats:
+def _correlations(model: CompiledModel, draws: Floats, varying: list[int]) -> Floats:
     """Pearson's, where something correlates; 0 elsewhere."""
     names = [a.name for a in model.live]
     sound = draws[~np.isnan(draws).any(axis=1)]

@@ -21,7 +21,7 @@ from xlmc.analysis.studies.methods.answer import Errors, Extreme, MethodResult, 
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.loop.blocks import Task
 from xlmc.montecarlo.loop.scheduling.run_spec import model_runner
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.sampling_methods import Margin
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 from xlmc.montecarlo.sampling.streams import Stream
@@ -52,7 +52,7 @@ class ImportanceGrid:
     errors: Errors = "weighted"
     cannot: str = "looks at one assumption at a time, so it gains less where only combinations are accepted"
 
-    def run(self, model: Model, budget: int, seed: int) -> MethodResult:
+    def run(self, model: CompiledModel, budget: int, seed: int) -> MethodResult:
         """See `Method`.
 
         Raises:
@@ -71,7 +71,7 @@ class ImportanceGrid:
         return MethodResult(seconds, pilot + trials, answers, total / trials, effective, (said,), extremes=ends)
 
 
-def _learned(model: Model, trials: int, seed: int) -> dict[str, Floats]:
+def _learned(model: CompiledModel, trials: int, seed: int) -> dict[str, Floats]:
     """Name of an assumption -> density of its uniforms in each bin, `(BINS,)`, 1 where it is as without a grid."""
     run = simulate(model, trials=trials, seed=seed, sampling="mc", engine="numpy", keep_inputs=0)
     if not run.accepted:
@@ -95,7 +95,7 @@ def _density(counts: Floats) -> Floats:
 
 
 def _weighted(
-    model: Model, grids: dict[str, Floats], trials: int, seed: int
+    model: CompiledModel, grids: dict[str, Floats], trials: int, seed: int
 ) -> tuple[Floats, list[Floats], tuple[Extreme, ...]]:
     """The weights of the accepted trials `(m,)`, the forecasts, `(m,)` each, and their extremes."""
     program = model.program("numpy")

@@ -28,7 +28,7 @@ from xlmc.errors import SimulationError
 from xlmc.excel.address import Cell
 from xlmc.excel.functions.values import ERROR, TEXT
 from xlmc.montecarlo.model.draw_binding import parameter_target
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.model.needed import filter_limits
 from xlmc.montecarlo.simulation.simulate import simulate
 
@@ -153,7 +153,7 @@ class Optimised:
         "gives two ends and no likelihood in between; a search may end at an extreme that is not the outermost"
     )
 
-    def run(self, model: Model, budget: int, seed: int) -> MethodResult:
+    def run(self, model: CompiledModel, budget: int, seed: int) -> MethodResult:
         """See `Method`; the budget is not looked at.
 
         Raises:
@@ -176,7 +176,7 @@ class Optimised:
 
 
 def widen_bounds(
-    model: Model, seed: int, bounds: Mapping[str, tuple[float, float]], extremes: Iterable[Extreme]
+    model: CompiledModel, seed: int, bounds: Mapping[str, tuple[float, float]], extremes: Iterable[Extreme]
 ) -> tuple[dict[str, Answer], dict[End, Point]]:
     """Wider bounds where accepted trials lie outside those that were found, by a search from these trials.
 
@@ -222,7 +222,7 @@ def _outside(bounds: Mapping[str, tuple[float, float]], extremes: Iterable[Extre
 class _Search:
     """The optimisations of one run. Points are counted in widths of the box, so that all assumptions weigh alike."""
 
-    def __init__(self, model: Model, box: Box, accepted: Floats) -> None:
+    def __init__(self, model: CompiledModel, box: Box, accepted: Floats) -> None:
         self._model, self._box, self._accepted = model, box, accepted
         self._evaluate = Evaluation(model)
         self._names = [a.name for a in model.live]
@@ -381,7 +381,7 @@ def _distance(end: Floats, z: Floats) -> tuple[float, Floats]:
     return 0.5 * float(np.sum((z - end) ** 2)), z - end
 
 
-def _number(model: Model, limit: float | Cell) -> float | None:
+def _number(model: CompiledModel, limit: float | Cell) -> float | None:
     """A limit that does not vary; None for one that does, or that is no number."""
     if not isinstance(limit, Cell):
         return limit

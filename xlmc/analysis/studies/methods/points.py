@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from xlmc.engine.engine import Target
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
 from xlmc.excel.address import Cell
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.model.needed import filter_condition
 from xlmc.montecarlo.sampling.draws import Draw
 
@@ -53,7 +53,7 @@ class Box:
         return self.high - self.low
 
 
-def box_of(model: Model, seed: int) -> Box:
+def box_of(model: CompiledModel, seed: int) -> Box:
     """The box of a model; the seed is that of the draws which are looked at where parameters vary."""
     cut, varying = [], []
     ends = np.empty((len(model.live), 2))
@@ -86,7 +86,7 @@ def _cut(draw: Draw) -> tuple[float, float]:
     return (lowest if closed_below else low), (highest if np.isfinite(highest) else high)
 
 
-def _remarks(model: Model, cut: list[str], varying: list[int]) -> list[str]:
+def _remarks(model: CompiledModel, cut: list[str], varying: list[int]) -> list[str]:
     found = []
     if cut:
         names = ", ".join(cut)
@@ -125,7 +125,7 @@ class Evaluation:
         count: points evaluated so far.
     """
 
-    def __init__(self, model: Model, cells: tuple[Cell, ...] = ()) -> None:
+    def __init__(self, model: CompiledModel, cells: tuple[Cell, ...] = ()) -> None:
         self._names = [a.name for a in model.live]
         self._filters, self._forecasts, self._cells = len(model.filters), len(model.forecasts), len(cells)
         asked = [Target(filter_condition(each), each.cell) for each in model.filters]
@@ -153,7 +153,7 @@ class Evaluation:
             yield np.column_stack([np.array(column.as_floats()) for column in columns])
 
 
-def _upstream(model: Model, cells: Iterable[Cell]) -> set[Cell]:
+def _upstream(model: CompiledModel, cells: Iterable[Cell]) -> set[Cell]:
     """The cells that these depend on, and they themselves."""
     needs = model.needed.graph.needs
     found: set[Cell] = set()
@@ -166,7 +166,7 @@ def _upstream(model: Model, cells: Iterable[Cell]) -> set[Cell]:
     return found
 
 
-def assumptions_of(model: Model, cells: Iterable[Cell]) -> list[int]:
+def assumptions_of(model: CompiledModel, cells: Iterable[Cell]) -> list[int]:
     """The indices of the live assumptions that reach any of these cells, ascending.
 
     An assumption that only moves another's parameters does not count.

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from xlmc.analysis.studies.methods.answer import Errors, MethodResult, answer_of, extremes_of
 from xlmc.engine.engines import ENGINES
 from xlmc.montecarlo.loop.sobol_order import PILOT_TRIALS
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.simulation.simulate import simulate
 
@@ -35,7 +35,7 @@ class Sampled:
         """See `Method`."""
         return "independent" if METHODS[self.method].independent else "consistent"
 
-    def run(self, model: Model, budget: int, seed: int) -> MethodResult:
+    def run(self, model: CompiledModel, budget: int, seed: int) -> MethodResult:
         """See `Method`.
 
         Raises:

@@ -27,7 +27,7 @@ from xlmc.analysis.studies.methods.sampled import ENGINE_VARIANTS, MONTE_CARLO, 
 from xlmc.analysis.studies.methods.surrogate import Surrogate
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.amounts import as_tolerance
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["ACCURACY", "LENGTHS", "REPLICATES", "STEP", "Study", "ladder_of", "quick_settings", "study"]
 
@@ -90,7 +90,7 @@ class Study:
         absent: method -> why it could not be used.
     """
 
-    model: Model
+    model: CompiledModel
     seed: int
     accuracy: tuple[str, float, bool]
     reference: Reference
@@ -122,7 +122,7 @@ class Study:
 
 
 def study(
-    model: Model,
+    model: CompiledModel,
     *,
     accuracy: str = ACCURACY,
     reference_trials: int | None = None,
@@ -184,7 +184,7 @@ def quick_settings(given: Mapping[str, Any]) -> dict[str, Any]:
     return usual if "replicates" in given else {**usual, "replicates": 8, "patience": 0.5}
 
 
-def ladder_of(model: Model, most: int | None, seed: int, acceptance: float) -> tuple[int, ...]:
+def ladder_of(model: CompiledModel, most: int | None, seed: int, acceptance: float) -> tuple[int, ...]:
     """Trials of the runs, the fewest first: three lengths at least.
 
     The shortest have about four accepted trials, or 128 trials. Where `most` is not given, the longest have 16,384
@@ -203,7 +203,7 @@ def ladder_of(model: Model, most: int | None, seed: int, acceptance: float) -> t
     return tuple(found)
 
 
-def _check(seed: int, replicates: int | None, trials: int | None, reference: int | None, model: Model) -> None:
+def _check(seed: int, replicates: int | None, trials: int | None, reference: int | None, model: CompiledModel) -> None:
     if not model.forecasts:
         raise SimulationError("the workbook has no forecast", hint="add one to the table xlmc_forecasts")
     if not model.live:
@@ -231,7 +231,7 @@ class _Measuring:
 
     def __init__(
         self,
-        model: Model,
+        model: CompiledModel,
         reference: Reference,
         ladder: Sequence[int],
         replicates: int,

@@ -21,7 +21,7 @@ from xlmc.analysis.studies.methods.points import Evaluation
 from xlmc.errors import SimulationError
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import Assumption
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.model.needed import targets_of
 
 __all__ = ["Quadratic", "Surrogate", "fit_quadratic"]
@@ -59,7 +59,7 @@ class Surrogate:
     errors: Errors = "floor"
     cannot: str = "more trials do not remove the error of its polynomials"
 
-    def run(self, model: Model, budget: int, seed: int) -> MethodResult:
+    def run(self, model: CompiledModel, budget: int, seed: int) -> MethodResult:
         """See `Method`.
 
         Raises:
@@ -93,7 +93,7 @@ def _pilot_size(k: int) -> int:
     return max(1_024, 16 * Quadratic.coefficients(k) // 3)
 
 
-def _draws(model: Model, trials: int, seed: int) -> Floats:
+def _draws(model: CompiledModel, trials: int, seed: int) -> Floats:
     """Independent draws, `(trials, k)`, without those that are no number because parameters were no distribution."""
     drawn = model.sampler(seed, trials).draw(0)
     points = np.column_stack([drawn[a.name] for a in model.live])
@@ -117,7 +117,7 @@ def _errors(points: Floats, values: Floats) -> Floats:
     return found
 
 
-def _cut(model: Model, errors: dict[Cell, float]) -> list[Cell]:
+def _cut(model: CompiledModel, errors: dict[Cell, float]) -> list[Cell]:
     """The cells at which following the formulas upwards ends: smooth ones, and the assumptions themselves."""
     needs, found = model.needed.graph.needs, dict[Cell, None]()
     seen: set[Cell] = set()
@@ -133,14 +133,16 @@ def _cut(model: Model, errors: dict[Cell, float]) -> list[Cell]:
     return [*found]
 
 
-def _run(model: Model, replaced: list[Cell], polynomials: Quadratic, trials: int, seed: int) -> tuple[int, Floats]:
+def _run(
+    model: CompiledModel, replaced: list[Cell], polynomials: Quadratic, trials: int, seed: int
+) -> tuple[int, Floats]:
     """How many trials are accepted, and their forecasts, `(m, f)`."""
     inputs = {cell: f"surrogate of {cell}" for cell in replaced}
     stand_ins = tuple(
         Assumption(name, cell, "Uniform", {"low": 0.0, "high": 1.0}, row=cell) for cell, name in inputs.items()
     )
     definitions = replace(model.definitions, assumptions=(*model.assumptions, *stand_ins), correlations=())
-    rest = Model(model.workbook, definitions, model.path)
+    rest = CompiledModel(model.workbook, definitions, model.path)
     evaluate, made = Evaluation(rest), model.sampler(seed, _BLOCK)
     count, columns = 0, []
     for start in range(0, trials, _BLOCK):

@@ -16,7 +16,7 @@ from xlmc.analysis.studies.sensitivity.one_at_a_time import one_at_a_time
 from xlmc.analysis.studies.sensitivity.pick_and_freeze import SobolRun, pick_and_freeze, why_not
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["sensitivities"]
 
@@ -25,18 +25,18 @@ _MOST_LIMIT_FORECASTS: Final = 12
 """The most limits; more would make no readable charts, and take long."""
 
 _WORDS: Final = {">=": "at least", "<=": "at most", ">": "above", "<": "below"}
-_FOUND: Final[WeakKeyDictionary[Simulation, Sensitivities]] = WeakKeyDictionary()
+_FOUND: Final[WeakKeyDictionary[RunResult, Sensitivities]] = WeakKeyDictionary()
 """Sheets, page and JSON of one run want the same."""
 
 
-def sensitivities(simulation: Simulation) -> Sensitivities:
+def sensitivities(simulation: RunResult) -> Sensitivities:
     """What the answers of a finished run depend on. Nothing random is in it but the run's own draws."""
     if simulation not in _FOUND:
         _FOUND[simulation] = _analyse(simulation)
     return _FOUND[simulation]
 
 
-def _analyse(simulation: Simulation) -> Sensitivities:
+def _analyse(simulation: RunResult) -> Sensitivities:
     model = simulation.model
     assumptions = ranked_assumptions(simulation)
     found = influences(simulation, assumptions)
@@ -77,7 +77,7 @@ def _with_sobol(influence: Influence, run: SobolRun, forecast: int) -> Influence
     return replace(influence, first_order=first, total=total)
 
 
-def _move_limit(simulation: Simulation, tried: TriedLimit) -> FilterLimit:
+def _move_limit(simulation: RunResult, tried: TriedLimit) -> FilterLimit:
     forecasts = simulation.model.forecasts[:_MOST_LIMIT_FORECASTS]
     names, shares = [f.name for f in forecasts], [f.central for f in forecasts]
     with np.errstate(over="ignore", invalid="ignore"):  # forecasts near the largest double have no slope

@@ -30,7 +30,7 @@ from xlmc.analysis.studies.sensitivity.ranked import Ranked
 from xlmc.montecarlo.columns import picked
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["MOST_ASSUMPTIONS", "Influences", "influences", "ranked_assumptions"]
 
@@ -73,7 +73,7 @@ class Influences:
     coarse: tuple[str, ...] = ()
 
 
-def ranked_assumptions(simulation: Simulation) -> list[str]:
+def ranked_assumptions(simulation: RunResult) -> list[str]:
     """The live assumptions to examine closely: all in their order, or of very many the most influential first."""
     live = [a.name for a in simulation.model.live]
     if len(live) <= MOST_ASSUMPTIONS:
@@ -91,7 +91,7 @@ def ranked_assumptions(simulation: Simulation) -> list[str]:
     return [live[index] for index in first]
 
 
-def influences(simulation: Simulation, assumptions: Sequence[str]) -> list[Influences]:
+def influences(simulation: RunResult, assumptions: Sequence[str]) -> list[Influences]:
     """The influences of the assumptions of these names on every forecast, in the order of the workbook."""
     forecasts = simulation.model.forecasts
     rows, replicate = _examined_rows(simulation, _trials_for(len(assumptions) * len(forecasts)))
@@ -115,7 +115,7 @@ def influences(simulation: Simulation, assumptions: Sequence[str]) -> list[Influ
     return found
 
 
-def _with_finer_shares(simulation: Simulation, found: Sequence[Influences], most: int) -> list[Influences]:
+def _with_finer_shares(simulation: RunResult, found: Sequence[Influences], most: int) -> list[Influences]:
     """The same with the shares that ask for it from up to `most` trials."""
     rows, replicate = _examined_rows(simulation, most)
     tables: dict[bytes, tuple[Units, dict[str, Ranked]]] = {}
@@ -203,7 +203,7 @@ def _trials_for(pairs: int) -> int:
     return min(_MOST_TRIALS, max(_FEWEST, _VALUES // max(pairs, 1)))
 
 
-def _examined_rows(simulation: Simulation, most: int) -> tuple[NDArray[np.intp], NDArray[np.int64] | None]:
+def _examined_rows(simulation: RunResult, most: int) -> tuple[NDArray[np.intp], NDArray[np.int64] | None]:
     """The rows of at most `most` accepted trials with known draws, ascending, and their replicates, if any."""
     kept = simulation.kept_inputs if simulation.model.live else 0
     if not simulation.plan.size:

@@ -24,8 +24,8 @@ from xlmc.montecarlo.model.needed import filter_condition, filter_limits
 if TYPE_CHECKING:
     from xlmc.engine.engine import Evaluator, Program
     from xlmc.montecarlo.definitions.definitions import Filter
-    from xlmc.montecarlo.model.model import Model
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.model.model import CompiledModel
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["Limit", "LimitsFound", "TriedLimit", "limit_trials"]
 
@@ -65,7 +65,7 @@ class _LimitCells:
         limits: of all filters.
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: CompiledModel) -> None:
         self._model = model
         self.limits = [
             Limit(filter_, i, relation, bound)
@@ -144,7 +144,7 @@ class _More:
         return cls(*(np.concatenate(each, axis=-1) for each in zip(*columns, strict=True)))
 
 
-def limit_trials(simulation: Simulation, most: int, forecasts: int) -> LimitsFound:
+def limit_trials(simulation: RunResult, most: int, forecasts: int) -> LimitsFound:
     """Gather the trials of the first `most` limits of a run, and its first `forecasts` forecasts in them.
 
     Nothing is found where the draws of fewer than two accepted trials were kept, and no limit is tried where accepted
@@ -188,7 +188,7 @@ def limit_trials(simulation: Simulation, most: int, forecasts: int) -> LimitsFou
     return LimitsFound(tuple(tried), max(0, len(fixed_limits) - most), tuple(dict.fromkeys(varying)))
 
 
-def _look_at_accepted(simulation: Simulation, cells: _LimitCells, m: int) -> _CellValues:
+def _look_at_accepted(simulation: RunResult, cells: _LimitCells, m: int) -> _CellValues:
     """What decides the limits in the first m accepted trials."""
     block = min(m, cells.program.largest_block)
     evaluator, parts = cells.program.evaluator(block), []
@@ -202,7 +202,7 @@ def _look_at_accepted(simulation: Simulation, cells: _LimitCells, m: int) -> _Ce
 
 
 def _find_rejected(
-    simulation: Simulation, cells: _LimitCells, grids: Mapping[int, tuple[float, ...]], again: int, forecasts: int
+    simulation: RunResult, cells: _LimitCells, grids: Mapping[int, tuple[float, ...]], again: int, forecasts: int
 ) -> dict[int, _More]:
     """For each limit, those of the first `again` trials that it alone rejects and that its loosest value lets in."""
     parts: dict[int, list[_More]] = {i: [] for i in grids}

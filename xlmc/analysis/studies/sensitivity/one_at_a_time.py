@@ -19,7 +19,7 @@ from xlmc.montecarlo.statistics.estimate import finite
 
 if TYPE_CHECKING:
     from xlmc.engine.engine import Column
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["OneAtATime", "one_at_a_time"]
 
@@ -41,7 +41,7 @@ class OneAtATime:
     medians: tuple[str, ...]
 
 
-def one_at_a_time(model: Model, assumptions: Sequence[str]) -> OneAtATime:
+def one_at_a_time(model: CompiledModel, assumptions: Sequence[str]) -> OneAtATime:
     """Move each of the live assumptions of these names."""
     quantiles = model.quantiles([*(percent / 100.0 for percent in PERCENTS), 0.5])
     base = {a.name: float(quantiles[a.name][-1]) if a.base is None else float(a.base) for a in model.live}
@@ -63,7 +63,7 @@ def one_at_a_time(model: Model, assumptions: Sequence[str]) -> OneAtATime:
     )
 
 
-def _evaluate(model: Model, base: dict[str, float], moved: dict[str, Floats]) -> tuple[list[Floats], Floats]:
+def _evaluate(model: CompiledModel, base: dict[str, float], moved: dict[str, Floats]) -> tuple[list[Floats], Floats]:
     """The base case and every move, one after another: one `(cases,)` a forecast, and whether the filters reject."""
     cases = 1 + len(moved) * len(PERCENTS)
     starts = {name: 1 + index * len(PERCENTS) for index, name in enumerate(moved)}

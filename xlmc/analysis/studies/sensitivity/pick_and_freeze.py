@@ -26,8 +26,8 @@ from xlmc.montecarlo.statistics import Estimate
 
 if TYPE_CHECKING:
     from xlmc.engine.engine import Evaluator
-    from xlmc.montecarlo.model.model import Model
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.model.model import CompiledModel
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["SobolRun", "pick_and_freeze", "sobol_indices", "why_not"]
 
@@ -51,7 +51,7 @@ class SobolRun:
     indices: Mapping[str, tuple[tuple[Estimate, Estimate], ...]]
 
 
-def why_not(simulation: Simulation) -> str:
+def why_not(simulation: RunResult) -> str:
     """Why Sobol indices would mislead; empty where they would not."""
     model = simulation.model
     if simulation.accepted < simulation.trials:
@@ -72,7 +72,7 @@ def why_not(simulation: Simulation) -> str:
     return ""
 
 
-def pick_and_freeze(model: Model, assumptions: Sequence[str], trials: int, seed: int) -> SobolRun:
+def pick_and_freeze(model: CompiledModel, assumptions: Sequence[str], trials: int, seed: int) -> SobolRun:
     """The indices of a model without correlations, whatever its filters; of very many assumptions, of the first ones.
 
     Args:
@@ -96,7 +96,7 @@ def pick_and_freeze(model: Model, assumptions: Sequence[str], trials: int, seed:
     return SobolRun(pairs, found)
 
 
-def _draws(model: Model, seed: int, start: int, count: int, block: int) -> dict[str, Floats]:
+def _draws(model: CompiledModel, seed: int, start: int, count: int, block: int) -> dict[str, Floats]:
     """`(count,)` draws of independent trials from `start` on."""
     sampler = model.sampler(seed, block)
     drawn = {name: np.empty(count) for name in model.draws}

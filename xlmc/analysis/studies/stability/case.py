@@ -30,9 +30,9 @@ from xlmc.engine.passes.random_rounding import (
 )
 from xlmc.excel.address import Cell
 from xlmc.excel.functions.values import Value
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.model.needed import filter_condition
-from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["RELATIONS", "Case"]
 
@@ -62,7 +62,7 @@ class Case:
         seed: of the random rounding.
     """
 
-    def __init__(self, model: Model, run: Simulation, seed: int = 0) -> None:
+    def __init__(self, model: CompiledModel, run: RunResult, seed: int = 0) -> None:
         self.model, self.run, self._seed = model, run, seed
         self.trees = Trees(model)
         self.lowering, self.dag = model.lowering, model.lowering.dag

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from xlmc.excel.address import Cell
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.simulation.simulation import Simulation
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["CellDigits", "Finding", "Level", "Stability", "Where"]
 
@@ -117,7 +117,7 @@ class Stability:
         recomputed: how many of these were computed again with 50 digits.
     """
 
-    run: Simulation
+    run: RunResult
     findings: tuple[Finding, ...]
     cells: tuple[CellDigits, ...]
     unchecked: tuple[tuple[Cell, Sequence[str]], ...]

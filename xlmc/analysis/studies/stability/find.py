@@ -22,11 +22,11 @@ from xlmc.analysis.studies.stability.rounding_errors import cell_digits, lost_di
 from xlmc.engine.graph.nodes import Apply
 from xlmc.engine.passes.derivatives.sweep import owners
 from xlmc.montecarlo.simulation.simulate import simulate
-from xlmc.montecarlo.simulation.simulation import Simulation
+from xlmc.montecarlo.simulation.simulation import RunResult
 
 if TYPE_CHECKING:
     from xlmc.excel.address import Cell
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["stability"]
 
@@ -47,7 +47,7 @@ _DETECTORS: Final[Mapping[str, Callable[[Case], Iterable[Finding]]]] = {
 
 
 def stability(
-    model: Model,
+    model: CompiledModel,
     *,
     trials: int | None = None,
     seed: int | None = None,
@@ -68,7 +68,7 @@ def stability(
     """
     tell = told or (lambda _: None)
     tell("a run")
-    run: Simulation = simulate(model, trials=trials, seed=seed, jobs=jobs)
+    run: RunResult = simulate(model, trials=trials, seed=seed, jobs=jobs)
     case = Case(model, run, run.settings.seed)
     found: list[Finding] = []
     for name, detector in _DETECTORS.items():

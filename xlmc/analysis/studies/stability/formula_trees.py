@@ -16,7 +16,7 @@ from xlmc.excel.formula.ir import formula_text
 from xlmc.excel.formula.resolve import Resolver
 from xlmc.excel.formula.substitute import substitute, unfold
 from xlmc.excel.workbook.workbook import DefinedName, Formula, Workbook
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["Trees", "factors", "parts_of", "replace_part", "terms"]
 
@@ -74,7 +74,7 @@ class _Naming:
 class Trees:
     """The formulas that a model needs."""
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: CompiledModel) -> None:
         self._model = model
         self.lowering, self._graph = model.lowering, model.lowering.graph
         self._formulas: dict[Cell, ir.Expression] = {}

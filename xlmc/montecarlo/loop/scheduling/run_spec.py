@@ -17,7 +17,7 @@ from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.definitions import Definitions
 from xlmc.montecarlo.loop.blocks import ModelRunner
 from xlmc.montecarlo.loop.version import __version__
-from xlmc.montecarlo.model.model import Model
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 
 __all__ = ["RunSpec", "check_software", "model_runner", "software"]
@@ -27,7 +27,7 @@ LIBRARIES = ("numpy", "scipy", "formulas", *(engine.library for engine in ENGINE
 
 
 def model_runner(
-    model: Model, program: Program, engine: str, seed: int, block: int, plan: SamplingPlan | None = None
+    model: CompiledModel, program: Program, engine: str, seed: int, block: int, plan: SamplingPlan | None = None
 ) -> ModelRunner:
     """What runs the blocks of a model in this process, in one thread."""
     sampler, evaluator = model.sampler(seed, block, engine, plan), program.evaluator(block)
@@ -49,7 +49,7 @@ class RunSpec:
     @classmethod
     def of(
         cls,
-        model: Model,
+        model: CompiledModel,
         engine: str,
         seed: int,
         block: int,
@@ -64,16 +64,16 @@ class RunSpec:
         """The specification and the software that it was made with, as bytes for `unpacked`."""
         return pickle.dumps((software(), pickle.dumps(self, protocol=5)), protocol=5)
 
-    def model(self) -> Model:
+    def model(self) -> CompiledModel:
         """The model, made again."""
-        return Model(self.workbook, self.definitions, self.path)
+        return CompiledModel(self.workbook, self.definitions, self.path)
 
     def runner(self) -> ModelRunner:
         """See `Portable`."""
         model = self.model()
         return self.runner_of(model, model.program(self.engine))
 
-    def runner_of(self, model: Model, program: Program) -> ModelRunner:
+    def runner_of(self, model: CompiledModel, program: Program) -> ModelRunner:
         """What runs the blocks, given `model()` and its program."""
         return model_runner(model, program, self.engine, self.seed, self.block, self.plan)
 

@@ -17,7 +17,7 @@ from xlmc.montecarlo.loop.scheduling.run_spec import RunSpec, model_runner
 if TYPE_CHECKING:
     from xlmc.engine.engine import Program, Room
     from xlmc.montecarlo.definitions.definitions import Settings
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 
 __all__ = ["WorkerPool"]
@@ -54,7 +54,7 @@ class WorkerPool:
 
     def blocks(
         self,
-        model: Model,
+        model: CompiledModel,
         program: Program,
         settings: Settings,
         plan: SamplingPlan,

@@ -15,6 +15,7 @@ from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.package import read_parts
 from xlmc.excel.workbook.seal import read_seal
 from xlmc.excel.workbook.writer import package_bytes
+from xlmc.montecarlo.simulation import simulate
 
 pytestmark = pytest.mark.usefixtures("short_books")
 
@@ -205,14 +206,14 @@ def test_a_folder_is_refused_in_one_line(xlmc, book, tmp_path, option):
 
 
 def during_the_run(monkeypatch, act):
-    simulate = package.Model.simulate
+    run_model = simulate.run_model
 
-    def acting(self, *arguments, **options):
-        run = simulate(self, *arguments, **options)
+    def acting(*arguments, **options):
+        run = run_model(*arguments, **options)
         act()
         return run
 
-    monkeypatch.setattr(package.Model, "simulate", acting)
+    monkeypatch.setattr(simulate, "run_model", acting)
 
 
 def test_files_that_appear_during_the_run_are_spared_and_no_result_is_lost(xlmc, book, tmp_path, monkeypatch):

@@ -11,6 +11,7 @@ from openpyxl.worksheet.table import Table
 
 import xlmc as package
 from xlmc.errors import WorkbookError
+from xlmc.montecarlo.simulation import simulate
 from xlmc.montecarlo.simulation.simulation import KEPT_INPUTS
 
 pytestmark = pytest.mark.usefixtures("short_books")
@@ -113,13 +114,13 @@ def test_it_writes_no_workbook_where_something_else_is_asked_for(xlmc, simulated
 
 def test_a_run_with_an_extract_keeps_every_draw(xlmc, book, monkeypatch):
     asked = []
-    simulate = package.Model.simulate
+    run_model = simulate.run_model
 
-    def noting(self, *arguments, **options):
-        asked.append(options["keep_inputs"])
-        return simulate(self, *arguments, **options)
+    def noting(model, options, **named):
+        asked.append(options.keep_inputs)
+        return run_model(model, options, **named)
 
-    monkeypatch.setattr(package.Model, "simulate", noting)
+    monkeypatch.setattr(simulate, "run_model", noting)
     xlmc("simulate", book)
     xlmc("simulate", book, "--extract", "t.csv")
     assert asked == [KEPT_INPUTS, None]
@@ -255,7 +256,7 @@ def test_a_table_of_the_case_that_is_not_one_is_refused_before_the_run(xlmc, boo
     opened["Case"].append(["Title", "Main St", "?"])
     opened["Case"].add_table(Table(displayName="xlmc_case", ref="A1:C2"))
     opened.save(book)
-    monkeypatch.setattr(package.Model, "simulate", None)
+    monkeypatch.setattr(simulate, "run_model", None)
     run = xlmc("simulate", book, *options)
     assert run.code == 2
     assert "Case!A2: the table xlmc_case must have two columns" in run.err

@@ -13,7 +13,13 @@ __all__ = ["simulated"]
 
 
 def simulated(
-    model: CompiledModel, trials: int | None = None, seed: int | None = None, *, progress: Any = None, **options: Any
+    model: CompiledModel,
+    trials: int | None = None,
+    seed: int | None = None,
+    *,
+    progress: Any = None,
+    tell: Any = None,
+    **options: Any,
 ) -> RunResult:
     """Return a run; `options` are those of `Model.simulate`."""
-    return run_model(model, RunOptions.of(trials=trials, seed=seed, **options), progress=progress)
+    return run_model(model, RunOptions.of(trials=trials, seed=seed, **options), progress=progress, tell=tell)

@@ -1,1 +1,31 @@
-"""Workbooks and what their formulas mean: this layer works alone."""
+"""Workbooks and what their formulas mean: this layer works alone.
+
+>>> from xlmc import excel
+>>> book = excel.load("examples/skid-100-ft.xlsx")
+>>> book["Inputs!C9"]
+32.2
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from xlmc.excel.workbook.workbook import Workbook
+
+__all__ = ["load"]
+
+
+def load(path: str | Path) -> Workbook:
+    """Read an `.xlsx` or `.xlsm` workbook: cells with formulas and saved values, names, tables.
+
+    Nothing is calculated: `book["Sheet!B4"]` is the value that is saved in the file, None where none is. Sheets are
+    parsed when they are first looked up. An `.xls` is converted by LibreOffice, where it is installed.
+
+    Raises:
+        WorkbookError: the file cannot be opened, is no workbook, is encrypted, damaged or unreasonably large.
+    """
+    from xlmc.excel.workbook.reader import read_workbook
+
+    return read_workbook(path)

@@ -84,6 +84,7 @@ class Lowering(ExpressionLowering):
         audit: every formula reads what Excel saved in the cells it needs, so that each is checked on its own; one that
             cannot be computed is a fault, not an exception.
         one_trial: a cell that reads itself is an error, as in a trial of many, and no reason to refuse the cells.
+        strict: a formula that cannot be computed and has no saved value is an exception; otherwise a fault, too.
 
     Attributes:
         graph, inputs, held: as given.
@@ -104,11 +105,13 @@ class Lowering(ExpressionLowering):
         *,
         audit: bool = False,
         one_trial: bool = False,
+        strict: bool = True,
     ) -> None:
         dag = Dag(date1904=graph.workbook.date1904)
         trees = (placed for placed in graph.formulas.ordered.values() if not isinstance(placed, Filled))
         super().__init__(graph, dag, RunningTotals(dag, trees, self.cell), audit=audit)
-        self.inputs, self.held, self._one_trial = inputs, held, one_trial
+        self.inputs, self.held = inputs, held
+        self._strict, self._one_trial = strict and not audit, one_trial
         self.notices: list[Notice] = []
         self.saved: dict[Cell, object] = {}
         self.faults: dict[Cell, FormulaError] = {}
@@ -367,7 +370,7 @@ class Lowering(ExpressionLowering):
         text = self.graph.text(cell)
         complete = FormulaError(error.message, where=cell, hint=error.hint, text=text, span=error.span)
         saved = self.graph.workbook.content(cell).value
-        if not self._audit and (cell in self.graph.varying or saved is None):
+        if self._strict and (cell in self.graph.varying or saved is None):
             raise complete from None
         self.notices.append(Notice(f"{error.message}; Excel's saved value is used (no assumption reaches it)", cell))
         return self._hold_saved(cell, complete)

@@ -162,13 +162,18 @@ def naming_file(file: str) -> Iterator[None]:
 
 
 def with_values(workbook: Workbook, values: Mapping[Cell, CellValue]) -> Workbook:
-    """The workbook with these values typed into its cells. No file holds it: it has no parts and no fingerprint.
+    """Return the workbook with these values typed into its cells; see `with_contents`."""
+    return with_contents(workbook, {cell: CellContent(value) for cell, value in values.items()})
+
+
+def with_contents(workbook: Workbook, contents: Mapping[Cell, CellContent]) -> Workbook:
+    """Return the workbook with other contents in some cells. No file holds it: it has no parts and no fingerprint.
 
     Its `origin` are the parts of the file, in whose drawings Crystal Ball hides definitions.
     """
     typed: dict[str, dict[tuple[int, int], CellContent]] = {}
-    for cell, value in values.items():
-        typed.setdefault(cell.sheet, {})[cell[1:]] = CellContent(value)
+    for cell, content in contents.items():
+        typed.setdefault(cell.sheet, {})[cell[1:]] = content
     sheets = workbook.sheets
     changed = {name: replace(sheets[name], cells={**sheets[name].cells, **cells}) for name, cells in typed.items()}
     # A ChainMap reads a sheet when it is looked up, and nobody writes to this one.

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from xlmc.errors import ErrorCode, Notice
-from xlmc.excel.address import Area, Cell
+from xlmc.excel.address import Area, Cell, parse_address
 
 __all__ = [
     "CellContent",
@@ -266,6 +266,31 @@ class Workbook:
     origin: Mapping[str, bytes] = field(default_factory=dict, repr=False)
     sha256: str = ""
     data: bytes = field(default=b"", repr=False)
+
+    def __getitem__(self, place: str) -> CellValue:
+        """Return the value that is saved in a cell: a number, True or False, a text, an error, None where it is blank.
+
+        Dates are serial numbers, as Excel counts them. A formula's value is the one that Excel saved; None where the
+        program that wrote the file saved none: `xlmc.engine.calculate` computes it.
+
+        Args:
+            place: `Sheet!B4`, `'My sheet'!$B$4`, or a defined name that stands for one cell.
+
+        Raises:
+            KeyError: there is no such sheet or name, or it is not one cell.
+        """
+        name = self.defined_name(place.strip())
+        try:
+            cell = parse_address(place if name is None else name.text)
+        except ValueError as error:
+            hint = "write Sheet!Cell, or a defined name that stands for one cell"
+            raise KeyError(f"{place!r} is no cell of {self.name}: {hint}") from error
+        if isinstance(cell, Area):
+            raise KeyError(f"{place!r} is not one cell, but {cell}")
+        sheet = self.sheet_named(cell.sheet)
+        if sheet is None:
+            raise KeyError(f"there is no sheet {cell.sheet!r} in {self.name}; there are {', '.join(self.sheets)}")
+        return self.content(cell._replace(sheet=sheet.name)).value
 
     @cached_property
     def _folded(self) -> dict[str, str]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import openpyxl
 import pytest
+from simulated import simulated
 
-import xlmc
 from xlmc.errors import DefinitionError
+from xlmc.montecarlo.model import loading
 
 BLANK = {"D1": 1, "E1": 3}
 OTHER = "RiskUniform(D1,E1)"
@@ -51,7 +52,7 @@ def load(tmp_path):
         for address, content in {**BLANK, **cells, "Z1": '=RiskOutput("y")+B2'}.items():
             book.active[address] = content
         book.save(tmp_path / "book.xlsx")
-        return xlmc.load(tmp_path / "book.xlsx")
+        return loading.load(tmp_path / "book.xlsx")
 
     return loaded
 
@@ -59,7 +60,7 @@ def load(tmp_path):
 @pytest.mark.parametrize("cells", UNUSED.values(), ids=UNUSED)
 def test_a_draw_that_no_trial_uses_needs_no_distribution(load, cells):
     model = load(cells)
-    first, second = (model.simulate(500, engine=engine) for engine in ("numpy", "jit"))
+    first, second = (simulated(model, 500, engine=engine) for engine in ("numpy", "jit"))
     y = first.forecasts["y"]
     assert np.array_equal(y, second.forecasts["y"])
     assert (first.accepted, first.error_trials, y.size) == (500, 0, 500)
@@ -77,7 +78,7 @@ def test_a_draw_that_every_trial_uses_is_refused(load, cells):
 def test_trials_that_use_it_are_errors_and_that_is_told(load, engine):
     drawn = {"A1": "=RiskDiscrete({1,2},{1,3})", "B1": -1, "C1": 2}
     model = load({**drawn, "B2": f"=CHOOSE(A1,RiskGamma(B1,C1),{OTHER})"})
-    run = model.simulate(4000, engine=engine)
+    run = simulated(model, 4000, engine=engine)
     assert any("RiskGamma" not in each.message and "no distribution" in each.message for each in model.notices)
     assert run.error_trials == np.isnan(run.forecasts["y"]).sum()
     assert abs(run.error_trials - 1000) <= 4 * np.sqrt(4000 * 3 / 16)
@@ -91,7 +92,7 @@ def test_a_register_of_kinds(load):
         f'"T",RiskTriang(B{i},C{i},D{i}),RiskGamma(B{i},C{i}))'
         for i in range(11, 15)
     }
-    run = load({**kinds, **rows, "B2": "=SUM(E11:E14)"}).simulate(20_000)
+    run = simulated(load({**kinds, **rows, "B2": "=SUM(E11:E14)"}), 20_000)
     y = run.forecasts["y"]
     assert run.error_trials == 0
     variance = 2**2 + 2**2 / 12 + (1 + 4 + 16 - 2 - 4 - 8) / 18 + 4 * 0.5**2

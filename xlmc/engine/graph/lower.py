@@ -163,10 +163,10 @@ class Lowering(ExpressionLowering):
 
     def refuse(self, cells: Sequence[Cell], error: FormulaError) -> None:
         """Take cells for faulty that need each other in a circle; of many trials raise the error."""
-        if not self._audit and not self._one_trial:
+        if self._strict and not self._one_trial:
             raise error
         for cell in cells:
-            self._set(cell, self._hold_saved(cell, error) if self._audit else self.dag.circle())
+            self._set(cell, self.dag.circle() if self._strict else self._hold_saved(cell, error))
 
     def tell_circle(self, cell: Cell) -> None:
         """Note that some trials may read a cell while it is computed."""

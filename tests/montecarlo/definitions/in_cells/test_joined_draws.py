@@ -226,7 +226,7 @@ def weighted(tmp_path):
         book.defined_names["Matrix1"] = DefinedName("Matrix1", attr_text="S!$K$1:$M$3")
         book.defined_names[name] = DefinedName(name, attr_text=area)
         book.save(tmp_path / "book.xlsx")
-        return xlmc.load(tmp_path / "book.xlsx")
+        return load(tmp_path / "book.xlsx")
 
     return made
 
@@ -245,7 +245,7 @@ def test_adjustment_weights_keep_a_correlation(weighted, weights, kept):
     """In normal scores the cosines of three directions: where the two ends are at right angles, at most √½ each."""
     made = weighted(weights, name="MATRIX1_weights")
     assert any("as their adjustment weights say" in notice.message for notice in made.notices)
-    run = made.simulate(trials=TRIALS, seed=7)
+    run = simulated(made, trials=TRIALS, seed=7)
     for pair, value in kept.items():
         assert abs(spearman_of(run, *pair) - value) < 4 / math.sqrt(TRIALS)
 

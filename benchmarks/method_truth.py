@@ -30,10 +30,10 @@ from known_books import KNOWN, KnownBook
 from scipy.optimize import brentq
 from scipy.special import betainc, ndtri
 
-import xlmc
 from xlmc.analysis.studies.methods import Curve, Method, Study, quick_settings, study
 from xlmc.analysis.studies.methods.need import ENGINE_READY, NO_TIME, Need, choice
-from xlmc.api import Model
+from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["RESULTS", "Truth", "compare_with_truth", "misses", "need_of_percentile", "true_need", "truth_of"]
 
@@ -93,7 +93,7 @@ def need_of_percentile(p: float, below: float, above: float) -> float:
     return math.exp(brentq(missing, math.log(8.0), math.log(1e12)))
 
 
-def kept_share(model: Model, method: Method, trials: float, truth: Truth) -> float:
+def kept_share(model: CompiledModel, method: Method, trials: float, truth: Truth) -> float:
     """The share of 200 runs within the tolerance, in the number in which it is least."""
     kept = np.zeros(len(truth.numbers))
     for seed in range(RUNS):
@@ -103,7 +103,7 @@ def kept_share(model: Model, method: Method, trials: float, truth: Truth) -> flo
     return float(kept.min()) / RUNS
 
 
-def true_need(model: Model, method: Method, stated: float, fewest: int, truth: Truth) -> float:
+def true_need(model: CompiledModel, method: Method, stated: float, fewest: int, truth: Truth) -> float:
     """The trials that 95 of 100 runs keep the tolerance with, between two lengths of which one does and one does not.
 
     The shares kept are read as those of normal errors, whose scale falls between the lengths as a power of them.
@@ -131,7 +131,7 @@ def _normal(share: float) -> float:
 
 def measure(book: KnownBook, folder: Path) -> Record:
     """What is stated of a book, what is true, and what either costs."""
-    model, truth = xlmc.load(book.write(folder)), truth_of(book)
+    model, truth = load(book.write(folder)), truth_of(book)
     found = study(model, seed=1, **quick_settings({}))
     best = choice(found)
     usable = [each for each in (*found.curves, *found.engines) if _is_judged(each, best.needs[each])]

@@ -158,7 +158,7 @@ class RunResult:
     rare: RareAccount | None = None
     discards: Mapping[str, Counter[str]] = field(default_factory=dict)
     changed_from: ChangedFrom | None = None
-    tabulated: dict[int, Simulation] = field(default_factory=dict)
+    tabulated: dict[int, RunResult] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> ForecastResult:
         """The result of a forecast, by name whatever its case.
@@ -304,7 +304,7 @@ class RunResult:
         at_base = base_formulas(asked, self.model.draws)
         return shown_results(self.model.workbook, asked.results, asked.unavailable, answers, at_base)
 
-    def take_tabulated(self, runs: Mapping[int, Simulation]) -> None:
+    def take_tabulated(self, runs: Mapping[int, RunResult]) -> None:
         """Take the runs with further values of `RiskSimtable`, about which cells may ask, too."""
         self.tabulated.update(runs)
         self.__dict__.pop("shown_results", None)

@@ -3,7 +3,9 @@
 `python benchmarks/conformance.py FOLDER` checks every workbook in the folder and in those below it. A shape is a
 formula's text with relative references as distances, within one book; it matches when all its cells do. Cells that
 change by themselves (volatile ones) and cells without a saved value are left out, and so are files that are damaged:
-these are listed. Refused shapes are listed by reason and differing ones one by one. Exit code 1 where a cell differs.
+these are listed. Cells with functions that are not on the list in docs/functions.md count as not matched; the shares
+without them are printed, too. Refused shapes are listed by reason and differing ones one by one. Exit code 1 where a
+cell differs.
 """
 
 from __future__ import annotations
@@ -30,6 +32,8 @@ ENDINGS = (".xlsx", ".xlsm")
 LEFT_OUT = (Status.VOLATILE, Status.NOT_CACHED)
 VOLATILE = re.compile(r"\b(CELL|INFO)\(")
 """What changes in Excel without its arguments, and what xlmc computes in part only."""
+NOT_LISTED = re.compile(r"xlmc does not compute the function \S+ of Excel|the function \S+ is not known to xlmc")
+"""Why a cell is refused whose formula calls a function that docs/functions.md does not list."""
 ENCRYPTED = b"\xd0\xcf\x11\xe0"
 """How a package begins that Excel encrypted."""
 WHOLE_BOOK = "the whole book"
@@ -45,6 +49,11 @@ class Checked:
     status: Status
     reason: str = ""
     check: CellCheck | None = None
+
+    @property
+    def listed(self) -> bool:
+        """Whether docs/functions.md lists all functions that it calls, as far as they are known."""
+        return NOT_LISTED.fullmatch(self.reason) is None
 
 
 @dataclass
@@ -72,6 +81,14 @@ class Conformance:
     def shape_share(self) -> float:
         """Share of the shapes all of whose cells match."""
         return _share(_matches(cells) for cells in self.shapes().values())
+
+    def of_listed_functions(self) -> Conformance:
+        """The same without the shapes that call functions which docs/functions.md does not list."""
+        apart = {key for key, cells in self.shapes().items() if not all(cell.listed for cell in cells)}
+        kept = {
+            book: [cell for cell in cells if (cell.book, cell.shape) not in apart] for book, cells in self.books.items()
+        }
+        return Conformance(kept, self.damaged)
 
     def book_shares(self) -> list[float]:
         """Share of the cells that match, of every book that has any."""
@@ -161,9 +178,22 @@ def lines_of(found: Conformance) -> Iterator[str]:
     cells, shapes = found.cells(), found.shapes()
     yield _line("cells", [cell.status for cell in cells])
     yield _line("shapes", [_worst(shape) for shape in shapes.values()])
+    yield from _apart(found)
     yield from (f"damaged, not counted: {name}" for name in found.damaged)
     yield from _by_reason(shapes)
     yield from _differing(cells)
+
+
+def _apart(found: Conformance) -> Iterator[str]:
+    """The shares of formulas that only call functions on the list."""
+    listed = found.of_listed_functions()
+    cells, shapes = (len(a) - len(b) for a, b in ((found.cells(), listed.cells()), (found.shapes(), listed.shapes())))
+    if shapes:
+        counts = f"{cells:,} cell{'s' * (cells != 1)} ({shapes:,} shape{'s' * (shapes != 1)})"
+        yield (
+            f"without {counts} of functions that docs/functions.md does not list: "
+            f"{listed.cell_share():.3%} of cells and {listed.shape_share():.3%} of shapes match"
+        )
 
 
 def _line(what: str, statuses: list[Status]) -> str:

@@ -46,7 +46,7 @@ def run(tmp_path_factory):
     [("save", "r.xlsx"), ("save_page", "r.html"), ("save_json", "r.json"), ("extract", "r.csv"), ("keep", "r.xlmcrun")],
 )
 def test_every_output_is_written(run, tmp_path, write, name):
-    getattr(run, write)(tmp_path / name)
+    getattr(Simulation(run), write)(tmp_path / name)
     assert (tmp_path / name).stat().st_size > 1_000
 
 

@@ -13,6 +13,7 @@ import pytest
 from openpyxl.worksheet.table import Table
 from simulated import simulated
 
+from xlmc.analysis.studies.scenario_answers import model_of
 from xlmc.analysis.studies.scenario_workbook import edited_workbook, write_edited
 from xlmc.analysis.studies.verify import Status, verify
 from xlmc.api import Model, Simulation
@@ -189,11 +190,11 @@ def test_a_file_that_is_there_is_not_replaced(small):
 def test_a_scenario_asks_for_the_same_forecasts(case):
     other_name = Scenario("x", (Typed(parse_address("'Results wanted'!A6"), "Other"),))
     with pytest.raises(DefinitionError, match="In the scenario 'x': other forecasts would be asked for"):
-        case.scenario(other_name)
+        model_of(case, other_name)
 
 
 def test_the_run_of_a_scenario_is_not_saved_as_a_run_of_the_file(small, tmp_path):
-    run = simulated(small.scenario(rate(5.0)), 200)
+    run = simulated(model_of(small, rate(5.0)), 200)
     with pytest.raises(SimulationError, match="no file holds the workbook of this run"):
         Simulation(run).save(tmp_path / "r.xlsx")
     with pytest.raises(SimulationError):

@@ -7,11 +7,12 @@ import zipfile
 import numpy as np
 import openpyxl
 import pytest
+from simulated import simulated
 
-import xlmc
 from xlmc.analysis.studies.verify import verify
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.workbook.reader import read_workbook
+from xlmc.montecarlo.model.loading import load
 
 MAIN = 'xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"'
 OFFICE = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
@@ -172,7 +173,7 @@ def test_items_that_vary(book, engine):
         "B2": '=RiskOutput("both")+IFERROR(GETPIVOTDATA("Cost",P!A4,"Region",A2,"Year",A1),-1)',
         "B3": '=RiskOutput("region")+GETPIVOTDATA("Cost",P!A4,"Region",A2)',
     }
-    run = xlmc.load(book(cells, f"vary-{engine}.xlsx")).simulate(400, seed=5, engine=engine)
+    run = simulated(load(book(cells, f"vary-{engine}.xlsx")), 400, seed=5, engine=engine)
     year, north = (run.inputs[name] for name in ("S!A1#1", "S!A2#1"))
     assert np.array_equal(run.forecasts["one"], np.where(year == 2023, 10, 20))
     assert np.array_equal(run.forecasts["region"], np.where(north == 2, 3, 4))
@@ -193,4 +194,4 @@ def test_what_cannot_be_told_is_refused(book, text, message):
     source = {"E2": "=RiskNormal(10,1)"} if "made from" in message else {}
     cells = {"A1": "=RiskUniform(0,1)", "B1": f'=RiskOutput("y")+A1+{text}'}
     with pytest.raises(FormulaError, match=message):
-        xlmc.load(book(cells, "refused.xlsx", source))
+        load(book(cells, "refused.xlsx", source))

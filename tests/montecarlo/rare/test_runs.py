@@ -17,6 +17,7 @@ from simulated import simulated
 from xlmc.analysis.results.record import make_record
 from xlmc.analysis.results.record.make import fingerprint
 from xlmc.analysis.results.statements.in_words import sampling_sentence
+from xlmc.api import Simulation
 from xlmc.cli.simulate import show_run
 from xlmc.cli.simulate import simulate as command
 from xlmc.montecarlo.rare import rare_switch
@@ -79,7 +80,7 @@ def test_the_account_adds_up(run):
     assert run.warnings == []
     assert run.stopped.reached
     assert f"{rare.proposals:,} further trials" in sampling_sentence(run)
-    assert "found in" in repr(run)
+    assert "found in" in repr(Simulation(run))
 
 
 def test_the_record_says_what_was_done(run):

@@ -42,6 +42,7 @@ from xlmc.montecarlo.definitions.unavailable import (
     remark_on_unavailable,
     tables_of_run,
 )
+from xlmc.montecarlo.definitions.xlrisk_sheet import read_xlrisk
 from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 
 __all__ = ["read_definitions"]
@@ -75,7 +76,13 @@ def read_definitions(workbook: Workbook, engines: Collection[str], tabulated: in
         dialogs = FromDialogs(rewritten={**refused_cells}, stored=True)
     else:
         dialogs = read_dialogs(workbook, computed, central, uncertain, answers, findings)
-    calls = read_in_cells(workbook, computed, settings.lognorm or "@RISK", uncertain, findings, tabulated)
+    of_xlrisk = Findings()
+    xlrisk = read_xlrisk(workbook, of_xlrisk)
+    lognorm = settings.lognorm or ("@RISK" if xlrisk is None else "XLRisk")
+    calls = read_in_cells(workbook, computed, lognorm, uncertain, findings, tabulated)
+    if xlrisk is not None and calls:
+        settings = xlrisk.settings(settings, said, of_xlrisk)
+        findings.add(of_xlrisk)
     if not dialogs.stored:
         remark_on_lost_data(workbook, bool(calls or any(tables.values())), findings)
     if not (dialogs or calls or any(tables.values())):
@@ -91,6 +98,8 @@ def read_definitions(workbook: Workbook, engines: Collection[str], tabulated: in
     correlations = *correlations, *_take_pairs(correlations, dialogs.correlations, findings)
     more = in_cell_correlations(workbook, calls.assumptions, calls.draws, correlations, findings)
     copulas = in_cell_copulas(workbook, calls.assumptions, calls.draws, (*correlations, *more), findings)
+    if xlrisk is not None:
+        forecasts = *forecasts, *xlrisk.forecasts(computed, central, answers, findings)
     in_cells = in_cell_forecasts(calls, assumptions, computed, central, answers, findings)
     forecasts = *forecasts, *dialogs.forecasts, *in_cells
     filters, own = _by_reach(filters, dialogs.filters, forecasts, findings)

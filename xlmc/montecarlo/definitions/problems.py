@@ -32,6 +32,11 @@ class Findings:
     def notice(self, message: str, where: object) -> None:
         self.notices.append(Notice(message, where))
 
+    def add(self, others: Findings) -> None:
+        """Take what was found elsewhere."""
+        self.problems += others.problems
+        self.notices += others.notices
+
     @contextmanager
     def recording(self) -> Iterator[None]:
         """Record a `DefinitionError` from within, and go on after it."""

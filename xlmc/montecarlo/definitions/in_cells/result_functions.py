@@ -131,8 +131,8 @@ NOT_COMPUTED: Final = (
 )
 """Functions that show results, and that xlmc does not compute."""
 
-_OTHER_DRAWS: Final = "Compound Library MakeInput Resample Simtable Splice Vary"
-"""@RISK's functions that draw, or stand for a value as a draw does, and that xlmc does not know."""
+_OTHER_DRAWS: Final = "Compound CorrectCorrmat IsValidCorrmat Library MakeInput Resample Simtable Splice Vary"
+"""@RISK's functions that draw, or stand for a value as a draw does: none shows a result."""
 
 _BY_NAME: Final = {name.upper(): (name, *row) for name, row in RESULTS.items()}
 _WRITTEN: Final = {name.upper(): name for name in (*NOT_COMPUTED, *RESULTS)}

@@ -17,7 +17,7 @@ from typing import Final
 
 from xlmc.errors import FormulaError
 from xlmc.excel.formula import ir
-from xlmc.montecarlo.definitions.in_cells.call_arguments import difference, number_of, quotient, total
+from xlmc.montecarlo.definitions.in_cells.call_arguments import difference, is_left_out, number_of, quotient, total
 from xlmc.montecarlo.definitions.in_cells.call_draws import Arguments, Drawn, Properties, Signature
 from xlmc.montecarlo.definitions.in_cells.risk_properties import is_property, properties_of
 from xlmc.montecarlo.distributions import FAMILIES
@@ -90,7 +90,7 @@ RISK: Final = {
         ("bottom", "likeliest", "top", "bottom share", "top share"),
         computed={"bottom_percent": _percent_of("bottom share"), "top_percent": _percent_of("top share")},
     ),
-    "RiskBeta": Signature("Beta", ("alpha", "beta"), {"low": 0.0, "high": 1.0}),
+    "RiskBeta": Signature("Beta", ("alpha", "beta", "low", "high")),
     "RiskBetaGeneral": Signature("Beta", ("alpha", "beta", "low", "high")),
     "RiskGamma": Signature("Gamma", ("shape", "scale"), _LOCATED),
     "RiskErlang": Signature("Gamma", ("shape", "scale"), _LOCATED),
@@ -153,11 +153,27 @@ def risk_draw(call: ir.Call, lognorm: str) -> Drawn | None:
     if call.name in _BY_NAME:
         name = _BY_NAME[call.name]
         signature = _LOGNORMS[lognorm] if name == "RiskLognorm" else RISK[name]
+        given = _completed(name, given)
         if len(given) != len(signature.takes):
             hint = f"it takes {', '.join(signature.takes)}, and then property functions such as RiskTruncate"
             raise FormulaError(f"{name} has {len(given)} arguments", hint=hint)
         return signature.drawn(name, given, properties_of(name, properties))
     return _alternate_draw(call.name, given, lambda name: properties_of(name, properties))
+
+
+_OPTIONAL: Final = {"RiskBeta": (0.0, 1.0)}
+"""Function -> its last arguments where they are left out, as XLRisk lets them be."""
+
+
+def _completed(name: str, given: tuple[ir.Expression, ...]) -> tuple[ir.Expression, ...]:
+    """The arguments of a call, with those that may be left out."""
+    usual = _OPTIONAL.get(name, ())
+    first = len(RISK[name].takes) - len(usual)
+    if not usual or not first <= len(given) <= len(RISK[name].takes):
+        return given
+    more = [*given[first:], *([ir.Missing()] * (len(RISK[name].takes) - len(given)))]
+    filled = (ir.Number(end) if is_left_out(each) else each for each, end in zip(more, usual, strict=True))
+    return *given[:first], *filled
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,6 +32,8 @@ REFUSED: Final = {
     "RiskSplice": "draw from both distributions, and choose between them by a third draw: IF(RAND()<p,…,…)",
     "RiskResample": "use RiskDUniform, which draws from the same values at random",
     "RiskVary": "write RiskTriang or RiskUniform around the value",
+    "RiskCorrectCorrmat": "give RiskCorrmat the matrix as it was typed: xlmc brings it to the nearest possible one",
+    "RiskIsValidCorrmat": "take it out: a notice says what is changed in a matrix that contradicts itself",
     "RiskLibrary": "write the distribution itself into the cell",
     "RiskTSAR1": "write the series into cells, each with RiskNormal and the cell before it",
     "RiskCurrentIter": "let no formula depend on the number of the trial: trials are independent",

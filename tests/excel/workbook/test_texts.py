@@ -66,6 +66,16 @@ def test_shared_strings():
     assert shared_strings(xml.encode(), "p") == list(ITEMS.values())
 
 
+@pytest.mark.parametrize("depth", [1, 60_000])
+def test_an_unknown_element_around_a_text_moves_no_text(depth):
+    def inside(text):
+        return "<a>" * depth + text + "</a>" * depth
+
+    runs = "<r><rPr><b/></rPr><t>b</t></r>" + inside("<r><t>c</t></r><rPh><t>no</t></rPh>")
+    items = f"<si>{inside('<t>a</t>')}</si><si>{runs}</si>{inside('<si><t>d</t></si>')}<si><t>e</t></si>"
+    assert shared_strings(f"<sst {MAIN}>{items}</sst>".encode(), "p") == ["a", "bc", "d", "e"]
+
+
 def test_shared_strings_with_a_prefix():
     xml = f"<x:sst {MAIN.replace('xmlns', 'xmlns:x')}><x:si><x:r><x:t>a</x:t></x:r></x:si></x:sst>"
     assert shared_strings(xml.encode(), "p") == ["a"]

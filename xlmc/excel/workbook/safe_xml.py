@@ -131,15 +131,20 @@ def run_text(text: str, keep_space: bool) -> str:
 def shared_strings(xml: bytes, part: str) -> list[str]:
     """The shared string table, rich texts as plain ones, without phonetic guides.
 
+    An element that no table has, around a text or a part of it, makes no difference: were it left out with what it
+    holds, every later text would stand under another number.
+
     Raises:
         WorkbookError: the part is not XML.
     """
-    return ["".join(_runs(item)) for item in tree(xml, part) if item.tag.endswith("}si")]
+    return ["".join(_runs(item)) for item in tree(xml, part).iter() if item.tag.endswith("}si")]
 
 
 def _runs(item: ElementTree.Element) -> Iterator[str]:
-    for child in item:
-        if child.tag.endswith("}t"):
-            yield run_text(child.text or "", child.get(_SPACE) == "preserve")
-        elif child.tag.endswith("}r"):
-            yield from _runs(child)
+    waiting = [item]
+    while waiting:  # and not a recursion, of which a file could ask for too much
+        element = waiting.pop()
+        if element.tag.endswith("}t"):
+            yield run_text(element.text or "", element.get(_SPACE) == "preserve")
+        elif not element.tag.endswith("}rPh"):
+            waiting += reversed(element)

@@ -8,10 +8,11 @@ children at work and gathers what they find.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from importlib import import_module
 from typing import Final
 
-from fuzzing import formulas, hidden_blocks, old_books, runs, tables, zips
+from fuzzing import foreign_parts, formulas, hidden_blocks, live_state, old_books, runs, tables, zips
 from fuzzing.inputs import Kind
 
 __all__ = ["BLOCK", "KINDS", "warm_up"]
@@ -23,6 +24,8 @@ KINDS: Final[Mapping[str, Kind]] = {
     "runs": Kind(runs.make, runs.run),
     "blocks": Kind(hidden_blocks.make, hidden_blocks.run),
     "old": Kind(old_books.make, old_books.run),
+    **{focus: Kind(partial(foreign_parts.make, focus), foreign_parts.run) for focus in foreign_parts.FOCUSES},
+    "recent": Kind(live_state.make, live_state.run),
 }
 BLOCK: Final = 128
 """Trials that xlmc evaluates at once here; 32,768 are slow where few are asked for."""

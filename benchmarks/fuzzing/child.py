@@ -51,6 +51,7 @@ class Outcome:
 def serve(kind: str, how: Kind, seed: int, numbers: Iterable[int], parent: Connection) -> None:
     """Run the inputs of these numbers, and tell the parent each number before and its outcome after."""
     sys.stdout = sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - as long as the process lives
+    os.dup2(sys.stderr.fileno(), 2)  # where libraries write that are not in Python
     resource.setrlimit(resource.RLIMIT_AS, (_held("VmSize") + MEMORY,) * 2)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     gc.freeze()  # no garbage is looked for in what the parent holds, which would copy all of it

@@ -9,7 +9,11 @@ from fewer_sheets import SHORT, keep_sheets
 
 SEED = 20261122
 INPUTS = {"zip": 12, "formulas": 15, "tables": 20, "runs": 6, "blocks": 21, "old": 15}
+INPUTS |= {"links": 15, "formats": 15, "types": 15, "recent": 25}
 RAN = {"zip": 0.2, "formulas": 0.4, "tables": 0.2, "runs": 0.1, "blocks": 0.5, "old": 0.2}
+RAN |= {"links": 0.3, "formats": 0.3, "types": 0.3, "recent": 0.2}
+SECOND_READER = ("zip", "blocks", "links", "formats", "types")
+"""Kinds whose inputs python-calamine reads, too."""
 
 
 @pytest.mark.usefixtures("small_blocks")
@@ -19,6 +23,8 @@ def test_every_input_runs_or_is_refused_in_words(kind, tmp_path, monkeypatch):
     from fuzzing.child import judged
     from fuzzing.inputs import Reached
 
+    if kind in SECOND_READER:
+        pytest.importorskip("python_calamine")
     monkeypatch.chdir(tmp_path)
     keep_sheets(monkeypatch, *SHORT)  # tests/cli/test_hostile_names.py has whole books
     outcomes = [judged(kind, KINDS[kind], SEED, number, tmp_path) for number in range(INPUTS[kind])]

@@ -219,7 +219,24 @@ def tables(found: Sequence[Cell]) -> str:
                 lines.append(f"| {problem} | {METHODS[method].name} | " + " | ".join(shown) + " |")
         parts.append("\n".join(lines))
     made = ", ".join(f"{count:,} of {size:,} trials" for size, count in runs.items())
-    return "\n\n".join([f"Runs: {made}.", *parts])
+    return "\n\n".join([f"Runs: {made}. {_least_text(found)}", *parts])
+
+
+def _least_text(found: Sequence[Cell]) -> str:
+    """The lowest coverage that no notice goes with: the least of so many shares lies below what it is of."""
+    silent = [
+        (cell.hits[number] / cell.runs, cell, statistic)
+        for cell in found
+        for number, statistic in enumerate(STATISTICS)
+        if cell.told[number] < TOLD * cell.runs
+    ]
+    share, cell, statistic = min(silent, key=lambda each: each[0])
+    error = math.sqrt(share * (1.0 - share) / cell.runs)
+    return (
+        f"Of the {len(silent):,} numbers without a notice in {TOLD:.0%} of the runs, the least covered is "
+        f"{100.0 * share:.1f} ± {100.0 * error:.1f} ({statistic} of {cell.problem}, {METHODS[cell.method].name}, "
+        f"{_asked(cell.trials):,} trials)."
+    )
 
 
 def _asked(trials: int) -> int:

@@ -33,6 +33,16 @@ class KnownBook:
     above: float | None = None
 
     @property
+    def words(self) -> str:
+        """The forecast, its assumptions and its filter, as a cell of a table."""
+        kinds = dict.fromkeys(self.drawn)
+        drawn = ", ".join(
+            "uniform 0 to 1" if each == UNIFORM else f"normal {each[3]:g} ± {each[4]:g}" for each in kinds
+        )
+        kept = "" if self.above is None else f", A1 above {self.above:g}"
+        return f"`{self.formula[1:]}`: {drawn}{kept}"
+
+    @property
     def accepted(self) -> float:
         """The share of trials that the filter on A1, which is uniform, accepts."""
         return 1.0 if self.above is None else 1.0 - self.above

@@ -26,10 +26,10 @@ from method_truth import compare_with_truth
 from tables import placed
 
 from xlmc.analysis.studies.methods import study
-from xlmc.analysis.studies.methods.need import choice
+from xlmc.analysis.studies.methods.need import ENGINE_READY, choice, chosen_of
 from xlmc.montecarlo.model.loading import load
 
-__all__ = ["BOOKS", "PAGE", "RESULTS", "SEEDS", "advice", "faults", "table"]
+__all__ = ["BOOKS", "PAGE", "RESULTS", "SEEDS", "advice", "faults", "other_today", "table"]
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
@@ -115,6 +115,17 @@ def _always_cheapest(seeds: dict[str, Record]) -> set[str]:
     return set.intersection(*(set(each["cheapest"]) for each in seeds.values()))
 
 
+def other_today(records: dict[str, dict[str, Record]]) -> list[str]:
+    """Where the rule of `need.choice` would now recommend something else for the recorded seconds."""
+    found = []
+    for book, seeds in records.items():
+        for seed, each in seeds.items():
+            costs = {key: s + ENGINE_READY * (key.startswith("mc/")) for key, s in each["seconds"].items()}
+            if costs and (now := chosen_of(costs, "mc" if "mc" in costs else min(costs))) != each["recommended"]:
+                found.append(f"{book}, seed {seed}: {now} instead of {each['recommended']}")
+    return found
+
+
 def table(records: dict[str, dict[str, Record]]) -> str:
     """One row a workbook."""
     rows = [
@@ -144,6 +155,7 @@ def main(given: Sequence[str] | None = None) -> None:
         measure(BOOKS, asked.seeds)
     records = _known()
     PAGE.write_text(placed(PAGE.read_text(encoding="utf-8"), "advice", table(records)), encoding="utf-8")
+    print("\n".join(other_today(records)) or "the present rule recommends the same")
     _end(faults(records), f"{len(records)} workbooks, one advice each")
 
 

@@ -1,7 +1,8 @@
 """Is what `xlmc methods` says of a workbook true? Eight books whose forecast has a known distribution.
 
 `python benchmarks/method_advice.py --truth` runs the quick test on each book of `known_books.py`, and writes
-`results/method-truth.json`. It takes less than half an hour; the seconds in it depend on the machine.
+`results/method-truth.json` and the table of docs/methods.md. It takes less than ten minutes on an idle core; the
+seconds in it depend on the machine.
 
 The true need of independent trials comes from the distribution itself: of mean and standard deviation from its moments,
 of percentiles from the beta distribution of order statistics. That of every other method is looked for: 200 runs of one
@@ -30,6 +31,7 @@ import numpy as np
 from known_books import KNOWN, KnownBook
 from scipy.optimize import brentq
 from scipy.special import betainc, ndtri
+from tables import placed
 
 from xlmc.analysis.studies.methods import Curve, Method, Study, quick_settings, study
 from xlmc.analysis.studies.methods.need import ENGINE_READY, NO_TIME, Need, choice
@@ -37,17 +39,21 @@ from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = [
+    "PAGE",
     "RESULTS",
     "Truth",
     "compare_with_truth",
     "misses",
     "misstated",
     "need_of_percentile",
+    "table",
     "true_need",
     "truth_of",
 ]
 
-RESULTS = Path(__file__).resolve().parent / "results" / "method-truth.json"
+HERE = Path(__file__).resolve().parent
+PAGE = HERE.parent / "docs" / "methods.md"
+RESULTS = HERE / "results" / "method-truth.json"
 
 RUNS, MOST_RUN = 200, 1_000_000
 KEPT, FACTOR, DEARER = 0.95, 2.0, 1.5
@@ -207,6 +213,24 @@ def _beyond(book: str, needs: dict[str, Record]) -> list[str]:
     ]
 
 
+def table(records: dict[str, Record]) -> str:
+    """One row a book: its forecast, and of every method that was judged the stated and the true need."""
+    keys = list(dict.fromkeys(key for found in records.values() for key in found["needs"] if "/" not in key))
+    rows = [
+        f"| Forecast | Recommended | Its cost over the least | {' | '.join(f'{key}: stated, true' for key in keys)} |",
+        f"| --- | --- | ---: |{' ---: |' * len(keys)}",
+    ]
+    formulas = {book.name: book.words for book in KNOWN}
+    for name, found in records.items():
+        needs, recommended = found["needs"], found["recommended"]
+        cost = needs[recommended]["seconds"] / min(each["seconds"] for each in needs.values())
+        more = needs[recommended]["seconds"] - min(each["seconds"] for each in needs.values())
+        shown = f"{cost:.2f}" if cost <= DEARER else f"{cost:.1f}, {1_000 * more:.0f} ms more"
+        cells = [f"{needs[key]['stated']:,}, {needs[key]['true']:,}" if key in needs else "–" for key in keys]
+        rows.append(f"| {formulas[name]} | {recommended} | {shown} | {' | '.join(cells)} |")
+    return "\n".join(rows)
+
+
 def compare_with_truth(folder: Path, books: Sequence[KnownBook] = KNOWN) -> list[str]:
     """Measure every book, write the result, and give what misses the bars."""
     records: dict[str, Record] = {}
@@ -214,5 +238,6 @@ def compare_with_truth(folder: Path, books: Sequence[KnownBook] = KNOWN) -> list
         records[book.name] = measure(book, folder)
         print(book.name, json.dumps(records[book.name]), flush=True)
         RESULTS.write_text(json.dumps(records, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    PAGE.write_text(placed(PAGE.read_text(encoding="utf-8"), "truth", table(records)), encoding="utf-8")
     print("\n".join(f"of a method that is not recommended: {said}" for said in misstated(records)))
     return misses(records)

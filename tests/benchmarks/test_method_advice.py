@@ -3,7 +3,7 @@ from __future__ import annotations
 import json
 
 import pytest
-from method_advice import BOOKS, PAGE, RESULTS, faults, table
+from method_advice import BOOKS, PAGE, RESULTS, faults, other_today, table
 
 RECORDS = json.loads(RESULTS.read_text(encoding="utf-8"))
 
@@ -30,3 +30,16 @@ def test_what_counts_as_a_fault(changed, fault):
     sound = {"recommended": "mc", "trials": 1, "cheapest": ["mc", "lhs"], "seconds": {}, "never": [], "cannot tell": []}
     assert faults({"b": {"1": sound, "2": sound}}) == []
     assert faults({"b": {"1": sound, "2": {**sound, **changed}}}) == [f"b: {fault}"]
+
+
+@pytest.mark.parametrize(
+    ("seconds", "said"),
+    [
+        ({"mc": 0.2, "lhs": 0.15, "mc/jit": 0.01}, []),
+        ({"mc": 2.0, "lhs": 1.9, "mc/jit": 0.5}, ["b, seed 1: mc/jit instead of mc"]),
+        ({"mc": 2.0, "lhs": 0.9, "mc/jit": 0.5}, ["b, seed 1: lhs instead of mc"]),
+        ({}, []),
+    ],
+)
+def test_what_the_present_rule_would_recommend(seconds, said):
+    assert other_today({"b": {"1": {"recommended": "mc", "seconds": seconds}}}) == said

@@ -8,7 +8,17 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from known_books import KNOWN
-from method_truth import RESULTS, Truth, misses, misstated, need_of_percentile, true_need, truth_of
+from method_truth import (
+    PAGE,
+    RESULTS,
+    Truth,
+    misses,
+    misstated,
+    need_of_percentile,
+    table,
+    true_need,
+    truth_of,
+)
 from scipy.special import ndtr, ndtri
 
 BOOKS = {book.name: book for book in KNOWN}
@@ -18,6 +28,7 @@ def test_the_committed_result_meets_both_bars():
     records = json.loads(RESULTS.read_text(encoding="utf-8"))
     assert set(records) == set(BOOKS)
     assert misses(records) == []
+    assert table(records) in PAGE.read_text(encoding="utf-8")
 
 
 SOUND = {"stated": 1_000, "true": 1_000, "ratio": 1.0, "seconds": 1.0}

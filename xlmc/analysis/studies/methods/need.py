@@ -25,6 +25,7 @@ __all__ = [
     "Shortfall",
     "Verdict",
     "choice",
+    "chosen_of",
     "need",
     "reach_of",
     "seconds_of",
@@ -224,6 +225,15 @@ def choice(study: Study, accuracy: tuple[str, float, bool] | None = None) -> Cho
     cheapest = tied({curve: needs[curve].seconds for curve in usable})
     plain = next((curve for curve in usable if curve.method.key == MONTE_CARLO.key), usable[0])
     costs = {curve: needs[curve].seconds + ENGINE_READY * (curve in asked.engines) for curve in usable}
-    best = min(usable, key=lambda curve: costs[curve])
+    return Choice(chosen_of(costs, plain), needs, cheapest)
+
+
+def chosen_of(costs: Mapping[Each, float], plain: Each) -> Each:
+    """The usual one, unless another costs less by a factor of one and a half and by a tenth of a second.
+
+    >>> chosen_of({"mc": 2.0, "lhs": 1.3}, "mc"), chosen_of({"mc": 0.2, "lhs": 0.11}, "mc")
+    ('lhs', 'mc')
+    """
+    best = min(costs, key=lambda each: costs[each])
     slow = costs[plain] > max(_NO_MATTER * costs[best], costs[best] + NO_TIME)
-    return Choice(best if slow else plain, needs, cheapest)
+    return best if slow else plain

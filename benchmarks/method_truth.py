@@ -57,7 +57,7 @@ RESULTS = HERE / "results" / "method-truth.json"
 
 RUNS, MOST_RUN = 200, 1_000_000
 KEPT, FACTOR, DEARER = 0.95, 2.0, 1.5
-TURNS = 5
+TURNS = 15
 SHARES: Final = (np.arange(1 << 22) + 0.5) / (1 << 22)
 NORMAL_95: Final = float(ndtri((1.0 + KEPT) / 2.0))
 

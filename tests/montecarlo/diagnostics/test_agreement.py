@@ -11,10 +11,19 @@ from scipy.special import ndtr
 from simulated import simulated
 
 from xlmc.montecarlo.definitions.definitions import Filter
-from xlmc.montecarlo.diagnostics.agreement import Verdict, agreement
+from xlmc.montecarlo.diagnostics.agreement import ItemAgreement, Verdict, agreement
 from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.statistics import Estimate
 
-CELLS = {"A1": 0.0, "B1": 0.0, "C1": "=A1*1", "D1": "=A1+B1", "E1": "=A1-B1", "F1": "=IF(A1>-9,B1*1,0)"}
+CELLS = {
+    "A1": 0.0,
+    "B1": 0.0,
+    "C1": "=A1*1",
+    "D1": "=A1+B1",
+    "E1": "=A1-B1",
+    "F1": "=IF(A1>-9,B1*1,0)",
+    "G1": "=A1/1000",
+}
 NORMAL = {"distribution": "Normal", "mean": 0, "std_dev": 1}
 INPUTS = {"a": {"cell": "A1", **NORMAL}, "b": {"cell": "B1", **NORMAL}}
 SEED, TRIALS = 3, 60_000
@@ -81,6 +90,10 @@ def test_a_sharp_reading_in_the_middle_is_not_strained_though_it_keeps_hardly_a_
         ("C1", 9.0, bell(2.0), Verdict.INCONSISTENT),
         ("C1", 9.0, within(1.0), Verdict.INCONSISTENT),
         ("C1", -9.0, within(1.0), Verdict.INCONSISTENT),
+        ("G1", 2.9, bell(1.0), Verdict.STRAINED),
+        ("G1", -2.9, bell(1.0), Verdict.STRAINED),
+        ("G1", 3.1, bell(1.0), Verdict.INCONSISTENT),
+        ("G1", -3.1, bell(1.0), Verdict.INCONSISTENT),
         ("C1", 1.0, {"error": "at least"}, Verdict.INDEPENDENT),
         ("C1", 2.8, {"error": "at least"}, Verdict.STRAINED),
         ("C1", 9.0, {"error": "at least"}, Verdict.INCONSISTENT),
@@ -98,6 +111,25 @@ def test_a_chance_that_no_trial_shows_is_told_as_a_bound(judged):
     assert found.items[0].chance < 1e-30
     assert found.items[0].chance_text == "below 0.96 %"
     assert found.sentence == "'item' is strained: given the model, a reading so far out has a chance below 0.96 %"
+
+
+@pytest.mark.parametrize(
+    ("chance", "effective", "text"),
+    [
+        (0.37, 1_000.0, "37 %"),
+        (0.0999, 1_000.0, "10 %"),
+        (0.0213, 1_000.0, "2.1 %"),
+        (0.002, 1_000.0, "0.2 %"),
+        (0.0019, 1_000.0, "below 1.1 %"),
+        (0.0, 1_000.0, "below 0.77 %"),
+        (math.nan, 1_000.0, ""),
+    ],
+)
+def test_a_chance_is_a_number_where_a_trial_on_each_side_shows_it(chance, effective, text):
+    """Half of the chance lies on each side; from one trial there on it is told, and else Wilson's upper end."""
+    nothing = Estimate(math.nan)
+    item = ItemAgreement(None, nothing, nothing, nothing, chance, effective, None, None, Verdict.INDEPENDENT)
+    assert item.chance_text == text
 
 
 def test_items_about_one_quantity_corroborate_and_others_are_independent(judged):

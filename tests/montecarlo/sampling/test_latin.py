@@ -27,6 +27,15 @@ def test_every_interval_holds_one_draw_of_a_replicate(strata):
     assert np.array_equal(np.sort(whole, axis=1), np.broadcast_to(np.arange(strata), (3, strata)))
 
 
+@pytest.mark.parametrize("strata", [1, 500, 16_384])
+def test_the_largest_draw_of_the_last_interval_is_below_one(strata, monkeypatch):
+    """Where the sum of interval and position is rounded up, the quotient would be 1, and its quantile infinite."""
+    monkeypatch.setattr(Stream, "uniforms", lambda self, start, out: out.fill(1.0 - 2.0**-53))
+    u = drawn(strata, strata)
+    assert u.max() == 1.0 - 2.0**-53
+    assert np.isfinite(stats.norm.ppf(u)).all()
+
+
 @settings(max_examples=50)
 @given(start=st.integers(0, 400), n=st.integers(1, 100), strata=st.sampled_from([1, 7, 64, 500]))
 def test_a_draw_depends_on_its_trial_alone(start, n, strata):

@@ -219,6 +219,8 @@ def test_it_is_unbiased_and_so_is_its_variance(successes, p):
     estimates = [inverse_proportion(successes, int(each)).value for each in n[:50]]
     assert estimates == pytest.approx(found[:50].tolist(), rel=1e-15)
     if successes > 2:
+        errors = np.array([inverse_proportion(successes, int(each)).error for each in n[1:50]])
+        assert errors**2 == pytest.approx(found[1:50] * (1 - found[1:50]) / (n[1:50] - 2), rel=1e-12)
         variance = (weights * (found - p) ** 2).sum()
         keep = n > 2
         estimated = (weights * found * (1 - found) / np.where(keep, n - 2, 1))[keep].sum()

@@ -7,6 +7,7 @@ import pytest
 
 from xlmc.errors import ErrorCode
 from xlmc.excel.functions.families import function_named
+from xlmc.excel.functions.math.trigonometry import Within
 
 DIV0, NUM, VALUE, NA = ErrorCode.DIV0, ErrorCode.NUM, ErrorCode.VALUE, ErrorCode.NA
 BIG = 2.0**27
@@ -170,3 +171,23 @@ def test_examples_of_excels_help(evaluate):
     assert evaluate("COTH", 2) == pytest.approx(1.0373, abs=5e-5)
     assert evaluate("CSCH", 1.5) == pytest.approx(0.4696, abs=5e-5)
     assert evaluate("SECH", 45) == pytest.approx(5.73e-20, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "kept"),
+    [
+        (-49.0, 49.0, True),
+        (0.0, 49.0, True),
+        (0.0, 50.0, False),
+        (-50.0, 0.0, False),
+        (-51.0, -1.0, False),
+        (1.0, 51.0, False),
+        (-np.inf, 1.0, False),
+        (-1.0, np.inf, False),
+        (np.nan, 1.0, False),
+    ],
+)
+def test_numbers_are_surely_within_where_rounding_cannot_put_them_past_the_limit(low, high, kept):
+    guard = Within(100.0)
+    assert guard.surely(low, high) is kept
+    assert guard(np.array([low, high])) or not kept

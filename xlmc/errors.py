@@ -11,6 +11,7 @@ from enum import IntEnum
 
 __all__ = [
     "DefinitionError",
+    "DefinitionsError",
     "ErrorCode",
     "FormulaError",
     "Notice",
@@ -123,6 +124,13 @@ class WorkbookError(XlmcError):
 
 class DefinitionError(XlmcError):
     """An assumption, forecast, filter, correlation or setting is not what it must be."""
+
+
+class DefinitionsError(DefinitionError):
+    """Several of them, a line each; every line is as short as a message, and none is left out."""
+
+    def __str__(self) -> str:
+        return sentence(self.message)
 
 
 class SimulationError(XlmcError):

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import openpyxl
 import pytest
 from simulated import simulated
 
-from xlmc.montecarlo.model.loading import filter_faults
+from xlmc.errors import DefinitionError
+from xlmc.montecarlo.model.loading import filter_faults, load
 
 INPUTS = {"speed": {"cell": "A1", "low": 0, "high": 2}, "mass": {"cell": "A2", "low": 1, "high": 3}}
 CELLS = {"A1": 0.75, "A2": 2.0, "B1": "=A1*A2"}
@@ -90,3 +92,21 @@ def test_looking_changes_no_run(book):
     plain, seen = (book(cells, INPUTS, {"answer": "B1"}, filters) for _ in range(2))
     assert filter_faults(seen) == []
     assert simulated(plain, 500).forecasts["answer"].tobytes() == simulated(seen, 500).forecasts["answer"].tobytes()
+
+
+def test_every_fault_is_listed_however_many_there_are(small_book, tmp_path):
+    book = openpyxl.load_workbook(small_book)
+    blank, wrong = (
+        ("Inputs!C2", "Inputs!D2", "Inputs!C3", "Inputs!D3"),
+        ("Wanted!B2", "Wanted!B3", "Wanted!C6", "Wanted!B9"),
+    )
+    for cell in (*blank, *wrong):
+        sheet, _, place = cell.partition("!")
+        book[sheet][place] = None if cell in blank else f"many {'words ' * 100}"
+    path = tmp_path / "faulty.xlsx"
+    book.save(path)
+    with pytest.raises(DefinitionError) as caught:
+        load(path)
+    lines = str(caught.value).splitlines()
+    assert {line.partition(":")[0] for line in lines} >= {*blank, *wrong}
+    assert all(line.endswith(".") and len(line) < 1200 for line in lines)

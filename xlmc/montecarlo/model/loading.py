@@ -15,7 +15,7 @@ import numpy as np
 from xlmc.engine.engine import TEXT_RESULT, Column, Target
 from xlmc.engine.engines import ENGINES
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
-from xlmc.errors import DefinitionError
+from xlmc.errors import DefinitionError, DefinitionsError
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir
 from xlmc.excel.workbook.reader import read_workbook
@@ -69,7 +69,7 @@ def build_model(workbook: Workbook, path: Path, tabulated: int = 1) -> CompiledM
 
 
 def _joined(problems: Sequence[DefinitionError]) -> DefinitionError:
-    return problems[0] if len(problems) == 1 else DefinitionError("\n".join(str(p) for p in problems).rstrip("."))
+    return problems[0] if len(problems) == 1 else DefinitionsError("\n".join(map(str, problems)))
 
 
 def filter_faults(model: CompiledModel) -> list[DefinitionError]:

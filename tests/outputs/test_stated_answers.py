@@ -113,3 +113,53 @@ def test_check_shows_how_answers_are_stated(outputs):
     found = CliRunner().invoke(command, ["check", str(outputs[0] / "book.xlsx")])
     assert found.exit_code == 0
     assert all(word in found.output for word in ("Report to", "lower bound", "yes/no", "diagnostic"))
+
+
+def answer_rows(path):
+    """The rows of the sheet Results that begin with a forecast's name, with the numbers' formats."""
+    sheet = openpyxl.load_workbook(path)["Results"]
+    names = {row[0] for row in ROWS[1:]}
+    found = {}
+    for row in sheet.iter_rows():
+        filled = [each for each in row if each.value is not None]
+        if filled and filled[0].value in names:
+            found.setdefault(filled[0].value, [(each.value, each.number_format) for each in filled])
+    return found
+
+
+def test_a_yes_or_no_is_a_share_in_percent_in_every_table_of_answers(outputs):
+    folder, printed = outputs
+    share = open_run(folder / "out.xlmcrun").results["avoided"].yes
+    text = f"{100 * share.value:.2f} ± {100 * share.error:.2f} %"
+    assert f"avoided yes {text} yes residual" in printed  # no SD and no range; at the base case: yes
+    rows = answer_rows(folder / "out.xlsx")
+    (_, units, _, mean, error, *spread, base) = rows["avoided"]
+    assert {value for value, _ in spread} == {"–"}
+    assert (units[0], base[0]) == ("yes", "yes")
+    assert (mean, error) == ((share.value, "0.00%"), (share.error, "0.00%"))
+    page = (folder / "out.html").read_text(encoding="utf-8")
+    assert f">{text}</data>" in page
+    assert f"avoided: yes (1) in {text} of 20,000 accepted trials, else no (0)" in page
+    with zipfile.ZipFile(folder / "out.docx") as package:
+        assert text in package.read("word/document.xml").decode()
+
+
+def test_a_zero_that_no_draw_reaches_is_known_exactly(tmp_path):
+    """Not as a share of none of the trials is, which has a bound."""
+    book = openpyxl.Workbook()
+    sheet = book.active
+    for row in (["Name", "Value"], ["never", "=IF(D7>100,1,0)"], ["cost", "=D9*2"], ["speed", "=B7*2"]):
+        sheet.append(row)
+    for row in ([], ["Name", "Value", "Low", "High"], ["v", 15, 10, 20]):
+        sheet.append(row)
+    sheet["D7"] = 20
+    sheet["B2"] = "=IF(B7>100,1,0)"
+    sheet.add_table(Table(displayName="xlmc_forecasts", ref="A1:B4"))
+    sheet.add_table(Table(displayName="xlmc_assumptions", ref="A6:D7"))
+    book.save(tmp_path / "book.xlsx")
+    run = simulated(load(tmp_path / "book.xlsx"), 2_000)
+    cost, never = run.results["cost"], run.results["never"]
+    assert (cost.mean.value, cost.mean.error, cost.standard_deviation.error) == (0.0, 0.0, 0.0)
+    assert cost.yes is None
+    assert never.yes.value == 0.0
+    assert never.mean.interval[1] > 0.0

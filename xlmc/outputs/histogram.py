@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from xlmc.montecarlo.columns import parts, release
 from xlmc.montecarlo.statistics.sample import Sample, Values
-from xlmc.outputs.summary import SummaryRow, central_text, estimate_text, percent, summarise
+from xlmc.outputs.summary import SummaryRow, answer_text, central_text, estimate_text, percent, summarise
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
@@ -246,10 +246,13 @@ class Figure:
         """What the figure shows, in words."""
         row, bins = self.answer, self.bins
         units = f" {row.units}" if row.units else ""
-        text = (
-            f"Figure {self.number}. {self.name}: mean {estimate_text(row.mean)}{units}; the central "
-            f"{percent(row.share)} of {row.trials:,} accepted trials lie from {central_text(row)}{units}."
+        said = (
+            f"mean {estimate_text(row.mean)}{units}; the central {percent(row.share)} of {row.trials:,} accepted "
+            f"trials lie from {central_text(row)}{units}"
         )
+        if row.yes is not None:
+            said = f"yes (1) in {answer_text(row)} of {row.trials:,} accepted trials, else no (0)"
+        text = f"Figure {self.number}. {self.name}: {said}."
         if bins.counted < row.trials:
             text += f" Trials are weighted: the chart shows {bins.counted:,} trials of equal weight in their place."
         if bins.below or bins.above:

@@ -29,6 +29,7 @@ __all__ = [
     "BaseCase",
     "Said",
     "SummaryRow",
+    "answer_text",
     "base_case",
     "base_text",
     "central_text",
@@ -65,6 +66,7 @@ class SummaryRow:
         base: at the assumptions' base values; None where that is no number.
         threshold, above: the probability above the threshold, where one was asked for.
         asked, certainty: the probability of a range, where one was asked for; its ends, infinite where it has none.
+        yes: the share of the trials that say yes; None where it is no yes/no answer.
     """
 
     name: str
@@ -80,6 +82,25 @@ class SummaryRow:
     above: Estimate | None
     asked: tuple[float, float] | None = None
     certainty: Estimate | None = None
+    yes: Estimate | None = None
+
+    @property
+    def answer(self) -> Estimate:
+        """What is shown first: the mean, or the share of yes, which is shown in percent."""
+        return self.mean if self.yes is None else self.yes
+
+    @property
+    def spread(self) -> tuple[Estimate, Estimate, Estimate]:
+        """What is shown of its scatter, SD and central range; nothing of a yes/no answer: its share says all."""
+        return (self.standard_deviation, self.low, self.high) if self.yes is None else (_NOTHING, _NOTHING, _NOTHING)
+
+    @property
+    def unit(self) -> str:
+        """The unit of what is shown first."""
+        return self.units if self.yes is None else self.units or "yes"
+
+
+_NOTHING = Estimate(math.nan)
 
 
 def summarise(simulation: RunResult, names: Collection[str] | None = None) -> list[SummaryRow]:
@@ -105,6 +126,7 @@ def summarise(simulation: RunResult, names: Collection[str] | None = None) -> li
             above=result.statistics.probability_above,
             asked=result.definition.asked,
             certainty=result.certainty,
+            yes=result.yes,
         )
         for name, result in simulation.results.items()
         if names is None or name in names
@@ -125,12 +147,13 @@ def summary_text(rows: Sequence[SummaryRow]) -> tuple[list[str], list[list[str]]
 
 def _line(row: SummaryRow, heading: str) -> dict[str, str]:
     threshold = "" if row.threshold is None else show(row.threshold)
+    spread, low, _ = row.spread
     return {
         "Forecast": row.name,
-        "Units": row.units,
-        "Mean": estimate_text(row.mean),
-        "SD": estimate_text(row.standard_deviation),
-        heading: "" if math.isnan(row.low.value) else central_text(row),
+        "Units": row.unit,
+        "Mean": answer_text(row),
+        "SD": estimate_text(spread),
+        heading: "" if math.isnan(low.value) else central_text(row),
         "Range": "" if heading != MIXED else percent(row.share),
         "Base case": base_text(row),
         "Threshold": threshold,
@@ -140,9 +163,16 @@ def _line(row: SummaryRow, heading: str) -> dict[str, str]:
     }
 
 
+def answer_text(row: SummaryRow) -> str:
+    """What is shown first: the mean, `11.799 ± 0.013`, or the share of yes, `5.44 ± 0.32 %`."""
+    return estimate_text(row.mean) if row.yes is None else share_text(row.yes)
+
+
 def base_text(row: SummaryRow) -> str:
     """A forecast at the base case; empty where there is none."""
-    return "" if row.base is None else _beside_mean(row.base, row.mean)
+    if row.base is None or row.yes is None:
+        return "" if row.base is None else _beside_mean(row.base, row.mean)
+    return "yes" if row.base else "no"
 
 
 def central_text(row: SummaryRow) -> str:

@@ -16,6 +16,7 @@ from xlmc.errors import Notice
 from xlmc.montecarlo import statistics
 from xlmc.montecarlo.columns import numbers
 from xlmc.montecarlo.definitions.definitions import Forecast
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.model.plain_words import list_of
 from xlmc.montecarlo.statistics import Description, Estimate, Sample, errors_from_trials, too_short
 
@@ -47,6 +48,9 @@ class ForecastResult:
     Attributes:
         faults: error, `text` or `blank` -> accepted trials in which it is none.
         discards: filter of its own -> accepted trials that it discards.
+
+    Args:
+        still: no draw reaches it.
     """
 
     def __init__(
@@ -57,8 +61,10 @@ class ForecastResult:
         replicate: Callable[[], Replicates | None] = lambda: None,
         discards: Counter[str] | None = None,
         weights: Callable[[], Floats | None] = lambda: None,
+        *,
+        still: bool = False,
     ) -> None:
-        self.definition, self.faults = definition, faults
+        self.definition, self.faults, self._still = definition, faults, still
         self.discards: Counter[str] = Counter() if discards is None else discards
         self._column, self._replicate, self._weights = column, replicate, weights
 
@@ -76,7 +82,22 @@ class ForecastResult:
             self.values,
             None if weights is None else weights[known],
             None if replicate is None else replicate[known],
+            still=self._still,
         )
+
+    @cached_property
+    def yes(self) -> Estimate | None:
+        """The share of the trials in which a yes/no answer is a yes; None of other forecasts, and without a trial.
+
+        Its row says that it is one or, where the row says nothing, it is 0 or 1 in all trials. Any number but 0 is a
+        yes, as in Excel.
+        """
+        kind = self.definition.kind
+        if not self.sample.n or not (kind is Kind.YES_NO or (kind is None and self.sample.yes_no)):
+            return None
+        no = statistics.probability_between(self.sample, 0.0, 0.0)
+        interval = None if no.interval is None else (1.0 - no.interval[1], 1.0 - no.interval[0])
+        return replace(no, value=1.0 - no.value, interval=interval)
 
     @property
     def column(self) -> Floats:

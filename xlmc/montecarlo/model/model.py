@@ -39,7 +39,7 @@ from xlmc.montecarlo.model.forecast_filters import (
     filters_by_forecast,
 )
 from xlmc.montecarlo.model.impossible_draws import possible_draws, with_errors
-from xlmc.montecarlo.model.model_notices import example_notices, heavy_notices, still_notices
+from xlmc.montecarlo.model.model_notices import example_notices, heavy_notices, still_cells, still_notices
 from xlmc.montecarlo.model.needed import (
     Needed,
     chances_of,
@@ -179,6 +179,7 @@ class CompiledModel:
         lowering: the nodes of the needed cells.
         groups: of correlated ones among them.
         notices: what the person should know.
+        still: cells of forecasts that no assumption with a range reaches: they are the same in every trial.
     """
 
     def __init__(self, workbook: Workbook, definitions: Definitions, path: Path) -> None:
@@ -232,7 +233,8 @@ class CompiledModel:
         )
 
     def _take_notices(self) -> None:
-        rows = self.definitions.correlations
+        rows, moving = self.definitions.correlations, self._moving()
+        self.still = still_cells(self.needed, moving, self.forecasts)
         self.notices: tuple[Notice, ...] = (
             *self.workbook.notices,
             *self.definitions.notices,
@@ -241,7 +243,7 @@ class CompiledModel:
             *tie_notices(self.groups, rows, self._correlated),
             *repair_notices(self.groups, rows),
             *copula_notices(self.groups, self.definitions.copulas),
-            *still_notices(self.needed, self._moving(), self.forecasts),
+            *still_notices(self.needed, moving, self.forecasts),
             *heavy_notices(a for a in self.live if not self.draws[a.name].has_mean),
             *example_notices(self._sources()),
         )

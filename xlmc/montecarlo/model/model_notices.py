@@ -47,8 +47,8 @@ def heavy_notices(heavy: Iterable[Assumption]) -> Iterator[Notice]:
         yield Notice(message, assumption.row)
 
 
-def still_notices(needed: Needed, moving: Set[Cell], forecasts: Sequence[Forecast]) -> list[Notice]:
-    """The forecasts that are the same in every trial.
+def still_cells(needed: Needed, moving: Set[Cell], forecasts: Sequence[Forecast]) -> frozenset[Cell]:
+    """Return the cells of the forecasts that are the same in every trial.
 
     Args:
         needed: what they need.
@@ -56,7 +56,13 @@ def still_notices(needed: Needed, moving: Set[Cell], forecasts: Sequence[Forecas
         forecasts: all of them.
     """
     reached = needed.graph.varying if len(moving) == len(needed.live) else _reached(needed.graph, moving)
-    still = [forecast for forecast in forecasts if forecast.cell not in reached]
+    return frozenset(each.cell for each in forecasts if each.cell not in reached)
+
+
+def still_notices(needed: Needed, moving: Set[Cell], forecasts: Sequence[Forecast]) -> list[Notice]:
+    """Say which forecasts are the same in every trial; the arguments are those of `still_cells`."""
+    same = still_cells(needed, moving, forecasts)
+    still = [forecast for forecast in forecasts if forecast.cell in same]
     if forecasts and len(still) == len(forecasts):
         why = "no assumption is drawn" if not needed.live else "no assumption that is drawn reaches a forecast"
         if needed.live and not moving:

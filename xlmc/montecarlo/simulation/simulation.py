@@ -182,6 +182,7 @@ class RunResult:
                 lambda: self.replicate,
                 self.discards.get(f.name, Counter()),
                 lambda: None if self.weighting is None else self.weighting.weights,
+                still=f.cell in self.model.still,
             )
             for f in self.model.forecasts
         }

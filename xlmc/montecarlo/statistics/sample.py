@@ -39,15 +39,24 @@ class Sample:
         w: (n,) weights that sum to 1, None if all are equal; trials without weight are left out.
         group: (n,) the replicate of each trial, 0 … groups − 1, None if the trials themselves are independent.
         groups: how many replicates there are, at most 64.
+        still: no draw reaches the values: they are the same in every trial there could be.
     """
 
     x: Floats
     w: Floats | None = None
     group: Groups | None = None
     groups: int = 0
+    still: bool = False
 
     @classmethod
-    def of(cls, values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None) -> Sample:
+    def of(
+        cls,
+        values: Values,
+        weights: ArrayLike | None = None,
+        replicate: ArrayLike | None = None,
+        *,
+        still: bool = False,
+    ) -> Sample:
         """Read (n,) values, nonnegative weights and integer replicate ids; a `Sample` is returned as it is.
 
         A replicate that kept no trial cannot be seen here and is not counted.
@@ -64,7 +73,7 @@ class Sample:
             raise ValueError("values must be finite; trials without a number are left out before")
         w = None if weights is None else _normalise(np.asarray(weights, dtype=np.float64), x)
         ids = None if replicate is None else _check_shape(np.asarray(replicate), x, "replicate ids")
-        return cls(*_sort(x, w, ids))
+        return cls(*_sort(x, w, ids), still=still)
 
     @property
     def n(self) -> int:
@@ -86,8 +95,8 @@ class Sample:
 
     @cached_property
     def yes_no(self) -> bool:
-        """Whether every value is 0 or 1, of two trials or more."""
-        if self.n < 2 or self.x[0] not in (0.0, 1.0) or self.x[-1] not in (0.0, 1.0):
+        """Whether every value is 0 or 1, of two trials or more, and draws decide which."""
+        if self.still or self.n < 2 or self.x[0] not in (0.0, 1.0) or self.x[-1] not in (0.0, 1.0):
             return False
         first = int(np.searchsorted(self.x, 0.0, side="right"))
         return first == self.n or bool(self.x[first] == 1.0)

@@ -40,6 +40,7 @@ from xlmc.outputs.sheets.scenarios_sheet import scenario_sentences, scenario_war
 from xlmc.outputs.summary import (
     ERROR_SENTENCE,
     SummaryRow,
+    answer_text,
     base_text,
     central_text,
     estimate_text,
@@ -128,7 +129,7 @@ def _answers(material: Material, rows: Sequence[SummaryRow]) -> Table:
     widths = [2.4, 0.9, 1.6, 1.6, 1.6, 1.6, 1.1, *[1.0] * mixed, *[1.3, 1.5] * thresholds]
     lines = []
     for row in rows:
-        line = [row.name, row.units, *map(estimate_text, (row.mean, row.standard_deviation, row.low, row.high))]
+        line = [row.name, row.unit, answer_text(row), *map(estimate_text, row.spread)]
         line.append(base_text(row))
         if mixed:
             line.append(percent(row.share))

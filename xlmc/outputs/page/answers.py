@@ -84,7 +84,7 @@ def _head(text: str, numbers: bool) -> Html:
 
 
 def _line(row: SummaryRow, mixed: bool, thresholds: bool) -> Html:
-    cells = [estimate_html(each) for each in (row.mean, row.standard_deviation, row.low, row.high)]
+    cells = [(estimate_html if row.yes is None else share_html)(row.answer), *map(estimate_html, row.spread)]
     cells.append(EMPTY if row.base is None else number(row.base, base_text(row)))
     if mixed:
         cells.append(element("span", percent(row.share)))
@@ -92,7 +92,7 @@ def _line(row: SummaryRow, mixed: bool, thresholds: bool) -> Html:
         cells.append(EMPTY if row.threshold is None else number(row.threshold, show(row.threshold)))
         cells.append(EMPTY if row.above is None else share_html(row.above))
     found = (element("td", cell, class_="number") for cell in cells)
-    return element("tr", element("th", row.name, scope="row"), element("td", row.units), *found)
+    return element("tr", element("th", row.name, scope="row"), element("td", row.unit), *found)
 
 
 def _remarks(simulation: RunResult, rows: Sequence[SummaryRow]) -> Iterator[str]:

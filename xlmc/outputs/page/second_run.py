@@ -83,6 +83,9 @@ def _lines(first: SummaryRow, second: SummaryRow) -> Iterator[Html]:
 
 def _numbers(first: SummaryRow, second: SummaryRow) -> Iterator[tuple[str, Estimate, Estimate, bool]]:
     """What, in the first run, in the second, and whether it is a share."""
+    if first.yes is not None and second.yes is not None:
+        yield "Yes", first.yes, second.yes, True
+        return
     yield "Mean", first.mean, second.mean, False
     yield "Standard deviation", first.standard_deviation, second.standard_deviation, False
     if first.share == second.share:

@@ -93,10 +93,10 @@ def estimate(
     return [Shown(found.value, digits, look), _error(found.error, _error_format(found, digits), error_look)]
 
 
-def share(found: Estimate) -> list[Shown]:
+def share(found: Estimate, look: str = "") -> list[Shown]:
     """Two cells: a share of trials and its standard error, in percent."""
     digits = share_format(found)
-    return [Shown(found.value, digits), _error(found.error, digits, "error")]
+    return [Shown(found.value, digits, look), _error(found.error, digits, "error")]
 
 
 def interval(found: Estimate, *, percent: bool = False) -> list[Shown]:

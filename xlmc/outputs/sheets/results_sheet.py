@@ -12,7 +12,7 @@ from xlmc.montecarlo.statistics import Estimate, proportion
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.accounting import write_accounting, write_checks
 from xlmc.outputs.sheets.cells import Shown
-from xlmc.outputs.summary import ERROR_SENTENCE, SummaryRow, base_case, percent, range_heading, summarise
+from xlmc.outputs.summary import ERROR_SENTENCE, SummaryRow, base_case, base_text, percent, range_heading, summarise
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
@@ -80,13 +80,11 @@ def _headers(rows: Sequence[SummaryRow]) -> list[str]:
 def _answer(row: SummaryRow, rows: Sequence[SummaryRow]) -> list[Shown]:
     shown = [
         Shown(row.name, look="name"),
-        Shown(row.units),
+        Shown(row.unit),
         cells.count(row.trials),
-        *cells.estimate(row.mean, "answer"),
-        *cells.estimate(row.standard_deviation, "answer"),
-        *cells.estimate(row.low, "answer"),
-        *cells.estimate(row.high, "answer"),
-        cells.exact(row.base, cells.paired_format(row.mean)),
+        *(cells.estimate(row.mean, "answer") if row.yes is None else cells.share(row.yes, "answer")),
+        *(shown for each in row.spread for shown in cells.estimate(each, "answer")),
+        cells.exact(row.base, cells.paired_format(row.mean)) if row.yes is None else Shown(base_text(row)),
     ]
     return shown if len({other.share for other in rows}) < 2 else [*shown, Shown(percent(row.share))]
 

@@ -108,7 +108,7 @@ def rest_sentences(simulation: RunResult) -> list[str]:
     if len(counts) > 1 and len(counts[most]) == 1:
         return [f"Statistics of {names[0]!r} rest on {count:,} of {of} trials" for count, names in counts.items()]
     others = [f"those of {_listed(names)} on {count:,}" for count, names in counts.items() if count != most]
-    return [f"Statistics rest on {most:,} of {of} trials", *others]
+    return ["; ".join([f"Statistics rest on {most:,} of {of} trials", *others])]
 
 
 def _listed(names: list[str]) -> str:

@@ -17,7 +17,7 @@ from xlmc.analysis.results.statements.significant_digits import (
     rounded_range,
     surely_above,
 )
-from xlmc.montecarlo.definitions.stating import Kind, Role
+from xlmc.montecarlo.definitions.stating import Role
 from xlmc.montecarlo.distributions.parameters import range_text, show
 from xlmc.montecarlo.statistics import Estimate, probability_above, probability_between
 
@@ -91,8 +91,8 @@ def _main(result: ForecastResult, part: str) -> Statement | None:
     """The sentence that answers the question; None where there are too few trials for one."""
     definition, trials = result.definition, result.statistics.trials
     name, units = definition.name, f" {definition.units}" if definition.units else ""
-    if result.sample.n and _is_yes_no(result):
-        return Statement(name, "probability", f"{name}: {_yes_text(result)}{part}")
+    if result.yes is not None:
+        return Statement(name, "probability", f"{name}: {_yes_text(result, result.yes)}{part}")
     found = stated_range(result)
     if found is None:
         return None
@@ -101,21 +101,12 @@ def _main(result: ForecastResult, part: str) -> Statement | None:
     return Statement(name, "range", f"{name}: {_range_text(found, definition.central, units, trials)}{part}")
 
 
-def _is_yes_no(result: ForecastResult) -> bool:
-    """Whether a forecast is a yes/no answer: its row says so or, where the row says nothing, it is 0 or 1 in all
-    trials.
-    """
-    kind = result.definition.kind
-    return kind is Kind.YES_NO or (kind is None and result.sample.yes_no)
-
-
-def _yes_text(result: ForecastResult) -> str:
+def _yes_text(result: ForecastResult, yes: Estimate) -> str:
     """`yes with probability 84.2 % ± 0.4 %, more probable than not`; any number but 0 is a yes, as in Excel.
 
     That a lower bound is a yes makes the answer one; where it is a no, the answer may be either.
     """
     role, no = result.definition.role, probability_between(result.sample, 0.0, 0.0)
-    yes = _complement(no)
     says = "" if result.sample.yes_no else "; numbers other than 0 and 1 count as yes"
     if (role, yes.value) in ((Role.LOWER, 0.0), (Role.UPPER, 1.0)):
         return f"the bound does not tell{says}"
@@ -130,11 +121,6 @@ def _yes_text(result: ForecastResult) -> str:
 
 
 _OF_ROLE: Final = {Role.LOWER: "a probability of at least", Role.UPPER: "a probability of at most"}
-
-
-def _complement(share: Estimate) -> Estimate:
-    interval = None if share.interval is None else (1.0 - share.interval[1], 1.0 - share.interval[0])
-    return replace(share, value=1.0 - share.value, interval=interval)
 
 
 def _probabilities(result: ForecastResult) -> Iterator[Statement]:

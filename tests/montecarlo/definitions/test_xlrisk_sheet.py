@@ -7,9 +7,10 @@ import math
 import openpyxl
 import pytest
 from openpyxl.workbook.defined_name import DefinedName
+from simulated import simulated
 
-import xlmc
 from xlmc.errors import XlmcError
+from xlmc.montecarlo.model.loading import load
 
 MODEL = {
     "B1": "=[1]!RiskLogNorm(2,0.5)",
@@ -71,12 +72,12 @@ def book(tmp_path):
 @pytest.mark.parametrize("names", [True, False], ids=["with its names", "by its labels"])
 def test_a_book_runs_as_it_is(book, names):
     """The mean of a product of independent draws, by the logarithm's mean 2 and standard deviation 0.5."""
-    model = xlmc.load(book(names=names))
+    model = load(book(names=names))
     settings = model.definitions.settings
     assert (settings.trials, settings.seed, settings.sampling, settings.lognorm) == (2000, 42, "lhs", "XLRisk")
     assert {each.name: str(each.cell) for each in model.forecasts} == {"Revenue": "Model!B3", "Profit": "Model!B4"}
     assert not any("set Lognorm to XLRisk" in notice.message for notice in model.notices)
-    run = model.simulate()
+    run = simulated(model)
     assert 2000 <= run.trials < 2100
     revenue = math.exp(2 + 0.125) * 310 / 3
     for name, mean in (("Revenue", revenue), ("Profit", revenue - 20)):
@@ -91,9 +92,9 @@ def test_a_table_of_settings_and_the_command_win(book, tmp_path):
     found = openpyxl.load_workbook(path)
     found["Model"].add_table(Table(displayName="xlmc_settings", ref="D1:E2"))
     found.save(path)
-    model = xlmc.load(path)
+    model = load(path)
     assert (model.definitions.settings.seed, model.definitions.settings.trials) == (5, 2000)
-    assert model.simulate(trials=100, seed=9, sampling="mc").trials == 100
+    assert simulated(model, trials=100, seed=9, sampling="mc").trials == 100
 
 
 @pytest.mark.parametrize(
@@ -114,14 +115,14 @@ def test_a_table_of_settings_and_the_command_win(book, tmp_path):
 def test_what_the_list_of_outputs_may_hold(book, changes, cells, told):
     if "Model!B3" in changes:  # marked in the cell, too
         changes = {**changes, "G4": "Model!$B$3", "H4": "R"}
-    model = xlmc.load(book(changes))
+    model = load(book(changes))
     assert {each.name for each in model.forecasts} == cells
     assert any(told in str(notice) for notice in model.notices)
 
 
 def test_a_sheet_with_an_apostrophe_is_found_whatever_its_address_quotes(book):
     changes = {"G4": "My model's!$B$3", "G5": "'My model''s'!$B$4"}
-    assert len(xlmc.load(book(changes, model="My model's")).forecasts) == 2
+    assert len(load(book(changes, model="My model's")).forecasts) == 2
 
 
 @pytest.mark.parametrize(
@@ -139,7 +140,7 @@ def test_a_sheet_with_an_apostrophe_is_found_whatever_its_address_quotes(book):
 )
 def test_what_is_refused_names_its_cell(book, changes, message):
     with pytest.raises(XlmcError) as refused:
-        xlmc.load(book(changes))
+        load(book(changes))
     assert message in str(refused.value)
     assert refused.value.hint
 
@@ -149,7 +150,7 @@ def test_what_is_refused_names_its_cell(book, changes, message):
     [("2,6,10,50", 20.0), ("2,6,,4", 1.0), ("2,6", 0.25), ("2,6,0.2", 0.4)],
 )
 def test_risk_beta_takes_limits(book, call, mean):
-    model = xlmc.load(book({"Model!B4": f"=RiskBeta({call})"}))
+    model = load(book({"Model!B4": f"=RiskBeta({call})"}))
     assert model.bases["Model!B4#1"] == pytest.approx(mean)
 
 
@@ -158,13 +159,13 @@ def test_a_corrected_matrix_is_read_as_excel_saved_it(book):
     matrix = {"Model!B1": "=RiskLogNorm(2,0.5,RiskCorrmat(F1:G2,1))"}
     matrix |= {"Model!B2": "=RiskTriang(80,100,130,RiskCorrmat(F1:G2,2))"}
     matrix |= {"Model!F1": 1, "Model!F2": 0.8, "Model!G2": 1, "Model!I1": "=RiskIsValidCorrmat(F1:G2)"}
-    run = xlmc.load(book(matrix)).simulate()
+    run = simulated(load(book(matrix)))
     assert run.warnings == []
     assert run.model.definitions.correlations[0].value == 0.8
 
 
 def test_a_sheet_of_that_name_without_its_labels_is_a_sheet_like_others(book):
     blank = dict.fromkeys(SHEET) | {"A1": "Notes", "Model!B3": "=B1*B2+RiskOutput()"}
-    model = xlmc.load(book(blank, names=False))
+    model = load(book(blank, names=False))
     assert model.definitions.settings.trials == 200_000
     assert any("set Lognorm to XLRisk" in notice.message for notice in model.notices)

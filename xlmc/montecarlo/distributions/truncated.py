@@ -107,6 +107,11 @@ class Slice:
         self.mass = np.where(self._in_upper_half, from_above, from_below)
         self._sound = (self.mass >= _LEAST_MASS) & np.less(lower, upper)  # False where anything is NaN
 
+    @property
+    def whole(self) -> Member:
+        """The distribution that it is a piece of."""
+        return self._whole
+
     def ppf(self, u: Values, out: Array | None = None) -> Array:
         """See `Truncated.ppf`."""
         x = np.clip(self._quantile(np.where(np.equal(u, 0.0), SMALLEST_U, u)), self._lowest, self._highest)

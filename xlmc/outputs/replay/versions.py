@@ -226,6 +226,7 @@ RULES: Final = (
     Rule("0.12.0", "GETPIVOTDATA is read from the pivot table", _calls("GETPIVOTDATA")),
     Rule("0.12.0", "texts of dates with spaces around them are no numbers", _ANY),
     Rule("0.12.0", "cells that draw or mark an answer below RiskTheo… or a result show their base case", _SHOWN),
+    Rule("0.12.0", "numbers and base cases of truncated discrete draws are sums over their values", _FEW_VALUES),
     Rule("0.12.0", "the sheet XLRisk says trials, seed, sampling, and what RiskLognorm means", _SHOWN),
     Rule("0.12.0", "results that are asked by other cells are computed from what these cells show of the run", _SHOWN),
     Rule("0.12.0", "results of an input by its name, and of further simulations, are shown", _SHOWN),

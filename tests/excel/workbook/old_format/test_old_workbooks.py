@@ -158,6 +158,21 @@ def test_the_results_of_formulas_are_those_that_excel_saved(monkeypatch, tmp_pat
     assert type(cells[1, 1].value) is float
 
 
+@pytest.mark.parametrize("saved", [True, False], ids=str)
+def test_a_logical_that_a_formula_gives_is_one(monkeypatch, tmp_path, saved):
+    """LibreOffice writes 1 or 0 for a formula that gives one."""
+    path = tmp_path / "converted.xlsx"
+    path.write_bytes(converted({"A1": "=2>1", "A2": "=1"}))
+    monkeypatch.setattr(joined_package, "converted_to_xlsx", lambda _: path.read_bytes())
+    logical = struct.pack("<HHH8sHIH", 0, 0, 0, bytes([1, 0, saved, 0, 0, 0, 0xFF, 0xFF]), 0, 0, 0)
+    number_ = struct.pack("<HHHdHIH", 1, 0, 0, 1.0, 0, 0, 0)
+    data = plain_book({"S": record(0x06, logical) + record(0x06, number_)})
+    cells = read_workbook(data, "case.xls").sheets["S"].cells
+    assert cells[1, 1].value is saved
+    assert cells[2, 1].value == 1.0
+    assert type(cells[2, 1].value) is float
+
+
 DIFFERENT = {
     "another number": (
         number(1, 1, 0.3),

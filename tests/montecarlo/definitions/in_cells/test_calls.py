@@ -273,6 +273,46 @@ def test_a_name_may_stand_in_a_cell(understood):
     assert drawn.name == "speed"
 
 
+NAMED = {
+    '"fast "&"car"': "fast car",
+    'A3&" cost"': "labor cost",
+    'UPPER(A3)&" in "&A4': "LABOR in 2020",
+    'CONCATENATE("Year ",TEXT(A4+1,"0"))': "Year 2021",
+    "A5": "labor/7",
+    'IF(A4>2000,"new","old")': "new",
+}
+
+
+@pytest.mark.parametrize("expression", NAMED)
+def test_names_may_be_expressions_of_constants(understood, expression):
+    """A5 was never calculated."""
+    cells = {"A3": "labor", "A4": 2020.0, "A5": '=A3&"/"&7'}
+    (drawn,) = understood(f"RiskNormal(5,2,RiskName({expression}),RiskUnits({expression}))", **cells).assumptions
+    assert (drawn.name, drawn.units) == (NAMED[expression], NAMED[expression])
+
+
+@pytest.mark.parametrize("expression", ["A3&RiskNormal(0,1)", "RAND()", "NoSuch&1", "1/0", "A3&Nothing()"])
+def test_names_that_are_no_constant_texts_are_refused(understood, expression):
+    found = understood(f'RiskNormal(5,2,RiskName({expression}))+RiskOutput("x")', A3="labor")
+    (problem,) = found.problems
+    assert problem.where == "S!I9"
+
+
+TRUNCATED = {
+    "RiskTnormal(5,2,1,9)": "RiskNormal(5,2,RiskTruncate(1,9))",
+    "RiskTlognorm(5,2,,9)": "RiskLognorm(5,2,RiskTruncate(,9))",
+    "RISKTEXPON(3,1,9,RiskShift(2))": "RiskExpon(3,RiskTruncate(1,9),RiskShift(2))",
+    "RiskTWeibull(2,3,1,9)": "RiskWeibull(2,3,RiskTruncate(1,9))",
+    "RiskTstudent(4,-1,A1)": "RiskStudent(4,RiskTruncate(-1,A1))",
+}
+
+
+@pytest.mark.parametrize("formula", TRUNCATED)
+def test_forms_of_earlier_versions_are_cut_off_by_their_last_numbers(understood, formula):
+    one, other = (understood(each).assumptions[0] for each in (formula, TRUNCATED[formula]))
+    assert (one.distribution, one.given, one.base) == (other.distribution, other.given, other.base)
+
+
 BASES = {
     "RiskNormal(5,2)": 5,
     "RiskNormal(A1,2)": 4,
@@ -283,6 +323,10 @@ BASES = {
     "RiskDiscrete({1,2},{0.25,0.75})": 1.75,
     "RiskStudent(1)": None,
     "RAND()": 0.5,
+    "RiskIntUniform(1,6,RiskTruncate(1.5,4))": 3,
+    "RiskBinomial(2,0.5,RiskTruncate(1,))": 4 / 3,
+    "RiskDiscrete({1,5,9},{1,2,3},RiskTruncate(2,))": 7.4,
+    "RiskBeta(2,6,10,50)": 20,
 }
 
 
@@ -400,8 +444,8 @@ def test_no_answer_is_marked(workbook):
 def test_outputs(workbook):
     cells = {
         "A1": '=_xll.RiskOutput("Speed",,,RiskUnits("mph"))+RAND()',
-        "A2": "=RAND()+RiskOutput()",
-        "A3": '=RiskOutput("speed")+RAND()',
+        "A2": '=RAND()+RiskOutput(RiskUnits("kg"))',
+        "A3": '=RiskOutput("sp"&LOWER("EED"),"all",2,RiskSixSigma(1,2,1.5),RiskConvergence(3%))+RAND()',
         "A4": "=RAND()*3",
         "B4": "=RiskMean(A4)+CB.GetForePercentFN(A4,5)",
         "B5": '=RiskMean("speed")',
@@ -411,7 +455,7 @@ def test_outputs(workbook):
     found = read_definitions(workbook(cells), ENGINES)
     assert [(f.name, f.units) for f in found.forecasts] == [
         ("Speed", "mph"),
-        ("S!A2", ""),
+        ("S!A2", "kg"),
         ("speed (S!A3)", ""),
         ("S!A4", ""),
     ]

@@ -102,13 +102,13 @@ def _with_calculation(xml: bytes, part: str, settings: Mapping[str, str]) -> byt
     return document.result()
 
 
-def _exact(sheet: OldSheet, cells: Mapping[Position, CellContent]) -> dict[Position, float]:
+def _exact(sheet: OldSheet, cells: Mapping[Position, CellContent]) -> dict[Position, float | bool]:
     """The numbers of cells that LibreOffice has shortened, and the results of formulas as Excel saved them.
 
     Raises:
         WorkbookError: a constant is another number, or a formula is none any more.
     """
-    found: dict[Position, float] = {}
+    found: dict[Position, float | bool] = {}
     for position, number in sheet.numbers.items():
         content = cells.get(position)
         value = None if content is None else content.value
@@ -127,7 +127,8 @@ def _exact(sheet: OldSheet, cells: Mapping[Position, CellContent]) -> dict[Posit
         content = cells.get(position)
         if content is None or (content.formula is None and position not in filled):
             raise _refusal("LibreOffice has lost the formula of the cell", Cell(sheet.name, *position))
-        if not (_is_number(content.value) and content.value == number) and math.isfinite(number):
+        same_kind = isinstance(content.value, bool) if isinstance(number, bool) else _is_number(content.value)
+        if not (same_kind and content.value == number) and math.isfinite(number):
             found[position] = number
     return found
 

@@ -38,6 +38,9 @@ _WORKSHEET: Final = 0
 _NO_NUMBER: Final = b"\xff\xff"
 """Ends the value of a formula that is a text, a logical, an error or nothing."""
 
+_LOGICAL: Final = 1
+"""Begins such a value that is a logical."""
+
 _DEEPEST: Final = 16
 """Substreams within substreams; a chart in a sheet is one."""
 
@@ -51,7 +54,7 @@ class OldSheet:
 
     Attributes:
         numbers: in cells without a formula.
-        results: of formulas, as Excel saved them, where they are numbers.
+        results: of formulas, as Excel saved them, where they are numbers or logicals.
         areas: of array formulas and what-if tables: the first and the last row and column. Of their cells one alone
             keeps a formula in an `.xlsx`.
         texts: of hidden shapes.
@@ -59,7 +62,7 @@ class OldSheet:
 
     name: str
     numbers: dict[Position, float] = field(default_factory=dict)
-    results: dict[Position, float] = field(default_factory=dict)
+    results: dict[Position, float | bool] = field(default_factory=dict)
     areas: list[tuple[int, int, int, int]] = field(default_factory=list)
     texts: list[ShapeText] = field(default_factory=list)
 
@@ -230,6 +233,8 @@ def _take_cells(sheet: OldSheet, kind: int, data: bytes) -> None:
         row, column, _, value = struct.unpack_from("<HHH8s", data)
         if value[6:] != _NO_NUMBER:
             (sheet.results[row + 1, column + 1],) = struct.unpack("<d", value)
+        elif value[0] == _LOGICAL:
+            sheet.results[row + 1, column + 1] = bool(value[2])
     elif kind in (_ARRAY, _DATA_TABLE):
         top, bottom, left, right = struct.unpack_from("<HHBB", data)
         sheet.areas.append((top + 1, left + 1, bottom + 1, right + 1))

@@ -16,9 +16,12 @@ from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula import ir
 from xlmc.montecarlo.definitions.definitions import DataRange, Parameter
 from xlmc.montecarlo.definitions.in_cells.call_arguments import elements, is_left_out, rows_of_trees
+from xlmc.montecarlo.definitions.in_cells.theory import Distribution
 from xlmc.montecarlo.definitions.tables.data import data_family
 from xlmc.montecarlo.distributions import FAMILIES, Family, Truncated
+from xlmc.montecarlo.distributions.base import Member
 from xlmc.montecarlo.distributions.quadrature import gauss_legendre
+from xlmc.montecarlo.distributions.truncated import Slice
 
 __all__ = [
     "Arguments",
@@ -239,8 +242,12 @@ def _mean_between(family: Family, lower: float, upper: float, known: Mapping[str
     cut = Truncated(family)
     if cut.fault(lower, upper, **known):
         return np.nan
+    values = family.bind((), known)
+    piece = Distribution(Slice(Member(family, values), lower, upper))
+    if piece.is_discrete:
+        return piece.mean()
     nodes, weights = gauss_legendre(_NODES)
-    return float(weights @ cut.ppf((nodes + 1) / 2, lower, upper, *family.bind((), known)) / 2)
+    return float(weights @ cut.ppf((nodes + 1) / 2, lower, upper, *values) / 2)
 
 
 def percentile_cutoffs(drawn: Drawn, numbers: Mapping[str, float | None], percents: tuple[float, float]) -> Cutoffs:

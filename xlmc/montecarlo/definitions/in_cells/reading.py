@@ -17,6 +17,7 @@ from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, DataRan
 from xlmc.montecarlo.definitions.in_cells.call_arguments import difference, is_left_out, number_of, total
 from xlmc.montecarlo.definitions.in_cells.call_draws import Drawn, Properties, base_of, built_family, percentile_cutoffs
 from xlmc.montecarlo.definitions.in_cells.compound_calls import COMPOUND, compound_of
+from xlmc.montecarlo.definitions.in_cells.constant_text import constant_text
 from xlmc.montecarlo.definitions.in_cells.crystal_ball_functions import crystal_ball_draw
 from xlmc.montecarlo.definitions.in_cells.random_functions import random_draw
 from xlmc.montecarlo.definitions.in_cells.result_functions import (
@@ -30,7 +31,7 @@ from xlmc.montecarlo.definitions.in_cells.risk_functions import risk_draw
 from xlmc.montecarlo.definitions.in_cells.risk_properties import is_property, properties_of
 from xlmc.montecarlo.definitions.in_cells.stand_ins import STAND_INS, stand_in, unsupported
 from xlmc.montecarlo.definitions.in_cells.theory import THEORETICAL, Distribution, theoretical
-from xlmc.montecarlo.definitions.tables.table_rows import as_text, number_in, static_value
+from xlmc.montecarlo.definitions.tables.table_rows import number_in, static_value
 from xlmc.montecarlo.distributions import FAMILIES
 from xlmc.montecarlo.sampling.draws import Draw
 
@@ -186,16 +187,16 @@ class CellReading:
         Raises:
             FormulaError: one of them cannot be answered, or the formula draws, too.
         """
+        missing = [name for call in calls if (name := not_computed(call))]
         try:
+            if missing and missing[0] not in NOT_COMPUTED:
+                raise unsupported(missing[0].upper())
             if _draws(tree):
                 hint = "show the result in a cell of its own"
                 raise FormulaError("the formula both draws and shows results of the run", hint=hint)
             self.asked = [result_call(call) for call in calls if is_result(call)]
-            if missing := [each for call in calls if (each := not_computed(call))]:
-                refused = unsupported(missing[0].upper())
-                if missing[0] in NOT_COMPUTED:
-                    raise FormulaError(f"{missing[0]} is not computed by xlmc", hint=refused.hint)
-                raise refused
+            if missing:
+                raise FormulaError(f"{missing[0]} is not computed by xlmc", hint=unsupported(missing[0].upper()).hint)
         except FormulaError as error:
             self.unavailable = error.message
             raise
@@ -305,19 +306,17 @@ class CellReading:
         for index, argument in enumerate(call.arguments):
             if isinstance(argument, ir.Call) and argument.name == "RISKUNITS":
                 units = self._text("RiskUnits", argument.arguments[0]) if argument.arguments else None
-            elif index == 0 and not is_left_out(argument):
+            elif index == 0 and not is_left_out(argument) and not is_property(argument):
                 name = self._text("RiskOutput", argument)
         if self.output is not None:
             raise FormulaError("the formula has two RiskOutput", hint="keep one of them")
         self.output = Output(name, units or "")
 
     def _text(self, function: str, tree: ir.Expression) -> str:
-        value = tree.value if isinstance(tree, ir.Text | ir.Number) else None
-        if isinstance(tree, Cell):
-            value = self._workbook.content(tree).value
-        text = as_text(value)
+        text = constant_text(self._workbook, tree, self.host)
         if not text:
-            raise FormulaError(f"{function} needs a text", hint="write it in quotes, or name a cell that holds one")
+            hint = "write it in quotes, or name cells that hold one and vary with no draw"
+            raise FormulaError(f"{function} needs a text", hint=hint)
         return text
 
     def _take_draw(self, drawn: Drawn, number: int) -> ir.Expression:

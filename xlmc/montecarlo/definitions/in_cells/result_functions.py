@@ -14,7 +14,7 @@ from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula import ir
 from xlmc.montecarlo.definitions.in_cells.call_arguments import is_left_out
 from xlmc.montecarlo.definitions.in_cells.crystal_ball_functions import CRYSTAL_BALL
-from xlmc.montecarlo.definitions.in_cells.risk_functions import RISK
+from xlmc.montecarlo.definitions.in_cells.risk_functions import RISK, TRUNCATED
 from xlmc.montecarlo.definitions.in_cells.risk_properties import is_property, is_property_name
 from xlmc.montecarlo.definitions.in_cells.theory import THEORETICAL
 
@@ -137,7 +137,12 @@ _OTHER_DRAWS: Final = "Compound CorrectCorrmat IsValidCorrmat Library MakeInput 
 _BY_NAME: Final = {name.upper(): (name, *row) for name, row in RESULTS.items()}
 _WRITTEN: Final = {name.upper(): name for name in (*NOT_COMPUTED, *RESULTS)}
 _DRAWS: Final = frozenset(
-    ["RISKOUTPUT", *map(str.upper, (*RISK, *CRYSTAL_BALL)), *(f"RISK{name.upper()}" for name in _OTHER_DRAWS.split())]
+    [
+        "RISKOUTPUT",
+        *map(str.upper, (*RISK, *CRYSTAL_BALL)),
+        *TRUNCATED,
+        *(f"RISK{name.upper()}" for name in _OTHER_DRAWS.split()),
+    ]
 )
 _THEORY: Final = frozenset(map(str.upper, THEORETICAL))
 _CALLED: Final = re.compile(r"(?<![\w.])(?:_xl\w+\.)*(Risk\w+|CB\.\w+)\s*\(", re.IGNORECASE)

@@ -24,7 +24,7 @@ from xlmc.montecarlo.distributions import FAMILIES
 from xlmc.montecarlo.distributions.by_percentiles import by_percentiles
 from xlmc.montecarlo.distributions.parameters import show
 
-__all__ = ["ALTERNATES", "RISK", "risk_draw"]
+__all__ = ["ALTERNATES", "RISK", "TRUNCATED", "risk_draw"]
 
 _LOCATED: Final = {"location": 0.0}
 
@@ -150,6 +150,8 @@ def risk_draw(call: ir.Call, lognorm: str) -> Drawn | None:
     """
     count = next((i for i, part in enumerate(call.arguments) if is_property(part)), len(call.arguments))
     given, properties = call.arguments[:count], call.arguments[count:]
+    if call.name in TRUNCATED:
+        return _truncated(call, lognorm)
     if call.name in _BY_NAME:
         name = _BY_NAME[call.name]
         signature = _LOGNORMS[lognorm] if name == "RiskLognorm" else RISK[name]
@@ -159,6 +161,32 @@ def risk_draw(call: ir.Call, lognorm: str) -> Drawn | None:
             raise FormulaError(f"{name} has {len(given)} arguments", hint=hint)
         return signature.drawn(name, given, properties_of(name, properties))
     return _alternate_draw(call.name, given, lambda name: properties_of(name, properties))
+
+
+TRUNCATED: Final = {
+    f"RISKT{name.removeprefix('Risk').upper()}": name
+    for name in (
+        *("RiskChiSq", "RiskErf", "RiskExpon", "RiskExtvalue", "RiskGamma", "RiskInvGauss", "RiskLogistic"),
+        *("RiskLogLogistic", "RiskLognorm", "RiskLognorm2", "RiskNormal", "RiskPareto", "RiskPareto2"),
+        *("RiskPearson5", "RiskPearson6", "RiskRayleigh", "RiskStudent", "RiskWeibull"),
+    )
+}
+"""Truncated forms of earlier versions, whose last two numbers are the cutoffs -> the function without them."""
+
+
+def _truncated(call: ir.Call, lognorm: str) -> Drawn | None:
+    """What `RiskTnormal(mean, sd, min, max)` and its like draw.
+
+    Raises:
+        FormulaError: it has too few or too many arguments.
+    """
+    name = TRUNCATED[call.name]
+    count = next((i for i, part in enumerate(call.arguments) if is_property(part)), len(call.arguments))
+    if count != len(RISK[name].takes) + 2:
+        takes = ", ".join((*RISK[name].takes, "minimum", "maximum"))
+        raise FormulaError(f"{name.replace('Risk', 'RiskT', 1)} has {count} arguments", hint=f"it takes {takes}")
+    cut = ir.Call("RISKTRUNCATE", call.arguments[count - 2 : count])
+    return risk_draw(ir.Call(name.upper(), (*call.arguments[: count - 2], cut, *call.arguments[count:])), lognorm)
 
 
 _OPTIONAL: Final = {"RiskBeta": (0.0, 1.0)}

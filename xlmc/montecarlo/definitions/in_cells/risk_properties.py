@@ -173,10 +173,12 @@ _PROPERTIES: Final[dict[str, tuple[int, int, _Taken]]] = {
     "RiskSeed": (0, 2, _idle("RiskSeed")),
     "RiskCollect": (0, 1, _ignored),
     "RiskCategory": (0, 1, _ignored),
+    "RiskConvergence": (0, 9, _ignored),
     "RiskFit": (0, 9, _ignored),
     "RiskIsDate": (0, 1, _ignored),
     "RiskIsDiscrete": (0, 1, _ignored),
     "RiskLibrary": (0, 9, _library),
+    "RiskSixSigma": (0, 9, _ignored),
 }
 """Property function -> fewest arguments, most, and what it says."""
 

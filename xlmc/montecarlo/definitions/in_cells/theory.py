@@ -17,8 +17,9 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import FormulaError
-from xlmc.montecarlo.distributions.base import Array, Member
+from xlmc.montecarlo.distributions.base import Array, Family, Member
 from xlmc.montecarlo.distributions.compound import Compound
+from xlmc.montecarlo.distributions.pieces import Pieces
 from xlmc.montecarlo.distributions.quadrature import gauss_legendre
 from xlmc.montecarlo.distributions.truncated import Slice
 from xlmc.montecarlo.distributions.whole_numbers import WholeNumbers
@@ -29,6 +30,7 @@ _STEP: Final = 1 / 64
 _REACH: Final = 12.0
 _NODES: Final = 500
 _GRID: Final = 1 << 20
+_LARGEST_U: Final = 1 - 2.0**-53
 _MOST_VALUES: Final = 2_000_000
 
 
@@ -74,13 +76,36 @@ class Distribution:
         return float(self.whole.cdf(np.array([x - self.shift]))[0])
 
     def ends(self) -> tuple[float, float]:
-        low, high = self.whole.support()
-        return float(low) + self.shift, float(high) + self.shift
+        low, high = map(float, self.whole.support())
+        if isinstance(self._family, WholeNumbers):
+            low, high = float(np.ceil(low)), float(np.floor(high))
+        elif (single := self._single_values) is not None:
+            low, high = float(single[0][0]), float(single[0][-1])
+        return low + self.shift, high + self.shift
 
     def _expected(self, function: Callable[[Array], Array]) -> float:
         values, weights = self._values
         with np.errstate(all="ignore"):
             return float(weights @ function(values))
+
+    @property
+    def _family(self) -> Family:
+        return self.whole.family if isinstance(self.whole, Member) else self.whole.whole.family
+
+    @cached_property
+    def _single_values(self) -> tuple[Array, Array] | None:
+        """The values of data that are all single ones, within the cutoffs, and the probability of each."""
+        family = self._family
+        if not (isinstance(family, Pieces) and family.single.all()):
+            return None
+        low, high = self.whole.support()
+        kept = (family.low >= low) & (family.low <= high)
+        return family.low[kept], family.share[kept] / family.share[kept].sum()
+
+    @property
+    def is_discrete(self) -> bool:
+        """Whether it takes single values alone, of which sums are exact."""
+        return isinstance(self._family, WholeNumbers) or self._single_values is not None
 
     @property
     def _is_smooth(self) -> bool:
@@ -95,8 +120,11 @@ class Distribution:
         """Values that stand for the distribution before its shift, and the probability of each: up to 2²⁰ quantiles."""
         from scipy.special import ndtr
 
-        if isinstance(self.whole, Member) and isinstance(self.whole.family, WholeNumbers):
-            low, high = self.whole.ppf(1e-18), self.whole.isf(1e-18)
+        if (single := self._single_values) is not None:
+            return single
+        if isinstance(self._family, WholeNumbers):
+            low = self.whole.ppf(1e-18)
+            high = self.whole.isf(1e-18) if isinstance(self.whole, Member) else self.whole.ppf(_LARGEST_U)
             if high - low < _MOST_VALUES:
                 k = np.arange(float(low), float(high) + 1)
                 below = np.append(self.whole.cdf(k[0] - 1), self.whole.cdf(k))

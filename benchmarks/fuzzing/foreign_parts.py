@@ -24,7 +24,6 @@ from fuzzing.books import MAIN, OFFICE, PACKAGE, Sheet, Table, cell, packed, par
 from fuzzing.inputs import Disagreement, Input, Reached, steps_of
 from fuzzing.second_reader import Cells, agreed, equal, second_reading
 from fuzzing.xml_changes import changed
-from xlmc.api import Model
 from xlmc.engine.engines import ENGINES
 from xlmc.excel.workbook.inject import inject
 from xlmc.excel.workbook.injection.splice import as_utf8
@@ -33,7 +32,10 @@ from xlmc.excel.workbook.package import read_parts
 from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.model.labels import calculate_labels
+from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.simulation.simulate import run_model
 
 __all__ = ["FOCUSES", "book", "make", "run"]
 
@@ -280,7 +282,7 @@ def run(given: Input, folder: Path) -> Reached:
         if definitions.problems:
             raise definitions.problems[0]
         if "simulate" in given.steps:
-            Model(calculated, definitions, folder / given.name).simulate(TRIALS)
+            run_model(CompiledModel(calculated, definitions, folder / given.name), RunOptions.of(trials=TRIALS))
     return Reached.RAN
 
 

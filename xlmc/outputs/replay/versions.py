@@ -234,25 +234,6 @@ RULES: Final = (
 )
 """The rules in the order of versions."""
 
-_COMMITS: Final = {
-    "0.1.0": "46fd152e6dd49dcf68dc416c020a215c696d0a3d",
-    "0.2.0": "bb61f93b6f64bf49b751e73e09eb58a162bfd9ba",
-    "0.3.0": "00742dc47a736f0895b4959ff85cd29eb56e2e66",
-    "0.4.0": "bc3aba5294be41225bc1b4b5739ec48cd9e98e2c",
-    "0.5.0": "7496bc5c0bfbe39791f9066d2e05fbbc01b41aaf",
-    "0.5.1": "e9825adc0d54324dd6ffee4b7e227855ceaf6810",
-    "0.5.2": "a0233280c2c29797693a39af2d7ca65686378708",
-    "0.6.0": "3477a27842cfa0f06441ec8cd6cc49c4c3cc7516",
-    "0.7.0": "b28ef100a6c0bd6147d30638e5c13c82e6c2de5b",
-    "0.8.0": "9b6e83b15a18eff6e7b69dda8483149c1a89598f",
-    "0.9.0": "adb41e5b90878c069eb919353532b23ca12c59e6",
-    "0.10.0": "ef020dc5a73b4a5fcd48b50ea00a1d8bf3d0a8cc",
-    "0.11.0": "c1e30ea7db9c86e52d9a1a51f5eb1e8a31f640a7",
-    "0.11.1": "1fda55809b9b6bbbc6a1e1c28b25a49d63a3bf88",
-    "0.11.2": "4ec8e9b473b0f6efb5197e5c76ea5bf21cce2973",
-}
-"""The last commit of each version before this one."""
-
 
 def recorded_version(record: Record) -> str:
     """The xlmc that made a run; of records that do not name it, nothing."""
@@ -282,7 +263,7 @@ def install(version: str) -> str:
     """What to type, in a clone of xlmc's repository, to have a version beside this one."""
     folder = f"../xlmc-{version}"
     return (
-        f"git worktree add {folder} {_COMMITS.get(version, f'v{version}')} && python3 -m venv {folder}/.venv && "
+        f"git worktree add {folder} v{version} && python3 -m venv {folder}/.venv && "
         f"{folder}/.venv/bin/pip install {folder}"
     )
 

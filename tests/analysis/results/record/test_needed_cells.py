@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import io
 import random
-from dataclasses import replace
 
 import openpyxl
 import pytest
@@ -219,15 +218,6 @@ def test_settings_are_read_back_exactly(model, monkeypatch):
         record = read_record(read_workbook(packed_sheets(run)))
         assert recorded_settings(record) == run.settings
         assert recorded_settings(Record((settings_section(run),))) == run.settings
-
-
-@pytest.mark.parametrize(("made", "said"), [("0.2.0", "xlmc 0.2.0 computed"), (None, "An older xlmc computed")])
-def test_settings_of_a_run_in_float32_are_refused(run, made, said):
-    section = settings_section(run)
-    older = replace(section, entries=(*section.entries, Entry("arithmetic", "Arithmetic", "float32")))
-    software = Section("software", "Software", () if made is None else (Entry("xlmc", "xlmc", made),))
-    with pytest.raises(WorkbookError, match=f"^{said} this run with 32-bit numbers"):
-        recorded_settings(Record((older, software)))
 
 
 def test_a_record_alone_in_a_workbook_is_found(run, monkeypatch):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import astuple, fields
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, get_type_hints
 
 from xlmc.analysis.results.record.record_parts import Entry, Record, Section, Value
@@ -15,22 +14,7 @@ from xlmc.montecarlo.definitions.stopping import GOALS, Goal, Stopping, only_one
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
 
-__all__ = ["FLOAT64", "in_float32", "recorded_settings", "settings_section"]
-
-FLOAT64: Final = "float64"
-"""The arithmetic of all runs; those of xlmc 0.3.0 and before could also be computed in float32."""
-
-
-def in_float32(version: str, where: Path | None = None) -> WorkbookError:
-    """The refusal of a run that was computed in float32.
-
-    Args:
-        version: the xlmc that made it; empty where it is not known.
-        where: the file, where the caller does not name it.
-    """
-    made = f"xlmc {version}" if version else "An older xlmc"
-    message = f"{made} computed this run with 32-bit numbers (float32), and this version computes with 64-bit ones only"
-    return WorkbookError(message, where=where, hint=f"Open or repeat it with {made.replace('An', 'an', 1)}")
+__all__ = ["recorded_settings", "settings_section"]
 
 
 def settings_section(simulation: RunResult) -> Section:
@@ -66,12 +50,9 @@ def recorded_settings(record: Record) -> Settings:
 
     Raises:
         KeyError: the record does not hold them.
-        WorkbookError: they cannot be read, or the run was computed in float32.
+        WorkbookError: they cannot be read.
     """
     section = {entry.key: entry.value for entry in record.section("settings").entries}
-    if section.get("arithmetic", FLOAT64) != FLOAT64:
-        software = {entry.key: entry.value for entry in record.section("software").entries}
-        raise in_float32(str(software.get("xlmc", "")))
     try:
         given = {row.field or row.key: value for row, value in _recorded(section)}
         goals = [_goal(kind, section) for kind in GOALS.values() if section.get(kind.labels[0][0]) is not None]

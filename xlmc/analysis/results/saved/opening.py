@@ -14,7 +14,6 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.analysis.results.record.settings_table import FLOAT64, in_float32
 from xlmc.analysis.results.saved.archive import AGAIN, DAMAGE, RUN, WORKBOOK, Package, open_package, read_column
 from xlmc.analysis.results.saved.run_json import (
     FORMAT,
@@ -98,23 +97,10 @@ def _document(package: Package, path: Path) -> Document:
         whole(found.get("version"), "its version")
     except (ValueError, RecursionError) as error:
         raise _damage_error(path, error) from error
-    if not 1 <= found["version"] <= VERSION:
-        message = f"the saved run is of version {found['version']}, and this xlmc reads versions 1 to {VERSION}"
+    if found["version"] != VERSION:
+        message = f"the saved run is of version {found['version']}, and this xlmc reads version {VERSION}"
         raise WorkbookError(message, where=path, hint="Install the xlmc that it was saved with")
-    return _in_float64(dict(found), path)
-
-
-def _in_float64(found: dict[str, Any], path: Path) -> Document:
-    """The document, without the arithmetic of the run.
-
-    Raises:
-        WorkbookError: it was computed in float32.
-    """
-    settings, origin = (found.get(name) for name in ("settings", "origin"))
-    if isinstance(settings, dict) and settings.pop("arithmetic", FLOAT64) != FLOAT64:
-        software = origin.get("software") if isinstance(origin, dict) else None
-        raise in_float32(str(software.get("xlmc", "")) if isinstance(software, dict) else "", path)
-    return found
+    return dict(found)
 
 
 def _model(package: Package, found: Document, path: Path) -> CompiledModel:

@@ -39,7 +39,7 @@ __all__ = [
 
 FORMAT: Final = "xlmc saved run"
 VERSION: Final = 2
-"""Runs of version 1 could be computed in float32; those that were computed in float64 are still opened."""
+"""Of the document; runs of version 1, of xlmc 0.3.0 and before, could be computed in float32 and are not opened."""
 
 _LARGEST: Final = 2**63  # what a count never reaches
 T = TypeVar("T")

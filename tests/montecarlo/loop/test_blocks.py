@@ -81,8 +81,10 @@ def test_the_accounting_is_that_of_a_recount(case):
     block, _, draws = worked(case)
     filters, forecasts, trials = case["filters"], case["forecasts"], case["trials"]
     fails = [{t for t in range(trials) if code(f, t) or f.values[t] == 0} for f in filters]
-    invalid = {t for t in range(trials) if np.isnan(draws["b"][t])}
-    accepted = [t for t in range(trials) if t not in invalid and not any(t in rejected for rejected in fails)]
+    kept = [t for t in range(trials) if not any(t in rejected for rejected in fails)]
+    without_draw = {t for t in range(trials) if np.isnan(draws["b"][t])}
+    invalid = {t for t in without_draw if any(code(f, t) for f in (*filters, *(forecasts if t in kept else ())))}
+    accepted = [t for t in kept if t not in invalid]
     undecided = {
         t
         for t in range(trials)

@@ -97,3 +97,40 @@ def test_a_register_of_kinds(load):
     assert run.error_trials == 0
     variance = 2**2 + 2**2 / 12 + (1 + 4 + 16 - 2 - 4 - 8) / 18 + 4 * 0.5**2
     assert abs(y.mean() - (1 + 4 + 7 / 3 + 2)) <= 4 * np.sqrt(variance / y.size)
+
+
+REGISTER = {
+    "A1": "=RiskBernoulli(0.3)",
+    "A2": "=IF(A1=1,RiskGamma(A1*3,2),0)",
+    "A3": "=RiskNormal(10,2)",
+    "A4": "=IFERROR(RiskUniform(1,A1*2-0.5),5)",
+    "B2": "=A2+A3",
+}
+
+
+@pytest.mark.parametrize("options", [{}, {"engine": "jit"}, {"sampling": "lhs"}], ids=["numpy", "jit", "lhs"])
+def test_trials_that_do_not_use_a_draw_need_no_distribution_of_it(load, options):
+    run = simulated(load(REGISTER), 20_000, seed=7, **options)
+    y, severity = run.forecasts["y"], run.inputs["S!A2#1"]
+    happens = run.inputs["S!A1#1"] == 1
+    assert (run.accepted, run.error_trials, dict(run.invalid)) == (y.size, 0, {})
+    assert np.array_equal(np.isnan(severity), ~happens)
+    assert np.array_equal(y, np.where(happens, severity, 0) + run.inputs["S!A3#1"])
+    deviation = np.sqrt(0.3 * (6**2 + 12) - 1.8**2 + 4)
+    assert abs(y.mean() - 11.8) <= 4 * deviation / np.sqrt(y.size)
+
+
+@pytest.mark.parametrize("engine", ["numpy", "jit"])
+def test_a_draw_that_a_formula_handles_when_it_is_none(load, engine):
+    run = simulated(load({**REGISTER, "B2": "=A4"}), 4000, seed=7, engine=engine)
+    y, happens = run.forecasts["y"], run.inputs["S!A1#1"] == 1
+    assert run.error_trials == 0
+    assert (y[~happens] == 5).all()
+    assert ((y[happens] >= 1) & (y[happens] <= 1.5)).all()
+
+
+@pytest.mark.parametrize("engine", ["numpy", "jit"])
+def test_trials_that_use_it_are_lost(load, engine):
+    run = simulated(load({**REGISTER, "B2": "=RiskGamma(A1*3,2)"}), 4000, seed=7, engine=engine)
+    lost = (run.prior["S!A1#1"] == 0).sum()
+    assert (run.error_trials, dict(run.invalid), run.accepted) == (lost, {"S!B2#1": lost}, 4000 - lost)

@@ -80,8 +80,9 @@ class Block:
         forecasts: one a forecast, `(m,)`, NaN where it has no number.
         faults: per forecast, fault -> accepted trials in which it has no number.
         discards: per forecast, number of one of its own filters -> accepted trials that this discards.
-        invalid: assumption -> trials in which its parameters were no distribution.
-        lost: trials with an error of any kind: in a draw, in an undecided filter, in a forecast that counts.
+        invalid: assumption -> trials that were lost, and in which its parameters were no distribution.
+        lost: trials with an error of any kind: in a draw that is used, in an undecided filter, in a forecast that
+            counts.
         prior: assumption -> `(n,)` draws of all trials; None when not asked for. Where all trials are accepted and
             their draws asked for, it is `draws` itself.
     """
@@ -196,19 +197,21 @@ class ModelRunner:
         columns = self._evaluator.filters(draws, self.block)
         invalid = {name: np.isnan(draws[name]) for name in sorted(self._fallible)}
         fails, undecided = [_fails(column) for column in columns], _undecided(columns, trials)
-        kept = ~_any([*fails, *invalid.values()], self.block)
         tally = _tally(columns, [rejected[:trials] for rejected in fails], undecided)
-        survivors = np.flatnonzero(kept)
+        survivors = np.flatnonzero(~_any(fails, self.block))
         forecasts = self._forecasts(survivors)
+        used = _spoiled([*invalid.values()], columns, survivors, forecasts, self.block)
+        if used.any():
+            kept = ~used[survivors]
+            survivors, forecasts = survivors[kept], [_part(column, kept) for column in forecasts]
         survivors = survivors[: np.searchsorted(survivors, trials)]
-        lost = _any([undecided, *(bad[:trials] for bad in invalid.values())], trials)
+        lost = undecided | used[:trials]
+        counted = {name: np.count_nonzero(bad[:trials] & used[:trials]) for name, bad in invalid.items()}
         m = survivors.size
         accepted_draws = {}
         if task.inputs:
             accepted_draws = {name: v[:m] if m == trials else v[survivors] for name, v in draws.items()}
-        for column in forecasts:
-            if column.codes is not None:
-                lost[survivors] |= (column.codes[:m] > 0) & (column.codes[:m] < DISCARDED_FIRST)
+        lost[survivors] |= _any_error(forecasts, m)
         return Block(
             trials,
             survivors + start,
@@ -216,7 +219,7 @@ class ModelRunner:
             [column.as_floats(copy=False)[:m] for column in forecasts],
             [_faults(column, m) for column in forecasts],
             tally,
-            Counter({name: int(np.count_nonzero(bad[:trials])) for name, bad in invalid.items() if bad[:trials].any()}),
+            Counter({name: int(count) for name, count in counted.items() if count}),
             int(np.count_nonzero(lost)),
             self._prior(draws, accepted_draws, m, task),
             [_discards(column, m) for column in forecasts],
@@ -314,6 +317,32 @@ def _undecided(columns: Sequence[Column], trials: int) -> Bools:
 def _false(column: Column) -> Bools:
     false: Bools = column.values == 0
     return false if column.codes is None else false & (column.codes == 0)
+
+
+def _spoiled(
+    invalid: Sequence[Bools],
+    filters: Sequence[Column],
+    survivors: NDArray[np.intp],
+    forecasts: Sequence[Column],
+    n: int,
+) -> Bools:
+    """The trials of a block, `(n,)`, in which a draw is none, and a filter or a survivor's forecast has no number."""
+    found = _any(invalid, n)
+    if found.any():
+        errors = _any_error(filters, n)
+        errors[survivors] |= _any_error(forecasts, survivors.size)
+        found &= errors
+    return found
+
+
+def _any_error(columns: Sequence[Column], n: int) -> Bools:
+    """The first n trials in which one of the columns has no number, and is not discarded by a forecast's own filter."""
+    codes = (column.codes[:n] for column in columns if column.codes is not None)
+    return _any([(each > 0) & (each < DISCARDED_FIRST) for each in codes], n)
+
+
+def _part(column: Column, kept: Bools) -> Column:
+    return Column(column.values[kept], None if column.codes is None else column.codes[kept])
 
 
 def _faults(column: Column, trials: int) -> Counter[str]:

@@ -88,17 +88,12 @@ class Drawing:
         self._given = GivenUniforms()
         self._sampler = model.sampler(0, self.block, filler=self._given.filler)
         self.row_of = self._sampler.row_of
-        self._fallible = model.fallible
 
-    def draw_at(self, uniforms: Floats) -> tuple[dict[str, Floats], int, NDArray[np.bool_]]:
-        """The draws at (n, d) uniforms, up to a block of them, how many they are, and where none is an error."""
+    def draw_at(self, uniforms: Floats) -> tuple[dict[str, Floats], int]:
+        """The draws at (n, d) uniforms, up to a block of them, and how many they are."""
         self._given.uniforms = uniforms
         n = len(uniforms)
-        draws = {name: values[:n] for name, values in self._sampler.draw(0).items()}
-        valid = np.ones(n, bool)
-        for name in self._fallible:
-            valid &= ~np.isnan(draws[name])
-        return draws, n, valid
+        return {name: values[:n] for name, values in self._sampler.draw(0).items()}, n
 
 
 class Landscape:
@@ -111,7 +106,7 @@ class Landscape:
     Attributes:
         dimensions: of its points.
         evaluations: trials evaluated so far.
-        lost: of them, those in which a filter or a draw is an error.
+        lost: of them, those in which a filter is an error.
     """
 
     def __init__(self, model: CompiledModel, random: np.random.Generator) -> None:
@@ -162,9 +157,10 @@ class Landscape:
         """The same of (n, d) uniforms."""
         parts = [np.empty(0, bool)]
         for start in range(0, len(uniforms), self._block):
-            draws, n, accepted = self._drawing.draw_at(uniforms[start : start + self._block])
+            draws, n = self._drawing.draw_at(uniforms[start : start + self._block])
             columns = self._deciding.filters(draws, n)
-            self._count(columns, ~accepted)
+            self._count(columns, n)
+            accepted = np.ones(n, bool)
             for column in columns:
                 accepted &= column.values != 0
                 if column.codes is not None:
@@ -181,19 +177,15 @@ class Landscape:
         return [np.concatenate(parts) for parts in zip(*self._of_filters(uniforms), strict=True)]
 
     def _of_filters(self, uniforms: Floats) -> Iterator[list[Floats]]:
-        for columns, invalid in self._columns(uniforms):
-            yield self._asked(columns, invalid, self._scaled(columns))
+        for columns in self._columns(uniforms):
+            yield self._asked(columns, self._scaled(columns))
 
     def _scaled(self, columns: Sequence[Column]) -> dict[Leaf, Floats]:
         return {leaf: found / self._scales[leaf] for leaf, found in self._lengths(columns).items()}
 
-    def _asked(
-        self, columns: Sequence[Column], invalid: NDArray[np.bool_], scaled: Mapping[Leaf, Floats]
-    ) -> list[Floats]:
+    def _asked(self, columns: Sequence[Column], scaled: Mapping[Leaf, Floats]) -> list[Floats]:
         """For each filter, (n,) how far a block's trials are from what it asks."""
-        return [
-            _exact(measure(each, scaled), column, invalid) for each, column in zip(self._filters, columns, strict=False)
-        ]
+        return [_exact(measure(each, scaled), column) for each, column in zip(self._filters, columns, strict=False)]
 
     @property
     def ways(self) -> list[Distance]:
@@ -210,23 +202,23 @@ class Landscape:
     def _in_way(self, way: Sequence[Shortfall], uniforms: Floats) -> Floats:
         """(n,) the distance in a way; outside of it, the distance from that way, and above any within."""
         parts = [np.empty(0)]
-        for columns, invalid in self._columns(uniforms):
+        for columns in self._columns(uniforms):
             scaled = self._scaled(columns)
-            within = np.log1p(np.maximum.reduce(self._asked(columns, invalid, scaled)))
+            within = np.log1p(np.maximum.reduce(self._asked(columns, scaled)))
             outside = np.maximum.reduce([measure(gate, scaled) for gate in way])
             parts.append(np.where(outside > 0.0, OUTSIDE + np.log1p(outside), within))
         return np.concatenate(parts)
 
-    def _columns(self, uniforms: Floats) -> Iterator[tuple[list[Column], NDArray[np.bool_]]]:
-        """Block by block, every target, and where a draw is an error."""
+    def _columns(self, uniforms: Floats) -> Iterator[list[Column]]:
+        """Block by block, every target."""
         for start in range(0, len(uniforms), self._block):
-            draws, n, valid = self._drawing.draw_at(uniforms[start : start + self._block])
+            draws, n = self._drawing.draw_at(uniforms[start : start + self._block])
             columns = self._evaluator.filters(draws, n)
-            self._count(columns[: len(self._filters)], ~valid)
-            yield columns, ~valid
+            self._count(columns[: len(self._filters)], n)
+            yield columns
 
-    def _count(self, filters: Sequence[Column], invalid: NDArray[np.bool_]) -> None:
-        lost = invalid.copy()
+    def _count(self, filters: Sequence[Column], n: int) -> None:
+        lost = np.zeros(n, bool)
         for column in filters:
             if column.codes is not None:
                 lost |= column.codes > 0
@@ -242,7 +234,7 @@ class Landscape:
 
     def _usual(self, uniforms: Floats) -> dict[Leaf, float]:
         """The median length of every comparison where it fails."""
-        parts = [list(self._lengths(columns).values()) for columns, _ in self._columns(uniforms)]
+        parts = [list(self._lengths(columns).values()) for columns in self._columns(uniforms)]
         found = [_median(np.concatenate(each)) for each in zip(*parts, strict=True)]
         return dict(zip(self._leaves, found, strict=True))
 
@@ -256,11 +248,10 @@ def _median(found: Floats) -> float:
     return float(np.median(failing)) if failing.size else 1.0
 
 
-def _exact(found: Floats, column: Column, invalid: NDArray[np.bool_]) -> Floats:
+def _exact(found: Floats, column: Column) -> Floats:
     """What the filter itself says has the last word."""
     holds = column.values != 0
     found = np.where(holds, 0.0, np.maximum(found, np.finfo(np.float64).tiny))
     if column.codes is not None:
         found[column.codes > 0] = np.inf
-    found[invalid] = np.inf
     return found

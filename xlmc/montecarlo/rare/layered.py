@@ -80,7 +80,7 @@ class Layered:
         found = uniforms_of(points)
         for part in self._blocks(found):
             for layer in self.layers:
-                draws, n, _ = self._drawing.draw_at(part)
+                draws, n = self._drawing.draw_at(part)
                 part[:, layer.row] = layer.rearranged(draws, n).uniform_at(part[:, layer.row])
         return found
 
@@ -89,7 +89,7 @@ class Layered:
         found = points_of(uniforms)
         for start, part in zip(range(0, len(found), self._drawing.block), self._blocks(uniforms), strict=True):
             for layer in self.layers:
-                draws, n, _ = self._drawing.draw_at(part)
+                draws, n = self._drawing.draw_at(part)
                 positions = layer.rearranged(draws, n).position_of(part[:, layer.row])
                 found[start : start + n, layer.row] = _normal(positions)
         return found
@@ -116,7 +116,7 @@ class Layered:
         """
         beyond, outside = np.zeros(len(uniforms)), np.zeros(len(uniforms), bool)
         for layer in self.layers:
-            draws, n, _ = self._drawing.draw_at(uniforms)
+            draws, n = self._drawing.draw_at(uniforms)
             order, positions = layer.rearranged(draws, n), uniforms[:, layer.row].copy()
             some = order.total > 0.0
             farther = np.log(np.maximum(positions, _LEAST)) - np.log(np.where(some, order.total, 1.0))

@@ -119,7 +119,7 @@ class _Looking:
 
     def __init__(self, model: CompiledModel, filters: Sequence[Shortfall], drawing: Drawing, uniforms: Floats) -> None:
         self._model, self._block = model, drawing.block
-        draws, self._n, _ = drawing.draw_at(uniforms)
+        draws, self._n = drawing.draw_at(uniforms)
         self._draws = {name: values.copy() for name, values in draws.items()}
         self._parts = list(conjuncts(filters))
         grouped = {name for group in model.groups for name in group.names}

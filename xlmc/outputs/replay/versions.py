@@ -223,6 +223,7 @@ RULES: Final = (
         "percentiles in cells of values that repeat are among the values",
         _calls("RiskPercentile", "RiskPercentileD", "RiskPtoX", "RiskPtoXD", "RiskQtoX", "CB.GetForePercentFN"),
     ),
+    Rule("0.12.0", "trials that do not use a draw without a distribution count", _calls(*_CHOICES)),
     Rule("0.12.0", "GETPIVOTDATA is read from the pivot table", _calls("GETPIVOTDATA")),
     Rule("0.12.0", "texts of dates with spaces around them are no numbers", _ANY),
     Rule("0.12.0", "cells that draw or mark an answer below RiskTheo… or a result show their base case", _SHOWN),

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from xlmc.analysis.results.record.record_parts import RecordTable, Section, Value
 from xlmc.analysis.results.statements.in_words import (
     cutoffs_text,
@@ -301,6 +303,6 @@ def _met(simulation: RunResult, first: str, second: str, asked: float, row: Cell
     if simulation.weighting is not None:
         return CorrelationMet(first, second, asked, row, drawn)
     x, y = simulation.inputs[first], simulation.inputs[second]
-    replicate = simulation.replicate
-    accepted = rank_correlation(x, y, None if replicate is None else replicate[: x.size])
+    replicate, both = simulation.replicate, ~(np.isnan(x) | np.isnan(y))
+    accepted = rank_correlation(x[both], y[both], None if replicate is None else replicate[: x.size][both])
     return CorrelationMet(first, second, asked, row, drawn, accepted)

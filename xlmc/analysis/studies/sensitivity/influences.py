@@ -86,7 +86,7 @@ def ranked_assumptions(simulation: RunResult) -> list[str]:
     z = np.array([column for column in columns if column is not None])
     if not z.size:
         return live[:MOST_ASSUMPTIONS]
-    scores = [float(shares(Ranked.of(_read(simulation.inputs[name], rows)), z).max()) for name in live]
+    scores = [float(shares(Ranked.of(_read_draws(simulation, name, rows)), z).max()) for name in live]
     first = np.argsort(-np.asarray(scores), kind="stable")[:MOST_ASSUMPTIONS]
     return [live[index] for index in first]
 
@@ -95,7 +95,7 @@ def influences(simulation: RunResult, assumptions: Sequence[str]) -> list[Influe
     """The influences of the assumptions of these names on every forecast, in the order of the workbook."""
     forecasts = simulation.model.forecasts
     rows, replicate = _examined_rows(simulation, _trials_for(len(assumptions) * len(forecasts)))
-    draws = [_read(simulation.inputs[name], rows) for name in assumptions]
+    draws = [_read_draws(simulation, name, rows) for name in assumptions]
     units = {a.name: a.units for a in simulation.model.live}
     named = [(name, units[name]) for name in assumptions]
     tables: dict[bytes, _Table] = {}
@@ -129,7 +129,7 @@ def _with_finer_shares(simulation: RunResult, found: Sequence[Influences], most:
         units, columns = tables.setdefault(known.tobytes(), (_units_of(replicate, known), {}))
         for name in each.coarse:
             if name not in columns:
-                columns[name] = Ranked.of(_read(simulation.inputs[name], rows)[known])
+                columns[name] = Ranked.of(_read_draws(simulation, name, rows)[known])
         shares_now = {name: explained(columns[name], y[known], units) for name in each.coarse}
         changed = [
             replace(one, explained=now.share, explained_at_least=now.at_least)
@@ -153,6 +153,13 @@ def _units_of(replicate: Ids | None, known: NDArray[np.bool_]) -> Units:
 def _read(column: Floats, rows: NDArray[np.intp]) -> Floats:
     """Read these rows of a column into memory."""
     return picked(column, rows) if rows.size else np.empty(0)
+
+
+def _read_draws(simulation: RunResult, assumption: str, rows: NDArray[np.intp]) -> Floats:
+    """Read these rows of draws; where a draw is none, and nothing used it, it counts as an average one."""
+    draws = _read(simulation.inputs[assumption], rows)
+    missing = np.isnan(draws)
+    return np.where(missing, draws[~missing].mean(), draws) if missing.any() and not missing.all() else draws
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -312,3 +313,30 @@ def test_precision_control_is_the_goal_of_a_run(tmp_path, prefs, setting, goal, 
     (notice,) = [each.message for each in found.notices if "precision control" in each.message]
     assert said in notice
     assert ("not yet met" in notice) == (width is not None)
+
+
+def test_a_call_in_the_cell_of_an_old_assumption_wins(read):
+    """Crystal Ball's own assumptions stand in constants: the formula is the newer one."""
+    cells = {S: {**CELLS[S], "B2": "=RiskNormal(100,15)"}}
+    found = read(TOTAL, OFFSET, SKID, cells=cells)
+    assert {(a.name, a.source) for a in found.assumptions} == {
+        ("Offset", "Crystal Ball"),
+        ("Sheet1!B2#1", "RiskNormal in the cell"),
+    }
+    assert not found.problems
+    assert not found.refused
+    assert any("old assumption 'Skid' is left out" in notice.message for notice in found.notices)
+
+
+def test_formulas_of_crystal_balls_own_sheet_make_no_answer_unusable(tmp_path):
+    path = tmp_path / "book.xlsx"
+    save(path, CELLS, [[TOTAL, OFFSET, SKID]])
+    parts = read_parts(path)
+    sheet = next(each for each in read_workbook(path).sheets.values() if each.name == "CB_DATA_").part
+    cell = '<row r="2"><c r="P2"><f>CB.RecalcCounterFN()</f><v>3</v></c></row>'
+    xml = re.sub(r"<sheetData ?/>|<sheetData>.*</sheetData>", f"<sheetData>{cell}</sheetData>", parts[sheet].decode())
+    assert cell in xml
+    write_parts(path, {**parts, sheet: xml.encode()})
+    run = simulated(load(path), 500)
+    assert run.warnings == []
+    assert run.shown_results.cells == {}

@@ -42,6 +42,7 @@ from xlmc.montecarlo.definitions.definitions import (
     Forecast,
     Parameter,
 )
+from xlmc.montecarlo.definitions.in_cells.calls import holds_call
 from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.identity import Claims
 from xlmc.montecarlo.definitions.tables.table_rows import number_in, static_value
@@ -172,6 +173,11 @@ class _Dialogs:
 
     def _assumption(self, sheet: str, stored: StoredAssumption, cell: Cell) -> None:
         name = self._shown(sheet, stored.name, stored.references, cell)
+        formula = self._workbook.content(cell).formula
+        if formula is not None and holds_call(formula.text):
+            message = f"the formula draws by a call of its own, and Crystal Ball's old assumption {name!r} is left out"
+            self._findings.notice(message, cell)
+            return
         if cell in self._taken:
             self._refuse_twice(stored, name, cell)
             return

@@ -171,9 +171,9 @@ def stored_object(thing: Thing) -> Stored:
 def _assumption(thing: Thing) -> StoredAssumption:
     distribution = _thing(_thing(thing, "mVar"), "mDst")
     numbers = _thing(distribution, "DstParms")
-    extra = "custom data" if _member(distribution, "CustomData") is not None else ""
+    extra = "custom data (the field CustomData)" if _member(distribution, "CustomData") is not None else ""
     if _member(numbers, "e") is not None:
-        extra = "alternate parameters"
+        extra = "alternate parameters (the field e)"
     return StoredAssumption(
         _guid(_thing(thing, "mGuid")),
         _text(thing, "mVarName"),

@@ -23,6 +23,7 @@ from xlmc.excel.workbook.workbook import Formula, Workbook
 from xlmc.montecarlo.definitions.computed import Computed
 from xlmc.montecarlo.definitions.definitions import Assumption, Forecast
 from xlmc.montecarlo.definitions.in_cells.call_arguments import number_of
+from xlmc.montecarlo.definitions.in_cells.other_programs import of_another_program
 from xlmc.montecarlo.definitions.in_cells.reading import CellDraw, CellReading, Output
 from xlmc.montecarlo.definitions.in_cells.result_functions import ResultCall, mentions_result
 from xlmc.montecarlo.definitions.problems import Findings
@@ -33,14 +34,18 @@ from xlmc.montecarlo.distributions.spelling import name_key
 __all__ = ["InCells", "holds_call", "in_cell_forecasts", "read_in_cells"]
 
 _CALL: Final = re.compile(r"(?<![\w.])(?:_xl\w+\.)*(?:RAND|RANDBETWEEN|RANDARRAY|Risk\w+|CB\.\w+)\s*\(", re.IGNORECASE)
+_OTHER: Final = re.compile(r"(?<![\w.])(?:_xl\w+\.)*((?:Psi|Vose)\w+)\s*\(", re.IGNORECASE)
 _OUTPUT: Final = re.compile(r"RiskOutput\s*\(", re.IGNORECASE)
 _TEXTS: Final = re.compile(r'"(?:[^"]|"")*"')
-_MARKS: Final = (b"rand", b"risk", b"cb.")
+_MARKS: Final = (b"rand", b"risk", b"cb.", b"psi", b"vose")
+_OF_CRYSTAL_BALL: Final = "cb_data_"
+"""The hidden sheet that Crystal Ball adds; its formulas are Crystal Ball's own."""
 
 
 def holds_call(text: str) -> bool:
-    """Whether a formula holds a call that draws, shows results, or belongs to Crystal Ball or @RISK."""
-    return _CALL.search(_without_texts(text)) is not None
+    """Whether a formula holds a call that draws, shows results, or belongs to Crystal Ball, @RISK or their like."""
+    found = _without_texts(text)
+    return _CALL.search(found) is not None or any(of_another_program(name.upper()) for name in _OTHER.findall(found))
 
 
 def _without_texts(text: str) -> str:
@@ -199,6 +204,8 @@ def _suspects(workbook: Workbook) -> Iterator[tuple[Cell, Formula]]:
         names = sheets.mentioning(words)
     any_name = _any_of(named)
     for name in names:
+        if name.casefold() == _OF_CRYSTAL_BALL:
+            continue
         formulas = {at: content.formula for at, content in sheets[name].cells.items() if content.formula is not None}
         for at in sorted(formulas):
             formula = formulas[at]

@@ -19,6 +19,7 @@ from xlmc.montecarlo.definitions.in_cells.call_draws import Drawn, Properties, b
 from xlmc.montecarlo.definitions.in_cells.compound_calls import COMPOUND, compound_of
 from xlmc.montecarlo.definitions.in_cells.constant_text import constant_text
 from xlmc.montecarlo.definitions.in_cells.crystal_ball_functions import crystal_ball_draw
+from xlmc.montecarlo.definitions.in_cells.other_programs import of_another_program, shows_its_result
 from xlmc.montecarlo.definitions.in_cells.random_functions import random_draw
 from xlmc.montecarlo.definitions.in_cells.result_functions import (
     NOT_COMPUTED,
@@ -103,12 +104,28 @@ class CellReading:
         Raises:
             FormulaError: a call is not supported or not what it must be, or shows results of the run.
         """
+        self._refuse_other_programs(tree)
         known = substitute(tree, self._theory)
         self.shown = None if _draws(known) else known
         self._find_results(known)
         if not self._has_theory:
             self.shown = None
         return substitute(known, self._replacement)
+
+    def _refuse_other_programs(self, tree: ir.Expression) -> None:
+        """Refuse a call of a program that xlmc does not read; a cell that shows a result of it can show none here.
+
+        Raises:
+            FormulaError: there is one.
+        """
+
+        def look(part: ir.Expression) -> None:
+            if isinstance(part, ir.Call) and (error := of_another_program(part.name)) is not None:
+                if shows_its_result(part.name):
+                    self.unavailable = error.message
+                raise error
+
+        substitute(tree, look)
 
     def _theory(self, part: ir.Expression) -> ir.Expression | None:
         """The number that a function of a distribution itself is.

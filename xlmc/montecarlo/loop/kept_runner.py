@@ -27,7 +27,7 @@ from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import Filter
 from xlmc.montecarlo.loop.blocks import ModelRunner
 from xlmc.montecarlo.model.draw_binding import base_point, parameter_target
-from xlmc.montecarlo.model.model import CompiledModel, paused_collection
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.model.needed import filter_condition, filter_limits
 from xlmc.montecarlo.sampling.draws import Draw, DrawStage, Sampler
 from xlmc.montecarlo.statistics.estimate import finite
@@ -65,8 +65,7 @@ class KeptRunner:
         self._lowering = model.lowering
         self._questions = [_targets(each) for each in model.filters]
         targets = [target for each in self._questions for target in each] + list(model.answer_targets)
-        with paused_collection():
-            self._program = ENGINES[engine].load()(model.lowering, targets, [], model.fallible)
+        self._program = ENGINES[engine].load()(model.lowering, targets, [], model.fallible)
         self.largest_block: int = self._program.largest_block
         self._runners: dict[int, tuple[_Draws, _MovedEvaluator]] = {}
         self._bases: dict[tuple[float, ...], dict[str, float | None]] = {}

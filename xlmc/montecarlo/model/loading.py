@@ -25,7 +25,7 @@ from xlmc.montecarlo.definitions.definitions_reader import read_definitions
 from xlmc.montecarlo.definitions.tables.filters import LIMIT_HINT
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.model.labels import calculate_labels
-from xlmc.montecarlo.model.model import CompiledModel, paused_collection
+from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.model.needed import filter_limits
 
 __all__ = ["build_model", "filter_faults", "load"]
@@ -41,8 +41,7 @@ def load(path: str | Path) -> CompiledModel:
         WorkbookError: the file cannot be read.
         DefinitionError, FormulaError: as for `build_model`.
     """
-    with paused_collection():
-        return build_model(read_workbook(path), Path(path))
+    return build_model(read_workbook(path), Path(path))
 
 
 def build_model(workbook: Workbook, path: Path, tabulated: int = 1) -> CompiledModel:
@@ -57,15 +56,14 @@ def build_model(workbook: Workbook, path: Path, tabulated: int = 1) -> CompiledM
         DefinitionError: a definition is not what it must be; all faulty ones are listed.
         FormulaError: a needed cell cannot be computed.
     """
-    with paused_collection():
-        workbook = calculate_labels(workbook)
-        definitions = read_definitions(workbook, ENGINES, tabulated)
-        if definitions.problems:
-            raise _joined(definitions.problems)
-        model = CompiledModel(workbook, definitions, path)
-        if faults := filter_faults(model):
-            raise _joined(faults)
-        return model
+    workbook = calculate_labels(workbook)
+    definitions = read_definitions(workbook, ENGINES, tabulated)
+    if definitions.problems:
+        raise _joined(definitions.problems)
+    model = CompiledModel(workbook, definitions, path)
+    if faults := filter_faults(model):
+        raise _joined(faults)
+    return model
 
 
 def _joined(problems: Sequence[DefinitionError]) -> DefinitionError:

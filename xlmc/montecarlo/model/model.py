@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import gc
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -53,26 +51,10 @@ from xlmc.montecarlo.model.needed import (
 from xlmc.montecarlo.sampling.draws import CorrelatedGroup, Draw, DrawStage, Filler, Sampler
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 
-__all__ = ["CompiledModel", "lower_needed", "paused_collection"]
+__all__ = ["CompiledModel", "lower_needed"]
 
 _MOST_GROWN: Final = 4
 """Nodes that changed limits of filters may have added, as a multiple of the first ones, before all are made anew."""
-
-
-@contextmanager
-def paused_collection() -> Iterator[None]:
-    """Make no search for garbage meanwhile.
-
-    Loading a large book makes millions of small objects, none of which is garbage; a search would walk all of them
-    again and again.
-    """
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            gc.enable()
 
 
 def lower_needed(workbook: Workbook, definitions: Definitions, *, one_trial: bool = False) -> tuple[Needed, Lowering]:
@@ -402,8 +384,7 @@ class CompiledModel:
         if known is None or (row.bounded and known.ends != ends):
             parts = self.lowering, self.filter_targets, self.answer_targets, self.fallible
             more = {"bounds": NodeBounds(self.lowering.dag, ends)} if row.bounded else {}
-            with paused_collection():
-                known = self._programs[engine] = _Compiled(self._filtering(row.load()(*parts, **more)), ends)
+            known = self._programs[engine] = _Compiled(self._filtering(row.load()(*parts, **more)), ends)
         return known.program
 
     def evaluator(self, targets: Sequence[Target], block: int) -> Evaluator:

@@ -14,7 +14,6 @@ from xlmc.excel.workbook.seal import sealed_parts
 from xlmc.excel.workbook.target import Target, copy_ending, is_same_file, refuse_into_source, refuse_read
 from xlmc.excel.workbook.writer import write_workbook
 from xlmc.montecarlo.diagnostics.result_cells import filled_sheets
-from xlmc.montecarlo.model.model import paused_collection
 from xlmc.outputs.sheets.book import build_sheets
 from xlmc.outputs.sheets.trials_sheet import TRIAL_ROWS
 
@@ -61,10 +60,9 @@ def save(
     check_ending(path, simulation.model.path)
     check()
     scenario_answers(simulation)  # cells may ask about them
-    with paused_collection():
-        sheets = build_sheets(simulation, command=command, rows=rows)
-        own = {**book.parts, **filled_sheets(book, simulation.shown_results)}
-        parts = inject(own, sheets)
+    sheets = build_sheets(simulation, command=command, rows=rows)
+    own = {**book.parts, **filled_sheets(book, simulation.shown_results)}
+    parts = inject(own, sheets)
     if not _is_source(simulation, path):  # the person's own file, which is never ours to replace
         parts = sealed_parts(parts, result_sheets(parts)[-1], simulation.model.workbook.name)
     write_workbook(path, checked_bytes(parts, book.parts), check)

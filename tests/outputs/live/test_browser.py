@@ -388,10 +388,10 @@ def test_a_workbook_with_sixty_assumptions_and_twelve_answers_stays_usable(chrom
 
     assert page.one("#answer").text.startswith("Answer 1: speed at the beginning: ")
     summary = page.one(".choosing summary")
-    assert summary.text == "Charts of 3 of 12 answers"
+    assert summary.text == "Shown: 3 of 12 answers"
     page.click(summary)
     page.click(page.all(".which input")[11])
-    assert summary.text == "Charts of 4 of 12 answers"
+    assert summary.text == "Shown: 4 of 12 answers"
     page.until("document.querySelectorAll('.place').length === 4")
     aside = page.one(".further summary")
     assert aside.text == "16 sentences on answers without a chart"
@@ -532,3 +532,148 @@ def test_a_page_whose_program_was_killed_tries_some_times_and_gives_up(chromium,
     page.until("document.body.classList.contains('over')")
     assert page.run("return made") == 3
     assert "xlmc has ended" in page.one("#stand").text
+
+
+TYPED = {
+    "6,700": 6700,
+    "6 700": 6700,
+    "6\u202f700": 6700,
+    "1,234,567.5": 1234567.5,
+    "1.234.567": 1234567,
+    "6.700,5": 6700.5,
+    "1'000": 1000,
+    "1.5e3": 1500,
+    "1,5E3": 1500,
+    "=6600+100": 6700,
+    "=6,600+2*50": 6700,
+    "=-2^2": 4,
+    "=(1+2)*10%": 0.3,
+    "0,7": 0.7,
+    "0,700": 0.7,
+    "6,70": 6.7,
+    "\u22123,5": -3.5,
+    "6.700": 6.7,
+    "1e999": "too large",
+    "6,7,0": "several ways",
+    "6 70": "several ways",
+    "=1/0": "cannot be computed",
+    "=2+": "cannot be computed",
+    "=" + "(" * 5_000: "characters",
+    "0x10": "no number",
+    "1/2": "no number",
+    "inf": "finite",
+    "": "Type a number",
+}
+RANGES = {
+    "0.6 to 0.8": [0.6, 0.8],
+    "0.8 – 0.6": [0.6, 0.8],
+    "6,600 to 6,800": [6600, 6800],
+    "0,7 ± 0,1": [0.6, 0.8],
+    "0.7 ± 10 %": [0.63, 0.77],
+    "-20 +- 10%": [-22, -18],
+    "=6600+-100": None,
+    "0.7 ±": None,
+    "to 0.7": None,
+    "0.7": None,
+}
+
+
+def test_numbers_are_taken_as_people_type_them_or_refused_with_a_reason(chromium, running, tmp_path):
+    page = Page(chromium, running(book=wide_book(tmp_path / "case.xlsx", assumptions=6, forecasts=1)))
+    for text, expected in TYPED.items():
+        value, why = page.run("return [typed(arguments[0], null), whyNoNumber(arguments[0])]", text)
+        if isinstance(expected, str):
+            assert value is None or text == "inf", text
+            assert expected in why, (text, why)
+        else:
+            assert abs(value - expected) < 1e-12, (text, value)
+    for text, expected in RANGES.items():
+        found = page.run("return typedRange(arguments[0])", text)
+        assert (found and [found["low"], found["high"]]) == expected, (text, found)
+
+    card = page.card(FRICTION)
+    page.at_rest(lambda: page.type(page.box(card, "Low"), "0.65 to 0.9"))
+    assert page.changes == [f"{FRICTION}: Low 0.6 → 0.65", f"{FRICTION}: High 0.8 → 0.9"]
+    page.at_rest(lambda: page.type(page.box(card, "High"), "0.7 ± 10 %"))
+    assert page.changes == [f"{FRICTION}: Low 0.6 → 0.63", f"{FRICTION}: High 0.8 → 0.77"]
+    page.at_rest(lambda: page.type(page.box(page.card(DISTANCE), "Low"), "50 ± 5"))
+    assert f"{DISTANCE}: Low 40 → 45" in page.changes
+    page.at_rest(lambda: page.type(page.box(page.card("Filter Plausible 1"), "At most"), "6 to 20"))
+    assert "Plausible 1: at most 60 → 20" in page.changes
+
+    box = page.box(card, "Low")
+    page.type(box, "much")
+    assert box.get_attribute("aria-invalid") == "true"
+    assert "no number" in page.run(
+        "return document.getElementById(arguments[0]).textContent", box.get_attribute("aria-describedby")
+    )
+    page.at_rest(lambda: page.type(box, "=0.5+0,1"))
+    assert box.get_attribute("aria-invalid") is None
+    mean = page.box(page.card("Vehicle 1 approach speed"), "Mean")
+    page.type(mean, "30 ± 2")
+    assert "one number" in page.run("return arguments[0].closest('.number-box').innerText", mean)
+
+
+def test_a_state_that_is_not_possible_greys_the_answers_of_the_one_before(chromium, running, tmp_path):
+    page = Page(chromium, running(book=wide_book(tmp_path / "case.xlsx", assumptions=6, forecasts=1)))
+    box = page.box(page.card(FRICTION), "High")
+    page.type(box, "0.1")
+    page.until("document.body.classList.contains('faulty')")
+    assert page.stand == "This state is not possible: the answers are of the state before"
+    assert "above High" in page.one("#troubles").text
+    grey = page.run("return getComputedStyle(document.querySelector('.statements li')).color")
+    page.run("Live.wire.say({ kind: 'save', what: 'json' })")
+    page.until("document.querySelector('#troubles').textContent.includes('This state cannot be run')")
+    page.at_rest(lambda: page.type(box, "0.9"))
+    assert page.run("return document.querySelectorAll('#troubles p').length") == 0
+    assert page.stand.startswith("Done: ")
+    assert page.run("return getComputedStyle(document.querySelector('.statements li')).color") != grey
+
+    lowest = page.run("return Live.right.panels.values().next().value.panel.forecast.values.at(-1)")
+    page.at_rest(lambda: page.type(page.box(page.card("Filter Plausible 1"), "At least"), repr(lowest)))
+    assert "1 accepted" in page.stand
+    assert page.stand.endswith("too few for an answer")
+    red = "rgb(156, 0, 6)"
+    for place in ("#stand", ".beside td", "#answer", ".statements li"):
+        assert page.run("return getComputedStyle(document.querySelector(arguments[0])).color", place) == red, place
+
+
+def test_changes_are_undone_by_keys_and_a_drag_is_given_up_with_esc(chromium, running, tmp_path):
+    from selenium.webdriver import ActionChains
+    from selenium.webdriver.common.keys import Keys
+
+    page = Page(chromium, running(book=wide_book(tmp_path / "case.xlsx", assumptions=6, forecasts=1)))
+    assert not page.one("#undo").is_enabled()
+    box = page.box(page.card(FRICTION), "High")
+    page.at_rest(lambda: page.type(box, "0.9"))
+    page.at_rest(lambda: page.type(box, "0.95"))
+    page.at_rest(lambda: ActionChains(chromium).key_down(Keys.CONTROL).send_keys("z").key_up(Keys.CONTROL).perform())
+    assert page.changes == [f"{FRICTION}: High 0.8 → 0.9"]
+    assert float(box.get_attribute("value")) == 0.9
+    page.at_rest(lambda: ActionChains(chromium).key_down(Keys.CONTROL).send_keys("y").key_up(Keys.CONTROL).perform())
+    assert page.changes == [f"{FRICTION}: High 0.8 → 0.95"]
+    for _ in range(2):
+        page.at_rest(lambda: page.click(page.one("#undo")))
+    assert page.changes == []
+    assert not page.one("#undo").is_enabled()
+    assert page.one("#redo").is_enabled()
+
+    knob = page.slider(f"High of {FRICTION}")
+    page.run("arguments[0].scrollIntoView({block: 'center'})", knob)
+    drag = ActionChains(chromium, duration=30).click_and_hold(knob).move_by_offset(12, 0).move_by_offset(12, 2)
+    page.at_rest(lambda: drag.send_keys(Keys.ESCAPE).move_by_offset(5, 0).release().perform())
+    assert float(knob.get_attribute("aria-valuenow")) == 0.8
+    assert page.changes == []
+    assert not page.one("#undo").is_enabled()
+
+
+def test_the_tabs_are_of_the_answers_that_are_chosen_and_can_be_stopped(chromium, running, tmp_path):
+    page = Page(chromium, running(book=wide_book(tmp_path / "case.xlsx", assumptions=30, forecasts=5)))
+    page.tab("matters")
+    page.until("document.querySelectorAll('#sensitivity article').length >= 3")
+    headings = "[...document.querySelectorAll('#sensitivity article > h3')].map((each) => each.textContent)"
+    assert page.run(f"return {headings}.length") == 3
+    page.click(page.all(".which input")[4])
+    page.until(f"{headings}.includes('Answer 5: speed at the beginning')")
+    page.tab("tables")
+    page.until("document.querySelectorAll('#panel-tables .forecast-statistics').length === 4")

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import chain, repeat
 
 import numpy as np
 import openpyxl
 import pytest
-from live_books import CASE, change, edited, rows_of, settle, short_case, simple, small, type_in
+from live_books import CASE, change, edited, rows_of, settle, short_case, simple, small, type_in, wide_book
 from openpyxl.worksheet.table import Table
 
 from xlmc.errors import XlmcError
@@ -40,6 +41,25 @@ SCENARIOS = {
     },
 }
 KEYS = {"Low": "low", "High": "high", "Frozen": "frozen", "At most": "at_most", "Above": "above"}
+
+
+def done(session, job, clock=lambda: 0.0, told=lambda share: None):
+    """What is told of a job that is run, or given up."""
+    try:
+        return session.finish(job, job.run(lambda: session.wanted(job), told, clock))
+    except SupersededError:
+        return session.superseded(job)
+
+
+def until(session, stage):
+    """Do all that comes before a stage; its job."""
+    while (job := session.job()).stage != stage:
+        done(session, job)
+    return job
+
+
+def seen(names, tab="charts", first="", second="", *, fits=False):
+    return {"forecasts": names, "chosen": names, "tab": tab, "first": first, "second": second, "fits": fits}
 
 
 @pytest.fixture(scope="module")
@@ -101,7 +121,7 @@ def test_evidence_is_used_as_simulate_uses_it(model_of, way, monkeypatch):
         assert outcome.simulation.forecasts[name].tobytes() == values.tobytes()
     session.finish(job, outcome)
     for tab in ("matters", "pairs", "tables"):
-        view = {"forecasts": ["x"], "tab": tab, "first": "x", "second": "v", "fits": True}
+        view = {"forecasts": ["x"], "chosen": ["x"], "tab": tab, "first": "x", "second": "v", "fits": True}
         session.receive(Said("view", view))
         for message in settle(session):
             written(message)
@@ -253,9 +273,7 @@ def test_all_tabs_are_made_of_the_run_at_rest(case):
     session = Session(case[1])
     names = [each.name for each in case[1].forecasts]
     for tab, first, second in (("matters", "", ""), ("tables", "", ""), ("pairs", FRICTION, names[1])):
-        session.receive(
-            Said("view", {"forecasts": names[:1], "tab": tab, "first": first, "second": second, "fits": True})
-        )
+        session.receive(Said("view", seen(names[:1], tab, first, second, fits=True)))
         *sketched, part = [each for each in settle(session) if each["kind"] == "part"]
         assert {each["tab"] for each in (*sketched, part)} == {tab}
         if tab == "pairs":
@@ -270,18 +288,18 @@ def test_what_matters_follows_while_a_handle_moves_unless_it_takes_long(case, mo
     monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", 1_000)
     session = Session(case[1])
     names = [each.name for each in case[1].forecasts]
-    session.receive(Said("view", {"forecasts": names, "tab": "matters", "first": "", "second": "", "fits": False}))
+    session.receive(Said("view", seen(names, "matters")))
     settle(session)
-    expected = ([0.01, ["moving", "sketch"]], [9.0, ["moving", "sketch"]], [9.0, ["moving"]])
-    for number, (seconds, stages) in enumerate(expected):
+    for number, (seconds, stages, sketched) in enumerate(
+        [(0.01, ["moving", "sketch"], 1), (9.0, ["moving", "sketch"], 0), (9.0, ["moving"], 0)]
+    ):
         session.receive(change(FRICTION, "high", 0.9 + number / 100, held=True))
         told = []
         for stage in stages:
             job = session.job()
             assert job.stage == stage
-            clock = iter([0.0, seconds if stage == "sketch" else 0.0]).__next__
-            told += session.finish(job, job.run(lambda: True, lambda share: None, clock))
-        assert [each["tab"] for each in told if each["kind"] == "part"] == ["matters"] * stages.count("sketch")
+            told += done(session, job, chain([0.0], repeat(seconds if stage == "sketch" else 0.0)).__next__)
+        assert [each["tab"] for each in told if each["kind"] == "part"] == ["matters"] * sketched
     assert session.job().stage == "rest"
 
 
@@ -351,7 +369,7 @@ def test_evidence_has_no_limit_to_be_moved(tmp_path):
 def test_a_tab_that_fails_is_told_once_and_tried_again_with_the_next_state(case):
     session = Session(case[1])
     settle(session)
-    session.receive(Said("view", {"forecasts": [], "tab": "tables", "first": "", "second": "", "fits": False}))
+    session.receive(Said("view", seen([], "tables")))
     told = []
     while (job := session.job()) is not None:
         failed = job.stage == "part"
@@ -362,3 +380,169 @@ def test_a_tab_that_fails_is_told_once_and_tried_again_with_the_next_state(case)
     told = settle(session)
     assert [each["text"] for each in told if each["kind"] == "trouble" and each["about"] == "part"] == [""]
     assert any(each["kind"] == "part" and each["tab"] == "tables" for each in told)
+
+
+def test_a_state_that_is_not_possible_cannot_be_saved_and_that_is_said(case):
+    session = Session(case[1])
+    settle(session)
+    session.receive(change(FRICTION, "high", 0.1))
+    settle(session)
+    with pytest.raises(XlmcError, match=r"This state cannot be run: .*above High"):
+        session.at_rest()
+    session.receive(change(FRICTION, "high", 0.9))
+    settle(session)
+    assert session.at_rest().run is session.rest
+
+
+def test_a_scenario_that_is_not_possible_is_one_row_of_the_comparison(case):
+    session = Session(case[1])
+    session.receive(change(FRICTION, "high", 0.85))
+    session.receive(Said("keep", {"name": "dry"}))
+    session.receive(change(FRICTION, "high", 0.1))
+    session.receive(Said("keep", {"name": "crossed"}))
+    session.receive(Said("compare", {}))  # also where the state that is shown is not possible itself
+    (part,) = [each for each in settle(session) if each["kind"] == "part"]
+    html = part["html"]
+    assert html.count("Not possible: ") == 1
+    assert "In the scenario &#x27;crossed&#x27;" in html
+    assert html.count(">dry<") == 1 + len(case[1].forecasts)
+    assert session.job() is None
+
+
+@pytest.mark.parametrize("stage", ["part", "compare"])
+def test_long_work_is_given_up_for_a_move_and_taken_up_again(case, stage, monkeypatch):
+    monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", 1_000)
+    session = Session(case[1])
+    names = [each.name for each in case[1].forecasts]
+    session.receive(change(FRICTION, "high", 0.85))
+    session.receive(Said("keep", {"name": "dry"}))
+    if stage == "part":
+        session.receive(Said("view", seen(names[:2], "matters")))
+    else:
+        session.receive(Said("compare", {}))
+    job, shares = until(session, stage), []
+
+    def told(share):
+        shares.append(share)
+        if len(shares) == 2:
+            session.receive(change(FRICTION, "high", 0.9, held=True))
+
+    (over,) = done(session, job, told=told)
+    assert over["stage"] == "over"
+    assert len(shares) == 2
+    assert 0.0 <= shares[0] < shares[1] <= 1.0
+    assert session.job().stage == "moving"
+    (part,) = [each for each in settle(session) if each["kind"] == "part"][-1:]
+    assert part["tab"] == {"part": "matters", "compare": "scenarios"}[stage]
+
+
+def test_what_a_person_stops_is_not_begun_again_until_something_changes(case):
+    session = Session(case[1])
+    names = [each.name for each in case[1].forecasts]
+    session.receive(Said("view", seen(names[:1], "tables")))
+    job = until(session, "part")
+    session.receive(Said("stop", {}))
+    (over,) = done(session, job)
+    assert over["stage"] == "stopped"
+    assert session.job() is None
+    for view in (seen(names[:1]), seen(names[:1], "tables")):  # the tab is closed, and opened again
+        session.receive(Said("view", view))
+    assert any(each["kind"] == "part" for each in settle(session))
+
+
+def test_a_tab_that_is_closed_is_not_made(case):
+    session = Session(case[1])
+    names = [each.name for each in case[1].forecasts]
+    session.receive(Said("view", seen(names[:1], "matters")))
+    job = until(session, "part")
+    session.receive(Said("view", seen(names[:1], "tables")))
+    assert not session.wanted(job)
+    assert [each["tab"] for each in settle(session) if each["kind"] == "part"] == ["tables"]
+
+
+def test_tabs_are_of_the_forecasts_that_are_chosen(case):
+    session = Session(case[1])
+    first, *others = [each.name for each in case[1].forecasts]
+    for tab in ("matters", "tables"):
+        session.receive(Said("view", seen([first], tab)))
+        *_, part = [each["html"] for each in settle(session) if each["kind"] == "part"]
+        assert f"<h3>{first}</h3>" in part
+        assert not any(f"<h3>{name}</h3>" in part for name in others)
+        assert f"Of 1 of {1 + len(others)} answers" in part
+
+
+def test_a_mean_of_few_accepted_trials_is_marked(tmp_path):
+    session = Session(load(wide_book(tmp_path / "case.xlsx", assumptions=6, forecasts=1)))
+    settle(session)
+    assert not session._last["frame "]["few"]
+    (values,) = session.rest.forecasts.values()
+    session.receive(change("Plausible 1", "at_least", float(values.max()), of="filter"))
+    settle(session)
+    assert session.rest.accepted == 1
+    assert session._last["frame "]["few"]
+
+
+def test_several_numbers_at_once_are_one_state(case):
+    session = Session(case[1])
+    (state,) = session.receive(Said("numbers", numbers(FRICTION, low=0.8, high=1.4))).all
+    assert session.adjustments.assumptions == {FRICTION: {"low": 0.8, "high": 1.4}}
+    assert session.version == 1
+    assert state["undo"]
+    with pytest.raises(XlmcError, match="to be set"):
+        session.receive(Said("numbers", numbers(FRICTION, low=0.7, mean=1.0)))
+    assert session.adjustments.assumptions == {FRICTION: {"low": 0.8, "high": 1.4}}
+
+
+def numbers(name, **values):
+    return {"of": "assumption", "name": name, "values": values, "seq": 1}
+
+
+def test_changes_are_undone_and_done_again(case):
+    session = Session(case[1])
+
+    def undo(kind="undo"):
+        (state,) = session.receive(Said(kind, {})).all
+        return session.adjustments.assumptions.get(FRICTION), [*session.kept], (state["undo"], state["redo"])
+
+    for value, held in ((0.86, True), (0.87, True), (0.87, False), (0.9, False)):  # one drag, and what was typed
+        session.receive(change(FRICTION, "high", value, held=held))
+    session.receive(Said("keep", {"name": "a"}))
+    session.receive(change(FRICTION, "high", 0.8))
+    session.receive(Said("keep", {"name": "a"}))
+    session.receive(Said("drop", {"name": "a"}))
+    assert undo() == ({"high": 0.8}, ["a"], (True, True))
+    assert session.kept["a"].assumptions[FRICTION] == {"high": 0.8}
+    assert undo()[1] == ["a"]
+    assert session.kept["a"].assumptions[FRICTION] == {"high": 0.9}
+    assert undo() == ({"high": 0.9}, ["a"], (True, True))
+    assert undo() == ({"high": 0.9}, [], (True, True))
+    assert undo()[0] == {"high": 0.87}
+    assert undo() == (None, [], (False, True))
+    assert undo() == (None, [], (False, True))
+    for _ in range(6):
+        found = undo("redo")
+    assert found == ({"high": 0.8}, [], (True, False))
+    undo()
+    session.receive(change(FRICTION, "high", 0.7))
+    assert undo("redo") == ({"high": 0.7}, ["a"], (True, False))
+
+
+def test_a_drag_that_is_given_up_leaves_nothing_to_undo(case):
+    session = Session(case[1])
+    (state,) = session.receive(change(FRICTION, "high", 0.9)).all
+    assert state["undo"]
+    session.receive(Said("undo", {}))
+    for value, held in ((0.86, True), (0.87, True), (0.95, False)):
+        (told,) = session.receive(change(FRICTION, "high", value, held=held)).all
+    assert (told["kind"], told["undo"], told["changes"]) == ("state", False, [])
+
+
+def test_undoing_takes_nothing_away_that_another_window_kept(case):
+    session = Session(case[1])
+    session.receive(change(FRICTION, "high", 0.86))
+    session.receive(Said("keep", {"name": "mine"}))
+    session.adopt({**session.kept, "theirs": Adjustments({FRICTION: {"high": 0.7}})})
+    session.receive(Said("undo", {}))
+    assert [*session.kept] == ["theirs"]
+    session.receive(Said("redo", {}))
+    assert {*session.kept} == {"mine", "theirs"}

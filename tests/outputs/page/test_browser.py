@@ -290,7 +290,7 @@ def test_typed_ends_are_taken_as_they_are(at_rest, run):
     [
         ("low", "many", "Type a number."),
         ("low", "99", "must not lie above"),
-        ("high", "1,5", "Type a number."),
+        ("high", "1,5,1", "Type a number."),
         ("share", "101", "between 0 and 100"),
         ("share", "", "Type a number."),
     ],

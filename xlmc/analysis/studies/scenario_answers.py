@@ -32,12 +32,21 @@ from xlmc.montecarlo.definitions.scenarios import Scenario, Tabulated
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.applied_changes import applied
 from xlmc.montecarlo.model.model import CompiledModel
-from xlmc.montecarlo.simulation.simulate import run_model
+from xlmc.montecarlo.simulation.simulate import BLOCK, OnProgress, run_model
 from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import with_error
 
-__all__ = ["ForecastAnswer", "ScenarioAnswers", "model_of", "models_of", "scenario_answers", "scenario_named"]
+__all__ = [
+    "ForecastAnswer",
+    "ScenarioAnswers",
+    "answers_of",
+    "model_of",
+    "models_of",
+    "run_scenario",
+    "scenario_answers",
+    "scenario_named",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,18 +192,33 @@ def scenario_named(model: CompiledModel, scenario: Scenario | str) -> Scenario:
 
 def _answers(run: RunResult, jobs: int, told: Callable[[str], None] | None) -> Iterator[ScenarioAnswers]:
     models = models_of(run.model)
-    yield _of(run, None, run)
+    yield answers_of(run, None, run)
     for scenario in run.model.definitions.scenarios:
         if told is not None:
             told(scenario.name)
-        yield _of(_run(models[scenario.name], run, jobs), scenario, run)
+        yield answers_of(run_scenario(models[scenario.name], run, jobs=jobs), scenario, run)
 
 
-def _run(model: CompiledModel, base: RunResult, jobs: int) -> RunResult:
-    return run_model(model, replace(base.repeating, scenarios=False, jobs=jobs, keep_inputs=0))
+def run_scenario(
+    model: CompiledModel, base: RunResult, *, jobs: int = 1, progress: OnProgress | None = None, pieces: int = BLOCK
+) -> RunResult:
+    """Run the model of a scenario as the workbook itself was run; see `run_model`.
+
+    Raises:
+        SimulationError: it cannot be run.
+    """
+    options = replace(base.repeating, scenarios=False, jobs=jobs, keep_inputs=0)
+    return run_model(model, options, progress=progress, pieces=pieces)
 
 
-def _of(run: RunResult, scenario: Scenario | None, base: RunResult) -> ScenarioAnswers:
+def answers_of(run: RunResult, scenario: Scenario | None, base: RunResult) -> ScenarioAnswers:
+    """The answers of a scenario's run, and how far they are from those of the workbook itself.
+
+    Args:
+        run: of the scenario.
+        scenario: None for the workbook itself.
+        base: the run of the workbook itself.
+    """
     paired = _share_trials(run, base)
     return ScenarioAnswers(
         scenario=scenario,

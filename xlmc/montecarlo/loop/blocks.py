@@ -28,6 +28,7 @@ from xlmc.engine.engine import (
     RunsWholeBlocks,
 )
 from xlmc.errors import ErrorCode
+from xlmc.montecarlo.interruption import checkpoint
 
 __all__ = ["Block", "FilterTally", "ModelRunner", "Portable", "Runner", "Task", "fault_text", "portions"]
 
@@ -373,5 +374,6 @@ def fault_text(code: int) -> str:
 def portions(draws: Mapping[str, Floats], n: int, size: int) -> Iterator[tuple[slice, dict[str, Floats]]]:
     """The first n trials of draws that are known, up to `size` at a time: which they are, and name -> their draws."""
     for start in range(0, n, size):
+        checkpoint()
         trials = slice(start, min(start + size, n))
         yield trials, {name: np.ascontiguousarray(values[trials]) for name, values in draws.items()}

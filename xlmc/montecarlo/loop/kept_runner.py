@@ -36,7 +36,7 @@ __all__ = ["KeptRunner"]
 
 Floats = NDArray[np.float64]
 
-_MOST_BYTES: Final = 1 << 26
+_MOST_BYTES: Final = 1 << 27
 """The most bytes of draws that are kept; if all draws of a run would take more, none is kept."""
 
 _COMPARES: Final[Mapping[str, Callable[..., NDArray[np.bool_]]]] = {

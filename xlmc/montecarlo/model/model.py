@@ -408,7 +408,9 @@ class CompiledModel:
         parameters = [dynamic_parameters(stage.draws, self.lowering, block) for stage in stages[1:]]
         return Sampler(seed, stages, self.groups, parameters, block, plan, filler or ENGINES[engine].filler)
 
-    def quantiles(self, probabilities: ArrayLike) -> dict[str, NDArray[np.float64]]:
+    def quantiles(
+        self, probabilities: ArrayLike, names: Collection[str] | None = None
+    ) -> dict[str, NDArray[np.float64]]:
         """The quantiles of every live assumption, before filtering and whatever it is correlated with.
 
         Where parameters vary, they are those with all other assumptions at their base values, or at their medians where
@@ -416,6 +418,7 @@ class CompiledModel:
 
         Args:
             probabilities: `(q,)`, between 0 and 1.
+            names: of the assumptions that are wanted; None for all.
 
         Returns:
             Name of the assumption -> `(q,)`; NaN where the parameters are not a distribution.
@@ -423,15 +426,18 @@ class CompiledModel:
         wanted = np.atleast_1d(np.asarray(probabilities, np.float64))
         held: dict[str, NDArray[np.float64]] = {}
         found: dict[str, NDArray[np.float64]] = {}
-        for number, names in enumerate(self.needed.stages):
+        needs_medians = len(self.needed.stages) > 1
+        for number, stage in enumerate(self.needed.stages):
             varying: Mapping[Cell, NDArray[np.float64]] = {}
             if number:  # no chance: its parameters are numbers
-                varying = dynamic_parameters([self.draws[name] for name in names], self.lowering, 1)(held, 1)
-            for name in (name for name in names if name in self.bases):
-                values, base = np.append(wanted, 0.5), self.bases[name]
-                values = self.draws[name].percentiles(values, varying)
-                found[name] = values[:-1]
-                held[name] = values[-1:] if base is None else np.full(1, base)
+                varying = dynamic_parameters([self.draws[name] for name in stage], self.lowering, 1)(held, 1)
+            for name in (name for name in stage if name in self.bases):
+                base = self.bases[name]
+                if names is None or name in names or (base is None and needs_medians):
+                    values = self.draws[name].percentiles(np.append(wanted, 0.5), varying)
+                    found[name], held[name] = values[:-1], values[-1:]
+                if base is not None:
+                    held[name] = np.full(1, base)
         return found
 
     def program_of(self, filters: Sequence[Target]) -> Program:

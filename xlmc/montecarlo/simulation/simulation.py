@@ -235,6 +235,16 @@ class RunResult:
         return found
 
     @property
+    def _effective(self) -> int:
+        """How many trials of equal weight say as much as the accepted ones."""
+        return self.accepted if self.weighting is None else round(self.weighting.effective)
+
+    @property
+    def has_few(self) -> bool:
+        """Whether fewer than `FEW` trials were accepted, or count as such, but not none."""
+        return 0 < self._effective < FEW
+
+    @property
     def notices(self) -> tuple[Notice, ...]:
         """What the person should know of the model and of this run."""
         return (*self.model.notices, *self.notices_of_run)
@@ -243,8 +253,8 @@ class RunResult:
     def notices_of_run(self) -> tuple[Notice, ...]:
         """What the person should know of this run alone."""
         found: list[Notice] = []
-        effective = self.accepted if self.weighting is None else round(self.weighting.effective)
-        if not self.plan.replicates and 0 < effective < FEW:
+        effective = self._effective
+        if not self.plan.replicates and self.has_few:
             few = f"only {_trials(self.accepted)} accepted" if self.weighting is None else ""
             few = few or f"the accepted trials say as much as {effective} trials of equal weight"
             found.append(Notice(f"{few[0].upper()}{few[1:]}. {_OF_FEW}"))

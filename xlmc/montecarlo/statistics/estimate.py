@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from xlmc.montecarlo.interruption import checkpoint
+
 __all__ = ["Estimate", "finite", "format_estimate", "supported_digits", "two_digit_exponent"]
 
 LEAST_DOF = 1.0 - 1e-9
@@ -60,6 +62,7 @@ def with_error(value: float, error: float, dof: float, confidence: float, n: int
         n: trials.
         skewness: that of the number from run to run; it makes the interval longer on one side.
     """
+    checkpoint()
     if dof < LEAST_DOF or not (math.isfinite(value) and math.isfinite(error)):
         return Estimate(value, n=n)
     low, high = t_range(dof, confidence, skewness)

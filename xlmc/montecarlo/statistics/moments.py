@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.montecarlo.columns import PART, on_disk, pairwise_sum, release
+from xlmc.montecarlo.interruption import checkpoint
 
 __all__ = ["Moments", "moments_of"]
 
@@ -61,6 +62,7 @@ def moments_of(x: Floats, w: Floats | None, group: NDArray[np.intp] | None, grou
 
     There are two passes, the first from a pivot inside the data, so that 1e9 ± 1 keeps its digits.
     """
+    checkpoint()
     if x.size == 0:
         return Moments(np.nan, np.nan, np.nan, np.nan, np.zeros((4, 4)), np.nan)
     if max(abs(float(x[0])), abs(float(x[-1]))) > _SUMMABLE:

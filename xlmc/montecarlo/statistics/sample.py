@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from xlmc.montecarlo.columns import ascending, parts, picked
+from xlmc.montecarlo.interruption import checkpoint
 from xlmc.montecarlo.statistics.moments import Moments, moments_of
 
 __all__ = ["Sample", "Values"]
@@ -194,6 +195,7 @@ def _normalise(w: Floats, x: Floats) -> Floats:
 def _sort(
     x: Floats, w: Floats | None, ids: NDArray[np.generic] | None
 ) -> tuple[Floats, Floats | None, Groups | None, int]:
+    checkpoint()
     if w is None and ids is None:
         return ascending(x), None, None, 0
     order = np.argsort(x, kind="stable")  # ties stay in trial order: the same sums on every machine

@@ -38,7 +38,7 @@ _TOLD_EVERY: Final = 0.1
 _SETTLING: Final = (0.0, 0.1, 0.3, 0.6, 1.0)
 """Seconds before each try to read a workbook that was just saved: a half-written one is whole a moment later."""
 
-_CHANGING: Final = frozenset({"set", "reset", "keep", "show", "drop", "restore", "variants"})
+_CHANGING: Final = frozenset({"set", "numbers", "reset", "keep", "show", "drop", "restore", "variants", "undo", "redo"})
 """Kinds after which what outlives the window is other."""
 
 _NEWEST: Final = frozenset({"frame", "running", "state", "study"})
@@ -53,6 +53,7 @@ class Window:
 
     def __init__(self) -> None:
         self.view: Said | None = None
+        self.refused = False
         self._waiting: list[tuple[str, str]] = []
         self._more = asyncio.Event()
 
@@ -85,6 +86,7 @@ class Desk:
         self._library, self._keeper, self._windows = library, library.keeper, set[Window]()
         self._study: StudyRun | None = None
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="xlmc-window")
+        self._aside = ThreadPoolExecutor(2, thread_name_prefix="xlmc-files")
         self._wake = asyncio.Event()
         self._trouble: dict[str, str] = {}
         self._tasks: list[asyncio.Task[None]] = []
@@ -115,7 +117,8 @@ class Desk:
         if self.session is not None:
             self.session.end()  # a run that is going on is not wanted any more
         await asyncio.gather(*self._tasks, return_exceptions=True)
-        self._pool.shutdown(wait=False, cancel_futures=True)
+        for pool in (self._pool, self._aside):
+            pool.shutdown(wait=False, cancel_futures=True)
 
     def join(self) -> Window:
         """A window that was opened, or came back."""
@@ -163,14 +166,28 @@ class Desk:
         try:
             replies = self.session.receive(said)
         except XlmcError as error:
-            window.put("trouble", written({"kind": "trouble", "about": "request", "text": str(error)}))
+            self._refuse(window, str(error))
             return
+        if said.kind in _CHANGING:
+            self._is_over(window)
         for message in replies.own:
             window.put(message["kind"], written(message))
         self._tell(replies.all)
         if said.kind in _CHANGING and not (said.kind == "set" and said["held"]):
             self._keep()
         self._wake.set()
+
+    def _refuse(self, window: Window, why: str) -> None:
+        """Say why what a window asked for is not done; with an empty text, that this does not matter any more."""
+        if why or window.refused:
+            window.put("trouble", written({"kind": "trouble", "about": "request", "text": why}))
+        window.refused = bool(why)
+
+    def _is_over(self, window: Window) -> None:
+        """What was refused of a state does not matter any more when there is another one."""
+        self._refuse(window, "")
+        for about in ("save", "study"):
+            self._say(about, "")
 
     def _later(self, what: Coroutine[object, object, None]) -> None:
         task = asyncio.create_task(what)
@@ -204,11 +221,12 @@ class Desk:
             return
         self._say("keeping", "")
         if kept != self.session.kept:  # another window on this workbook kept some, too
-            self.session.kept = kept
+            self.session.adopt(kept)
             self._tell(self.session.greeting()[1:2])
 
-    async def _in_thread(self, what: Callable[[], T]) -> T:
-        return await asyncio.get_running_loop().run_in_executor(self._pool, what)
+    async def _beside(self, what: Callable[[], T]) -> T:
+        """Read or write a file while runs go on."""
+        return await asyncio.get_running_loop().run_in_executor(self._aside, what)
 
     async def _read(self) -> CompiledModel | None:
         """The workbook's model; None where it cannot be read or understood, which is told."""
@@ -217,12 +235,14 @@ class Desk:
             await asyncio.sleep(seconds)
             self._stamp = _stamp(self.path)
             try:
-                model = await self._in_thread(lambda: load(self.path))
+                model = await self._beside(lambda: load(self.path))
             except (XlmcError, OSError) as error:
                 trouble = str(error)
                 if not isinstance(error, WorkbookError | OSError):
                     break  # it was read, and is not what it must be
             else:
+                if _stamp(self.path) != self._stamp:
+                    return None  # it was saved once more meanwhile: who asked reads it again
                 self._say("book", "")
                 return model
         self._say("book", trouble)
@@ -236,7 +256,7 @@ class Desk:
         self._tell(self.session.greeting())
         while True:
             job = self.session.job()
-            if job is None or (job.held and job.stage in ("rest", "part")):
+            if job is None or (job.held and job.stage not in ("quick", "moving", "sketch")):
                 try:
                     await asyncio.wait_for(self._wake.wait(), None if job is None else _PAUSE)
                     self._wake.clear()
@@ -266,7 +286,7 @@ class Desk:
             return job.run(lambda: session.wanted(job), tell, time.monotonic)
 
         try:
-            outcome = await self._in_thread(run)
+            outcome = await loop.run_in_executor(self._pool, run)
         except SupersededError:
             self._tell(session.superseded(job))
             return
@@ -281,9 +301,9 @@ class Desk:
         try:
             state = self.session.at_rest()
             if what in KINDS:
-                text = f"Written: {await self._in_thread(lambda: save_result(state, self.path, what))}"
+                text = f"Written: {await self._beside(lambda: save_result(state, self.path, what))}"
             else:
-                text = await self._in_thread(lambda: write_changes(state, self.path, into=what == "into"))
+                text = await self._beside(lambda: write_changes(state, self.path, into=what == "into"))
         except (XlmcError, OSError) as error:
             self._say("save", str(error))
         else:
@@ -299,7 +319,7 @@ class Desk:
             others += [] if second is None else [second]
             trouble = trouble or ("" if second else "Choose the workbook to compare this one with.")
         if trouble:
-            window.put("trouble", written({"kind": "trouble", "about": "study", "text": trouble}))
+            self._refuse(window, trouble)
             return
         self._say("study", "")
         session = self.session
@@ -316,7 +336,7 @@ class Desk:
         """Start a study of the state that is shown, which is typed into a copy of the workbook for it."""
         own, adjustments, name = session.own, session.adjustments, session.shown
         try:
-            edited = await self._in_thread(lambda: edited_state(own, adjustments, name))
+            edited = await self._beside(lambda: edited_state(own, adjustments, name))
         except (XlmcError, OSError) as error:
             self._say("study", str(error))
             return
@@ -346,6 +366,7 @@ class Desk:
         model = await self._read()
         if model is not None:
             self._tell(session.replace_book(model, what_changed(before, model)))
+            self._say("save", "")
             self._wake.set()
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 from weakref import WeakKeyDictionary
 
@@ -13,7 +14,6 @@ from numpy.typing import NDArray
 from xlmc.analysis.results.record import make_record
 from xlmc.analysis.results.statements import statements
 from xlmc.analysis.results.statements.in_words import sampling_sentence
-from xlmc.analysis.studies.scenario_answers import scenario_answers
 from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.montecarlo.statistics import (
     Estimate,
@@ -27,7 +27,8 @@ from xlmc.montecarlo.statistics import (
 from xlmc.montecarlo.statistics.estimate import finite
 from xlmc.outputs.histogram import Figure, figures_of, histogram, multiples
 from xlmc.outputs.live.protocol import Message
-from xlmc.outputs.page.element import element, join
+from xlmc.outputs.page.element import EMPTY, Html, element, join
+from xlmc.outputs.page.flow import Flow
 from xlmc.outputs.page.payload import forecast_payload
 from xlmc.outputs.page.sensitivity_sections import dependence, limits
 from xlmc.outputs.page.sheet_sections import (
@@ -37,19 +38,19 @@ from xlmc.outputs.page.sheet_sections import (
     filters,
     notices,
     record,
-    scenarios,
     statistics,
 )
 from xlmc.outputs.sheets.results_sheet import opening_sentences
+from xlmc.outputs.sheets.scenarios_sheet import write_scenario_tables
 from xlmc.outputs.summary import ERROR_SENTENCE, SummaryRow, base_case, share_text
 
 if TYPE_CHECKING:
+    from xlmc.analysis.studies.scenario_answers import ScenarioAnswers
     from xlmc.montecarlo.diagnostics.weighing import Weighting
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
-    from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.simulation.simulation import RunResult
 
-__all__ = ["bases_of", "frame_of", "matters_html", "pair_of", "rest_of", "scenarios_html", "tables_html"]
+__all__ = ["Bases", "bases_of", "frame_of", "matters_html", "pair_of", "rest_of", "scenarios_html", "tables_html"]
 
 _VALUES_MOVING: Final = 400
 _VALUES_AT_REST: Final = 4_000
@@ -58,6 +59,9 @@ _VALUES_AT_REST: Final = 4_000
 _PERCENTS: Final = (5.0, 25.0, 50.0, 75.0, 95.0)
 _KNOWN: Final[WeakKeyDictionary[ForecastResult, list[tuple[str, Estimate]]]] = WeakKeyDictionary()
 """The estimates of each forecast: those of the state for comparison are asked for with every frame."""
+
+_MEASURING: Final = 0.8
+"""The share of the work that measuring takes, and not writing, where it is shown what matters."""
 
 _POINTS: Final = 2_000
 """Accepted trials that a scatter shows."""
@@ -97,6 +101,7 @@ def frame_of(
         "trials": simulation.evaluated,
         "accepted": simulation.accepted,
         "share": share_text(simulation.acceptance),
+        "few": simulation.has_few,
         "forecasts": charts,
     }
 
@@ -223,35 +228,61 @@ def rest_of(simulation: RunResult) -> Message:
     }
 
 
-def matters_html(simulation: RunResult) -> str:
-    """Which assumptions the answer depends on, and what another limit of a filter would change."""
+def matters_html(simulation: RunResult, names: Collection[str], tell: Callable[[float], None]) -> str:
+    """Which assumptions some answers depend on, and what another limit of a filter would change.
+
+    Args:
+        simulation: the run.
+        names: of the forecasts.
+        tell: takes the share that is done.
+    """
     if simulation.weighting is not None:
         said = "Each trial has a weight of its own, by the evidence; what matters is not known of such trials."
         return join([element("p", said, class_="remark")]).source
-    found = sensitivities(simulation)
-    return join([dependence(found), limits(found)]).source
+    chosen = [name for name in simulation.results if name in names]
+    if not chosen:
+        return _of_chosen(simulation, chosen).source
+    found = sensitivities(simulation, chosen, told=lambda share: tell(_MEASURING * share))
+    parts = [_of_chosen(simulation, chosen), dependence(found)]
+    tell(0.5 + _MEASURING / 2.0)
+    return join([*parts, limits(found)]).source
 
 
-def tables_html(simulation: RunResult) -> str:
-    """All tables that the page of results has."""
-    parts = (statistics, certainty, assumptions, filters, checks, notices)
-    return join([*(part(simulation) for part in parts), record(make_record(simulation, None))]).source
+def _of_chosen(simulation: RunResult, names: Sequence[str]) -> Html:
+    """Of how many answers a tab is, where it is not of all."""
+    count, every = len(names), len(simulation.results)
+    if count == every:
+        return EMPTY
+    said = f"Of {count} of {every} answers: those that are chosen above." if count else "Choose an answer above."
+    return element("p", said, class_="remark")
 
 
-def scenarios_html(model: CompiledModel, run: Callable[[CompiledModel], RunResult], told: Callable[[str], None]) -> str:
-    """The answers of the scenarios of a model beside its own, in tables.
+def tables_html(simulation: RunResult, names: Collection[str], tell: Callable[[float], None]) -> str:
+    """The tables that the page of results has; of single forecasts, those of some. See `matters_html`."""
+    chosen = [name for name in simulation.results if name in names]
+    makers: tuple[Callable[[], Html], ...] = (
+        lambda: statistics(simulation, chosen),
+        lambda: certainty(simulation, chosen),
+        *(partial(make, simulation) for make in (assumptions, filters, checks, notices)),
+        lambda: record(make_record(simulation, None)),
+    )
+    parts = [_of_chosen(simulation, chosen)]
+    for number, make in enumerate(makers):
+        tell(number / len(makers))
+        parts.append(make())
+    return join(parts).source
+
+
+def scenarios_html(found: Sequence[ScenarioAnswers], impossible: Mapping[str, str]) -> str:
+    """The answers of scenarios beside those of the workbook itself, in tables.
 
     Args:
-        model: with the scenarios.
-        run: makes the run of the model's own state, with its scenarios asked for.
-        told: called before each scenario with its name.
-
-    Raises:
-        DefinitionError, FormulaError: a scenario is not possible.
+        found: the workbook itself, then scenarios.
+        impossible: why there are no answers of a scenario, by its name.
     """
-    base = run(model)
-    scenario_answers(base, told=told)
-    return scenarios(base).source
+    flow = Flow()
+    write_scenario_tables(flow, found, impossible)
+    return element("section", element("h2", "Scenarios"), flow.html).source
 
 
 def pair_of(simulation: RunResult, first: str, second: str) -> dict[str, Any] | None:

@@ -6,14 +6,17 @@ A piece of work depends on nothing that changes later: it holds all that it need
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from contextlib import nullcontext
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
 from xlmc.errors import XlmcError
-from xlmc.montecarlo.definitions.run_options import RunOptions
+from xlmc.montecarlo.definitions.run_options import KEPT_INPUTS, RunOptions
+from xlmc.montecarlo.interruption import looking
 from xlmc.montecarlo.simulation.simulate import run_model
-from xlmc.outputs.live.adjustments import Adjustments, scenario_of
-from xlmc.outputs.live.frames import bases_of, frame_of, matters_html, pair_of, rest_of, scenarios_html, tables_html
+from xlmc.outputs.live.adjustments import Adjustments
+from xlmc.outputs.live.comparison import Comparison
+from xlmc.outputs.live.frames import Bases, bases_of, frame_of, matters_html, pair_of, rest_of, tables_html
 from xlmc.outputs.live.moving_models import KnownModels
 from xlmc.outputs.live.protocol import Message, Said
 from xlmc.outputs.live.window_book import shapes_of
@@ -27,6 +30,7 @@ if TYPE_CHECKING:
 __all__ = [
     "MOVING_TRIALS",
     "PARTS",
+    "RUNS",
     "SKETCHED",
     "Job",
     "Outcome",
@@ -52,17 +56,22 @@ Sight = tuple[int, tuple[str, ...], bool, int]
 Stage = Literal["quick", "moving", "sketch", "rest", "shown", "part", "compare"]
 
 
+RUNS: Final[tuple[Stage, ...]] = ("quick", "moving", "sketch", "rest")
+"""The stages of a state, in order; what comes after them shows more of the last one."""
+
+
 class SupersededError(Exception):
     """Something newer was asked for, or the run was stopped."""
 
 
 @dataclass(frozen=True, slots=True)
 class Tab:
-    """An open tab, and the two quantities of the tab `pairs`."""
+    """An open tab, the two quantities of the tab `pairs`, and the forecasts that other tabs are of."""
 
     key: str = "charts"
     first: str = ""
     second: str = ""
+    chosen: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,8 +87,16 @@ class View:
         """The union of what the windows show, with the forecasts in the order of the workbook."""
         views = list(said)
         seen = {name for each in views for name in each["forecasts"]}
-        tabs = dict.fromkeys(Tab(each["tab"], each["first"], each["second"]) for each in views)
+        chosen = {name for each in views for name in each["chosen"]}
+        of = tuple(name for name in order if name in chosen)
+        tabs = dict.fromkeys(_tab(each, of) for each in views)
         return cls(tuple(name for name in order if name in seen), tuple(tabs), any(each["fits"] for each in views))
+
+
+def _tab(said: Said, chosen: tuple[str, ...]) -> Tab:
+    if said["tab"] == "pairs":
+        return Tab("pairs", said["first"], said["second"])
+    return Tab(said["tab"], chosen=chosen if said["tab"] in ("matters", "tables") else ())
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,18 +137,21 @@ class Job:
     version: int
     held: bool
     run: Work
-    done: Mapping[str, object]
+    done: Mapping[str | Tab, object]
 
 
-PARTS: Final[Mapping[str, Callable[[RunResult, Tab], Message]]] = {
-    "matters": lambda run, _: {"html": matters_html(run)},
-    "tables": lambda run, _: {"html": tables_html(run)},
-    "pairs": lambda run, tab: {"pair": pair_of(run, tab.first, tab.second)},
+PARTS: Final[Mapping[str, Callable[[RunResult, Tab, Tell], Message]]] = {
+    "matters": lambda run, tab, tell: {"html": matters_html(run, tab.chosen, tell)},
+    "tables": lambda run, tab, tell: {"html": tables_html(run, tab.chosen, tell)},
+    "pairs": lambda run, tab, _: {"pair": pair_of(run, tab.first, tab.second)},
 }
 """Tab whose contents are made of a run at rest -> what makes them."""
 
 SKETCHED: Final = "matters"
 """The tab that is brought up to date while a state moves, too."""
+
+_OF_DRAWS: Final = frozenset({"matters", "pairs"})
+"""Tabs that show draws of a run that moves."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,7 +192,8 @@ class StateRun:
                 raise SupersededError
             tell(progress.share)
 
-        watched, resting, view = watch if self.watched else None, self.stage == "rest", self.view
+        watched, resting = watch if self.watched else None, self.stage == "rest"
+        given_up = looking(_giving_up(wanted)) if resting else nullcontext()
         try:
             if resting:
                 model = self.models.at_rest(self.adjustments)
@@ -186,7 +207,13 @@ class StateRun:
                 runner = moving.runner(-(-self.trials // pieces))
                 begun = clock()
                 way = self.way or "rejection"
-                options = RunOptions(trials=self.trials, sampling="mc", engine=moving.kept.engine, evidence=way)
+                options = RunOptions(
+                    trials=self.trials,
+                    sampling="mc",
+                    engine=moving.kept.engine,
+                    evidence=way,
+                    keep_inputs=KEPT_INPUTS if any(tab.key in _OF_DRAWS for tab in self.view.tabs) else 0,
+                )
                 found = run_model(
                     model,
                     options,
@@ -194,34 +221,43 @@ class StateRun:
                     progress=watched,
                 )
             seconds = (clock() - begun) / max(found.evaluated, 1)
-            frame = frame_of(found, self.behind, view.forecasts, base, moving=not resting, fits=resting and view.fits)
-            messages = [_frame("rest" if resting else "moving", self.version, self.seq, frame)]
-            messages += [_part(found, self.version, tab) for tab in view.tabs if tab.key == "pairs" and not resting]
-            messages[0]["shapes"] = shapes_of(model, list(self.adjustments.assumptions))
-            if resting:
-                messages.append({"kind": "rest", "version": self.version, **rest_of(found)})
+            with given_up:
+                messages = self._messages(found, model, base)
         except XlmcError as error:
             return Outcome(problem=str(error))
         return Outcome(tuple(messages), found, seconds)
+
+    def _messages(self, found: RunResult, model: CompiledModel, base: Bases | None) -> list[Message]:
+        """What is shown of a run."""
+        resting, view = self.stage == "rest", self.view
+        frame = frame_of(found, self.behind, view.forecasts, base, moving=not resting, fits=resting and view.fits)
+        messages = [_frame("rest" if resting else "moving", self.version, self.seq, frame)]
+        messages[0]["shapes"] = shapes_of(model, list(self.adjustments.assumptions))
+        if resting:
+            return [*messages, {"kind": "rest", "version": self.version, **rest_of(found)}]
+        pairs = (tab for tab in view.tabs if tab.key == "pairs")
+        return [*messages, *(_part(found, self.version, tab, lambda share: None) for tab in pairs)]
 
 
 def charts_of(simulation: RunResult, behind: RunResult | None, seq: int, sight: Sight) -> Work:
     """The charts of a run that is done, for what can be seen now."""
     version, names, fits, _ = sight
 
-    def run(*_: object) -> Outcome:
-        frame = frame_of(simulation, behind, names, bases_of(simulation), moving=False, fits=fits)
+    def run(wanted: Wanted, *_: object) -> Outcome:
+        with looking(_giving_up(wanted)):
+            frame = frame_of(simulation, behind, names, bases_of(simulation), moving=False, fits=fits)
         return Outcome((_frame("rest", version, seq, frame),))
 
     return run
 
 
-def sketched_tab(simulation: RunResult, version: int) -> Work:
-    """What matters, of the run of a state that moves."""
+def sketched_tab(simulation: RunResult, version: int, tab: Tab, most: float) -> Work:
+    """What matters, of the run of a state that moves; given up where it takes more than `most` seconds."""
 
     def run(_wanted: Wanted, _tell: Tell, clock: Clock) -> Outcome:
         begun = clock()
-        message = _part(simulation, version, Tab(SKETCHED))
+        with looking(_giving_up(lambda: clock() - begun < most)):
+            message = _part(simulation, version, tab, lambda share: None)
         return Outcome((message,), seconds=clock() - begun)
 
     return run
@@ -230,36 +266,25 @@ def sketched_tab(simulation: RunResult, version: int) -> Work:
 def tab_of(simulation: RunResult, version: int, tab: Tab) -> Work:
     """The contents of an open tab."""
 
-    def run(*_: object) -> Outcome:
-        return Outcome((_part(simulation, version, tab),))
+    def run(wanted: Wanted, tell: Tell, _clock: Clock) -> Outcome:
+        with looking(_giving_up(wanted)):
+            return Outcome((_part(simulation, version, tab, tell),))
 
     return run
 
 
-def scenario_table(own: CompiledModel, kept: Mapping[str, Adjustments], asked: int) -> Work:
+def scenario_table(comparison: Comparison, asked: int) -> Work:
     """All scenarios in one table, those of the workbook and those that are kept in the window.
 
     Args:
-        own: the workbook's model.
-        kept: those of the window, by name; they take the place of one of the same name.
+        comparison: of them; what is done of it is kept where the work is given up.
         asked: how often the table was asked for.
     """
 
     def run(wanted: Wanted, tell: Tell, _clock: Clock) -> Outcome:
-        fitting = {name: each.only(own.definitions) for name, each in kept.items()}
-        scenarios = tuple(scenario_of(own.definitions, name, each) for name, each in fitting.items())
-        all_of_them = (*(each for each in own.definitions.scenarios if each.name not in kept), *scenarios)
-        model = own.changed(own.workbook, replace(own.definitions, scenarios=all_of_them))
-        begun: list[str] = []
-
-        def told(name: str) -> None:
-            if not wanted():
-                raise SupersededError
-            begun.append(name)
-            tell(len(begun) / (len(all_of_them) + 1))
-
         try:
-            html = scenarios_html(model, lambda model: run_model(model, RunOptions(scenarios=True)), told)
+            with looking(go_on := _giving_up(wanted)):
+                html = comparison.html(go_on, tell)
         except XlmcError as error:
             html = join([element("p", str(error), class_="warning")]).source
         message = {"kind": "part", "tab": "scenarios", "version": asked, "html": html}
@@ -268,9 +293,19 @@ def scenario_table(own: CompiledModel, kept: Mapping[str, Adjustments], asked: i
     return run
 
 
+def _giving_up(wanted: Wanted) -> Callable[[], None]:
+    """Ends work that is not wanted any more."""
+
+    def look() -> None:
+        if not wanted():
+            raise SupersededError
+
+    return look
+
+
 def _frame(stage: str, version: int, seq: int, charts: Message) -> Message:
     return {"kind": "frame", "stage": stage, "version": version, "seq": seq, **charts}
 
 
-def _part(simulation: RunResult, version: int, tab: Tab) -> Message:
-    return {"kind": "part", "tab": tab.key, "version": version, **PARTS[tab.key](simulation, tab)}
+def _part(simulation: RunResult, version: int, tab: Tab, tell: Tell) -> Message:
+    return {"kind": "part", "tab": tab.key, "version": version, **PARTS[tab.key](simulation, tab, tell)}

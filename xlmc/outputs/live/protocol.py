@@ -11,8 +11,11 @@ secret, and a number that is used once; anything else before it ends the connect
 | `ticket` | | on the start page: a file is to be sent |
 | `set` | `of`, `name`, `key`, `value`, `held`, `seq` | a number or a switch of an assumption or a filter; `value` \
 null: as in the book; `held`: a handle is still held; `seq`: counts the page's changes, and comes back with the frame |
+| `numbers` | `of`, `name`, `values`, `seq` | several numbers of one assumption or filter at once: key -> number |
+| `undo`, `redo` | | go back to the state before the last change, and forth again |
 | `reset` | `of`, `name` | everything of one assumption or filter as in the book; with an empty `name`: of all |
-| `view` | `forecasts`, `tab`, `first`, `second`, `fits` | which charts can be seen, which tab is open, whose pairs it \
+| `view` | `forecasts`, `chosen`, `tab`, `first`, `second`, `fits` | which charts can be seen, of which \
+forecasts the other tabs are, which tab is open, whose pairs it \
 shows, whether fitted distributions are wanted |
 | `pin` | | the state now becomes the one that is drawn behind |
 | `restore` | `take` | bring back what was set when the window was last closed, or forget it |
@@ -39,10 +42,11 @@ on the state that is shown; `other`: the key of the workbook to compare it with 
 | `ticket` | `ticket` | one file may be sent with it |
 | `book` | `name`, `folder`, `forecasts`, `notices`, `settings`, `shapes` | the workbook as it is now |
 | `others` | `books` | the workbooks beside it that it can be compared with: `name` and `key` |
-| `state` | `version`, `assumptions`, `filters`, `changes`, `scenarios`, `shown`, `offered`, `behind` | what is set; \
-`changes` in words |
+| `state` | `version`, `assumptions`, `filters`, `changes`, `scenarios`, `shown`, `offered`, `behind`, `undo`, \
+`redo` | what is set; `changes` in words; `undo`, `redo`: whether there is something to |
 | `moved` | `of`, `name`, `key`, `value` | what was set while a handle is held; `state` follows when it is let go |
-| `frame` | `stage`, `version`, `seq`, `trials`, `accepted`, `share`, `shapes`, `forecasts` | an answer; `stage`: \
+| `frame` | `stage`, `version`, `seq`, `trials`, `accepted`, `share`, `few`, `shapes`, `forecasts` | an answer; `few`: \
+from too few trials; `stage`: \
 `moving` or `rest`; `shapes`: the distributions that differ from those of the workbook |
 | `rest` | `version`, `sentences`, `warnings`, `checks`, `filters`, `sampling` | what is said of a run at rest |
 | `part` | `tab`, `version`, `html` or `pairs` | the contents of the open tab |
@@ -75,6 +79,7 @@ _LONGEST: Final = 2_000
 """Characters of a name; Excel's cells hold more, its names fewer."""
 
 _MOST_NAMES: Final = 500
+_MOST_AT_ONCE: Final = 20
 
 Message = dict[str, Any]
 """The kinds of message from the server."""
@@ -100,7 +105,11 @@ def _is_text(value: object) -> bool:
 
 
 def _is_value(value: object) -> bool:
-    return value is None or isinstance(value, bool) or (isinstance(value, int | float) and _is_finite(value))
+    return value is None or isinstance(value, bool) or _is_number(value)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and _is_finite(value)
 
 
 def _is_finite(value: float) -> bool:
@@ -123,6 +132,16 @@ def _are_texts(value: object) -> bool:
     return isinstance(value, list) and len(value) <= _MOST_NAMES and all(map(_is_text, value))
 
 
+def _are_numbers(value: object) -> bool:
+    """Whether it is a mapping of few names to numbers."""
+    return (
+        isinstance(value, dict)
+        and 0 < len(value) <= _MOST_AT_ONCE
+        and all(map(_is_text, value))
+        and all(map(_is_number, value.values()))
+    )
+
+
 def _one_of(*words: str) -> Callable[[object], bool]:
     return lambda value: isinstance(value, str) and value in words
 
@@ -142,9 +161,13 @@ _FIELDS: Final[Mapping[str, Mapping[str, Callable[[object], bool]]]] = {
         "held": _is_flag,
         "seq": _is_count,
     },
+    "numbers": {"of": _OF, "name": _is_text, "values": _are_numbers, "seq": _is_count},
+    "undo": {},
+    "redo": {},
     "reset": {"of": _OF, "name": _is_text},
     "view": {
         "forecasts": _are_texts,
+        "chosen": _are_texts,
         "tab": _one_of("charts", "matters", "pairs", "tables", "scenarios", "studies"),
         "first": _is_text,
         "second": _is_text,

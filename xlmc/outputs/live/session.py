@@ -10,31 +10,32 @@ seed, and assumptions streams of their own: what is not moved is drawn as before
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
-from xlmc.analysis.results.statements.in_words import changes_text
 from xlmc.errors import XlmcError
-from xlmc.montecarlo.simulation.simulate import BLOCK
-from xlmc.montecarlo.statistics.estimate import t_quantile
 from xlmc.outputs.live.adjustments import (
     Adjustments,
-    adjustments_of,
+    Amount,
     in_words,
     own_values,
     usual_variants,
 )
+from xlmc.outputs.live.comparison import Comparison
 from xlmc.outputs.live.hand_over import AtRest
+from xlmc.outputs.live.history import History, Moment
 from xlmc.outputs.live.jobs import (
     MOVING_TRIALS,
     PARTS,
+    RUNS,
     SKETCHED,
     Job,
     Outcome,
     Sight,
     Stage,
     StateRun,
+    Tab,
     View,
     Work,
     charts_of,
@@ -42,10 +43,10 @@ from xlmc.outputs.live.jobs import (
     sketched_tab,
     tab_of,
 )
-from xlmc.outputs.live.moving_models import MANY_FORMULAS, KnownModels
+from xlmc.outputs.live.moving_models import KnownModels
+from xlmc.outputs.live.pace import Pace
 from xlmc.outputs.live.protocol import Message, Said
-from xlmc.outputs.live.window_book import assumption_rows, filter_rows, forecast_rows, shapes_of
-from xlmc.outputs.page.payload import CONFIDENCE
+from xlmc.outputs.live.window_book import assumption_rows, book_message, filter_rows, known_scenario, scenario_rows
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
@@ -53,22 +54,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Replies", "Session"]
 
-_QUICK_TRIALS, _FEWEST_TRIALS = 2_000, 200
-"""Trials of the first short run, before its time is known, and the fewest of any."""
-
-_SLOW: Final = 0.2
-"""Seconds that a run of `MOVING_TRIALS` may take; one that takes longer has a shorter one before it."""
-
-_QUICK: Final = 0.03
-"""Seconds that a short run may take."""
-
-_PIECE: Final = 0.4
-"""Seconds after which a longer run looks whether something newer is wanted."""
-
-_SMALLEST_PIECE: Final = 4_096
-"""Trials: with fewer, most of the time would go into what does not depend on their number."""
-
-_SKETCH: Final = 0.15
+_SKETCH: Final = 0.05
 """Seconds that what a tab shows may take while states move; what takes longer waits until they are at rest."""
 
 OPENS_WITH: Final = 3
@@ -109,36 +95,28 @@ class Session:
         self._pin_next = True
         self._held = False
         self._seq = 0
-        self._done: dict[str, object] = {}
+        self._done: dict[str | Tab, object] = {}
         self._models = KnownModels(model, MOVING_TRIALS)
         self._problem: str | None = None
         self._last: dict[str, Message] = {}
-        self._seconds: dict[bool, float] = {}
+        self._pace = Pace(len(model.needed.graph.formulas))
         self._moving: RunResult | None = None
         self._sketch_seconds = 0.0
         self._stopped_at = -1
         self._ended = False
+        self._stopped: Job | None = None
+        self._stopped_tabs: set[Tab] = set()
+        self._current: Job | None = None
         self._compare = 0
+        self._comparison: Comparison | None = None
         self._failed: set[Stage] = set()
+        self._history = History()
 
     # What windows are told
 
     def greeting(self) -> list[Message]:
         """All that a window needs that was just opened, or that comes back."""
-        return [self._book(), self._state(), *self._last.values(), *self._trouble()]
-
-    def _book(self) -> Message:
-        model = self.own
-        return {
-            "kind": "book",
-            "name": model.workbook.name,
-            "folder": str(model.path.parent),
-            "forecasts": forecast_rows(model),
-            "notices": [str(each) for each in model.notices],
-            "settings": _settings_text(model),
-            "shapes": shapes_of(model),
-            "z": t_quantile(math.inf, CONFIDENCE),
-        }
+        return [book_message(self.own), self._state(), *self._last.values(), *self._trouble()]
 
     def _state(self) -> Message:
         return {
@@ -147,29 +125,15 @@ class Session:
             "assumptions": assumption_rows(self.own, self.adjustments),
             "filters": filter_rows(self.own, self.adjustments),
             "changes": in_words(self.own.definitions, self.adjustments),
-            "scenarios": list(self._scenarios()),
+            "scenarios": list(scenario_rows(self.own.definitions, self.kept)),
             "shown": self.shown,
             "offered": in_words(self.own.definitions, self.offered),
             "behind": self.behind_is,
+            **dict(zip(("undo", "redo"), self._history.goes, strict=True)),
         }
 
-    def _scenarios(self) -> Iterator[Message]:
-        """The scenarios of the workbook, then those kept here, which replace one of the same name."""
-        definitions = self.own.definitions
-        for scenario in definitions.scenarios:
-            if scenario.name not in self.kept:
-                shows = adjustments_of(definitions, scenario) is not None
-                yield {"name": scenario.name, "changes": [changes_text(scenario)], "own": True, "shows": shows}
-        for name, each in self.kept.items():
-            yield {"name": name, "changes": in_words(definitions, each), "own": False, "shows": True}
-
     def _known(self, name: str) -> Adjustments | None:
-        """A scenario by name; None where there is none, or none that can be shown."""
-        if name in self.kept:
-            return self.kept[name].only(self.own.definitions)
-        definitions = self.own.definitions
-        found = next((each for each in definitions.scenarios if each.name == name), None)
-        return None if found is None else adjustments_of(definitions, found)
+        return known_scenario(self.own.definitions, self.kept, name)
 
     def _trouble(self) -> list[Message]:
         return [{"kind": "trouble", "about": "state", "text": self._problem or ""}]
@@ -182,50 +146,104 @@ class Session:
         Raises:
             XlmcError: it asks for what there is not.
         """
+        if said.kind in ("undo", "redo"):
+            return self._go(said.kind)
+        before = self._moment
+        changed = self._take(said)
+        dragged = (said["of"], said["name"], said["key"]) if said.kind == "set" and said["held"] else None
+        if said.kind not in ("view", "stop", "compare"):
+            self._history.note(before, self._moment, dragged)
+        if isinstance(changed, Replies):
+            return changed
+        return Replies(all=[self._state()] if changed else [])
+
+    def _take(self, said: Said) -> Replies | bool:
+        """Do what a message asks for; what to say, or whether the state is another one now."""
         match said.kind:
             case "set":
                 return self._set(said)
+            case "numbers":
+                return self._set_all(said)
             case "reset":
                 self._change(self.adjustments.without(said["of"], said["name"]) if said["name"] else Adjustments())
-                return Replies(all=[self._state()])
             case "view":
                 self.look(View.of([said], [each.name for each in self.own.forecasts]))
+                return False
             case "pin":
                 self.behind, self._behind_of = self.at_rest().run, self._now
                 self.behind_is = "; ".join(in_words(self.own.definitions, self.adjustments)) or "the workbook"
-                return Replies(all=[self._state()])
             case "stop":
-                self._stopped_at = self.version
+                self._stop()
+                return False
             case "restore":
                 found, self.offered = self.offered, Adjustments()
                 if said["take"]:
                     self._held = False
                     self._change(found.only(self.own.definitions))
-                return Replies(all=[self._state()])
             case "keep":
-                return self._keep(said["name"].strip())
+                self._keep(said["name"].strip())
             case "show":
-                return self._show(said["name"])
+                self._show(said["name"])
             case "compare":
                 self._compare += 1
+                self._comparison = Comparison(self.own, self.kept, self._pace.piece(resting=True))
+                return False
             case "variants":
                 self.kept |= usual_variants(self.own.definitions)
-                return Replies(all=[self._state()])
             case "drop":
                 self.kept.pop(said["name"], None)
                 self.shown = "" if self.shown == said["name"] else self.shown
-                return Replies(all=[self._state()])
-        return Replies()
+        return True
 
-    def _set(self, said: Said) -> Replies:
+    def _stop(self) -> None:
+        """Give up what is going on, and do not begin it again until something changes."""
+        self._stopped = self._current
+        if self._current is None or self._current.stage in RUNS:
+            self._stopped_at = self.version
+
+    @property
+    def _moment(self) -> Moment:
+        return Moment(self.adjustments, dict(self.kept), self.shown)
+
+    def _go(self, where: str) -> Replies:
+        """Undo, or redo."""
+
+        def fitting(each: Moment) -> Moment:
+            return Moment(each.adjustments.only(self.own.definitions), each.kept, each.shown)
+
+        go = self._history.undo if where == "undo" else self._history.redo
+        found = go(self._moment, fitting)
+        if found is not None:
+            self.kept, self._held = dict(found.kept), False
+            if found.adjustments != self.adjustments:
+                self._change(found.adjustments)
+            self.shown = found.shown if found.shown in self.kept or not found.shown else ""
+        return Replies(all=[self._state()])
+
+    def _set(self, said: Said) -> Replies | bool:
         of, name, key, value = said["of"], said["name"], said["key"], said["value"]
+        self._adjust(of, name, {key: value}, said["seq"])
+        self._held = said["held"]
         own = own_values(self.own.definitions, of, name)
-        if key not in own or ((key == "frozen") != isinstance(value, bool) and value is not None):
-            raise XlmcError(f"the workbook has no {of} {name!r} with {key!r} to be set")
-        self._held, self._seq = said["held"], said["seq"]
-        self._change(self.adjustments.having(of, name, key, None if value == own[key] else value))
         moved = {"kind": "moved", "of": of, "name": name, "key": key, "value": own[key] if value is None else value}
-        return Replies(all=[moved if self._held else self._state()])
+        return Replies(all=[moved]) if self._held else True
+
+    def _set_all(self, said: Said) -> bool:
+        self._adjust(said["of"], said["name"], said["values"], said["seq"])
+        self._held = False
+        return True
+
+    def _adjust(self, of: str, name: str, values: Mapping[str, Amount | None], seq: int) -> None:
+        """Set numbers and switches; None for the workbook's own."""
+        own = own_values(self.own.definitions, of, name)
+        for key, value in values.items():
+            if key not in own or ((key == "frozen") != isinstance(value, bool) and value is not None):
+                raise XlmcError(f"the workbook has no {of} {name!r} with {key!r} to be set")
+        found = self.adjustments
+        for key, value in values.items():
+            found = found.having(of, name, key, None if value == own[key] else value)
+        self._seq = seq
+        self._change(found)
 
     def _change(self, adjustments: Adjustments) -> None:
         self.adjustments = adjustments
@@ -233,21 +251,24 @@ class Session:
             self.shown = ""
         self.version += 1
 
-    def _keep(self, name: str) -> Replies:
+    def _keep(self, name: str) -> None:
         if not name:
             raise XlmcError("a scenario needs a name")
         self.kept[name] = self.adjustments
         self.shown = name
-        return Replies(all=[self._state()])
 
-    def _show(self, name: str) -> Replies:
+    def _show(self, name: str) -> None:
         found = self._known(name) if name else Adjustments()
         if found is None:
             raise XlmcError(f"there is no scenario {name!r} that can be shown")
         self._held = False
         self._change(found)
         self.shown = name
-        return Replies(all=[self._state()])
+
+    def adopt(self, kept: Mapping[str, Adjustments]) -> None:
+        """Take the scenarios that there are once those that another window kept are among them."""
+        self._history.learn({name: each for name, each in kept.items() if name not in self.kept})
+        self.kept = dict(kept)
 
     def replace_book(self, model: CompiledModel, news: Sequence[str]) -> list[Message]:
         """Take the workbook as it was saved meanwhile.
@@ -261,19 +282,21 @@ class Session:
         if before != self.adjustments and before not in self.kept.values() and not self.offered:
             self.offered = before  # what no longer fits is not lost: it may fit again
         self.version += 1
-        self._models, self._seconds = KnownModels(model, MOVING_TRIALS), {}
+        self._models, self._pace = KnownModels(model, MOVING_TRIALS), Pace(len(model.needed.graph.formulas))
         self._moving, self._sketch_seconds = None, 0.0
         self._problem, self._done = None, {}
         self.behind_is = "the workbook before it was saved"
         text = f"{model.workbook.name} was saved: {'; '.join(news) or 'nothing that a run depends on changed'}"
-        return [self._book(), self._state(), {"kind": "news", "text": text, "link": ""}, *self._trouble()]
+        return [book_message(self.own), self._state(), {"kind": "news", "text": text, "link": ""}, *self._trouble()]
 
     def at_rest(self) -> AtRest:
         """The state that is shown, with its run.
 
         Raises:
-            XlmcError: the run is not done yet.
+            XlmcError: the run is not done yet, or not possible.
         """
+        if self._is_faulty:
+            raise XlmcError(f"This state cannot be run: {self._problem}", hint="Move what it names back, or undo it")
         if self.rest is None or not self._is_at_rest:
             raise XlmcError("the run of this state is not done yet", hint="wait until it is")
         return AtRest(self.own, self.adjustments, self.shown, self.rest)
@@ -282,29 +305,50 @@ class Session:
 
     def job(self) -> Job | None:
         """What comes next; None where all is done."""
-        version, stopped = self.version, self._stopped_at == self.version
-        if self._done.get("compare", 0) != self._compare:
-            work = scenario_table(self.own, dict(self.kept), self._compare)
-            return Job("compare", version, False, work, {"compare": self._compare})
-        if self._problem is not None and self._done.get("tried") == version:
+        self._current = self._run() or self._shown() or self._of_scenarios() or self._part()
+        return self._current
+
+    def _run(self) -> Job | None:
+        """A run of the state, or what is shown of it while it moves."""
+        version = self.version
+        if self._is_faulty or self._stopped_at == version:
             return None
-        if not stopped:
-            for stage in ("quick", "moving", "sketch", "rest"):
-                if self._wants(stage):
-                    done = {"rest": version, "shown": self._sight} if stage == "rest" else {stage: version}
-                    return Job(stage, version, self._held, self._work(stage), done)
-        if self.rest is not None and self._done.get("rest") == version:
-            if self._done.get("shown") != self._sight:
-                work = charts_of(self.rest, self._compared, self._seq, self._sight)
-                return Job("shown", version, self._held, work, {"shown": self._sight})
-            for tab in self.view.tabs:
-                key = f"{tab.key} {tab.first} {tab.second}"
-                if tab.key in PARTS and self._done.get(key) != version:
-                    return Job("part", version, self._held, tab_of(self.rest, version, tab), {key: version})
+        for stage in RUNS:
+            if self._wants(stage):
+                done: dict[str | Tab, object] = {stage: version}
+                if stage == "rest":
+                    done["shown"] = self._sight
+                return Job(stage, version, self._held, self._work(stage), done)
+        return None
+
+    def _shown(self) -> Job | None:
+        """The charts of a run at rest for what can be seen now."""
+        if self.rest is None or not self._is_at_rest or self._done.get("shown") == self._sight:
+            return None
+        work = charts_of(self.rest, self._compared, self._seq, self._sight)
+        return Job("shown", self.version, self._held, work, {"shown": self._sight})
+
+    def _of_scenarios(self) -> Job | None:
+        if self._comparison is None or self._done.get("compare", 0) == self._compare:
+            return None
+        work = scenario_table(self._comparison, self._compare)
+        return Job("compare", self.version, self._held, work, {"compare": self._compare})
+
+    def _part(self) -> Job | None:
+        """The contents of an open tab."""
+        if self.rest is None or not self._is_at_rest:
+            return None
+        for tab in self.view.tabs:
+            if tab.key in PARTS and self._done.get(tab) != self.version:
+                work = tab_of(self.rest, self.version, tab)
+                return Job("part", self.version, self._held, work, {tab: self.version})
         return None
 
     def look(self, view: View) -> None:
-        """Take what can be seen now."""
+        """Take what can be seen now; a tab that was stopped and closed is made when it is opened again."""
+        for tab in self._stopped_tabs - set(view.tabs):
+            self._stopped_tabs.discard(tab)
+            self._done.pop(tab, None)
         self.view = view
 
     @property
@@ -329,7 +373,7 @@ class Session:
             shown = any(tab.key == SKETCHED for tab in self.view.tabs)
             return shown and self._moving is not None and self._sketch_seconds < _SKETCH and not self._is_at_rest
         if stage == "quick":
-            return self._is_slow and self.version not in (self._done.get("moving"), self._done.get("rest"))
+            return self._pace.is_slow and self.version not in (self._done.get("moving"), self._done.get("rest"))
         return stage == "rest" or self._done.get("rest") != self.version
 
     @property
@@ -344,24 +388,17 @@ class Session:
         return self.offered
 
     @property
-    def _is_slow(self) -> bool:
-        """Whether a run of `MOVING_TRIALS` takes long; before the first run, whether it looks so."""
-        if False not in self._seconds:
-            return len(self.own.needed.graph.formulas) > MANY_FORMULAS
-        return self._seconds[False] * MOVING_TRIALS > _SLOW
-
-    def _trials_in(self, seconds: float, *, resting: bool) -> int:
-        """How many trials take so long, a power of two; of a run at rest, or of one that moves."""
-        known = self._seconds.get(resting, self._seconds.get(False))
-        return _QUICK_TRIALS if not known else 1 << max(_FEWEST_TRIALS, int(seconds / known)).bit_length() - 1
+    def _is_faulty(self) -> bool:
+        """Whether the state was tried and is not possible."""
+        return self._problem is not None and self._done.get("tried") == self.version
 
     def _work(self, stage: Stage) -> Work:
         """What a stage before the run at rest, or that run itself, has to do."""
         if stage == "sketch":
             assert self._moving is not None
-            return sketched_tab(self._moving, self.version)
-        resting, slow = stage == "rest", self._is_slow
-        whole = BLOCK if resting else MOVING_TRIALS
+            tab = next(tab for tab in self.view.tabs if tab.key == SKETCHED)
+            return sketched_tab(self._moving, self.version, tab, 2.0 * _SKETCH)
+        resting, pace = stage == "rest", self._pace
         return StateRun(
             stage=stage,
             version=self.version,
@@ -371,14 +408,14 @@ class Session:
             view=self.view,
             behind=self._compared,
             way="rejection" if self.rest is None else self.rest.settings.evidence,
-            trials=self._trials_in(_QUICK, resting=False) if stage == "quick" else MOVING_TRIALS,
-            piece=max(_SMALLEST_PIECE, self._trials_in(_PIECE, resting=resting)) if slow else whole,
-            watched=resting or (slow and stage == "moving"),
+            trials=pace.quick_trials if stage == "quick" else MOVING_TRIALS,
+            piece=pace.piece(resting=resting),
+            watched=resting or (pace.is_slow and stage == "moving"),
         ).run
 
     def finish(self, job: Job, outcome: Outcome) -> list[Message]:
         """Take what a job found; what windows are told of it."""
-        if job.stage not in ("quick", "moving", "rest"):
+        if job.stage == "sketch" or job.stage not in RUNS:
             return self._finish_shown(job, outcome)
         if outcome.problem is not None:
             if job.version != self.version:
@@ -391,14 +428,12 @@ class Session:
             self._problem = None
             over = self._trouble()
         self._done |= job.done
-        if outcome.seconds is not None and (job.stage != "quick" or not self._seconds):
-            resting = job.stage == "rest"
-            before = self._seconds.get(resting, outcome.seconds)
-            self._seconds[resting] = min(outcome.seconds, 2.0 * before)  # other work on the machine only ever slows
+        if outcome.seconds is not None:
+            self._pace.learn(outcome.seconds, resting=job.stage == "rest", quick=job.stage == "quick")
         found = list(outcome.messages)
         self._moving = outcome.simulation if job.stage == "moving" and job.version == self.version else None
         if job.stage == "rest" and job.version == self.version:
-            self.rest = outcome.simulation
+            self.rest, self._sketch_seconds = outcome.simulation, 0.0
             if self._pin_next and not self.adjustments and outcome.simulation is not None:
                 self.behind, self._behind_of, self._pin_next = outcome.simulation, self._now, False
         self._remember(found)
@@ -417,19 +452,27 @@ class Session:
             self._failed.discard(job.stage)
         else:
             self._failed.add(job.stage)
-            told += self.superseded(job) if job.stage == "compare" else []
+            if job.stage == "compare":
+                self._done["compare"] = self._compare
+                told.append(_over(job, "stopped"))
         return told
 
     def superseded(self, job: Job) -> list[Message]:
         """A job was given up: something newer is wanted, or a person stopped it."""
-        if job.stage == "compare":
-            self._done["compare"] = self._compare
-        return [{"kind": "running", "version": job.version, "stage": "stopped", "share": 1.0}]
+        if job.stage == "sketch":
+            self._sketch_seconds = math.inf  # until a state is at rest
+            return []
+        stopped = job is self._stopped
+        if stopped and job.stage not in RUNS:
+            self._done |= job.done
+            self._stopped_tabs |= {key for key in job.done if isinstance(key, Tab)}
+        return [_over(job, "stopped" if stopped else "over")]
 
     def wanted(self, job: Job) -> bool:
-        """Whether a job's outcome is still wanted."""
-        newest = job.version == self.version or job.stage == "compare"
-        return not self._ended and newest and self._stopped_at != job.version
+        """Whether a job's outcome is still wanted: of the newest state, and of what is open."""
+        is_open = all(key in self.view.tabs for key in job.done if isinstance(key, Tab))
+        asked = job.done.get("compare", self._compare) == self._compare
+        return not self._ended and job.version == self.version and is_open and asked and self._stopped is not job
 
     def end(self) -> None:
         """Want nothing any more."""
@@ -441,9 +484,5 @@ class Session:
                 self._last[f"{each['kind']} {each.get('tab', '')}"] = each
 
 
-def _settings_text(model: CompiledModel) -> str:
-    """`200,000 trials, Monte Carlo, seed 999`."""
-    from xlmc.montecarlo.sampling.sampling_methods import METHODS
-
-    settings = model.definitions.settings
-    return f"{settings.trials:,} trials, {METHODS[settings.sampling].name}, seed {settings.seed}"
+def _over(job: Job, how: str) -> Message:
+    return {"kind": "running", "version": job.version, "stage": how, "share": 1.0}

@@ -9,22 +9,35 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.analysis.results.statements.in_words import distribution_text, limits_text, status
+from xlmc.analysis.results.statements.in_words import changes_text, distribution_text, limits_text, status
 from xlmc.excel.address import Cell
-from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Filter, Parameter
+from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Parameter
 from xlmc.montecarlo.distributions.whole_numbers import WholeNumbers
 from xlmc.montecarlo.model.model import CompiledModel
-from xlmc.montecarlo.statistics.estimate import finite
+from xlmc.montecarlo.sampling.sampling_methods import METHODS
+from xlmc.montecarlo.statistics.estimate import finite, t_quantile
 from xlmc.outputs.live.adjustments import (
     BAND,
     LIMITS,
     Adjustments,
     adjusted_definitions,
+    adjustments_of,
     assumption_numbers,
+    in_words,
     movable_limits,
 )
+from xlmc.outputs.live.protocol import Message
+from xlmc.outputs.page.payload import CONFIDENCE
 
-__all__ = ["assumption_rows", "filter_rows", "forecast_rows", "shapes_of"]
+__all__ = [
+    "assumption_rows",
+    "book_message",
+    "filter_rows",
+    "forecast_rows",
+    "known_scenario",
+    "scenario_rows",
+    "shapes_of",
+]
 
 _ON_AXIS: Final = frozenset(
     {"low", "high", "likeliest", "low_likeliest", "high_likeliest", "mean", "location", "value", *CUTOFFS}
@@ -109,7 +122,7 @@ def shapes_of(model: CompiledModel, names: Sequence[str] | None = None) -> dict[
     """
     return {
         name: found
-        for name, values in model.quantiles(_PROBABILITIES).items()
+        for name, values in model.quantiles(_PROBABILITIES, names).items()
         if (names is None or name in names) and (found := _shape(values)) is not None
     }
 
@@ -162,3 +175,41 @@ def _filter(filter_: Filter, own: Filter) -> dict[str, Any]:
 def forecast_rows(model: CompiledModel) -> list[dict[str, Any]]:
     """Every forecast: its name and units."""
     return [{"name": each.name, "units": each.units, "cell": str(each.cell)} for each in model.forecasts]
+
+
+def book_message(model: CompiledModel) -> Message:
+    """The message that tells of the workbook as it is."""
+    return {
+        "kind": "book",
+        "name": model.workbook.name,
+        "folder": str(model.path.parent),
+        "forecasts": forecast_rows(model),
+        "notices": [str(each) for each in model.notices],
+        "settings": _settings_text(model),
+        "shapes": shapes_of(model),
+        "z": t_quantile(math.inf, CONFIDENCE),
+    }
+
+
+def _settings_text(model: CompiledModel) -> str:
+    """`200,000 trials, Monte Carlo, seed 999`."""
+    settings = model.definitions.settings
+    return f"{settings.trials:,} trials, {METHODS[settings.sampling].name}, seed {settings.seed}"
+
+
+def scenario_rows(definitions: Definitions, kept: Mapping[str, Adjustments]) -> Iterator[Message]:
+    """The scenarios of the workbook, then those kept in the window, which replace one of the same name."""
+    for scenario in definitions.scenarios:
+        if scenario.name not in kept:
+            shows = adjustments_of(definitions, scenario) is not None
+            yield {"name": scenario.name, "changes": [changes_text(scenario)], "own": True, "shows": shows}
+    for name, each in kept.items():
+        yield {"name": name, "changes": in_words(definitions, each), "own": False, "shows": True}
+
+
+def known_scenario(definitions: Definitions, kept: Mapping[str, Adjustments], name: str) -> Adjustments | None:
+    """A scenario by name; None where there is none, or none that can be shown."""
+    if name in kept:
+        return kept[name].only(definitions)
+    found = next((each for each in definitions.scenarios if each.name == name), None)
+    return None if found is None else adjustments_of(definitions, found)

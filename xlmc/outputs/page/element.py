@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from functools import cache
 from html import escape
 
+from xlmc.montecarlo.interruption import checkpoint
+
 __all__ = ["EMPTY", "Html", "element", "join", "void"]
 
 
@@ -30,6 +32,7 @@ def element(name: str, /, *children: Html | str, **attributes: str | None) -> Ht
     >>> element("b", "a < b", class_="x").source
     '<b class="x">a &lt; b</b>'
     """
+    checkpoint()
     return Html(f"<{name}{_attributes(attributes)}>{join(children).source}</{name}>")
 
 

@@ -27,12 +27,72 @@ function valueText(value, decimals) {
   return value.toFixed(Math.max(decimals, 0));
 }
 
+const MOST_TYPED = 200; // characters
+const GROUPS = [
+  /^[1-9]\d{0,2}(?:,\d{3})+(?:\.\d*)?$/, // 6,700 and 1,234.5
+  /^\d{1,3}(?:[ \u00a0\u2009\u202f'\u2019]\d{3})+(?:[.,]\d*)?$/, // 6 700 and 6 700,5
+  /^\d{1,3}(?:\.\d{3})+,\d*$/, // 6.700,5
+  /^\d{1,3}(?:\.\d{3}){2,}$/, // 1.234.567
+];
+const DECIMAL = /^(?:\d+[.,]?\d*|[.,]\d+)$/; // a comma that separates no thousands is a decimal comma: 0,7
+
+/** A number without a sign as people write it: 6700, 6,700, 6 700, 1.5e3, 0,7; NaN where it is none. */
+function plainNumber(text) {
+  const [, digits, power] = text.match(/^(.*?)(e[+-]?\d{1,4})?$/is);
+  const grouped = GROUPS.findIndex((groups) => groups.test(digits));
+  if (grouped < 0) return DECIMAL.test(digits) ? Number(digits.replace(",", ".") + (power ?? "")) : NaN;
+  const whole = digits.replace(grouped < 1 ? /,/g : grouped < 2 ? /[ \u00a0\u2009\u202f'\u2019]/g : /\./g, "");
+  return Number(whole.replace(",", ".") + (power ?? ""));
+}
+
+/** 6600+100: numbers, + - * / ^, parentheses and percent, in Excel's order; NaN where it is something else. */
+function computed(text) {
+  const parts = text.match(/(?:\d[\d.,'\u2019]*|[.,]\d+)(?:e[+-]?\d+)?|\S/gi) ?? [];
+  let at = 0;
+  const take = (...signs) => (signs.includes(parts[at]) ? parts[at++] : null);
+  const single = () => {
+    if (take("-")) return -single();
+    if (take("+")) return single();
+    let value = NaN;
+    if (take("(")) {
+      value = sum();
+      if (!take(")")) return NaN;
+    } else if (at < parts.length) value = plainNumber(parts[at++]);
+    while (take("%")) value /= 100;
+    return value;
+  };
+  const row = (of, acts) => {
+    let value = of();
+    for (let sign = take(...Object.keys(acts)); sign; sign = take(...Object.keys(acts))) value = acts[sign](value, of());
+    return value;
+  };
+  const power = () => row(single, { "^": (a, b) => a ** b });
+  const product = () => row(power, { "*": (a, b) => a * b, "/": (a, b) => a / b });
+  const sum = () => row(product, { "+": (a, b) => a + b, "-": (a, b) => a - b });
+  const value = sum();
+  return at === parts.length ? value : NaN;
+}
+
 /** What was typed, as a number; null where it is none. Nothing, "-inf" and "∞" are the open end. */
 function typed(text, open) {
-  const plain = text.trim().replace("−", "-");
+  const plain = text.trim().replaceAll("−", "-");
   if (plain === "") return open;
   if (/^-(∞|inf|infinity)$/i.test(plain)) return -Infinity;
   if (/^\+?(∞|inf|infinity)$/i.test(plain)) return Infinity;
-  const value = Number(plain.replace(/%$/, ""));
+  if (plain.length > MOST_TYPED) return null;
+  const [, sign, number] = plain.replace(/\s*%$/, "").match(/^([+-]?)\s*(.*)$/s);
+  const value = plain.startsWith("=") ? computed(plain.slice(1)) : plainNumber(number) * (sign === "-" ? -1 : 1);
   return Number.isFinite(value) ? value : null;
+}
+
+/** Why a text is refused where a number is wanted. */
+function whyNoNumber(text) {
+  const plain = text.trim();
+  if (!plain) return "Type a number.";
+  if (plain.length > MOST_TYPED) return `Type at most ${MOST_TYPED} characters.`;
+  if (/^[=+−-]?[\d.,e+\s]+$/i.test(plain) && /\d{300}|e\+?\d{3,}/i.test(plain)) return "This number is too large.";
+  if (/^[+−-]?(∞|inf|infinity)$/i.test(plain)) return "This must be a finite number.";
+  if (plain.startsWith("=")) return "This cannot be computed: type numbers with + - * / ^ and parentheses, as =6600+100.";
+  if (/^[+−-]?[\d.,\s]+$/.test(plain)) return "This may be read in several ways: type it as 6700 or 0.7.";
+  return "This is no number: type 6700, 6,700, 1.5e3 or =6600+100.";
 }

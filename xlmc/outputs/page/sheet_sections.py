@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import TYPE_CHECKING
 
 from xlmc.analysis.results.record import Entry, Record, RecordTable, Section, Value
@@ -53,10 +53,10 @@ _OPEN = frozenset({"run", "file", "trials", "sampling", "software"})
 _CODE = frozenset({"repeat", "command", "fingerprint", "sha256", "original_sha256"})
 
 
-def certainty(simulation: RunResult) -> Html:
-    """How certain the central ranges are."""
+def certainty(simulation: RunResult, names: Collection[str] | None = None) -> Html:
+    """How certain the central ranges are, of the forecasts of these names; None: of all."""
     flow = Flow()
-    write_ranges(flow, simulation)
+    write_ranges(flow, simulation, names)
     said = "The share of the accepted trials below, in and above each central range, as it is rounded here."
     return element(
         "section", element("h2", "Certainty of ranges"), element("p", said, class_="remark"), flow.html, id="certainty"
@@ -84,10 +84,10 @@ def scenarios(simulation: RunResult) -> Html:
     return element("section", element("h2", "Scenarios"), flow.html, id="scenarios")
 
 
-def statistics(simulation: RunResult) -> Html:
-    """Everything about the accepted trials of each forecast."""
+def statistics(simulation: RunResult, names: Collection[str] | None = None) -> Html:
+    """Everything about the accepted trials of each forecast of these names; None: of all."""
     forecasts = []
-    for result in simulation.results.values():
+    for result in (each for name, each in simulation.results.items() if names is None or name in names):
         flow = Flow()
         write_forecast(flow, result)
         forecasts.append(element("div", flow.html, class_="forecast-statistics"))

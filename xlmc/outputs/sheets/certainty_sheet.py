@@ -9,6 +9,7 @@ exact; a criterion of COUNTIFS is a text of 15 digits.
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -55,9 +56,10 @@ def write_certainty(page: Page, simulation: RunResult, trials: TrialsAt) -> None
     page.set_up_printing(name)
 
 
-def write_ranges(page: Page, simulation: RunResult) -> None:
-    """Write the certainty of every forecast's central range and threshold."""
-    rows = [_line(name, each) for name, result in simulation.results.items() for each in certainties(result)]
+def write_ranges(page: Page, simulation: RunResult, names: Collection[str] | None = None) -> None:
+    """Write the certainty of the central range and the threshold of the forecasts of these names; None: of all."""
+    results = {name: each for name, each in simulation.results.items() if names is None or name in names}
+    rows = [_line(name, each) for name, result in results.items() for each in certainties(result)]
     if not rows:
         page.wide("No forecast has a number in an accepted trial.", "paragraph", LAST)
         return

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.statements.in_words import changes_text
@@ -48,8 +49,16 @@ def write_scenarios(page: Page, simulation: RunResult) -> None:
     page.set_up_printing(name)
 
 
-def write_scenario_tables(page: Page, found: Sequence[ScenarioAnswers]) -> None:
-    """Write what each scenario changes and how much is accepted; then its answers, a table a forecast."""
+def write_scenario_tables(
+    page: Page, found: Sequence[ScenarioAnswers], impossible: Mapping[str, str] = MappingProxyType({})
+) -> None:
+    """Write what each scenario changes and how much is accepted; then its answers, a table a forecast.
+
+    Args:
+        page: where to.
+        found: of the workbook itself, then of each scenario.
+        impossible: why a scenario has no answers, by its name.
+    """
     for warning in scenario_warnings(found):
         page.wide(warning, "warning", _LAST)
     page.heading("What is changed, and how many trials are accepted")
@@ -58,6 +67,8 @@ def write_scenario_tables(page: Page, found: Sequence[ScenarioAnswers]) -> None:
     page.line([Shown(head, look="header left" if head == heads[0] else "header") for head in heads], starts, _LAST)
     for each in found:
         page.line([*_accepted(each), Shown(_changes(each))], starts, _LAST)
+    for name, why in impossible.items():
+        page.line([Shown(name, look="name"), *[BLANK] * (_CHANGES - 1), Shown(f"Not possible: {why}")], starts, _LAST)
     for index, forecast in enumerate(found[0].forecasts):
         page.heading(forecast.title)
         states = [each.forecasts[index] for each in found]

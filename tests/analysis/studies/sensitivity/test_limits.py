@@ -105,7 +105,7 @@ def test_errors_are_the_spread_between_runs(below, monkeypatch):
     monkeypatch.setattr("xlmc.analysis.studies.sensitivity.limit_trials.LEAST_AGAIN", 4000)
     runs = []
     for seed in range(40):
-        (tried,) = limit_trials(simulated(below, 16_000, seed), 1, 1).tried
+        (tried,) = limit_trials(simulated(below, 16_000, seed), 1, [0]).tried
         runs.append(moved_limit(tried.trials, tried.grid, ["y"], [0.51]))
     numbers = {
         "slope": lambda limit: limit[1][0].mean,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 from weakref import WeakKeyDictionary
@@ -16,6 +17,7 @@ from xlmc.analysis.studies.sensitivity.one_at_a_time import one_at_a_time
 from xlmc.analysis.studies.sensitivity.pick_and_freeze import SobolRun, pick_and_freeze, why_not
 
 if TYPE_CHECKING:
+    from xlmc.montecarlo.definitions.definitions import Forecast
     from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["sensitivities"]
@@ -25,27 +27,42 @@ _MOST_LIMIT_FORECASTS: Final = 12
 """The most limits; more would make no readable charts, and take long."""
 
 _WORDS: Final = {">=": "at least", "<=": "at most", ">": "above", "<": "below"}
-_FOUND: Final[WeakKeyDictionary[RunResult, Sensitivities]] = WeakKeyDictionary()
-"""Sheets, page and JSON of one run want the same."""
+_FOUND: Final[WeakKeyDictionary[RunResult, dict[tuple[int, ...], Sensitivities]]] = WeakKeyDictionary()
+"""By the numbers of the forecasts. Sheets, page and JSON of one run want the same."""
 
 
-def sensitivities(simulation: RunResult) -> Sensitivities:
-    """What the answers of a finished run depend on. Nothing random is in it but the run's own draws."""
-    if simulation not in _FOUND:
-        _FOUND[simulation] = _analyse(simulation)
-    return _FOUND[simulation]
+def sensitivities(
+    simulation: RunResult, names: Collection[str] | None = None, told: Callable[[float], None] = lambda share: None
+) -> Sensitivities:
+    """What the answers of a finished run depend on. Nothing random is in it but the run's own draws.
+
+    Args:
+        simulation: the run.
+        names: of the forecasts that are wanted; None for all. Of fewer, more trials may be examined.
+        told: takes the share of the work that is done.
+    """
+    model, known = simulation.model, _FOUND.setdefault(simulation, {})
+    wanted = tuple(i for i, each in enumerate(model.forecasts) if names is None or each.name in names)
+    if wanted not in known:
+        known[wanted] = _analyse(simulation, wanted, told)
+    return known[wanted]
 
 
-def _analyse(simulation: RunResult) -> Sensitivities:
+def _analyse(simulation: RunResult, wanted: Sequence[int], told: Callable[[float], None]) -> Sensitivities:
     model = simulation.model
+    forecasts = [model.forecasts[index] for index in wanted]
     assumptions = ranked_assumptions(simulation)
-    found = influences(simulation, assumptions)
-    moves = one_at_a_time(model, assumptions)
+    found = influences(simulation, assumptions, forecasts, lambda share: told(0.5 * share))
+    moves = one_at_a_time(model, assumptions, wanted)
     reason = why_not(simulation) if assumptions else "Sobol indices are not given: no assumption is drawn"
-    sobol = (
-        SobolRun(0, {}) if reason else pick_and_freeze(model, assumptions, simulation.trials, simulation.settings.seed)
-    )
-    limits = limit_trials(simulation, _MOST_LIMITS, _MOST_LIMIT_FORECASTS)
+    told(0.5)
+    sobol = SobolRun(0, {})
+    if not reason:
+        seed = simulation.settings.seed
+        sobol = pick_and_freeze(
+            model, assumptions, simulation.trials, seed, wanted, lambda share: told(0.5 + 0.5 * share)
+        )
+    limits = limit_trials(simulation, _MOST_LIMITS, wanted[:_MOST_LIMIT_FORECASTS])
     return Sensitivities(
         accepted=simulation.accepted,
         examined=max((each.trials for each in found), default=0),
@@ -58,13 +75,13 @@ def _analyse(simulation: RunResult) -> Sensitivities:
                 base=moves.base[index],
                 bars=moves.bars[index],
             )
-            for index, (forecast, each) in enumerate(zip(model.forecasts, found, strict=True))
+            for index, forecast, each in zip(wanted, forecasts, found, strict=True)
         ),
         omitted=len(model.live) - len(assumptions),
         medians=moves.medians,
         sobol_reason=reason,
         sobol_trials=sobol.pairs,
-        filter_limits=tuple(_move_limit(simulation, tried) for tried in limits.tried),
+        filter_limits=tuple(_move_limit(forecasts[:_MOST_LIMIT_FORECASTS], tried) for tried in limits.tried),
         omitted_limits=limits.omitted,
         varying_limits=limits.varying,
     )
@@ -77,8 +94,7 @@ def _with_sobol(influence: Influence, run: SobolRun, forecast: int) -> Influence
     return replace(influence, first_order=first, total=total)
 
 
-def _move_limit(simulation: RunResult, tried: TriedLimit) -> FilterLimit:
-    forecasts = simulation.model.forecasts[:_MOST_LIMIT_FORECASTS]
+def _move_limit(forecasts: Sequence[Forecast], tried: TriedLimit) -> FilterLimit:
     names, shares = [f.name for f in forecasts], [f.central for f in forecasts]
     with np.errstate(over="ignore", invalid="ignore"):  # forecasts near the largest double have no slope
         points, slopes = moved_limit(tried.trials, tried.grid, names, shares) if tried.grid else ((), ())

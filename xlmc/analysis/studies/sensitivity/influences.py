@@ -7,7 +7,7 @@ replicates, because later ones of a Sobol replicate fill the gaps that earlier o
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
@@ -30,6 +30,7 @@ from xlmc.analysis.studies.sensitivity.ranked import Ranked
 from xlmc.montecarlo.columns import picked
 
 if TYPE_CHECKING:
+    from xlmc.montecarlo.definitions.definitions import Forecast
     from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["MOST_ASSUMPTIONS", "Influences", "influences", "ranked_assumptions"]
@@ -91,9 +92,13 @@ def ranked_assumptions(simulation: RunResult) -> list[str]:
     return [live[index] for index in first]
 
 
-def influences(simulation: RunResult, assumptions: Sequence[str]) -> list[Influences]:
-    """The influences of the assumptions of these names on every forecast, in the order of the workbook."""
-    forecasts = simulation.model.forecasts
+def influences(
+    simulation: RunResult,
+    assumptions: Sequence[str],
+    forecasts: Sequence[Forecast],
+    told: Callable[[float], None] = lambda share: None,
+) -> list[Influences]:
+    """The influences of the assumptions of these names on each of these forecasts; `told` takes the share done."""
     rows, replicate = _examined_rows(simulation, _trials_for(len(assumptions) * len(forecasts)))
     draws = [_read_draws(simulation, name, rows) for name in assumptions]
     units = {a.name: a.units for a in simulation.model.live}
@@ -107,20 +112,23 @@ def influences(simulation: RunResult, assumptions: Sequence[str]) -> list[Influe
         if key not in tables:
             tables[key] = _Table.of(draws, replicate, known)
         found.append(tables[key].influences(named, y[known]))
+        told(len(found) / len(forecasts))
     for trials in _FINE_TRIALS:
         pairs = sum(len(each.coarse) for each in found)
         most = min(trials, _FINE_VALUES // max(pairs, 1))
         if pairs and most > rows.size < simulation.accepted:
-            found = _with_finer_shares(simulation, found, most)
+            found = _with_finer_shares(simulation, forecasts, found, most)
     return found
 
 
-def _with_finer_shares(simulation: RunResult, found: Sequence[Influences], most: int) -> list[Influences]:
+def _with_finer_shares(
+    simulation: RunResult, forecasts: Sequence[Forecast], found: Sequence[Influences], most: int
+) -> list[Influences]:
     """The same with the shares that ask for it from up to `most` trials."""
     rows, replicate = _examined_rows(simulation, most)
     tables: dict[bytes, tuple[Units, dict[str, Ranked]]] = {}
     finer = []
-    for forecast, each in zip(simulation.model.forecasts, found, strict=True):
+    for forecast, each in zip(forecasts, found, strict=True):
         if not each.coarse:
             finer.append(each)
             continue

@@ -6,7 +6,7 @@ running some of the run's first trials again, with the same draws, no more than 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from xlmc.analysis.studies.sensitivity.moved_limit import LimitTrials, grid, holds_to
 from xlmc.engine.engine import Target
 from xlmc.excel.address import Cell
+from xlmc.montecarlo.interruption import checkpoint
 from xlmc.montecarlo.loop.blocks import portions
 from xlmc.montecarlo.model.draw_binding import parameter_target
 from xlmc.montecarlo.model.needed import filter_condition, filter_limits
@@ -144,8 +145,8 @@ class _More:
         return cls(*(np.concatenate(each, axis=-1) for each in zip(*columns, strict=True)))
 
 
-def limit_trials(simulation: RunResult, most: int, forecasts: int) -> LimitsFound:
-    """Gather the trials of the first `most` limits of a run, and its first `forecasts` forecasts in them.
+def limit_trials(simulation: RunResult, most: int, forecasts: Sequence[int]) -> LimitsFound:
+    """Gather the trials of the first `most` limits of a run, and the forecasts with these numbers in them.
 
     Nothing is found where the draws of fewer than two accepted trials were kept, and no limit is tried where accepted
     trials are rare: those near it are not among the run's plain trials.
@@ -164,9 +165,9 @@ def limit_trials(simulation: RunResult, most: int, forecasts: int) -> LimitsFoun
         for i in fixed_limits[:most]
     }
     reached = simulation.trials if m == simulation.accepted else int(simulation.trial_index[m])
-    names = [f.name for f in simulation.model.forecasts[:forecasts]]
+    names = [simulation.model.forecasts[number].name for number in forecasts]
     again = min(reached, _MOST_AGAIN, max(LEAST_AGAIN, simulation.trials // 4))
-    more = _find_rejected(simulation, cells, grids, again, len(names))
+    more = _find_rejected(simulation, cells, grids, again, forecasts)
     index = np.asarray(simulation.trial_index[:m])
     answers = np.array([simulation.forecasts[name][:m] for name in names]).reshape(len(names), m)
     tried = []
@@ -202,7 +203,11 @@ def _look_at_accepted(simulation: RunResult, cells: _LimitCells, m: int) -> _Cel
 
 
 def _find_rejected(
-    simulation: RunResult, cells: _LimitCells, grids: Mapping[int, tuple[float, ...]], again: int, forecasts: int
+    simulation: RunResult,
+    cells: _LimitCells,
+    grids: Mapping[int, tuple[float, ...]],
+    again: int,
+    forecasts: Sequence[int],
 ) -> dict[int, _More]:
     """For each limit, those of the first `again` trials that it alone rejects and that its loosest value lets in."""
     parts: dict[int, list[_More]] = {i: [] for i in grids}
@@ -213,6 +218,7 @@ def _find_rejected(
         sampler = simulation.model.sampler(simulation.settings.seed, block, "numpy", plan)
         evaluator = program.evaluator(block)
     for start in range(0, again if chosen else 0, block):
+        checkpoint()
         n = min(block, again - start)
         draws = {key: values[:n] for key, values in sampler.draw(start).items()}
         looked = cells.look(evaluator, draws, n)
@@ -221,12 +227,13 @@ def _find_rejected(
         every = np.flatnonzero(np.logical_or.reduce(list(let_in.values())))
         if not every.size:
             continue
-        answers = np.array([column.as_floats() for column in evaluator.forecasts(every)[:forecasts]])
+        columns = evaluator.forecasts(every)
+        answers = np.array([columns[number].as_floats() for number in forecasts]).reshape(-1, every.size)
         for i, mask in let_in.items():
             mine = mask[every]
             values = looked.filters[cells.limits[i].filter_index][every[mine]]
             parts[i].append(_More(every[mine] + start, values, answers[:, mine]))
-    return {i: _More.join(found, forecasts) for i, found in parts.items()}
+    return {i: _More.join(found, len(forecasts)) for i, found in parts.items()}
 
 
 def _within_loosest(limit: Limit, looked: _CellValues, limits: tuple[float, ...]) -> NDArray[np.bool_]:

@@ -7,7 +7,7 @@ one that the filters would reject; that is marked.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.analysis.studies.sensitivity.measures import PERCENTS, Bar
+from xlmc.montecarlo.interruption import checkpoint
 from xlmc.montecarlo.statistics.estimate import finite
 
 if TYPE_CHECKING:
@@ -41,15 +42,26 @@ class OneAtATime:
     medians: tuple[str, ...]
 
 
-def one_at_a_time(model: CompiledModel, assumptions: Sequence[str]) -> OneAtATime:
-    """Move each of the live assumptions of these names."""
+def one_at_a_time(
+    model: CompiledModel, assumptions: Sequence[str], forecasts: Collection[int] | None = None
+) -> OneAtATime:
+    """Move each of the live assumptions of these names.
+
+    Args:
+        model: to evaluate.
+        assumptions: names of live ones.
+        forecasts: numbers of those whose bars are wanted; None for all.
+    """
     quantiles = model.quantiles([*(percent / 100.0 for percent in PERCENTS), 0.5])
     base = {a.name: float(quantiles[a.name][-1]) if a.base is None else float(a.base) for a in model.live}
     units = {a.name: a.units for a in model.live}
     moved = {name: quantiles[name][:-1] for name in assumptions}
     answers, rejected = _evaluate(model, base, moved)
-    bars = []
-    for each in answers:
+    bars: list[tuple[Bar, ...]] = []
+    for number, each in enumerate(answers):
+        if forecasts is not None and number not in forecasts:
+            bars.append(())
+            continue
         made = [
             _bar(name, units[name], base[name], moved[name], each[cases], rejected[cases])
             for index, name in enumerate(assumptions)
@@ -73,6 +85,7 @@ def _evaluate(model: CompiledModel, base: dict[str, float], moved: dict[str, Flo
     answers: list[list[Floats]] = []
     rejected = []
     for first in range(0, cases, block):
+        checkpoint()
         n = min(block, cases - first)
         columns = {name: np.full(n, value) for name, value in base.items()} | model.certain(n)
         for name, start in starts.items():

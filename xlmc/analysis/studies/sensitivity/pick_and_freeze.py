@@ -13,7 +13,7 @@ known. They hold for independent assumptions and trials that no filter rejects.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -44,11 +44,11 @@ class SobolRun:
 
     Attributes:
         pairs: of independent trials.
-        indices: assumption -> one (first order, total) a forecast, in the order of the workbook.
+        indices: assumption -> number of a forecast, in the order of the workbook -> (first order, total).
     """
 
     pairs: int
-    indices: Mapping[str, tuple[tuple[Estimate, Estimate], ...]]
+    indices: Mapping[str, Mapping[int, tuple[Estimate, Estimate]]]
 
 
 def why_not(simulation: RunResult) -> str:
@@ -72,7 +72,14 @@ def why_not(simulation: RunResult) -> str:
     return ""
 
 
-def pick_and_freeze(model: CompiledModel, assumptions: Sequence[str], trials: int, seed: int) -> SobolRun:
+def pick_and_freeze(
+    model: CompiledModel,
+    assumptions: Sequence[str],
+    trials: int,
+    seed: int,
+    forecasts: Collection[int] | None = None,
+    told: Callable[[float], None] = lambda share: None,
+) -> SobolRun:
     """The indices of a model without correlations, whatever its filters; of very many assumptions, of the first ones.
 
     Args:
@@ -80,6 +87,8 @@ def pick_and_freeze(model: CompiledModel, assumptions: Sequence[str], trials: in
         assumptions: names of live ones, of which the indices are wanted.
         trials: of the run; no more than half as many are evaluated, but some at least.
         seed: of the run. The trials are its first ones by Monte Carlo, and those that follow them.
+        forecasts: numbers of those that are wanted; None for all.
+        told: takes the share that is done.
     """
     evaluations = max(_LEAST_EVALUATED, min(_MOST_EVALUATED, trials // 2))
     chosen = assumptions[: max(evaluations // _LEAST_PAIRS - 2, 1)]
@@ -89,10 +98,12 @@ def pick_and_freeze(model: CompiledModel, assumptions: Sequence[str], trials: in
     first, second = _draws(model, seed, 0, pairs, block), _draws(model, seed, pairs, pairs, block)
     evaluator = program.evaluator(block)
     a, b = (_answers(evaluator, draws, pairs, block) for draws in (first, second))
-    found = {}
+    found: dict[str, dict[int, tuple[Estimate, Estimate]]] = {}
     for name in chosen:
         c = _answers(evaluator, {**first, name: second[name]}, pairs, block)
-        found[name] = tuple(sobol_indices(*answers) for answers in zip(a, b, c, strict=True))
+        wanted = range(len(c)) if forecasts is None else forecasts
+        told(len(found) / len(chosen))
+        found[name] = {number: sobol_indices(a[number], b[number], c[number]) for number in wanted}
     return SobolRun(pairs, found)
 
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.montecarlo.interruption import checkpoint
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import LEAST_DOF, with_error
 
@@ -49,6 +50,7 @@ class Units:
 
     def error(self, pulls: Floats) -> float:
         """The standard error of a mean of `(n,)` pulls, which sum to about 0; nan of fewer than two units."""
+        checkpoint()
         if self.dof < LEAST_DOF:
             return float("nan")
         sums = pulls if self.replicate is None else np.bincount(self.replicate, pulls, self.count)

@@ -125,17 +125,28 @@ class Track {
       const part = Math.min(1, Math.max(0, (moved.clientX - away - box.left) / box.width));
       this.move(key, from + part * (to - from), true, moved);
     };
+    const before = this.number(key).value;
     const letGo = (moved) => {
       knob.removeEventListener("pointermove", follow);
+      knob.removeEventListener("keydown", giveUp);
       for (const each of ["pointerup", "pointercancel"]) knob.removeEventListener(each, letGo);
       this.held = null;
       this.moved(key, this.number(key).value, false, moved);
+    };
+    const giveUp = (pressed) => {
+      if (pressed.key !== "Escape") return;
+      pressed.preventDefault();
+      this.number(key).value = before;
+      this.show();
+      if (knob.hasPointerCapture(event.pointerId)) knob.releasePointerCapture(event.pointerId);
+      letGo(pressed);
     };
     event.preventDefault();
     knob.focus({ preventScroll: true });
     knob.setPointerCapture(event.pointerId);
     this.held = key;
     knob.addEventListener("pointermove", follow);
+    knob.addEventListener("keydown", giveUp);
     for (const each of ["pointerup", "pointercancel"]) knob.addEventListener(each, letGo);
   }
 
@@ -186,15 +197,36 @@ class Track {
   }
 }
 
-/** A box for one number: typed, or stepped with the arrow keys. `set(value, held)` takes it. */
+const BETWEEN = /^(.+?)\s*(?:\b(?:to|bis)\b|\.\.\.?|…|–)\s*(.+)$/i;
+const AROUND = /^(.+?)\s*(?:±|\+\/?-)\s*(.+)$/;
+
+/** Two ends in one box, 0.6 to 0.8 or 0.7 ± 10 %: `low`, `high` and with ± `middle`; null where it is no range. */
+function typedRange(text) {
+  const plain = text.trim();
+  const [, first, second] = (plain.startsWith("=") ? null : plain.match(AROUND) ?? plain.match(BETWEEN)) ?? [];
+  if (first === undefined || typed(first, null) === null || typed(second, null) === null) return null;
+  const [a, b] = [typed(first, null), typed(second, null)];
+  if (!AROUND.test(plain)) return { low: Math.min(a, b), high: Math.max(a, b), middle: null };
+  const share = second.endsWith("%");
+  const off = Math.abs(share ? (a * b) / 100 : b);
+  return { low: Number((a - off).toPrecision(12)), high: Number((a + off).toPrecision(12)), middle: a, share };
+}
+
+/**
+ * A box for one number: typed, or stepped with the arrow keys. `set(value, held)` takes it; `setRange(range)` takes two
+ * ends that were typed into it, and gives why they cannot be taken.
+ */
 class NumberBox {
-  constructor(label, units, set, { hidden = "" } = {}) {
-    Object.assign(this, { set, step: 1, value: null });
-    this.input = make("input", { type: "text", inputmode: "decimal", autocomplete: "off", spellcheck: "false" });
+  constructor(label, units, set, { hidden = "", percent = units === "%", setRange = null } = {}) {
+    Object.assign(this, { set, setRange, percent, step: 1, value: null });
+    this.why = make("span", { class: "why", role: "alert", id: Numbered.id("why") });
+    this.input = make("input", { type: "text", inputmode: "text", autocomplete: "off", spellcheck: "false",
+      "aria-describedby": this.why.id });
     const shown = make("span", { text: label });
     if (hidden) shown.append(make("span", { class: "aside", text: ` of ${hidden}` }));
-    this.root = make("label", { class: "number-box" }, shown, this.input,
-      make("span", { class: "unit", text: units }));
+    this.root = make("span", { class: "number-box" },
+      make("label", {}, shown, this.input, make("span", { class: "unit", text: units })), this.why);
+    this.hint = setRange ? "Both ends at once: 0.6 to 0.8, or 0.7 ± 10 %" : "";
     this.input.addEventListener("change", () => this.type());
     this.input.addEventListener("keydown", (event) => this.press(event));
   }
@@ -202,33 +234,48 @@ class NumberBox {
   update(value, step, { off = false, why = "" } = {}) {
     Object.assign(this, { value, step });
     if (document.activeElement !== this.input || this.input.value === this.shown) {
-      this.shown = why || stepText(value, step);
+      this.shown = this.input.dataset.shown = why || stepText(value, step);
       this.input.value = this.shown;
+      this.refuse("");
     }
     this.input.disabled = off;
-    this.input.title = why;
-    this.input.removeAttribute("aria-invalid");
+    this.input.title = why || this.hint;
+  }
+
+  /** Say why what was typed is not taken; nothing where it is. */
+  refuse(why) {
+    this.why.textContent = why;
+    if (why) this.input.setAttribute("aria-invalid", "true");
+    else this.input.removeAttribute("aria-invalid");
   }
 
   type() {
-    const value = typed(this.input.value, null);
-    const good = value !== null && Number.isFinite(value);
-    this.input.toggleAttribute("aria-invalid", !good);
-    if (!good) {
-      this.input.setAttribute("aria-invalid", "true");
+    const text = this.input.value;
+    const range = typedRange(text);
+    if (range) {
+      this.refuse(this.setRange ? this.setRange(range) : "Type one number here.");
       return;
     }
-    this.shown = this.input.value = stepText(value, this.step);
-    this.set(value, false);
+    const value = typed(text, null);
+    if (value === null || !Number.isFinite(value)) {
+      this.refuse(whyNoNumber(text));
+      return;
+    }
+    const share = text.trim().endsWith("%") && !text.trim().startsWith("=") && !this.percent;
+    this.take(share ? Number((value / 100).toPrecision(15)) : value);
   }
 
   press(event) {
     const direction = { ArrowUp: 1, ArrowDown: -1, PageUp: 10, PageDown: -10 }[event.key];
     if (!direction || this.value === null) return;
     event.preventDefault();
-    const value = onStep(this.value + direction * (event.shiftKey ? 10 : 1) * this.step, this.step);
-    this.update(value, this.step);
-    this.shown = this.input.value = stepText(value, this.step);
+    this.take(onStep(this.value + direction * (event.shiftKey ? 10 : 1) * this.step, this.step));
+  }
+
+  take(value) {
+    this.value = value;
+    this.refuse("");
+    this.shown = this.input.dataset.shown = this.input.value = stepText(value, this.step);
     this.set(value, false);
   }
 }

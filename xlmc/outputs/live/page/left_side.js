@@ -1,6 +1,15 @@
 "use strict";
 // The left side: a card for every assumption and every filter, and the list of checks.
 
+/** Set several numbers of one assumption or filter at once; gives the number of the change, as `Wire.set`. */
+function setAll(wire, of, name, values) {
+  wire.seq += 1;
+  wire.say({ kind: "numbers", of, name, values, seq: wire.seq });
+  return wire.seq;
+}
+
+const ENDS = ["low", "high", "likeliest"]; // boxes that take a range
+
 class AssumptionCard {
   constructor(row, wire, sent) {
     Object.assign(this, { row, wire, sent, boxes: new Map() });
@@ -14,7 +23,8 @@ class AssumptionCard {
       ...Object.values(this.band).map((box) => box.root));
     this.frozen = make("input", { type: "checkbox", role: "switch" });
     this.frozen.addEventListener("change", (event) => this.set("frozen", this.frozen.checked, false, event));
-    this.base = new NumberBox("at", "", (value) => this.set("base", value, false, null), { hidden: row.name });
+    this.base = new NumberBox("at", "", (value) => this.set("base", value, false, null),
+      { hidden: row.name, percent: row.units === "%" });
     this.back = make("button", { type: "button", class: "back", text: "As in the workbook",
       "aria-label": `${row.name} as in the workbook`,
       on: { click: () => wire.say({ kind: "reset", of: "assumption", name: row.name }) } });
@@ -36,6 +46,17 @@ class AssumptionCard {
       this.boxes.get(key)?.update(value, this.stepOf(number));
     }
     this.sent(this.wire.set("assumption", this.row.name, key, value, held), event);
+  }
+
+  /** Both ends at once; with ± the likeliest value is the middle. */
+  setRange({ low, high, middle, share }) {
+    const { name, units, numbers } = this.row;
+    const keys = numbers.map(({ key }) => key);
+    if (!keys.includes("low") || !keys.includes("high")) return "This distribution has no two ends: type its numbers one by one.";
+    if (share && units === "%") return "± of a quantity in % may be read in two ways: type its two ends.";
+    const values = middle !== null && keys.includes("likeliest") ? { low, high, likeliest: middle } : { low, high };
+    this.sent(setAll(this.wire, "assumption", name, values), null);
+    return "";
   }
 
   stepOf(number) {
@@ -67,7 +88,8 @@ class AssumptionCard {
     });
     for (const number of row.numbers) {
       if (!this.boxes.has(number.key)) {
-        const box = new NumberBox(number.heading, "", (value) => this.set(number.key, value, false, null), { hidden: row.name });
+        const box = new NumberBox(number.heading, "", (value) => this.set(number.key, value, false, null),
+          { hidden: row.name, percent: row.units === "%", setRange: ENDS.includes(number.key) ? (range) => this.setRange(range) : null });
         this.boxes.set(number.key, box);
         this.held.before(box.root);
       }
@@ -107,6 +129,14 @@ class FilterCard {
     this.sent(this.wire.set("filter", this.row.name, key, value, held), event);
   }
 
+  setRange({ low, high }) {
+    const given = this.row.limits.map(({ key }) => key);
+    const [lower, upper] = [["at_least", "above"], ["at_most", "below"]].map((keys) => keys.find((key) => given.includes(key)));
+    if (!lower || !upper) return "This filter has one limit: type one number.";
+    this.sent(setAll(this.wire, "filter", this.row.name, { [lower]: low, [upper]: high }), null);
+    return "";
+  }
+
   moved(key, value) {
     if (this.track.held !== null) return;
     const limit = this.row.limits.find((each) => each.key === key);
@@ -124,7 +154,8 @@ class FilterCard {
     for (const limit of row.limits) {
       if (!this.boxes.has(limit.key)) {
         const heading = limit.heading[0].toUpperCase() + limit.heading.slice(1);
-        const box = new NumberBox(heading, "", (value) => this.set(limit.key, value, false, null), { hidden: row.name });
+        const box = new NumberBox(heading, "", (value) => this.set(limit.key, value, false, null),
+          { hidden: row.name, setRange: (range) => this.setRange(range) });
         this.boxes.set(limit.key, box);
         this.numbers.append(box.root);
       }
@@ -149,6 +180,11 @@ class LeftSide {
     Object.assign(this, { wire, sent, assumptions: new Map(), filters: new Map(), own: {}, shapes: {} });
     this.find = document.getElementById("find");
     for (const control of this.find.querySelectorAll("input")) control.addEventListener("input", () => this.sift());
+  }
+
+  /** Whether a handle is held. */
+  get isHeld() {
+    return [...this.assumptions.values(), ...this.filters.values()].some(({ track }) => track.held !== null);
   }
 
   /** Show the assumptions that are looked for: by a part of the name or the source, or those that were changed. */

@@ -22,7 +22,7 @@ class RightSide {
     bar.addEventListener("keydown", (event) => this.walk(event));
     this.sentences = make("ul", { class: "statements" });
     this.meaning = make("p", { class: "remark" });
-    this.choice = make("fieldset", { class: "which" }, make("legend", { text: "Charts of" }));
+    this.choice = make("fieldset", { class: "which" }, make("legend", { text: "Answers" }));
     this.choosing = make("summary");
     this.choices = make("details", { class: "choosing", open: true }, this.choosing, this.choice);
     this.charts = make("div", { class: "live-charts" });
@@ -31,6 +31,8 @@ class RightSide {
     } } });
     this.places.charts.append(this.sentences, this.choices,
       make("p", { class: "choices" }, make("label", {}, split, "Numbers beside the charts")), this.charts, this.meaning);
+    this.tables = Object.fromEntries(["matters", "tables"].map((key) => [key, make("div", { class: "made" })]));
+    for (const [key, place] of Object.entries(this.tables)) this.places[key].append(place);
     this.pairs = new PairView(this.places.pairs, (pair) => {
       this.pair = pair;
       this.look();
@@ -55,6 +57,7 @@ class RightSide {
       tab.tabIndex = each === key ? 0 : -1;
       this.places[each].hidden = each !== key;
     }
+    if (["charts", "matters", "tables"].includes(key)) this.places[key].prepend(...(key === "charts" ? [this.sentences] : []), this.choices);
     if (tell) this.look();
   }
 
@@ -75,7 +78,7 @@ class RightSide {
     this.looking = setTimeout(() => {
       const names = this.forecasts.map((each) => each.name).filter((name) => this.open.has(name) && this.seen.has(name));
       const { first = "", second = "" } = this.pair ?? {};
-      this.wire.say({ kind: "view", forecasts: names, tab: this.tab, first, second, fits: Boolean(this.fits) });
+      this.wire.say({ kind: "view", forecasts: names, chosen: [...this.open], tab: this.tab, first, second, fits: Boolean(this.fits) });
     }, 60);
   }
 
@@ -114,7 +117,7 @@ class RightSide {
       }
       this.charts.append(this.panels.get(forecast.name).place);
     }
-    this.choosing.textContent = `Charts of ${wanted.length} of ${this.forecasts.length} answers`;
+    this.choosing.textContent = `Shown: ${wanted.length} of ${this.forecasts.length} answers`;
     this.tell();
     this.look();
   }
@@ -169,7 +172,7 @@ class RightSide {
 
   part({ tab, html, pair }) {
     if (tab === "scenarios") this.scenarios.part(html);
-    else if (html !== undefined) showTables(this.places[tab], html);
+    else if (html !== undefined) showTables(this.tables[tab], html);
     if (pair !== undefined) this.pairs.show(pair);
   }
 

@@ -14,9 +14,23 @@ const Live = {
     this.left = new LeftSide(this.wire, (seq, event) => { if (event) this.moves.set(seq, event.timeStamp); });
     this.right = new RightSide(this.wire);
     const say = (id, message) => document.getElementById(id).addEventListener("click", () => this.wire.say(message));
+    say("undo", { kind: "undo" });
+    say("redo", { kind: "redo" });
+    document.addEventListener("keydown", (event) => this.press(event));
     say("stop", { kind: "stop" });
     say("pin", { kind: "pin" });
     say("reset", { kind: "reset", of: "assumption", name: "" });
+  },
+
+  /** Ctrl+Z undoes, Ctrl+Y and Ctrl+Shift+Z redo; in a box whose text was not taken yet they are the box's own. */
+  press(event) {
+    const key = event.key.toLowerCase();
+    const { target } = event;
+    if (!(event.ctrlKey || event.metaKey) || event.altKey || !["z", "y"].includes(key)) return;
+    if (target.matches?.("input[type=text], input[type=search]") && target.value !== target.dataset.shown) return;
+    event.preventDefault();
+    const button = document.getElementById(key === "y" || event.shiftKey ? "redo" : "undo");
+    if (!this.left.isHeld) button.click();
   },
 
   stands(open) {
@@ -53,6 +67,7 @@ const Live = {
     this.right.state(message);
     const changed = message.changes.length;
     document.getElementById("reset").disabled = !changed;
+    for (const each of ["undo", "redo"]) document.getElementById(each).disabled = !message[each];
     this.offer(message.offered);
   },
 
@@ -64,7 +79,9 @@ const Live = {
     this.right.frame(message);
     this.left.reshape(message.shapes);
     const run = `${countText(message.trials)} trials, ${countText(message.accepted)} accepted (${message.share})`;
-    this.standing = message.stage === "rest" ? `Done: ${run}` : `Refining: ${run} so far`;
+    const few = message.few ? ": too few for an answer" : "";
+    this.standing = message.stage === "rest" ? `Done: ${run}${few}` : `Refining: ${run} so far${few}`;
+    document.body.classList.toggle("few", message.few);
     this.ended();
     document.body.dataset.stage = message.stage;
     document.body.dataset.version = String(message.version);
@@ -73,7 +90,8 @@ const Live = {
 
   /** What was running is over: say again what the charts are of. */
   ended() {
-    this.stand(this.standing ?? "");
+    const faulty = document.body.classList.contains("faulty");
+    this.stand(faulty ? "This state is not possible: the answers are of the state before" : this.standing ?? "");
     document.getElementById("stop").hidden = true;
   },
 
@@ -84,7 +102,7 @@ const Live = {
 
   on_part(message) {
     this.right.part(message);
-    if (message.tab === "scenarios") this.ended();
+    this.ended();
   },
 
   on_others(message) {
@@ -96,15 +114,20 @@ const Live = {
   },
 
   on_running({ stage, share }) {
+    this.ended();
+    if (stage === "over") return;
     document.getElementById("stop").hidden = stage === "stopped" || share >= 1;
-    const of = stage === "compare" ? "scenarios" : "trials";
-    this.stand(stage === "stopped" ? "Stopped" : `Running: ${Math.round(100 * share)} % of the ${of}`);
+    const of = { compare: "the scenarios", part: "this tab" }[stage] ?? "the trials";
+    this.stand(stage === "stopped" ? "Stopped" : `Running: ${Math.round(100 * share)} % of ${of}`);
   },
 
   on_trouble({ about, text }) {
     const place = document.getElementById("troubles");
     [...place.children].find((each) => each.dataset.about === about)?.remove();
     if (text) place.append(make("p", { class: "warning", "data-about": about, text }));
+    if (about !== "state") return;
+    document.body.classList.toggle("faulty", Boolean(text));
+    this.ended();
   },
 
   on_news({ text }) {

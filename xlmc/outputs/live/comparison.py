@@ -1,0 +1,79 @@
+"""All scenarios of a window in one table, whose runs are kept while it is made: it may be given up and gone on with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
+
+from xlmc.analysis.studies.scenario_answers import answers_of, model_of, run_scenario
+from xlmc.errors import XlmcError
+from xlmc.montecarlo.definitions.run_options import RunOptions
+from xlmc.montecarlo.simulation.simulate import run_model
+from xlmc.outputs.live.adjustments import Adjustments, scenario_of
+from xlmc.outputs.live.frames import scenarios_html
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.definitions.scenarios import Scenario
+    from xlmc.montecarlo.loop.stopping import Progress
+    from xlmc.montecarlo.model.model import CompiledModel
+    from xlmc.montecarlo.simulation.simulation import RunResult
+
+__all__ = ["Comparison"]
+
+
+class Comparison:
+    """See the module. For one thread.
+
+    Args:
+        own: the workbook's model.
+        kept: scenarios of the window, by name; they take the place of the workbook's of the same name.
+        piece: trials after which it is looked whether the table is still wanted.
+    """
+
+    def __init__(self, own: CompiledModel, kept: Mapping[str, Adjustments], piece: int) -> None:
+        fitting = {name: each.only(own.definitions) for name, each in kept.items()}
+        mine = [scenario_of(own.definitions, name, each) for name, each in fitting.items()]
+        self._own, self._piece = own, piece
+        self._scenarios = [*(each for each in own.definitions.scenarios if each.name not in kept), *mine]
+        self._base: RunResult | None = None
+        self._runs: dict[str, RunResult | str] = {}
+
+    def html(self, go_on: Callable[[], None], tell: Callable[[float], None]) -> str:
+        """Do what is not done yet, and write the table; a scenario that is not possible is a row that says why.
+
+        Args:
+            go_on: called again and again; what it raises ends the work until this is called again.
+            tell: takes the share that is done.
+
+        Raises:
+            XlmcError: the workbook as it is cannot be run.
+        """
+        count = len(self._scenarios) + 1
+
+        def watch(progress: Progress) -> None:
+            go_on()
+            done = len(self._runs) + (self._base is not None)
+            tell((done + progress.share) / count)
+
+        if self._base is None:
+            options = RunOptions(scenarios=True)
+            self._base = run_model(self._own, options, progress=watch, pieces=self._piece)
+        for scenario in self._scenarios:
+            go_on()
+            if scenario.name not in self._runs:
+                self._runs[scenario.name] = self._run(scenario, self._base, watch)
+        runs = {each.name: self._runs[each.name] for each in self._scenarios}
+        found = [answers_of(self._base, None, self._base)]
+        for scenario in self._scenarios:
+            go_on()
+            if not isinstance(run := runs[scenario.name], str):
+                found.append(answers_of(run, scenario, self._base))
+        return scenarios_html(found, {name: why for name, why in runs.items() if isinstance(why, str)})
+
+    def _run(self, scenario: Scenario, base: RunResult, watch: Callable[[Progress], None]) -> RunResult | str:
+        """The run of a scenario; or why it is not possible."""
+        try:
+            model = model_of(self._own, scenario)
+            return run_scenario(model, base, progress=watch, pieces=self._piece)
+        except XlmcError as error:
+            return str(error)

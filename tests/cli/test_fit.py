@@ -198,3 +198,25 @@ def test_many_values_and_counts_far_apart_are_drawn_with_few_points(xlmc, tmp_pa
     outcome = xlmc("fit", tmp_path / "far.xlsx", "A1:A2100", "-o", tmp_path / "found.xlsx")
     assert outcome.code == 0, outcome.err
     assert openpyxl.load_workbook(tmp_path / "found.xlsx", read_only=True)["Numbers"].max_row <= 4_003
+
+
+@pytest.mark.parametrize(
+    ("cells", "columns"),
+    [("Tests!A2:C21", "2 columns (A to C)"), ("Tests!A2:A41", ""), ("Tests!A2:B41", ""), ("Tests!C2:C21", "")],
+    ids=["two", "one", "one and an empty one", "counts"],
+)
+def test_several_columns_are_not_pooled_in_silence(xlmc, measured, cells, columns):
+    outcome = xlmc("fit", measured, cells)
+    assert outcome.code == 0, outcome.err
+    told = f"the values of {columns} are fitted together" if columns else "are fitted together"
+    assert (told in outcome.err) == bool(columns)
+    if columns:
+        assert "such as Tests!A2:A21" in outcome.err
+        assert told in json.loads(xlmc("fit", measured, cells, "--json").out)["cautions"][0]
+
+
+def test_a_row_of_values_is_one_quantity(xlmc, tmp_path):
+    book = openpyxl.Workbook()
+    book.active.append(FRICTION[:20].tolist())
+    book.save(tmp_path / "row.xlsx")
+    assert "fitted together" not in xlmc("fit", tmp_path / "row.xlsx", "A1:T1").err

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +19,7 @@ from xlmc.cli.writing import NOT_WRITTEN, write_files, written_or_told
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.fitting import Fitted, Fitting
+    from xlmc.excel.address import Area
     from xlmc.outputs.study_curves import Curves
     from xlmc.outputs.study_report import Block, StudyReport, Table
 
@@ -86,8 +89,9 @@ def fit(
     sources = [book] if into is None else [book, into]
     files = Files(output, html, pdf, docx, sources, overwrite=overwrite)
     files.check()
-    values, where, blank = _values(book, reference)
+    values, where, blank, pooled = _values(book, reference)
     found = fitting.fit(values, kind=kind, by=by)
+    found = replace(found, cautions=(*pooled, *found.cautions))
     described = f"fitted by maximum likelihood to {book.name} {where}, n = {found.n}"
     chosen = _chosen(found, distribution)
     row = fitting.row_to_paste(chosen, name or "…", described)
@@ -153,8 +157,8 @@ def _book_and_range(source: str, cells: str | None) -> tuple[Path, str]:
     return Path(source), cells
 
 
-def _values(book: Path, reference: str) -> tuple[list[float], str, int]:
-    """The numbers, where they stand, and how many blank cells were left out.
+def _values(book: Path, reference: str) -> tuple[list[float], str, int, tuple[str, ...]]:
+    """The numbers, where they stand, how many blank cells were left out, and whether several columns are pooled.
 
     Raises:
         DefinitionError: there is no such range, or a cell in it holds something else.
@@ -168,12 +172,28 @@ def _values(book: Path, reference: str) -> tuple[list[float], str, int]:
     workbook = read_workbook(book)
     only_sheet = next(iter(workbook.sheets)) if len(workbook.sheets) == 1 else None
     area = area_of_reference(workbook, reference, only_sheet, book)
-    held = [value for row in area_values(workbook, area, Computed(workbook, ())) for value in row if value is not None]
+    rows = list(area_values(workbook, area, Computed(workbook, ())))
+    held = [value for row in rows for value in row if value is not None]
     values = [
         value if isinstance(value, float) else number_in("The data cell", workbook.content(value), value)
         for value in held
     ]
-    return values, str(area), area.rows * area.columns - len(values)
+    return values, str(area), area.rows * area.columns - len(values), _pooled(area, rows)
+
+
+def _pooled(area: Area, rows: Sequence[Sequence[object]]) -> tuple[str, ...]:
+    """A caution where the values of several columns are taken for one quantity; a single row is one."""
+    from xlmc.excel.address import column_letters, quote_sheet
+
+    filled = [at for at, column in enumerate(zip(*rows, strict=True)) if any(value is not None for value in column)]
+    if len(rows) == 1 or len(filled) < 2:
+        return ()
+    first, last = (column_letters(area.left + at) for at in (filled[0], filled[-1]))
+    one = f"{quote_sheet(area.sheet)}!{first}{area.top}:{first}{area.bottom}"
+    return (
+        f"the values of {len(filled)} columns ({first} to {last}) are fitted together, as values of one quantity; "
+        f"where each column is a quantity of its own, fit one at a time, such as {one}",
+    )
 
 
 def _as_json(found: Fitting, source: str, blank: int, row: dict[str, str]) -> dict[str, object]:

@@ -11,6 +11,7 @@ from xlmc.analysis.results.record.make import fingerprint
 from xlmc.errors import FormulaError, SimulationError
 from xlmc.montecarlo.columns import column_store, on_disk
 from xlmc.montecarlo.simulation import simulate as module
+from xlmc.montecarlo.statistics import Estimate, proportion
 
 CELLS = {
     "A1": 1.0,
@@ -396,3 +397,11 @@ def test_arguments_out_of_range(model, arguments, message):
 def test_a_circle_is_refused_when_the_model_is_made(book):
     with pytest.raises(FormulaError, match="need each other in a circle"):
         book({"A1": 1.0, "B1": "=B2", "B2": "=B1+A1"}, {"a": {"cell": "A1", **UNIT}}, {"x": "B1"})
+
+
+def test_without_filters_every_trial_is_accepted_exactly(book):
+    assert simulated(book(CELLS, GIVEN, FORECASTS), 300).acceptance == Estimate(1.0, 0.0, (1.0, 1.0), 300)
+    every = {"f": {"cell": "C2", "at_least": -10}}
+    assert simulated(book(CELLS, GIVEN, FORECASTS, every), 300).acceptance == proportion(300, 300)
+    may_fail = {"A1": GIVEN["A1"], "A4": {"cell": "A4", "low": "A1", "high": 9}}
+    assert simulated(book(CELLS, may_fail, {"z": "A4"}), 300).acceptance.interval[0] < 1.0

@@ -47,6 +47,7 @@ def test_the_sheet_shows_the_digits_that_the_command_line_prints(value, error):
         (proportion(0, 200_000), "0.00000%"),
         (proportion(1, 2), "0%"),
         (Estimate(math.nan), "0.00%"),
+        (Estimate(1.0, 2.1e-32), "0.00%"),  # rounding; Excel knows 30 decimals at most
     ],
 )
 def test_formats_of_shares(estimate, expected):

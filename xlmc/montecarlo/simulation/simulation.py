@@ -214,7 +214,12 @@ class RunResult:
 
     @property
     def acceptance(self) -> Estimate:
-        """The share of accepted trials; the trials may have gone on until there were enough."""
+        """The share of accepted trials; the trials may have gone on until there were enough. Where nothing can reject
+        a trial, all are accepted, exactly.
+        """
+        may_fail = self.model.filters or any(draw.varying for draw in self.model.draws.values())
+        if not may_fail and self.rare is None and 0 < self.accepted == self.trials:
+            return Estimate(1.0, 0.0, interval=(1.0, 1.0), n=self.trials)
         if self.rare is not None:
             return self.rare.acceptance
         if self.stopped.by == "accepted":

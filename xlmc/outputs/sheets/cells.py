@@ -74,6 +74,9 @@ class Shown:
 
 BLANK = Shown(None)
 
+_ROUNDING = 1e-14
+"""An error of a share from which on it is none of sampling; Excel refuses formats of more than 30 decimals."""
+
 
 def exact(value: float | None, number: str = "General") -> Shown:
     """A number that has no error: a setting, the base case."""
@@ -127,7 +130,7 @@ def _error_format(found: Estimate, digits: str) -> str:
 
 def share_format(estimate: Estimate) -> str:
     """`paired_format` for a share, in percent."""
-    decimals = _paired_decimals(estimate)
+    decimals = _paired_decimals(estimate) if (estimate.error or 0.0) > _ROUNDING else None
     return "0" + _fraction(max((4 if decimals is None else decimals) - 2, 0)) + "%"
 
 

@@ -113,8 +113,6 @@ def evidence_trials(model: CompiledModel, seed: int, trials: int) -> EvidenceTri
         kept = np.ones(block, bool)
         for column in evaluator.filters(draws, block):
             kept &= ~_fails(column)
-        for name in model.fallible:
-            kept &= ~np.isnan(draws[name])
         kept[n:] = False
         survivors = np.flatnonzero(kept)
         past += survivors.size

@@ -161,3 +161,15 @@ def test_replicated_runs(model, sampling):
 )
 def test_limits_to_try_are_round_steps(relation, limit, values, expected):
     assert grid(relation, limit, np.array(values)) == expected
+
+
+def test_trials_that_do_not_use_a_draw_without_a_distribution_count(book):
+    assumptions = {name: {"cell": f"A{n}", "low": 0.0, "high": 1.0} for n, name in enumerate("ab", 1)}
+    assumptions["c"] = {"cell": "A3", "low": 0.0, "high": "B1"}
+    cells = {"A1": 0.5, "A2": 0.5, "A3": 0.1, "B1": "=A1-0.5", "B2": "=IF(A1>0.5,A3,0)+A2", "C1": "=A2"}
+    model = book(cells, assumptions, {"y": "B2"}, {"least": {"cell": "C1", "at_least": 0.4}})
+    (limit,) = sensitivities(simulated(model, 4000, 4)).filter_limits
+    for point in (limit.points[0], limit.points[3], limit.points[-1]):
+        run = simulated(moved(model, limit, point.limit), 4000, 4)
+        assert point.trials == run.accepted == (run.prior["b"] >= point.limit).sum()
+        assert point.answers[0].mean.value == pytest.approx(run["y"].mean.value)

@@ -89,7 +89,7 @@ class _LimitCells:
         bounds = [next(computed) if isinstance(each.bound, Cell) else np.full(n, each.bound) for each in self.limits]
         return _CellValues(columns[:filters], bounds)
 
-    def rejected_by_one(self, looked: _CellValues, draws: Mapping[str, Floats]) -> list[Bools]:
+    def rejected_by_one(self, looked: _CellValues) -> list[Bools]:
         """For each limit, the trials `(n,)` that it rejects and nothing else does."""
         held = [
             holds_to(limit.relation, looked.filters[limit.filter_index], bound)
@@ -100,8 +100,6 @@ class _LimitCells:
         broken = np.sum([~each for each in held], axis=0)
         for cell in logical:
             broken += (cell == 0.0) | np.isnan(cell)
-        for name in sorted(self._model.fallible):
-            broken += np.isnan(draws[name])
         return [(broken == 1) & ~each for each in held]
 
 
@@ -222,7 +220,7 @@ def _find_rejected(
         n = min(block, again - start)
         draws = {key: values[:n] for key, values in sampler.draw(start).items()}
         looked = cells.look(evaluator, draws, n)
-        alone = cells.rejected_by_one(looked, draws)
+        alone = cells.rejected_by_one(looked)
         let_in = {i: alone[i] & _within_loosest(cells.limits[i], looked, grids[i]) for i in chosen}
         every = np.flatnonzero(np.logical_or.reduce(list(let_in.values())))
         if not every.size:

@@ -194,6 +194,7 @@ RULES: Final = (
     Rule("0.12.0", "shares of variance are found in finer classes where a forecast jumps or bends", _ANY),
     Rule("0.12.0", "yes/no answers have the interval of their share", _ANY),
     Rule("0.12.0", "without filters the share of accepted trials is exact", _ANY),
+    Rule("0.12.0", "yes/no answers, and differences of them, have the interval of their share", _ANY),
     Rule("0.12.0", "parameters without scatter, such as a standard deviation of 0, draw their one value", _ANY),
     Rule("0.12.0", "SUBTOTAL leaves out every hidden row of a sheet with an active filter", _calls("SUBTOTAL")),
     Rule(

@@ -146,10 +146,10 @@ def _saving(found: Choice) -> str:
 
 def _price(cheap: Curve, chosen: Curve) -> str:
     """What a method that is cheaper by the clock costs otherwise."""
-    methods = cheap.method, chosen.method
-    if not all(isinstance(each, Sampled) and each.method == MONTE_CARLO.method for each in methods):
-        return ", and gives up independent trials"
-    return f" of the run, and takes about {seconds_text(ENGINE_READY)} to compile"
+    if isinstance(cheap.method, Sampled) and cheap.method.engine != MONTE_CARLO.engine:
+        return f" of the run, and takes about {seconds_text(ENGINE_READY)} to compile"
+    lost = chosen.method.errors == "independent" and cheap.method.errors != "independent"
+    return ", and gives up independent trials" if lost else ""
 
 
 def _names(curves: Sequence[Curve]) -> str:

@@ -108,3 +108,17 @@ def test_points_are_drawn_as_the_sampler_draws(book, random):
     }
     model = book(cells, given, {"x": "B1"}, {"f": {"cell": "B1", "at_least": 6.674, "at_most": 6.675}})
     assert Landscape(model, random).accepts(np.zeros((1, 3))).tolist() == [True]  # 3 + 3 + 0.67449
+
+
+def test_trials_that_do_not_use_a_draw_without_a_distribution_are_accepted(book):
+    cells = {"A1": 1.0, "A2": 1.0, "A3": 1.0, "B1": "=A1+A2", "B2": "=A1-0.5", "C1": "=IF(A1>0.5,A3,0)"}
+    given = {name: {"cell": f"A{n}", "low": 0, "high": 1} for n, name in enumerate("ab", 1)}
+    given["c"] = {"cell": "A3", "low": 0, "high": "B2"}
+    model = book(cells, given, {"y": "C1"}, {"f": {"cell": "B1", "above": 0.7}})
+    rows, random = model.sampler(0, 1).row_of, np.random.default_rng(5)
+    uniforms = random.random((500, 3))
+    a, b = uniforms[:, rows["a"]], uniforms[:, rows["b"]]
+    landscape = Landscape(model, random)
+    assert landscape.accepts_at(uniforms).tolist() == (a + b > 0.7).tolist()
+    assert (landscape.distance_at(uniforms) == 0).tolist() == (a + b > 0.7).tolist()
+    assert landscape.lost == 0

@@ -124,11 +124,17 @@ DIFFERENCES = """## What differs from Excel on purpose
   with precision as displayed, xlmc computes with full precision, with a notice.
 - Refused are `OFFSET`, `INDIRECT` and `INDEX(…):INDEX(…)` that lead to other cells in each trial (use `TAKE` or `DROP`,
   which accept numbers that vary); `MAKEARRAY` of a size that varies (`SEQUENCE` accepts one); a `LAMBDA` that calls
-  itself with changing ranges or arrays more than 60 calls deep; and formulas that need iteration.
+  itself with changing ranges or arrays more than 60 calls deep.
 - A cell is in a circle where its own value is read while it is computed, in each trial anew: `SUM(A2:OFFSET(A6,-1,0))`
   in A6 and `CHOOSE(2,B40,"x")` in B40 are computed. Where a condition or a criterion that varies has the own cell read,
   the trials that read it are errors, `#CALC!`, with a notice. What would hide such an error (`IFERROR`, `COUNT`) is
   refused, and so are more than eight cells that may each read another one in each trial.
+- Where Excel's iterative calculation is on (File, Options, Formulas), cells that read themselves are computed as often
+  as the workbook says (100 times), until no cell of the circle changes by as much as its maximum change (.001). Every
+  trial starts from the values that Excel saved in them (an empty cell is 0), and Excel itself from what the last
+  calculation left. In each iteration the cells are computed by tab, row and column, each from what the others hold by
+  then. Microsoft documents no order. A notice says that cells are iterated, and in how many trials they do not settle;
+  `xlmc stability` says whether the answer depends on the start. Array formulas in a circle are refused.
 - Sums from the last row up are rounded in another order where 64 or more of them end at one cell (below).
 - Microsoft does not document these, and Excel may do otherwise: `AND("",…)`; `XLOOKUP` of the nearest across numbers
   and texts; which of several equal keys a binary search finds; `ACCRINT` with FALSE for its method after the first

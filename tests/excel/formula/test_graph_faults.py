@@ -78,7 +78,7 @@ def test_the_cells_of_a_circle_are_listed_and_those_that_need_them_are_not(toler
     assert told == circles
     assert not graph.faults
     assert {error.hint for error in graph.circles.values()} == {
-        "break the circle; iterative calculation is not supported"
+        "break the circle, or turn on iterative calculation in Excel's options, if it is meant"
     }
     assert Cell("S", 1, 1) in graph.formulas
 

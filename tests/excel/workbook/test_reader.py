@@ -10,7 +10,7 @@ import xlsxwriter
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.workbook.reader import read_workbook
-from xlmc.excel.workbook.workbook import DataTable, DefinedName, Formula, Table, Workbook
+from xlmc.excel.workbook.workbook import DataTable, DefinedName, Formula, Iteration, Table, Workbook
 
 
 @pytest.fixture
@@ -193,7 +193,6 @@ def messages(book):
     [
         ('fullPrecision="0"', "book.xlsx: Excel calculates this workbook with precision as displayed"),
         ('calcMode="manual"', "book.xlsx: calculation is set to manual"),
-        ('iterate="1"', "book.xlsx: iterative calculation is on"),
     ],
 )
 def test_calculation(book, settings, message):
@@ -203,6 +202,23 @@ def test_calculation(book, settings, message):
 
 def test_an_ordinary_workbook_gives_none(book):
     assert messages(book(in_workbook='<calcPr calcId="1" calcMode="auto" fullPrecision="1" iterate="0"/>')) == []
+
+
+@pytest.mark.parametrize(
+    ("settings", "expected"),
+    [
+        ("", None),
+        ('iterate="0" iterateCount="5"', None),
+        ('iterate="1"', Iteration(100, 0.001)),
+        ('iterate="true" iterateCount="20" iterateDelta="1E-4"', Iteration(20, 0.0001)),
+        ('iterate="1" iterateCount="0" iterateDelta="-1"', Iteration(100, 0.001)),
+        ('iterate="1" iterateCount="99999" iterateDelta="none"', Iteration(100, 0.001)),
+        ('iterate="1" iterateDelta="0"', Iteration(100, 0.0)),
+    ],
+)
+def test_iterative_calculation(book, settings, expected):
+    found = book(in_workbook=f"<calcPr {settings}/>")
+    assert (found.iteration, messages(found)) == (expected, [])
 
 
 READS = "which xlmc does not open: where a formula reads them, it gets the value that Excel stored"
@@ -246,8 +262,8 @@ def test_data_tables(book, book_parts, encoding):
 
 
 def test_every_reason_is_told(book):
-    settings = '<calcPr fullPrecision="0" calcMode="manual" iterate="true"/>'
-    assert len(book({"One": TABLE}, in_workbook=settings).notices) == 3
+    settings = '<calcPr fullPrecision="0" calcMode="manual"/>'
+    assert len(book({"One": TABLE}, in_workbook=settings).notices) == 2
 
 
 @pytest.mark.parametrize(

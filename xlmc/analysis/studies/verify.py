@@ -162,7 +162,11 @@ def _check_cell(lowering: Lowering, cell: Cell) -> CellCheck:
     got = value.objects().ravel()[0]
     if content.value is None:
         return check(Status.NOT_CACHED, got)
-    same = _same(content.value, got) or _is_sine_of_32_bits(lowering, cell, content.value, got)
+    same = (
+        _same(content.value, got)
+        or _is_settled(lowering, cell, content.value, got)
+        or _is_sine_of_32_bits(lowering, cell, content.value, got)
+    )
     return check(Status.MATCHED if same else Status.DIFFERING, got)
 
 
@@ -172,6 +176,14 @@ def _same(expected: CellValue, got: object) -> bool:
     if isinstance(expected, str) and got is None:
         return expected == ""
     return type(expected) is type(got) and expected == got
+
+
+def _is_settled(lowering: Lowering, cell: Cell, expected: CellValue, got: object) -> bool:
+    """Whether a cell that Excel computed iteratively changes by less than where Excel stopped."""
+    iteration = lowering.graph.workbook.iteration
+    if iteration is None or cell not in lowering.graph.circles or not (_is_number(expected) and _is_number(got)):
+        return False
+    return abs(float(expected) - float(got)) < iteration.change  # type: ignore[arg-type]
 
 
 def _is_sine_of_32_bits(lowering: Lowering, cell: Cell, expected: CellValue, got: object) -> bool:

@@ -20,11 +20,11 @@ from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Range, Select,
 from xlmc.engine.graph.picked_ranges import PICKING
 from xlmc.errors import FormulaError
 from xlmc.excel.address import Cell
-from xlmc.excel.formula.graph import circle_error
+from xlmc.excel.formula.graph import BREAK, circle_error
 from xlmc.excel.functions import Function, Kind
 from xlmc.excel.functions.values import ERROR
 
-__all__ = ["CircleError", "Lowers", "hidden_error", "lower_as_read", "refuse_hidden"]
+__all__ = ["CircleError", "Iterates", "Lowers", "hidden_error", "lower_as_read", "refuse_hidden"]
 
 _MOST_OPEN: Final = 8
 """Cells of one circle that may be asked for while they are lowered; each may make the others be lowered once more."""
@@ -40,6 +40,14 @@ _HIDING: Final = frozenset(
     }
 )
 """Functions whose result may be no error although an argument is one, or a cell of it."""
+
+
+class Iterates(Exception):  # noqa: N818 - it asks for another way; nothing is wrong
+    """A cell reads itself, perhaps not in each trial, and the workbook has such cells iterated."""
+
+    def __init__(self, cell: Cell) -> None:
+        super().__init__(cell)
+        self.cell = cell
 
 
 class CircleError(FormulaError):
@@ -63,8 +71,7 @@ def refuse_hidden(dag: Dag, function: Function, arguments: Sequence[int]) -> Non
 
 def hidden_error(name: str) -> CircleError:
     """Make what is said of a function that would hide a circle."""
-    hint = "break the circle; iterative calculation is not supported"
-    return CircleError(f"{name} reads a cell that needs itself in a circle", hint=hint)
+    return CircleError(f"{name} reads a cell that needs itself in a circle", hint=BREAK)
 
 
 def _is_searched(dag: Dag, name: str, table: int) -> bool:
@@ -134,6 +141,9 @@ class Lowers(Protocol):
     def refuse(self, cells: Sequence[Cell], error: FormulaError) -> None:
         """Take cells for faulty that need each other in a circle, or raise the error."""
 
+    def iterate(self, cell: Cell) -> None:
+        """Lower the cells of the circle that a cell is in, to be computed again and again."""
+
     def tell_circle(self, cell: Cell) -> None:
         """Note that some trials may read a cell while it is computed."""
 
@@ -153,8 +163,11 @@ class _Open:
 def lower_as_read(cells: Iterable[Cell], lowers: Lowers) -> None:
     """Lower cells in the order in which their values are read."""
     for cell in cells:
-        if not lowers.is_lowered(cell):
-            _lower_with_needs(cell, lowers)
+        while not lowers.is_lowered(cell):
+            try:
+                _lower_with_needs(cell, lowers)
+            except Iterates as found:
+                lowers.iterate(found.cell)
 
 
 def _lower_with_needs(first: Cell, lowers: Lowers) -> None:

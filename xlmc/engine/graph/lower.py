@@ -5,23 +5,23 @@ Where xlmc cannot compute a cell, and no assumption reaches it, the value that E
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from functools import cached_property
 from typing import Final, TypeVar
 
 from xlmc.engine.graph import lambdas
 from xlmc.engine.graph.arrays import element
+from xlmc.engine.graph.circle_lowering import CircleLowering
 from xlmc.engine.graph.circles import CircleError, lower_as_read
 from xlmc.engine.graph.computed_references import NotYetNeeded
 from xlmc.engine.graph.dag import MANY, Dag
-from xlmc.engine.graph.expressions import ExpressionLowering
 from xlmc.engine.graph.fill_down import FillDownCache
 from xlmc.engine.graph.lowering import Scope
 from xlmc.engine.graph.nodes import Apply, Constant, Input, Target
 from xlmc.engine.graph.running_totals import RunningTotals
 from xlmc.engine.graph.spilled_cells import refuse_cells_beyond, spilled_cell, unneeded_arrays
 from xlmc.errors import ErrorCode, FormulaError, Notice
-from xlmc.excel.address import Area, Cell, InFormula, host_of
+from xlmc.excel.address import Cell, InFormula, host_of
 from xlmc.excel.formula import Filled, Graph, Resolver, build_graph, ir
 from xlmc.excel.formula.callables import gives_function
 from xlmc.excel.formula.graph import Spills
@@ -74,7 +74,7 @@ def lower_cells(
     return lower_until_complete(lower)
 
 
-class Lowering(ExpressionLowering):
+class Lowering(CircleLowering):
     """The nodes of every needed cell of a graph.
 
     Args:
@@ -95,6 +95,7 @@ class Lowering(ExpressionLowering):
         led_to: formula cell -> inputs and formula cells that OFFSET and its like lead to.
         notices: what the person should know.
         circle: cells that are being lowered and were asked for meanwhile.
+        iterated: the circles whose cells are computed iteratively.
     """
 
     def __init__(
@@ -109,23 +110,25 @@ class Lowering(ExpressionLowering):
     ) -> None:
         dag = Dag(date1904=graph.workbook.date1904)
         trees = (placed for placed in graph.formulas.ordered.values() if not isinstance(placed, Filled))
-        super().__init__(graph, dag, RunningTotals(dag, trees, self.cell), audit=audit)
+        super().__init__(
+            graph,
+            dag,
+            RunningTotals(dag, trees, self.cell),
+            audit=audit,
+            strict=strict and not audit,
+            one_trial=one_trial,
+        )
         self.inputs, self.held = inputs, held
-        self._strict, self._one_trial = strict and not audit, one_trial
-        self.notices: list[Notice] = []
         self.saved: dict[Cell, object] = {}
         self.faults: dict[Cell, FormulaError] = {}
         self.more: dict[Cell, set[Cell]] = {}
         self.led_to: dict[Cell, set[Cell]] = {}
         self._led: set[Cell] = set()
         self._spills = Spills(graph.workbook)
-        self._computed: dict[Cell, int] = {}
-        self._arrays: dict[Cell, int] = {}
-        self._cells: dict[Cell, int] = {cell: dag.input(name) for cell, name in inputs.items()}
+        self._cells = {cell: dag.input(name) for cell, name in inputs.items()}
         self._cells |= {cell: dag.constant(constant(value)) for cell, value in held.items()}
         self._fill_down = FillDownCache(dag)
-        self.circle: set[Cell] = set()
-        if graph.circles:
+        if self._circles:
             lower_as_read(graph.formulas.ordered, self)
         else:
             for cell, placed in graph.formulas.ordered.items():
@@ -139,63 +142,15 @@ class Lowering(ExpressionLowering):
         saved = self.graph.workbook.content(cell).value if self._audit and node not in self.dag.missing else None
         self._cells[cell] = node if saved is None else self._held_cell(cell)
 
-    def is_lowered(self, cell: Cell) -> bool:
-        """Whether the node of a formula cell is there."""
-        return cell in self._computed or cell not in self.graph.formulas.ordered
-
-    def lower_next(self, cell: Cell) -> Collection[Cell]:
-        """Lower a formula cell; if that asks for others that are not lowered, return these instead."""
-        try:
-            self._set(cell, self._lower_placed(cell, self.graph.formulas.ordered[cell]))
-        except NotYetNeeded as needed:
-            self.calls.next_formula()
-            return needed.cells
-        return ()
-
-    def forget(self, cell: Cell) -> None:
-        """Have a formula cell lowered again."""
-        for known in (self._computed, self._cells, self._arrays):
-            known.pop(cell, None)
-
-    def node_of(self, cell: Cell) -> int:
-        """The node of a formula cell that is lowered."""
-        return self._computed[cell]
-
-    def refuse(self, cells: Sequence[Cell], error: FormulaError) -> None:
-        """Take cells for faulty that need each other in a circle; of many trials raise the error."""
-        if self._strict and not self._one_trial:
-            raise error
-        for cell in cells:
-            self._set(cell, self.dag.circle() if self._strict else self._hold_saved(cell, error))
-
-    def tell_circle(self, cell: Cell) -> None:
-        """Note that some trials may read a cell while it is computed."""
-        said = "trials in which this cell needs itself in a circle are errors, #CALC!"
-        self.notices.append(Notice(said, cell))
-
     def cell(self, cell: Cell) -> int:
         """The node of a cell's value."""
         if cell not in self._cells:
             if cell in self.circle:
                 return self.dag.circle()
-            if cell in self.graph.circles or (self.graph.circles and cell in self.graph.formulas.ordered):
+            if self._circles and cell in self.graph.formulas.ordered:
                 raise NotYetNeeded([cell])
             self._cells[cell] = self._held_cell(cell)
         return self._cells[cell]
-
-    def not_there(self, area: Area) -> Collection[Cell]:
-        """The cells of an area that are in a circle and have no value yet."""
-        known, missing = self._cells, self.dag.missing
-        return {c for c in self.graph.circles if c in area and (c not in known or known[c] in missing)}
-
-    def read_first(self, cells: Iterable[Cell]) -> None:
-        """Ask for all cells that must be lowered first."""
-        if not self.graph.circles:
-            return
-        ordered, known = self.graph.formulas.ordered, self._cells
-        waiting = [cell for cell in cells if cell in ordered and cell not in known and cell not in self.circle]
-        if waiting:
-            raise NotYetNeeded(waiting)
 
     def array(self, cell: Cell) -> int:
         """The node of all that an array formula in a cell gives."""
@@ -263,7 +218,7 @@ class Lowering(ExpressionLowering):
         if not isinstance(placed, Filled):
             return self.lower_cell(cell, placed)
         stencil, cells = placed
-        if self._audit or cell in self.graph.circles:
+        if self._audit or cell in self._circles:
             return self.lower_cell(cell, stencil.at(cell))
         known = self._cells
         leaves = [known[leaf] if leaf in known else self.cell(leaf) for leaf in cells]
@@ -300,7 +255,7 @@ class Lowering(ExpressionLowering):
 
     def _wait_for_graph(self, cell: Cell, needed: Collection[Cell]) -> bool:
         """Note the cells that a formula needs and does not name; whether there are any."""
-        if self.graph.circles:
+        if self._circles:
             needed = [need for need in needed if not self.graph.needs.names(cell, need)]
         if needed:
             self.more.setdefault(cell, set()).update(needed)

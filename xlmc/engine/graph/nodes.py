@@ -43,6 +43,7 @@ __all__ = [
     "corner",
     "evaluate_node",
     "in_own_memory",
+    "in_slots",
     "single",
     "uses",
 ]
@@ -121,6 +122,27 @@ def uses(node: Node) -> tuple[int, ...]:
             return value, instead
         case Range(rows):
             return tuple(node_id for row in rows for node_id in row)
+        case _:
+            assert_never(node)
+
+
+def in_slots(node: Node, slots: Mapping[int, int]) -> Apply | Select | IfErrorNode | Range:
+    """A node whose parts are known by other numbers.
+
+    Raises:
+        TypeError: it has no parts.
+    """
+    match node:
+        case Apply(function, arguments):
+            return Apply(function, tuple(slots[node_id] for node_id in arguments))
+        case Select(condition, yes, no):
+            return Select(slots[condition], slots[yes], slots[no])
+        case IfErrorNode(value, instead, only_na):
+            return IfErrorNode(slots[value], slots[instead], only_na)
+        case Range(rows):
+            return Range(tuple(tuple(slots[node_id] for node_id in row) for row in rows))
+        case Constant() | Input():
+            raise TypeError(f"{node} depends on nothing")
         case _:
             assert_never(node)
 

@@ -18,7 +18,7 @@ from xlmc.engine.graph.callees import Arguments, find_function, is_omitted
 from xlmc.engine.graph.computed_references import areas_of, join_areas
 from xlmc.engine.graph.dag import Dag
 from xlmc.engine.graph.lowering import Closure, RecursiveLambda, Scope, Thunk, TreeLowering
-from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Input, Node, Range, Select, uses
+from xlmc.engine.graph.nodes import Apply, Constant, Node, Select, in_slots, uses
 from xlmc.engine.graph.recursive_calls import Body, SelfCall, Step, call_lambda
 from xlmc.errors import FormulaError
 from xlmc.excel.formula import ir
@@ -26,7 +26,7 @@ from xlmc.excel.functions import Function, Kind
 from xlmc.excel.functions.registry import Cells
 from xlmc.excel.functions.values import Value
 
-__all__ = ["DEEPEST", "call_recursive"]
+__all__ = ["DEEPEST", "call_recursive", "placeholder"]
 
 DEEPEST: Final = 16_384
 """Excel's calls within calls are this many, divided by the number of parameters and one; one more is `#NUM!`."""
@@ -74,7 +74,7 @@ def _define(
     lowering: TreeLowering, function: Closure, given: Sequence[_Given], key: object, scope: Scope
 ) -> RecursiveLambda:
     dag, calls = lowering.dag, lowering.lambda_calls
-    parameters = [_placeholder(dag) for each in given for _ in each.values]
+    parameters = [placeholder(dag) for each in given for _ in each.values]
     found = calls.recursive[key] = RecursiveLambda(parameters, _marker("the LAMBDA itself"))
     try:
         with calls.opening(function):
@@ -137,7 +137,8 @@ def _bind_parameters(dag: Dag, given: Sequence[_Given], parameters: Sequence[int
     return bound
 
 
-def _placeholder(dag: Dag) -> int:
+def placeholder(dag: Dag) -> int:
+    """Make a node that stands for a value which is given later."""
     return dag.add(Apply(_marker("a parameter"), ()))
 
 
@@ -204,15 +205,5 @@ def _find_dependent(dag: Dag, definition: RecursiveLambda, result: int) -> list[
 
 def _step(node: Node, itself: Function, slots: dict[int, int]) -> Step:
     """A node whose parts are slots."""
-    match node:
-        case Apply(function, arguments):
-            used = tuple(slots[node_id] for node_id in arguments)
-            return SelfCall(used) if function is itself else Apply(function, used)
-        case Select(condition, yes, no):
-            return Select(slots[condition], slots[yes], slots[no])
-        case IfErrorNode(value, instead, only_na):
-            return IfErrorNode(slots[value], slots[instead], only_na)
-        case Range(rows):
-            return Range(tuple(tuple(slots[node_id] for node_id in row) for row in rows))
-        case Constant() | Input():
-            raise TypeError(f"{node} depends on nothing")
+    step = in_slots(node, slots)
+    return SelfCall(step.arguments) if isinstance(step, Apply) and step.function is itself else step

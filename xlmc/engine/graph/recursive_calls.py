@@ -21,7 +21,7 @@ from xlmc.excel.functions.logical import zero_if_blank
 from xlmc.excel.functions.lookup.picked_cells import join_values, map_parts
 from xlmc.excel.functions.values import BLANK, ERROR, Codes, Value, constant
 
-__all__ = ["Body", "SelfCall", "call_lambda"]
+__all__ = ["Body", "SelfCall", "call_lambda", "join_trials", "spread_trials"]
 
 
 class SelfCall(NamedTuple):
@@ -137,7 +137,7 @@ def call_lambda(body: Body, *values: Value) -> Value:
             left = np.delete(left, stopped.trials)
             if len(parts) > _MOST_RESTARTS:
                 raise _too_often() from None
-    return _join_trials(n, parts)
+    return join_trials(n, parts)
 
 
 _MOST_RESTARTS: Final = 50
@@ -207,7 +207,7 @@ class _Run:
             yield from self._round(frame, body.result, found, False)
             self.live -= frame.bytes
             if not found.next_calls:
-                return _join_trials(trials.size, results)
+                return join_trials(trials.size, results)
             frame = self._next(frame, found.next_calls, taken)
 
     def _round(self, frame: _Frame, slot: int, found: _Round, chosen: bool) -> Asking:
@@ -306,7 +306,7 @@ class _Run:
                 inner = frame.of(index)
                 parts.append((index, (yield inner, slot)))
                 self.live -= 0 if inner is frame else inner.bytes
-        return _join_trials(frame.trials.size, parts)
+        return join_trials(frame.trials.size, parts)
 
 
 def _ask(frame: _Frame, slots: Sequence[int]) -> Asking:
@@ -333,11 +333,13 @@ def _find_marked(taken: NDArray[np.bool_], frame: _Frame) -> Trials:
 
 def _one_after_another(frames: Sequence[_Frame], values: Sequence[Value]) -> Value:
     """The values of several frames as those of one."""
-    return join_values([_spread(value, frame.trials.size) for frame, value in zip(frames, values, strict=True)], axis=0)
+    return join_values(
+        [spread_trials(value, frame.trials.size) for frame, value in zip(frames, values, strict=True)], axis=0
+    )
 
 
-def _spread(value: Value, n: int) -> Value:
-    """A value that is the same in all trials, as one of each."""
+def spread_trials(value: Value, n: int) -> Value:
+    """Make of a value that is the same in all trials one of each."""
     return map_parts(value, lambda part: np.broadcast_to(part, (n, *part.shape[1:])))
 
 
@@ -347,7 +349,7 @@ def _find_taken(frame: _Frame, slot: int) -> Value:
     return found
 
 
-def _join_trials(n: int, parts: list[tuple[Trials, Value]]) -> Value:
+def join_trials(n: int, parts: list[tuple[Trials, Value]]) -> Value:
     """Join values of some trials each into one of all trials."""
     if len(parts) == 1 and np.array_equal(parts[0][0], np.arange(n)):
         return parts[0][1]
@@ -358,7 +360,7 @@ def _join_trials(n: int, parts: list[tuple[Trials, Value]]) -> Value:
     has_texts = any(value.texts is not None for _, value in parts)
     out = Value(np.zeros(size), np.full(size, BLANK, np.uint8), np.full(size, "", object) if has_texts else None)
     for index, value in parts:
-        spread = _spread(value, index.size)
+        spread = spread_trials(value, index.size)
         out.numbers[index], out.kinds[index] = spread.numbers, spread.kinds
         if out.texts is not None and spread.texts is not None:
             out.texts[index] = spread.texts

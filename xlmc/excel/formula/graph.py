@@ -23,7 +23,10 @@ from xlmc.excel.formula.stencil import Stencil
 from xlmc.excel.formula.strips import Needs, Part, Stretch, Strips
 from xlmc.excel.workbook.workbook import Workbook
 
-__all__ = ["Filled", "Graph", "Spills", "build_graph", "circle_error", "circular", "downstream"]
+__all__ = ["BREAK", "Filled", "Graph", "Spills", "build_graph", "circle_error", "circular", "downstream"]
+
+BREAK: Final = "break the circle, or turn on iterative calculation in Excel's options, if it is meant"
+"""What to do about cells that need each other."""
 
 _MANY: Final = 64
 """Cells of a part that it is worth remembering."""
@@ -290,7 +293,7 @@ def circle_error(cells: Sequence[Cell]) -> FormulaError:
     return FormulaError(
         f"the cells need each other in a circle: {loop}",
         where=cells[0],
-        hint="break the circle; iterative calculation is not supported",
+        hint=BREAK,
     )
 
 

@@ -26,7 +26,7 @@ from xlmc.excel.workbook.pivot_tables import pivot_tables
 from xlmc.excel.workbook.printable import label
 from xlmc.excel.workbook.safe_xml import REPAIR, decode, is_true, tree, whole_number
 from xlmc.excel.workbook.sheet import CellContext, convert
-from xlmc.excel.workbook.structure import Structure, read_structure, tables_of
+from xlmc.excel.workbook.structure import Structure, iteration_of, read_structure, tables_of
 from xlmc.excel.workbook.workbook import CellContent, CellValue, DefinedName, LinkedBook, Sheet, Workbook
 
 if TYPE_CHECKING:
@@ -69,6 +69,7 @@ def _read(data: bytes, name: str, where: str) -> Workbook:
             pivots=pivot_tables(parts, structure.worksheets, structure.date1904),
             date1904=structure.date1904,
             macintosh=b"Macintosh" in parts.get("docProps/app.xml", b""),
+            iteration=iteration_of(structure.calculation),
             may_be_stale=_may_be_stale(structure.calculation),
             notices=tuple(_workbook_notices(parts, structure, name)),
             parts=parts,
@@ -157,8 +158,6 @@ def _on_calculation(settings: Mapping[str, str]) -> Iterator[str]:
         yield "Excel calculates this workbook with precision as displayed; xlmc calculates with full precision"
     if settings.get("calcMode") == "manual":
         yield "calculation is set to manual: the values Excel saved may be older than the formulas and inputs"
-    if is_true(settings.get("iterate")):
-        yield "iterative calculation is on: xlmc does not calculate circular references"
 
 
 def _may_be_stale(settings: Mapping[str, str]) -> bool:

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import Notice, WorkbookError
 from xlmc.excel.address import Area, Cell, parse_address
 from xlmc.excel.workbook.package import SAVE_AS, Relationship, relationships
 from xlmc.excel.workbook.printable import printable
 from xlmc.excel.workbook.safe_xml import REPAIR, attribute, decode, is_true, tree, whole_number
-from xlmc.excel.workbook.workbook import DefinedName, Table
+from xlmc.excel.workbook.workbook import DefinedName, Iteration, Table
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
-__all__ = ["SheetEntry", "Structure", "area_of", "read_structure", "read_table", "tables_of"]
+__all__ = ["SheetEntry", "Structure", "area_of", "iteration_of", "read_structure", "read_table", "tables_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +88,26 @@ def read_structure(parts: Mapping[str, bytes]) -> Structure:
         calculation={} if calculation is None else calculation.attrib,
         links=tuple(_links(root, rels)),
     )
+
+
+def iteration_of(calculation: Mapping[str, str]) -> Iteration | None:
+    """How a workbook computes circles, by the attributes of `calcPr` (ECMA-376, part 1, 18.2.2); None if it does not.
+
+    A number that is none, or out of Excel's range, counts as the one that Excel begins with.
+    """
+    if not is_true(calculation.get("iterate")):
+        return None
+    usual = Iteration()
+    count = whole_number(calculation.get("iterateCount")) or usual.count
+    try:
+        change = float(calculation.get("iterateDelta", usual.change))
+    except ValueError:
+        change = usual.change
+    known = count <= _MOST_ITERATIONS, 0.0 <= change < math.inf
+    return Iteration(count if known[0] else usual.count, change if known[1] else usual.change)
+
+
+_MOST_ITERATIONS: Final = 32_767
 
 
 def _links(root: Element, rels: Mapping[str, Relationship]) -> Iterator[str]:

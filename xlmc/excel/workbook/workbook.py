@@ -15,6 +15,7 @@ __all__ = [
     "DataTable",
     "DefinedName",
     "Formula",
+    "Iteration",
     "LinkedBook",
     "PivotField",
     "PivotTable",
@@ -234,6 +235,19 @@ class PivotTable:
         yield from (self.cells[key] for key in among if key[0] == data and items < key[1])
 
 
+@dataclass(frozen=True, slots=True)
+class Iteration:
+    """How Excel computes cells that need each other in a circle, where its iterative calculation is on.
+
+    Attributes:
+        count: the most times that they are computed.
+        change: once none of them changes by so much, they are not computed again.
+    """
+
+    count: int = 100
+    change: float = 0.001
+
+
 @dataclass(frozen=True)
 class Workbook:
     """A workbook as read: nothing evaluated, nothing changed.
@@ -244,6 +258,7 @@ class Workbook:
         pivots: the pivot tables, where a formula asks for one.
         links: to other workbooks, as formulas write them (`[1]`), with the values that Excel stored.
         macintosh: last saved by Excel for the Macintosh, whose CHAR and CODE use its own character set.
+        iteration: how cells that need each other in a circle are computed; None where they are an error.
         may_be_stale: saved values may be older than the formulas: calculation is manual, or Excel has yet to do it.
         parts: every part of the zip package in its order, name -> bytes, as in the file.
         origin: the parts of the file that it was read from, where values have been typed since and it has no `parts`.
@@ -260,6 +275,7 @@ class Workbook:
     links: Mapping[str, LinkedBook] = field(default_factory=dict)
     date1904: bool = False
     macintosh: bool = False
+    iteration: Iteration | None = None
     may_be_stale: bool = False
     notices: tuple[Notice, ...] = ()
     parts: Mapping[str, bytes] = field(default_factory=dict, repr=False)

@@ -22,6 +22,7 @@ from xlmc.montecarlo.diagnostics.cell_errors import Root, error_roots
 from xlmc.montecarlo.diagnostics.checking import CheckResult, check_results
 from xlmc.montecarlo.diagnostics.digit_watch import lost_digits
 from xlmc.montecarlo.diagnostics.directions import direction_notices
+from xlmc.montecarlo.diagnostics.iteration_watch import unsettled_notices
 from xlmc.montecarlo.diagnostics.result_answers import Answers, RunFacts
 from xlmc.montecarlo.diagnostics.result_cells import ShownResults, shown_results
 from xlmc.montecarlo.diagnostics.weighing import Weighting, weighting_of
@@ -266,6 +267,7 @@ class RunResult:
         samples = {name: result.sample for name, result in self.results.items()}
         found += [Notice(f"{each[0].upper()}{each[1:]}") for each in self.agreement.remarks] if self.agreement else []
         found += direction_notices(self.results.values())
+        found += unsettled_notices(self.model, self.prior)
         return (*found, *tail_notices(samples, METHODS[self.plan.method].name))
 
     @property

@@ -25,7 +25,7 @@ from xlmc.analysis.studies.methods.importance_grid import ImportanceGrid
 from xlmc.analysis.studies.methods.optimised import Optimised, widen_bounds
 from xlmc.analysis.studies.methods.sampled import ENGINE_VARIANTS, MONTE_CARLO, SAMPLERS, Sampled
 from xlmc.analysis.studies.methods.surrogate import Surrogate
-from xlmc.errors import SimulationError
+from xlmc.errors import FormulaError, SimulationError
 from xlmc.montecarlo.definitions.amounts import as_tolerance
 from xlmc.montecarlo.model.model import CompiledModel
 
@@ -366,7 +366,7 @@ class _Measuring:
         """A method's first run; None, and why, where it cannot be used."""
         try:
             return method.run(self._model, budget, self._seed)
-        except SimulationError as error:
+        except (SimulationError, FormulaError) as error:
             self.absent[method.name] = str(error)
             return None
 

@@ -19,6 +19,7 @@ from xlmc.analysis.studies.stability.edges import domain_edges
 from xlmc.analysis.studies.stability.quadrant import lost_quadrants
 from xlmc.analysis.studies.stability.repeated_steps import as_one
 from xlmc.analysis.studies.stability.rounding_errors import cell_digits, lost_digits
+from xlmc.analysis.studies.stability.starts import dependence_on_starts
 from xlmc.engine.graph.nodes import Apply
 from xlmc.engine.passes.derivatives.sweep import owners
 from xlmc.montecarlo.simulation.simulate import simulate
@@ -40,6 +41,7 @@ _DETECTORS: Final[Mapping[str, Callable[[Case], Iterable[Finding]]]] = {
     "narrow filters": narrow_filters,
     "edges of domains": domain_edges,
     "jumps": jumps,
+    "starts of iterations": dependence_on_starts,
     "angles": rounded_angles,
     "amplification": amplifying_forecasts,
 }

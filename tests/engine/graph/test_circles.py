@@ -7,6 +7,7 @@ import pytest
 from xlmc.analysis.studies.verify import Status, verify
 from xlmc.errors import FormulaError
 from xlmc.montecarlo.diagnostics.cell_errors import errors_at_base
+from xlmc.montecarlo.simulation.simulate import simulate
 
 SHEET = {"A1": 10.0, "A2": 12.0, "A3": 14.0, "A4": 16.0, "B1": 1.0, "B2": 2.0, "B3": 3.0, "D1": 1.0, "D2": 2.0}
 """The drawn cell is A1."""
@@ -217,7 +218,7 @@ def turning(book):
 
 @pytest.mark.parametrize("engine", ["numpy", "jit"])
 def test_a_run_names_the_cell_whose_trials_are_errors(turning, engine):
-    run = turning.simulate(trials=2_000, seed=1, engine=engine)
+    run = simulate(turning, trials=2_000, seed=1, engine=engine)
     lost = int((run.prior["a"] > 0.9).sum())
     assert dict(run["sum"].faults) == {"#CALC!": lost}
     assert abs(lost / 2_000 - 0.1) < 4 * 0.3 / 2_000**0.5
@@ -232,4 +233,4 @@ def test_the_base_case_of_a_circle_has_its_errors(turning):
 
 def test_the_engine_formulas_refuses_circles(turning):
     with pytest.raises(FormulaError, match="no cells that refer to themselves"):
-        turning.simulate(trials=10, engine="formulas")
+        simulate(turning, trials=10, engine="formulas")

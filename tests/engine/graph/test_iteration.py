@@ -10,6 +10,7 @@ from xlmc.analysis.studies.verify import Status, verify
 from xlmc.errors import FormulaError
 from xlmc.excel.address import parse_address
 from xlmc.excel.workbook.workbook import CellContent, Formula, Iteration
+from xlmc.montecarlo.simulation.simulate import simulate
 
 FINE = Iteration(100, 1e-12)
 LOAN = {"A1": 0.05, "B1": 1000.0, "B2": "=A1*(B1+B3)/2", "B3": "=B1+B2"}
@@ -120,10 +121,10 @@ def loan(book):
 
 
 def test_a_run_says_that_cells_are_iterated_and_whether_they_settle(loan):
-    run = loan(LOAN, "B3", FINE).simulate(trials=500, seed=1)
+    run = simulate(loan(LOAN, "B3", FINE), trials=500, seed=1)
     assert [str(note.where) for note in run.notices if "computed iteratively" in note.message] == ["S!B2"]
     assert not any("settle" in note.message for note in run.notices)
-    run = loan({"A1": 0.05, "B1": "=IF(A1>0.06,B1+1,0.5)"}, "B1", Iteration()).simulate(trials=500, seed=1)
+    run = simulate(loan({"A1": 0.05, "B1": "=IF(A1>0.06,B1+1,0.5)"}, "B1", Iteration()), trials=500, seed=1)
     many = int((run.prior["rate"] > 0.06).sum())
     (said,) = [note.message for note in run.notices if "settle" in note.message]
     assert f"does not settle in {many} of 500 trials" in said

@@ -13,7 +13,7 @@ from xlmc.errors import Notice
 from xlmc.montecarlo.loop.blocks import portions
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.model.model import Model
+    from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["unsettled_notices"]
 
@@ -25,7 +25,7 @@ _BLOCK: Final = 1 << 12
 Floats = NDArray[np.float64]
 
 
-def unsettled_notices(model: Model, drawn: Mapping[str, Floats]) -> list[Notice]:
+def unsettled_notices(model: CompiledModel, drawn: Mapping[str, Floats]) -> list[Notice]:
     """Say which circles do not settle, and how often.
 
     Args:

@@ -143,7 +143,11 @@ class _Walk:
             cell = next(reversed(trail))
             before = len(trail)
             for following in trail[cell]:
-                if following not in ordered:
+                if following in ordered:
+                    continue
+                if following in trail:
+                    self.circular = True
+                else:
                     self._enter(following)
                     if len(trail) > before:
                         break
@@ -159,8 +163,6 @@ class _Walk:
     def _enter(self, cell: Cell) -> None:
         if cell in self._given:
             self.reached.add(cell)
-        elif cell in self._trail:
-            self.circular = True
         elif cell not in self.ordered and (found := self._rewritten(cell) or self._read(cell)) is not None:
             self._open[cell] = found
             self.needs.parts[cell] = parts = self._precedents(cell, found)

@@ -9,7 +9,8 @@ from xlmc.analysis.studies.stability import stability
 from xlmc.analysis.studies.verify import Status, verify
 from xlmc.errors import FormulaError
 from xlmc.excel.address import parse_address
-from xlmc.excel.workbook.workbook import CellContent, Formula, Iteration
+from xlmc.excel.iteration import Iteration
+from xlmc.excel.workbook.workbook import CellContent, Formula
 from xlmc.montecarlo.simulation.simulate import simulate
 
 FINE = Iteration(100, 1e-12)

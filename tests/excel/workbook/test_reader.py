@@ -9,8 +9,9 @@ import xlsxwriter
 
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.excel.address import Area, Cell
+from xlmc.excel.iteration import Iteration
 from xlmc.excel.workbook.reader import read_workbook
-from xlmc.excel.workbook.workbook import DataTable, DefinedName, Formula, Iteration, Table, Workbook
+from xlmc.excel.workbook.workbook import DataTable, DefinedName, Formula, Table, Workbook
 
 
 @pytest.fixture

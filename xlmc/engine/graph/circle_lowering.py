@@ -106,7 +106,7 @@ class CircleLowering(ExpressionLowering):
         """Lower the cells of the circle that a cell is in, to be computed again and again."""
         assert self._iteration is not None
         graph, book = self.graph, self.graph.workbook
-        cells = in_order(book, [each for each, fault in graph.circles.items() if fault is graph.circles[cell]])
+        cells = in_order(book.sheets, [each for each, fault in graph.circles.items() if fault is graph.circles[cell]])
         self.circle.clear()
         for each in [*cells, *(each for each, node in self._computed.items() if node in self.dag.missing)]:
             self.forget(each)

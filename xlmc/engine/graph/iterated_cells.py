@@ -16,7 +16,7 @@ import numpy as np
 from xlmc.engine.graph.nodes import Apply, IfErrorNode, Range, Select, corner, evaluate_node, uses
 from xlmc.engine.graph.recursive_calls import join_trials, spread_trials
 from xlmc.excel.functions.values import ERROR, TEXT, Bools, Value, constant
-from xlmc.excel.workbook.workbook import Iteration
+from xlmc.excel.iteration import Iteration
 
 __all__ = ["Formula", "Round", "settle"]
 

@@ -22,7 +22,7 @@ from xlmc.excel.address import Cell
 from xlmc.excel.functions import Function, Kind
 from xlmc.excel.functions.registry import Anything, Cells
 from xlmc.excel.functions.values import from_objects
-from xlmc.excel.workbook.workbook import CellValue, Iteration, Workbook
+from xlmc.excel.iteration import Iteration
 
 __all__ = ["IteratedCells", "in_order", "iterate_cells"]
 
@@ -57,16 +57,16 @@ class IteratedCells:
         )
 
 
-def in_order(workbook: Workbook, cells: Iterable[Cell]) -> list[Cell]:
+def in_order(tabs: Iterable[str], cells: Iterable[Cell]) -> list[Cell]:
     """Sort cells as they are computed: by tab, row and column."""
-    tabs = {name: number for number, name in enumerate(workbook.sheets)}
-    return sorted(cells, key=lambda cell: (tabs.get(cell.sheet, len(tabs)), cell.row, cell.column))
+    places = {name: number for number, name in enumerate(tabs)}
+    return sorted(cells, key=lambda cell: (places.get(cell.sheet, len(places)), cell.row, cell.column))
 
 
 def iterate_cells(
     dag: Dag,
     cells: Sequence[Cell],
-    saved: Sequence[CellValue],
+    saved: Sequence[object],
     iteration: Iteration,
     lower: Callable[[Mapping[Cell, int]], Sequence[int]],
 ) -> IteratedCells:

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import Notice, WorkbookError
 from xlmc.excel.address import Area, Cell, parse_address
+from xlmc.excel.iteration import Iteration
 from xlmc.excel.workbook.package import SAVE_AS, Relationship, relationships
 from xlmc.excel.workbook.printable import printable
 from xlmc.excel.workbook.safe_xml import REPAIR, attribute, decode, is_true, tree, whole_number
-from xlmc.excel.workbook.workbook import DefinedName, Iteration, Table
+from xlmc.excel.workbook.workbook import DefinedName, Table
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element

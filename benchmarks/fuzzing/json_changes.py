@@ -60,7 +60,7 @@ def _value(rng: random.Random, old: object, places: list[Any]) -> object:
             10**12,
         ]
         return rng.choice(numbers)
-    if kind < 0.65 and isinstance(old, int | float) and not isinstance(old, bool):
+    if kind < 0.65 and isinstance(old, int | float) and not isinstance(old, bool) and not _is_vast(old):
         return rng.choice([old + 1, old - 1, -old, old * 1000, float(old), str(old), old / 3])
     if kind < 0.75 and isinstance(old, str):
         return rng.choice([old.upper(), old + "x", old * 100, "../" + old, old[:1], [old]])
@@ -68,3 +68,8 @@ def _value(rng: random.Random, old: object, places: list[Any]) -> object:
         holder, key, _ = rng.choice(places)
         return copy.deepcopy(holder.get(key)) if isinstance(holder, dict) else None  # itself would make a circle
     return hostile.text(rng)[:500].encode("utf-8", "replace").decode()
+
+
+def _is_vast(number: float) -> bool:
+    """Whether it is an integer that no float holds."""
+    return isinstance(number, int) and abs(number) > 10**300

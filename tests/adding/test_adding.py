@@ -35,7 +35,7 @@ EXAMPLES = {
     "An engine": "slow",
     "A result sheet": "Largest",
 }
-SETTINGS = {"Trials": TRIALS, "Sampling": "Antithetic", "Engine": "slow"}
+SETTINGS = {"Trials": TRIALS, "Sampling": "Antithetic", "Engine": "slow", "Purpose": "Final"}
 
 
 def _lines(hunk, signs):
@@ -192,6 +192,14 @@ def test_its_errors_come_from_the_pairs(answers):
     mean = answers["slow"][1]["statistics"]["mean"]
     assert abs(mean["value"] - 2) < 1e-12
     assert mean["error"] < 0.001
+
+
+def test_the_setting_is_recorded_and_repeated(folder, said):
+    book = openpyxl.load_workbook(folder / "slow.xlsx")
+    record = {row[0]: row[2] for row in book["Record"].iter_rows(values_only=True) if row[0]}
+    assert record["settings.purpose"] == "final"
+    assert "--purpose final" in record["run.repeat"]
+    assert "--purpose" in said["help"]
 
 
 def test_the_sheet_holds_the_largest_values(folder, answers, trials):

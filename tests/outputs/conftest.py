@@ -111,6 +111,15 @@ def run():
 
 
 @pytest.fixture(scope="session")
+def weighted(model_of):
+    """A run whose trials evidence weights: a standard normal number, read as 1 with a standard deviation of 0.5."""
+    normal = {"cell": "A1", "distribution": "Normal", "mean": 0, "std_dev": 1}
+    evidence = {"reading": {"cell": "C1", "reading": 1, "error": "normal", "std_dev": 0.5}}
+    model = model_of({"A1": 0.0, "B1": "=A1*1", "C1": "=A1*1"}, {"a": normal}, {"y": "B1"}, evidence=evidence)
+    return simulated(model, 4_000, seed=1, evidence="weights")
+
+
+@pytest.fixture(scope="session")
 def none_accepted():
     """A run in which the filter leaves nothing."""
     assumptions = [uniform("a", "A1", 0.0, 1.0, base=0.5)]

@@ -63,3 +63,13 @@ def test_six_forecasts_stand_on_a_page(make, opened):
     sheet = opened(run, "Statistics")["Statistics"]
     begins = [brk.id + 1 for brk in sheet.row_breaks.brk]
     assert [sheet.cell(row, 2).value for row in begins] == ["f6", "f12"]
+
+
+def test_statistics_of_weighted_trials_are_weighted(weighted, opened, row_of):
+    """The mean given the reading is 0.8; that of the trials, each counted once, is 0."""
+    values, weights = weighted["y"].values, weighted.weighting.weights
+    mean = row_of(opened(weighted, "Statistics")["Statistics"], "Mean")[1]
+    assert mean == weighted["y"].mean.value
+    assert mean == pytest.approx((weights * values).sum() / weights.sum(), rel=1e-12)
+    assert mean == pytest.approx(0.8, abs=0.06)
+    assert abs(values.mean()) < 0.06

@@ -677,3 +677,28 @@ def test_the_tabs_are_of_the_answers_that_are_chosen_and_can_be_stopped(chromium
     page.until(f"{headings}.includes('Answer 5: speed at the beginning')")
     page.tab("tables")
     page.until("document.querySelectorAll('#panel-tables .forecast-statistics').length === 4")
+
+
+def test_the_probability_above_a_threshold_is_said_at_once_and_follows(chromium, running, tmp_path):
+    book = wide_book(tmp_path / "case.xlsx", assumptions=6, forecasts=1)
+    page = Page(chromium, running(book=book))
+
+    def said(threshold, *changes):
+        (values,) = simulated(applied(load(book), changes)).forecasts.values()
+        return int((values > threshold).sum()), values.size
+
+    share = "document.querySelector('.beyond').textContent"
+    page.type(page.one(".above"), "18,5")
+    above, trials = said(18.5)
+    exact = page.run("return Live.right.panels.values().next().value.panel.trials.reached(18.5, true).doubt")
+    found = page.run(f"return {share}")
+    assert found.startswith("P = ")
+    count = int(found.partition("(")[2].removeprefix("about ").split()[0].replace(",", ""))
+    assert abs(count - above) <= exact + 0.5
+    assert f"of {trials:,})" in found
+    page.at_rest(lambda: page.type(page.box(page.card(FRICTION), "High"), "1.2"))
+    above, _ = said(18.5, Numbers(FRICTION, {"high": 1.2}))
+    count = int(page.run(f"return {share}").partition("(")[2].removeprefix("about ").split()[0].replace(",", ""))
+    assert abs(count - above) <= 3
+    page.type(page.one(".above"), "much")
+    assert "no number" in page.run(f"return {share}")

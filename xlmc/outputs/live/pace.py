@@ -22,8 +22,10 @@ _QUICK: Final = 0.03
 _PIECE: Final = 0.05
 """Seconds after which a longer run looks whether something newer is wanted."""
 
-_SMALLEST_PIECE: Final = 4_096
-"""Trials: with fewer, most of the time would go into what does not depend on their number."""
+_SMALLEST_PIECE: Final = 16_384
+"""Trials: with fewer, much of the time would go into what does not depend on their number. Runs that move have pieces
+of this size whatever they take: draws are kept by the size of their block.
+"""
 
 
 class Pace:
@@ -55,8 +57,10 @@ class Pace:
 
     def piece(self, *, resting: bool) -> int:
         """Trials after which a run looks whether it is still wanted."""
+        if not resting:
+            return _SMALLEST_PIECE
         if not self.is_slow:
-            return BLOCK if resting else MOVING_TRIALS
+            return BLOCK
         return max(_SMALLEST_PIECE, self._trials_in(_PIECE, resting=resting))
 
     def _trials_in(self, seconds: float, *, resting: bool) -> int:

@@ -26,6 +26,9 @@ function forecastElement({ name, units, marks }, number) {
   const ends = make("div", { class: "grabbed" },
     make("div", { class: "boxes" }, box("Lower end", "low", units), box("Upper end", "high", units),
       box("Certainty", "share", "%"), make("button", { type: "button", class: "reset", text: "Central range" })),
+    make("p", { class: "threshold" }, make("label", {}, "Above ", make("input", { type: "text", autocomplete: "off",
+      spellcheck: "false", class: "above", "aria-label": `Threshold of ${name}` }), units ? ` ${units}` : ""),
+    " ", make("output", { class: "beyond" })),
     make("p", { class: "fault", role: "alert" }), make("p", { class: "certainty" }));
   const chart = make("div", { class: "chart", role: "group", "aria-label": `Chart of ${name}, with two grabbers` });
   return make("article", { class: "forecast", id: about },
@@ -53,6 +56,7 @@ class LivePanel extends Panel {
   listen(element) {
     super.listen(element);
     this.find(".together").addEventListener("change", ({ target }) => { this.together = Number(target.value); });
+    this.find(".above").addEventListener("change", () => this.tellAbove());
   }
 
   /** The fitted distributions of a run at rest; there are none while a handle moves. */
@@ -95,6 +99,7 @@ class LivePanel extends Panel {
     else this.show();
     this.read(null);
     this.tell();
+    this.tellAbove();
   }
 
   draw() {
@@ -167,6 +172,23 @@ class LivePanel extends Panel {
   set(low, high, texts = {}) {
     this.following = false;
     super.set(low, high, texts);
+  }
+
+  /** The probability of more than what was typed as a threshold. */
+  tellAbove() {
+    const text = this.find(".above").value;
+    const place = this.find(".beyond");
+    const threshold = text.trim() ? typed(text, null) : null;
+    this.find(".above").toggleAttribute("aria-invalid", Boolean(text.trim()) && threshold === null);
+    if (threshold === null) {
+      place.textContent = text.trim() ? whyNoNumber(text) : "";
+      return;
+    }
+    const { trials } = this.forecast;
+    const { count: upto, doubt } = this.trials.reached(threshold, true);
+    const share = shareOf(trials - upto, trials, this.z);
+    const about = doubt ? "about " : "";
+    place.textContent = `P = ${estimateText(100 * share.value, 100 * share.error)} % (${about}${countText(trials - upto)} of ${countText(trials)})`;
   }
 
   /** The numbers beside the chart, now and behind, and how the mean has moved. */

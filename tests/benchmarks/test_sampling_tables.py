@@ -137,7 +137,7 @@ def test_gains_of_known_variances(sobol, monkeypatch):
 def test_unfiltered_sobol_means_of_the_case_study_hardly_vary(sobol):
     """Six seeds and a sixteenth of the trials: the ratios are still far above the bar of 1,000."""
     book = sobol.load(sobol.CASE_STUDY)
-    free = sobol.Model(book.workbook, sobol.replace(book.definitions, filters=()), book.path)
+    free = sobol.CompiledModel(book.workbook, sobol.replace(book.definitions, filters=()), book.path)
     plain, even = (sobol.means(free, method, range(6), 1 << 13) for method in ("mc", "sobol"))
     assert (plain.var(axis=0) > 1_000 * even.var(axis=0)).all()
 

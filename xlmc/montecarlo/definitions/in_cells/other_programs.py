@@ -6,6 +6,7 @@ their arguments mean.
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 from xlmc.errors import FormulaError
@@ -17,10 +18,9 @@ PREFIXES: Final = {"PSI": "Analytic Solver (Risk Solver)", "VOSE": "ModelRisk"}
 """What the names of a program's functions begin with, in capitals -> the program."""
 
 _MARKS: Final = ("OUTPUT",)
-_RESULTS: Final = (
-    *("SIM", "MEAN", "MEDIAN", "MODE", "STDDEV", "STDEV", "VARIANCE", "SKEWNESS", "KURTOSIS", "PERCENTILE", "TARGET"),
-    *("MINIMUM", "MAXIMUM", "RANGE", "CVAR", "BVAR", "EXPLOSS", "EXPGAIN", "SENSITIVITY", "CORRELATION", "CITRIALS"),
-    *("PTOX", "XTOP", "QTOX", "XTOQ", "DATA", "ABSDEV", "SEMIVAR", "SEMIDEV", "COUNT", "FREQUENCY"),
+_RESULTS: Final = re.compile(
+    "SIM|MEAN|MEDIAN|MODE|STDDEV|STDEV|VARIANCE|SKEWNESS|KURTOSIS|PERCENTILE|TARGET|MINIMUM|MAXIMUM|RANGE|CVAR|BVAR|"
+    "EXPLOSS|EXPGAIN|SENSITIVITY|CORRELATION|CITRIALS|PTOX|XTOP|QTOX|XTOQ|DATA|ABSDEV|SEMIVAR|SEMIDEV|COUNT|FREQUENCY"
 )
 _LIKE: Final = {
     "TRIANGLE": "RiskTriang",
@@ -48,7 +48,7 @@ def of_another_program(name: str) -> FormulaError | None:
     """What to say of a function, by its name in capitals; None where it is not known to belong to such a program."""
     prefix = next((each for each in PREFIXES if name.startswith(each)), None)
     rest = name.removeprefix(prefix or "")
-    if prefix is None or not (prefix == "VOSE" or rest in _LIKE or rest in _MARKS or rest.startswith(_RESULTS)):
+    if prefix is None or not (prefix == "VOSE" or rest in _LIKE or rest in _MARKS or _RESULTS.match(rest)):
         return None  # a workbook's own code may have a function PsiAngle
     message = f"{name} is a function of {PREFIXES[prefix]}, which xlmc does not read"
     return FormulaError(message, hint=_instead(rest))
@@ -72,4 +72,4 @@ def shows_its_result(name: str) -> bool:
 
 
 def _is_result(rest: str) -> bool:
-    return rest.startswith(_RESULTS) and rest not in _LIKE
+    return _RESULTS.match(rest) is not None and rest not in _LIKE

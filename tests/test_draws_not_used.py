@@ -5,8 +5,12 @@ from __future__ import annotations
 import numpy as np
 import openpyxl
 import pytest
+from simulated import simulated
 
-import xlmc
+from xlmc.analysis.results.saved import open_run
+from xlmc.analysis.studies.sensitivity import sensitivities
+from xlmc.api import Simulation
+from xlmc.montecarlo.model.loading import load
 
 CELLS = {
     "A1": "=RiskBernoulli(0.3)",
@@ -24,11 +28,11 @@ def run(tmp_path_factory):
     for address, content in CELLS.items():
         book.active[address] = content
     book.save(path)
-    return xlmc.load(path).simulate(20_000, seed=7)
+    return simulated(load(path), 20_000, seed=7)
 
 
 def test_influences(run):
-    found = {each.assumption: each.explained.value for each in xlmc.sensitivities(run)["y"].influences}
+    found = {each.assumption: each.explained.value for each in sensitivities(run)["y"].influences}
     # Of the variance 15.16 the event explains 0.3 * 0.7 * 6²; a severity says whether it happens, and explains 11.16.
     assert found["S!A1#1"] == pytest.approx(7.56 / 15.16, abs=0.05)
     assert found["S!A2#1"] == pytest.approx(11.16 / 15.16, abs=0.05)
@@ -36,11 +40,11 @@ def test_influences(run):
 
 
 def test_files(run, tmp_path):
-    run.extract(tmp_path / "trials.csv")
-    run.save_json(tmp_path / "run.json")
-    run.keep(tmp_path / "run.xlmcrun")
+    Simulation(run).extract(tmp_path / "trials.csv")
+    Simulation(run).save_json(tmp_path / "run.json")
+    Simulation(run).keep(tmp_path / "run.xlmcrun")
     assert "NaN" not in (tmp_path / "run.json").read_text(encoding="utf-8")
-    again = xlmc.open_run(tmp_path / "run.xlmcrun")
+    again = open_run(tmp_path / "run.xlmcrun")
     assert np.array_equal(again.inputs["S!A2#1"], run.inputs["S!A2#1"], equal_nan=True)
     rows = [row.split(",") for row in (tmp_path / "trials.csv").read_text(encoding="utf-8").splitlines()]
     column = rows[0].index("S!A2#1")

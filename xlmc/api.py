@@ -304,7 +304,7 @@ class Simulation:
         return save_report(self._run, Path(path), wanted, overwrite=overwrite)
 
     def plot(self) -> Figure:
-        """A matplotlib figure: every forecast's histogram and cumulative share, with the central range shaded.
+        """Return a matplotlib figure: every forecast's histogram and cumulative share, with the central range shaded.
 
         Raises:
             SimulationError: matplotlib is not installed, or there is nothing to draw.
@@ -404,7 +404,7 @@ class Model:
         return self._compiled.quantiles(probabilities)
 
     def scenario(self, scenario: str | Scenario) -> Model:
-        """The model of the workbook in a scenario: one of the table `xlmc_scenarios` by its name, or one made here.
+        """Return the model of a scenario: one of the table `xlmc_scenarios` by its name, or one made here.
 
         Raises:
             SimulationError: there is no scenario of this name.
@@ -504,7 +504,7 @@ def load(path: str | Path) -> Model:
 
 
 def open_run(path: str | Path) -> Simulation:
-    """The run that `Simulation.keep` saved in a file: every statistic is the same to the last bit.
+    """Return the run that `Simulation.keep` saved in a file: every statistic is the same to the last bit.
 
     Raises:
         WorkbookError: the file cannot be read, or is no saved run.

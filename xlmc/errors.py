@@ -48,7 +48,7 @@ class ErrorCode(IntEnum):
 
     @classmethod
     def from_text(cls, text: str) -> ErrorCode:
-        """The code a cell's text stands for.
+        """Return the code that a cell's text stands for.
 
         Raises:
             ValueError: the text is not an Excel error.
@@ -75,7 +75,7 @@ _CODE = {text: code for code, text in _TEXT.items()}
 
 
 def sentence(text: str) -> str:
-    """The text with a full stop, where it does not end as a sentence does."""
+    """Return the text with a full stop, where it does not end as a sentence does."""
     return text if text.endswith(("?", "!", ".")) else f"{text}."
 
 
@@ -83,7 +83,7 @@ _COMMANDS = ("xlmc", "pip")
 
 
 def _begun(text: str) -> str:
-    """The text with a capital, as a sentence begins; what is typed stays as it is typed."""
+    """Return the text with a capital, as a sentence begins; what is typed stays as it is typed."""
     first = text.split(maxsplit=1)[0]
     return text if first in _COMMANDS or not first.rstrip(",:;").isalpha() else f"{text[0].upper()}{text[1:]}"
 
@@ -159,7 +159,7 @@ class FormulaError(XlmcError):
         self.span = span
 
     def at(self, where: object) -> FormulaError:
-        """The same error, with where it is: a cell."""
+        """Return the same error, with where it is: a cell."""
         return FormulaError(self.message, where=where, hint=self.hint, text=self.text, span=self.span)
 
     def __str__(self) -> str:

@@ -64,7 +64,7 @@ def test_names_count_every_tab_also_those_without_cells(with_chart):
         DefinedName("Mass", "'Results & more'!$A$1", "Results & more"),
         DefinedName("_xlnm.Print_Area", "Inputs!$A$1:$B$2", "Inputs"),
     )
-    assert [notice.message for notice in found.strays] == [
+    assert [notice.message for notice in found.left_out] == [
         f"the defined name {name!r} belongs to a sheet that does not exist and is left out" for name in ("Lost", "Gone")
     ]
 

@@ -122,8 +122,8 @@ _SAVED_AT: Final = re.compile(rb"<dcterms:modified[^>]*>\s*(\d{4}-\d\d-\d\d)")
 
 def _workbook_notices(parts: Mapping[str, bytes], structure: Structure, name: str) -> Iterator[Notice]:
     """Notices on the workbook called `name` as a whole."""
-    for stray in structure.strays:
-        yield Notice(stray.message, name)
+    for notice in structure.left_out:
+        yield Notice(notice.message, name)
     yield from (Notice(message, name) for message in old_workbook_notices(parts))
     for message in (
         *_on_ending(parts, structure, name),

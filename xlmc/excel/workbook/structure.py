@@ -43,7 +43,7 @@ class Structure:
         part: its name.
         relationships: its pointers to sheets, shared strings and the rest, by id.
         sheets: all tabs in order, also those without cells.
-        strays: notices of names that belong to no sheet and are left out of `names`.
+        left_out: notices of names that belong to no sheet and are left out of `names`.
         calculation: the attributes of `calcPr`.
         links: the parts of linked workbooks, in the order in which formulas number them.
     """
@@ -52,7 +52,7 @@ class Structure:
     relationships: Mapping[str, Relationship]
     sheets: tuple[SheetEntry, ...]
     names: tuple[DefinedName, ...]
-    strays: tuple[Notice, ...]
+    left_out: tuple[Notice, ...]
     date1904: bool
     calculation: Mapping[str, str]
     links: tuple[str, ...] = ()
@@ -84,7 +84,7 @@ def read_structure(parts: Mapping[str, bytes]) -> Structure:
         relationships=rels,
         sheets=sheets,
         names=tuple(name for name in names if isinstance(name, DefinedName)),
-        strays=tuple(name for name in names if isinstance(name, Notice)),
+        left_out=tuple(name for name in names if isinstance(name, Notice)),
         date1904=properties is not None and is_true(properties.get("date1904")),
         calculation={} if calculation is None else calculation.attrib,
         links=tuple(_links(root, rels)),

@@ -137,7 +137,7 @@ def _led_to(lowering: TreeLowering, area: Area, scope: Scope) -> Area:
 def require(lowering: TreeLowering, area: Area) -> Area:
     """The area, once everything in it is lowered."""
     ask_for_reading(area.rows, area.columns)
-    missing = [cell for cell in area.cells() if lowering.awaits(cell)]
+    missing = lowering.awaited(area)
     if missing:
         raise NotYetNeeded(missing)
     return area

@@ -5,7 +5,7 @@ Where xlmc cannot compute a cell, and no assumption reaches it, the value that E
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import cached_property
 from typing import Final, TypeVar
 
@@ -21,7 +21,7 @@ from xlmc.engine.graph.nodes import Apply, Constant, Input, Target
 from xlmc.engine.graph.running_totals import RunningTotals
 from xlmc.engine.graph.spilled_cells import refuse_cells_beyond, spilled_cell, unneeded_arrays
 from xlmc.errors import ErrorCode, FormulaError, Notice
-from xlmc.excel.address import Cell, InFormula, host_of
+from xlmc.excel.address import Area, Cell, InFormula, host_of
 from xlmc.excel.formula import Filled, Graph, Resolver, build_graph, ir
 from xlmc.excel.formula.callables import gives_function
 from xlmc.excel.formula.graph import Spills
@@ -124,6 +124,7 @@ class Lowering(CircleLowering):
         self.more: dict[Cell, set[Cell]] = {}
         self.led_to: dict[Cell, set[Cell]] = {}
         self._led: set[Cell] = set()
+        self._complete: dict[Area, frozenset[Cell]] = {}
         self._spills = Spills(graph.workbook)
         self._cells = {cell: dag.input(name) for cell, name in inputs.items()}
         self._cells |= {cell: dag.constant(constant(value)) for cell, value in held.items()}
@@ -208,6 +209,22 @@ class Lowering(CircleLowering):
         if cell in self._cells or (self.graph.circles and cell in self.graph.formulas.ordered):
             return False  # those of a circle are asked for when they are read
         return self.graph.workbook.content(cell).formula is not None or self._spills.anchor(cell) is not None
+
+    def awaited(self, area: Area) -> Sequence[Cell]:
+        """The cells of an area that must still be lowered before a formula can refer to it.
+
+        An area that awaits none is not looked through again: thousands of lookups may refer to the same columns.
+        """
+        known = self._complete.get(area)
+        if known is not None:
+            self._led |= known
+            return ()
+        before, self._led = self._led, set()
+        missing = [cell for cell in area.cells() if self.awaits(cell)]
+        if not missing and not self.graph.circles:
+            self._complete[area] = frozenset(self._led)
+        self._led |= before
+        return missing
 
     @cached_property
     def resolver(self) -> Resolver:

@@ -95,6 +95,10 @@ class TreeLowering(NodeBuilder, ABC):
     def awaits(self, cell: Cell) -> bool:
         """Whether a cell must still be lowered before a formula can refer to it."""
 
+    @abstractmethod
+    def awaited(self, area: Area) -> Sequence[Cell]:
+        """The cells of an area that must still be lowered before a formula can refer to it."""
+
     @property
     @abstractmethod
     def resolver(self) -> Resolver:

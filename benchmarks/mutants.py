@@ -170,7 +170,7 @@ def main(given: Sequence[str] | None = None) -> None:
     counts: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder, "copy")
-        left_out = shutil.ignore_patterns(".git", ".venv", "__pycache__", ".*_cache", "results")
+        left_out = shutil.ignore_patterns(".git", ".venv", "__pycache__", ".*_cache")
         shutil.copytree(ROOT, copy, ignore=left_out)
         for mutant in chosen:
             counts[end := fate(mutant, copy, asked.seconds)] += 1

@@ -202,11 +202,11 @@ def test_what_cannot_be_typed(xlmc, book, tmp_path, monkeypatch, arguments, mess
 def test_ctrl_c_while_scenarios_are_run_keeps_the_run(xlmc, book, tmp_path, monkeypatch):
     from xlmc.analysis.studies import scenario_answers
 
-    def interrupted(*_):
+    def interrupted(*_, **__):
         raise KeyboardInterrupt
 
     xlmc("simulate", book, "-o", tmp_path / "plain.xlsx")
-    monkeypatch.setattr(scenario_answers, "_run", interrupted)
+    monkeypatch.setattr(scenario_answers, "run_scenario", interrupted)
     outcome = xlmc("simulate", book, "--scenarios", "--json", tmp_path / "r.json")
     assert outcome.code == 130
     assert "interrupted before all scenarios were run" in outcome.err.replace("\n", " ")

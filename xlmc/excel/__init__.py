@@ -2,8 +2,8 @@
 
 >>> from xlmc import excel
 >>> book = excel.load("examples/skid-100-ft.xlsx")
->>> book["Inputs!C9"]
-32.2
+>>> book["Inputs!D10"]
+0.65
 """
 
 from __future__ import annotations

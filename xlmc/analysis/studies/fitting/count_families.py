@@ -20,6 +20,10 @@ def _cdf(name: str) -> Callable[..., Any]:
     return FAMILIES[name].cdf
 
 
+_LARGEST = 2.0**43
+_TOO_LARGE = "the values are too large to be counted one by one"
+
+
 def _best_whole(score: Callable[[float], float], least: float, most: float) -> float:
     """The whole number with the highest score, which rises and then falls."""
     low, high = least, most
@@ -46,6 +50,7 @@ def _poisson_log(x: Floats, rate: float) -> Floats:
 
 
 def _binomial(x: Floats) -> Params:
+    refuse(x[-1] > _LARGEST, _TOO_LARGE)
     mean = float(x.mean())
     refuse(not x.var() < mean, "the variance of the values is not below their mean")
     trials = float(
@@ -81,6 +86,7 @@ def _geomet_log(x: Floats, probability: float) -> Floats:
 
 def _negative_binomial(x: Floats) -> Params:
     refuse(x[0] < 1, "it counts trials, which are 1 or more")
+    refuse(x[-1] > _LARGEST, _TOO_LARGE)
     mean = float(x.mean())
     shape = float(_best_whole(lambda s: float(np.sum(_negative_log(x, s / mean, s))), 1.0, float(x[0])))
     return shape / mean, shape

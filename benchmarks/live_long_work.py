@@ -11,11 +11,14 @@ from a save by a rename, as Excel does it, to the first answer of the new workbo
 from __future__ import annotations
 
 import asyncio
+import json
 import os
 import statistics
 import sys
 import tempfile
 import time
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import openpyxl
@@ -73,12 +76,9 @@ async def measure(folder: Path, moves: int) -> None:
         began = time.perf_counter()
         number = {"of": "assumption", "name": f"Input {1 + move % 60}", "key": "high", "value": 1.6 + move / 1000}
         _say(desk, window, {"kind": "set", **number, "held": False, "seq": move + 1})
-        await _next(window, lambda said, seq=move + 1: said["kind"] == "frame" and said["seq"] == seq)
+        await _next(window, partial(_answers, seq=move + 1))
         firsts.append(time.perf_counter() - began)
-        whole = lambda said, seq=move + 1: (  # noqa: E731
-            said["kind"] == "frame" and said["seq"] == seq and said["trials"] >= 50_000
-        )
-        await _next(window, whole)
+        await _next(window, partial(_answers, seq=move + 1, trials=50_000))
         wholes.append(time.perf_counter() - began)
     saves = [await _saved(window, other if turn % 2 else book, book, folder) for turn in range(SAVES)]
     await desk.close()
@@ -110,9 +110,12 @@ def _say(desk: Desk, window: Window, said: Message) -> None:
     desk.hear(window, message)
 
 
-async def _next(window: Window, fits) -> Message:  # type: ignore[no-untyped-def]
-    import json
+def _answers(said: Message, seq: int, trials: int = 0) -> bool:
+    """Whether it is the answer to a change, from so many trials at least."""
+    return said["kind"] == "frame" and said["seq"] == seq and said["trials"] >= trials
 
+
+async def _next(window: Window, fits: Callable[[Message], bool]) -> Message:
     while True:
         said: Message = json.loads(await window.next())
         if fits(said):

@@ -17,9 +17,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
-from xlmc.excel.workbook import package, package_check  # noqa: E402
-from xlmc.excel.workbook.injection.part_numbers import claimed_names  # noqa: E402
-from xlmc.excel.workbook.package import read_parts  # noqa: E402
+from xlmc.excel.workbook import package, package_check
+from xlmc.excel.workbook.injection.part_numbers import claimed_names
+from xlmc.excel.workbook.package import read_parts
 
 ROUNDS = 7
 

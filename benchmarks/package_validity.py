@@ -29,21 +29,21 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent), str(HERE)]
 
-from fuzzing import foreign_parts, formulas  # noqa: E402
-from fuzzing.books import packed, shipped  # noqa: E402
-from fuzzing.featured import featured  # noqa: E402
+from fuzzing import foreign_parts, formulas
+from fuzzing.books import packed, shipped
+from fuzzing.featured import featured
 
-from xlmc.errors import XlmcError  # noqa: E402
-from xlmc.excel.workbook.inject import inject, result_sheets  # noqa: E402
-from xlmc.excel.workbook.injection.content_types import roles  # noqa: E402
-from xlmc.excel.workbook.injection.strict import STRICT_MAIN  # noqa: E402
-from xlmc.excel.workbook.package import read_parts  # noqa: E402
-from xlmc.excel.workbook.package_check import checked_bytes  # noqa: E402
-from xlmc.excel.workbook.seal import sealed_parts  # noqa: E402
-from xlmc.montecarlo.definitions.run_options import RunOptions  # noqa: E402
-from xlmc.montecarlo.model.loading import load  # noqa: E402
-from xlmc.montecarlo.simulation.simulate import run_model  # noqa: E402
-from xlmc.outputs.sheets.book import build_sheets  # noqa: E402
+from xlmc.errors import XlmcError
+from xlmc.excel.workbook.inject import inject, result_sheets
+from xlmc.excel.workbook.injection.content_types import roles
+from xlmc.excel.workbook.injection.strict import STRICT_MAIN
+from xlmc.excel.workbook.package import read_parts
+from xlmc.excel.workbook.package_check import checked_bytes
+from xlmc.excel.workbook.seal import sealed_parts
+from xlmc.montecarlo.definitions.run_options import RunOptions
+from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.simulation.simulate import run_model
+from xlmc.outputs.sheets.book import build_sheets
 
 ENDINGS = (".xlsx", ".xlsm")
 PERCENTAGE = re.compile(r"The string '-?[0-9.]+%' is not a valid '\w+' value")

@@ -24,16 +24,14 @@ from fuzzing.books import MAIN, OFFICE, PACKAGE, Sheet, Table, cell, packed, par
 from fuzzing.inputs import Disagreement, Input, Reached, steps_of
 from fuzzing.second_reader import Cells, agreed, equal, second_reading
 from fuzzing.xml_changes import changed
-from xlmc.engine.engines import ENGINES
+from fuzzing.zips import defined
 from xlmc.excel.workbook.inject import inject
 from xlmc.excel.workbook.injection.splice import as_utf8
 from xlmc.excel.workbook.injection.strict import strict_part
 from xlmc.excel.workbook.package import read_parts
 from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.reader import read_workbook
-from xlmc.montecarlo.definitions.definitions_reader import read_definitions
 from xlmc.montecarlo.definitions.run_options import RunOptions
-from xlmc.montecarlo.model.labels import calculate_labels
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import run_model
 
@@ -273,14 +271,7 @@ def run(given: Input, folder: Path) -> Reached:
     if "write" in given.steps:
         _write(given.data, cells)
     if {"verify", "simulate"} & {*given.steps}:
-        calculated = calculate_labels(workbook)
-        definitions = read_definitions(calculated, ENGINES)
-        if "verify" in given.steps:
-            from xlmc.analysis.studies.verify import verify
-
-            verify(workbook, definitions)
-        if definitions.problems:
-            raise definitions.problems[0]
+        calculated, definitions = defined(workbook, given.steps)
         if "simulate" in given.steps:
             run_model(CompiledModel(calculated, definitions, folder / given.name), RunOptions.of(trials=TRIALS))
     return Reached.RAN

@@ -23,13 +23,15 @@ from fuzzing.xml_changes import changed
 from xlmc.engine.engines import ENGINES
 from xlmc.errors import XlmcError
 from xlmc.excel.workbook.reader import read_workbook
+from xlmc.excel.workbook.workbook import Workbook
+from xlmc.montecarlo.definitions.definitions import Definitions
 from xlmc.montecarlo.definitions.definitions_reader import read_definitions
 from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.model.labels import calculate_labels
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import run_model
 
-__all__ = ["make", "run"]
+__all__ = ["defined", "make", "run"]
 
 TRIALS: Final = 64
 _STEPS: Final = {"summary": 0.3, "write": 0.015, "verify": 0.06, "check": 0.1, "simulate": 0.015}
@@ -91,17 +93,27 @@ def run(given: Input, folder: Path) -> Reached:
         raise problems[0]
     if path.suffix != ".xls":  # of which LibreOffice makes the cells
         agreed(workbook, given.data)
+    calculated, definitions = defined(workbook, given.steps)
+    found = run_model(CompiledModel(calculated, definitions, path), RunOptions.of(trials=TRIALS))
+    examined(found, folder, given.steps)
+    return Reached.RAN
+
+
+def defined(workbook: Workbook, steps: tuple[str, ...]) -> tuple[Workbook, Definitions]:
+    """Give the workbook with the labels that formulas make, and what its tables define; `verify` is a step.
+
+    Raises:
+        XlmcError: as xlmc does; of several faults in the tables the first.
+    """
     calculated = calculate_labels(workbook)
     definitions = read_definitions(calculated, ENGINES)
-    if "verify" in given.steps:
+    if "verify" in steps:
         from xlmc.analysis.studies.verify import verify
 
         verify(workbook, definitions)
     if definitions.problems:
         raise definitions.problems[0]
-    found = run_model(CompiledModel(calculated, definitions, path), RunOptions.of(trials=TRIALS))
-    examined(found, folder, given.steps)
-    return Reached.RAN
+    return calculated, definitions
 
 
 def _change_xml(rng: random.Random, parts: list[tuple[str, bytes]]) -> str:

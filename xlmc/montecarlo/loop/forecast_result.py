@@ -95,9 +95,7 @@ class ForecastResult:
         kind = self.definition.kind
         if not self.sample.n or not (kind is Kind.YES_NO or (kind is None and self.sample.yes_no)):
             return None
-        no = statistics.probability_between(self.sample, 0.0, 0.0)
-        interval = None if no.interval is None else (1.0 - no.interval[1], 1.0 - no.interval[0])
-        return replace(no, value=1.0 - no.value, interval=interval)
+        return statistics.complement(statistics.probability_between(self.sample, 0.0, 0.0))
 
     @property
     def column(self) -> Floats:

@@ -225,7 +225,7 @@ class CompiledModel:
             *tie_notices(self.groups, rows, self._correlated),
             *repair_notices(self.groups, rows),
             *copula_notices(self.groups, self.definitions.copulas),
-            *still_notices(self.needed, moving, self.forecasts),
+            *still_notices(self.needed, moving, self.forecasts, self.still),
             *heavy_notices(a for a in self.live if not self.draws[a.name].has_mean),
             *example_notices(self._sources()),
         )

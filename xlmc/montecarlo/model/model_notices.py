@@ -14,7 +14,7 @@ from xlmc.montecarlo.definitions.definitions import Assumption, Forecast
 from xlmc.montecarlo.model.needed import Needed
 from xlmc.montecarlo.model.plain_words import list_of
 
-__all__ = ["example_notices", "heavy_notices", "still_notices"]
+__all__ = ["example_notices", "heavy_notices", "still_cells", "still_notices"]
 
 _EXAMPLE: Final = re.compile(r"example\b", re.IGNORECASE)
 _MOST_NAMED: Final = 4
@@ -59,9 +59,8 @@ def still_cells(needed: Needed, moving: Set[Cell], forecasts: Sequence[Forecast]
     return frozenset(each.cell for each in forecasts if each.cell not in reached)
 
 
-def still_notices(needed: Needed, moving: Set[Cell], forecasts: Sequence[Forecast]) -> list[Notice]:
-    """Say which forecasts are the same in every trial; the arguments are those of `still_cells`."""
-    same = still_cells(needed, moving, forecasts)
+def still_notices(needed: Needed, moving: Set[Cell], forecasts: Sequence[Forecast], same: Set[Cell]) -> list[Notice]:
+    """Say which forecasts are the same in every trial: `same` is what `still_cells` gives for the other arguments."""
     still = [forecast for forecast in forecasts if forecast.cell in same]
     if forecasts and len(still) == len(forecasts):
         why = "no assumption is drawn" if not needed.live else "no assumption that is drawn reaches a forecast"

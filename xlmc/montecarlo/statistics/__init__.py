@@ -10,6 +10,7 @@ from xlmc.montecarlo.statistics.estimate import Estimate, format_estimate, suppo
 from xlmc.montecarlo.statistics.heavy_tails import farthest_part
 from xlmc.montecarlo.statistics.mode import mode
 from xlmc.montecarlo.statistics.proportions import (
+    complement,
     inverse_proportion,
     probability_above,
     probability_between,
@@ -45,6 +46,7 @@ __all__ = [
     "Sample",
     "central_interval",
     "coefficient_of_variation",
+    "complement",
     "describe",
     "errors_from_trials",
     "farthest_part",

@@ -22,6 +22,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -33,6 +34,7 @@ from xlmc.montecarlo.statistics.sample import Sample, Values
 
 __all__ = [
     "Method",
+    "complement",
     "inverse_proportion",
     "probability_above",
     "probability_between",
@@ -43,6 +45,12 @@ __all__ = [
 
 Floats = NDArray[np.float64]
 Method = Literal["wilson", "clopper-pearson"]
+
+
+def complement(share: Estimate) -> Estimate:
+    """Return the share of all other trials: its error is the same, and its interval the other way round."""
+    interval = None if share.interval is None else (1.0 - share.interval[1], 1.0 - share.interval[0])
+    return replace(share, value=1.0 - share.value, interval=interval)
 
 
 def proportion(successes: int, trials: int, *, confidence: float = 0.95, method: Method = "wilson") -> Estimate:

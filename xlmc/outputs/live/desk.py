@@ -92,11 +92,6 @@ class Desk:
         self._tasks: list[asyncio.Task[None]] = []
         self._stamp: tuple[int, ...] | None = None
 
-    @property
-    def windows(self) -> int:
-        """How many show it."""
-        return len(self._windows)
-
     def start(self) -> None:
         """Begin to read, to compute and to watch; in a running event loop."""
         for about, what in (("work", self._work()), ("watching", self._watch())):

@@ -19,7 +19,7 @@ from xlmc.analysis.results.statements.significant_digits import (
 )
 from xlmc.montecarlo.definitions.stating import Role
 from xlmc.montecarlo.distributions.parameters import range_text, show
-from xlmc.montecarlo.statistics import Estimate, probability_above, probability_between
+from xlmc.montecarlo.statistics import Estimate, complement, probability_above, probability_between
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
@@ -106,7 +106,7 @@ def _yes_text(result: ForecastResult, yes: Estimate) -> str:
 
     That a lower bound is a yes makes the answer one; where it is a no, the answer may be either.
     """
-    role, no = result.definition.role, probability_between(result.sample, 0.0, 0.0)
+    role = result.definition.role
     says = "" if result.sample.yes_no else "; numbers other than 0 and 1 count as yes"
     if (role, yes.value) in ((Role.LOWER, 0.0), (Role.UPPER, 1.0)):
         return f"the bound does not tell{says}"
@@ -115,7 +115,7 @@ def _yes_text(result: ForecastResult, yes: Estimate) -> str:
     likelier = ""
     if role is not Role.UPPER and surely_above(yes, EVEN):
         likelier = ", more probable than not"
-    elif role is not Role.LOWER and surely_above(no, EVEN):
+    elif role is not Role.LOWER and surely_above(complement(yes), EVEN):
         likelier = ", so no is more probable than yes"
     return f"yes with {_OF_ROLE.get(role, 'probability')} {percent_text(yes)}{likelier}{says}"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from xlmc.engine.graph.arrays import size_of
@@ -10,6 +10,7 @@ from xlmc.engine.graph.lower import Lowering, lower_until_complete
 from xlmc.errors import Notice
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import Resolver, build_graph
+from xlmc.excel.formula.graph import downstream
 from xlmc.excel.workbook.lazy_sheets import with_contents
 from xlmc.excel.workbook.workbook import CellContent, CellValue, Workbook
 
@@ -20,7 +21,7 @@ def calculated(book: Workbook) -> Workbook:
     """Compute every formula; see `xlmc.engine.calculate`."""
     lowering = _lowered(book)
     faults = dict(_faults(lowering))
-    unknown = _downstream(lowering, [cell for cell in faults if book.content(cell).value is None])
+    unknown = downstream(lowering.graph.needs, [cell for cell in faults if book.content(cell).value is None])
     contents: dict[Cell, CellContent] = {}
     for cell in lowering.graph.formulas:
         for place, value in _values(lowering, cell, cell in faults):
@@ -66,22 +67,6 @@ def _values(lowering: Lowering, cell: Cell, faulty: bool) -> Iterator[tuple[Cell
     for place in {cell: None, **dict.fromkeys(filled)}:
         value = None if faulty else lowering.value(cell) if place == cell else lowering.filled(place, cell)
         yield place, book.content(place).value if value is None else value.objects().ravel()[0]
-
-
-def _downstream(lowering: Lowering, start: Iterable[Cell]) -> frozenset[Cell]:
-    """These formulas, and every one that depends on them."""
-    users: dict[Cell, list[Cell]] = {}
-    for cell, needs in lowering.graph.needs.items():
-        for need in needs:
-            users.setdefault(need, []).append(cell)
-    seen: set[Cell] = set()
-    waiting = list(start)
-    while waiting:
-        cell = waiting.pop()
-        if cell not in seen:
-            seen.add(cell)
-            waiting += users.get(cell, ())
-    return frozenset(seen)
 
 
 def _notices(book: Workbook, faults: Mapping[Cell, str], unknown: frozenset[Cell]) -> Iterator[Notice]:

@@ -17,7 +17,7 @@ from xlmc.engine.engine import Target
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.model.model import CompiledModel
-from xlmc.montecarlo.model.needed import filter_condition
+from xlmc.montecarlo.model.needed import filter_condition, upstream
 from xlmc.montecarlo.sampling.draws import Draw
 
 __all__ = ["Box", "Evaluation", "Outcomes", "assumptions_of", "box_of"]
@@ -153,23 +153,10 @@ class Evaluation:
             yield np.column_stack([np.array(column.as_floats()) for column in columns])
 
 
-def _upstream(model: CompiledModel, cells: Iterable[Cell]) -> set[Cell]:
-    """The cells that these depend on, and they themselves."""
-    needs = model.needed.graph.needs
-    found: set[Cell] = set()
-    open_ = list(cells)
-    while open_:
-        cell = open_.pop()
-        if cell not in found:
-            found.add(cell)
-            open_ += needs.get(cell, ())
-    return found
-
-
 def assumptions_of(model: CompiledModel, cells: Iterable[Cell]) -> list[int]:
     """The indices of the live assumptions that reach any of these cells, ascending.
 
     An assumption that only moves another's parameters does not count.
     """
-    reached = _upstream(model, cells)
+    reached = upstream(model.needed.graph, cells, {})
     return [index for index, assumption in enumerate(model.live) if assumption.cell in reached]

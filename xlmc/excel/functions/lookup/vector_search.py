@@ -14,6 +14,7 @@ last of equal neighbours. Apache POI describes this behaviour of Excel (`LookupU
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
@@ -126,6 +127,14 @@ def before_first_smaller(keys: Value, vector: Value) -> Indices:
     Returns:
         The shape of `keys`, with the trials of both, counted from 0; -1 where there is none.
     """
+    return _search_each_kind(keys, vector, _go_down)
+
+
+def _search_each_kind(keys: Value, vector: Value, search: Callable[[Floats, Bools, Floats], Indices]) -> Indices:
+    """Find numbers among numbers, texts among texts, logicals among logicals: -1 where there is none.
+
+    `search` finds keys (m,), given which values they can be compared with, and the values, (m, k) or (1, k).
+    """
 
     def find(keys: Ordered, vector: Ordered) -> Indices:
         result = np.full(len(keys.order), -1)
@@ -133,7 +142,7 @@ def before_first_smaller(keys: Value, vector: Value) -> Indices:
             mine = np.flatnonzero(keys.kinds[:, 0] == kind)
             rows = mine if len(vector.order) > 1 else np.zeros(1, np.intp)
             if mine.size:
-                result[mine] = _go_down(keys.order[mine, 0], vector.kinds[rows] == kind, vector.order[rows])
+                result[mine] = search(keys.order[mine, 0], vector.kinds[rows] == kind, vector.order[rows])
         return result
 
     return search_each_trial(keys, vector, find)
@@ -162,17 +171,9 @@ def last_not_beyond(keys: Value, vector: Value, *, falling: bool = False) -> Ind
         The shape of `keys`, with the trials of both, counted from 0.
     """
     sign = -1.0 if falling else 1.0
-
-    def find(keys: Ordered, vector: Ordered) -> Indices:
-        result = np.full(len(keys.order), -1)
-        for kind in (NUMBER, TEXT, LOGICAL):
-            mine = np.flatnonzero(keys.kinds[:, 0] == kind)
-            rows = mine if len(vector.order) > 1 else np.zeros(1, np.intp)
-            if mine.size:
-                result[mine] = _halve(sign * keys.order[mine, 0], vector.kinds[rows] == kind, sign * vector.order[rows])
-        return result
-
-    return search_each_trial(keys, vector, find)
+    return _search_each_kind(
+        keys, vector, lambda keys, comparable, order: _halve(sign * keys, comparable, sign * order)
+    )
 
 
 def _halve(keys: Floats, comparable: Bools, order: Floats) -> Indices:

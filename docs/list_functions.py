@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from xlmc.engine.graph.choices import CHOICES
-from xlmc.engine.graph.expressions import WRITTEN_OUT
 from xlmc.engine.graph.lambdas import LAMBDAS
+from xlmc.engine.graph.lowering import WRITTEN_OUT
 from xlmc.engine.graph.reference_functions import REFERENCE_FUNCTIONS
 from xlmc.excel.functions.families import REGISTRY
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from xlmc.engine.graph.lower import Lowering, lower_cells
+from xlmc.engine.graph.lowering import Lowering, lower_cells
 from xlmc.errors import ErrorCode
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import Resolver

@@ -10,7 +10,7 @@ import pytest
 
 from xlmc.engine.engine import BLANK_RESULT, TEXT_RESULT, Target
 from xlmc.engine.engines import ENGINES
-from xlmc.engine.graph.lower import Lowering, lower_until_complete
+from xlmc.engine.graph.lowering import Lowering, lower_until_complete
 from xlmc.engine.numpy import numpy_engine as module
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
 from xlmc.errors import ErrorCode

@@ -26,7 +26,7 @@ import pytest
 
 from xlmc.engine.engine import TEXT_RESULT, Column, Target
 from xlmc.engine.engines import ENGINES
-from xlmc.engine.graph.lower import Lowering, lower_until_complete
+from xlmc.engine.graph.lowering import Lowering, lower_until_complete
 from xlmc.errors import ErrorCode
 from xlmc.excel.address import Area, Cell, column_letters, parse_address
 from xlmc.excel.formula import Resolver, build_graph

@@ -20,7 +20,7 @@ from typed_cells import named_cells, with_typed
 
 from xlmc.engine.engine import Target
 from xlmc.engine.engines import ENGINES
-from xlmc.engine.graph.lower import Lowering, lower_until_complete
+from xlmc.engine.graph.lowering import Lowering, lower_until_complete
 from xlmc.excel.formula import Resolver, build_graph
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.montecarlo.model.loading import load

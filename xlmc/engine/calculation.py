@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from xlmc.engine.graph.arrays import size_of
-from xlmc.engine.graph.lower import Lowering, lower_until_complete
+from xlmc.engine.graph.lowering import Lowering, lower_until_complete
 from xlmc.errors import Notice
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import Resolver, build_graph

@@ -10,7 +10,7 @@ from typing import Final, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.engine.graph.nodes import Target, corner
+from xlmc.engine.graph.graph import Target, corner
 from xlmc.excel.functions.values import BLANK, ERROR, TEXT, Bools, Codes, Floats, Value
 
 __all__ = [

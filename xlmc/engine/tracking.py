@@ -14,15 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.engine.engine import Column, column_of
-from xlmc.engine.graph.dag import MANY, Dag, constants
-from xlmc.engine.graph.nodes import Constant, Input, evaluate_node, uses
+from xlmc.engine.graph.graph import MANY, Constant, Dag, Input, constants, evaluate_node, uses
 from xlmc.errors import FormulaError
 from xlmc.excel.functions import Kind
 from xlmc.excel.functions.budget import MOST_LIVE, TooLargeError, ask_for_live
 from xlmc.excel.functions.values import Floats, Value
 
 if TYPE_CHECKING:
-    from xlmc.engine.graph.lower import Lowering
+    from xlmc.engine.graph.lowering import Lowering
 
 __all__ = ["TrackingEvaluator", "array_bytes", "fitting_block"]
 

@@ -12,9 +12,8 @@ from xlmc.engine.engine import TEXT_RESULT, Target
 from xlmc.engine.engines import ENGINES
 from xlmc.engine.graph.called_functions import LEFT_OUT, MOST, SPECIAL, check_count
 from xlmc.engine.graph.choices import CHOICES
-from xlmc.engine.graph.expressions import WRITTEN_OUT
 from xlmc.engine.graph.lambdas import LAMBDAS
-from xlmc.engine.graph.lower import Lowering, lower_until_complete
+from xlmc.engine.graph.lowering import WRITTEN_OUT, Lowering, lower_until_complete
 from xlmc.engine.graph.reference_functions import REFERENCE_FUNCTIONS
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
 from xlmc.errors import ErrorCode, FormulaError, XlmcError

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from xlmc.engine.graph.fill_down import FillDownCache
-from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select, uses
+from xlmc.engine.graph.graph import Apply, Constant, IfErrorNode, Input, Range, Select, uses
 
 FORMULAS = [
     "A{r}+B{r}*2",
@@ -92,7 +92,7 @@ def test_a_pattern_gives_what_lowering_gives(lower, data):
 @pytest.fixture
 def lowered_cells(lower, monkeypatch):
     """`lowered_cells(cells, targets)`: how many formulas are lowered the long way."""
-    from xlmc.engine.graph.lower import Lowering
+    from xlmc.engine.graph.lowering import Lowering
 
     count = []
     original = Lowering.lower_cell

@@ -13,8 +13,8 @@ import pytest
 from xlmc.engine.graph.called_functions import SPECIAL
 from xlmc.engine.graph.choices import CHOICES
 from xlmc.engine.graph.computed_references import REFERENCES
-from xlmc.engine.graph.expressions import WRITTEN_OUT
 from xlmc.engine.graph.lambdas import LAMBDAS
+from xlmc.engine.graph.lowering import WRITTEN_OUT
 from xlmc.engine.graph.reference_functions import REFERENCE_FUNCTIONS
 from xlmc.engine.graph.running_totals import FOLDS
 from xlmc.engine.passes.bounds import _OF_ONE, _OF_SETS

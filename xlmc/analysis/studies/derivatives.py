@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from xlmc.engine.graph.nodes import Range
+from xlmc.engine.graph.graph import Range
 from xlmc.engine.passes.derivatives.derivative import Derivative, Derivatives, Notes
 from xlmc.engine.passes.derivatives.jet import Jet
 from xlmc.engine.passes.derivatives.sweep import UnequalSizes, owners, sweep_forward
@@ -17,7 +17,7 @@ from xlmc.excel.address import Cell
 from xlmc.excel.functions.values import BLANK, ERROR, TEXT, Floats, Value
 
 if TYPE_CHECKING:
-    from xlmc.engine.graph.lower import Lowering
+    from xlmc.engine.graph.lowering import Lowering
     from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["derivatives"]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
-from xlmc.engine.graph.lower import Lowering, lower_until_complete
+from xlmc.engine.graph.lowering import Lowering, lower_until_complete
 from xlmc.errors import ErrorCode
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import Resolver, build_graph

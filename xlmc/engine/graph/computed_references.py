@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import Final
 
 from xlmc.engine.graph.called_functions import check_count
-from xlmc.engine.graph.lowering import Scope, Thunk, TreeLowering
+from xlmc.engine.graph.scope import Scope, Thunk, TreeLowering
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of
 from xlmc.excel.formula import ir

@@ -13,7 +13,7 @@ from dataclasses import replace
 from xlmc.engine.graph.called_functions import check_count
 from xlmc.engine.graph.choices import CHOICES
 from xlmc.engine.graph.computed_references import REFERENCES, NoReference, areas_of
-from xlmc.engine.graph.lowering import Scope, TreeLowering
+from xlmc.engine.graph.scope import Scope, TreeLowering
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula import ir
 from xlmc.excel.functions import Function

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from xlmc.engine.graph.nodes import Apply, IfErrorNode, Range, Select, corner, evaluate_node, uses
+from xlmc.engine.graph.graph import Apply, IfErrorNode, Range, Select, corner, evaluate_node, uses
 from xlmc.engine.graph.recursive_calls import join_trials, spread_trials
 from xlmc.excel.functions.values import ERROR, TEXT, Bools, Value, constant
 from xlmc.excel.iteration import Iteration

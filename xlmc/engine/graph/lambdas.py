@@ -7,12 +7,25 @@ from typing import Final
 
 from xlmc.engine.graph.arrays import element, grid, size_of
 from xlmc.engine.graph.called_functions import limits
-from xlmc.engine.graph.callees import Arguments, bind, check_depth, find_callee, is_omitted, let_scope
 from xlmc.engine.graph.computed_references import areas_of
-from xlmc.engine.graph.dag import MANY
-from xlmc.engine.graph.lowering import Callee, Closure, Fork, Native, Scope, Thunk, TooDeepError, TreeLowering
-from xlmc.engine.graph.nodes import Apply, single
+from xlmc.engine.graph.graph import MANY, Apply, single
 from xlmc.engine.graph.recursion import call_recursive
+from xlmc.engine.graph.scope import (
+    Arguments,
+    Callee,
+    Closure,
+    Fork,
+    Native,
+    Scope,
+    Thunk,
+    TooDeepError,
+    TreeLowering,
+    bind,
+    check_depth,
+    find_callee,
+    is_omitted,
+    let_scope,
+)
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula import ir

@@ -12,8 +12,7 @@ from typing import Final, Protocol
 
 import numpy as np
 
-from xlmc.engine.graph.dag import Dag
-from xlmc.engine.graph.nodes import Apply, Constant, Range, evaluate_node
+from xlmc.engine.graph.graph import Apply, Constant, Dag, Range, evaluate_node
 from xlmc.errors import ErrorCode
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.functions import Function

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
 from xlmc.engine.graph.computed_references import REFERENCES, NoReference, NotYetNeeded, areas_of
-from xlmc.engine.graph.lowering import Scope, TreeLowering
+from xlmc.engine.graph.scope import Scope, TreeLowering
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula import ir

@@ -14,12 +14,19 @@ from functools import partial
 from typing import Final
 
 from xlmc.engine.graph.arrays import element, grid, size_of
-from xlmc.engine.graph.callees import Arguments, find_function, is_omitted
 from xlmc.engine.graph.computed_references import areas_of, join_areas
-from xlmc.engine.graph.dag import Dag
-from xlmc.engine.graph.lowering import Closure, RecursiveLambda, Scope, Thunk, TreeLowering
-from xlmc.engine.graph.nodes import Apply, Constant, Node, Select, in_slots, uses
+from xlmc.engine.graph.graph import Apply, Constant, Dag, Node, Select, in_slots, uses
 from xlmc.engine.graph.recursive_calls import Body, SelfCall, Step, call_lambda
+from xlmc.engine.graph.scope import (
+    Arguments,
+    Closure,
+    RecursiveLambda,
+    Scope,
+    Thunk,
+    TreeLowering,
+    find_function,
+    is_omitted,
+)
 from xlmc.errors import FormulaError
 from xlmc.excel.formula import ir
 from xlmc.excel.functions import Function, Kind

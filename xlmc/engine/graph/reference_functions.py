@@ -16,8 +16,8 @@ from xlmc.engine.graph.computed_references import (
     require,
 )
 from xlmc.engine.graph.further_cells import beyond, level, refusal
-from xlmc.engine.graph.lowering import Scope, TreeLowering
 from xlmc.engine.graph.pivot_data import lower_pivot_data
+from xlmc.engine.graph.scope import Scope, TreeLowering
 from xlmc.engine.graph.totals import without_totals
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of, quote_sheet

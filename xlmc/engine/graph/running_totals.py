@@ -19,8 +19,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
-from xlmc.engine.graph.dag import Dag
-from xlmc.engine.graph.nodes import Apply, Constant, Range
+from xlmc.engine.graph.graph import Apply, Constant, Dag, Range
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula import ir
 from xlmc.excel.functions import Function, Kind

@@ -11,8 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import cache, partial
 
 from xlmc.engine.graph.arrays import element, pick
-from xlmc.engine.graph.dag import MANY, Dag
-from xlmc.engine.graph.nodes import Apply
+from xlmc.engine.graph.graph import MANY, Apply, Dag
 from xlmc.errors import FormulaError
 from xlmc.excel.address import MAX_COLUMN, MAX_ROW, Area, Cell
 from xlmc.excel.formula import Graph

@@ -10,8 +10,8 @@ from typing import Final
 
 from xlmc.engine.graph.arrays import cell_by_cell
 from xlmc.engine.graph.computed_references import areas_of
-from xlmc.engine.graph.lowering import Scope, TreeLowering
-from xlmc.engine.graph.nodes import Range
+from xlmc.engine.graph.graph import Range
+from xlmc.engine.graph.scope import Scope, TreeLowering
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula import ir

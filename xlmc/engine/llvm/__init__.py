@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from xlmc.engine.engine import Program, Target
-    from xlmc.engine.graph.lower import Lowering
+    from xlmc.engine.graph.lowering import Lowering
 
 __all__ = ["REPAYS_FROM", "available", "jit_filler", "jit_program"]
 

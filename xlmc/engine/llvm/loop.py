@@ -7,7 +7,7 @@ from typing import Any, Final, NamedTuple
 
 from llvmlite import ir
 
-from xlmc.engine.graph.dag import Dag
+from xlmc.engine.graph.graph import Dag
 from xlmc.engine.llvm.body import Body, Loaded, contexts
 from xlmc.engine.llvm.loop_rules import LoopRule, Operand
 from xlmc.engine.llvm.machine import Machine, NativeLoop, while_flushing

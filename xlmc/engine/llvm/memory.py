@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.engine.graph.dag import Dag
+from xlmc.engine.graph.graph import Dag
 from xlmc.excel.functions import Kind
 
 __all__ = ["Memory", "Slot", "assign_slots"]

@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.engine.graph.dag import Dag
+from xlmc.engine.graph.graph import Dag
 from xlmc.engine.graph.table_functions import TableFunction, table_function_of
 from xlmc.engine.llvm.lookups import emit_lookup, rule_of_lookup
 from xlmc.engine.llvm.loop import Load, compile_loop

@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.engine.engine import Column, Evaluator, Target, column_of
-from xlmc.engine.graph.dag import Dag, constants
-from xlmc.engine.graph.nodes import Input
+from xlmc.engine.graph.graph import Dag, Input, constants
 from xlmc.engine.graph.readiness import most_waiting, order_by_need
 from xlmc.engine.graph.trial_sets import ALL_TRIALS, TrialSet
 from xlmc.engine.numpy.branches import SURVIVORS, Placement, branch_step
@@ -31,7 +30,7 @@ from xlmc.excel.functions.denormals import Underflow
 from xlmc.excel.functions.values import Floats, Value
 
 if TYPE_CHECKING:
-    from xlmc.engine.graph.lower import Lowering
+    from xlmc.engine.graph.lowering import Lowering
 
 __all__ = ["NumpyProgram"]
 

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.engine.graph.dag import Dag
-from xlmc.engine.graph.nodes import (
+from xlmc.engine.graph.graph import (
     Apply,
     Constant,
+    Dag,
     IfErrorNode,
     Ragged,
     Range,

@@ -14,10 +14,10 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.engine.graph.dag import Dag
-from xlmc.engine.graph.nodes import (
+from xlmc.engine.graph.graph import (
     Apply,
     Constant,
+    Dag,
     IfErrorNode,
     Input,
     Node,

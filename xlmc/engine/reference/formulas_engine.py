@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.engine.engine import Column, Evaluator, Target, column_of
-from xlmc.engine.graph.lower import Lowering
+from xlmc.engine.graph.lowering import Lowering
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.address import Area, Cell, column_letters, host_of
 from xlmc.excel.formula import compile_with_formulas, formula_text, ir

@@ -17,7 +17,7 @@ from xlmc.montecarlo.loop.blocks import portions
 from xlmc.montecarlo.model.model import lower_needed
 
 if TYPE_CHECKING:
-    from xlmc.engine.graph.lower import Lowering
+    from xlmc.engine.graph.lowering import Lowering
     from xlmc.montecarlo.definitions.definitions import Assumption, Definitions
     from xlmc.montecarlo.model.model import CompiledModel
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from xlmc.engine.graph.arrays import size_of
-from xlmc.engine.graph.lower import Lowering, lower_until_complete
+from xlmc.engine.graph.lowering import Lowering, lower_until_complete
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.formula import Graph, Resolver, build_graph, ir

@@ -26,7 +26,7 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.engine.graph.lower import Lowering
+from xlmc.engine.graph.lowering import Lowering
 from xlmc.errors import DefinitionError
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.lazy_sheets import with_values

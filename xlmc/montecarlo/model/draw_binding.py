@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.engine.engine import Evaluator, Target
-from xlmc.engine.graph.lower import Lowering, lower_cells
+from xlmc.engine.graph.lowering import Lowering, lower_cells
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
 from xlmc.errors import DefinitionError, Notice
 from xlmc.excel.address import Cell, InFormula

@@ -11,7 +11,7 @@ from collections import ChainMap
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import replace
 
-from xlmc.engine.graph.lower import lower_cells
+from xlmc.engine.graph.lowering import lower_cells
 from xlmc.errors import ErrorCode, FormulaError, Notice
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import Resolver

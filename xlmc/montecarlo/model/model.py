@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from xlmc.engine.engine import Evaluator, Program, Target
 from xlmc.engine.engines import ENGINES
-from xlmc.engine.graph.lower import Lowering, lower_until_complete
+from xlmc.engine.graph.lowering import Lowering, lower_until_complete
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
 from xlmc.engine.passes.bounds import Bounds, NodeBounds
 from xlmc.errors import Notice, SimulationError

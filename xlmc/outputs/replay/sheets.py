@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
-from xlmc.engine.graph.lower import Lowering
+from xlmc.engine.graph.lowering import Lowering
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import Resolver, build_graph
 from xlmc.excel.formula.precedents import mentioned

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Final
 
 from xlmc.engine.graph.computed_references import NotYetNeeded
-from xlmc.engine.graph.lowering import Scope
+from xlmc.engine.graph.scope import Scope
 from xlmc.errors import FormulaError
 from xlmc.excel.address import Area, Cell, host_of, parse_address
 from xlmc.excel.formula import ir

@@ -11,11 +11,10 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.engine.graph.dag import Dag
-from xlmc.engine.graph.lower import Lowering
-from xlmc.engine.graph.nodes import (
+from xlmc.engine.graph.graph import (
     Apply,
     Constant,
+    Dag,
     IfErrorNode,
     Input,
     Node,
@@ -25,6 +24,7 @@ from xlmc.engine.graph.nodes import (
     evaluate_node,
     uses,
 )
+from xlmc.engine.graph.lowering import Lowering
 from xlmc.engine.passes.derivatives import elementary, lookup_rules, sums  # noqa: F401 - they register their rules
 from xlmc.engine.passes.derivatives.conditions import if_, if_error
 from xlmc.engine.passes.derivatives.derivative import Notes

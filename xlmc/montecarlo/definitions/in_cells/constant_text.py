@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from xlmc.engine.graph.lower import Lowering, lower_until_complete
+from xlmc.engine.graph.lowering import Lowering, lower_until_complete
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.formula import Resolver, build_graph, ir

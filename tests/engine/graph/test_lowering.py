@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.engine.graph.nodes import Apply, Constant, Input, Range
+from xlmc.engine.graph.graph import Apply, Constant, Input, Range
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.address import parse_address
 

@@ -3,8 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.engine.graph.dag import Dag
-from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select, uses
+from xlmc.engine.graph.graph import Apply, Constant, Dag, IfErrorNode, Input, Range, Select, uses
 from xlmc.errors import ErrorCode
 from xlmc.excel.functions import Kind
 from xlmc.excel.functions.families import REGISTRY
@@ -107,7 +106,7 @@ def test_upstream_is_what_varies_in_order(dag):
 
 
 def test_a_range_of_no_trials(dag):
-    from xlmc.engine.graph.nodes import evaluate_node
+    from xlmc.engine.graph.graph import evaluate_node
     from xlmc.excel.functions.values import Value
 
     a = dag.input("a")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from xlmc.engine.engine import column_of
-from xlmc.engine.graph.nodes import align, corner, single
+from xlmc.engine.graph.graph import align, corner, single
 from xlmc.errors import ErrorCode
 from xlmc.excel.functions.values import constant, from_objects
 

@@ -31,7 +31,7 @@ from scipy.special import bdtr
 from tables import placed
 
 import xlmc.montecarlo.statistics as xs
-from xlmc.montecarlo.rare.landscape import Landscape
+from xlmc.montecarlo.rare.limit_state_function import LimitStateFunction
 from xlmc.montecarlo.rare.search import Found
 from xlmc.montecarlo.statistics import Estimate
 
@@ -55,10 +55,10 @@ Answers = list[Estimate]
 
 def estimates(found: Found, values: Floats) -> Answers:
     """By STATISTICS."""
-    assert found.equalised is not None
+    assert found.resampled is not None
     sample = xs.Sample.of(values)
     moments = [xs.mean(sample), xs.standard_deviation(sample), xs.median(sample)]
-    return [found.equalised.acceptance, *moments, *xs.central_interval(sample)]
+    return [found.resampled.acceptance, *moments, *xs.central_interval(sample)]
 
 
 def covered(found: Sequence[Estimate], truth: Sequence[float]) -> list[bool]:
@@ -88,8 +88,8 @@ def analytic(name: str, seed: int) -> tuple[Answers, int]:
     """One run of a problem with a known answer, and how many trials it computed."""
     problem = PROBLEMS[name]
     found = one_run(problem.distance, problem.dimensions, seed, WANTED)
-    assert found.equalised is not None
-    return estimates(found, problem.forecast(found.equalised.points)), found.evaluations
+    assert found.resampled is not None
+    return estimates(found, problem.forecast(found.resampled.points)), found.evaluations
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,10 +113,10 @@ def subject(name: str, jobs: int) -> Subject:
     """Of that name; the truth of the case study takes a while."""
     if name == case.WORDS:
         truth, accepted = case.plain(CASE_TRIALS, jobs)
-        landscape = Landscape(case.model(), np.random.default_rng(0))
+        function = LimitStateFunction(case.model(), np.random.default_rng(0))
         about = {"words": f"{name}, filters narrowed", "labels": case.LABELS, "acceptance": truth[0].value}
         about |= {"wanted": case.WANTED, "plain_trials": CASE_TRIALS, "plain_accepted": accepted}
-        return Subject(case.searched, partial(case.held, truth), (landscape.distance, landscape.dimensions), about)
+        return Subject(case.searched, partial(case.held, truth), (function.distance, function.dimensions), about)
     problem = PROBLEMS[name]
     about = {"words": problem.words, "labels": STATISTICS, "acceptance": problem.truth[0], "wanted": WANTED}
     region = problem.distance, problem.dimensions

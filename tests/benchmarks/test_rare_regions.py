@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.montecarlo.rare.landscape import Landscape
-from xlmc.montecarlo.rare.layered import ground_of
-from xlmc.montecarlo.rare.strays import wide_assumptions
+from xlmc.montecarlo.rare.layered import search_space_of
+from xlmc.montecarlo.rare.limit_state_function import LimitStateFunction
+from xlmc.montecarlo.rare.unexplained import wide_assumptions
 
 
 @pytest.fixture(scope="module")
@@ -53,10 +53,10 @@ def test_the_bar_names_what_misses_it(bench):
 def test_the_exact_answers_are_those_of_the_books(bench, name, draws):
     """Against draws from widened assumptions, weighted: 4.5 standard errors, which are below a third."""
     book, random = bench.BOOKS[name], np.random.default_rng(17)
-    landscape = Landscape(book.model, random)
-    spread = wide_assumptions(landscape.dimensions)
+    function = LimitStateFunction(book.model, random)
+    spread = wide_assumptions(function.dimensions)
     points = spread.draw(draws, random)
-    weights = np.exp(spread.log_weights(points)) * landscape.accepts(points)
+    weights = np.exp(spread.log_weights(points)) * function.accepts(points)
     error = weights.std() / np.sqrt(weights.size)
     assert error < book.truth / 3
     assert abs(weights.mean() - book.truth) < 4.5 * error
@@ -66,5 +66,5 @@ def test_no_book_has_a_thin_layer_that_is_solved(bench):
     """What the search does well stays as it is."""
     random = np.random.default_rng(17)
     for book in bench.BOOKS.values():
-        landscape = Landscape(book.model, random)
-        assert ground_of(book.model, landscape, random) is landscape
+        function = LimitStateFunction(book.model, random)
+        assert search_space_of(book.model, function, random) is function

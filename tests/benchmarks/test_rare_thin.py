@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.montecarlo.rare.landscape import Landscape
-from xlmc.montecarlo.rare.layered import Layered, ground_of
+from xlmc.montecarlo.rare.layered import Layered, search_space_of
+from xlmc.montecarlo.rare.limit_state_function import LimitStateFunction
 
 
 @pytest.fixture(scope="module")
@@ -33,6 +33,6 @@ def test_the_bar_names_what_misses_it(bench):
 def test_every_book_has_a_layer_that_is_solved(bench):
     for name, book in bench.THIN.items():
         model = book.model
-        found = ground_of(model, Landscape(model, np.random.default_rng(3)), np.random.default_rng(4))
+        found = search_space_of(model, LimitStateFunction(model, np.random.default_rng(3)), np.random.default_rng(4))
         assert isinstance(found, Layered), name
         assert len(found.layers) == (2 if name == "two layers" else 1)

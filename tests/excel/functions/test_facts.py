@@ -28,8 +28,8 @@ from xlmc.excel.functions.lookup.search_and_pick import CELL_AT, POSITION
 from xlmc.excel.functions.math.aggregate import SO_FAR
 from xlmc.excel.functions.operators import ALL_BITS
 from xlmc.excel.functions.values import constant
-from xlmc.montecarlo.rare.preimage import FUNCTIONS, PERIODIC
-from xlmc.montecarlo.rare.ways import _OF_AREAS
+from xlmc.montecarlo.rare.inverse_image import FUNCTIONS, PERIODIC
+from xlmc.montecarlo.rare.strata import _OF_AREAS
 
 PACKAGE = Path(__file__).resolve().parents[3] / "xlmc"
 
@@ -97,9 +97,9 @@ LISTS = {
     ("outputs/replay/versions.py", "_CRITERIA"): "what changed in an earlier version",
     ("outputs/replay/versions.py", "_DATABASE"): "what changed in an earlier version",
     ("montecarlo/rare/inverting.py", "Inverting"): "any other function is not undone: its filter is searched for",
-    ("montecarlo/rare/preimage.py", "FUNCTIONS"): "any other function is not undone: its filter is searched for",
-    ("montecarlo/rare/preimage.py", "PERIODIC"): "what FUNCTIONS has",
-    ("montecarlo/rare/ways.py", "_OF_AREAS"): "any other function of an area makes no ways to be told apart",
+    ("montecarlo/rare/inverse_image.py", "FUNCTIONS"): "any other function is not undone: its filter is searched for",
+    ("montecarlo/rare/inverse_image.py", "PERIODIC"): "what FUNCTIONS has",
+    ("montecarlo/rare/strata.py", "_OF_AREAS"): "any other function of an area makes no strata",
     (
         "analysis/studies/stability/rounding_errors.py",
         "_STEEP",
@@ -202,7 +202,7 @@ def test_tables_of_native_code_have_the_names_of_rows():
     assert all(ROWS[name].takes_sets for name in sets._ROWS)
 
 
-@pytest.mark.parametrize("table", [FUNCTIONS, _OF_AREAS, FOLDS], ids=["preimage", "switches", "running totals"])
+@pytest.mark.parametrize("table", [FUNCTIONS, _OF_AREAS, FOLDS], ids=["inverse image", "switches", "running totals"])
 def test_tables_of_formulas_have_all_names_of_a_row(table):
     """A formula may call a function by any of them."""
     rows = {REGISTRY[name] for name in table}

@@ -12,9 +12,9 @@ import pytest
 from scipy.special import bdtr
 
 from xlmc.montecarlo.rare import learning
-from xlmc.montecarlo.rare.equalising import equalise
 from xlmc.montecarlo.rare.mixture import Mixture
 from xlmc.montecarlo.rare.proposal import Proposal, Shear
+from xlmc.montecarlo.rare.resampling import resample
 from xlmc.montecarlo.rare.search import find
 
 BENCHMARKS = Path(__file__).resolve().parents[3] / "benchmarks"
@@ -31,9 +31,9 @@ def test_intervals_hold_the_truth(bench):
     """6 intervals: fewer hits than 95 % coverage has once in 1,000 times, were all independent, fail."""
     problem = importlib.import_module("rare_problems").corner(1e-7, narrowed=3, count=5)
     found = bench.one_run(problem.distance, problem.dimensions, 5000, 1000)
-    points = found.equalised.points
+    points = found.resampled.points
     assert np.all(problem.distance(points) == 0.0)
-    assert 0.97 * 1000 <= found.equalised.size <= 1000
+    assert 0.97 * 1000 <= found.resampled.size <= 1000
     hits = sum(bench.covered(bench.estimates(found, problem.forecast(points)), problem.truth))
     assert bdtr(hits, 6, 0.95) > 1e-3
     assert problem.truth[0] <= 1e-6
@@ -47,10 +47,10 @@ def shifted(mean):
 
 def test_a_trial_heavier_than_any_known_is_learnt_from(random):
     """The proposal lies at 4, most of the region at 2 to 3: its first trials there weigh far more than was known."""
-    found = equalise(lambda z: z[:, 0] > 2.0, shifted(4.0), -9.0, -math.inf, 10_000, 10**6, random)
+    found = resample(lambda z: z[:, 0] > 2.0, shifted(4.0), -9.0, -math.inf, 10_000, 10**6, random)
     assert found.surprise is not None
     assert found.surprise.points.min() < 3.0
-    again = equalise(lambda z: z[:, 0] > 2.0, shifted(2.5), -2.0, -math.inf, 500, 10**6, random)
+    again = resample(lambda z: z[:, 0] > 2.0, shifted(2.5), -2.0, -math.inf, 500, 10**6, random)
     assert again.surprise is None
     assert len(again.points) == 500
     low, high = again.acceptance.interval
@@ -64,7 +64,7 @@ def test_too_many_for_the_limit_are_not_begun():
 
     random = np.random.default_rng(3)
     found = find(distance, lambda z: distance(z) == 0.0, 1, 10**9, 10**7, random, random)
-    assert found.equalised is None
+    assert found.resampled is None
     assert found.learned.best is not None
 
 
@@ -86,10 +86,10 @@ def test_a_layer_of_which_few_proposals_are_part_is_described_all_the_same():
     random = [np.random.default_rng((11, each)) for each in (0, 1)]
     found = find(distance, lambda z: distance(z) == 0.0, 4, 100, 10**8, *random)
     assert found.used.trials > learning._TRIALS
-    assert np.all(distance(found.equalised.points) == 0.0)
-    acceptance = found.equalised.acceptance
+    assert np.all(distance(found.resampled.points) == 0.0)
+    acceptance = found.resampled.acceptance
     assert abs(acceptance.value - truth) < 4.5 * acceptance.error
-    assert found.equalised.fresh <= found.equalised.proposals // 2
+    assert found.resampled.fresh <= found.resampled.proposals // 2
 
 
 def test_learning_keeps_to_the_limit():
@@ -106,7 +106,7 @@ def test_acceptance_is_more_than_nothing_where_few_trials_are_wanted():
     """Some 1.3 of 32,768 are accepted: as many draws again may have none, so there are more, a million at most."""
     for seed in range(2):
         random = np.random.default_rng((13, seed))
-        found = equalise(
+        found = resample(
             lambda z: (z[:, 0] > 2.5) & (z[:, 0] < 2.5 + 6.4e-5), shifted(2.5), -2.7, -math.inf, 2, 10**8, random
         )
         assert len(found.points) == 2

@@ -12,8 +12,8 @@ from simulated import simulated
 
 from xlmc.analysis.results.record import make_record
 from xlmc.montecarlo.rare import learning
-from xlmc.montecarlo.rare.landscape import Landscape
-from xlmc.montecarlo.rare.layered import Layered, ground_of
+from xlmc.montecarlo.rare.layered import Layered, search_space_of
+from xlmc.montecarlo.rare.limit_state_function import LimitStateFunction
 
 NORMAL = {"distribution": "Normal", "mean": 0, "std_dev": 1}
 CELLS = {"A1": 1.0, "A2": 1.0, "A3": 1.0, "A4": 1.0, "B2": "=A2^2/4", "B3": "=A1-B2"}
@@ -31,7 +31,7 @@ def ground(book):
     def make(filters, correlations=None, given=GIVEN, **more):
         cells = {**CELLS, **{f"B{row}": text for row, text in enumerate(more.pop("formulas", ()), 4)}}
         model = book(cells, given, {"x": "A1", "all": "D1"} if "D1" in cells else {"x": "A1"}, filters, correlations)
-        return ground_of(model, Landscape(model, np.random.default_rng(3)), np.random.default_rng(4))
+        return search_space_of(model, LimitStateFunction(model, np.random.default_rng(3)), np.random.default_rng(4))
 
     return make
 
@@ -99,7 +99,7 @@ def test_points_stand_for_the_trials_they_are_made_of(ground):
     uniforms = np.random.default_rng(5).random((5_000, found.dimensions))
     points = found.points(uniforms)
     assert found.uniforms(points) == pytest.approx(uniforms, abs=1e-12)
-    assert np.array_equal(found.accepts(points), found._landscape.accepts_at(uniforms))
+    assert np.array_equal(found.accepts(points), found._function.accepts_at(uniforms))
     distances = found.distance(points)
     assert np.array_equal(distances == 0.0, found.accepts(points))
     assert np.isfinite(distances).all()

@@ -72,7 +72,7 @@ REFUSED = [
     ({}, {}, "but not how many trials"),
     ({"until_accepted": 5}, {"engine": "formulas"}, "engine numpy"),
     ({"until_accepted": 5}, {"trials": 100_000}, "the limit is 100,000"),
-    ({"until_accepted": 10**7}, {}, "room for 1,000,000"),
+    ({"until_accepted": 10**7}, {}, "at most 1,000,000"),
 ]
 
 

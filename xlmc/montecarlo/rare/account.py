@@ -21,7 +21,7 @@ LEAST_CHANCE: Final = 1e-3
 
 MOST_APART: Final = math.log(2.0)
 """Two estimates of the probability of acceptance, as logarithms: the first is known to some tenths, and less well where
-the populations of several ways share its points."""
+the populations of several strata share its points."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +49,7 @@ class RareAccount:
         checked: of the evaluations, those from widened assumptions after the search, to look for what it missed.
         missed: the probability of accepted trials that were met so, or among the plain ones, and that the proposals
             hardly ever come to.
-        ways: parts of all trials, by branches and discrete assumptions, that were searched apart.
+        ways: the number of strata: parts of all trials, by branches and discrete assumptions, searched apart.
         explored: the probability of parts that splitting did not find, and that other accepted trials led to.
         solved: the assumptions that thin layers were solved for.
     """
@@ -116,7 +116,7 @@ class RareAccount:
 
     @property
     def _apart(self) -> str:
-        return f", in {self.ways} ways by branches and discrete assumptions" if self.ways > 1 else ""
+        return f", in {self.ways} strata by branches and discrete assumptions" if self.ways > 1 else ""
 
     @property
     def _solved_for(self) -> str:

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from xlmc.engine.engine import Target
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula import ir
-from xlmc.montecarlo.rare import preimage
-from xlmc.montecarlo.rare.shortfall import Leaf, Shortfall, Together
+from xlmc.montecarlo.rare import inverse_image
+from xlmc.montecarlo.rare.limit_state import Leaf, LimitState, Together
 from xlmc.montecarlo.rare.spans import Spans, choose, intersection, union
 
 __all__ = ["Inverting", "Region", "conjuncts"]
@@ -49,7 +49,7 @@ _MOST_CELLS: Final = 200
 """The most cells of an area that is written out."""
 
 
-def conjuncts(filters: Sequence[Shortfall]) -> Iterator[Shortfall]:
+def conjuncts(filters: Sequence[LimitState]) -> Iterator[LimitState]:
     """What must hold, all of it, in the smallest parts."""
     for each in filters:
         if isinstance(each, Together) and each.every:
@@ -69,7 +69,7 @@ class Inverting:
 
     Attributes:
         targets: what must be known in each trial.
-        turned: trees, among them, whose values must lie within `preimage.TURNS` of 0.
+        turned: trees, among them, whose values must lie within `inverse_image.TURNS` of 0.
     """
 
     def __init__(
@@ -85,7 +85,7 @@ class Inverting:
         self.targets: list[Target] = []
         self.turned: list[int] = []
 
-    def region(self, of: Shortfall) -> Region | None:
+    def region(self, of: LimitState) -> Region | None:
         """The values with which a condition can hold; None where they are not known."""
         if isinstance(of, Leaf):
             return self._comparison(of.holds)
@@ -166,11 +166,11 @@ class Inverting:
 
     def _through(self, name: str, part: ir.Expression, cell: Cell) -> Undo | None:
         """Through a function of one argument."""
-        function = preimage.FUNCTIONS.get(name)
+        function = inverse_image.FUNCTIONS.get(name)
         undo = None if function is None else self._undo(part, cell)
         if function is None or undo is None:
             return None
-        if name in preimage.PERIODIC:
+        if name in inverse_image.PERIODIC:
             self.turned.append(self._known(part, cell))
         return lambda value, known: undo(function(value), known)
 
@@ -181,14 +181,16 @@ class Inverting:
         if operator == "^" and isinstance(right, ir.Number):
             return self._power(left, right.value, cell)
         if self._depends(left):
-            step = {"+": preimage.term, "-": _minus, "*": preimage.factor, "/": preimage.numerator}.get(operator)
+            step = {"+": inverse_image.term, "-": _minus, "*": inverse_image.factor, "/": inverse_image.numerator}.get(
+                operator
+            )
             return None if step is None else self._beside(step, left, right, cell)
         step = {
-            "+": preimage.term,
-            "-": lambda value, o: preimage.negated(preimage.term(value, o)),
-            "*": preimage.factor,
-            "/": preimage.divisor,
-            "^": preimage.exponent,
+            "+": inverse_image.term,
+            "-": lambda value, o: inverse_image.negated(inverse_image.term(value, o)),
+            "*": inverse_image.factor,
+            "/": inverse_image.divisor,
+            "^": inverse_image.exponent,
         }.get(operator)
         return None if step is None else self._beside(step, right, left, cell)
 
@@ -205,7 +207,7 @@ class Inverting:
         undo = self._undo(base, cell)
         if undo is None or not 1e-3 < abs(power) < 1e3:
             return None
-        return lambda value, known: undo(preimage.powered(value, power), known)
+        return lambda value, known: undo(inverse_image.powered(value, power), known)
 
     def _branches(self, condition: ir.Expression, yes: ir.Expression, no: ir.Expression, cell: Cell) -> Undo | None:
         first, second = self._value(yes, cell), self._value(no, cell)
@@ -233,8 +235,8 @@ class Inverting:
         one: ir.Expression = ir.Binary("^", varying[0], ir.Number(2.0)) if tree.name == "SUMSQ" else varying[0]
         if not rest:
             return self._undo(one, cell)
-        step = {"MAX": preimage.largest, "MIN": preimage.smallest, "PRODUCT": preimage.factor}.get(
-            tree.name, preimage.term
+        step = {"MAX": inverse_image.largest, "MIN": inverse_image.smallest, "PRODUCT": inverse_image.factor}.get(
+            tree.name, inverse_image.term
         )
         return self._beside(step, one, ir.Call(tree.name, rest), cell)
 
@@ -250,7 +252,7 @@ class Inverting:
 
     def _after(self, undo: Undo, lines: Sequence[_Pair], cell: Cell) -> Undo:
         indices = [self._known(each, cell) for line in lines for each in line]
-        step = preimage.ratio if len(lines) > 1 else preimage.line
+        step = inverse_image.ratio if len(lines) > 1 else inverse_image.line
         return lambda value, given: undo(step(value, *(given[index] for index in indices)), given)
 
     def _line(self, tree: ir.Expression, x: Cell) -> _Pair | None:
@@ -292,7 +294,7 @@ class Inverting:
 
 def _minus(value: Spans, o: Floats) -> Spans:
     """The inverse of s − o."""
-    return preimage.term(value, -o)
+    return inverse_image.term(value, -o)
 
 
 def _both(line: _Pair | None, made: Callable[[ir.Expression], ir.Expression]) -> _Pair | None:

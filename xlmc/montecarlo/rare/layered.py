@@ -1,4 +1,4 @@
-"""A landscape in which thin layers are solved: the accepted values of some assumptions come first in their uniforms.
+"""Solve thin layers in the limit-state function: the accepted values of some assumptions come first in their uniforms.
 
 Where filters leave a thin bent layer, one assumption of each is rearranged (see `spans`), so that the layer is the
 tail of its normal. Every point still stands for a trial, as likely as before, and is accepted where the filters accept
@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.montecarlo.rare.landscape import OUTSIDE, Drawing, Landscape, points_of, uniforms_of
 from xlmc.montecarlo.rare.layers import Layer, layers_of
+from xlmc.montecarlo.rare.limit_state_function import OUTSIDE, Drawing, LimitStateFunction, points_of, uniforms_of
 from xlmc.montecarlo.rare.splitting import Distance
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
 
-__all__ = ["Ground", "Layered", "ground_of"]
+__all__ = ["Layered", "SearchSpace", "search_space_of"]
 
 Floats = NDArray[np.float64]
 
@@ -33,10 +33,10 @@ _LEAST: Final = 1e-300
 
 
 class Layered:
-    """For one thread; what `Landscape` gives of points, of points in these coordinates.
+    """For one thread; what `LimitStateFunction` gives of points, of points in these coordinates.
 
     Args:
-        landscape: of the same model.
+        function: of the same model.
         drawing: of the same model.
         layers: one or more, in the order in which they can be solved.
 
@@ -44,36 +44,36 @@ class Layered:
         layers: the same.
     """
 
-    def __init__(self, landscape: Landscape, drawing: Drawing, layers: Sequence[Layer]) -> None:
-        self._landscape, self._drawing, self.layers = landscape, drawing, layers
-        self.dimensions = landscape.dimensions
+    def __init__(self, function: LimitStateFunction, drawing: Drawing, layers: Sequence[Layer]) -> None:
+        self._function, self._drawing, self.layers = function, drawing, layers
+        self.dimensions = function.dimensions
 
     @property
     def evaluations(self) -> int:
         """Trials evaluated so far."""
-        return self._landscape.evaluations
+        return self._function.evaluations
 
     @property
     def lost(self) -> int:
         """The number of evaluations in which a filter or a draw is an error."""
-        return self._landscape.lost
+        return self._function.lost
 
     @property
-    def ways(self) -> list[Distance]:
-        """See `Landscape.ways`."""
-        return [partial(self._distance, each) for each in self._landscape.ways_at]
+    def strata(self) -> list[Distance]:
+        """See `LimitStateFunction.strata`."""
+        return [partial(self._distance, each) for each in self._function.strata_at]
 
     def distance(self, points: Floats) -> Floats:
         """(n,) 0 where points are accepted, infinite where a filter cannot decide."""
-        return self._distance(self._landscape.distance_at, points)
+        return self._distance(self._function.distance_at, points)
 
     def accepts(self, points: Floats) -> NDArray[np.bool_]:
         """(n,) whether they are accepted."""
-        return self._landscape.accepts_at(self.uniforms(points))
+        return self._function.accepts_at(self.uniforms(points))
 
     def by_filter(self, points: Floats) -> list[Floats]:
         """For each filter, (n,) how far points are from what it asks."""
-        return self._landscape.by_filter_at(self.uniforms(points))
+        return self._function.by_filter_at(self.uniforms(points))
 
     def uniforms(self, points: Floats) -> Floats:
         """(n, d) the uniforms of the trials that points stand for."""
@@ -98,13 +98,13 @@ class Layered:
         return [rows[start : start + self._drawing.block] for start in range(0, len(rows), self._drawing.block)]
 
     def _distance(self, inner: Distance, points: Floats) -> Floats:
-        """The distance with a distance of uniforms for those trials that are within the layers."""
+        """Return the distance of points, (n,); `inner` is that of uniforms, for those within the layers."""
         uniforms = uniforms_of(points)
         parts = [self._within(part) for part in self._blocks(uniforms)]
         beyond = np.concatenate([np.empty(0), *(part for part, _ in parts)])
         outside = np.concatenate([np.empty(0, bool), *(part for _, part in parts)])
         found = inner(uniforms)
-        if inner == self._landscape.distance_at:
+        if inner == self._function.distance_at:
             found = np.log1p(found)
         nearest = np.maximum(found, np.log1p(beyond))
         return np.where(outside | (found >= OUTSIDE), found + OUTSIDE, nearest)
@@ -126,23 +126,23 @@ class Layered:
         return beyond, outside
 
 
-Ground = Landscape | Layered
-"""What a search sees of a model."""
+SearchSpace = LimitStateFunction | Layered
+"""What a search evaluates at its points."""
 
 
-def ground_of(model: CompiledModel, landscape: Landscape, random: np.random.Generator) -> Ground:
-    """The landscape itself where no layer is thin, or none can be solved.
+def search_space_of(model: CompiledModel, function: LimitStateFunction, random: np.random.Generator) -> SearchSpace:
+    """Return the limit-state function with its thin layers solved, or itself without layers that can be solved.
 
     Args:
-        model: that the landscape is of.
-        landscape: of it.
+        model: that the function is of.
+        function: of it.
         random: for draws to look at, and nothing else.
     """
     drawing = Drawing(model)
     looked_at = min(_LOOKED_AT, drawing.block)
-    uniforms = uniforms_of(random.standard_normal((looked_at, landscape.dimensions)))
-    layers = layers_of(model, landscape.asked, drawing, uniforms)
-    return Layered(landscape, drawing, layers) if layers else landscape
+    uniforms = uniforms_of(random.standard_normal((looked_at, function.dimensions)))
+    layers = layers_of(model, function.asked, drawing, uniforms)
+    return Layered(function, drawing, layers) if layers else function
 
 
 def _normal(positions: Floats) -> Floats:

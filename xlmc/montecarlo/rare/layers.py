@@ -18,16 +18,16 @@ from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir
 from xlmc.excel.formula.precedents import references
 from xlmc.montecarlo.model.needed import upstream
+from xlmc.montecarlo.rare.inverse_image import TURNS
 from xlmc.montecarlo.rare.inverting import Inverting, Region, conjuncts
-from xlmc.montecarlo.rare.preimage import TURNS
-from xlmc.montecarlo.rare.shortfall import Shortfall, leaves
+from xlmc.montecarlo.rare.limit_state import LimitState, leaves
 from xlmc.montecarlo.rare.spans import Rearranged, Spans, intersection
 
 if TYPE_CHECKING:
     from xlmc.engine.engine import Evaluator
     from xlmc.montecarlo.definitions.definitions import Assumption
     from xlmc.montecarlo.model.model import CompiledModel
-    from xlmc.montecarlo.rare.landscape import Drawing
+    from xlmc.montecarlo.rare.limit_state_function import Drawing
     from xlmc.montecarlo.sampling.draws import Draw
 
 __all__ = ["Layer", "layers_of"]
@@ -95,7 +95,7 @@ class Layer:
         return _rearranged(self.draw, self.spans(self.known(draws, n)))
 
 
-def layers_of(model: CompiledModel, filters: Sequence[Shortfall], drawing: Drawing, uniforms: Floats) -> list[Layer]:
+def layers_of(model: CompiledModel, filters: Sequence[LimitState], drawing: Drawing, uniforms: Floats) -> list[Layer]:
     """The thin layers, in the order in which they can be solved: none asks about an assumption of a later one.
 
     Args:
@@ -117,7 +117,7 @@ def layers_of(model: CompiledModel, filters: Sequence[Shortfall], drawing: Drawi
 class _Looking:
     """A search for assumptions that a thin layer can be solved for."""
 
-    def __init__(self, model: CompiledModel, filters: Sequence[Shortfall], drawing: Drawing, uniforms: Floats) -> None:
+    def __init__(self, model: CompiledModel, filters: Sequence[LimitState], drawing: Drawing, uniforms: Floats) -> None:
         self._model, self._block = model, drawing.block
         draws, self._n = drawing.draw_at(uniforms)
         self._draws = {name: values.copy() for name, values in draws.items()}
@@ -149,7 +149,7 @@ class _Looking:
         ]
         return max(found, key=lambda each: each[0], default=(0.0, None))[1]
 
-    def _layers(self, assumption: Assumption, parts: Sequence[Shortfall]) -> Iterator[tuple[float, Layer]]:
+    def _layers(self, assumption: Assumption, parts: Sequence[LimitState]) -> Iterator[tuple[float, Layer]]:
         """The layers that some of the parts leave an assumption, and how even their chances are."""
         moved = self._moved[assumption.cell]
         formulas, gates = self._model.needed.graph.formulas, self._gates(assumption.cell)
@@ -250,11 +250,11 @@ def _subsets(count: int) -> Iterator[tuple[int, ...]]:
         yield from combinations(range(count), 2)
 
 
-def _trees(of: Shortfall) -> list[ir.Expression]:
+def _trees(of: LimitState) -> list[ir.Expression]:
     return [leaf.holds.tree for leaf in leaves(of)]
 
 
-def _cells(of: Shortfall) -> Iterator[Cell]:
+def _cells(of: LimitState) -> Iterator[Cell]:
     for tree in _trees(of):
         for each in references(tree):
             yield from [each] if isinstance(each, Cell) else each.cells()

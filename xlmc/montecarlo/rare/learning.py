@@ -17,17 +17,17 @@ from numpy.typing import NDArray
 
 from xlmc.montecarlo.rare.proposal import Proposal, fit_proposal, height, refit
 from xlmc.montecarlo.rare.splitting import EXPLORING, Descent, Distance, descend, explore
-from xlmc.montecarlo.rare.strays import Evidence, find_strays, join_evidence, pool
+from xlmc.montecarlo.rare.unexplained import Evidence, find_unexplained, join_evidence, pool
 
 __all__ = ["Learned", "Round", "Say", "count_on", "learn", "learn_again", "search_on"]
 
 Floats = NDArray[np.float64]
 
 _DESCENTS: Final = 2
-"""Populations of each way."""
+"""Populations of each stratum."""
 
 _POPULATION: Final = 4_096
-"""Points of the populations, of all ways together, as long as each has some hundreds."""
+"""Points of the populations, of all strata together, as long as each has some hundreds."""
 
 _FIRST: Final = 65_536
 """Draws that they begin from, likewise."""
@@ -95,7 +95,7 @@ class Learned:
     """What is known of the accepted region.
 
     Attributes:
-        descents: the populations, two and two of the same way.
+        descents: the populations, two and two of the same stratum.
         rounds: in the order they were made; none where no population reached the region.
         known: trials that nothing was learned for, with those of them that were accepted.
         evaluations: trials that this took.
@@ -141,10 +141,10 @@ class Learned:
         taken = (each for each in self.descents if each.reached and each.explored is explored)
         return sum(math.exp(each.log_probability) for each in taken) / _DESCENTS
 
-    def strays(self, proposal: Proposal, known: Sequence[Evidence]) -> Evidence:
-        """Accepted trials among those of other origin that a proposal hardly ever comes to; see `strays`."""
+    def unexplained(self, proposal: Proposal, known: Sequence[Evidence]) -> Evidence:
+        """Accepted trials among those of other origin that a proposal hardly ever comes to; see `unexplained`."""
         points, weights, _ = _of_descents(self.descents)
-        return find_strays(proposal, known, points, weights)
+        return find_unexplained(proposal, known, points, weights)
 
 
 def learn(
@@ -154,7 +154,7 @@ def learn(
     say: Say = lambda _: None,
     most: float = math.inf,
     known: Sequence[Evidence] = (),
-    ways: Sequence[Distance] = (),
+    strata: Sequence[Distance] = (),
 ) -> Learned:
     """Find the region where the distance is 0, and describe it; in no more evaluations than `most`, about.
 
@@ -165,10 +165,10 @@ def learn(
         say: called with the evaluations so far.
         most: evaluations.
         known: trials that were drawn before; those that were accepted are evidence.
-        ways: distances of parts of all trials, whose populations go apart; by default all together.
+        strata: distances of parts of all trials, whose populations go apart; by default all together.
     """
     found: list[Descent] = []
-    apart = ways or (distance,)
+    apart = strata or (distance,)
     population, first = (max(whole // len(apart), least) for whole, least in ((_POPULATION, 512), (_FIRST, 8_192)))
     for each in apart:
         for _ in range(_DESCENTS):
@@ -179,7 +179,7 @@ def learn(
         if not any(len(each.points) for each in known):
             return learned
         learned = _explored(distance, learned, join_evidence(known), random)
-    learned, proposal = _with_strays(distance, learned, random, most - _TRIALS)
+    learned, proposal = _with_unexplained(distance, learned, random, most - _TRIALS)
     return _refined(distance, learned, proposal, random, say, most)
 
 
@@ -206,13 +206,13 @@ def _described(learned: Learned, random: np.random.Generator) -> Proposal:
     return fit_proposal(points[order], weights[order], random)
 
 
-def _with_strays(
+def _with_unexplained(
     distance: Distance, learned: Learned, random: np.random.Generator, most: float
 ) -> tuple[Learned, Proposal]:
     """What was learned, with populations around accepted trials that the others did not reach, and a first proposal."""
     proposal = _described(learned, random)
     for _ in range(_EXPLORED):
-        found = learned.strays(proposal, learned.known)
+        found = learned.unexplained(proposal, learned.known)
         if learned.evaluations + _DESCENTS * EXPLORING > most or not found.tells(learned.probability):
             break
         learned = _explored(distance, learned, found, random)

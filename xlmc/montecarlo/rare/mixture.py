@@ -156,13 +156,13 @@ def _maximised(points: Floats, parts: Floats, size: float) -> Mixture:
     dimensions = points.shape[1]
     totals = np.maximum(parts.sum(axis=1), 1e-12)
     means = np.einsum("kn,nr->kr", parts, points) / totals[:, None]
-    held = (dimensions + 2.0) / size
-    own = held * len(parts) ** (-2.0 / dimensions) * np.eye(dimensions)
+    pulled = (dimensions + 2.0) / size
+    own = pulled * len(parts) ** (-2.0 / dimensions) * np.eye(dimensions)
     roots = np.empty((len(parts), dimensions, dimensions))
     for k, part in enumerate(parts):
         apart = points - means[k]
         spread = np.einsum("nr,nq->rq", apart * part[:, None], apart)
-        roots[k] = np.linalg.cholesky((spread + own) / (totals[k] + held))
+        roots[k] = np.linalg.cholesky((spread + own) / (totals[k] + pulled))
     return Mixture(totals / totals.sum(), means, roots)
 
 

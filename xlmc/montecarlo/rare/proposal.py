@@ -237,30 +237,30 @@ def fit_shear(thin: Floats, others: Floats, weights: Floats) -> Shear:
     return Shear(solved[:, 0], solved[:, 1 : 1 + count], quadratic)
 
 
-def height(logs: Floats, kept: float | None = None, least: float = -math.inf) -> float:
+def height(logs: Floats, count: float | None = None, least: float = -math.inf) -> float:
     """The logarithm of the lowest envelope, from `least` on, that costs no more than that.
 
     Args:
         logs: (m,) logarithms of the weights; those below `least` may be missing.
-        kept: trials that will be kept in all; by default as many as the envelope keeps of these.
+        count: trials that will be kept in all; by default as many as the envelope keeps of these.
         least: from where on.
     """
     highest = float(logs.max(initial=-math.inf))
     if highest <= least or highest == -math.inf:
         return max(least, highest)
     low, high = max(least, highest - 50.0), highest
-    if least > -math.inf and _fits(logs, low, kept):
+    if least > -math.inf and _fits(logs, low, count):
         return low
     for _ in range(_STEPS):
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if _fits(logs, middle, kept) else (middle, high)
+        low, high = (low, middle) if _fits(logs, middle, count) else (middle, high)
     return high
 
 
-def _fits(logs: Floats, height_: float, kept: float | None) -> bool:
+def _fits(logs: Floats, height_: float, count: float | None) -> bool:
     ratios = np.exp(logs - height_)
     above = ratios[ratios > 1.0]
-    return float(np.sum(above * above - above)) <= COPIED * (float(ratios.sum()) if kept is None else kept)
+    return float(np.sum(above * above - above)) <= COPIED * (float(ratios.sum()) if count is None else count)
 
 
 def copies(logs: Floats, luck: Floats, height_: float) -> NDArray[np.int64]:

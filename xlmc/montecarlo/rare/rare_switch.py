@@ -40,7 +40,7 @@ _LEAST_PART: Final = 1 << 25
 described well needs far less, and what is not is known by then."""
 
 LEAST_LIMIT: Final = 1 << 22
-"""The smallest limit of a run that leaves room for a search."""
+"""The smallest limit of a run that leaves trials for a search."""
 
 MOST_WANTED: Final = 1_000_000
 """Accepted trials of a search: they are in memory, and kept anew with every batch."""
@@ -102,7 +102,7 @@ def rare_switch(model: CompiledModel, settings: Settings) -> RareSwitch:
     """
     asked, wanted = settings.stopping.rare, settings.stopping.accepted
     if asked is not None and wanted is None:
-        message = "a way to find rare trials was given, but not how many trials are to be accepted"
+        message = "a method to find rare trials was given, but not how many trials are to be accepted"
         raise SimulationError(message, hint="Give a number of accepted trials too, with --until-accepted")
     fault = _fault(model, settings)
     if fault is not None and asked == "always":
@@ -119,9 +119,9 @@ def _fault(model: CompiledModel, settings: Settings) -> str | None:
     if not ENGINES[settings.engine].searches:
         return "the search is computed by the engine numpy"
     if len(model.live) > MOST_ASSUMPTIONS:
-        return f"{len(model.live):,} assumptions are drawn, and there is room for {MOST_ASSUMPTIONS:,}"
+        return f"{len(model.live):,} assumptions are drawn, and a search takes at most {MOST_ASSUMPTIONS:,}"
     if (settings.stopping.accepted or 0) > MOST_WANTED:
-        return f"{settings.stopping.accepted:,} were asked for, and there is room for {MOST_WANTED:,}"
+        return f"{settings.stopping.accepted:,} were asked for, and a search gives at most {MOST_WANTED:,}"
     if settings.trials < LEAST_LIMIT:
         return f"it takes up to {LEAST_LIMIT:,} trials, and the limit is {settings.trials:,}"
     return None

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from xlmc.montecarlo.loop.blocks import Block, ModelRunner, Task
 from xlmc.montecarlo.rare.account import RareAccount
-from xlmc.montecarlo.rare.equalising import Accepts, Equalised, equalise
-from xlmc.montecarlo.rare.landscape import GivenUniforms, Landscape
-from xlmc.montecarlo.rare.layered import Ground, Layered, ground_of
+from xlmc.montecarlo.rare.layered import Layered, SearchSpace, search_space_of
 from xlmc.montecarlo.rare.learning import Learned, Round, Say, count_on, learn, learn_again, search_on
+from xlmc.montecarlo.rare.limit_state_function import GivenUniforms, LimitStateFunction
 from xlmc.montecarlo.rare.rare_switch import SEARCH_PART, search_limit
+from xlmc.montecarlo.rare.resampling import Accepts, Resampled, resample
 from xlmc.montecarlo.rare.splitting import Distance
-from xlmc.montecarlo.rare.strays import Evidence, Tempered, plain_assumptions, wide_assumptions
+from xlmc.montecarlo.rare.unexplained import Evidence, Tempered, plain_assumptions, wide_assumptions
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.statistics.estimate import Estimate, with_relative_error
 
@@ -49,18 +49,18 @@ class Found:
     Attributes:
         learned: what the search found.
         used: the round whose proposal the trials come from; None where there is none to draw from.
-        equalised: the trials; None likewise.
+        resampled: the trials; None likewise.
         checked: trials that were drawn from the widened assumptions afterwards.
-        strays: accepted trials of other origin that the proposal hardly ever comes to.
+        unexplained: accepted trials of other origin that the proposal hardly ever draws.
         evaluations: trials that all this took.
     """
 
     learned: Learned
     used: Round | None
-    equalised: Equalised | None
+    resampled: Resampled | None
     evaluations: int
     checked: int = 0
-    strays: Evidence | None = None
+    unexplained: Evidence | None = None
 
 
 def find(
@@ -73,7 +73,7 @@ def find(
     drawing: np.random.Generator,
     say: Say = lambda _: None,
     plain: Sequence[Evidence] = (),
-    ways: Sequence[Distance] = (),
+    strata: Sequence[Distance] = (),
 ) -> Found:
     """Draw `wanted` accepted trials of equal weight.
 
@@ -87,17 +87,17 @@ def find(
         drawing: others, to draw the trials with: what they come from must not have served to learn.
         say: called with the evaluations so far.
         plain: trials from before the search.
-        ways: see `learn`.
+        strata: see `learn`.
     """
     spread, checked, trials = wide_assumptions(dimensions), 0, min(_SURVEY, most // _LOOKED_AT)
     first = _survey(accepts, spread, trials, learning)
     before = first.trials
-    learned = learn(distance, dimensions, learning, count_on(before, say), most - before, (*plain, first), ways)
+    learned = learn(distance, dimensions, learning, count_on(before, say), most - before, (*plain, first), strata)
     for tries_left in range(_AGAIN, -1, -1):
         used, done = learned.best, learned.evaluations + before
         if used is None or wanted > used.rate * (most - done):
             return Found(learned, None, None, done, checked)
-        drawn = equalise(
+        drawn = resample(
             accepts,
             used.proposal,
             used.envelope,
@@ -114,7 +114,7 @@ def find(
             continue
         check = _survey(accepts, spread, trials, drawing)
         checked += check.trials
-        missed = learned.strays(used.proposal, (*plain, check))
+        missed = learned.unexplained(used.proposal, (*plain, check))
         if not tries_left or not missed.tells(drawn.acceptance.value):
             break
         before += drawn.proposals + check.trials
@@ -169,35 +169,35 @@ def search(
         say: called with the evaluations so far.
     """
     learning, drawing = _random(settings.seed, "learning"), _random(settings.seed, "drawing")
-    landscape = ground_of(model, Landscape(model, learning), _random(settings.seed, "layers"))
+    function = search_space_of(model, LimitStateFunction(model, learning), _random(settings.seed, "layers"))
     wanted, most = settings.stopping.accepted or 0, search_limit(settings.trials, plain)
     independent = METHODS[settings.sampling].independent
-    evidence = [_plain(model, settings, plain, accepted, landscape)] if independent else []
+    evidence = [_plain(model, settings, plain, accepted, function)] if independent else []
     found = find(
-        landscape.distance,
-        landscape.accepts,
-        landscape.dimensions,
+        function.distance,
+        function.accepts,
+        function.dimensions,
         wanted,
         most,
         learning,
         drawing,
         say,
         evidence,
-        landscape.ways,
+        function.strata,
     )
-    drawn = found.equalised
+    drawn = found.resampled
     if drawn is None or found.used is None or len(drawn.points) < wanted:
-        failure = _failure(model, landscape, found, wanted, settings.trials - plain - most)
-        return Search(np.empty((0, landscape.dimensions)), None, failure, landscape.evaluations)
+        failure = _failure(model, function, found, wanted, settings.trials - plain - most)
+        return Search(np.empty((0, function.dimensions)), None, failure, function.evaluations)
     proposal = found.used.proposal
     account = RareAccount(
-        evaluations=plain + landscape.evaluations,
-        learning=landscape.evaluations - drawn.proposals - found.checked,
+        evaluations=plain + function.evaluations,
+        learning=function.evaluations - drawn.proposals - found.checked,
         proposals=drawn.proposals,
         proposals_accepted=drawn.accepted,
         fresh=drawn.fresh,
         kept=len(drawn.points),
-        acceptance=_acceptance(drawn, found.strays),
+        acceptance=_acceptance(drawn, found.unexplained),
         effective=drawn.effective,
         size=drawn.size,
         searched=found.learned.searched,
@@ -205,34 +205,34 @@ def search(
         levels=max(len(each.levels) for each in found.learned.descents),
         components=proposal.mixture.shares.size,
         directions=proposal.directions,
-        dimensions=landscape.dimensions,
-        lost=landscape.lost,
+        dimensions=function.dimensions,
+        lost=function.lost,
         plain=plain,
         plain_accepted=accepted.size,
         checked=found.checked,
-        ways=len(landscape.ways),
-        missed=0.0 if found.strays is None else found.strays.mass,
-        solved=tuple(layer.name for layer in landscape.layers) if isinstance(landscape, Layered) else (),
+        ways=len(function.strata),
+        missed=0.0 if found.unexplained is None else found.unexplained.mass,
+        solved=tuple(layer.name for layer in function.layers) if isinstance(function, Layered) else (),
     )
-    return Search(landscape.uniforms(drawn.points), account, "", landscape.evaluations)
+    return Search(function.uniforms(drawn.points), account, "", function.evaluations)
 
 
 def _plain(
-    model: CompiledModel, settings: Settings, trials: int, accepted: NDArray[np.int64], landscape: Ground
+    model: CompiledModel, settings: Settings, trials: int, accepted: NDArray[np.int64], function: SearchSpace
 ) -> Evidence:
     """The plain trials, or the first of them where many were accepted."""
     few = accepted[:_MOST_PLAIN]
     counted = int(few[-1]) + 1 if few.size < accepted.size else trials
-    points = landscape.points(plain_uniforms(model, settings.seed, few))
-    return Evidence.of(plain_assumptions(landscape.dimensions), counted, points[landscape.accepts(points)])
+    points = function.points(plain_uniforms(model, settings.seed, few))
+    return Evidence.of(plain_assumptions(function.dimensions), counted, points[function.accepts(points)])
 
 
-def _acceptance(drawn: Equalised, strays: Evidence | None) -> Estimate:
+def _acceptance(drawn: Resampled, unexplained: Evidence | None) -> Estimate:
     """The probability of acceptance, with the mass of what the proposal hardly ever comes to as a further error."""
     found = drawn.acceptance
-    if strays is None or not len(strays.points) or found.error is None or found.n is None:
+    if unexplained is None or not len(unexplained.points) or found.error is None or found.n is None:
         return found
-    error = math.hypot(found.error, strays.mass)
+    error = math.hypot(found.error, unexplained.mass)
     return with_relative_error(found.value, error, drawn.effective - 1.0, 0.95, found.n)
 
 
@@ -242,13 +242,13 @@ def _random(seed: int, purpose: str) -> np.random.Generator:
     return np.random.Generator(np.random.PCG64DXSM(np.random.SeedSequence(seed, spawn_key=words)))
 
 
-def _failure(model: CompiledModel, landscape: Ground, found: Found, wanted: int, left: int) -> str:
+def _failure(model: CompiledModel, function: SearchSpace, found: Found, wanted: int, left: int) -> str:
     """Why there are no trials, in words."""
     reached = [each for each in found.learned.descents if each.reached]
     if not reached:
         nearest = np.stack([each.nearest for each in found.learned.descents])
-        index = int(np.argmin(landscape.distance(nearest)))
-        lengths = landscape.by_filter(nearest[index : index + 1])
+        index = int(np.argmin(function.distance(nearest)))
+        lengths = function.by_filter(nearest[index : index + 1])
         names = [repr(f.name) for f, (length,) in zip(model.filters, lengths, strict=True) if length > 0.0]
         return (
             f"a search of {found.evaluations:,} trials found none that the filters accept: the nearest one still "

@@ -1,4 +1,4 @@
-"""The way to the accepted region: a population that comes nearer level by level (splitting, or subset simulation).
+"""Send populations to the accepted region level by level (subset simulation, or splitting).
 
 Kahn & Harris 1951; Au & Beck 2001; as a sequential Monte Carlo method Cérou, Del Moral, Furon & Guyader 2012. Of a
 population spread as the assumptions are, the points nearest to acceptance are kept; copies of them, moved at random

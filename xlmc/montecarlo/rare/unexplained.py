@@ -1,12 +1,12 @@
-"""Accepted trials of another origin than the search, beside what it found: do they say that something is missing?
+"""Judge the accepted trials of another origin than the search: does it leave some of them unexplained?
 
 Plain trials, and those from widened assumptions, come to every part of the accepted region with a chance that is known:
 each has a weight, how much likelier it is as a plain trial than as one of these, and the weighted share of accepted
 ones estimates their probability whatever was found before (a defensive mixture: Hesterberg 1995; Owen & Zhou 2000).
 
-One that a learned proposal hardly ever comes to is a *stray*: its weight is far above those of the points that the
-search knows. Strays that stand for more than a small share of the probability of acceptance say that a part is missing,
-and where.
+One that a learned proposal hardly ever draws is *unexplained*: its weight is far above those of the points that the
+search knows. Unexplained trials that stand for more than a small share of the probability of acceptance say that a part
+is missing, and where.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ __all__ = [
     "Evidence",
     "Source",
     "Tempered",
-    "find_strays",
+    "find_unexplained",
     "join_evidence",
     "plain_assumptions",
     "pool",
@@ -35,13 +35,13 @@ __all__ = [
 Floats = NDArray[np.float64]
 
 _FAR: Final = math.log(30.0)
-"""How much heavier than the heaviest usual points a stray is, as a logarithm."""
+"""How much heavier than the heaviest usual points an unexplained trial is, as a logarithm."""
 
 _USUAL: Final = 0.999
 """The share of what the search found whose weights are usual."""
 
 _SMALL: Final = 0.01
-"""The share of the probability of acceptance that strays may stand for: tails are no missing parts."""
+"""The share of the probability of acceptance that unexplained trials may stand for: tails are no missing parts."""
 
 _ALL: Final = (1.5, 2.0, 3.0, 4.0)
 """Spreads of all assumptions together, as far as the largest weights stay moderate."""
@@ -129,7 +129,7 @@ def join_evidence(known: Sequence[Evidence]) -> Evidence:
     return Evidence(known[0].proposal, sum(each.trials for each in known), points, logs)
 
 
-def find_strays(proposal: Source, known: Sequence[Evidence], points: Floats, weights: Floats) -> Evidence:
+def find_unexplained(proposal: Source, known: Sequence[Evidence], points: Floats, weights: Floats) -> Evidence:
     """The known accepted trials that a proposal hardly ever reaches; there may be none.
 
     Args:

@@ -25,7 +25,7 @@ from xlmc.montecarlo.rare.proposal import Proposal, copies, height
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import with_relative_error
 
-__all__ = ["BATCH", "Accepts", "Equalised", "equalise"]
+__all__ = ["BATCH", "Accepts", "Resampled", "resample"]
 
 Floats = NDArray[np.float64]
 
@@ -48,7 +48,7 @@ _SURPRISE: Final = math.log(30.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Equalised:
+class Resampled:
     """Trials of equal weight.
 
     Attributes:
@@ -72,7 +72,7 @@ class Equalised:
     surprise: Round | None = None
 
 
-def equalise(
+def resample(
     accepts: Accepts,
     proposal: Proposal,
     lowest: float,
@@ -83,7 +83,7 @@ def equalise(
     say: Say = lambda _: None,
     *,
     surprises: bool = True,
-) -> Equalised:
+) -> Resampled:
     """Draw from the proposal until `wanted` trials are kept, and then as many again, or until `most` are drawn.
 
     Args:
@@ -121,7 +121,7 @@ def equalise(
         pass
     of = fresh if fresh.accepted else until_enough
     points = drawing.trials()
-    return Equalised(
+    return Resampled(
         points=points,
         size=float(len(points) ** 2 / np.sum(np.square(_runs(points)))) if len(points) else 0.0,
         proposals=until_enough.proposals + fresh.proposals,
@@ -214,7 +214,7 @@ class _Sums:
 
     Args:
         unit: the logarithm of a weight near the largest, which they are counted in.
-        unevenness: see `equalised`.
+        unevenness: see `resampled`.
     """
 
     def __init__(self, unit: float, unevenness: float) -> None:

@@ -1,9 +1,9 @@
-"""Ways to be accepted: the parts that branches of formulas and discrete assumptions divide all trials into.
+"""Divide all trials into strata, by the branches of formulas and by discrete assumptions.
 
 In `IF(A3=1, A1-68.3, A2-153200)` at least 0, how far a trial is from acceptance is in miles an hour in one branch and
 in pounds in the other. Each is explored apart, so that distances of one are never compared with those of the other. A
 *switch* is what divides: an IF, IFS, CHOOSE or SWITCH, an OR, the argument that a MAX or MIN takes, a discrete
-assumption. A *way* takes one alternative of every switch; together the ways are all trials.
+assumption. A *stratum* takes one alternative of every switch; together the strata are all trials.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula import ir
 from xlmc.montecarlo.model.needed import filter_limits, upstream
-from xlmc.montecarlo.rare.shortfall import Shortfall
+from xlmc.montecarlo.rare.limit_state import LimitState
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Assumption
@@ -26,9 +26,9 @@ from collections import deque
 from collections.abc import Mapping
 from itertools import product
 
-from xlmc.montecarlo.rare.shortfall import Fails, Leaf, Together, comparisons_of, leaves
+from xlmc.montecarlo.rare.limit_state import Fails, Leaf, Together, comparisons_of, leaves
 
-__all__ = ["MOST_WAYS", "ways_of"]
+__all__ = ["MOST_STRATA", "strata_of"]
 
 _MOST_CELLS: Final = 1_000
 """The most cells of an area that are looked at."""
@@ -37,8 +37,8 @@ _RANKS: Final = np.concatenate([[1e-12, 1e-9, 1e-6], np.linspace(1e-4, 1.0 - 1e-
 """The probabilities at which values of a discrete assumption are looked for."""
 
 
-def ways_of(model: CompiledModel, filters: Sequence[Shortfall]) -> list[tuple[Shortfall, ...]]:
-    """What each way asks, beside the filters; one that asks nothing where there is nothing to tell apart.
+def strata_of(model: CompiledModel, filters: Sequence[LimitState]) -> list[tuple[LimitState, ...]]:
+    """Return what each stratum asks beside the filters; a single stratum that asks nothing if none can be told apart.
 
     Args:
         model: with filters.
@@ -48,17 +48,19 @@ def ways_of(model: CompiledModel, filters: Sequence[Shortfall]) -> list[tuple[Sh
     limits = (bound for f in model.filters for _, bound in filter_limits(f))
     asked_of = [*(f.cell for f in model.filters), *(bound for bound in limits if isinstance(bound, Cell))]
     needed = upstream(graph, asked_of, {})
-    strata = {a.cell: switch for a in model.live if a.cell in needed and (switch := _strata(model, a)) is not None}
+    of_discrete = {
+        a.cell: switch for a in model.live if a.cell in needed and (switch := _discrete_switch(model, a)) is not None
+    }
     drawn = {a.cell for a in model.live}
-    switches = list(strata.values())
+    switches = list(of_discrete.values())
     for decided_by, switch in _formula_switches(filters, graph.formulas):
         reached = drawn if decided_by is None else upstream(graph, cells_of(decided_by), {}) & drawn
-        if not reached or not reached <= strata.keys():  # else its strata decide it
+        if not reached or not reached <= of_discrete.keys():  # else its values decide it
             switches.append(switch)
     return _combine(switches)
 
 
-def _strata(model: CompiledModel, assumption: Assumption) -> Switch | None:
+def _discrete_switch(model: CompiledModel, assumption: Assumption) -> Switch | None:
     """The values of an assumption that has few; None of any other."""
     draw = model.draws[assumption.name]
     if not draw.fixed:
@@ -66,7 +68,7 @@ def _strata(model: CompiledModel, assumption: Assumption) -> Switch | None:
     values = _RANKS.copy()
     draw.fill(values, {})
     found = np.unique(values)
-    if not 1 < found.size <= MOST_WAYS // 2 or assumption.name in model.fallible:
+    if not 1 < found.size <= MOST_STRATA // 2 or assumption.name in model.fallible:
         return None
     return _value_switch(assumption.cell, found.tolist())
 
@@ -91,8 +93,8 @@ def _cells_of_all(parts: Iterable[ir.Expression]) -> Iterator[Cell]:
         yield from cells_of(part)
 
 
-MOST_WAYS: Final = 12
-"""Ways that are explored apart: more have too small populations."""
+MOST_STRATA: Final = 12
+"""Strata that are explored apart: more have too small populations."""
 
 _MOST_ARGUMENTS: Final = 6
 """The most arguments of a function whose alternatives are separated."""
@@ -106,15 +108,15 @@ _LONGEST_AREA: Final = 100
 _OF_AREAS: Final = frozenset({"SUM", "MAX", "MIN", "AVERAGE", "COUNT", "COUNTA", "AND", "OR", "SUMSQ", "PRODUCT"})
 """Functions that make one value of an area."""
 
-Switch = tuple[Shortfall, ...]
+Switch = tuple[LimitState, ...]
 """The alternatives of a switch, one of which every trial takes."""
 
 
-def _combine(switches: Sequence[Switch]) -> list[tuple[Shortfall, ...]]:
-    """What each way asks: one alternative of every switch, of as many switches as there is room for."""
+def _combine(switches: Sequence[Switch]) -> list[tuple[LimitState, ...]]:
+    """Return what each stratum asks: one alternative of every switch, of as many switches as `MOST_STRATA` allows."""
     taken, count = list[Switch](), 1
     for switch in switches:
-        if len(switch) > 1 and count * len(switch) <= MOST_WAYS:
+        if len(switch) > 1 and count * len(switch) <= MOST_STRATA:
             taken.append(switch)
             count *= len(switch)
     return list(product(*taken))
@@ -126,7 +128,7 @@ def _value_switch(cell: Cell, values: Sequence[float]) -> Switch:
 
 
 def _formula_switches(
-    filters: Sequence[Shortfall], formulas: Mapping[Cell, ir.Expression]
+    filters: Sequence[LimitState], formulas: Mapping[Cell, ir.Expression]
 ) -> list[tuple[ir.Expression | None, Switch]]:
     """The switches in the filters' formulas, the nearest to the filters first; each with the value that decides it, if
     any.
@@ -172,13 +174,13 @@ def _is_single(tree: ir.Expression) -> bool:
     return False
 
 
-def _any_of(shortfall: Shortfall) -> Iterator[Switch]:
-    """The ORs among what a filter asks: the first part that holds says the way."""
-    if isinstance(shortfall, Together):
-        if not shortfall.every:
-            parts = shortfall.parts
+def _any_of(limit_state: LimitState) -> Iterator[Switch]:
+    """The ORs among what a filter asks: the first part that holds decides the stratum."""
+    if isinstance(limit_state, Together):
+        if not limit_state.every:
+            parts = limit_state.parts
             yield tuple(Together((*map(Fails, parts[:number]), part), every=True) for number, part in enumerate(parts))
-        for part in shortfall.parts:
+        for part in limit_state.parts:
             yield from _any_of(part)
 
 
@@ -211,13 +213,13 @@ def _alternatives(
     return None
 
 
-def _first_of(conditions: Sequence[Shortfall]) -> Switch:
+def _first_of(conditions: Sequence[LimitState]) -> Switch:
     return tuple(
         Together((*map(Fails, conditions[:number]), each), every=True) for number, each in enumerate(conditions)
     )
 
 
-def _extreme(relation: str, number: int, values: Sequence[ir.Expression], cell: Cell) -> Shortfall:
+def _extreme(relation: str, number: int, values: Sequence[ir.Expression], cell: Cell) -> LimitState:
     """The condition that this one of several values is the largest, or the smallest."""
     others = [value for i, value in enumerate(values) if i != number]
     return Together(tuple(_comparison(relation, values[number], other, cell) for other in others), every=True)

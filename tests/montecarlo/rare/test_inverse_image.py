@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.montecarlo.rare import preimage
+from xlmc.montecarlo.rare import inverse_image
 from xlmc.montecarlo.rare.spans import Spans, choose, intersection, union, union_of_pairs
 
 ARGUMENTS = np.concatenate([np.linspace(-6.2, 6.2, 199), [-1.0, 0.0, 1.0, 3.0]])
@@ -32,13 +32,13 @@ OF_ONE = {
     "%": lambda s: s / 100.0,
 }
 OF_TWO = {
-    preimage.term: lambda s, o: s + o,
-    preimage.factor: lambda s, o: s * o,
-    preimage.numerator: lambda s, o: s / o,
-    preimage.divisor: lambda s, o: o / s,
-    preimage.largest: np.maximum,
-    preimage.smallest: np.minimum,
-    preimage.exponent: lambda s, o: np.where(o > 0.0, np.abs(o) ** s, np.nan),
+    inverse_image.term: lambda s, o: s + o,
+    inverse_image.factor: lambda s, o: s * o,
+    inverse_image.numerator: lambda s, o: s / o,
+    inverse_image.divisor: lambda s, o: o / s,
+    inverse_image.largest: np.maximum,
+    inverse_image.smallest: np.minimum,
+    inverse_image.exponent: lambda s, o: np.where(o > 0.0, np.abs(o) ** s, np.nan),
 }
 ENDS = st.one_of(st.sampled_from([0.0, 1.0, -1.0, math.inf, -math.inf]), st.floats(-4.0, 4.0))
 
@@ -52,7 +52,7 @@ def check(found: Spans, values, low, high):
 
 
 def test_every_function_is_tried():
-    assert OF_ONE.keys() == preimage.FUNCTIONS.keys()
+    assert OF_ONE.keys() == inverse_image.FUNCTIONS.keys()
 
 
 @pytest.mark.parametrize("name", OF_ONE)
@@ -61,7 +61,7 @@ def test_a_function_of_one_argument(name, ends):
     low, high = min(ends), max(ends)
     with np.errstate(all="ignore"):
         values = OF_ONE[name](ARGUMENTS)
-    check(preimage.FUNCTIONS[name](Spans.between(np.array([low]), np.array([high]))), values, low, high)
+    check(inverse_image.FUNCTIONS[name](Spans.between(np.array([low]), np.array([high]))), values, low, high)
 
 
 @pytest.mark.parametrize("step", OF_TWO, ids=lambda step: step.__name__)
@@ -79,7 +79,7 @@ def test_powers(power, ends):
     low, high = min(ends), max(ends)
     with np.errstate(all="ignore"):
         values = ARGUMENTS**power
-    check(preimage.powered(Spans.between(np.array([low]), np.array([high])), power), values, low, high)
+    check(inverse_image.powered(Spans.between(np.array([low]), np.array([high])), power), values, low, high)
 
 
 @given(ends=st.tuples(ENDS, ENDS), of=st.tuples(*[st.sampled_from([-2.5, -1.0, 0.0, 0.5, 1.0, 3.0])] * 4))
@@ -89,7 +89,7 @@ def test_ratios_of_lines(ends, of):
     with np.errstate(all="ignore"):
         values = (a + b * ARGUMENTS) / (c + d * ARGUMENTS)
     spans = Spans.between(np.array([low]), np.array([high]))
-    check(preimage.ratio(spans, *(np.array([each]) for each in of)), values, low, high)
+    check(inverse_image.ratio(spans, *(np.array([each]) for each in of)), values, low, high)
 
 
 def test_pieces_are_in_order_and_apart():

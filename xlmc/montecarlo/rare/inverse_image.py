@@ -88,8 +88,8 @@ def ratio(value: Spans, a: Floats, b: Floats, c: Floats, d: Floats) -> Spans:
 def _beyond(a: Floats, b: Floats, c: Floats, d: Floats, end: Floats) -> Spans:
     """The values of s with a + b·s ≥ end·(c + d·s); all values if the end is infinite."""
     finite = np.isfinite(end)
-    held = np.where(finite, end, 0.0)
-    return choose(finite, _not_negative(a - held * c, b - held * d), Spans.whole(end.size))
+    finite_end = np.where(finite, end, 0.0)
+    return choose(finite, _not_negative(a - finite_end * c, b - finite_end * d), Spans.whole(end.size))
 
 
 def _not_negative(start: Floats, slope: Floats) -> Spans:

@@ -17,7 +17,7 @@ from xlmc.engine.engine import Column, Target
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula import ir
 
-__all__ = ["Fails", "Leaf", "Shortfall", "Together", "comparisons_of", "leaves", "lengths", "measure", "shortfall"]
+__all__ = ["Fails", "Leaf", "LimitState", "Together", "comparisons_of", "leaves", "lengths", "limit_state", "measure"]
 
 Floats = NDArray[np.float64]
 
@@ -43,7 +43,7 @@ class Leaf:
 class Together:
     """Several that must all hold, or any of them."""
 
-    parts: tuple[Shortfall, ...]
+    parts: tuple[LimitState, ...]
     every: bool
 
 
@@ -51,13 +51,13 @@ class Together:
 class Fails:
     """One that must not hold; by how much it does is not asked."""
 
-    part: Shortfall
+    part: LimitState
 
 
-Shortfall = Leaf | Together | Fails
+LimitState = Leaf | Together | Fails
 
 
-def shortfall(tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expression]) -> Shortfall:
+def limit_state(tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expression]) -> LimitState:
     """What a condition asks.
 
     Args:
@@ -66,20 +66,20 @@ def shortfall(tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expres
         formulas: the resolved formulas of the cells that it may lead to.
     """
     match tree:
-        case ir.Binary("<>", ir.Binary("+", Cell() as held, ir.Number(0.0)), ir.Number(0.0)) if held in formulas:
-            return comparisons_of(held, cell, formulas, wanted=True)
+        case ir.Binary("<>", ir.Binary("+", Cell() as truth, ir.Number(0.0)), ir.Number(0.0)) if truth in formulas:
+            return comparisons_of(truth, cell, formulas, wanted=True)
     return comparisons_of(tree, cell, formulas, wanted=True)
 
 
 def comparisons_of(
     tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expression], *, wanted: bool
-) -> Shortfall:
+) -> LimitState:
     """The comparisons that decide whether a tree, in a cell, is TRUE, or FALSE where that is wanted.
 
     Args:
         tree: a condition.
         cell: that it stands in.
-        formulas: see `shortfall`.
+        formulas: see `limit_state`.
         wanted: TRUE or FALSE.
     """
     match tree:
@@ -108,7 +108,7 @@ def _either(
     formulas: Mapping[Cell, ir.Expression],
     *,
     wanted: bool,
-) -> Shortfall:
+) -> LimitState:
     """The condition and the one part, or neither."""
     sides = (comparisons_of(condition, cell, formulas, wanted=side) for side in (True, False))
     values = (comparisons_of(part, cell, formulas, wanted=wanted) for part in (yes, no))
@@ -126,14 +126,14 @@ def _gap(relation: str, left: ir.Expression, right: ir.Expression) -> ir.Express
     return None
 
 
-def leaves(of: Shortfall) -> list[Leaf]:
+def leaves(of: LimitState) -> list[Leaf]:
     """The leaves, in order."""
     if isinstance(of, Leaf):
         return [of]
     return [leaf for part in (of.parts if isinstance(of, Together) else (of.part,)) for leaf in leaves(part)]
 
 
-def measure(of: Shortfall, found: Mapping[Leaf, Floats]) -> Floats:
+def measure(of: LimitState, found: Mapping[Leaf, Floats]) -> Floats:
     """(n,) how far each trial is from what is asked, given how far from each comparison: 0 where it holds."""
     if isinstance(of, Leaf):
         return found[of]

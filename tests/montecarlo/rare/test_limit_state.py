@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from xlmc.montecarlo.model.needed import filter_condition
-from xlmc.montecarlo.rare.landscape import Landscape
-from xlmc.montecarlo.rare.shortfall import Leaf, Together, leaves, shortfall
+from xlmc.montecarlo.rare.limit_state import Leaf, Together, leaves, limit_state
+from xlmc.montecarlo.rare.limit_state_function import LimitStateFunction
 
 UNIT = {"low": 0, "high": 1}
 GIVEN = {"a": {"cell": "A1", **UNIT}, "b": {"cell": "A2", **UNIT}}
 
 
 def asked(model):
-    return [shortfall(filter_condition(f), f.cell, model.needed.graph.formulas) for f in model.filters]
+    return [limit_state(filter_condition(f), f.cell, model.needed.graph.formulas) for f in model.filters]
 
 
 def shape(of):
@@ -63,18 +63,18 @@ def test_a_logical_filter_is_followed_into_its_formula(book, formula, expected):
 def test_what_is_0_away_is_accepted_and_nothing_else(book, random, formula):
     cells = {"A1": 1.0, "A2": 1.0, "B1": formula, "B2": "=A2>0.25", "B3": "=A2>0.5"}
     model = book(cells, GIVEN, {"x": "A1"}, {"f": "B1", "g": {"cell": "A2", "at_most": 0.9}})
-    landscape = Landscape(model, random)
+    function = LimitStateFunction(model, random)
     points = random.normal(size=(3000, 2))
-    distance = landscape.distance(points)
-    assert np.array_equal(distance == 0.0, landscape.accepts(points))
+    distance = function.distance(points)
+    assert np.array_equal(distance == 0.0, function.accepts(points))
     assert np.all(distance >= 0.0)
 
 
 def test_a_farther_trial_is_farther(book, random):
     model = book({"A1": 1.0}, {"a": GIVEN["a"]}, {"x": "A1"}, {"f": {"cell": "A1", "at_least": 0.999}})
-    landscape = Landscape(model, random)
+    function = LimitStateFunction(model, random)
     points = np.array([[-2.0], [-1.0], [0.0], [2.0], [4.0]])
-    found = landscape.distance(points)
+    found = function.distance(points)
     assert list(found) == sorted(found, reverse=True)
     assert found[-1] == 0.0
     assert found[2] == pytest.approx(1.0, rel=0.05)  # the median shortfall is the unit
@@ -83,12 +83,12 @@ def test_a_farther_trial_is_farther(book, random):
 def test_an_error_is_infinitely_far(book, random):
     cells = {"A1": 1.0, "B1": "=SQRT(A1-0.5)"}
     model = book(cells, {"a": GIVEN["a"]}, {"x": "A1"}, {"f": {"cell": "B1", "at_least": 0.5}})
-    landscape = Landscape(model, random)
-    found = landscape.distance(np.array([[-1.0], [0.5], [2.0]]))
+    function = LimitStateFunction(model, random)
+    found = function.distance(np.array([[-1.0], [0.5], [2.0]]))
     assert found[0] == np.inf
     assert 0.0 < found[1] < np.inf
     assert found[2] == 0.0
-    assert landscape.lost > 0
+    assert function.lost > 0
 
 
 def test_leaves_come_in_order(book):
@@ -107,7 +107,7 @@ def test_points_are_drawn_as_the_sampler_draws(book, random):
         "c": {"cell": "A3", "distribution": "Normal", "mean": 0, "std_dev": 1, "lower_cutoff": 0},
     }
     model = book(cells, given, {"x": "B1"}, {"f": {"cell": "B1", "at_least": 6.674, "at_most": 6.675}})
-    assert Landscape(model, random).accepts(np.zeros((1, 3))).tolist() == [True]  # 3 + 3 + 0.67449
+    assert LimitStateFunction(model, random).accepts(np.zeros((1, 3))).tolist() == [True]  # 3 + 3 + 0.67449
 
 
 def test_trials_that_do_not_use_a_draw_without_a_distribution_are_accepted(book):
@@ -118,7 +118,7 @@ def test_trials_that_do_not_use_a_draw_without_a_distribution_are_accepted(book)
     rows, random = model.sampler(0, 1).row_of, np.random.default_rng(5)
     uniforms = random.random((500, 3))
     a, b = uniforms[:, rows["a"]], uniforms[:, rows["b"]]
-    landscape = Landscape(model, random)
-    assert landscape.accepts_at(uniforms).tolist() == (a + b > 0.7).tolist()
-    assert (landscape.distance_at(uniforms) == 0).tolist() == (a + b > 0.7).tolist()
-    assert landscape.lost == 0
+    function = LimitStateFunction(model, random)
+    assert function.accepts_at(uniforms).tolist() == (a + b > 0.7).tolist()
+    assert (function.distance_at(uniforms) == 0).tolist() == (a + b > 0.7).tolist()
+    assert function.lost == 0

@@ -10,10 +10,17 @@ from scipy.special import ndtr
 from simulated import simulated
 
 from xlmc.montecarlo.rare.account import RareAccount, probability_text
-from xlmc.montecarlo.rare.landscape import points_of
+from xlmc.montecarlo.rare.limit_state_function import points_of
 from xlmc.montecarlo.rare.search import find, plain_uniforms
 from xlmc.montecarlo.rare.splitting import explore
-from xlmc.montecarlo.rare.strays import Evidence, Tempered, find_strays, plain_assumptions, pool, wide_assumptions
+from xlmc.montecarlo.rare.unexplained import (
+    Evidence,
+    Tempered,
+    find_unexplained,
+    plain_assumptions,
+    pool,
+    wide_assumptions,
+)
 from xlmc.montecarlo.statistics import Estimate
 
 NORMAL = {"distribution": "Normal", "mean": 0, "std_dev": 1}
@@ -64,7 +71,7 @@ def test_a_part_whose_scale_is_another_is_not_lost():
     truth = 1 - (1 - ndtr(-4.75)) ** 2
     random = [np.random.default_rng((21, 0, each)) for each in (0, 1)]
     found = find(two_parts, lambda z: two_parts(z) == 0.0, 2, 1000, 10**8, *random)
-    points, acceptance = found.equalised.points, found.equalised.acceptance
+    points, acceptance = found.resampled.points, found.resampled.acceptance
     assert abs(acceptance.value - truth) < 4.5 * acceptance.error < 0.1 * truth
     assert abs(np.mean(points[:, 1] > 4.7) - 0.5) < 4.5 * np.sqrt(0.25 / 1000)
 
@@ -78,7 +85,7 @@ def test_a_single_plain_trial_is_evidence_enough(random, monkeypatch):
     plain = Evidence.of(plain_assumptions(2), 10**6, np.array([[0.3, 4.8]]))
     found = find(two_parts, lambda z: two_parts(z) == 0.0, 2, 500, 10**8, random, random, plain=[plain])
     truth = 1 - (1 - ndtr(-4.75)) ** 2
-    assert abs(found.equalised.acceptance.value - truth) < 4.5 * found.equalised.acceptance.error
+    assert abs(found.resampled.acceptance.value - truth) < 4.5 * found.resampled.acceptance.error
 
 
 def test_populations_about_a_point_fill_its_part(random):
@@ -88,12 +95,12 @@ def test_populations_about_a_point_fill_its_part(random):
     assert found.log_probability == -10.0
 
 
-def test_strays_are_what_a_proposal_hardly_comes_to(random):
+def test_unexplained_trials_are_those_a_proposal_hardly_draws(random):
     proposal = Tempered(np.ones(1), np.array([[0.2, 1.0]]))
     points = proposal.draw(1000, random) * 0.5
     near, far = np.array([[0.1, 0.2]]), np.array([[3.0, 0.2]])
     known = [Evidence.of(plain_assumptions(2), 1000, np.concatenate([near, far]))]
-    found = find_strays(proposal, known, points, np.ones(1000))
+    found = find_unexplained(proposal, known, points, np.ones(1000))
     assert found.points.tolist() == far.tolist()
     assert found.mass == pytest.approx(1e-3)
     assert found.tells(0.05)

@@ -1,4 +1,4 @@
-"""Branches and discrete assumptions divide all trials into ways, each with a distance of its own."""
+"""Branches and discrete assumptions divide all trials into strata, each with a distance of its own."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from simulated import simulated
 
-from xlmc.montecarlo.rare.landscape import Landscape
-from xlmc.montecarlo.rare.ways import MOST_WAYS
+from xlmc.montecarlo.rare.limit_state_function import LimitStateFunction
+from xlmc.montecarlo.rare.strata import MOST_STRATA
 
 NORMAL = {"distribution": "Normal", "mean": 0, "std_dev": 1}
 COIN = {"distribution": "Yes-No", "probability": 0.5}
@@ -22,10 +22,10 @@ GIVEN = {
 
 
 @pytest.fixture
-def landscape(book):
+def function(book):
     def make(formula, **limits):
         filters = {"f": {"cell": "B1", **limits}}
-        return Landscape(book({**CELLS, "B1": formula}, GIVEN, {"x": "A1"}, filters), np.random.default_rng(3))
+        return LimitStateFunction(book({**CELLS, "B1": formula}, GIVEN, {"x": "A1"}, filters), np.random.default_rng(3))
 
     return make
 
@@ -67,33 +67,33 @@ UNDIVIDED = [
 
 
 @pytest.mark.parametrize("formula", UNDIVIDED)
-def test_what_has_no_single_value_is_not_divided(landscape, random, formula):
-    found = landscape(formula, at_least=1)
+def test_what_has_no_single_value_is_not_divided(function, random, formula):
+    found = function(formula, at_least=1)
     points = random.standard_normal((500, found.dimensions))
-    (way,) = found.ways
-    assert np.array_equal(way(points) == 0.0, found.accepts(points))
+    (stratum,) = found.strata
+    assert np.array_equal(stratum(points) == 0.0, found.accepts(points))
 
 
 @pytest.mark.parametrize(("formula", "limits", "count"), WAYS)
-def test_the_ways_are_all_trials_and_each_is_in_one(landscape, random, formula, limits, count):
-    """What is accepted is 0 away in exactly one way, and nothing else is 0 away in any."""
-    found = landscape(formula, **limits)
+def test_the_strata_are_all_trials_and_each_is_in_one(function, random, formula, limits, count):
+    """What is accepted is 0 away in exactly one stratum, and nothing else is 0 away in any."""
+    found = function(formula, **limits)
     points = 1.5 * random.standard_normal((4000, found.dimensions))
-    distances = np.array([way(points) for way in found.ways])
-    assert len(distances) == count <= MOST_WAYS
+    distances = np.array([stratum(points) for stratum in found.strata])
+    assert len(distances) == count <= MOST_STRATA
     accepted = found.accepts(points)
     assert accepted.any()
     assert np.array_equal((distances == 0.0).sum(axis=0), accepted.astype(int))
 
 
-def test_a_branch_is_not_compared_with_another(landscape):
-    """In either way the nearer trial is nearer, whatever the other branch is measured in."""
-    found = landscape("=IF(A3=1,A1-4,1000*(A2-4))", at_least=0)
+def test_a_branch_is_not_compared_with_another(function):
+    """In either stratum the nearer trial is nearer, whatever the other branch is measured in."""
+    found = function("=IF(A3=1,A1-4,1000*(A2-4))", at_least=0)
     order = [found.dimensions - 1 - i for i in range(found.dimensions)]
     assert sorted(order) == list(range(3))
     points = np.zeros((3, 3))
     points[:, 0], points[:, 1], points[:, 2] = [0.0, 2.0, 3.0], [0.0, 2.0, 3.0], [2.0, 2.0, -2.0]
-    (one, other) = (way(points) for way in found.ways)
+    (one, other) = (stratum(points) for stratum in found.strata)
     for inside, outside in ((slice(0, 2), slice(2, 3)), (slice(2, 3), slice(0, 2))):
         mine, theirs = (one, other) if one[inside].max() < 1000 else (other, one)
         assert mine[outside].min() > 1000 > mine[inside].max()
@@ -107,11 +107,11 @@ def test_more_switches_than_there_is_room_for_are_left_together(book):
     }
     given = {f"a{i}": {"cell": f"A{i}", **NORMAL} for i in range(1, 7)}
     model = book(cells, given, {"x": "A1"}, {"f": {"cell": "B1", "at_least": 9}})
-    assert len(Landscape(model, np.random.default_rng(3)).ways) == 8
+    assert len(LimitStateFunction(model, np.random.default_rng(3)).strata) == 8
 
 
 def test_branches_of_other_scales_are_all_found(book):
-    """Half of the coin's trials each; without ways the smaller scale takes all."""
+    """Half of the coin's trials each; without strata the smaller scale takes all."""
     cells = {**CELLS, "B1": "=IF(A3=1,0.001*(-A1-4),1000*(A2-4))"}
     model = book(cells, {name: GIVEN[name] for name in "abc"}, {"x": "A3"}, {"f": {"cell": "B1", "at_least": 0}})
     run = simulated(model, seed=2, until_accepted=900, rare="always")
@@ -119,4 +119,4 @@ def test_branches_of_other_scales_are_all_found(book):
     assert abs(run.acceptance.value - 3.167124e-05) < 4.5 * run.acceptance.error
     assert abs(run.inputs["c"].mean() - 1 / 2) < 4.5 * np.sqrt(1 / 4 / 900)
     assert run.rare.ways == 2
-    assert "in 2 ways" in run.rare.sentence
+    assert "in 2 strata" in run.rare.sentence

@@ -1,4 +1,4 @@
-"""A model as a landscape over independent standard normals: how far a point is from being an accepted trial.
+"""Evaluate the limit state of a model at points of standard normal space: how far a point is from acceptance.
 
 Each drawn assumption has a normal, whatever its distribution: its uniform is what the normal distribution leaves below.
 Correlations, cutoffs, whole numbers and parameters that vary follow from the uniforms, as in any run.
@@ -15,15 +15,15 @@ from numpy.typing import NDArray
 
 from xlmc.engine.engine import Column
 from xlmc.montecarlo.model.needed import filter_condition
-from xlmc.montecarlo.rare.shortfall import Leaf, Shortfall, leaves, lengths, measure, shortfall
+from xlmc.montecarlo.rare.limit_state import Leaf, LimitState, leaves, lengths, limit_state, measure
 from xlmc.montecarlo.rare.splitting import Distance
-from xlmc.montecarlo.rare.ways import ways_of
+from xlmc.montecarlo.rare.strata import strata_of
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.sampling.streams import Stream
 
-__all__ = ["OUTSIDE", "Drawing", "GivenUniforms", "Landscape", "points_of", "uniforms_of"]
+__all__ = ["OUTSIDE", "Drawing", "GivenUniforms", "LimitStateFunction", "points_of", "uniforms_of"]
 
 Floats = NDArray[np.float64]
 
@@ -96,7 +96,7 @@ class Drawing:
         return {name: values[:n] for name, values in self._sampler.draw(0).items()}, n
 
 
-class Landscape:
+class LimitStateFunction:
     """For one thread. What is asked of points is asked of their uniforms by the methods that end in `_at`.
 
     Args:
@@ -112,9 +112,9 @@ class Landscape:
     def __init__(self, model: CompiledModel, random: np.random.Generator) -> None:
         formulas = model.needed.graph.formulas
         self.dimensions = len(model.draws)
-        self._filters = [shortfall(filter_condition(f), f.cell, formulas) for f in model.filters]
-        self._ways = ways_of(model, self._filters)
-        gates = [gate for way in self._ways for gate in way]
+        self._filters = [limit_state(filter_condition(f), f.cell, formulas) for f in model.filters]
+        self._strata = strata_of(model, self._filters)
+        gates = [gate for stratum in self._strata for gate in stratum]
         self._leaves = list(dict.fromkeys(leaf for each in (*self._filters, *gates) for leaf in leaves(each)))
         targets = [*model.filter_targets, *(leaf.holds for leaf in self._leaves)]
         gauged = [leaf for leaf in self._leaves if leaf.gap is not None]
@@ -128,7 +128,7 @@ class Landscape:
         self._scales = self._usual(uniforms_of(random.standard_normal((SCALING_TRIALS, self.dimensions))))
 
     @property
-    def asked(self) -> Sequence[Shortfall]:
+    def asked(self) -> Sequence[LimitState]:
         """What the filters ask."""
         return self._filters
 
@@ -188,24 +188,24 @@ class Landscape:
         return [_exact(measure(each, scaled), column) for each, column in zip(self._filters, columns, strict=False)]
 
     @property
-    def ways(self) -> list[Distance]:
-        """The distances of each way to be accepted, 0 where a trial is accepted in this way; together they are all."""
-        return [partial(_of_points, each) for each in self.ways_at]
+    def strata(self) -> list[Distance]:
+        """Return the distance of each stratum, 0 where a trial of it is accepted; each trial is in one stratum."""
+        return [partial(_of_points, each) for each in self.strata_at]
 
     @property
-    def ways_at(self) -> list[Distance]:
+    def strata_at(self) -> list[Distance]:
         """The same of (n, d) uniforms."""
-        if len(self._ways) < 2:
+        if len(self._strata) < 2:
             return [self.distance_at]
-        return [partial(self._in_way, way) for way in self._ways]
+        return [partial(self._in_stratum, stratum) for stratum in self._strata]
 
-    def _in_way(self, way: Sequence[Shortfall], uniforms: Floats) -> Floats:
-        """(n,) the distance in a way; outside of it, the distance from that way, and above any within."""
+    def _in_stratum(self, stratum: Sequence[LimitState], uniforms: Floats) -> Floats:
+        """Return (n,) the distance in a stratum; outside of it, that from the stratum, which is above any within."""
         parts = [np.empty(0)]
         for columns in self._columns(uniforms):
             scaled = self._scaled(columns)
             within = np.log1p(np.maximum.reduce(self._asked(columns, scaled)))
-            outside = np.maximum.reduce([measure(gate, scaled) for gate in way])
+            outside = np.maximum.reduce([measure(gate, scaled) for gate in stratum])
             parts.append(np.where(outside > 0.0, OUTSIDE + np.log1p(outside), within))
         return np.concatenate(parts)
 

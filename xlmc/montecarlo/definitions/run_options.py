@@ -43,6 +43,10 @@ class RunArguments(TypedDict, total=False):
 class RunOptions:
     """How a run is asked for; None of a setting for what the workbook says. `Model.simulate` describes each.
 
+    Attributes:
+        keep_prior: whether the draws of the first trials are kept before filtering, which results show and no run of
+            the live window that is soon followed by another.
+
     Raises:
         SimulationError: the number of draws to keep is negative.
     """
@@ -58,6 +62,7 @@ class RunOptions:
     scheduler: str | None = None
     workers: int | None = None
     keep_inputs: int | None = KEPT_INPUTS
+    keep_prior: bool = True
     keep_interrupted: bool = False
 
     def __post_init__(self) -> None:

@@ -24,7 +24,7 @@ def breakable(model: CompiledModel) -> tuple[Filter, ...]:
     whose limits hold for all numbers that the ranges of the assumptions lead to. A cell that is an error breaks its
     filter, and no range tells of that: whoever knows a trial that was rejected knows better.
     """
-    supports = {name: draw.support() for name, draw in model.draws.items()}
+    supports = {name: draw.ends for name, draw in model.draws.items()}
     bounds = NodeBounds(model.lowering.dag, {name: ends for name, ends in supports.items() if ends is not None})
     return tuple(each for each in model.filters if not _is_certain(model, each, bounds))
 

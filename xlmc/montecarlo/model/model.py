@@ -198,8 +198,8 @@ class CompiledModel:
         found: dict[str, Bounds] = {}
         for name in self.needed.live:
             draws[name] = draw = known.get(name) or draw_of(named[name], self.lowering)
-            if (ends := draw.support()) is not None:
-                found[name] = ends
+            if draw.ends is not None:
+                found[name] = draw.ends
             if name not in chances:
                 live.append(named[name])
         self.live: tuple[Assumption, ...] = tuple(live)

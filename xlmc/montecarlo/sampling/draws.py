@@ -107,7 +107,7 @@ class Draw:
         """Whether no parameter and no cutoff varies by trial."""
         return not self.varying
 
-    @property
+    @cached_property
     def has_mean(self) -> bool:
         """Whether its mean is a finite number; where parameters vary, each trial has a mean of its own."""
         if not self.fixed or (self.cutoffs is not None and np.isfinite(self.cutoffs).all()):
@@ -139,7 +139,8 @@ class Draw:
         """The values that are not exceeded with these probabilities, `(q,)`, where the parameters are these."""
         return _flush((self.distribution if self.fixed else self._of_trials(dynamic)).percentile(p))
 
-    def support(self) -> tuple[float, float] | None:
+    @cached_property
+    def ends(self) -> tuple[float, float] | None:
         """The least and the largest draw; None where either is infinite, or where the parameters vary."""
         if not self.fixed:
             return None

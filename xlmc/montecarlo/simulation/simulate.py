@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable, Generator, Hashable, Iterator, Mapping
+from collections.abc import Callable, Collection, Generator, Hashable, Iterator, Mapping
 from contextlib import closing
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
@@ -83,12 +83,13 @@ def run_model(
     tell: Callable[[str], None] | None = None,
     own_runner: ModelRunner | None = None,
     pieces: int = BLOCK,
+    follow: Collection[str] | None = None,
 ) -> RunResult:
     """Run a model; see `Model.simulate`.
 
     A runner that is given, of this model, seed and sampling method, runs the blocks. A run of a given number of trials
     is computed in pieces of at most `pieces` trials, a power of two, for who wants `progress` more often: its numbers
-    are the same.
+    are the same. `progress` is told the means of the forecasts to `follow`; by default of all.
     """
     settings, keep_inputs = options.settings(model.definitions.settings), options.keep_inputs
     refuse_other_sampling(settings.sampling, settings.stopping)
@@ -99,7 +100,7 @@ def run_model(
     plan = plan_sampling(model, settings)
     rule, looks = chosen_rule(settings.stopping, model.forecasts), rare_switch(model, settings)
     watch = Watch(rule, plan.trials, settings.stopping.seconds, time.monotonic)
-    teller = None if progress is None else ProgressTracker([forecast.name for forecast in model.forecasts])
+    teller = None if progress is None else ProgressTracker([f.name for f in model.forecasts], follow)
     pool = WorkerPool(options.jobs, options.scheduler, options.workers)
     block = min(BLOCK, largest)
     piece = block if settings.stopping.asked else min(block, pieces)
@@ -126,7 +127,7 @@ def run_model(
             tell(needed.sentence())
 
     def task(start: int, trials: int) -> Task:
-        return Task(start, trials, start < PRIOR_TRIALS, gathered.wants_inputs)
+        return Task(start, trials, options.keep_prior and start < PRIOR_TRIALS, gathered.wants_inputs)
 
     tasks = (task(start, min(piece, plan.trials - start)) for start in range(0, plan.trials, piece))
     stopped: Stopped | None = None

@@ -25,6 +25,7 @@ from xlmc.outputs.page.element import element, join
 if TYPE_CHECKING:
     from xlmc.montecarlo.loop.stopping import Progress
     from xlmc.montecarlo.model.model import CompiledModel
+    from xlmc.montecarlo.simulation.simulate import OnProgress
     from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = [
@@ -150,10 +151,6 @@ PARTS: Final[Mapping[str, Callable[[RunResult, Tab, Tell], Message]]] = {
 SKETCHED: Final = "matters"
 """The tab that is brought up to date while a state moves, too."""
 
-_OF_DRAWS: Final = frozenset({"matters", "pairs"})
-"""Tabs that show draws of a run that moves."""
-
-
 @dataclass(frozen=True, slots=True)
 class StateRun:
     """The run of a state, and what is shown of it.
@@ -170,6 +167,7 @@ class StateRun:
         trials: of a run that moves.
         piece: trials after which it is looked whether the run is still wanted.
         watched: whether that is looked at all; a run that is quick ends sooner than the next move comes.
+        draws: whether something that is shown of a run that moves needs its draws.
     """
 
     stage: Stage
@@ -183,6 +181,7 @@ class StateRun:
     trials: int
     piece: int
     watched: bool
+    draws: bool
 
     def run(self, wanted: Wanted, tell: Tell, clock: Clock) -> Outcome:
         """See `Work`."""
@@ -192,13 +191,16 @@ class StateRun:
                 raise SupersededError
             tell(progress.share)
 
-        watched, resting = watch if self.watched else None, self.stage == "rest"
-        given_up = looking(_giving_up(wanted)) if resting else nullcontext()
+        with looking(_giving_up(wanted)) if self.watched else nullcontext():
+            return self._run(watch if self.watched else None, clock)
+
+    def _run(self, watched: OnProgress | None, clock: Clock) -> Outcome:
+        resting = self.stage == "rest"
         try:
             if resting:
                 model = self.models.at_rest(self.adjustments)
                 begun = clock()
-                found = run_model(model, RunOptions(), progress=watched, pieces=self.piece)
+                found = run_model(model, RunOptions(), progress=watched, pieces=self.piece, follow=())
                 base = bases_of(found)
             else:
                 moving = self.models.moving(self.adjustments)
@@ -212,17 +214,18 @@ class StateRun:
                     sampling="mc",
                     engine=moving.kept.engine,
                     evidence=way,
-                    keep_inputs=KEPT_INPUTS if any(tab.key in _OF_DRAWS for tab in self.view.tabs) else 0,
+                    keep_inputs=KEPT_INPUTS if self.draws else 0,
+                    keep_prior=False,
                 )
                 found = run_model(
                     model,
                     options,
                     own_runner=None if self.way == "weights" else runner,  # it computes other filters
                     progress=watched,
+                    follow=(),
                 )
             seconds = (clock() - begun) / max(found.evaluated, 1)
-            with given_up:
-                messages = self._messages(found, model, base)
+            messages = self._messages(found, model, base)
         except XlmcError as error:
             return Outcome(problem=str(error))
         return Outcome(tuple(messages), found, seconds)

@@ -74,6 +74,7 @@ class KnownModels:
         self.own, self._trials = own, trials
         self._holding: dict[_Held, CompiledModel] = {(): own}
         self._kept: dict[_Held, KeptRunner] = {}
+        self._last: tuple[CompiledModel, Adjustments, CompiledModel] | None = None
 
     def at_rest(self, adjustments: Adjustments) -> CompiledModel:
         """The model of a state.
@@ -111,8 +112,11 @@ class KnownModels:
         return Moving(model, kept if kept.holds_for(model) else self._new_runner(model))
 
     def _moved(self, model: CompiledModel, adjustments: Adjustments) -> CompiledModel:
-        changes = changes_of(model.definitions, adjustments)
-        return applied(model, changes) if changes else model
+        """The model with other numbers; a state is first run with few trials, then with more, then at rest."""
+        if self._last is None or self._last[0] is not model or self._last[1] != adjustments:
+            changes = changes_of(model.definitions, adjustments)
+            self._last = model, adjustments, applied(model, changes) if changes else model
+        return self._last[2]
 
     def _of_held(self, held: _Held, adjustments: Adjustments) -> CompiledModel:
         """The workbook's own model but for what is held; the last ones are kept."""

@@ -411,7 +411,14 @@ class Session:
             trials=pace.quick_trials if stage == "quick" else MOVING_TRIALS,
             piece=pace.piece(resting=resting),
             watched=resting or (pace.is_slow and stage == "moving"),
+            draws=self._shows_draws(stage),
         ).run
+
+    def _shows_draws(self, stage: Stage) -> bool:
+        """Whether the draws of a run that moves are needed: by a scatter, or by what matters if there is time for it."""
+        keys = {tab.key for tab in self.view.tabs}
+        sketches = SKETCHED in keys and stage == "moving" and self._sketch_seconds < _SKETCH
+        return "pairs" in keys or sketches
 
     def finish(self, job: Job, outcome: Outcome) -> list[Message]:
         """Take what a job found; what windows are told of it."""

@@ -59,7 +59,7 @@ def box_of(model: CompiledModel, seed: int) -> Box:
     ends = np.empty((len(model.live), 2))
     for index, assumption in enumerate(model.live):
         draw = model.draws[assumption.name]
-        found = draw.support()
+        found = draw.ends
         if found is not None:
             ends[index] = found
         elif draw.fixed:

@@ -6,7 +6,7 @@ The moments take constant memory, whatever the number of trials.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -136,18 +136,23 @@ class ProgressTracker:
     """Follows a run, and says how it stands after each block.
 
     Args:
-        forecasts: their names.
+        forecasts: the names of all.
+        follow: of those whose means are wanted; None for all.
     """
 
-    def __init__(self, forecasts: Sequence[str]) -> None:
-        self._moments = {name: RunningMoments(spread=False) for name in forecasts}
+    def __init__(self, forecasts: Sequence[str], follow: Collection[str] | None = None) -> None:
+        self._moments = {
+            name: (number, RunningMoments(spread=False))
+            for number, name in enumerate(forecasts)
+            if follow is None or name in follow
+        }
         self._trials = self._accepted = 0
 
     def after(self, block: Observed, share: float) -> Progress:
         """How the run stands after this block too."""
         self._trials += block.trials
         self._accepted += block.accepted.size
-        for moments, column in zip(self._moments.values(), block.forecasts, strict=True):
-            moments.add(column)
-        means = {name: moments.mean() for name, moments in self._moments.items()}
+        for number, moments in self._moments.values():
+            moments.add(block.forecasts[number])
+        means = {name: moments.mean() for name, (_, moments) in self._moments.items()}
         return Progress(self._trials, self._accepted, share, means)

@@ -282,7 +282,8 @@ class Session:
         if before != self.adjustments and before not in self.kept.values() and not self.offered:
             self.offered = before  # what no longer fits is not lost: it may fit again
         self.version += 1
-        self._models, self._pace = KnownModels(model, MOVING_TRIALS), Pace(len(model.needed.graph.formulas))
+        self._models = KnownModels(model, MOVING_TRIALS)
+        self._pace = self._pace.of_saved(len(model.needed.graph.formulas))
         self._moving, self._sketch_seconds = None, 0.0
         self._problem, self._done = None, {}
         self.behind_is = "the workbook before it was saved"

@@ -16,7 +16,7 @@ from openpyxl import Workbook
 from scipy import stats
 from simulated import simulated
 
-from xlmc.analysis.studies.scenario_answers import models_of, scenario_answers
+from xlmc.analysis.studies.scenario_answers import model_of, scenario_answers
 from xlmc.engine.engines import ENGINES
 from xlmc.errors import XlmcError
 from xlmc.excel.address import Area
@@ -475,4 +475,4 @@ def test_simtables_are_scenarios(model):
         assert found.error < 1e-9
     short = model({**cells, "A2": "=A1+RiskSimtable(C1:C2)+RiskOutput()"})
     with pytest.raises(XlmcError, match="RiskSimtable has 2 values, and value 3 is asked for"):
-        models_of(short)
+        model_of(short, "simulation 3")

@@ -175,11 +175,18 @@ class Simulation:
         """The answers of the workbook as it is, then of each scenario; none unless `simulate(scenarios=True)` ran them.
 
         Each has a `name`, its `run`, the `acceptance`, and for each forecast `mean`, `low`, `high`, `above` and their
-        `differences` to the workbook as it is.
+        `differences` to the workbook as it is. A scenario that is not possible is in `impossible_scenarios`.
         """
         from xlmc.analysis.studies.scenario_answers import scenario_answers
 
         return scenario_answers(self._run)
+
+    @property
+    def impossible_scenarios(self) -> Mapping[str, str]:
+        """Why scenarios have no answers, by their names; see `scenarios`."""
+        from xlmc.analysis.studies.scenario_answers import impossible_scenarios
+
+        return impossible_scenarios(self._run)
 
     def frame(self, *, inputs: bool = True) -> pandas.DataFrame:
         """Return the accepted trials, one a row, indexed by trial: assumptions, then forecasts.
@@ -486,9 +493,9 @@ class Model:
 
         asked = RunOptions.of(trials=trials, seed=seed, **options)
         if asked.scenarios:
-            from xlmc.analysis.studies.scenario_answers import models_of
+            from xlmc.analysis.studies.scenario_answers import refuse_no_scenarios
 
-            models_of(self._compiled)  # a scenario that is not possible is refused before the run
+            refuse_no_scenarios(self._compiled)
         return Simulation(run_model(self._compiled, asked, progress=progress, tell=tell))
 
 

@@ -124,10 +124,38 @@ def test_check_shows_them_and_says_what_is_not_possible(xlmc, small_book, tmp_pa
     assert lines_of(good.out, "Scenarios")[0][0].strip() == "narrow"
     bad = with_scenarios(small_book, tmp_path / "bad.xlsx", [ROWS[0], ["wrong", None, "2 to 1"]])
     message = "'Other states'!C2: In the scenario 'wrong': width: Low (2) is above High (1)"
-    for outcome in (xlmc("check", bad), xlmc("simulate", bad, "--scenarios")):
-        assert outcome.code == 2
+    for outcome in (xlmc("check", bad), xlmc("scenario", bad)):
+        assert outcome.code == 1
         assert message in outcome.err.replace("\n", " ")
-    assert not (tmp_path / "bad-results.xlsx").exists()
+
+
+@pytest.mark.parametrize("wrong", [1, 2, 3])
+def test_an_impossible_scenario_is_a_row_that_says_why_and_the_others_have_their_answers(
+    xlmc, small_book, tmp_path, wrong
+):
+    rows = [ROWS[0], *ROWS[1:3]]
+    good = with_scenarios(small_book, tmp_path / "good.xlsx", rows)
+    xlmc("simulate", good, "--scenarios", "--json", tmp_path / "good.json")
+    bad = with_scenarios(small_book, tmp_path / "bad.xlsx", [*rows[:wrong], ["wrong", None, "2 to 1"], *rows[wrong:]])
+    results, page, kept = (tmp_path / name for name in ("r.xlsx", "r.html", "r.xlmcrun"))
+    outputs = ("--json", tmp_path / "bad.json", "-o", results, "--html", page, "--save-run", kept)
+    outcome = xlmc("simulate", bad, "--scenarios", *outputs)
+    assert outcome.code == 1
+    why = f"'Other states'!C{wrong + 1}: In the scenario 'wrong': width: Low (2) is above High (1)"
+    assert f"scenario 'wrong' is not possible: {why}" in outcome.err.replace("\n", " ")
+    first, second = (json.loads((tmp_path / f"{name}.json").read_text(encoding="utf-8")) for name in ("good", "bad"))
+    assert second["scenarios"] == first["scenarios"]
+    assert list(second["impossible_scenarios"]) == ["wrong"]
+    assert second["impossible_scenarios"]["wrong"].startswith(why)
+    jsonschema.validate(second, json.loads(SCHEMA.read_text(encoding="utf-8")))
+    (row,) = (row for row in shown(results)[0] if row and row[0] == "wrong")
+    assert any(f"Not possible: {why}" in str(each) for each in row)
+    assert "Not possible" in page.read_text(encoding="utf-8")
+    assert xlmc("replay", results).code == 0
+    docx = pytest.importorskip("docx")
+    xlmc("report", kept, "--docx", tmp_path / "r.docx", "--sections", "scenarios")
+    tables = docx.Document(str(tmp_path / "r.docx")).tables
+    assert any("Not possible" in cell.text for table in tables for row in table.rows for cell in row.cells)
 
 
 def test_a_workbook_without_scenarios(xlmc, small_book, tmp_path):

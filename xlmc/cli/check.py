@@ -35,7 +35,7 @@ def check(book: Path) -> None:
 
     Checks that fail at the base case, and cells that are errors there, come first.
     """
-    from xlmc.analysis.studies.scenario_answers import models_of
+    from xlmc.analysis.studies.scenario_answers import scenario_faults
     from xlmc.cli.printing import notices
     from xlmc.engine.engines import ENGINES
     from xlmc.errors import XlmcError
@@ -54,12 +54,11 @@ def check(book: Path) -> None:
         try:
             model = CompiledModel(workbook, definitions, book)
             problems += filter_faults(model)
-            if definitions.scenarios and not problems:
-                models_of(model)
             refuse_unwritable(workbook.parts)
         except XlmcError as error:
             problems.append(error)
     faults = [] if model is None else _show_base_case(model)
+    impossible = [] if model is None or problems else list(scenario_faults(model).values())
     _show_definitions(definitions if model is None else model.definitions, model)
     if model is not None:
         _show_need(model, workbook)
@@ -73,9 +72,9 @@ def check(book: Path) -> None:
         raise click.exceptions.Exit(2)
     for fault in faults:
         say(f"warning: {fault}; an answer must not be used as it is.", err=True)
-    for refused in definitions.refused:
+    for refused in (*impossible, *definitions.refused):
         say(f"warning: {refused}", err=True)
-    if faults or definitions.refused:
+    if faults or impossible or definitions.refused:
         raise click.exceptions.Exit(1)
     say("No problem found.")
 

@@ -30,7 +30,7 @@ def scenario(book: Path, name: str | None, output: Path | None, in_place: bool, 
     The cells that the scenario changes get its contents, and the formulas that depend on them get their new values.
     Without --output and --in-place nothing is written; the cells are only shown.
     """
-    from xlmc.analysis.studies.scenario_answers import models_of
+    from xlmc.analysis.studies.scenario_answers import refuse_no_scenarios, scenario_faults
     from xlmc.analysis.studies.scenario_workbook import edited_workbook, write_edited
     from xlmc.cli.check import scenario_table
     from xlmc.excel.workbook.writer import refuse_if_open
@@ -44,9 +44,12 @@ def scenario(book: Path, name: str | None, output: Path | None, in_place: bool, 
         refuse_if_open(book)
     model = load(book)
     if name is None:
-        models_of(model)
+        refuse_no_scenarios(model)
         scenario_table(model.definitions)
-        return
+        impossible = scenario_faults(model)
+        for fault in impossible.values():
+            say(f"warning: {fault}", err=True)
+        raise click.exceptions.Exit(1 if impossible else 0)
     edited = edited_workbook(model, name)
     _show(edited, model)
     target = book if in_place else output

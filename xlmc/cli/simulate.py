@@ -73,7 +73,7 @@ def simulate(
     **asked: Any,
 ) -> None:
     """Run BOOK, print the summary, and write result sheets and charts into a copy of it."""
-    from xlmc.analysis.studies.scenario_answers import models_of
+    from xlmc.analysis.studies.scenario_answers import refuse_no_scenarios
     from xlmc.cli.printing import notices, warnings
     from xlmc.cli.progress_bar import progress_bar
     from xlmc.montecarlo.definitions.run_options import KEPT_INPUTS, RunOptions
@@ -104,7 +104,7 @@ def simulate(
     outputs.check_against(model)
     scenarios = bool(asked["scenarios"])
     if scenarios:
-        models_of(model)  # what is wrong with one is said before anything else
+        refuse_no_scenarios(model)
     if not quiet:
         notices([*model.notices, *_hints(model, asked["trials"], asked["engine"])])
     with progress_bar(quiet) as progress:
@@ -120,7 +120,7 @@ def simulate(
     show_run(run)
     for line in lines:
         say(line)
-    of_scenarios = _of_scenarios(answers)
+    of_scenarios = _of_scenarios(run, answers)
     warnings([*run.warnings, *of_scenarios], run.refused)
     if run.stopped.interrupted:
         kept = "; those that were accepted were written" if written else ""
@@ -152,10 +152,14 @@ def _with_scenarios(run: RunResult, jobs: int, quiet: bool) -> tuple[RunResult, 
         return replace(run, settings=replace(run.settings, scenarios=False)), ()
 
 
-def _of_scenarios(answers: Sequence[ScenarioAnswers]) -> list[str]:
+def _of_scenarios(run: RunResult, answers: Sequence[ScenarioAnswers]) -> list[str]:
     """Why the answers of scenarios must not be used, without the reasons that hold for the workbook itself too."""
+    from xlmc.analysis.studies.scenario_answers import impossible_scenarios
+
     own = answers[0].warnings if answers else []
-    return [f"scenario {each.name!r}: {said}" for each in answers[1:] for said in each.warnings if said not in own]
+    impossible = [f"scenario {name!r} is not possible: {why}" for name, why in impossible_scenarios(run).items()]
+    unusable = ((each.name, said) for each in answers[1:] for said in each.warnings if said not in own)
+    return [*impossible, *(f"scenario {name!r}: {said}" for name, said in unusable)]
 
 
 def _hints(model: CompiledModel, trials: int | None, engine: str | None) -> list[Notice]:
@@ -225,7 +229,7 @@ def _show_evidence(run: RunResult) -> None:
 
 def _show_scenarios(run: RunResult) -> None:
     """Print what each scenario changes and accepts, then a table for each forecast; nothing where they were not run."""
-    from xlmc.analysis.studies.scenario_answers import scenario_answers
+    from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenario_answers
     from xlmc.cli.printing import table
     from xlmc.outputs.scenario_tables import SCENARIO_HEADS, answer_heads, answer_rows, scenario_rows
     from xlmc.outputs.sheets.scenarios_sheet import scenario_sentences
@@ -233,7 +237,7 @@ def _show_scenarios(run: RunResult) -> None:
     found = scenario_answers(run)
     if not found:
         return
-    table("Scenarios", SCENARIO_HEADS, scenario_rows(found), right=(1, 2, 3))
+    table("Scenarios", SCENARIO_HEADS, scenario_rows(found, impossible_scenarios(run)), right=(1, 2, 3))
     for index, each in enumerate(found[0].forecasts):
         heads = answer_heads(found, index)
         table(each.title, heads, answer_rows(found, index), right=range(1, len(heads)))

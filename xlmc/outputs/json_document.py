@@ -24,7 +24,12 @@ from xlmc.analysis.results.statements.in_words import (
     parameters_text,
     status,
 )
-from xlmc.analysis.studies.scenario_answers import ForecastAnswer, ScenarioAnswers, scenario_answers
+from xlmc.analysis.studies.scenario_answers import (
+    ForecastAnswer,
+    ScenarioAnswers,
+    impossible_scenarios,
+    scenario_answers,
+)
 from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.seal import sealed_text
@@ -135,6 +140,7 @@ def document(simulation: RunResult, *, command: str | None = None) -> Json:
         ],
         "base_case": None if base is None else {"rejected_by": list(base.rejected_by)},
         **({"scenarios": scenarios} if scenarios else {}),
+        **({"impossible_scenarios": dict(impossible)} if (impossible := impossible_scenarios(simulation)) else {}),
         "notices": [
             {"message": notice.message, "where": None if notice.where is None else str(notice.where)}
             for notice in simulation.notices

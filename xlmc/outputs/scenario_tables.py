@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.statements.in_words import changes_text
@@ -19,9 +19,14 @@ __all__ = ["SCENARIO_HEADS", "answer_heads", "answer_rows", "scenario_rows"]
 SCENARIO_HEADS: Final = ("Scenario", "Accepted", "Share", POINTS, "What is changed")
 
 
-def scenario_rows(found: Sequence[ScenarioAnswers]) -> list[tuple[str, ...]]:
-    """A row for the workbook itself and for each scenario, under `SCENARIO_HEADS`."""
-    return [
+def scenario_rows(found: Sequence[ScenarioAnswers], impossible: Mapping[str, str]) -> list[tuple[str, ...]]:
+    """A row for the workbook itself and for each scenario, under `SCENARIO_HEADS`.
+
+    Args:
+        found: of the workbook itself, then of the scenarios.
+        impossible: why a scenario has no answers, by its name.
+    """
+    rows = [
         (
             each.name,
             f"{each.run.accepted:,}",
@@ -31,6 +36,7 @@ def scenario_rows(found: Sequence[ScenarioAnswers]) -> list[tuple[str, ...]]:
         )
         for each in found
     ]
+    return [*rows, *((name, "", "", "", f"Not possible: {why}") for name, why in impossible.items())]
 
 
 def answer_heads(found: Sequence[ScenarioAnswers], index: int) -> list[str]:

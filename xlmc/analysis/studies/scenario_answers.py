@@ -9,7 +9,7 @@ the errors of two numbers add up as those of independent ones.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from math import hypot
 from typing import Final
@@ -41,10 +41,12 @@ __all__ = [
     "ForecastAnswer",
     "ScenarioAnswers",
     "answers_of",
+    "impossible_scenarios",
     "model_of",
-    "models_of",
+    "refuse_no_scenarios",
     "run_scenario",
     "scenario_answers",
+    "scenario_faults",
     "scenario_named",
 ]
 
@@ -104,7 +106,15 @@ class ScenarioAnswers:
         return self.run.warnings_of_trials if self.scenario else self.run.warnings
 
 
-_FOUND: Final[WeakKeyDictionary[RunResult, tuple[ScenarioAnswers, ...]]] = WeakKeyDictionary()
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """The answers of the scenarios that are possible, and why each of the others is not, by its name."""
+
+    answers: tuple[ScenarioAnswers, ...]
+    impossible: Mapping[str, str]
+
+
+_FOUND: Final[WeakKeyDictionary[RunResult, _Found]] = WeakKeyDictionary()
 """Terminal, sheets, page and JSON of one run want the same."""
 
 
@@ -113,8 +123,8 @@ def scenario_answers(
 ) -> tuple[ScenarioAnswers, ...]:
     """The answers of the workbook itself, then of each scenario; none where the run was made without them.
 
-    A scenario is run with the settings of the run: until as many trials are accepted, where the run waited for these,
-    else for as many trials.
+    A scenario that is not possible has none; `impossible_scenarios` says why. The others are run with the settings of
+    the run: until as many trials are accepted, where the run waited for these, else for as many trials.
 
     Args:
         run: of the workbook itself.
@@ -122,36 +132,49 @@ def scenario_answers(
         told: called before every run with what it is for.
 
     Raises:
-        DefinitionError, FormulaError: a scenario is not possible.
+        DefinitionError: the workbook defines no scenario.
     """
     if not run.settings.scenarios:
         return ()
     if run not in _FOUND:
-        _FOUND[run] = tuple(_answers(run, jobs, told))
+        _FOUND[run] = found = _answers(run, jobs, told)
         run.take_tabulated(
             {
                 change.number: each.run
-                for each in _FOUND[run]
+                for each in found.answers
                 if each.scenario is not None
                 for change in each.scenario.changes
                 if isinstance(change, Tabulated) and len(each.scenario.changes) == 1
             }
         )
-    return _FOUND[run]
+    return _FOUND[run].answers
 
 
-def models_of(model: CompiledModel) -> dict[str, CompiledModel]:
-    """Name of a scenario -> the model of the workbook in it.
+def impossible_scenarios(run: RunResult) -> Mapping[str, str]:
+    """Return why scenarios of a run have no answers, by their names; see `scenario_answers`."""
+    return _FOUND[run].impossible if scenario_answers(run) else {}
+
+
+def refuse_no_scenarios(model: CompiledModel) -> None:
+    """Refuse a workbook without scenarios where they are asked for.
 
     Raises:
-        DefinitionError: there is none, or one is not possible.
-        FormulaError: a cell cannot be computed in one.
+        DefinitionError: it has none.
     """
-    scenarios = model.definitions.scenarios
-    if not scenarios:
+    if not model.definitions.scenarios:
         hint = "Add a table named xlmc_scenarios: a row for each scenario, a column for each thing that it changes"
         raise DefinitionError("The workbook defines no scenario", where=model.workbook.name, hint=hint)
-    return {scenario.name: model_of(model, scenario) for scenario in scenarios}
+
+
+def scenario_faults(model: CompiledModel) -> dict[str, XlmcError]:
+    """Return why scenarios of a workbook are not possible, by their names, without running any."""
+    found: dict[str, XlmcError] = {}
+    for scenario in model.definitions.scenarios:
+        try:
+            model_of(model, scenario)
+        except XlmcError as error:
+            found[scenario.name] = error
+    return found
 
 
 def model_of(model: CompiledModel, scenario: Scenario | str) -> CompiledModel:
@@ -190,13 +213,19 @@ def scenario_named(model: CompiledModel, scenario: Scenario | str) -> Scenario:
     return known[name_key(scenario)]
 
 
-def _answers(run: RunResult, jobs: int, told: Callable[[str], None] | None) -> Iterator[ScenarioAnswers]:
-    models = models_of(run.model)
-    yield answers_of(run, None, run)
+def _answers(run: RunResult, jobs: int, told: Callable[[str], None] | None) -> _Found:
+    refuse_no_scenarios(run.model)
+    answers, impossible = [answers_of(run, None, run)], dict[str, str]()
     for scenario in run.model.definitions.scenarios:
         if told is not None:
             told(scenario.name)
-        yield answers_of(run_scenario(models[scenario.name], run, jobs=jobs), scenario, run)
+        try:
+            found = run_scenario(model_of(run.model, scenario), run, jobs=jobs)
+        except XlmcError as error:
+            impossible[scenario.name] = str(error).partition("\n")[0]
+        else:
+            answers.append(answers_of(found, scenario, run))
+    return _Found(tuple(answers), impossible)
 
 
 def run_scenario(

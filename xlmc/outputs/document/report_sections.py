@@ -18,7 +18,7 @@ from xlmc.analysis.results.statements.in_words import (
     sampling_sentence,
     status,
 )
-from xlmc.analysis.studies.scenario_answers import scenario_answers
+from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenario_answers
 from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.analysis.studies.sensitivity.measures import noise
 from xlmc.montecarlo.diagnostics.checking import checks_sentence
@@ -265,7 +265,7 @@ def _scenarios(material: Material) -> Iterator[Block]:
     for warning in scenario_warnings(found):
         yield Paragraph(warning, "warning")
     yield Paragraph("The workbook was run again with other contents in some of its cells. “As it is” is this report.")
-    rows = scenario_rows(found)
+    rows = scenario_rows(found, impossible_scenarios(material.simulation))
     caption = "What each scenario changes, and how many trials are accepted."
     yield material.table(caption, SCENARIO_HEADS, rows, (1.7, 1, 1.6, 1.5, 3.6), (1, 2, 3))
     for index, each in enumerate(found[0].forecasts):

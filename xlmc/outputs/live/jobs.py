@@ -151,6 +151,7 @@ PARTS: Final[Mapping[str, Callable[[RunResult, Tab, Tell], Message]]] = {
 SKETCHED: Final = "matters"
 """The tab that is brought up to date while a state moves, too."""
 
+
 @dataclass(frozen=True, slots=True)
 class StateRun:
     """The run of a state, and what is shown of it.

@@ -416,7 +416,7 @@ class Session:
         ).run
 
     def _shows_draws(self, stage: Stage) -> bool:
-        """Whether the draws of a run that moves are needed: by a scatter, or by what matters if there is time for it."""
+        """Whether draws of a run that moves are shown: in a scatter, or by what matters where there is time for it."""
         keys = {tab.key for tab in self.view.tabs}
         sketches = SKETCHED in keys and stage == "moving" and self._sketch_seconds < _SKETCH
         return "pairs" in keys or sketches

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from xlmc.analysis.results.record import Entry, Record, RecordTable, Section, Value
 from xlmc.analysis.results.statements import pairs_of
 from xlmc.analysis.results.statements.in_words import distribution_text, number_text, status
-from xlmc.analysis.studies.scenario_answers import scenario_answers
+from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenario_answers
 from xlmc.excel.workbook.printable import printable
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.outputs.filter_effect import PERCENTS, FilterEffect, Marginal, filter_effect_of, shapes_of
@@ -80,7 +80,7 @@ def scenarios(simulation: RunResult) -> Html:
     if not found:
         return EMPTY
     flow = Flow()
-    write_scenario_tables(flow, found)
+    write_scenario_tables(flow, found, impossible_scenarios(simulation))
     return element("section", element("h2", "Scenarios"), flow.html, id="scenarios")
 
 

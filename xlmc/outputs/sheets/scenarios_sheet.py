@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.statements.in_words import changes_text
-from xlmc.analysis.studies.scenario_answers import ForecastAnswer, ScenarioAnswers, scenario_answers
+from xlmc.analysis.studies.scenario_answers import (
+    ForecastAnswer,
+    ScenarioAnswers,
+    impossible_scenarios,
+    scenario_answers,
+)
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.simulation.simulation import FEW
 from xlmc.montecarlo.statistics import Estimate
@@ -45,13 +49,11 @@ def write_scenarios(page: Page, simulation: RunResult) -> None:
     name = simulation.model.workbook.name
     found = scenario_answers(simulation)
     page.title("Scenarios", f"{name}, seed {simulation.settings.seed}: the workbook as it is, and with changes")
-    write_scenario_tables(page, found)
+    write_scenario_tables(page, found, impossible_scenarios(simulation))
     page.set_up_printing(name)
 
 
-def write_scenario_tables(
-    page: Page, found: Sequence[ScenarioAnswers], impossible: Mapping[str, str] = MappingProxyType({})
-) -> None:
+def write_scenario_tables(page: Page, found: Sequence[ScenarioAnswers], impossible: Mapping[str, str]) -> None:
     """Write what each scenario changes and how much is accepted; then its answers, a table a forecast.
 
     Args:

@@ -21,10 +21,10 @@ from tables import placed
 from xlmc.analysis.studies.methods import STATISTICS, Runs, Study, recommendation, study
 from xlmc.analysis.studies.methods.curve import runs_of
 from xlmc.analysis.studies.methods.sampled import MONTE_CARLO
-from xlmc.cli.methods import study_json
 from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.outputs.methods import methods_tables, save_methods
+from xlmc.outputs.methods.methods_json import study_json
 
 __all__ = ["PAGE", "filled", "theory_rows", "theory_runs", "write"]
 

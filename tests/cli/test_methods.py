@@ -94,8 +94,8 @@ def test_json(xlmc, book):
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("m.doc", "is not written as .doc"),
-        ("m", "is not written as a file without ending"),
+        ("m.doc", "the ending .doc is none of a file"),
+        ("m", "it has no ending"),
         ("nowhere/m.png", "there is no folder"),
     ],
 )
@@ -108,7 +108,7 @@ def test_an_output_that_cannot_be(xlmc, case_study, name, message):
 def test_a_document_must_have_the_ending_of_its_option(xlmc, case_study, tmp_path):
     outcome = xlmc("methods", case_study, "--pdf", tmp_path / "m.docx")
     assert outcome.code == 2
-    assert "the document must end in .pdf" in outcome.err
+    assert "the report must end in .pdf" in outcome.err
 
 
 def test_the_workbook_itself_is_no_output(xlmc, case_study, tmp_path):

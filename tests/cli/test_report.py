@@ -11,6 +11,7 @@ from openpyxl.worksheet.table import Table
 
 import xlmc as package
 from xlmc.errors import WorkbookError
+from xlmc.excel.workbook.package import read_parts
 from xlmc.montecarlo.simulation import simulate
 from xlmc.montecarlo.simulation.simulation import KEPT_INPUTS
 
@@ -83,7 +84,7 @@ def test_a_second_run_stands_beside_the_first_on_the_page(xlmc, case_book, tmp_p
     for options in ((), ("--json", "a.json"), ("--html", "a.html", "--pdf", "a.pdf")):
         refused = xlmc("report", "1.xlmcrun", "2.xlmcrun", *options)
         assert refused.code == 2
-        assert "give --html PAGE.html, and no other file" in refused.err
+        assert "give -o PAGE.html, and no other file" in refused.err
     missing = xlmc("report", "1.xlmcrun", "3.xlmcrun", "--html", "more.html")
     assert (missing.code, (tmp_path / "more.html").exists()) == (2, False)
     shutil.copy(tmp_path / "2.xlmcrun", tmp_path / "two.html")
@@ -136,20 +137,25 @@ def test_draws_that_were_not_saved_are_blank_and_said_to_be(xlmc, small_book, tm
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (("--json", "a.xlsx"), "JSON is written to a .json file. Name it 'a.json'"),
+        (("--json", "a.xlsx"), "JSON must end in .json. Name it 'a.json'"),
         (("--json", "no/a.json"), "there is no folder"),
-        (("--extract", "a.xlsx"), "a .csv or a .parquet file"),
+        (("--extract", "a.xlsx"), "a table of trials must end in .csv or .parquet"),
         (("--extract", "no/a.csv"), "there is no folder"),
         (("--save-run", "book.xlsx"), "a saved run must end in .xlmcrun"),
         (("-o", "a.xlsm"), "must end in .xlsx. Name it 'a.xlsx'"),
         (("-o", "no/a.xlsx"), "there is no folder"),
+        (("-o", "a.txt"), "a.txt: the ending .txt is none of a file that this command writes"),
+        (("-o", "a"), "a: it has no ending. The ending says what is written: .xlsx"),
+        (("-o", "a.pdf", "-o", "no/a.html"), "there is no folder"),
+        (("-o", "a.json", "--json", "a.json"), "two outputs would be written to this file"),
+        (("--in-place", "-o", "a.xlsx"), "--in-place and -o with a workbook cannot both be given"),
         (("--pdf", "a.docx"), "the report must end in .pdf. Name it 'a.pdf'"),
         (("--docx", "a.pdf"), "the report must end in .docx. Name it 'a.docx'"),
         (("--pdf", "no/a.pdf"), "there is no folder"),
         (("--pdf", "a.pdf", "--sections", "answer,nothing"), "a report has no section 'nothing'"),
         (("--pdf", "a.pdf", "--case", "nothing"), "a field of the case is not 'nothing'"),
         (("--pdf", "a.pdf", "--paper", "a5"), "'a5' is not one of letter, a4"),
-        (("--sections", "answer"), "give --pdf or --docx"),
+        (("--sections", "answer"), "give -o REPORT.pdf or -o REPORT.docx"),
     ],
 )
 def test_names_are_refused_before_the_run(xlmc, book, tmp_path, monkeypatch, options, message):
@@ -186,7 +192,9 @@ def test_what_is_no_saved_run(xlmc, book):
     other = shutil.copy(book, book.with_suffix(".xlmcrun"))
     outcome = xlmc("report", other)
     assert outcome.code == 2
-    assert outcome.err.startswith(f"xlmc: {other}: the file is not a saved run. Save one with xlmc simulate --save-run")
+    assert outcome.err.startswith(
+        f"xlmc: {other}: the file is not a saved run. Save one with xlmc simulate BOOK -o RUN.xlmcrun"
+    )
 
 
 def test_results_of_another_kind_of_workbook_are_refused(xlmc, simulated, book):
@@ -235,11 +243,37 @@ def test_the_report_of_a_result_workbook_is_that_of_its_run(xlmc, case_book, tmp
     assert not (tmp_path / "c.pdf").exists()
 
 
-@pytest.mark.parametrize("options", [(), ("--pdf", "a.pdf", "--json", "a.json"), ("-o", "b.xlsx")])
-def test_of_a_result_workbook_reports_alone_are_written(xlmc, book, tmp_path, options):
+def test_every_kind_is_written_by_its_ending_and_nothing_else(xlmc, case_book, tmp_path):
+    """Of the workbook, of the saved run and of the result workbook: the same bytes."""
+    endings = ("xlsx", "pdf", "docx", "html", "json", "csv", "parquet", "xlmcrun")
+    run = xlmc("simulate", case_book, *(part for ending in endings for part in ("-o", f"a.{ending}")))
+    assert run.code == 0, run.err
+    assert {path.name for path in tmp_path.iterdir()} == {case_book.name, *(f"a.{ending}" for ending in endings)}
+    for source, stem in (("a.xlmcrun", "b"), ("a.xlsx", "c")):
+        report = xlmc("report", source, *(part for ending in endings[:-1] for part in ("-o", f"{stem}.{ending}")))
+        assert report.code == 0, report.err
+        for ending in endings[1:-1]:
+            assert (tmp_path / f"{stem}.{ending}").read_bytes() == (tmp_path / f"a.{ending}").read_bytes(), ending
+        sheets, again = (read_parts((tmp_path / f"{each}.xlsx").read_bytes()) for each in ("a", stem))
+        del sheets["xl/xlmc/seal1.json"], again["xl/xlmc/seal1.json"]  # lists the parts in the order of the file
+        assert sheets == again
+
+
+def test_an_option_of_one_kind_adds_a_file_to_the_result_workbook_and_o_replaces_it(xlmc, case_book, tmp_path):
+    assert xlmc("simulate", case_book, "--json", "a.json").code == 0
+    assert {path.name for path in tmp_path.iterdir()} == {case_book.name, "a.json", "case-results.xlsx"}
+    assert xlmc("simulate", case_book, "-o", "b.json", "-o", "c.json", "--html", "c.html").code == 0
+    assert (tmp_path / "c.json").read_bytes() == (tmp_path / "b.json").read_bytes()
+    assert {path.suffix for path in tmp_path.iterdir() if path.stem in ("b", "c")} == {".json", ".html"}
+
+
+@pytest.mark.parametrize(
+    ("options", "message"), [((), "name a file, as -o REPORT.pdf"), (("-o", "b.xlmcrun"), "has not kept")]
+)
+def test_what_a_result_workbook_cannot_give(xlmc, book, tmp_path, options, message):
     outcome = xlmc("report", book, *options)
     assert outcome.code == 2
-    assert "--pdf and --docx alone" in outcome.err
+    assert message in outcome.err
     assert [path.name for path in tmp_path.iterdir()] == ["book.xlsx"]
 
 

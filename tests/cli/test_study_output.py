@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import openpyxl
 import pytest
 from openpyxl.worksheet.table import Table
@@ -68,11 +70,32 @@ def test_documents_say_what_the_terminal_says(xlmc, command, tmp_path):
     assert "the file exists already" in again.err
 
 
+def test_every_kind_is_written_by_its_ending(xlmc, command, book, tmp_path):
+    for library in ("typst", "docx", "pyarrow"):
+        pytest.importorskip(library)
+    of_the_run = [] if command[0] == "compare" else ["csv", "parquet", "xlmcrun"]
+    names = [f"found.{ending}" for ending in ("xlsx", "pdf", "docx", "html", "json", *of_the_run)]
+    outcome = xlmc(*command, *(part for name in names for part in ("-o", tmp_path / name)))
+    assert outcome.code == 0, outcome.err
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(["book.xlsx", *names])
+    written = json.loads((tmp_path / "found.json").read_text(encoding="utf-8"))
+    assert written.pop("seal")
+    assert written == json.loads(xlmc(*command, "--json").out)
+    if of_the_run:
+        assert len((tmp_path / "found.csv").read_text(encoding="utf-8").splitlines()) == 2_001
+        assert xlmc("report", tmp_path / "found.xlmcrun", "-o", tmp_path / "again.csv").code == 0
+        assert (tmp_path / "again.csv").read_bytes() == (tmp_path / "found.csv").read_bytes()
+    again = xlmc(*command, "-o", tmp_path / "found.json")  # an untouched file of ours is replaced
+    assert again.code == 0, again.err
+
+
 def test_what_cannot_be_written_is_refused_before_anything_is_run(xlmc, command, book, tmp_path):
     before = book.read_bytes()
     for given, said in (
         (["-o", book], "this is the file that is read"),
-        (["-o", tmp_path / "found.html"], "must end in .xlsx"),
+        (["-o", tmp_path / "found.txt"], "the ending .txt is none of a file that this command writes"),
+        (["-o", tmp_path / "found.xlsm"], "the ending .xlsm is none of a file that this command writes"),
+        *([] if command[0] != "compare" else [(["-o", tmp_path / "found.csv"], "the ending .csv is none")]),
         (["--html", tmp_path / "found.xlsx"], "must end in .html"),
         (["--html", tmp_path / "nowhere" / "found.html"], "nowhere"),
         (["--pdf", tmp_path / "found.docx"], "must end in .pdf"),

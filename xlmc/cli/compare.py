@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.options import WholeNumber, chance_option, engine_option, jobs_option, tolerance_option
-from xlmc.cli.study_output import show, study_options
+from xlmc.cli.study_output import STUDY, show, study_options
 from xlmc.cli.terminal import say_json
 from xlmc.cli.writing import write_files
 
@@ -42,7 +43,7 @@ UNDECIDED = 1
 @engine_option
 @jobs_option
 @click.option("--no-causes", is_flag=True, help="Do not look for what makes the difference.")
-@study_options
+@study_options(STUDY)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
 def compare(
@@ -57,10 +58,8 @@ def compare(
     engine: str | None,
     jobs: int,
     no_causes: bool,
-    output: Path | None,
-    html: Path | None,
-    pdf: Path | None,
-    docx: Path | None,
+    output: tuple[Path, ...],
+    also: tuple[Path, ...],
     overwrite: bool,
     as_json: bool,
     quiet: bool,
@@ -75,7 +74,7 @@ def compare(
     from xlmc.outputs.study_report import Files
 
     books = load(first), load(second)
-    files = Files(output, html, pdf, docx, [first, second], overwrite=overwrite)
+    files = Files((*output, *also), [first, second], overwrite=overwrite)
     files.check()
     with step_line(quiet) as told:
         found = comparison.compare(
@@ -92,9 +91,9 @@ def compare(
             told=told,
         )
     report = _report(found)
-    written = write_files(files.writers(report, "Comparison"))
+    written = write_files(files.writers(report))
     if as_json:
-        say_json(_as_json(found))
+        say_json(report.as_json())
     else:
         show([report.below, *report.blocks])
         written.tell()
@@ -138,7 +137,8 @@ def _report(found: Comparison) -> StudyReport:
     headings = ("", "First", "Second", "Difference", "Tolerance")
     tables = [Table(_title(each), headings, tuple(_rows(each)), (1, 2, 3, 4)) for each in found.forecasts]
     blocks: list[Block] = [*verdict_text(found), *tables, *_sentences(found), _MEANING]
-    return StudyReport("Do two models give the same answer?", f"{books[0]} (first) and {books[1]} (second)", blocks)
+    title, below = "Do two models give the same answer?", f"{books[0]} (first) and {books[1]} (second)"
+    return StudyReport(title, below, blocks, "Comparison", partial(_as_json, found))
 
 
 def _sentences(found: Comparison) -> Iterator[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from xlmc.cli.options import OneOf
-from xlmc.cli.study_output import show, study_options
+from xlmc.cli.study_output import STUDY, show, study_options
 from xlmc.cli.terminal import say, say_json
 from xlmc.cli.writing import NOT_WRITTEN, write_files, written_or_told
 
@@ -53,7 +53,7 @@ _BOOK_AND_RANGE = re.compile(r"(?P<book>.+\.(?:xlsx|xlsm|xltx|xltm|xls))!(?P<ran
     type=click.Path(path_type=Path),
     help="Write the row into the table xlmc_assumptions of this workbook: into the row of that name, or below all.",
 )
-@study_options
+@study_options(STUDY)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def fit(
     source: str,
@@ -63,10 +63,8 @@ def fit(
     name: str,
     distribution: str | None,
     into: Path | None,
-    output: Path | None,
-    html: Path | None,
-    pdf: Path | None,
-    docx: Path | None,
+    output: tuple[Path, ...],
+    also: tuple[Path, ...],
     overwrite: bool,
     as_json: bool,
 ) -> None:
@@ -87,7 +85,7 @@ def fit(
     if into is not None and not name:
         raise click.UsageError("--into needs --name, the name of the assumption.")
     sources = [book] if into is None else [book, into]
-    files = Files(output, html, pdf, docx, sources, overwrite=overwrite)
+    files = Files((*output, *also), sources, overwrite=overwrite)
     files.check()
     values, where, blank, pooled = _values(book, reference)
     found = fitting.fit(values, kind=kind, by=by)
@@ -96,11 +94,12 @@ def fit(
     chosen = _chosen(found, distribution)
     row = fitting.row_to_paste(chosen, name or "…", described)
     edited = None if into is None else fit_into.prepare(into, name, chosen, float(np.median(values)), described)
-    report = _report(found, values, f"{book.name} {where}", blank, row)
-    written = write_files(files.writers(report, "Fit"))
+    as_json_of = partial(_as_json, found, f"{book} {where}", blank, row)
+    report = _report(found, values, f"{book.name} {where}", blank, row, as_json_of)
+    written = write_files(files.writers(report))
     into = None if edited is None else written_or_told(edited.path, partial(fit_into.write, edited))
     if as_json:
-        say_json(_as_json(found, f"{book} {where}", blank, row))
+        say_json(report.as_json())
     else:
         said = _cautions(found)  # as warnings, below
         show([each for each in report.blocks[:-1] if each not in said])
@@ -227,7 +226,14 @@ def _entry(fitted: Fitted) -> dict[str, object]:
     }
 
 
-def _report(found: Fitting, values: list[float], source: str, blank: int, row: dict[str, str]) -> StudyReport:
+def _report(
+    found: Fitting,
+    values: list[float],
+    source: str,
+    blank: int,
+    row: dict[str, str],
+    as_json: Callable[[], dict[str, object]],
+) -> StudyReport:
     """What was found; the row to paste comes last."""
     from xlmc.outputs.study_report import StudyReport, Table
 
@@ -237,7 +243,8 @@ def _report(found: Fitting, values: list[float], source: str, blank: int, row: d
     blocks: list[Block] = [verdict, *_cautions(found), _ranking(found, source, blank), _curves(found, values)]
     blocks += [f"Not fitted: {name}: {reason}." for name, reason in found.unfit.items()]
     blocks += [f"Standard errors of {', '.join(names)}: {source}." for source, names in _sources(found).items()]
-    return StudyReport("Distributions fitted to measurements", below, [*blocks, _MEANING, as_row])
+    title = "Distributions fitted to measurements"
+    return StudyReport(title, below, [*blocks, _MEANING, as_row], "Fit", as_json)
 
 
 def _cautions(found: Fitting) -> list[str]:

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import partial, wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol, TypeVar, cast
 
 import click
 
 from xlmc.cli.options import OneOf
 from xlmc.cli.terminal import say
 from xlmc.cli.writing import written_or_told
-from xlmc.errors import WorkbookError
+from xlmc.excel.workbook.package import WORKBOOKS
 
 if TYPE_CHECKING:
     from xlmc.api import Simulation
@@ -21,24 +20,85 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.document import Wanted
 
-__all__ = ["Outputs", "Reports", "Wishes", "output_options", "results_beside"]
+__all__ = ["Outputs", "Wishes", "output_options", "results_beside", "with_files", "with_options"]
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 _PATH = click.Path(readable=False, path_type=Path)  # a file that may not be read is refused later, with a hint
-_FILES = (
-    click.option("--html", type=_PATH, metavar="PAGE.html", help="Write the results as one web page."),
-    click.option("--json", "json_path", type=_PATH, metavar="FILE.json", help="Write all results as JSON."),
-    click.option(
-        "--extract",
-        type=_PATH,
-        multiple=True,
-        metavar="FILE.csv|FILE.parquet",
-        help="Write the accepted trials; may be given several times.",
+
+
+class _Kind(NamedTuple):
+    """A kind of file that a run is written to.
+
+    Attributes:
+        noun: what it is called in a message.
+        endings: of its files, the usual one first.
+        announced: the words before its name when it was written.
+        check: refuses a file that could not be written after the run.
+    """
+
+    noun: str
+    endings: tuple[str, ...]
+    announced: str
+    check: Callable[[Path], None]
+
+
+def _check_page(path: Path) -> None:
+    from xlmc.outputs.page import check_page_path
+
+    check_page_path(path)
+
+
+def _check_report(path: Path) -> None:
+    from xlmc.outputs.document import check_report_path
+
+    check_report_path(path)
+
+
+def _check_trials(path: Path) -> None:
+    from xlmc.outputs.extract import check_extract_path
+
+    check_extract_path(path)
+
+
+def _check_folder(path: Path) -> None:
+    from xlmc.excel.workbook.writer import check_folder
+
+    check_folder(path)
+
+
+_BOOK = _Kind("a result workbook", WORKBOOKS, "Results are in", _check_folder)
+_RUN = _Kind("a saved run", (".xlmcrun",), "The run is saved in", _check_folder)
+_PAGE = _Kind("the page", (".html", ".htm"), "The page is", _check_page)
+_JSON = _Kind("JSON", (".json",), "Results as JSON are in", _check_folder)
+_PDF = _Kind("the report", (".pdf",), "The report is", _check_report)
+_DOCX = _Kind("the report", (".docx",), "The report is", _check_report)
+_TRIALS = _Kind("a table of trials", (".csv", ".parquet"), "Accepted trials are in", _check_trials)
+
+_KINDS: Final = (_BOOK, _RUN, _PAGE, _JSON, _PDF, _DOCX, _TRIALS)
+"""In the order in which they are written."""
+
+_ALIASES: Final = {
+    "html": (_PAGE, click.option("--html", type=_PATH, metavar="PAGE.html", help="Also write the page.")),
+    "json_path": (_JSON, click.option("--json", "json_path", type=_PATH, metavar="FILE.json", help="Also write JSON.")),
+    "extract": (
+        _TRIALS,
+        click.option(
+            "--extract",
+            type=_PATH,
+            multiple=True,
+            metavar="FILE.csv|FILE.parquet",
+            help="Also write the accepted trials; may be given several times.",
+        ),
     ),
-    click.option("--pdf", type=_PATH, metavar="REPORT.pdf", help="Write the report to hand over, as PDF."),
-    click.option("--docx", type=_PATH, metavar="REPORT.docx", help="Write the same report as a Word file."),
-)
+    "pdf": (_PDF, click.option("--pdf", type=_PATH, metavar="REPORT.pdf", help="Also write the report, as PDF.")),
+    "docx": (_DOCX, click.option("--docx", type=_PATH, metavar="REPORT.docx", help="Also write the report for Word.")),
+    "save_run": (
+        _RUN,
+        click.option("--save-run", type=_PATH, metavar="FILE.xlmcrun", help="Also save the run."),
+    ),
+}
+"""Options from the time when each kind of file had one: with them alone the default is written, too."""
 
 _WISHES = (
     click.option(
@@ -69,46 +129,74 @@ _OVERWRITE = click.option(
 )
 
 
-def output_options(command: F) -> F:
-    """Add the options; the command is given `html`, `json_path`, `extract`, `overwrite`, `reports` and `wishes`."""
+def output_options(default: str, *, without: Collection[str] = ()) -> Callable[[F], F]:
+    """Add the options; the command is given the files as `output` and `also`, `overwrite`, and `wishes`.
 
-    @wraps(command)
-    def packed(*args: Any, pdf: Path | None, docx: Path | None, **others: Any) -> Any:
-        wishes = Wishes(**{name: others.pop(name) for name in Wishes._fields})
-        return command(*args, reports=Reports(pdf, docx), wishes=wishes, **others)
+    Args:
+        default: what is written when nothing is named, for the help.
+        without: aliases that the command does not have.
+    """
+    text = (
+        "What to write, by its ending: a result workbook (.xlsx), a report (.pdf, .docx), a page (.html), all results"
+        " (.json), the accepted trials (.csv, .parquet), the run itself (.xlmcrun). May be given several times; only"
+        f" what is named is written.  [default: {default}]"
+    )
+    names = [name for name in _ALIASES if name not in without]
 
-    found: Any = packed
-    for option in reversed((*_FILES, *_WISHES, _OVERWRITE)):
-        found = option(found)
-    return cast(F, found)
+    def add(command: F) -> F:
+        @wraps(command)
+        def packed(*args: Any, **others: Any) -> Any:
+            wishes = Wishes(**{name: others.pop(name) for name in Wishes._fields})
+            return command(*args, wishes=wishes, **others)
+
+        return with_files(text, names)(with_options(*_WISHES, _OVERWRITE)(cast(F, packed)))
+
+    return add
 
 
-class Reports(NamedTuple):
-    """The reports asked for."""
+def with_files(text: str, aliases: Iterable[str]) -> Callable[[F], F]:
+    """Add `-o`, which is described by a text, and some options that stand for one kind of file each.
 
-    pdf: Path | None = None
-    docx: Path | None = None
+    The command is given the files of `-o` as `output`, the others as `also`.
+    """
+    names = list(aliases)
+    option = click.option("-o", "--output", type=_PATH, multiple=True, metavar="FILE", help=text)
 
-    @property
-    def paths(self) -> list[Path]:
-        return [path for path in self if path is not None]
+    def add(command: F) -> F:
+        @wraps(command)
+        def packed(*args: Any, **others: Any) -> Any:
+            also = tuple(_aliased({_ALIASES[name][0]: others.pop(name) for name in names}))
+            return command(*args, also=also, **others)
 
-    def check(self) -> None:
-        """Refuse a report that could not be written.
+        return with_options(option, *(_ALIASES[name][1] for name in names))(cast(F, packed))
 
-        Raises:
-            WorkbookError: it has another ending than it must, or its folder is missing.
-            SimulationError: a library is missing.
-        """
-        from xlmc.outputs.document import check_report_path
+    return add
 
-        for path, ending in ((self.pdf, ".pdf"), (self.docx, ".docx")):
-            if path is None:
-                continue
-            if path.suffix.casefold() != ending:
-                hint = f"Name it '{path.stem or 'report'}{ending}'"
-                raise WorkbookError(f"the report must end in {ending}", where=path, hint=hint)
-            check_report_path(path)
+
+def with_options(*options: Callable[[Any], Any]) -> Callable[[F], F]:
+    """Add options, which the help lists in this order."""
+
+    def add(command: F) -> F:
+        found: Any = command
+        for option in reversed(options):
+            found = option(found)
+        return cast(F, found)
+
+    return add
+
+
+def _aliased(given: Mapping[_Kind, Path | tuple[Path, ...] | None]) -> Iterator[Path]:
+    """Each file of an option that stands for one kind.
+
+    Raises:
+        WorkbookError: it has the ending of another kind.
+    """
+    from xlmc.excel.workbook.target import refuse_other_ending
+
+    for kind, found in given.items():
+        for path in (found,) if isinstance(found, Path) else found or ():
+            refuse_other_ending(path, kind.endings, kind.noun)
+            yield path
 
 
 class Wishes(NamedTuple):
@@ -139,32 +227,51 @@ class Outputs(NamedTuple):
     Attributes:
         source: the workbook or the saved run that they come from.
         name: of the workbook.
-        book: the result workbook.
-        run: a saved run.
-        html: a page for a browser.
-        json: all results.
-        extract: the accepted trials.
+        files: those that the person named, each of the kind that its ending says.
+        default: a result workbook that the person did not name: another one is numbered on where it is taken.
+        in_place: write the result sheets into the source itself, too.
         overwrite: replace files that are not ours too.
-        in_place: the result workbook is the workbook itself.
-        named: the person gave the result workbook its name; another one is numbered on where it is taken.
-        reports: the reports to hand over.
-        wishes: what they are to hold.
+        wishes: what the reports are to hold.
         beside: the saved run that the page shows beside this one.
     """
 
     source: Path
     name: str
-    book: Path | None = None
-    run: Path | None = None
-    html: Path | None = None
-    json: Path | None = None
-    extract: tuple[Path, ...] = ()
-    overwrite: bool = False
+    files: tuple[Path, ...] = ()
+    default: Path | None = None
     in_place: bool = False
-    named: bool = True
-    reports: Reports = Reports()
+    overwrite: bool = False
     wishes: Wishes = Wishes()
     beside: Path | None = None
+
+    def of(self, *kinds: _Kind) -> list[Path]:
+        """The named files of some kinds."""
+        return [path for path in self.files if path.suffix.casefold() in {e for kind in kinds for e in kind.endings}]
+
+    @property
+    def reports(self) -> list[Path]:
+        """The reports to hand over."""
+        return self.of(_PDF, _DOCX)
+
+    @property
+    def books(self) -> list[Path]:
+        """The result workbooks that were named, and the source where its sheets are written into it."""
+        return [*([self.source] if self.in_place else []), *self.of(_BOOK)]
+
+    @property
+    def runs(self) -> list[Path]:
+        """The saved runs."""
+        return self.of(_RUN)
+
+    @property
+    def trials(self) -> list[Path]:
+        """The tables of accepted trials."""
+        return self.of(_TRIALS)
+
+    @property
+    def is_one_page(self) -> bool:
+        """Whether a page is all that is written."""
+        return len(self.files) == len(self.of(_PAGE)) == 1 and self.default is None
 
     def check_against(self, model: CompiledModel) -> None:
         """Refuse what cannot be written about this workbook.
@@ -174,15 +281,16 @@ class Outputs(NamedTuple):
             SimulationError: it has no such forecast.
             WorkbookError: it is damaged so that no sheets can be added to it.
         """
-        if self.book is not None:
+        has_book = bool(self.default or self.books)
+        if has_book:
             from xlmc.excel.workbook.inject import refuse_unwritable
 
             refuse_unwritable(model.workbook.parts)
-        if self.reports.paths:
+        if self.reports:
             from xlmc.outputs.document import check_wanted_of
 
             check_wanted_of(self.wishes.wanted(), model)
-        elif self.book is not None:
+        elif has_book:
             from xlmc.outputs.case_fields import case_of
 
             case_of(model.workbook, {})
@@ -196,77 +304,71 @@ class Outputs(NamedTuple):
             like: a workbook whose ending the result workbook must have.
 
         Raises:
-            WorkbookError: a name has another ending than it must, its folder is missing, it may not be written, it is
-                not ours to replace, it is the source, or it is given twice.
+            WorkbookError: a name has an ending that xlmc does not write, its folder is missing, it may not be written,
+                it is not ours to replace, it is the source, or it is given twice.
             SimulationError: a library is missing.
         """
-        from xlmc.excel.workbook.target import Target, refuse_same_file
+        from xlmc.excel.workbook.target import refuse_other_ending, refuse_same_file
+        from xlmc.outputs.sheets.save import check_ending
 
-        self._check_endings(like)
-        for path in self._others:
-            Target(path, self.name, self.overwrite, read=self._read).check()
-        found = self._with_book()
-        refuse_same_file([path for path in (found.book, *self._others) if path is not None])
+        endings = [ending for kind in _KINDS for ending in kind.endings]
+        for path in self.files:
+            refuse_other_ending(path, endings)
+            next(kind for kind in _KINDS if path in self.of(kind)).check(path)
+        for path in self.books:
+            check_ending(path, like)
+        if self.reports:
+            self.wishes.wanted()
+        elif self.wishes != Wishes():
+            raise click.UsageError(
+                "--case, --sections, --forecasts and --paper are of a report: give -o REPORT.pdf or -o REPORT.docx."
+            )
+        found = self._with_free_default(like)
+        for path in self._named:
+            self._refuse_taken(path)
+        refuse_same_file([*([found.default] if found.default else []), *self._named])
         return found
 
     @property
-    def _others(self) -> list[Path]:
-        """All but the result workbook."""
-        return [path for path in (self.run, self.html, self.json, *self.reports, *self.extract) if path is not None]
+    def _named(self) -> list[Path]:
+        """All files that are written but the default."""
+        return [*self.books, *(path for path in self.files if path not in self.books)]
 
-    def _check_endings(self, like: Path) -> None:
-        for path in (self.book, *self._others):
-            if path is not None and os.path.isdir(path) and (self.named or path != self.book):
-                raise WorkbookError("this is a folder, not a file", where=path, hint="Name a file")
-        if self.book is not None:
-            from xlmc.outputs.sheets.save import check_ending
+    def _refuse_taken(self, path: Path) -> None:
+        from xlmc.excel.workbook.target import Target, refuse_read
+        from xlmc.excel.workbook.writer import refuse_if_open
 
-            check_ending(self.book, like)
-        if self.run is not None:
-            from xlmc.analysis.results.saved.keeping import check_run_path
+        if self._is_source(path):
+            refuse_if_open(path)
+        elif path in self.books:
+            refuse_read(path, self._read, "--in-place writes the result sheets into it")
+            Target(path, self.name, self.overwrite).check()
+        else:
+            Target(path, self.name, self.overwrite, read=self._read).check()
 
-            check_run_path(self.run)
-        if self.html is not None:
-            from xlmc.outputs.page import check_page_path
-
-            check_page_path(self.html)
-        if self.json is not None:
-            from xlmc.outputs.json_document import check_json_path
-
-            check_json_path(self.json)
-        if self.reports.paths:
-            self.reports.check()
-            self.wishes.wanted()
-        elif self.wishes != Wishes():
-            raise click.UsageError("--case, --sections, --forecasts and --paper are of a report: give --pdf or --docx.")
-        for path in self.extract:
-            from xlmc.outputs.extract import check_extract_path
-
-            check_extract_path(path)
+    def _is_source(self, path: Path) -> bool:
+        return self.in_place and path == self.source
 
     @property
     def _read(self) -> list[Path]:
         """The files that are read: no output may replace them."""
         return [path for path in (self.source, self.beside) if path is not None]
 
-    def _with_book(self) -> Outputs:
+    def _with_free_default(self, like: Path) -> Outputs:
         from xlmc.excel.workbook.target import Target, free_target, refuse_read
-        from xlmc.excel.workbook.writer import check_folder, refuse_if_open
+        from xlmc.outputs.sheets.save import check_ending
 
-        if self.book is None:
+        if self.default is None:
             return self
-        if self.in_place:
-            check_folder(self.book)
-            refuse_if_open(self.book)
+        check_ending(self.default, like)
+        refuse_read(self.default, self._read, "--in-place writes the result sheets into it")
+        if self.overwrite:
+            Target(self.default, self.name, self.overwrite).check()
             return self
-        refuse_read(self.book, self._read, "--in-place writes the result sheets into it")
-        if self.named or self.overwrite:
-            Target(self.book, self.name, self.overwrite).check()
-            return self
-        found, reason = free_target(self.book, self.name)
+        found, reason = free_target(self.default, self.name)
         if reason is not None:
-            say(f"note: {self.book}: {reason}; it stays as it is, and results go to {found}.", err=True)
-        return self._replace(book=found)
+            say(f"note: {self.default}: {reason}; it stays as it is, and results go to {found}.", err=True)
+        return self._replace(default=found)
 
     def write(self, run: RunResult) -> tuple[bool, list[str]]:
         """Write them all: whether all could be, and what to say of where they are when the answer has been printed.
@@ -283,9 +385,9 @@ class Outputs(NamedTuple):
                 written = False
             else:
                 lines.append(f"{said} {found}")
-        if self.extract and run.kept_inputs < run.accepted:
+        if run.kept_inputs < run.accepted:
             kept = f"the draws of {run.kept_inputs:,} of {run.accepted:,} accepted trials were kept"
-            for path in self.extract:
+            for path in self.trials:
                 say(f"note: {path}: {kept}; the others are blank", err=True)
         return written, lines
 
@@ -293,13 +395,13 @@ class Outputs(NamedTuple):
         from xlmc.excel.workbook.target import free_target, refuse_read
         from xlmc.excel.workbook.writer import TakenError
 
+        own = self._is_source(path)
         try:
-            if not (self.in_place and path == self.book):
+            if not own:
                 refuse_read(path, self._read)  # it may have become a link to one during the run
-            write(path, overwrite=self.overwrite or (self.in_place and path == self.book))
+            write(path, overwrite=self.overwrite or own)
         except TakenError as taken:
-            beside = results_beside(path) if path == self.book and self.in_place else path
-            found, _ = free_target(beside, self.name, after=path)
+            found, _ = free_target(results_beside(path) if own else path, self.name, after=path)
             write(found)
             say(f"note: {path}: {taken.message}; it stays as it is, and {found} was written instead.", err=True)
             return found
@@ -307,18 +409,23 @@ class Outputs(NamedTuple):
 
     def _files(self, run: Simulation) -> Iterator[tuple[Path, str, _Write]]:
         """Each file with the words that announce it, and the function that writes it."""
-        if self.book is not None:
-            yield self.book, "Results are in", run.save
-        if self.run is not None:
-            yield self.run, "The run is saved in", run.keep
-        if self.html is not None:
-            yield self.html, "The page is", partial(run.save_page, beside=self._second())
-        if self.json is not None:
-            yield self.json, "Results as JSON are in", run.save_json
-        for path in self.reports.paths:
-            yield path, "The report is", partial(self._write_report, run)
-        for path in self.extract:
-            yield path, "Accepted trials are in", run.extract
+        writers: dict[_Kind, _Write] = {
+            _BOOK: run.save,
+            _RUN: run.keep,
+            _PAGE: partial(self._write_page, run),
+            _JSON: run.save_json,
+            _PDF: partial(self._write_report, run),
+            _DOCX: partial(self._write_report, run),
+            _TRIALS: run.extract,
+        }
+        if self.default is not None:
+            yield self.default, _BOOK.announced, run.save
+        for kind in _KINDS:
+            for path in self.books if kind is _BOOK else self.of(kind):
+                yield path, kind.announced, writers[kind]
+
+    def _write_page(self, run: Simulation, path: Path, *, overwrite: bool = False) -> Path:
+        return run.save_page(path, beside=self._second(), overwrite=overwrite)
 
     def _second(self) -> Simulation | None:
         """The run that stands beside the one that is written.

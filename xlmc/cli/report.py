@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.output_options import Outputs, Reports, Wishes, output_options, results_beside
+from xlmc.cli.output_options import Outputs, Wishes, output_options, results_beside
 from xlmc.cli.terminal import say
 from xlmc.cli.writing import NOT_WRITTEN
 
@@ -22,35 +23,22 @@ NOT_TO_BE_USED = 1
 @click.command()
 @click.argument("run", metavar="RUN|RESULTS", type=click.Path(readable=False, path_type=Path))
 @click.argument("second", metavar="[RUN]", required=False, type=click.Path(readable=False, path_type=Path))
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(readable=False, path_type=Path),
-    help="Result workbook.  [default: RUN-results.xlsx, unless another file is asked for]",
-)
-@output_options
+@output_options("RUN-results.xlsx", without=["save_run"])
 @click.option("--quiet", is_flag=True, help="Print no notes.")
 def report(
     run: Path,
     second: Path | None,
-    output: Path | None,
-    html: Path | None,
-    json_path: Path | None,
-    extract: tuple[Path, ...],
+    output: tuple[Path, ...],
+    also: tuple[Path, ...],
     overwrite: bool,
-    reports: Reports,
     wishes: Wishes,
     quiet: bool,
 ) -> None:
     """Write the results of a saved run, without simulating again: the same as when it was run.
 
-    RESULTS is a result workbook; its run is repeated for --pdf and --docx, and must be identical. A second RUN stands
-    beside the first on the page that --html names.
+    RESULTS is a result workbook; its run is repeated, and must be identical. A second RUN stands beside the first on
+    the page that -o names.
     """
-    if second is not None and (html is None or output or json_path or extract or reports.paths):
-        raise click.UsageError(
-            "A second run is shown on a page, and there alone: give --html PAGE.html, and no other file."
-        )
     from xlmc.analysis.results.saved import open_run
     from xlmc.cli.printing import notices, warnings
     from xlmc.cli.simulate import show_run
@@ -58,26 +46,30 @@ def report(
     from xlmc.excel.workbook.seal import read_seal
     from xlmc.excel.workbook.target import copy_ending
 
+    asked = Outputs(run, run.name, (*output, *also), overwrite=overwrite, wishes=wishes, beside=second)
+    if second is not None and not asked.is_one_page:
+        raise click.UsageError(
+            "A second run is shown on a page, and there alone: give -o PAGE.html, and no other file."
+        )
+    seal = read_seal(run) if os.path.isfile(run) else None
     if run.suffix.casefold() in WORKBOOKS:
-        if output or html or json_path or extract or not reports.paths:
+        if not asked.files:
+            raise click.UsageError("The sheets of a result workbook are there already: name a file, as -o REPORT.pdf.")
+        if asked.runs:
             raise click.UsageError(
-                "Of a result workbook, --pdf and --docx alone are written; the rest needs a saved run."
+                "A saved run holds the workbook as it was run, which a result workbook has not kept: save it with"
+                " xlmc simulate BOOK -o RUN.xlmcrun."
             )
-        Outputs(run, run.name, overwrite=overwrite, reports=reports, wishes=wishes).check(run)  # before the run
+        asked._replace(name=run.name if seal is None else seal.book).check(run)  # before the run
         found = _repeated(run, quiet)
     else:
         found = open_run(run)
-        seal = read_seal(run)
         if seal is None or not seal.whole:
             say(f"warning: {run}: this saved run was changed since xlmc wrote it (its seal is broken).", err=True)
     if not quiet:
         notices(found.model.notices)
-    target = output
-    if output is None and not (html or json_path or extract or reports.paths):
-        target = results_beside(run, copy_ending(found.model.path))
-    name, named = found.model.workbook.name, output is not None
-    asked = Outputs(run, name, target, None, html, json_path, extract, overwrite, named=named)
-    outputs = asked._replace(reports=reports, wishes=wishes, beside=second).check(found.model.path)
+    default = None if asked.files else results_beside(run, copy_ending(found.model.path))
+    outputs = asked._replace(name=found.model.workbook.name, default=default).check(found.model.path)
     outputs.check_against(found.model)
     written, lines = outputs.write(found)  # before the answer is printed, so that no terminal can cost a run
     show_run(found)

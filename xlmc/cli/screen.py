@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.options import WholeNumber, chance_option, engine_option, jobs_option, tolerance_option
-from xlmc.cli.study_output import show, study_options
+from xlmc.cli.study_output import STUDY_OF_A_RUN, show, study_options
 from xlmc.cli.terminal import say_json
 from xlmc.cli.writing import write_files
 
@@ -54,7 +55,7 @@ NOT_TO_BE_USED = 1
 @click.option("--seed", type=WholeNumber(0), help="Seed of each run.  [default: the book's, else 999]")
 @engine_option
 @jobs_option
-@study_options
+@study_options(STUDY_OF_A_RUN)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
 def screen(
@@ -69,10 +70,8 @@ def screen(
     seed: int | None,
     engine: str | None,
     jobs: int,
-    output: Path | None,
-    html: Path | None,
-    pdf: Path | None,
-    docx: Path | None,
+    output: tuple[Path, ...],
+    also: tuple[Path, ...],
     overwrite: bool,
     as_json: bool,
     quiet: bool,
@@ -87,7 +86,7 @@ def screen(
     from xlmc.outputs.study_report import Files
 
     model = load(book)
-    files = Files(output, html, pdf, docx, [book], overwrite=overwrite)
+    files = Files((*output, *also), [book], overwrite=overwrite, of_run=True)
     files.check()
     with step_line(quiet) as told:
         found = screening.screen(
@@ -105,9 +104,9 @@ def screen(
             told=told,
         )
     report = _report(found)
-    written = write_files(files.writers(report, "Screening"))
+    written = write_files(files.writers(report))
     if as_json:
-        say_json(_as_json(found))
+        say_json(report.as_json())
     else:
         show([f"{report.below.partition(':')[0]}: what it could do without", *report.blocks])
         written.tell()
@@ -122,7 +121,9 @@ def _report(found: Screening) -> StudyReport:
 
     run = found.run
     below = f"{run.model.workbook.name}: {found.runs} runs of {run.trials:,} trials, seed {run.settings.seed}"
-    return StudyReport("What the book could do without", below, [*_verdicts(found), *_tables(found), *_meaning(found)])
+    blocks = [*_verdicts(found), *_tables(found), *_meaning(found)]
+    title = "What the book could do without"
+    return StudyReport(title, below, blocks, "Screening", partial(_as_json, found), run)
 
 
 def _tables(found: Screening) -> Iterator[Block]:

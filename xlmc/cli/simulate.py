@@ -14,7 +14,7 @@ from xlmc.cli.options import (
     jobs_option,
     run_options,
 )
-from xlmc.cli.output_options import Outputs, Reports, Wishes, output_options, results_beside
+from xlmc.cli.output_options import Outputs, Wishes, output_options, results_beside
 from xlmc.cli.terminal import paragraph, say
 from xlmc.cli.writing import NOT_WRITTEN
 
@@ -43,36 +43,20 @@ _MOST_MOVED = 4
     "  [default: processes for long runs with -j, else threads]",
 )
 @click.option("--workers", type=WholeNumber(1), help="Workers of --scheduler local.  [default: one for each processor]")
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(readable=False, path_type=Path),
-    help="Result workbook.  [default: BOOK-results.xlsx]",
-)
 @click.option("--in-place", is_flag=True, help="Write the result sheets into BOOK itself.")
-@click.option(
-    "--save-run",
-    type=click.Path(readable=False, path_type=Path),
-    metavar="FILE.xlmcrun",
-    help="Save the run, for xlmc report and xlmc replay.",
-)
-@output_options
+@output_options("BOOK-results.xlsx")
 @click.option("--quiet", is_flag=True, help="Print no progress bar and no notes.")
 def simulate(
     book: Path,
-    output: Path | None,
     in_place: bool,
-    save_run: Path | None,
-    html: Path | None,
-    json_path: Path | None,
-    extract: tuple[Path, ...],
+    output: tuple[Path, ...],
+    also: tuple[Path, ...],
     overwrite: bool,
-    reports: Reports,
     wishes: Wishes,
     quiet: bool,
     **asked: Any,
 ) -> None:
-    """Run BOOK, print the summary, and write result sheets and charts into a copy of it."""
+    """Run BOOK, print the summary, and write result sheets and charts into a copy of it, or what -o names."""
     from xlmc.analysis.studies.scenario_answers import refuse_no_scenarios
     from xlmc.cli.printing import notices, warnings
     from xlmc.cli.progress_bar import progress_bar
@@ -80,25 +64,12 @@ def simulate(
     from xlmc.montecarlo.model.loading import load
     from xlmc.montecarlo.simulation.simulate import run_model
 
-    if in_place and output is not None:
-        raise click.UsageError("--in-place and --output cannot both be given.")
     if os.path.isdir(book):
         load(book)  # says so
-    target = book if in_place else output or results_beside(book)
-    wanted = Outputs(
-        book,
-        book.name,
-        target,
-        save_run,
-        html,
-        json_path,
-        extract,
-        overwrite,
-        in_place,
-        output is not None,
-        reports,
-        wishes,
-    )
+    default = None if in_place or output else results_beside(book)
+    wanted = Outputs(book, book.name, (*output, *also), default, in_place, overwrite, wishes)
+    if in_place and len(wanted.books) > 1:
+        raise click.UsageError("--in-place and -o with a workbook cannot both be given.")
     outputs = wanted.check(book) if os.path.exists(book) else wanted  # `load` says that there is no book
     model = load(book)
     outputs.check_against(model)
@@ -108,7 +79,7 @@ def simulate(
     if not quiet:
         notices([*model.notices, *_hints(model, asked["trials"], asked["engine"])])
     with progress_bar(quiet) as progress:
-        keep_inputs = None if extract else KEPT_INPUTS
+        keep_inputs = None if outputs.trials else KEPT_INPUTS
         run = run_model(
             model,
             RunOptions.of(**asked, keep_inputs=keep_inputs, keep_interrupted=True),

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from xlmc.cli.options import WholeNumber, jobs_option
-from xlmc.cli.study_output import show, study_options
+from xlmc.cli.study_output import STUDY_OF_A_RUN, show, study_options
 from xlmc.cli.terminal import paragraph, say, say_json
 from xlmc.cli.writing import write_files
 
@@ -28,7 +29,7 @@ NOT_TO_BE_USED = 1
 @click.option("-n", "--trials", type=WholeNumber(1), help="Trials of the run.  [default: the book's, else 200000]")
 @click.option("--seed", type=WholeNumber(0), help="Seed of the run.  [default: the book's, else 999]")
 @jobs_option
-@study_options
+@study_options(STUDY_OF_A_RUN)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
 def stability(
@@ -37,10 +38,8 @@ def stability(
     trials: int | None,
     seed: int | None,
     jobs: int,
-    output: Path | None,
-    html: Path | None,
-    pdf: Path | None,
-    docx: Path | None,
+    output: tuple[Path, ...],
+    also: tuple[Path, ...],
     overwrite: bool,
     as_json: bool,
     quiet: bool,
@@ -53,13 +52,14 @@ def stability(
     from xlmc.outputs.study_report import Files
 
     model = load(book)
-    files = Files(output, html, pdf, docx, [book], overwrite=overwrite)
+    files = Files((*output, *also), [book], overwrite=overwrite, of_run=True)
     files.check()
     with step_line(quiet) as told:
         found = room.stability(model, trials=trials, seed=seed, jobs=jobs, told=told)
-    written = write_files(files.writers(_report(found, all_cells), "Stability"))
+    report = _report(found, all_cells)
+    written = write_files(files.writers(report))
     if as_json:
-        say_json(_as_json(found))
+        say_json(report.as_json())
     else:
         _show(found, all_cells)
         written.tell()
@@ -120,7 +120,7 @@ def _report(found: Stability, all_cells: bool) -> StudyReport:
         *_sentences(found),
     ]
     below = f"{found.run.model.workbook.name}: {found.run.trials:,} trials, seed {found.run.settings.seed}"
-    return StudyReport("Can the digits be trusted?", below, blocks)
+    return StudyReport("Can the digits be trusted?", below, blocks, "Stability", partial(_as_json, found), found.run)
 
 
 def _finding_texts(number: int, finding: Finding) -> Iterator[str]:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from xlmc.cli.output_options import with_files, with_options
 from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
@@ -15,20 +15,29 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.statistics import Estimate
     from xlmc.outputs.study_report import Block
 
-__all__ = ["acceptance_json", "difference_json", "estimate_json", "show", "study_options"]
-
+STUDY = "a sheet (.xlsx), a document (.pdf, .docx), a page (.html), the result as JSON (.json)"
+STUDY_OF_A_RUN = f"{STUDY}, the accepted trials of the book's run (.csv, .parquet), that run (.xlmcrun)"
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
+__all__ = ["STUDY", "STUDY_OF_A_RUN", "acceptance_json", "difference_json", "estimate_json", "show", "study_options"]
 
-def study_options(command: Command) -> Command:
-    """Add the options."""
-    path = click.Path(path_type=Path)
-    command = click.option("--overwrite", is_flag=True, help="Replace existing files, whoever wrote them.")(command)
-    command = click.option("--docx", type=path, help="Also write it for a word processor, .docx.")(command)
-    command = click.option("--pdf", type=path, help="Also write the result as a document, .pdf.")(command)
-    command = click.option("--html", type=path, help="Also write the result as a page, .html.")(command)
-    return click.option("-o", "--output", type=path, help="Also write the result as a sheet, .xlsx.")(command)
+
+def study_options(kinds: str) -> Callable[[Command], Command]:
+    """Add `-o`, the options that stand for one kind of file each, and `--overwrite`.
+
+    The command is given the files as `output` and `also`, and `overwrite`.
+
+    Args:
+        kinds: what it writes, as the help says it.
+    """
+    text = f"What to write, by its ending: {kinds}. May be given several times; by default nothing is written."
+    overwrite = click.option("--overwrite", is_flag=True, help="Replace existing files, whoever wrote them.")
+
+    def add(command: Command) -> Command:
+        return with_files(text, ("html", "pdf", "docx"))(with_options(overwrite)(command))
+
+    return add
 
 
 def show(blocks: Iterable[Block]) -> None:

@@ -92,7 +92,9 @@ def say_json(value: object) -> None:
     """
     import json
 
-    text = json.dumps(_without_infinities(value), indent=2, ensure_ascii=not _is_unicode(sys.stdout), allow_nan=False)
+    from xlmc.montecarlo.statistics.estimate import finite_json
+
+    text = json.dumps(finite_json(value), indent=2, ensure_ascii=not _is_unicode(sys.stdout), allow_nan=False)
     if printable(text) != text:
         text = "".join(one if printable(one) == one else json.dumps(one)[1:-1] for one in text)
     put(f"{text}\n")
@@ -152,21 +154,6 @@ def encodable(text: str, *, err: bool = False) -> str:
     """The text as the stream's encoding can show it, so that columns can be measured."""
     encoding = getattr(sys.stderr if err else sys.stdout, "encoding", None) or "utf-8"
     return text.encode(encoding, _HANDLER).decode(encoding)
-
-
-def _without_infinities(value: object) -> object:
-    """The value with null for a number that JSON cannot hold."""
-    from xlmc.montecarlo.statistics.estimate import finite
-
-    match value:
-        case float():
-            return finite(value)
-        case dict():
-            return {key: _without_infinities(each) for key, each in value.items()}
-        case list() | tuple():
-            return [_without_infinities(each) for each in value]
-        case _:
-            return value
 
 
 def _is_unicode(stream: TextIO | None) -> bool:

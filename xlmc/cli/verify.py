@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.study_output import show, study_options
+from xlmc.cli.study_output import STUDY, show, study_options
 from xlmc.cli.terminal import say_json
 from xlmc.cli.writing import write_files
 
@@ -25,15 +26,13 @@ _SHOWN, _WRITTEN = 50, 2_000
 @click.command()
 @click.argument("book", type=click.Path(path_type=Path))
 @click.option("--all", "everything", is_flag=True, help="Check every formula cell, not only the needed ones.")
-@study_options
+@study_options(STUDY)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def verify(
     book: Path,
     everything: bool,
-    output: Path | None,
-    html: Path | None,
-    pdf: Path | None,
-    docx: Path | None,
+    output: tuple[Path, ...],
+    also: tuple[Path, ...],
     overwrite: bool,
     as_json: bool,
 ) -> None:
@@ -50,16 +49,20 @@ def verify(
     definitions = None if everything else read_definitions(calculate_labels(workbook), ENGINES)
     if definitions is not None and not definitions.forecasts and not definitions.filters:
         raise click.UsageError(f"{book} has no forecasts and no filters; give --all to check every formula cell.")
-    files = Files(output, html, pdf, docx, [book], overwrite=overwrite)
+    files = Files((*output, *also), [book], overwrite=overwrite)
     files.check()
     found = check(workbook, definitions)
     cells = "every formula cell" if everything else "the formula cells that forecasts and filters need"
     report = StudyReport(
-        "Recomputed values beside those that Excel saved", f"{book.name}: {cells}", _blocks(found, _WRITTEN)
+        "Recomputed values beside those that Excel saved",
+        f"{book.name}: {cells}",
+        _blocks(found, _WRITTEN),
+        "Verification",
+        partial(_as_json, found),
     )
-    written = write_files(files.writers(report, "Verification"))
+    written = write_files(files.writers(report))
     if as_json:
-        say_json(_as_json(found))
+        say_json(report.as_json())
     else:
         show(_blocks(found, _SHOWN))
         written.tell()

@@ -5,7 +5,6 @@ JSON holds no NaN and no infinity: null stands for them, and an estimate says wh
 
 from __future__ import annotations
 
-import json
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -32,7 +31,7 @@ from xlmc.analysis.studies.scenario_answers import (
 )
 from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.errors import WorkbookError
-from xlmc.excel.workbook.seal import sealed_text
+from xlmc.excel.workbook.seal import sealed_json
 from xlmc.excel.workbook.target import Target
 from xlmc.excel.workbook.writer import write_workbook
 from xlmc.montecarlo.statistics import Estimate, proportion
@@ -167,8 +166,7 @@ def save_json(simulation: RunResult, path: Path, *, command: str | None = None, 
     check_json_path(path)
     target = Target(path, simulation.model.workbook.name, overwrite, read=[simulation.model.path])
     target.check()
-    text = json.dumps(document(simulation, command=command), ensure_ascii=False, allow_nan=False, indent=2)
-    write_workbook(path, sealed_text(text.removesuffix("\n}").encode(), ".json", target.book), target.check)
+    write_workbook(path, sealed_json(document(simulation, command=command), target.book), target.check)
     return path
 
 

@@ -10,22 +10,27 @@ from dataclasses import dataclass
 from functools import partial
 from html import escape
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
-from xlmc.errors import WorkbookError
-from xlmc.excel.workbook.seal import sealed_parts, sealed_text
-from xlmc.excel.workbook.target import Target, refuse_same_file
+from xlmc.excel.workbook.seal import sealed_json, sealed_parts, sealed_text
+from xlmc.excel.workbook.target import Target, refuse_other_ending, refuse_same_file
 from xlmc.excel.workbook.writer import package_bytes, write_workbook
+from xlmc.montecarlo.statistics.estimate import finite_json
 from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.sheets.page import Page
 from xlmc.outputs.sheets.styles import CREATED, Styles
 from xlmc.outputs.study_curves import Curves, drawing_of, write_chart
 
-__all__ = ["Block", "Files", "StudyReport", "Table", "column_widths", "refuse_other_ending"]
+if TYPE_CHECKING:
+    from xlmc.montecarlo.simulation.simulation import RunResult
+
+__all__ = ["Block", "Files", "StudyReport", "Table", "column_widths"]
 
 _WIDTHS: Final = (44.0, *[17.0] * 7)
 
 _DOCUMENTS: Final = (".pdf", ".docx")
+_ENDINGS: Final = (".xlsx", ".html", ".htm", *_DOCUMENTS, ".json")
+_OF_RUN: Final = (".csv", ".parquet", ".xlmcrun")
 
 _WIDEST, _NARROW, _FEW = 40, 14, 8
 """Characters of a column of a document that may stay in one line: of a table of few columns, and of one of more."""
@@ -65,78 +70,89 @@ class StudyReport:
         title: what it is.
         below: of which book, from how many trials.
         blocks: paragraphs, tables and curves in their order.
+        sheet: the name of its sheet.
+        as_json: gives all that was found, as JSON holds it.
+        run: the run of the workbook itself; None where the study has none, or several.
     """
 
     title: str
     below: str
     blocks: Sequence[Block]
+    sheet: str
+    as_json: Callable[[], dict[str, object]]
+    run: RunResult | None = None
 
 
 class Files:
-    """The files that a report is written to; any may be None.
+    """The files that a report is written to, each by its ending.
 
     Args:
-        output: the workbook, which must end in .xlsx.
-        html: the page, which must end in .html.
-        pdf: the document, which must end in .pdf.
-        docx: the same for a word processor, which must end in .docx.
+        paths: where to.
         sources: the workbooks that were studied, which are never written to.
         overwrite: replace files that are not ours, too.
+        of_run: the study has a run, whose trials can be written, and which can be saved.
     """
 
-    def __init__(
-        self,
-        output: Path | None,
-        html: Path | None,
-        pdf: Path | None,
-        docx: Path | None,
-        sources: Sequence[Path],
-        *,
-        overwrite: bool,
-    ) -> None:
-        asked = ((output, ".xlsx"), (html, ".html"), (pdf, ".pdf"), (docx, ".docx"))
-        self._endings = [(path, ending) for path, ending in asked if path is not None]
-        self._sources, self._overwrite = sources, overwrite
+    def __init__(self, paths: Sequence[Path], sources: Sequence[Path], *, overwrite: bool, of_run: bool = False):
+        self._paths, self._sources, self._overwrite = paths, sources, overwrite
+        self._endings = (*_ENDINGS, *(_OF_RUN if of_run else ()))
 
     def check(self) -> None:
         """See that every file can be written, before anything is run.
 
         Raises:
             TakenError: a file is not ours to replace, is a workbook that is studied, or a program has it open.
-            WorkbookError: a file has the wrong ending, its folder is not there, or it is named twice.
+            WorkbookError: a file has an ending that is not written, its folder is not there, or it is named twice.
             SimulationError: a library is missing.
         """
-        refuse_same_file([path for path, _ in self._endings])
-        for path, ending in self._endings:
-            refuse_other_ending(path, ending)
-            if ending in _DOCUMENTS:
+        refuse_same_file(self._paths)
+        for path in self._paths:
+            refuse_other_ending(path, self._endings)
+            if path.suffix.casefold() in _DOCUMENTS:
                 from xlmc.outputs.document import check_report_path
 
                 check_report_path(path)
+            elif path.suffix.casefold() in _OF_RUN[:2]:
+                from xlmc.outputs.extract import check_extract_path
+
+                check_extract_path(path)
             self._target(path).check()
 
     def _target(self, path: Path) -> Target:
         return Target(path, self._sources[0].name, self._overwrite, read=self._sources)
 
-    def writers(self, report: StudyReport, sheet: str) -> Iterator[tuple[Path, Callable[[], Path]]]:
+    def writers(self, report: StudyReport) -> Iterator[tuple[Path, Callable[[], Path]]]:
         """Each file with what writes it; an untouched file of ours is replaced.
 
         What writes it raises `TakenError` where the file is not ours to replace or has become a workbook that is
         studied, and `WorkbookError` where it cannot be written.
         """
-        for path, ending in self._endings:
-            yield path, partial(self._write, report, sheet, path, ending)
+        for path in self._paths:
+            yield path, partial(self._write, report, path)
 
-    def _write(self, report: StudyReport, sheet: str, path: Path, ending: str) -> Path:
-        name = self._sources[0].name
+    def _write(self, report: StudyReport, path: Path) -> Path:
+        name, ending = self._sources[0].name, path.suffix.casefold()
+        if ending in _OF_RUN and report.run is not None:
+            return self._write_run(report.run, path, ending)
         if ending in _DOCUMENTS:
             content = _document(report, ending)
         elif ending == ".html":
             content = sealed_text(_page(report).encode(), ending, name)
+        elif ending == ".json":
+            content = sealed_json(finite_json(report.as_json()), name)
         else:
-            content = package_bytes(sealed_parts(_book(report, sheet), "xl/worksheets/sheet1.xml", name))
+            content = package_bytes(sealed_parts(_book(report, report.sheet), "xl/worksheets/sheet1.xml", name))
         write_workbook(path, content, self._target(path).check)
         return path
+
+    def _write_run(self, run: RunResult, path: Path, ending: str) -> Path:
+        if ending == ".xlmcrun":
+            from xlmc.analysis.results.saved import keep
+
+            return keep(run, path, overwrite=self._overwrite)
+        from xlmc.outputs.extract import extract
+
+        return extract(run, path, overwrite=self._overwrite)
 
 
 def _document(report: StudyReport, ending: str) -> bytes:
@@ -155,17 +171,6 @@ def _document(report: StudyReport, ending: str) -> bytes:
             blocks.append(parts.Paragraph(each))
     document = parts.Document(report.title, "", None, report.title, "", (), tuple(blocks))
     return document_bytes(document, ending)
-
-
-def refuse_other_ending(path: Path, ending: str) -> None:
-    """See that a file has the ending that its option is for.
-
-    Raises:
-        WorkbookError: it has another.
-    """
-    if path.suffix.casefold() != ending:
-        kind = {".xlsx": "the sheet", ".html": "the page"}.get(ending, "the document")
-        raise WorkbookError(f"{kind} must end in {ending}", where=path, hint=f"Name a file that ends in {ending}")
 
 
 def column_widths(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> tuple[float, ...]:

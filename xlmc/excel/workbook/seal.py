@@ -27,7 +27,7 @@ from xlmc.excel.workbook.injection.part_numbers import claimed_names, free_part_
 from xlmc.excel.workbook.injection.result_sheet import relative_target
 from xlmc.excel.workbook.package import CONTENT_TYPES, WORKBOOKS, read_parts, rels_part
 
-__all__ = ["ENDINGS", "Seal", "blank_seal", "read_seal", "seal_file", "sealed_parts", "sealed_text"]
+__all__ = ["ENDINGS", "Seal", "blank_seal", "read_seal", "seal_file", "sealed_json", "sealed_parts", "sealed_text"]
 
 _PART: Final = "xl/xlmc/seal1.json"
 _POINTER: Final = "urn:xlmc:seal"
@@ -100,6 +100,12 @@ def sealed_text(content: bytes, ending: str, book: str) -> bytes:
     before, behind = ENDINGS[ending]
     digest = hashlib.sha256(content)
     return content + before + _seal(book, digest) + behind
+
+
+def sealed_json(value: object, book: str) -> bytes:
+    """An object as JSON, with the seal behind its other members; it holds no infinities."""
+    text = json.dumps(value, ensure_ascii=False, allow_nan=False, indent=2)
+    return sealed_text(text.removesuffix("\n}").encode(), ".json", book)
 
 
 def seal_file(file: BinaryIO, book: str) -> None:

@@ -23,6 +23,7 @@ __all__ = [
     "refuse_existing",
     "refuse_into_old_workbook",
     "refuse_into_source",
+    "refuse_other_ending",
     "refuse_read",
     "refuse_same_file",
     "same_name",
@@ -188,6 +189,29 @@ def refuse_same_file(outputs: Iterable[Path]) -> None:
         if key in seen:
             raise _twice(path, seen[key])
         seen[key] = path
+
+
+def refuse_other_ending(path: Path, endings: Sequence[str], noun: str = "") -> None:
+    """Refuse an output whose ending says none of the kinds of file that are written.
+
+    Args:
+        path: the output.
+        endings: those that are written, the usual one first.
+        noun: the only kind that is written.
+
+    Raises:
+        WorkbookError: the ending is another, or the path leads to a folder.
+    """
+    if os.path.isdir(path):
+        raise WorkbookError("this is a folder, not a file", where=path, hint="Name a file")
+    ending = path.suffix.casefold()
+    if ending in endings:
+        return
+    if noun:
+        hint = f"Name it '{label(path.stem) or 'results'}{endings[0]}'"
+        raise WorkbookError(f"{noun} must end in {' or '.join(endings)}", where=path, hint=hint)
+    message = f"the ending {label(ending)} is none of a file that this command writes" if ending else "it has no ending"
+    raise WorkbookError(message, where=path, hint=f"The ending says what is written: {', '.join(endings)}")
 
 
 def is_same_file(path: Path, other: Path) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 
 from xlmc.montecarlo.interruption import checkpoint
 
-__all__ = ["Estimate", "finite", "format_estimate", "supported_digits", "two_digit_exponent"]
+__all__ = ["Estimate", "finite", "finite_json", "format_estimate", "supported_digits", "two_digit_exponent"]
 
 LEAST_DOF = 1.0 - 1e-9
 """Fewer degrees of freedom give no error; the margin is for the rounding of an effective sample size."""
@@ -176,3 +176,16 @@ def two_digit_exponent(number: float) -> int:
 
 def _write_rounded(number: float, decimals: int) -> str:
     return f"{round(number, decimals) + 0.0:.{max(decimals, 0)}f}"  # + 0.0: no negative zero
+
+
+def finite_json(value: object) -> object:
+    """A value with null for each number that JSON cannot hold."""
+    match value:
+        case float():
+            return finite(value)
+        case dict():
+            return {key: finite_json(each) for key, each in value.items()}
+        case list() | tuple():
+            return [finite_json(each) for each in value]
+        case _:
+            return value

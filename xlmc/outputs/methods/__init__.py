@@ -10,14 +10,16 @@ from typing import Final
 
 from xlmc.analysis.studies.methods import Study
 from xlmc.errors import WorkbookError
-from xlmc.excel.workbook.seal import sealed_parts, sealed_text
-from xlmc.excel.workbook.target import Target, refuse_same_file
+from xlmc.excel.workbook.seal import sealed_json, sealed_parts, sealed_text
+from xlmc.excel.workbook.target import Target, refuse_other_ending, refuse_same_file
 from xlmc.excel.workbook.writer import package_bytes, write_workbook
+from xlmc.montecarlo.statistics.estimate import finite_json
 
 __all__ = ["ENDINGS", "check_targets", "save_methods"]
 
 
-ENDINGS: Final = (".png", ".html", ".xlsx", ".pdf", ".docx")
+ENDINGS: Final = (".png", ".html", ".xlsx", ".pdf", ".docx", ".json")
+_UNDRAWN: Final = (".xlsx", ".json")
 _DOCUMENTS: Final = (".pdf", ".docx")
 
 
@@ -32,22 +34,25 @@ def check_targets(paths: Sequence[Path], source: Path, *, overwrite: bool = Fals
     """
     refuse_same_file(paths)
     for path in paths:
+        refuse_other_ending(path, ENDINGS)
         ending = path.suffix.casefold()
-        if ending not in ENDINGS:
-            message = f"a study of methods is not written as {ending or 'a file without ending'}"
-            raise WorkbookError(message, where=path, hint="Name a file that ends in .png, .html, .xlsx, .pdf or .docx")
         if ending in _DOCUMENTS:
             from xlmc.outputs.document import check_report_path
 
             check_report_path(path)
         Target(path, source.name, overwrite, read=[source]).check()
-        if ending != ".xlsx" and find_spec("matplotlib") is None:
+        if ending not in _UNDRAWN and find_spec("matplotlib") is None:
             hint = "Install it with `pip install 'xlmc[plots]'`, or ask for .xlsx"
             raise WorkbookError("drawing needs matplotlib, which is not installed", where=path, hint=hint)
 
 
 def save_methods(study: Study, path: Path, *, overwrite: bool = False) -> Path:
     """Write a study in the form that the ending of the path says; an untouched page or workbook of ours is replaced.
+
+    Args:
+        study: what was measured.
+        path: where to; it ends in one of `ENDINGS`.
+        overwrite: replace any other file, too.
 
     Raises:
         TakenError: the file is not ours to replace.
@@ -66,6 +71,10 @@ def _content_with_seal(study: Study, ending: str) -> bytes:
         from xlmc.outputs.methods.methods_workbook import book
 
         return package_bytes(sealed_parts(book(study), "xl/worksheets/sheet1.xml", name))
+    if ending == ".json":
+        from xlmc.outputs.methods.methods_json import study_json
+
+        return sealed_json(finite_json(study_json(study)), name)
     if ending == ".html":
         from xlmc.outputs.methods.methods_page import page
 

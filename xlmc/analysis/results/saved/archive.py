@@ -133,7 +133,9 @@ def _check(package: zipfile.ZipFile, path: Path) -> None:
     entries = package.infolist()
     names = [entry.filename for entry in entries]
     if RUN not in names:
-        raise WorkbookError("the file is not a saved run", where=path, hint="Save one with xlmc simulate --save-run")
+        raise WorkbookError(
+            "the file is not a saved run", where=path, hint="Save one with xlmc simulate BOOK -o RUN.xlmcrun"
+        )
     plain = all(
         entry.compress_type == zipfile.ZIP_STORED
         and entry.file_size == entry.compress_size

@@ -1,0 +1,104 @@
+"""A study of methods as JSON."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from xlmc.analysis.studies.methods import STATISTICS, Curve, Runs, Study, need, recommendation
+from xlmc.analysis.studies.methods.need import choice, shortfall
+from xlmc.montecarlo.statistics import Estimate
+from xlmc.montecarlo.statistics.estimate import finite
+from xlmc.outputs.methods.methods_tables import cannot
+
+__all__ = ["study_json"]
+
+
+def study_json(found: Study) -> dict[str, Any]:
+    """Everything that was measured, as JSON holds it."""
+    reference = found.reference
+    best = choice(found) if found.varying else None
+    chosen = best and best.chosen
+    return {
+        "workbook": found.model.workbook.name,
+        "accuracy": found.accuracy[0],
+        "seed": found.seed,
+        "reference": {
+            "trials": reference.trials,
+            "accepted": reference.accepted,
+            "sampling": reference.sampling,
+            "engine": reference.engine,
+            "seconds": reference.seconds,
+            "acceptance": _estimate(reference.acceptance),
+            "forecasts": {
+                name: {
+                    each: {
+                        "value": finite(getattr(answer, each)),
+                        "error": finite(getattr(reference.errors[name], each)),
+                    }
+                    for each in STATISTICS
+                }
+                for name, answer in reference.answers.items()
+            },
+            "widths": {name: finite(width) for name, width in reference.widths.items()},
+        },
+        "recommended": chosen and chosen.method.key,
+        "cheapest": [curve.method.key for curve in best.cheapest] if best else [],
+        "methods": [_curve(found, curve) for curve in found.every],
+        "not_used": dict(found.absent),
+        "recommendation": recommendation(found),
+    }
+
+
+def _curve(found: Study, curve: Curve) -> dict[str, Any]:
+
+    drawn = curve not in found.once
+    wanted = need(found, curve) if drawn and found.varying else None
+    near = shortfall(found, curve) if curve.answers and found.varying and not drawn else None
+    return {
+        "method": curve.method.key,
+        "name": curve.method.name,
+        "cannot": cannot(found, curve.method),
+        "remarks": list(curve.remarks),
+        "setup_seconds": curve.setup,
+        "bounds": {name: {"least": least, "most": most} for name, (least, most) in curve.ranges.items()},
+        "bounds_at": [
+            {"forecast": name, "end": end, "assumptions": dict(point)} for (name, end), point in curve.ends.items()
+        ],
+        "runs": [_of_length(found, runs, drawn) for runs in curve.lengths],
+        "slopes": {
+            each: {"trials": finite(curve.slope(each, "budget")), "seconds": finite(curve.slope(each, "seconds"))}
+            for each in STATISTICS
+        },
+        "needs": wanted
+        and {"trials": finite(wanted.trials), "seconds": finite(wanted.seconds), "reaches": wanted.reaches},
+        "near_enough": near and near.reaches,
+    }
+
+
+def _of_length(found: Study, runs: Runs, drawn: bool) -> dict[str, Any]:
+
+    return {
+        "trials": runs.budget if drawn else None,
+        "seconds": finite(runs.seconds),
+        "seconds_median": finite(runs.usual),
+        "seconds_measured": runs.measured,
+        "evaluations": runs.evaluations,
+        "effective": runs.effective,
+        "failed": runs.failed,
+        "acceptance_error": None if runs.acceptance is None else finite(runs.acceptance.value),
+        "errors": {
+            forecast.name: {
+                each: {
+                    "rms": finite(runs.errors[forecast.name, each].value),
+                    "error": finite(runs.errors[forecast.name, each].error),
+                    "bias": finite(runs.errors[forecast.name, each].bias),
+                }
+                for each in STATISTICS
+            }
+            for forecast in found.model.forecasts
+        },
+    }
+
+
+def _estimate(estimate: Estimate) -> dict[str, float | None]:
+    return {"value": finite(estimate.value), "error": finite(estimate.error)}

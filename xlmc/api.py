@@ -499,15 +499,25 @@ class Model:
         return Simulation(run_model(self._compiled, asked, progress=progress, tell=tell))
 
 
-def load(path: str | Path) -> Model:
+def load(path: str | Path, *, feeds: Mapping[str, str] | None = None) -> Model:
     """Read a workbook and compile what its forecasts and filters need.
 
+    Args:
+        path: of the workbook.
+        feeds: assumption -> the answer of another workbook that it takes in each trial, such as
+            `{"Vehicle speed at the impact": "momentum.xlsx!Vehicle 1 impact speed"}`. The filters of both hold, and
+            assumptions of one name are drawn once. An assumption of such a workbook may be fed in turn, as
+            `"momentum.xlsx!Name"`.
+
     Raises:
-        WorkbookError: the file cannot be read.
+        WorkbookError: a file cannot be read.
+        SimulationError: there is no such assumption or answer, or the workbooks cannot be joined.
         DefinitionError: a definition is not what it must be; all faulty ones are listed.
         FormulaError: a needed cell cannot be computed.
     """
-    return Model(loading.load(path))
+    from xlmc.montecarlo.definitions.feeds import read_feeds
+
+    return Model(loading.load(path, read_feeds(feeds or {})))
 
 
 def open_run(path: str | Path) -> Simulation:

@@ -16,6 +16,7 @@ __all__ = [
     "WholeNumber",
     "chance_option",
     "engine_option",
+    "feed_option",
     "jobs_option",
     "run_options",
     "tolerance_option",
@@ -83,6 +84,16 @@ jobs_option = click.option(
     help="Threads or processes to use.",
 )
 """The option for threads or processes; the result does not depend on it."""
+
+
+feed_option = click.option(
+    "--feed",
+    multiple=True,
+    metavar="A=OTHER!B",
+    help="'A=other.xlsx!B': in each trial the assumption A takes what the workbook other.xlsx gives for its forecast B;"
+    " may be given several times, and in a row: 'other.xlsx!C=third.xlsx!D'.",
+)
+"""The option for workbooks whose answers feed assumptions."""
 
 
 def _setting_option(setting: Setting) -> Callable[[F], F]:

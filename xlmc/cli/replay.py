@@ -27,16 +27,23 @@ _LONGEST = 60
 
 @click.command()
 @click.argument("recorded", metavar="RESULTS", type=click.Path(path_type=Path))
+@click.option(
+    "--book",
+    "books",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    help="A workbook that fed the run, where it does not lie beside RESULTS; may be given several times.",
+)
 @jobs_option
 @click.option("--json", "as_json", is_flag=True, help="Print the comparison as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no progress bar.")
-def replay(recorded: Path, jobs: int, as_json: bool, quiet: bool) -> None:
+def replay(recorded: Path, books: tuple[Path, ...], jobs: int, as_json: bool, quiet: bool) -> None:
     """Repeat the run recorded in RESULTS, a result workbook or a saved run, from the definitions in the same file."""
     from xlmc.cli.progress_bar import progress_bar
     from xlmc.outputs import replay as replaying
 
     with progress_bar(quiet) as progress:
-        found = replaying.replay(recorded, jobs=jobs, progress=progress)
+        found = replaying.replay(recorded, books=books, jobs=jobs, progress=progress)
     if as_json:
         say_json(_as_json(found))
     else:

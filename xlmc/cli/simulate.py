@@ -11,6 +11,7 @@ import click
 
 from xlmc.cli.options import (
     WholeNumber,
+    feed_option,
     jobs_option,
     run_options,
 )
@@ -36,6 +37,7 @@ _MOST_MOVED = 4
 @click.command()
 @click.argument("book", type=click.Path(readable=False, path_type=Path))
 @run_options
+@feed_option
 @jobs_option
 @click.option(
     "--scheduler",
@@ -48,6 +50,7 @@ _MOST_MOVED = 4
 @click.option("--quiet", is_flag=True, help="Print no progress bar and no notes.")
 def simulate(
     book: Path,
+    feed: tuple[str, ...],
     in_place: bool,
     output: tuple[Path, ...],
     also: tuple[Path, ...],
@@ -60,18 +63,20 @@ def simulate(
     from xlmc.analysis.studies.scenario_answers import refuse_no_scenarios
     from xlmc.cli.printing import notices, warnings
     from xlmc.cli.progress_bar import progress_bar
+    from xlmc.montecarlo.definitions.feeds import read_feeds
     from xlmc.montecarlo.definitions.run_options import KEPT_INPUTS, RunOptions
     from xlmc.montecarlo.model.loading import load
     from xlmc.montecarlo.simulation.simulate import run_model
 
     if os.path.isdir(book):
         load(book)  # says so
+    feeds = read_feeds(feed)
     default = None if in_place or output else results_beside(book)
     wanted = Outputs(book, book.name, (*output, *also), default, in_place, overwrite, wishes)
     if in_place and len(wanted.books) > 1:
         raise click.UsageError("--in-place and -o with a workbook cannot both be given.")
     outputs = wanted.check(book) if os.path.exists(book) else wanted  # `load` says that there is no book
-    model = load(book)
+    model = load(book, feeds)
     outputs.check_against(model)
     scenarios = bool(asked["scenarios"])
     if scenarios:

@@ -53,6 +53,8 @@ class InFormula(Cell):
     >>> part = InFormula.of(Cell("Data", 7, 2), "2")
     >>> str(part), str(part.host)
     ('Data!B7#2', 'Data!B7')
+    >>> str(InFormula.of(Cell("[other.xlsx]Data", 7, 2), "2").host)
+    "'[other.xlsx]Data'!B7"
     """
 
     __slots__ = ()
@@ -65,10 +67,16 @@ class InFormula(Cell):
     @property
     def host(self) -> Cell:
         """The cell whose formula it is part of."""
-        return Cell(self.sheet.partition("[")[0], self.row, self.column)
+        return Cell(self._parts[0], self.row, self.column)
+
+    @property
+    def _parts(self) -> tuple[str, str]:
+        """The sheet, which may begin with another workbook in brackets, and the label."""
+        start = self.sheet.find("[", self.sheet.find("]") + 1 if self.sheet.startswith("[") else 0)
+        return self.sheet[:start], self.sheet[start + 1 : -1]
 
     def __str__(self) -> str:
-        return f"{self.host}#{self.sheet.partition('[')[2][:-1]}"
+        return f"{self.host}#{self._parts[1]}"
 
 
 def host_of(cell: Cell) -> Cell:

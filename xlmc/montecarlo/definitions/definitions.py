@@ -13,6 +13,7 @@ from xlmc.errors import DefinitionError, FormulaError, Notice
 from xlmc.excel.address import Area, Cell, InFormula
 from xlmc.excel.formula.ir import Expression
 from xlmc.montecarlo.definitions.evidence import Evidence
+from xlmc.montecarlo.definitions.feeds import Feeding
 from xlmc.montecarlo.definitions.run_settings import USUAL, Settings
 from xlmc.montecarlo.definitions.scenarios import Scenario
 from xlmc.montecarlo.definitions.stating import Kind, Role
@@ -265,7 +266,7 @@ class Definitions:
     `evidence` are the rows of `xlmc_evidence`; those that are used are also among `filters`. `refused` says why
     forecasts that the workbook asks for cannot be computed, and what else was lost, while the others can be run;
     `left_out` are these forecasts and what filters of theirs. `forecast_filters` are filters of some forecasts only,
-    which are not among `filters`.
+    which are not among `filters`. `feeding` are the other workbooks whose answers feed assumptions.
     """
 
     assumptions: tuple[Assumption, ...] = ()
@@ -285,3 +286,4 @@ class Definitions:
     forecast_filters: tuple[Filter, ...] = ()
     scenarios: tuple[Scenario, ...] = ()
     left_out: tuple[Forecast | Filter, ...] = ()
+    feeding: Feeding | None = None

@@ -37,7 +37,7 @@ from xlmc.montecarlo.definitions.tables.changed_cells import cells_that_change
 from xlmc.montecarlo.definitions.tables.filters import LIMITS, contradiction
 from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 from xlmc.montecarlo.model.draw_binding import draw_of
-from xlmc.montecarlo.model.loading import build_model, filter_faults
+from xlmc.montecarlo.model.loading import filter_faults, model_with_values
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.draws import Draw
 
@@ -61,11 +61,12 @@ def applied(model: CompiledModel, changes: Iterable[Change]) -> CompiledModel:
     before = _with_typed(model, changes)
     definitions = _changed(before, changes)
     cells = changed_cells(before, definitions)[0]
-    workbook = with_values(before.workbook, cells)
     if before.reads_elsewhere(cells):
-        again = build_model(workbook, model.path, _tabulated(changes))
+        again = model_with_values(model, {**_typed(changes), **cells}, _tabulated(changes))
         definitions = _merged(again.definitions, before.definitions, definitions)
-        before = again
+        before, workbook = again, again.workbook
+    else:
+        workbook = with_values(before.workbook, cells)
     found = before.changed(workbook, definitions)
     if _filters_of(found) != _filters_of(before) and (faults := filter_faults(found)):
         raise faults[0]
@@ -99,7 +100,7 @@ def _with_typed(model: CompiledModel, changes: Sequence[Change]) -> CompiledMode
     typed, tabulated = _typed(changes), _tabulated(changes)
     if not typed and tabulated == 1:
         return model
-    return build_model(with_values(model.workbook, typed), model.path, tabulated)
+    return model_with_values(model, typed, tabulated)
 
 
 def _tabulated(changes: Iterable[Change]) -> int:

@@ -6,7 +6,7 @@ is computed, not read: a file may hold no saved values, or stale ones.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -15,33 +15,78 @@ import numpy as np
 from xlmc.engine.engine import TEXT_RESULT, Column, Target
 from xlmc.engine.engines import ENGINES
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
-from xlmc.errors import DefinitionError, DefinitionsError
+from xlmc.errors import DefinitionError, DefinitionsError, SimulationError
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir
+from xlmc.excel.workbook.lazy_sheets import with_values
 from xlmc.excel.workbook.reader import read_workbook
-from xlmc.excel.workbook.workbook import Workbook
+from xlmc.excel.workbook.workbook import CellValue, Workbook
 from xlmc.montecarlo.definitions.definitions import Filter
 from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+from xlmc.montecarlo.definitions.feeds import Feed
 from xlmc.montecarlo.definitions.tables.filters import LIMIT_HINT
 from xlmc.montecarlo.distributions.parameters import show
+from xlmc.montecarlo.model.joining import joined
 from xlmc.montecarlo.model.labels import calculate_labels
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.model.needed import filter_limits
 
-__all__ = ["build_model", "filter_faults", "load"]
+__all__ = ["build_model", "fed", "filter_faults", "load", "model_with_values"]
 
 _DRAWN: Final = 64
 """Trials that are looked at beside the base case, in which a quantity may happen to be 0 or 1."""
 
 
-def load(path: str | Path) -> CompiledModel:
+def load(path: str | Path, feeds: Sequence[Feed] = ()) -> CompiledModel:
     """Read a workbook and compile what its forecasts and filters need.
 
+    Args:
+        path: of the workbook.
+        feeds: which of its assumptions take answers of other workbooks, which are read, too.
+
     Raises:
-        WorkbookError: the file cannot be read.
+        WorkbookError: a file cannot be read.
+        SimulationError: the workbooks cannot be joined.
         DefinitionError, FormulaError: as for `build_model`.
     """
-    return build_model(read_workbook(path), Path(path))
+    return fed(build_model(read_workbook(path), Path(path)), feeds)
+
+
+def fed(model: CompiledModel, feeds: Sequence[Feed]) -> CompiledModel:
+    """The model fed by other workbooks, which are read; itself where there are no feeds.
+
+    Raises:
+        WorkbookError, SimulationError, DefinitionError, FormulaError: as for `load`.
+    """
+    if not feeds:
+        return model
+    paths: dict[str, Path] = {}
+    for feed in feeds:
+        source = Path(feed.source)
+        if paths.setdefault(feed.file, source).resolve() != source.resolve():
+            message = f"two of the workbooks are called {feed.file!r}"
+            raise SimulationError(message, where=feed.file, hint="rename one of the files")
+    return joined(model, feeds, {name: load(source) for name, source in paths.items()})
+
+
+def model_with_values(model: CompiledModel, values: Mapping[Cell, CellValue], tabulated: int = 1) -> CompiledModel:
+    """The model of a workbook with values typed into its cells, which is fed as the first one is.
+
+    Args:
+        model: of the workbook as it is.
+        values: cell -> what is typed into it; those of workbooks that feed it stay as they are.
+        tabulated: as for `build_model`.
+
+    Raises:
+        DefinitionError, FormulaError, SimulationError: as for `load`.
+    """
+    feeding = model.definitions.feeding
+    if feeding is None:
+        return build_model(with_values(model.workbook, values), model.path, tabulated)
+    own = {cell: value for cell, value in values.items() if cell.sheet in feeding.first.sheets}
+    alone = build_model(with_values(feeding.first, own), model.path, tabulated)
+    sources = {name: build_model(book, Path(name)) for name, book in feeding.sources.items()}
+    return joined(alone, feeding.feeds, sources)
 
 
 def build_model(workbook: Workbook, path: Path, tabulated: int = 1) -> CompiledModel:

@@ -18,6 +18,7 @@ from xlmc.engine.numpy.numpy_engine import NumpyProgram
 from xlmc.engine.passes.bounds import Bounds, NodeBounds
 from xlmc.errors import Notice, SimulationError
 from xlmc.excel.address import Cell
+from xlmc.excel.formula import ir
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.definitions import Assumption, Definitions
 from xlmc.montecarlo.definitions.evidence import Evidence
@@ -293,6 +294,12 @@ class CompiledModel:
     def read(self) -> frozenset[Cell]:
         """Every cell that the forecasts, filters and checks read, blank cells of ranges among them."""
         return self.lowering.read | (frozenset() if self._checks is None else self._checks.read)
+
+    @property
+    def trees(self) -> dict[Cell, ir.Expression]:
+        """Every formula cell that the forecasts, filters and checks need, with its resolved tree."""
+        of_checks = {} if self._checks is None else dict(self._checks.graph.formulas)
+        return of_checks | dict(self.needed.graph.formulas)
 
     def reads_elsewhere(self, cells: Collection[Cell]) -> bool:
         """Whether anything but the rows of tables may read one of these cells, which are of such rows."""

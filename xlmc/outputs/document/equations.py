@@ -42,6 +42,10 @@ def equations_of(model: CompiledModel) -> list[Equation]:
     for name, sheet in model.workbook.sheets.items():
         if name in needed:
             found += _of_sheet(model.workbook, sheet, needed[name])
+    feeding = model.definitions.feeding
+    for file, book in {} if feeding is None else feeding.sources.items():
+        for name, sheet in model.workbook.links[f"[{file}]"].sheets.items():
+            found += _of_sheet(book, sheet, needed.get(name, set()))
     return found
 
 

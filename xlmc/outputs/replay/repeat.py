@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from xlmc.analysis.results.record import Record, make_record
+from xlmc.analysis.results.record import Record, make_record, recorded_feeds
 from xlmc.analysis.results.record.needed_cells import needed_contents, recorded_cells
 from xlmc.analysis.results.record.record_parts import read_record
 from xlmc.analysis.results.record.settings_table import recorded_settings
@@ -18,7 +20,7 @@ from xlmc.excel.workbook.seal import read_seal
 from xlmc.montecarlo.definitions.run_options import KEPT_INPUTS, RunOptions
 from xlmc.montecarlo.definitions.stopping import GOALS, AcceptedTrials
 from xlmc.montecarlo.loop.version import __version__
-from xlmc.montecarlo.model.loading import build_model
+from xlmc.montecarlo.model.loading import build_model, fed
 from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.outputs.replay.changes import (
     Change,
@@ -40,6 +42,7 @@ if TYPE_CHECKING:
     from xlmc.excel.address import Cell
     from xlmc.excel.workbook.workbook import Workbook
     from xlmc.montecarlo.definitions.definitions import Settings
+    from xlmc.montecarlo.definitions.feeds import Feed
     from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.simulation.simulate import OnProgress
     from xlmc.montecarlo.simulation.simulation import RunResult
@@ -104,16 +107,20 @@ class Replayed:
         return close and bool(self.environment) and not (self.changes or self.fault or self.same_bits)
 
 
-def replay(path: str | Path, *, jobs: int = 1, progress: OnProgress | None = None) -> Replayed:
+def replay(
+    path: str | Path, *, books: Iterable[str | Path] = (), jobs: int = 1, progress: OnProgress | None = None
+) -> Replayed:
     """Repeat a recorded run, and compare it with its record.
 
     Args:
         path: a result workbook, or a saved run.
+        books: workbooks that fed the run, where they do not lie beside the result workbook.
         jobs: threads or processes.
         progress: as for `Model.simulate`.
 
     Raises:
-        WorkbookError: the file cannot be read, holds no record, or one by an xlmc that recorded less.
+        WorkbookError: the file cannot be read, holds no record, or one by an xlmc that recorded less; or a workbook
+            that fed the run is missing, or is not the one that did.
         XlmcError: the workbook cannot be run, though this xlmc made the run, and nothing that was recorded has
             changed.
     """
@@ -123,7 +130,28 @@ def replay(path: str | Path, *, jobs: int = 1, progress: OnProgress | None = Non
         return _replay(run.model.workbook, make_record(run), run.model, jobs, progress)
     with naming_file(str(path)):
         workbook = read_workbook(path)
-        return _replay(workbook, read_record(workbook), None, jobs, progress, path)
+        record = read_record(workbook)
+        return _replay(workbook, record, None, jobs, progress, path, _fed_by(record, path, books))
+
+
+def _fed_by(record: Record, path: Path, books: Iterable[str | Path]) -> tuple[Feed, ...]:
+    """The feeds of a recorded run, with the files that fed it.
+
+    Raises:
+        WorkbookError: one is missing, or is not the one that did.
+    """
+    given = {Path(each).name.casefold(): Path(each) for each in books}
+    found = []
+    for feed, sha256 in recorded_feeds(record):
+        file = given.get(feed.file.casefold(), path.with_name(feed.file))
+        if not file.is_file():
+            message = f"the workbook {feed.file!r}, which fed the run, is not beside it"
+            raise WorkbookError(message, where=path, hint=f"put it there, or name it: --book FOLDER/{feed.file}")
+        if hashlib.sha256(file.read_bytes()).hexdigest() != sha256:
+            message = f"{feed.file} is not the workbook that fed the run: its SHA-256 is not {sha256}"
+            raise WorkbookError(message, where=file, hint=f"find that file, and name it: --book FOLDER/{feed.file}")
+        found.append(replace(feed, source=str(file)))
+    return tuple(found)
 
 
 def recorded_run(path: str | Path, *, progress: OnProgress | None = None) -> RunResult:
@@ -153,13 +181,14 @@ def _replay(
     jobs: int,
     progress: OnProgress | None,
     path: Path | None = None,
+    feeds: Sequence[Feed] = (),
 ) -> Replayed:
     cells, settings = _read_recorded(record, path)
     version = recorded_version(record)
     rules = rules_since(version, cells.values())
     _refuse_incomplete(record, settings, version, path)
     try:
-        model = model or build_model(workbook, path or Path(workbook.name))
+        model = model or fed(build_model(workbook, path or Path(workbook.name)), feeds)
         repeated = _repeat(model, record, settings, jobs, progress)
     except XlmcError as fault:
         changes = tuple(cell_changes(cells, contents_now(workbook, cells)))

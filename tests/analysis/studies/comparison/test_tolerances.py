@@ -6,11 +6,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.analysis.studies.comparison import tolerances
-from xlmc.analysis.studies.comparison.tolerances import Verdict, factor_between, judge, read_tolerances
+from xlmc.analysis.studies.comparison.tolerances import Verdict, judge, read_tolerances
 from xlmc.errors import SimulationError
 from xlmc.excel.address import Cell
+from xlmc.montecarlo.definitions import units
 from xlmc.montecarlo.definitions.definitions import Forecast
+from xlmc.montecarlo.definitions.units import factor_between
 from xlmc.montecarlo.statistics import Estimate
 
 SPEED = Forecast("Chevy delta-V", Cell("S", 1, 1), Cell("S", 1, 1), units="mph")
@@ -103,7 +104,7 @@ IN_SI = {
 
 def test_every_unit_is_as_much_of_the_si_unit_as_it_is():
     listed = {si: dict(row.rsplit(" ", 1) for row in rows.split(", ")) for si, rows in IN_SI.items()}
-    assert {unit for rows in listed.values() for unit in rows} == set(tolerances._UNITS)
+    assert {unit for rows in listed.values() for unit in rows} == set(units._UNITS)
     found = {unit: factor_between(unit, si) for si, rows in listed.items() for unit in rows}
     wanted = {unit: float(factor) for rows in listed.values() for unit, factor in rows.items()}
     assert found == pytest.approx(wanted, rel=1e-14)

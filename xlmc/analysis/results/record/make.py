@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -29,6 +29,7 @@ from xlmc.analysis.results.record.settings_table import settings_section
 from xlmc.analysis.results.statements.in_words import errors_text, generator_text, method_text
 from xlmc.excel.workbook.inject import original_hash
 from xlmc.montecarlo.columns import parts
+from xlmc.montecarlo.definitions.feeds import Feed
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.simulation.simulation import KEPT_INPUTS, ChangedFrom
 
@@ -47,6 +48,7 @@ __all__ = [
     "make_record",
     "processor",
     "quoted_argument",
+    "recorded_feeds",
     "repeat_command",
     "simulate_command",
     "versions",
@@ -84,6 +86,17 @@ def processor() -> dict[str, str]:
 
 CHANGED_FROM: Final = "changed"
 """Key of the section on the workbook that the run's own was made of."""
+
+FEEDS: Final = "feeds"
+"""Key of the section on the workbooks that fed the run."""
+
+_FEED_COLUMNS: Final = (
+    ("assumption", "Assumption"),
+    ("book", "Of"),
+    ("answer", "Takes"),
+    ("file", "Of the workbook"),
+    ("sha256", "SHA-256 of its file"),
+)
 
 _FORMAT: Final = 2
 """The format of the record: from 2 on it holds the settings and the cells that a run can be repeated and checked by."""
@@ -131,6 +144,7 @@ def make_record(simulation: RunResult, command: str | None = None) -> Record:
             _run(simulation, command),
             _file(simulation),
             *([] if simulation.changed_from is None else [_changed_from(simulation.changed_from)]),
+            *_feeds(simulation),
             _counts(simulation),
             _end(simulation),
             _sampling(simulation),
@@ -205,6 +219,36 @@ def changed_from_of(record: Record) -> ChangedFrom | None:
         return None
     changes = tuple(str(row["change"]) for row in record.rows(CHANGED_FROM))
     return ChangedFrom(str(record["changed.name"]), str(record["changed.sha256"]), changes)
+
+
+def _feeds(simulation: RunResult) -> Iterator[Section]:
+    """The other workbooks whose answers fed assumptions; nothing where there are none."""
+    feeding = simulation.model.definitions.feeding
+    if feeding is None:
+        return
+    rows = tuple(
+        (
+            feed.assumption,
+            feed.book or simulation.model.workbook.name,
+            feed.answer,
+            feed.file,
+            feeding.sources[feed.file].sha256,
+        )
+        for feed in feeding.feeds
+    )
+    yield Section(FEEDS, "Fed by other workbooks, trial by trial", table=RecordTable(_FEED_COLUMNS, rows))
+
+
+def recorded_feeds(record: Record) -> list[tuple[Feed, str]]:
+    """The feeds of a recorded run, each with the SHA-256 of the workbook that fed; their sources are file names."""
+    if FEEDS not in record:
+        return []
+    found = []
+    for row in record.rows(FEEDS):
+        texts = {key: str(row[key]) for key, _ in _FEED_COLUMNS}
+        book = "" if texts["book"] == str(record["file.name"]) else texts["book"]
+        found.append((Feed(texts["assumption"], book, texts["answer"], texts["file"]), texts["sha256"]))
+    return found
 
 
 def _counts(simulation: RunResult) -> Section:
@@ -371,6 +415,9 @@ def repeat_command(simulation: RunResult) -> str:
         book = f"COPY{Path(book).suffix}"
         first = f"type the changes that this record lists into a copy of {changed.name}, and then: "
     arguments = simulation.repeating.arguments(simulation.model.definitions.settings)
+    feeding = simulation.model.definitions.feeding
+    for feed in () if feeding is None else feeding.feeds:
+        arguments += ["--feed", feed.text]
     return first + simulate_command(book, arguments)
 
 

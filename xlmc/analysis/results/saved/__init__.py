@@ -1,7 +1,8 @@
 """Saved runs: a finished run in one file, with the workbook it was made from, to be opened as a `RunResult` again.
 
-The file is a zip package whose entries are stored as they are: `workbook` (the bytes of the workbook), `columns/0.npy`
-and so on, and `run.json`, which has the settings, the counts, and a SHA-256 of every other entry.
+The file is a zip package whose entries are stored as they are: `workbook` (the bytes of the workbook), `fed/0` and so
+on (the workbooks that fed it), `columns/0.npy` and so on, and `run.json`, which has the settings, the counts, and a
+SHA-256 of every other entry.
 """
 
 from __future__ import annotations

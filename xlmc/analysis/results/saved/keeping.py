@@ -23,6 +23,7 @@ from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.simulation.simulation import Origin
 
 if TYPE_CHECKING:
+    from xlmc.excel.workbook.workbook import Workbook
     from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["check_run_path", "keep"]
@@ -82,6 +83,8 @@ def _entries(simulation: RunResult) -> Iterator[tuple[str, int, Iterator[bytes]]
     """Name, size and bytes of every entry; the last one holds the checksums of the others."""
     data = simulation.model.workbook.data
     yield WORKBOOK, len(data), iter([data])
+    for number, source in enumerate(_sources(simulation).values()):
+        yield f"fed/{number}", len(source.data), iter([source.data])
     listed: list[dict[str, Any]] = []
     for number, column in enumerate(_columns(simulation)):
         digest = hashlib.sha256()
@@ -92,6 +95,21 @@ def _entries(simulation: RunResult) -> Iterator[tuple[str, int, Iterator[bytes]]
         listed.append({**about, "entry": entry, "sha256": digest.hexdigest()})
     document = json.dumps(_document(simulation, listed), ensure_ascii=False, allow_nan=False, indent=1).encode()
     yield RUN, len(document), iter([document])
+
+
+def _sources(simulation: RunResult) -> dict[str, Workbook]:
+    """The workbooks that fed the run, by file name."""
+    feeding = simulation.model.definitions.feeding
+    return {} if feeding is None else dict(feeding.sources)
+
+
+def _feeding_document(simulation: RunResult) -> dict[str, Any]:
+    feeding = simulation.model.definitions.feeding
+    if feeding is None:
+        return {}
+    feeds = [{**asdict(feed), "source": feed.file} for feed in feeding.feeds]
+    books = [{"name": name, "sha256": book.sha256} for name, book in _sources(simulation).items()]
+    return {"feeds": feeds, "fed_by": books}
 
 
 def _columns(simulation: RunResult) -> Iterator[_Column]:
@@ -111,6 +129,7 @@ def _document(simulation: RunResult, columns: list[dict[str, Any]]) -> dict[str,
         "format": FORMAT,
         "version": VERSION,
         "workbook": {"name": model.workbook.name, "sha256": model.workbook.sha256},
+        **_feeding_document(simulation),
         "settings": settings_document(simulation.settings),
         "order": [name_key(name) for name in simulation.plan.order],
         "block": simulation.block,

@@ -35,9 +35,11 @@ from xlmc.errors import SimulationError, WorkbookError, XlmcError
 from xlmc.excel.workbook.package import LIMITS
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.montecarlo.columns import ColumnStore, parts
+from xlmc.montecarlo.definitions.feeds import Feed
 from xlmc.montecarlo.diagnostics.weighing import weighing
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.forecast_filters import filters_by_forecast
+from xlmc.montecarlo.model.joining import joined
 from xlmc.montecarlo.model.loading import build_model
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
@@ -108,11 +110,30 @@ def _model(package: Package, found: Document, path: Path) -> CompiledModel:
         about = build(_Book, found["workbook"], "its workbook")
     except (KeyError, ValueError) as error:
         raise _damage_error(path, error) from error
+    alone = _model_of(package, WORKBOOK, about, path)
+    if "feeds" not in found:
+        return alone
+    try:
+        feeds = tuple(build(Feed, each, "its feeds") for each in found["feeds"])
+        books = [build(_Book, each, "the workbooks that fed it") for each in found["fed_by"]]
+        sources = {each.name: _model_of(package, f"fed/{n}", each, path) for n, each in enumerate(books)}
+        require({feed.source for feed in feeds} == sources.keys(), "the workbooks that fed it")
+    except (KeyError, TypeError, ValueError) as error:
+        raise _damage_error(path, error) from error
+    return joined(alone, feeds, sources)
+
+
+def _model_of(package: Package, entry: str, about: _Book, path: Path) -> CompiledModel:
+    """The model of a workbook in the package.
+
+    Raises:
+        WorkbookError: it is not the one that was run.
+    """
     name = Path(about.name).name
-    if package.size(WORKBOOK) > LIMITS.total:
+    if package.size(entry) > LIMITS.total:
         raise WorkbookError(f"its workbook is larger than {LIMITS.total >> 20} MB", where=path, hint=AGAIN)
-    with package.reading(WORKBOOK) as entry:
-        data = entry.read()
+    with package.reading(entry) as reader:
+        data = reader.read()
     if hashlib.sha256(data).hexdigest() != about.sha256:
         raise WorkbookError("the workbook in the saved run is not the one that was run", where=path, hint=AGAIN)
     return build_model(read_workbook(data, name), Path(name))

@@ -19,9 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.analysis.results.statements.in_words import distribution_text
-from xlmc.analysis.studies.comparison.tolerances import factor_between
 from xlmc.analysis.studies.comparison.variations import with_changes
 from xlmc.montecarlo.definitions.definitions import Assumption, Filter
+from xlmc.montecarlo.definitions.units import factor_between
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.model import CompiledModel

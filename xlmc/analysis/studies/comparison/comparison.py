@@ -21,7 +21,6 @@ from xlmc.analysis.studies.comparison.tolerances import (
     Tolerances,
     Verdict,
     chance_of,
-    factor_between,
     in_tolerances,
     judge,
     read_tolerances,
@@ -29,6 +28,7 @@ from xlmc.analysis.studies.comparison.tolerances import (
 from xlmc.analysis.studies.comparison.variations import with_plain_sampling
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.definitions import Forecast
+from xlmc.montecarlo.definitions.units import factor_between
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import simulate

@@ -17,10 +17,10 @@ from typing import Final, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.analysis.studies.comparison.tolerances import factor_between
 from xlmc.errors import SimulationError
 from xlmc.excel.address import InFormula
 from xlmc.montecarlo.definitions.definitions import Assumption, Copula, Definitions, Forecast
+from xlmc.montecarlo.definitions.units import factor_between
 from xlmc.montecarlo.distributions.empirical import Empirical
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.model import CompiledModel

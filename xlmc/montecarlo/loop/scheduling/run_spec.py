@@ -58,7 +58,8 @@ class RunSpec:
         """The specification of a run of this model."""
         bare = replace(model.workbook, parts={}, data=b"")  # the file as it was: only the result sheets need it
         needed = plan if plan is not None and plan.size else None  # independent trials may be any number
-        return cls(bare, model.definitions, model.path, engine, seed, block, needed)
+        definitions = replace(model.definitions, feeding=None)  # who feeds it is in its formulas by now
+        return cls(bare, definitions, model.path, engine, seed, block, needed)
 
     def pack(self) -> bytes:
         """The specification and the software that it was made with, as bytes for `unpacked`."""

@@ -7,7 +7,7 @@ docs/python.md lists, and stays as it is from version to version.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
@@ -532,11 +532,20 @@ def open_run(path: str | Path) -> Simulation:
     return Simulation(open_run(path))
 
 
-def sensitivities(run: Simulation) -> Sensitivities:
-    """Compute what the answers of a finished run depend on. Nothing random is in it but the run's own draws."""
+def sensitivities(run: Simulation, *, assumptions: Collection[str] = ()) -> Sensitivities:
+    """Compute what the answers of a finished run depend on. Nothing random is in it but the run's own draws.
+
+    Args:
+        run: with one forecast or more.
+        assumptions: names of those that are measured for every forecast. Where there are more than 20, the others are
+            measured for a forecast only if they are among the 20 that matter most for it.
+
+    Raises:
+        SimulationError: no assumption that is drawn has one of these names.
+    """
     from xlmc.analysis.studies.sensitivity import sensitivities
 
-    return sensitivities(run._run)
+    return sensitivities(run._run, assumptions=assumptions)
 
 
 def compare(

@@ -192,6 +192,7 @@ RULES: Final = (
     Rule("0.12.0", "cells that read a broken link to another workbook are #REF!", re.compile(r"\[\d+\]")),
     Rule("0.12.0", "what stands beside formulas that nothing calculated is no saved value", _ANY),
     Rule("0.12.0", "shares of variance are found in finer classes where a forecast jumps or bends", _ANY),
+    Rule("0.12.0", "of more than 20 assumptions, those are measured that matter most for each forecast", _ANY),
     Rule("0.12.0", "yes/no answers have the interval of their share", _ANY),
     Rule("0.12.0", "without filters the share of accepted trials is exact", _ANY),
     Rule("0.12.0", "yes/no answers, and differences of them, have the interval of their share", _ANY),

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
+from xlmc.analysis.studies.sensitivity.influences import MEASURED
 from xlmc.analysis.studies.sensitivity.measures import Noise, noise
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
@@ -158,8 +159,11 @@ def sensitivity_sentences(found: Sensitivities) -> list[str]:
             "Variance explained “at least” so much: the forecast jumps or bends more finely than the trials show, or a "
             "few trials decide the number, and it may be larger than its error says. More trials help."
         )
-    if found.omitted:
-        said.append(f"{found.omitted:,} assumptions with less influence in a first, coarse look were left out.")
+    if omitted := max((each.omitted for each in found.forecasts), default=0):
+        said.append(
+            f"For each forecast those {MEASURED} assumptions are measured that matter most in a first look at all; the "
+            f"other {omitted:,} have less influence."
+        )
     if found.medians:
         said.append(f"Held at their medians, because their cells are blank: {', '.join(found.medians)}.")
     return said

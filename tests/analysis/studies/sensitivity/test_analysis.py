@@ -11,7 +11,8 @@ import pytest
 from simulated import simulated
 
 from xlmc.analysis.studies.sensitivity import sensitivities
-from xlmc.analysis.studies.sensitivity.influences import MOST_ASSUMPTIONS
+from xlmc.analysis.studies.sensitivity.influences import MEASURED
+from xlmc.errors import SimulationError
 from xlmc.montecarlo.model.loading import load
 
 EXAMPLES = Path(__file__).resolve().parents[4] / "examples"
@@ -83,14 +84,38 @@ def many(book, n):
     return book(cells, {f"a{i}": {"cell": f"A{i}", "low": 0.0, "high": 1.0} for i in range(1, n + 1)}, {"y": "B1"})
 
 
-def test_of_very_many_assumptions_the_influential_are_kept(book):
-    """Also the last one, whose effect falls and rises."""
-    n = MOST_ASSUMPTIONS + 60
-    found = sensitivities(simulated(many(book, n), 4000, 1))
-    assert found.omitted == 60
-    assert len(found["y"].influences) == len(found["y"].bars) == MOST_ASSUMPTIONS
+def test_of_many_assumptions_those_that_matter_are_measured(book):
+    """Also the last one, whose effect falls and rises. The others still count where noise and shares are judged.
+
+    Their squared correlations are noise of 1/n each; its sum is known to √(2 · 60)/2,048, three times that is allowed.
+    """
+    n = MEASURED + 60
+    run = simulated(many(book, n), 4000, 1)
+    found = sensitivities(run)
+    assert (found.omitted, found["y"].omitted) == (60, 60)
+    assert len(found["y"].influences) == len(found["y"].bars) == MEASURED
     assert {each.assumption for each in found["y"].influences[:2]} == {"a1", f"a{n}"}
     assert {each.assumption for each in found["y"].bars[:2]} == {"a1", f"a{n}"}
+    every = sensitivities(run, assumptions=[f"a{i}" for i in range(1, n + 1)])
+    assert (every.omitted, len(every["y"].influences), len(every["y"].bars)) == (0, n, n)
+    whole_square = influence(every, "y", "a1").rank_correlation.value ** 2
+    for each in found["y"].influences:
+        whole = influence(every, "y", each.assumption)
+        assert each.explained_floor == whole.explained_floor
+        noise = (60 / run.accepted + 3 * math.sqrt(2 * 60) / 2048) / whole_square
+        assert each.contribution.value == pytest.approx(whole.contribution.value, abs=noise)
+
+
+def test_an_assumption_that_is_asked_for_is_measured(book):
+    n = MEASURED + 60
+    run = simulated(many(book, n), 4000, 1)
+    plain = sensitivities(run)["y"]
+    other = next(f"a{i}" for i in range(2, n) if f"a{i}" not in {each.assumption for each in plain.influences})
+    asked = sensitivities(run, assumptions=[f" {other.upper()}"])["y"]
+    assert other in {each.assumption for each in asked.influences}
+    assert other in {bar.assumption for bar in asked.bars}
+    with pytest.raises(SimulationError, match="No assumption that is drawn is called 'b1'"):
+        sensitivities(run, assumptions=["b1"])
 
 
 @pytest.mark.parametrize("sampling", ["lhs", "lhs500", "sobol"])

@@ -22,8 +22,6 @@ from xlmc.analysis.studies.sensitivity.given_data import (
     explained_floor,
     explained_share,
     rank_correlation,
-    shares,
-    standardise,
 )
 from xlmc.analysis.studies.sensitivity.pull_errors import Units
 from xlmc.analysis.studies.sensitivity.ranked import Ranked
@@ -177,16 +175,6 @@ def test_the_share_does_not_know_the_unit(columns, factor, offset):
     units = Units.of(x.size)
     plain, other = explained_share(Ranked.of(x), y, units), explained_share(Ranked.of(x), factor * y + offset, units)
     assert other.value == pytest.approx(plain.value, abs=1e-6, nan_ok=True)
-
-
-@settings(max_examples=60)
-@given(COLUMNS)
-def test_the_quick_share_is_the_share(columns):
-    x, y = columns
-    z = standardise(y)
-    if z is not None:
-        slow = explained_share(Ranked.of(x), y, Units.of(x.size))
-        assert shares(Ranked.of(x), z[None, :])[0] == pytest.approx(slow.value, abs=1e-9)
 
 
 @given(st.lists(st.integers(-500, 500).map(lambda n: n / 500), min_size=1, max_size=12))

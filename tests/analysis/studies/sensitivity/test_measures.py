@@ -23,7 +23,7 @@ def influence(**given):
 
 
 def of(*influences):
-    return noise(ForecastSensitivity("f", "", 1000, influences, None, ()))
+    return noise(ForecastSensitivity("f", "", 1000, influences, 0, None, ()))
 
 
 def test_what_is_strong_is_no_noise():

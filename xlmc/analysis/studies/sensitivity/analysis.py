@@ -9,15 +9,18 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from xlmc.analysis.studies.sensitivity.influences import influences, ranked_assumptions
+from xlmc.analysis.studies.sensitivity.influences import MEASURED, Chosen, choose, influences
 from xlmc.analysis.studies.sensitivity.limit_trials import TriedLimit, limit_trials
 from xlmc.analysis.studies.sensitivity.measures import FilterLimit, ForecastSensitivity, Influence, Sensitivities
 from xlmc.analysis.studies.sensitivity.moved_limit import moved_limit
 from xlmc.analysis.studies.sensitivity.one_at_a_time import one_at_a_time
 from xlmc.analysis.studies.sensitivity.pick_and_freeze import SobolRun, pick_and_freeze, why_not
+from xlmc.errors import SimulationError
+from xlmc.montecarlo.distributions.spelling import name_key
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Forecast
+    from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["sensitivities"]
@@ -27,40 +30,68 @@ _MOST_LIMIT_FORECASTS: Final = 12
 """The most limits; more would make no readable charts, and take long."""
 
 _WORDS: Final = {">=": "at least", "<=": "at most", ">": "above", "<": "below"}
-_FOUND: Final[WeakKeyDictionary[RunResult, dict[tuple[int, ...], Sensitivities]]] = WeakKeyDictionary()
-"""By the numbers of the forecasts. Sheets, page and JSON of one run want the same."""
+_FOUND: Final[WeakKeyDictionary[RunResult, dict[tuple[tuple[int, ...], frozenset[str]], Sensitivities]]] = (
+    WeakKeyDictionary()
+)
+"""By the numbers of the forecasts and the assumptions asked for. Sheets, page and JSON of one run want the same."""
 
 
 def sensitivities(
-    simulation: RunResult, names: Collection[str] | None = None, told: Callable[[float], None] = lambda share: None
+    simulation: RunResult,
+    names: Collection[str] | None = None,
+    told: Callable[[float], None] = lambda share: None,
+    *,
+    assumptions: Collection[str] = (),
 ) -> Sensitivities:
-    """What the answers of a finished run depend on. Nothing random is in it but the run's own draws.
+    """Say what the answers of a finished run depend on. Nothing random is in it but the run's own draws.
 
     Args:
         simulation: the run.
         names: of the forecasts that are wanted; None for all. Of fewer, more trials may be examined.
         told: takes the share of the work that is done.
+        assumptions: names of those that are measured for every forecast; of more than 20, else only the 20 are that
+            matter most for each.
+
+    Raises:
+        SimulationError: no assumption that is drawn has one of these names.
     """
     model, known = simulation.model, _FOUND.setdefault(simulation, {})
     wanted = tuple(i for i, each in enumerate(model.forecasts) if names is None or each.name in names)
-    if wanted not in known:
-        known[wanted] = _analyse(simulation, wanted, told)
-    return known[wanted]
+    asked = frozenset(_live_name(model, name) for name in assumptions)
+    if (wanted, asked) not in known:
+        known[wanted, asked] = _analyse(simulation, wanted, asked, told)
+    return known[wanted, asked]
 
 
-def _analyse(simulation: RunResult, wanted: Sequence[int], told: Callable[[float], None]) -> Sensitivities:
+def _live_name(model: CompiledModel, name: str) -> str:
+    """Return the name as defined, of a name as it is typed."""
+    for assumption in model.live:
+        if name_key(assumption.name) == name_key(name):
+            return assumption.name
+    raise SimulationError(
+        f"No assumption that is drawn is called {name!r}",
+        hint=f"They are {', '.join(repr(a.name) for a in model.live) or 'none'}",
+    )
+
+
+def _analyse(
+    simulation: RunResult, wanted: Sequence[int], asked: Collection[str], told: Callable[[float], None]
+) -> Sensitivities:
     model = simulation.model
     forecasts = [model.forecasts[index] for index in wanted]
-    assumptions = ranked_assumptions(simulation)
-    found = influences(simulation, assumptions, forecasts, lambda share: told(0.5 * share))
-    moves = one_at_a_time(model, assumptions, wanted)
-    reason = why_not(simulation) if assumptions else "Sobol indices are not given: no assumption is drawn"
+    chosen = choose(simulation, forecasts, asked)
+    found = influences(simulation, chosen, forecasts, lambda share: told(0.5 * share))
+    moves = one_at_a_time(model, [a.name for a in model.live], wanted, MEASURED, asked)
+    reason = why_not(simulation) if model.live else "Sobol indices are not given: no assumption is drawn"
     told(0.5)
     sobol = SobolRun(0, {})
     if not reason:
-        seed = simulation.settings.seed
         sobol = pick_and_freeze(
-            model, assumptions, simulation.trials, seed, wanted, lambda share: told(0.5 + 0.5 * share)
+            model,
+            _measured_for(chosen, wanted),
+            simulation.trials,
+            simulation.settings.seed,
+            lambda share: told(0.5 + 0.5 * share),
         )
     limits = limit_trials(simulation, _MOST_LIMITS, wanted[:_MOST_LIMIT_FORECASTS])
     return Sensitivities(
@@ -72,12 +103,13 @@ def _analyse(simulation: RunResult, wanted: Sequence[int], told: Callable[[float
                 units=forecast.units,
                 trials=each.trials,
                 influences=tuple(_with_sobol(influence, sobol, index) for influence in each.found),
+                omitted=len(model.live) - len(names),
                 base=moves.base[index],
                 bars=moves.bars[index],
             )
-            for index, forecast, each in zip(wanted, forecasts, found, strict=True)
+            for index, forecast, each, names in zip(wanted, forecasts, found, chosen.names, strict=True)
         ),
-        omitted=len(model.live) - len(assumptions),
+        omitted=len(model.live) - len(chosen.most_influential),
         medians=moves.medians,
         sobol_reason=reason,
         sobol_trials=sobol.pairs,
@@ -85,6 +117,15 @@ def _analyse(simulation: RunResult, wanted: Sequence[int], told: Callable[[float
         omitted_limits=limits.omitted,
         varying_limits=limits.varying,
     )
+
+
+def _measured_for(chosen: Chosen, wanted: Sequence[int]) -> dict[str, list[int]]:
+    """Return the numbers of the forecasts that each assumption is measured for, the most influential first."""
+    found: dict[str, list[int]] = {name: [] for name in chosen.most_influential}
+    for index, names in zip(wanted, chosen.names, strict=True):
+        for name in names:
+            found[name].append(index)
+    return found
 
 
 def _with_sobol(influence: Influence, run: SobolRun, forecast: int) -> Influence:

@@ -66,7 +66,6 @@ __all__ = [
     "explained_share",
     "fit_lines",
     "rank_correlation",
-    "shares",
     "standardise",
 ]
 
@@ -93,16 +92,6 @@ def explained_share(x: Ranked, y: Floats, units: Units) -> Estimate:
     pulls[x.order] = (1.0 - value) * z * z - residual * residual * (n / (n - classes.freedom))
     fitting = math.sqrt(2.0 * (classes.freedom - 1)) / n * (1.0 - value)
     return units.estimate(value, units.error_of_fit(pulls - pulls.mean(), fitting))
-
-
-def shares(x: Ranked, z: Floats) -> Floats:
-    """`(f,)` the same, without errors, of forecasts `(f, n)` that are standardised: mean 0, mean square 1."""
-    classes, sorted_ = x.classes, z[:, x.order]
-    sums = np.add.reduceat(sorted_, classes.starts, axis=1)
-    lines = np.add.reduceat(sorted_ * classes.centred, classes.starts, axis=1)
-    fitted = np.sum(sums**2 / classes.sizes, axis=1) + np.sum(lines**2 / classes.squares, axis=1)
-    n, k = x.n, classes.freedom
-    return np.asarray(1.0 - (n - fitted) / (n - k) * ((n - 1.0) / n))
 
 
 def explained_floor(x: Ranked, assumptions: int) -> float:
@@ -226,15 +215,19 @@ def rank_correlation(x: Ranked, y: Ranked, units: Units) -> Estimate:
     return Estimate(value, error, (math.tanh(z - half), math.tanh(z + half)), x.n)
 
 
-def contributions(correlations: Sequence[Estimate]) -> list[Estimate]:
-    """Each squared correlation over the sum of all, a share, with its correlation's sign.
+def contributions(correlations: Sequence[Estimate], others: float = 0.0) -> list[Estimate]:
+    """Divide each squared correlation by the sum of all: a share, with its correlation's sign.
 
     Their errors are those of the correlations, taken to be independent of each other.
+
+    Args:
+        correlations: those that are measured.
+        others: the sum of the squares of all others.
     """
     r = np.array([each.value for each in correlations])
     errors = np.array([math.nan if each.error is None else each.error for each in correlations])
     squares = np.nan_to_num(r) ** 2
-    total = float(squares.sum())
+    total = float(squares.sum()) + others
     if total == 0.0:
         return [Estimate(math.nan, n=each.n) for each in correlations]
     share = squares / total

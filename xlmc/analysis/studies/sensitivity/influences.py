@@ -1,4 +1,6 @@
-"""Every assumption against every forecast, on the accepted trials: all, or so many that every error is small enough.
+"""Assumptions against forecasts, on the accepted trials: all, or so many that every error is small enough.
+
+Where there are many assumptions, `first_look` chooses those that are measured for a forecast.
 
 Of independent trials the first ones are examined; of a Latin hypercube or Sobol run the first ones of each of its first
 replicates, because later ones of a Sobol replicate fill the gaps that earlier ones left and are no sample alone.
@@ -7,22 +9,21 @@ replicates, because later ones of a Sobol replicate fill the gaps that earlier o
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.analysis.studies.sensitivity.explained import Explained, explained
+from xlmc.analysis.studies.sensitivity.first_look import LOOK_TRIALS, first_look
 from xlmc.analysis.studies.sensitivity.given_data import (
     contributions,
     dependence,
     dependence_floor,
     explained_floor,
     rank_correlation,
-    shares,
-    standardise,
 )
 from xlmc.analysis.studies.sensitivity.measures import Influence
 from xlmc.analysis.studies.sensitivity.pull_errors import Units
@@ -33,10 +34,10 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Forecast
     from xlmc.montecarlo.simulation.simulation import RunResult
 
-__all__ = ["MOST_ASSUMPTIONS", "Influences", "influences", "ranked_assumptions"]
+__all__ = ["MEASURED", "Chosen", "Influences", "choose", "influences"]
 
-MOST_ASSUMPTIONS: Final = 200
-"""Examined closely; of more, those that explain most of some forecast in a first look."""
+MEASURED: Final = 20
+"""Assumptions that are measured for a forecast; of more, those that a first look finds."""
 
 Floats = NDArray[np.float64]
 Ids = NDArray[np.int64]
@@ -45,9 +46,6 @@ _MOST_TRIALS: Final = 1 << 13
 
 _LEAST_TRIALS: Final = 20
 """Fewer say nothing of an influence."""
-
-_COARSE_TRIALS: Final = 1 << 10
-"""The trials of a first look at very many assumptions; they give a rank correlation to 0.03."""
 
 _FEWEST = 1 << 11
 _VALUES = 1 << 20
@@ -74,44 +72,71 @@ class Influences:
     coarse: tuple[str, ...] = ()
 
 
-def ranked_assumptions(simulation: RunResult) -> list[str]:
-    """The live assumptions to examine closely: all in their order, or of very many the most influential first."""
+@dataclass(frozen=True)
+class Chosen:
+    """The assumptions that are measured for each forecast.
+
+    Attributes:
+        names: one a forecast, each in the order of the workbook.
+        others: `(forecasts,)` the squared rank correlations of the assumptions that are left out, summed.
+        scores: assumption -> the share of some forecast that it explains in the first look; empty where all are chosen.
+    """
+
+    names: tuple[tuple[str, ...], ...]
+    others: Floats
+    scores: Mapping[str, float]
+
+    @property
+    def most_influential(self) -> list[str]:
+        """All that are measured for some forecast: in their order, or those with the highest scores first."""
+        every = dict.fromkeys(name for names in self.names for name in names)
+        return sorted(every, key=lambda name: -self.scores.get(name, 0.0))
+
+
+def choose(simulation: RunResult, forecasts: Sequence[Forecast], asked: Collection[str] = ()) -> Chosen:
+    """Choose the live assumptions to measure for each forecast: all, or of many those that a first look finds.
+
+    Args:
+        simulation: the run.
+        forecasts: those that are wanted.
+        asked: names of assumptions that are measured for every forecast.
+    """
     live = [a.name for a in simulation.model.live]
-    if len(live) <= MOST_ASSUMPTIONS:
-        return live
-    rows, _ = _examined_rows(simulation, _COARSE_TRIALS)
-    forecasts = [_read(simulation.forecasts[f.name], rows) for f in simulation.model.forecasts]
-    if rows.size < _LEAST_TRIALS:
-        return live[:MOST_ASSUMPTIONS]
-    columns = [standardise(np.where(np.isnan(y), np.nanmean(y), y)) for y in forecasts if not np.isnan(y).all()]
-    z = np.array([column for column in columns if column is not None])
-    if not z.size:
-        return live[:MOST_ASSUMPTIONS]
-    scores = [float(shares(Ranked.of(_read_draws(simulation, name, rows)), z).max()) for name in live]
-    first = np.argsort(-np.asarray(scores), kind="stable")[:MOST_ASSUMPTIONS]
-    return [live[index] for index in first]
+    rows, _ = _examined_rows(simulation, LOOK_TRIALS)
+    if len(live) <= MEASURED or rows.size < _LEAST_TRIALS or not forecasts:
+        return Chosen(tuple(tuple(live) for _ in forecasts), np.zeros(len(forecasts)), {})
+    rows = rows[:LOOK_TRIALS]
+    look = first_look(
+        [_read_draws(simulation, name, rows) for name in live],
+        [_read(simulation.forecasts[each.name], rows) for each in forecasts],
+    )
+    always = {index for index, name in enumerate(live) if name in asked}
+    squares = look.squares - (1.0 - look.squares) / (rows.size - 2.0)  # less what noise gives on average (Ezekiel 1930)
+    chosen = [sorted(always.union(look.first(number, MEASURED).tolist())) for number in range(len(forecasts))]
+    return Chosen(
+        names=tuple(tuple(live[index] for index in indices) for indices in chosen),
+        others=np.array([max(np.delete(squares[:, i], indices).sum(), 0.0) for i, indices in enumerate(chosen)]),
+        scores=dict(zip(live, look.scores.max(axis=1).tolist(), strict=True)),
+    )
 
 
 def influences(
     simulation: RunResult,
-    assumptions: Sequence[str],
+    chosen: Chosen,
     forecasts: Sequence[Forecast],
     told: Callable[[float], None] = lambda share: None,
 ) -> list[Influences]:
-    """The influences of the assumptions of these names on each of these forecasts; `told` takes the share done."""
-    rows, replicate = _examined_rows(simulation, _trials_for(len(assumptions) * len(forecasts)))
-    draws = [_read_draws(simulation, name, rows) for name in assumptions]
+    """Measure the influences of the chosen assumptions on each of these forecasts; `told` takes the share done."""
+    rows, replicate = _examined_rows(simulation, _trials_for(sum(map(len, chosen.names))))
     units = {a.name: a.units for a in simulation.model.live}
-    named = [(name, units[name]) for name in assumptions]
+    draws = {name: _read_draws(simulation, name, rows) for name in chosen.most_influential}
     tables: dict[bytes, _Table] = {}
     found = []
-    for forecast in forecasts:
+    for forecast, names, others in zip(forecasts, chosen.names, chosen.others.tolist(), strict=True):
         y = _read(simulation.forecasts[forecast.name], rows)
         known = ~np.isnan(y)
-        key = known.tobytes()
-        if key not in tables:
-            tables[key] = _Table.of(draws, replicate, known)
-        found.append(tables[key].influences(named, y[known]))
+        table = tables.setdefault(known.tobytes(), _Table(draws, _units_of(replicate, known), known))
+        found.append(table.influences({name: units[name] for name in names}, y[known], others, len(units)))
         told(len(found) / len(forecasts))
     for trials in _FINE_TRIALS:
         pairs = sum(len(each.coarse) for each in found)
@@ -174,22 +199,32 @@ def _read_draws(simulation: RunResult, assumption: str, rows: NDArray[np.intp]) 
 class _Table:
     """The draws of the trials in which a forecast is a number, each column ranked once for all forecasts like it."""
 
-    columns: list[Ranked]
+    draws: Mapping[str, Floats]
     units: Units
+    known: NDArray[np.bool_]
+    _ranked: dict[str, Ranked] = field(default_factory=dict)
 
-    @classmethod
-    def of(cls, draws: Sequence[Floats], replicate: Ids | None, known: NDArray[np.bool_]) -> _Table:
-        units = _units_of(replicate, known)
-        enough = units.n >= _LEAST_TRIALS
-        return cls([Ranked.of(column[known]) for column in draws] if enough else [], units)
+    def column(self, assumption: str) -> Ranked:
+        """Return the draws of an assumption, ranked."""
+        if assumption not in self._ranked:
+            self._ranked[assumption] = Ranked.of(self.draws[assumption][self.known])
+        return self._ranked[assumption]
 
-    def influences(self, named: Sequence[tuple[str, str]], y: Floats) -> Influences:
-        """The influences of the assumptions with these names and units on one forecast."""
-        if not self.columns or not (ranked := Ranked.of(y)).varies:
+    def influences(self, named: Mapping[str, str], y: Floats, others: float, count: int) -> Influences:
+        """Measure the influences of assumptions on one forecast.
+
+        Args:
+            named: the assumptions' names and units.
+            y: `(n,)` the forecast.
+            others: the sum of the squared rank correlations of the assumptions that are not measured.
+            count: of all assumptions, the largest of which noise may be.
+        """
+        if self.units.n < _LEAST_TRIALS or not (ranked := Ranked.of(y)).varies:
             return Influences(int(y.size), ())
-        correlations = [rank_correlation(x, ranked, self.units) for x in self.columns]
-        shares_of = [explained(x, y, self.units) for x in self.columns]
-        parts = zip(named, self.columns, correlations, contributions(correlations), shares_of, strict=True)
+        columns = [self.column(name) for name in named]
+        correlations = [rank_correlation(x, ranked, self.units) for x in columns]
+        shares_of = [explained(x, y, self.units) for x in columns]
+        parts = zip(named.items(), columns, correlations, contributions(correlations, others), shares_of, strict=True)
         found = [
             Influence(
                 assumption=name,
@@ -198,13 +233,13 @@ class _Table:
                 contribution=contribution,
                 explained=share.share,
                 explained_at_least=share.at_least,
-                explained_floor=explained_floor(x, len(named)),
+                explained_floor=explained_floor(x, count),
                 dependence=dependence(x, ranked, self.units),
-                dependence_floor=dependence_floor(x, len(named)),
+                dependence_floor=dependence_floor(x, count),
             )
             for (name, units), x, correlation, contribution, share in parts
         ]
-        coarse = tuple(name for (name, _), share in zip(named, shares_of, strict=True) if not share.coarse_enough)
+        coarse = tuple(name for name, share in zip(named, shares_of, strict=True) if not share.coarse_enough)
         return Influences(int(y.size), tuple(sorted(found, key=_by_share)), coarse)
 
 

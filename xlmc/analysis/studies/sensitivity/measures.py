@@ -125,15 +125,17 @@ class ForecastSensitivity:
         forecast, units: its name and unit.
         trials: accepted trials that the influences rest on, in which it is a number.
         influences: by the variance explained, the largest first; empty where the trials are too few, or
-            the forecast or every assumption does not vary.
+            the forecast or every assumption does not vary. Of more than 20 assumptions, the 20 that a first look finds.
+        omitted: live assumptions that were not measured, because the first look found less influence.
         base: the forecast with every assumption at its base value; None where that is no number.
-        bars: tornado and spider, by `span`, the widest first.
+        bars: tornado and spider, by `span`, the widest first; of more than 20 assumptions, the widest 20.
     """
 
     forecast: str
     units: str
     trials: int
     influences: tuple[Influence, ...]
+    omitted: int
     base: float | None
     bars: tuple[Bar, ...]
 
@@ -215,8 +217,7 @@ class Sensitivities:
         examined: accepted trials that the influences rest on, the first ones of the run (or of each of its
             replicates); fewer than `accepted` where all would take long.
         forecasts: one a forecast, in the order of the workbook.
-        omitted: live assumptions that were left out, because there are very many: those that explain least in a first,
-            coarse look.
+        omitted: live assumptions that are measured for no forecast.
         medians: assumptions without a base value, which tornado and spider hold at their median.
         sobol_reason: why there are no Sobol indices; empty where there are.
         sobol_trials: pairs of trials that the Sobol indices rest on; 0 where there are none.
@@ -269,7 +270,7 @@ class Noise:
 
 def noise(found: ForecastSensitivity) -> tuple[Noise, ...]:
     """The noise of the influences on a forecast, in their order."""
-    count = max(len(found.influences), 1)
+    count = max(len(found.influences) + found.omitted, 1)
     each = 1.0 - (1.0 - _CHANCE) ** (1.0 / count)
     return tuple(_noise(one, _errors(each / 2.0), _errors(each)) for one in found.influences)
 

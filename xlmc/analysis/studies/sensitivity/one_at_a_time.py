@@ -7,6 +7,7 @@ one that the filters would reject; that is marked.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -43,7 +44,11 @@ class OneAtATime:
 
 
 def one_at_a_time(
-    model: CompiledModel, assumptions: Sequence[str], forecasts: Collection[int] | None = None
+    model: CompiledModel,
+    assumptions: Sequence[str],
+    forecasts: Collection[int] | None = None,
+    most: int | None = None,
+    asked: Collection[str] = (),
 ) -> OneAtATime:
     """Move each of the live assumptions of these names.
 
@@ -51,23 +56,30 @@ def one_at_a_time(
         model: to evaluate.
         assumptions: names of live ones.
         forecasts: numbers of those whose bars are wanted; None for all.
+        most: bars of a forecast, the widest; None for all.
+        asked: names of assumptions whose bars are wanted, too, however narrow.
     """
     quantiles = model.quantiles([*(percent / 100.0 for percent in PERCENTS), 0.5])
     base = {a.name: float(quantiles[a.name][-1]) if a.base is None else float(a.base) for a in model.live}
     units = {a.name: a.units for a in model.live}
     moved = {name: quantiles[name][:-1] for name in assumptions}
     answers, rejected = _evaluate(model, base, moved)
+    fails, count = rejected[1:].reshape(-1, len(PERCENTS)), len(assumptions) if most is None else most
     bars: list[tuple[Bar, ...]] = []
     for number, each in enumerate(answers):
         if forecasts is not None and number not in forecasts:
             bars.append(())
             continue
-        made = [
-            _bar(name, units[name], base[name], moved[name], each[cases], rejected[cases])
-            for index, name in enumerate(assumptions)
-            for cases in [slice(1 + index * len(PERCENTS), 1 + (index + 1) * len(PERCENTS))]
+        answer = each[1:].reshape(-1, len(PERCENTS))
+        chosen = [
+            index for place, index in enumerate(_widest_first(answer)) if place < count or assumptions[index] in asked
         ]
-        bars.append(tuple(sorted(made, key=lambda bar: -bar.span)))
+        made = [
+            _bar(name, units[name], base[name], moved[name], answer[index], fails[index])
+            for index in chosen
+            for name in [assumptions[index]]
+        ]
+        bars.append(tuple(made))
     return OneAtATime(
         base=tuple(finite(each[0]) for each in answers),
         bars=tuple(bars),
@@ -96,6 +108,14 @@ def _evaluate(model: CompiledModel, base: dict[str, float], moved: dict[str, Flo
         rejected.append(np.logical_or.reduce([np.zeros(n, bool), *(_fails(column) for column in filters)]))
         answers.append([column.as_floats() for column in evaluator.forecasts(np.arange(n))])
     return [np.concatenate(parts) for parts in zip(*answers, strict=True)], np.concatenate(rejected)
+
+
+def _widest_first(answers: Floats) -> list[int]:
+    """Return the rows of `(m, 5)` answers by their span, the widest first; one without a number spans nothing."""
+    known = np.isfinite(answers)
+    lowest = np.min(answers, axis=1, where=known, initial=math.inf)
+    highest = np.max(answers, axis=1, where=known, initial=-math.inf)
+    return list(map(int, np.argsort(-np.where(known.any(axis=1), highest - lowest, 0.0), kind="stable")))
 
 
 def _bar(assumption: str, units: str, base: float, inputs: Floats, answers: Floats, rejected: Floats) -> Bar:

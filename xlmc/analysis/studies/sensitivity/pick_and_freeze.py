@@ -13,7 +13,7 @@ known. They hold for independent assumptions and trials that no filter rejects.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -74,24 +74,22 @@ def why_not(simulation: RunResult) -> str:
 
 def pick_and_freeze(
     model: CompiledModel,
-    assumptions: Sequence[str],
+    assumptions: Mapping[str, Sequence[int]],
     trials: int,
     seed: int,
-    forecasts: Collection[int] | None = None,
     told: Callable[[float], None] = lambda share: None,
 ) -> SobolRun:
     """The indices of a model without correlations, whatever its filters; of very many assumptions, of the first ones.
 
     Args:
         model: to evaluate.
-        assumptions: names of live ones, of which the indices are wanted.
+        assumptions: name of a live one -> numbers of the forecasts for which its indices are wanted.
         trials: of the run; no more than half as many are evaluated, but some at least.
         seed: of the run. The trials are its first ones by Monte Carlo, and those that follow them.
-        forecasts: numbers of those that are wanted; None for all.
         told: takes the share that is done.
     """
     evaluations = max(_LEAST_EVALUATED, min(_MOST_EVALUATED, trials // 2))
-    chosen = assumptions[: max(evaluations // _LEAST_PAIRS - 2, 1)]
+    chosen = list(assumptions)[: max(evaluations // _LEAST_PAIRS - 2, 1)]
     pairs = min(_MOST_PAIRS, evaluations // (len(chosen) + 2))
     program = model.program("numpy")
     block = min(pairs, program.largest_block)
@@ -101,9 +99,8 @@ def pick_and_freeze(
     found: dict[str, dict[int, tuple[Estimate, Estimate]]] = {}
     for name in chosen:
         c = _answers(evaluator, {**first, name: second[name]}, pairs, block)
-        wanted = range(len(c)) if forecasts is None else forecasts
         told(len(found) / len(chosen))
-        found[name] = {number: sobol_indices(a[number], b[number], c[number]) for number in wanted}
+        found[name] = {number: sobol_indices(a[number], b[number], c[number]) for number in assumptions[name]}
     return SobolRun(pairs, found)
 
 

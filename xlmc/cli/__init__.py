@@ -1,5 +1,5 @@
-"""The command line: `xlmc new`, `xlmc check`, `xlmc fit`, `xlmc verify`, `xlmc simulate`, `xlmc open`,
-`xlmc report`, `xlmc replay`, `xlmc compare`, `xlmc screen`, `xlmc methods`, `xlmc stability`.
+"""The command line: `xlmc new`, `xlmc check`, `xlmc fit`, `xlmc verify`, `xlmc calculate`, `xlmc simulate`,
+`xlmc open`, `xlmc report`, `xlmc replay`, `xlmc compare`, `xlmc screen`, `xlmc methods`, `xlmc stability`.
 
 Exit codes: 0 done; 1 the run finished but its answer must not be used as it is; 2 bad input, with the cell and what
 to do; 130 interrupted by Ctrl-C; 143 ended by SIGTERM. Modules here import what costs time inside their functions.
@@ -19,6 +19,7 @@ from typing import Final
 
 import click
 
+from xlmc.cli.calculate import calculate
 from xlmc.cli.check import check
 from xlmc.cli.compare import compare
 from xlmc.cli.convert import convert
@@ -106,6 +107,7 @@ for _command in (
     convert,
     fit,
     verify,
+    calculate,
     simulate,
     scenario,
     open_window,

@@ -8,7 +8,13 @@ from enum import Enum
 from typing import Final
 
 from xlmc.engine.graph.lowering import Lowering, lower_until_complete
-from xlmc.errors import ErrorCode
+from xlmc.engine.saved_values import (
+    TOLERANCE,
+    filled_cells,
+    is_saved_value,
+    relative_difference,
+    same_value,
+)
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import Resolver, build_graph
 from xlmc.excel.formula.shape import shown_formula
@@ -18,15 +24,6 @@ from xlmc.montecarlo.definitions.in_cells.calls import holds_call
 from xlmc.montecarlo.model.needed import targets_of
 
 __all__ = ["TOLERANCE", "CellCheck", "Status", "Verification", "verify"]
-
-TOLERANCE: Final = 1e-9
-"""Relative difference up to which two numbers match: with 0 nothing but 0 does."""
-
-
-_PERIODIC: Final = frozenset({"SIN", "COS", "TAN"})
-_PI_CUT: Final = 2.0**-65
-"""How much of itself, at most, the processor that 32-bit Excel computes with puts an angle wrong, its pi being cut."""
-
 
 NOT_COMPARABLE: Final = "draws at random or shows results of a simulation, so there is no one value to compare"
 
@@ -64,9 +61,7 @@ class CellCheck:
     @property
     def difference(self) -> float | None:
         """Relative difference of two numbers; None where one is none."""
-        if not _is_number(self.expected) or not _is_number(self.got):
-            return None
-        return _relative(float(self.expected), float(self.got))  # type: ignore[arg-type]
+        return relative_difference(self.expected, self.got)
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,15 +128,11 @@ def _filled_by(lowering: Lowering, anchor: Cell) -> Iterator[CellCheck]:
     """The other cells that an array formula fills, as far as Excel saved a value there."""
     workbook = lowering.graph.workbook
     formula = workbook.content(anchor).formula
-    for cell in formula.array.cells() if formula is not None and formula.array is not None else ():
-        expected = workbook.content(cell)
-        if cell == anchor or expected.value is None or expected.formula is not None:
-            continue
-        value = lowering.filled(cell, anchor)
-        if formula is not None and value is not None:
-            got = value.objects().ravel()[0]
-            status = Status.MATCHED if _same(expected.value, got) else Status.DIFFERING
-            yield CellCheck(cell, shown_formula(formula, anchor), status, expected.value, got, anchor=anchor)
+    for cell, got in filled_cells(lowering, anchor):
+        expected = workbook.content(cell).value
+        if expected is not None and formula is not None:
+            status = Status.MATCHED if same_value(expected, got) else Status.DIFFERING
+            yield CellCheck(cell, shown_formula(formula, anchor), status, expected, got, anchor=anchor)
 
 
 def _check_cell(lowering: Lowering, cell: Cell) -> CellCheck:
@@ -162,45 +153,8 @@ def _check_cell(lowering: Lowering, cell: Cell) -> CellCheck:
     got = value.objects().ravel()[0]
     if content.value is None:
         return check(Status.NOT_CACHED, got)
-    same = (
-        _same(content.value, got)
-        or _is_settled(lowering, cell, content.value, got)
-        or _is_sine_of_32_bits(lowering, cell, content.value, got)
-    )
+    same = is_saved_value(lowering, cell, content.value, got)
     return check(Status.MATCHED if same else Status.DIFFERING, got)
-
-
-def _same(expected: CellValue, got: object) -> bool:
-    if _is_number(expected) and _is_number(got):
-        return _relative(float(expected), float(got)) <= TOLERANCE  # type: ignore[arg-type]
-    if isinstance(expected, str) and got is None:
-        return expected == ""
-    return type(expected) is type(got) and expected == got
-
-
-def _is_settled(lowering: Lowering, cell: Cell, expected: CellValue, got: object) -> bool:
-    """Whether a cell that Excel computed iteratively changes by less than where Excel stopped."""
-    iteration = lowering.graph.workbook.iteration
-    if iteration is None or cell not in lowering.graph.circles or not (_is_number(expected) and _is_number(got)):
-        return False
-    return abs(float(expected) - float(got)) < iteration.change  # type: ignore[arg-type]
-
-
-def _is_sine_of_32_bits(lowering: Lowering, cell: Cell, expected: CellValue, got: object) -> bool:
-    """Whether a formula ends with a sine, cosine or tangent that differs no more than 32-bit Excel's cut pi does."""
-    step = lowering.last_step(cell)
-    if step is None or step[0] not in _PERIODIC or not (_is_number(expected) and _is_number(got)):
-        return False
-    (angle,) = step[1]
-    return abs(float(expected) - float(got)) <= abs(float(angle.numbers[0])) * _PI_CUT  # type: ignore[arg-type]
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool | ErrorCode)
-
-
-def _relative(expected: float, got: float) -> float:
-    return abs(expected - got) / max(abs(expected), abs(got), 5e-324)
 
 
 def groups(cells: Iterable[CellCheck]) -> list[tuple[str, Sequence[CellCheck]]]:

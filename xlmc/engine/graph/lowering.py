@@ -22,6 +22,7 @@ from xlmc.engine.graph.fill_down import FillDownCache
 from xlmc.engine.graph.further_cells import refusal
 from xlmc.engine.graph.graph import MANY, Apply, Constant, Dag, Input, Range, Target
 from xlmc.engine.graph.iteration import IteratedCells, in_order, iterate_cells
+from xlmc.engine.graph.moment import Moment
 from xlmc.engine.graph.picked_ranges import PICKING, range_as_read
 from xlmc.engine.graph.reference_functions import REFERENCE_FUNCTIONS
 from xlmc.engine.graph.running_totals import FOLDS, RunningTotals
@@ -113,6 +114,7 @@ class Lowering(TreeLowering):
             cannot be computed is a fault, not an exception.
         one_trial: a cell that reads itself is an error, as in a trial of many, and no reason to refuse the cells.
         strict: a formula that cannot be computed and has no saved value is an exception; otherwise a fault, too.
+        moment: of a recalculation, at which NOW, RAND and their like are computed; otherwise they are faults.
 
     Attributes:
         graph, inputs, held: as given.
@@ -135,11 +137,13 @@ class Lowering(TreeLowering):
         audit: bool = False,
         one_trial: bool = False,
         strict: bool = True,
+        moment: Moment | None = None,
     ) -> None:
         dag = Dag(date1904=graph.workbook.date1904)
         trees = (placed for placed in graph.formulas.ordered.values() if not isinstance(placed, Filled))
         super().__init__(dag, RunningTotals(dag, trees, self.cell))
         self.graph, self._audit, self._strict, self._one_trial = graph, audit, strict and not audit, one_trial
+        self._moment = moment
         self.calls, self.lambda_calls = CallCount(), LambdaCalls()
         self.inputs, self.held = inputs, held
         self.saved: dict[Cell, object] = {}
@@ -467,6 +471,10 @@ class Lowering(TreeLowering):
 
     def _call(self, call: ir.Call, scope: Scope) -> int:
         name, arguments = call.name, call.arguments
+        if self._moment is not None:
+            now = self._moment.formula(name, arguments, self.graph.workbook.date1904)
+            if now is not None:
+                return self.lower(now, scope)
         check_count(name, arguments)
         made = self._special(name, arguments, scope)
         if made is not None:

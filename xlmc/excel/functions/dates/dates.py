@@ -21,7 +21,7 @@ from xlmc.excel.functions.registry import Logical, Number, Text, excel
 from xlmc.excel.functions.toolpak import Date, toolpak
 from xlmc.excel.functions.values import NUM, Floats, Objects, Value
 
-__all__: list[str] = []
+__all__ = ["serial_at"]
 
 _FIRST_FULL_YEAR = 1900
 _LAST_YEAR = 9999
@@ -116,10 +116,14 @@ def today(*, date1904: bool = False) -> Floats:
 @excel("NOW", volatile=True, dated=True)
 def now(*, date1904: bool = False) -> Floats:
     """The day and time at which it is computed, by the clock of the machine."""
-    moment = datetime.now()
+    return np.atleast_1d(serial_at(datetime.now(), date1904))
+
+
+def serial_at(moment: datetime, date1904: bool) -> float:
+    """Return the serial number of a day and its time."""
     since_midnight = moment - moment.replace(hour=0, minute=0, second=0, microsecond=0)
     today = serial_of(moment.year, moment.month, moment.day, date1904)
-    return np.atleast_1d(today + since_midnight.total_seconds() / SECONDS_A_DAY)
+    return float(today + since_midnight.total_seconds() / SECONDS_A_DAY)
 
 
 _MOST_IN_TIME = 32767

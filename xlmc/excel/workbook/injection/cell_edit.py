@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections import defaultdict
 from collections.abc import Callable, Mapping
-from html import escape
 from typing import Final
 
-from xlmc.errors import WorkbookError
+from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.excel.address import Area, Cell, column_letters, parse_address
-from xlmc.excel.workbook.injection.splice import Element, SplicedXml, render
+from xlmc.excel.workbook.injection.splice import Element, SplicedXml, cell_text, render
 from xlmc.excel.workbook.safe_xml import REPAIR
 
 __all__ = ["Content", "with_calculation_on_load", "with_contents", "with_last_row"]
@@ -28,11 +26,8 @@ _BEHIND_CALCULATION: Final = (
 )
 """What stands behind `calcPr` in a workbook part (ECMA-376, part 1, 18.2.27)."""
 
-_ESCAPE: Final = re.compile("_(?=x[0-9A-Fa-f]{4}_)")
-"""What begins an escape: Excel would read the letter that it stands for."""
-
-Content = str | float | bool | None
-"""The content of a cell: a text, a number, a logical, or nothing."""
+Content = str | float | bool | ErrorCode | None
+"""The content of a cell: a text, a number, a logical, an error, or nothing."""
 
 
 def with_contents(xml: bytes, part: str, sheet: str, contents: Mapping[tuple[int, int], Content]) -> bytes:
@@ -149,9 +144,10 @@ def _fragment(prefix: str, row: int, column: int, content: Content, style: str |
     if content is None:
         return render(f"{prefix}c", attributes)
     if isinstance(content, str):
-        said = escape(_ESCAPE.sub("_x005F_", content), quote=False)
-        text = f'<{prefix}is><{prefix}t xml:space="preserve">{said}</{prefix}t></{prefix}is>'
+        text = f'<{prefix}is><{prefix}t xml:space="preserve">{cell_text(content)}</{prefix}t></{prefix}is>'
         return render(f"{prefix}c", attributes | {"t": "inlineStr"}, text)
+    if isinstance(content, ErrorCode):
+        return render(f"{prefix}c", attributes | {"t": "e"}, f"<{prefix}v>{content.text}</{prefix}v>")
     if isinstance(content, bool):
         return render(f"{prefix}c", attributes | {"t": "b"}, f"<{prefix}v>{int(content)}</{prefix}v>")
     return render(f"{prefix}c", attributes, f"<{prefix}v>{content!r}</{prefix}v>")

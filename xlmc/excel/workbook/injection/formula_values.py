@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import Final
 
 from xlmc.errors import ErrorCode
 from xlmc.excel.address import Area, Cell, parse_address
-from xlmc.excel.workbook.injection.splice import Element, SplicedXml, render
+from xlmc.excel.workbook.injection.cell_edit import with_contents
+from xlmc.excel.workbook.injection.splice import Element, SplicedXml, cell_text, render
 from xlmc.excel.workbook.workbook import CellValue
 
 __all__ = ["with_values", "without_formula_values"]
@@ -28,22 +29,34 @@ _VALUE_CELL: Final = re.compile(
 _TYPE: Final = re.compile(rb"""\s+t\s*=\s*(?:"[^"]*"|'[^']*')""")
 
 
-def with_values(xml: bytes, part: str, values: Mapping[tuple[int, int], CellValue]) -> bytes:
+def with_values(
+    xml: bytes,
+    part: str,
+    values: Mapping[tuple[int, int], CellValue],
+    without: Collection[tuple[int, int]] = (),
+    *,
+    complete: bool = False,
+) -> bytes:
     """A sheet's part with these values cached in cells that are there.
 
     Args:
         xml: the part.
         part: its name, for messages.
         values: by row and column, from 1.
+        without: the cells that are to have no value.
+        complete: add the cells that are not there, which an array formula fills.
 
     Raises:
         WorkbookError: the part is not XML.
     """
     document = SplicedXml(xml, part)
+    missing = dict(values)
     for position, cell in _cells(document.root):
         if position in values:
-            _put(document, cell, values[position])
-    return document.result()
+            _put(document, cell, missing.pop(position))
+        elif position in without:
+            _clear(document, cell)
+    return with_contents(document.result(), part, part, missing) if missing and complete else document.result()
 
 
 def without_formula_values(parts: Mapping[str, bytes]) -> dict[str, bytes]:
@@ -117,6 +130,16 @@ def _put(document: SplicedXml, cell: Element, value: CellValue) -> None:
     formula = cell.find("f")
     if formula is not None:
         document.after(formula, new)
+    else:
+        document.append(cell, new)
+
+
+def _clear(document: SplicedXml, cell: Element) -> None:
+    old = cell.find("v")
+    if old is not None:
+        document.remove(old)
+    if cell.attributes.get("t", "n") != "n":
+        document.set(cell, "t", "n")
 
 
 def _write(value: CellValue) -> tuple[str, str]:
@@ -127,12 +150,8 @@ def _write(value: CellValue) -> tuple[str, str]:
         case ErrorCode():
             return "e", value.text
         case str():
-            return "str", _escape(value)
+            return "str", cell_text(value)
         case None:
             return "str", ""
         case _:
             return "n", repr(float(value)).removesuffix(".0")
-
-
-def _escape(text: str) -> str:
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

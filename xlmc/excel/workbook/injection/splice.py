@@ -14,7 +14,7 @@ from html import escape
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.safe_xml import REPAIR, expat_parser, feed
 
-__all__ = ["MAIN", "OFFICE_RELATIONSHIPS", "Element", "SplicedXml", "as_utf8", "parse_spans", "render"]
+__all__ = ["MAIN", "OFFICE_RELATIONSHIPS", "Element", "SplicedXml", "as_utf8", "cell_text", "parse_spans", "render"]
 
 MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
 OFFICE_RELATIONSHIPS = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
@@ -125,6 +125,9 @@ def as_utf8(xml: bytes, part: str) -> bytes:
 _TAG_NAME = re.compile(rb"""<([^\s/>"']+)""")
 _ATTRIBUTE = re.compile(rb"""(?P<name>[^\s=/>"']+)\s*=\s*(?P<quoted>"[^"]*"|'[^']*')""")
 
+_UNWRITABLE = re.compile("_(?=x[0-9A-Fa-f]{4}_)|[\\x00-\\x08\\x0b-\\x1f\\ufffe\\uffff]")
+"""What begins an escape, and characters that XML cannot hold, or, as a carriage return, does not keep."""
+
 _IN_ATTRIBUTES = str.maketrans({'"': "&quot;", "\t": "&#9;", "\n": "&#10;", "\r": "&#13;"})
 
 
@@ -218,6 +221,15 @@ def render(tag: str, attributes: Mapping[str, object], content: str | None = Non
     """An element as text: `tag` with its prefix, attributes in order, `content` XML already (None: self-closed)."""
     pairs = "".join(f" {name}={_quote(value)}" for name, value in attributes.items())
     return (f"<{tag}{pairs}/>" if content is None else f"<{tag}{pairs}>{content}</{tag}>").encode()
+
+
+def cell_text(text: str) -> str:
+    r"""Return a text as XML for a cell: what Excel would read as an escape, and what XML cannot hold, is escaped.
+
+    >>> cell_text("a<b_x0041_\r")
+    'a&lt;b_x005F_x0041__x000D_'
+    """
+    return escape(_UNWRITABLE.sub(lambda found: f"_x{ord(found[0]):04X}_", text), quote=False)
 
 
 def _quote(value: object) -> str:

@@ -1,0 +1,265 @@
+"""`xlmc calculate`: a copy with the values of all formulas, and nothing else changed."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+import zipfile
+from pathlib import Path
+
+import openpyxl
+import pytest
+from openpyxl.styles import Font
+from openpyxl.worksheet.formula import ArrayFormula
+
+from xlmc import excel
+from xlmc.errors import ErrorCode
+
+ROOT = Path(__file__).resolve().parents[2]
+SHARED = ROOT.parent / "shared" / "conformance" / "workbooks"
+
+CELLS = {
+    "A1": 2.0,
+    "A2": "=A1*3",
+    "A3": '="about "&A2&CHAR(13)&"_x00"&"41_"',
+    "A4": "=A1/0",
+    "A5": "=A2>5",
+    "A6": "=NOSUCHFUNCTION(A1)",
+    "A7": "=A6+1",
+    "A8": "=NOW()",
+    "A9": '=B9&""',
+    "A10": "=A2+1",
+}
+
+
+@pytest.fixture
+def book(tmp_path):
+    """As openpyxl writes it: no formula has a value."""
+    made = openpyxl.Workbook()
+    made.active.title = "S"
+    for place, content in CELLS.items():
+        made.active[place] = content
+    made.active["A2"].font = Font(bold=True)
+    made.active["C1"] = ArrayFormula("C1:C3", "=A1*{1;2;3}/{1;1;0}")
+    made.create_sheet("Other")["B1"] = "untouched"
+    made.save(tmp_path / "book.xlsx")
+    return tmp_path / "book.xlsx"
+
+
+def parts(path):
+    with zipfile.ZipFile(path) as package:
+        return {name: package.read(name) for name in package.namelist()}
+
+
+def without_values(path, new):
+    """The workbook as if no program had calculated it."""
+    found = parts(path)
+    with zipfile.ZipFile(new, "w") as package:
+        for name, xml in found.items():
+            if name.startswith("xl/worksheets/sheet"):
+                xml = re.sub(
+                    rb"(<c\b[^>]*?)( t=\"\w+\")?([^>]*>)(<f\b[^>]*?(?:/>|>[^<]*</f>))<v>[^<]*</v>", rb"\1\3\4", xml
+                )
+            package.writestr(name, xml)
+    return new
+
+
+def test_the_copy_has_values_where_openpyxl_showed_none(xlmc, book):
+    outcome = xlmc("calculate", book, "-o", "copy.xlsx")
+    found = openpyxl.load_workbook("copy.xlsx", data_only=True)["S"]
+    assert [found[f"A{row}"].value for row in (1, 2, 4, 5, 9, 10)] == [2, 6, "#DIV/0!", True, None, 7]
+    assert excel.load("copy.xlsx")["S!A3"] == "about 6\r_x0041_"
+    assert [found[f"C{row}"].value for row in (1, 2, 3)] == [2, 4, "#DIV/0!"]
+    assert openpyxl.load_workbook("copy.xlsx")["S"]["A2"].value == "=A1*3"
+    assert openpyxl.load_workbook("copy.xlsx")["S"]["A2"].font.bold
+    assert outcome.code == 1
+    assert "S!A6: the function NOSUCHFUNCTION is not known to xlmc; it has no value" in outcome.err
+    assert "S!A7: the formula depends on a cell that could not be computed" in outcome.err
+    assert "S!A8: NOW" in outcome.err
+    assert excel.load("copy.xlsx").may_be_stale  # Excel is asked for what xlmc cannot compute
+
+
+def test_every_part_but_the_sheet_stays_byte_for_byte(xlmc, book):
+    xlmc("calculate", book, "-o", "copy.xlsx")
+    before, after = parts(book), parts("copy.xlsx")
+    assert {name for name in before if before[name] != after[name]} == {"xl/worksheets/sheet1.xml"}
+    assert before.keys() == after.keys()
+
+
+def test_a_book_whose_saved_values_are_right_is_the_same_file(xlmc, case_study):
+    outcome = xlmc("calculate", case_study, "-o", "copy.xlsx")
+    assert outcome.code == 0
+    assert "every saved value stays as it is" in outcome.out
+    assert Path("copy.xlsx").read_bytes() == case_study.read_bytes()
+
+
+@pytest.mark.parametrize("name", ["skid", "momentum", "planar-impact", "time-distance"])
+def test_values_that_are_taken_out_come_back(xlmc, tmp_path, name):
+    source = ROOT / "templates" / f"{name}.xlsx"
+    bare = without_values(source, tmp_path / "bare.xlsx")
+    assert xlmc("calculate", bare, "-o", "copy.xlsx").code == 0
+    before, after = excel.load(source), excel.load("copy.xlsx")
+    count = 0
+    for sheet in before.sheets.values():
+        for at, content in sheet.cells.items():
+            if content.formula is not None:
+                value = after.sheets[sheet.name].cells[at].value
+                same = pytest.approx(content.value, rel=1e-9) if isinstance(content.value, float) else content.value
+                assert value == same, (sheet.name, at)
+                count += 1
+    assert count > 10
+
+
+@pytest.mark.skipif(not SHARED.exists(), reason="the Excel-saved workbooks are not beside the project")
+@pytest.mark.parametrize(
+    "name",
+    [
+        "apache__FormulaSheetRange.xlsx",
+        "ClosedXML__DataTableFormula-Excel-Input.xlsx",
+        "ClosedXML__vba-user-function.xlsm",
+    ],
+)
+def test_what_excel_saved_stays(xlmc, name):
+    source = next(SHARED.glob(name), None)
+    if source is None:
+        pytest.skip("not in the folder")
+    xlmc("calculate", source, "-o", f"copy{source.suffix}")
+    assert Path(f"copy{source.suffix}").read_bytes() == source.read_bytes()
+
+
+def test_a_change_reaches_what_depends_on_it_and_nothing_else(xlmc, book):
+    xlmc("calculate", book, "-o", "first.xlsx", "--volatile")
+    outcome = xlmc("calculate", "first.xlsx", "--set", "S!A1=5", "-o", "copy.xlsx")
+    found = excel.load("copy.xlsx")
+    assert [found[f"S!A{row}"] for row in (1, 2, 4, 10)] == [5.0, 15.0, ErrorCode.DIV0, 16.0]
+    assert found["S!A8"] == excel.load("first.xlsx")["S!A8"]  # NOW does not depend on it
+    assert [found[f"S!C{row}"] for row in (1, 2, 3)] == [5.0, 10.0, ErrorCode.DIV0]
+    assert outcome.code == 1  # NOSUCHFUNCTION(A1)
+    assert found["S!A6"] is None
+
+
+def test_what_cannot_be_computed_keeps_its_value_unless_a_change_reaches_it(xlmc, tmp_path, workbook_file):
+    cells = {"A1": 1.0, "B1": 7.0, "A2": ("=NOSUCH(A1)", 4.0), "A3": ("=A2+B1", 11.0), "A4": ("=B1*2", 14.0)}
+    path = workbook_file(cells)
+    assert xlmc("calculate", path, "-o", "same.xlsx").code == 0
+    assert Path("same.xlsx").read_bytes() == path.read_bytes()
+    assert xlmc("calculate", path, "--set", "S!B1=8", "-o", "b.xlsx").code == 0
+    assert [excel.load("b.xlsx")[f"S!A{row}"] for row in (2, 3, 4)] == [4.0, 12.0, 16.0]
+    outcome = xlmc("calculate", path, "--set", "S!A1=8", "-o", "a.xlsx")
+    assert outcome.code == 1
+    assert [excel.load("a.xlsx")[f"S!A{row}"] for row in (2, 3, 4)] == [None, None, 14.0]
+    assert "S!A2: the function NOSUCH is not known to xlmc; it has no value" in outcome.err
+    assert "S!A3: the formula depends on" in outcome.err
+
+
+@pytest.fixture
+def workbook_file(tmp_path):
+    """Write cells, formulas with the values that a program saved."""
+
+    def write(cells):
+        rows = {}
+        for place, content in cells.items():
+            formula, value = content if isinstance(content, tuple) else ("", content)
+            inside = f"<f>{formula[1:]}</f>" if formula else ""
+            rows.setdefault(int(place[1:]), []).append((place, f'<c r="{place}">{inside}<v>{value}</v></c>'))
+        data = "".join(
+            f'<row r="{row}">{"".join(xml for _, xml in sorted(found))}</row>' for row, found in sorted(rows.items())
+        )
+        made = openpyxl.Workbook()
+        made.active.title = "S"
+        made.save(tmp_path / "empty.xlsx")
+        found = parts(tmp_path / "empty.xlsx")
+        xml = found["xl/worksheets/sheet1.xml"].decode()
+        found["xl/worksheets/sheet1.xml"] = re.sub(
+            r"<sheetData ?/>|<sheetData></sheetData>", f"<sheetData>{data}</sheetData>", xml
+        ).encode()
+        with zipfile.ZipFile(tmp_path / "saved.xlsx", "w") as package:
+            for name, content in found.items():
+                package.writestr(name, content)
+        return tmp_path / "saved.xlsx"
+
+    return write
+
+
+def test_cells_are_printed_as_json_and_as_csv(xlmc, book):
+    outcome = xlmc("calculate", book, "--cells", "S!A2:A5", "--json")
+    assert json.loads(outcome.out) == {"S!A2": 6.0, "S!A3": "about 6\r_x0041_", "S!A4": "#DIV/0!", "S!A5": True}
+    outcome = xlmc("calculate", book, "--cells", "S!A2", "--cells", "S!A5", "--csv")
+    assert outcome.out == "Cell,Value\nS!A2,6\nS!A5,TRUE\n"
+    assert "S!A10" in xlmc("calculate", book, "--cells", "S!A10").out
+
+
+def test_each_row_of_values_is_calculated_on_its_own(xlmc, book, tmp_path):
+    (tmp_path / "v.csv").write_text("S!A1;#case\n1;first\n2.5;second\n10 %;third\n", encoding="utf-8")
+    outcome = xlmc("calculate", book, "--values", "v.csv", "--cells", "S!A2", "--cells", "S!A5", "--csv")
+    assert outcome.code == 0
+    rows = list(csv.reader(io.StringIO(outcome.out)))
+    assert rows[0] == ["S!A1", "#case", "S!A2", "S!A5"]
+    assert rows[1:3] == [["1", "first", "3", "FALSE"], ["2.5", "second", "7.5", "TRUE"]]
+    assert float(rows[3][2]) == pytest.approx(0.3)
+    outcome = xlmc("calculate", book, "--values", "v.csv", "--cells", "S!A2", "-o", "out.json")
+    assert [row["S!A2"] for row in json.loads(Path("out.json").read_text(encoding="utf-8"))] == pytest.approx(
+        [3, 7.5, 0.3]
+    )
+
+
+def test_a_list_of_cells_and_values_is_one_row(xlmc, book, tmp_path):
+    (tmp_path / "v.csv").write_text("Cell,Value\nS!A1,4\nOther!B1,text\n", encoding="utf-8")
+    xlmc("calculate", book, "--values", "v.csv", "-o", "copy.xlsx")
+    found = excel.load("copy.xlsx")
+    assert (found["S!A1"], found["S!A2"], found["Other!B1"]) == (4.0, 12.0, "text")
+
+
+def test_volatile_functions_are_computed_when_asked(xlmc, workbook_file):
+    path = workbook_file(
+        {"A1": ("=RAND()", 9.0), "A2": ("=A1*2", 18.0), "A3": ("=RANDBETWEEN(3,3)", 1.0), "A4": ("=NOW()-TODAY()", 5)}
+    )
+    assert xlmc("calculate", path, "-o", "same.xlsx").code == 0
+    assert Path("same.xlsx").read_bytes() == path.read_bytes()
+    assert xlmc("calculate", path, "--volatile", "-o", "new.xlsx").code == 0
+    found = excel.load("new.xlsx")
+    assert 0 <= found["S!A1"] < 1
+    assert found["S!A2"] == 2 * found["S!A1"]
+    assert found["S!A3"] == 3.0
+    assert 0 <= found["S!A4"] < 1
+
+
+MISTAKES = {
+    "a formula": (["--set", "S!A2=4"], ["S!A2", "holds a formula", "computed from"]),
+    "an array formula": (["--set", "S!C2=4"], ["S!C1 fills the cell"]),
+    "no sheet": (["--set", "T!A2=4"], ["there is no sheet 'T'", "S, Other"]),
+    "no cell": (["--set", "speed=4"], ["'speed' is no cell", "Sheet!Cell"]),
+    "no equals sign": (["--set", "S!A1"], ["--set Inputs!B3=4.2"]),
+    "a comma for decimals": (["--set", "S!A1=0,65"], ["0.65"]),
+    "twice": (["--set", "S!A1=1", "--set", "S!$A$1=2"], ["S!A1 is set twice"]),
+    "an ending": (["-o", "copy.xlsm"], ["must end in .xlsx"]),
+    "no cells": (["-o", "copy.csv"], ["--cells"]),
+    "the book itself": (["-o", "book.xlsx"], ["book.xlsx"]),
+    "cells of no sheet": (["--cells", "T!A1"], ["--cells T!A1", "there is no sheet"]),
+    "json of nothing": (["--json"], ["--cells"]),
+    "no file of values": (["--values", "none.csv", "--cells", "S!A2"], ["none.csv", "cannot be read"]),
+    "rows into a copy": (
+        ["--values", "two.csv", "-o", "copy.xlsx"],
+        ["a copy holds the values of one row", "copy.csv"],
+    ),
+    "a heading": (["--values", "heading.csv", "--cells", "S!A2"], ["line 1", "'Speed' is no cell", "#"]),
+    "a value": (["--values", "comma.csv", "--cells", "S!A2"], ["line 2", "0.5"]),
+    "too many values": (["--values", "long.csv", "--cells", "S!A2"], ["line 2 has 2 values"]),
+}
+
+
+@pytest.mark.parametrize(("arguments", "said"), MISTAKES.values(), ids=MISTAKES)
+def test_a_mistake_is_one_message_and_nothing_is_written(xlmc, book, tmp_path, arguments, said):
+    (tmp_path / "two.csv").write_text("S!A1\n1\n2\n", encoding="utf-8")
+    (tmp_path / "heading.csv").write_text("Speed\n1\n", encoding="utf-8")
+    (tmp_path / "comma.csv").write_text('S!A1\n"0,5"\n', encoding="utf-8")
+    (tmp_path / "long.csv").write_text("S!A1\n1,2\n", encoding="utf-8")
+    before = book.read_bytes()
+    outcome = xlmc("calculate", book, *arguments)
+    assert outcome.code == 2
+    assert all(each in outcome.err for each in said), outcome.err
+    assert outcome.err.count("\n") == 1
+    assert book.read_bytes() == before
+    assert not [*tmp_path.glob("copy*"), *tmp_path.glob("book-*")]

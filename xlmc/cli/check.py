@@ -136,8 +136,8 @@ def _show_definitions(definitions: Definitions, model: CompiledModel | None) -> 
             for f in definitions.forecasts
         ],
     )
-    if any(f.evidence is None for f in definitions.filters):
-        filters = [f for f in definitions.filters if f.evidence is None]
+    filters = [f for f in (*definitions.filters, *definitions.unused) if f.evidence is None]
+    if filters:
         rows = [(f.name, str(f.cell), limits_text(f), f.because) for f in filters]
         table("Filters", ("Name", "Cell", "Keeps", "Because"), rows)
     if definitions.forecast_filters:

@@ -182,6 +182,7 @@ class Filter:
         evidence: the row of `xlmc_evidence` that it comes from, which then says what it keeps; None for a row of
             `xlmc_filters`.
         only_for: names of the forecasts that it discards trials for; empty where it rejects them for all.
+        used: whether the row counts; its column `Use` may switch it off.
     """
 
     name: str
@@ -195,6 +196,12 @@ class Filter:
     notes: Mapping[str, str] = field(default_factory=dict)
     evidence: Evidence | None = None
     only_for: tuple[str, ...] = ()
+    used: bool = True
+
+    @property
+    def can_be_used(self) -> bool:
+        """Whether it counts where nothing switches it off, as every filter does."""
+        return True
 
 
 @dataclass(frozen=True, slots=True)
@@ -266,7 +273,9 @@ class Definitions:
     `evidence` are the rows of `xlmc_evidence`; those that are used are also among `filters`. `refused` says why
     forecasts that the workbook asks for cannot be computed, and what else was lost, while the others can be run;
     `left_out` are these forecasts and what filters of theirs. `forecast_filters` are filters of some forecasts only,
-    which are not among `filters`. `feeding` are the other workbooks whose answers feed assumptions.
+    which are not among `filters`; `unused` are the rows of `xlmc_filters` that are switched off, which nothing else
+    holds. `switches` are the names of the rows of filters and evidence that can be used or not, each with the first
+    cell of its row, and whether it is used. `feeding` are the other workbooks whose answers feed assumptions.
     """
 
     assumptions: tuple[Assumption, ...] = ()
@@ -287,3 +296,5 @@ class Definitions:
     scenarios: tuple[Scenario, ...] = ()
     left_out: tuple[Forecast | Filter, ...] = ()
     feeding: Feeding | None = None
+    unused: tuple[Filter, ...] = ()
+    switches: Mapping[str, tuple[Cell, bool]] = field(default_factory=dict)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Final
 
 from xlmc.errors import DefinitionError
+from xlmc.excel.address import Cell
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.computed import Computed
 from xlmc.montecarlo.definitions.crystal_ball.dialogs import FromDialogs, read_dialogs
@@ -20,6 +22,7 @@ from xlmc.montecarlo.definitions.definitions import (
     Forecast,
     Settings,
 )
+from xlmc.montecarlo.definitions.evidence import Evidence
 from xlmc.montecarlo.definitions.in_cells.calls import InCells, in_cell_forecasts, read_in_cells
 from xlmc.montecarlo.definitions.in_cells.joined_draws import in_cell_copulas, in_cell_correlations
 from xlmc.montecarlo.definitions.in_cells.stand_ins import simtable_scenarios
@@ -45,12 +48,16 @@ from xlmc.montecarlo.definitions.unavailable import (
 from xlmc.montecarlo.definitions.xlrisk_sheet import read_xlrisk
 from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 
-__all__ = ["read_definitions"]
+__all__ = ["NO_SWITCHES", "read_definitions"]
+
+NO_SWITCHES: Final[Mapping[str, bool]] = MappingProxyType({})
 
 SAVE_AGAIN: Final = "Open the workbook in Excel with Crystal Ball, and save it again"
 
 
-def read_definitions(workbook: Workbook, engines: Collection[str], tabulated: int = 1) -> Definitions:
+def read_definitions(
+    workbook: Workbook, engines: Collection[str], tabulated: int = 1, switched: Mapping[str, bool] = NO_SWITCHES
+) -> Definitions:
     """What the tables `xlmc_assumptions`, `xlmc_forecasts`, … of a workbook say, and calls such as `RiskNormal`.
 
     Nothing is raised for a mistake in them: all mistakes are in `problems`, each with its cell and what to do.
@@ -59,6 +66,8 @@ def read_definitions(workbook: Workbook, engines: Collection[str], tabulated: in
         workbook: that was read.
         engines: the names that its setting Engine may have.
         tabulated: which of its values every `RiskSimtable` gives, from 1.
+        switched: filters and evidence that are used, or not, whatever their column Use says, by the keys of their
+            names.
     """
     findings = Findings()
     tables = definition_tables(workbook, findings)
@@ -67,9 +76,10 @@ def read_definitions(workbook: Workbook, engines: Collection[str], tabulated: in
     computed = Computed(workbook, drawn=uncertain.cells)
     assumptions = read_assumptions(workbook, tables["xlmc_assumptions"], computed, uncertain, findings)
     forecasts = read_forecasts(workbook, tables["xlmc_forecasts"], computed, central, answers, findings)
-    filters = read_filters(workbook, tables["xlmc_filters"], computed, tests, findings)
-    evidence = read_evidence(workbook, tables["xlmc_evidence"], computed, filters, findings)
-    filters = *filters, *(as_filter(each) for each in evidence if each.used)
+    rows = read_filters(workbook, tables["xlmc_filters"], computed, tests, findings, switched)
+    evidence = read_evidence(workbook, tables["xlmc_evidence"], computed, rows, findings, switched)
+    unused = tuple(each for each in rows if not each.used)
+    filters = *(each for each in rows if each.used), *(as_filter(each) for each in evidence if each.used)
     checks = read_checks(workbook, tables["xlmc_checks"], computed, Claims("check"), findings)
     if tables[CONVERTED]:
         refused_cells = refused_rows(workbook, tables[CONVERTED], uncertain.cells, findings)
@@ -128,7 +138,7 @@ def read_definitions(workbook: Workbook, engines: Collection[str], tabulated: in
         _refuse_none(workbook, "forecast", tables["xlmc_forecasts"], findings)
     scenarios = tuple(simtable_scenarios(calls.simtables, findings))
     if tables["xlmc_scenarios"]:
-        scenarios = *read_scenarios(workbook, tables, assumptions, (*filters, *own), findings), *scenarios
+        scenarios = *read_scenarios(workbook, tables, assumptions, (*filters, *own, *unused), findings), *scenarios
     return Definitions(
         assumptions=assumptions,
         forecasts=forecasts,
@@ -147,7 +157,16 @@ def read_definitions(workbook: Workbook, engines: Collection[str], tabulated: in
         scenarios=scenarios,
         forecast_filters=own,
         left_out=left_out,
+        unused=unused,
+        switches=dict(_switches([*rows, *evidence])),
     )
+
+
+def _switches(rows: Iterable[Filter | Evidence]) -> Iterator[tuple[str, tuple[Cell, bool]]]:
+    """The rows that can be used or not; see `Definitions`."""
+    for each in rows:
+        if each.can_be_used:
+            yield each.name, (each.row, each.used)
 
 
 def _remark_on_calls(calls: InCells, settings: Settings, findings: Findings) -> None:

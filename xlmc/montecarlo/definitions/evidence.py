@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.formula import ir
 
-__all__ = ["ERRORS", "SIZES", "Bell", "Evidence", "Law", "Within"]
+__all__ = ["ERRORS", "SIZES", "USE_IS_OFF", "Bell", "Evidence", "Law", "Within"]
 
 Floats = NDArray[np.float64]
 
@@ -40,6 +40,10 @@ SIZES: Final = {
 
 _FARTHEST: Final = 39.0
 """Standard deviations beyond which exp(-z²/2) is 0 in double precision."""
+
+
+USE_IS_OFF: Final = "Use is off"
+"""Why a row does not count that could."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +157,7 @@ class Evidence:
         reading: the measured number; None where none was entered, or where the row is not used.
         error: a key of `ERRORS`.
         sizes: key of `SIZES` -> number or cell, of those that are filled in.
-        unused: why it does not count, in words; empty where it does.
+        unused: why it does not count, in words, such as `USE_IS_OFF`; empty where it does.
         weighed: a run weights its trials by it, where its error is no limit, instead of rejecting some.
         notes: the table's other columns.
     """
@@ -173,6 +177,11 @@ class Evidence:
     def used(self) -> bool:
         """Whether it counts; one that does not is only listed."""
         return not self.unused
+
+    @property
+    def can_be_used(self) -> bool:
+        """Whether it counts where nothing switches it off: it has a reading."""
+        return self.unused in ("", USE_IS_OFF)
 
     @property
     def cells(self) -> Iterator[Cell]:

@@ -12,7 +12,19 @@ from dataclasses import dataclass
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.workbook import CellValue
 
-__all__ = ["Band", "Change", "Drawn", "Held", "Limits", "Numbers", "Range", "Scenario", "Tabulated", "Typed"]
+__all__ = [
+    "Band",
+    "Change",
+    "Drawn",
+    "Held",
+    "Limits",
+    "Numbers",
+    "Range",
+    "Scenario",
+    "Switched",
+    "Tabulated",
+    "Typed",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +86,15 @@ class Limits:
 
 
 @dataclass(frozen=True, slots=True)
+class Switched:
+    """A filter, or a row of evidence, is used or not, as its column `Use` would say."""
+
+    row: str
+    used: bool
+    where: Cell | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Typed:
     """Something else is typed into a cell; into that of a drawn assumption, another base value.
 
@@ -100,7 +121,7 @@ class Tabulated:
     where: Cell | None = None
 
 
-Change = Held | Drawn | Range | Band | Numbers | Limits | Typed | Tabulated
+Change = Held | Drawn | Range | Band | Numbers | Limits | Switched | Typed | Tabulated
 """One change. `where` is the cell that asks for it, for messages; None where a program does."""
 
 

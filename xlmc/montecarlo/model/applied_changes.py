@@ -20,7 +20,7 @@ Draws are keyed by the seed and an assumption's name, so those of assumptions th
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -32,8 +32,19 @@ from xlmc.excel.address import Cell
 from xlmc.excel.workbook.lazy_sheets import with_values
 from xlmc.excel.workbook.workbook import CellValue
 from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter
-from xlmc.montecarlo.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Tabulated, Typed
-from xlmc.montecarlo.definitions.tables.changed_cells import cells_that_change
+from xlmc.montecarlo.definitions.scenarios import (
+    Band,
+    Change,
+    Drawn,
+    Held,
+    Limits,
+    Numbers,
+    Range,
+    Switched,
+    Tabulated,
+    Typed,
+)
+from xlmc.montecarlo.definitions.tables.changed_cells import cells_that_change, use_cell
 from xlmc.montecarlo.definitions.tables.filters import LIMITS, contradiction
 from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 from xlmc.montecarlo.model.draw_binding import draw_of
@@ -62,7 +73,7 @@ def applied(model: CompiledModel, changes: Iterable[Change]) -> CompiledModel:
     definitions = _changed(before, changes)
     cells = changed_cells(before, definitions)[0]
     if before.reads_elsewhere(cells):
-        again = model_with_values(model, {**_typed(changes), **cells}, _tabulated(changes))
+        again = model_with_values(model, {**_typed(changes), **cells}, _tabulated(changes), _switched(changes))
         definitions = _merged(again.definitions, before.definitions, definitions)
         before, workbook = again, again.workbook
     else:
@@ -85,7 +96,21 @@ def edits(model: CompiledModel, changes: Iterable[Change]) -> tuple[dict[Cell, C
     changes = tuple(changes)
     before = _with_typed(model, changes)
     cells, lacking = changed_cells(before, _changed(before, changes))
+    for name, row, used in _switches(model, changes):
+        cell = use_cell(model.workbook, row)
+        if cell is None:
+            lacking.setdefault(name, []).append("Use")
+        else:
+            cells[cell] = used
     return {**_typed(changes), **cells}, lacking
+
+
+def _switches(model: CompiledModel, changes: Iterable[Change]) -> Iterator[tuple[str, Cell, bool]]:
+    """Name, first cell and state of each row that is to be used, and is not, or the other way round."""
+    asked = _switched(changes)
+    for name, (row, used) in model.definitions.switches.items():
+        if asked.get(name_key(name), used) != used:
+            yield name, row, not used
 
 
 def _typed(changes: Iterable[Change]) -> dict[Cell, CellValue]:
@@ -93,19 +118,26 @@ def _typed(changes: Iterable[Change]) -> dict[Cell, CellValue]:
 
 
 def _with_typed(model: CompiledModel, changes: Sequence[Change]) -> CompiledModel:
-    """The model with what is typed into cells, or tabulated, before any other change."""
+    """The model with what is typed into cells, switched or tabulated, before any other change."""
     for change in changes:
         if isinstance(change, Typed):
             _refuse_cell(model, change)
-    typed, tabulated = _typed(changes), _tabulated(changes)
-    if not typed and tabulated == 1:
+        elif isinstance(change, Switched):
+            _refuse_switch(model, change)
+    typed, tabulated, switched = _typed(changes), _tabulated(changes), _switched(changes)
+    if not typed and tabulated == 1 and not switched:
         return model
-    return model_with_values(model, typed, tabulated)
+    return model_with_values(model, typed, tabulated, switched)
 
 
 def _tabulated(changes: Iterable[Change]) -> int:
     """Which of its values every `RiskSimtable` gives."""
     return next((change.number for change in changes if isinstance(change, Tabulated)), 1)
+
+
+def _switched(changes: Iterable[Change]) -> dict[str, bool]:
+    """Filters and evidence that are used, or not, by the keys of their names."""
+    return {name_key(change.row): change.used for change in changes if isinstance(change, Switched)}
 
 
 def _filters_of(model: CompiledModel) -> tuple[Filter, ...]:
@@ -150,13 +182,29 @@ def _refuse_cell(model: CompiledModel, change: Typed) -> None:
         raise DefinitionError(message, where=change.where, hint=did_you_mean(change.cell.sheet, model.workbook.sheets))
 
 
+def _refuse_switch(model: CompiledModel, change: Switched) -> None:
+    """Refuse to switch what is no row of filters or evidence, and evidence without a reading."""
+    names = list(model.definitions.switches)
+    if name_key(change.row) in map(name_key, names):
+        return
+    blank = any(name_key(each.name) == name_key(change.row) for each in model.definitions.evidence)
+    if blank:
+        raise DefinitionError(f"{change.row!r} has no reading", where=change.where, hint="fill in its Reading")
+    hint = did_you_mean(change.row, names) if names else "the workbook has none"
+    raise DefinitionError(f"there is no filter or evidence {change.row!r}", where=change.where, hint=hint)
+
+
 def _changed(model: CompiledModel, changes: Iterable[Change]) -> Definitions:
     """The definitions with the changes of assumptions and filters."""
     assumptions = {name_key(each.name): each for each in model.assumptions}
     filters = {name_key(each.name): each for each in (*model.filters, *model.forecast_filters)}
+    unused = {name_key(each.name) for each in model.definitions.unused}
     last: dict[str, Change] = {}
     for change in changes:
         if isinstance(change, Limits):
+            if name_key(change.filter) in unused:
+                message = f"the filter {change.filter!r} is not used, so that its limits do not matter"
+                raise DefinitionError(message, where=change.where, hint="use it in the scenario, too, or leave it out")
             key = _known(change.filter, filters, "filter", change)
             if (evidence := filters[key].evidence) is not None:
                 message = f"{evidence.name!r} is evidence: its reading and its error say what it keeps, and no limit"
@@ -164,7 +212,7 @@ def _changed(model: CompiledModel, changes: Iterable[Change]) -> Definitions:
                 raise DefinitionError(message, where=change.where or evidence.row, hint=hint)
             filters[key] = replace(filters[key], **change.values)  # type: ignore[arg-type]  # the keys are of limits
             _refuse_contradiction(filters[key], change)
-        elif not isinstance(change, Typed | Tabulated):
+        elif not isinstance(change, Typed | Switched | Tabulated):
             key = _known(change.assumption, assumptions, "assumption", change)
             assumptions[key] = _other(assumptions[key], change, model.lowering)
             last[key] = change

@@ -22,7 +22,7 @@ from xlmc.excel.workbook.lazy_sheets import with_values
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.workbook import CellValue, Workbook
 from xlmc.montecarlo.definitions.definitions import Filter
-from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+from xlmc.montecarlo.definitions.definitions_reader import NO_SWITCHES, read_definitions
 from xlmc.montecarlo.definitions.feeds import Feed
 from xlmc.montecarlo.definitions.tables.filters import LIMIT_HINT
 from xlmc.montecarlo.distributions.parameters import show
@@ -69,40 +69,48 @@ def fed(model: CompiledModel, feeds: Sequence[Feed]) -> CompiledModel:
     return joined(model, feeds, {name: load(source) for name, source in paths.items()})
 
 
-def model_with_values(model: CompiledModel, values: Mapping[Cell, CellValue], tabulated: int = 1) -> CompiledModel:
+def model_with_values(
+    model: CompiledModel,
+    values: Mapping[Cell, CellValue],
+    tabulated: int = 1,
+    switched: Mapping[str, bool] = NO_SWITCHES,
+) -> CompiledModel:
     """The model of a workbook with values typed into its cells, which is fed as the first one is.
 
     Args:
         model: of the workbook as it is.
         values: cell -> what is typed into it; those of workbooks that feed it stay as they are.
-        tabulated: as for `build_model`.
+        tabulated, switched: as for `build_model`; rows of workbooks that feed it stay as they are.
 
     Raises:
         DefinitionError, FormulaError, SimulationError: as for `load`.
     """
     feeding = model.definitions.feeding
     if feeding is None:
-        return build_model(with_values(model.workbook, values), model.path, tabulated)
+        return build_model(with_values(model.workbook, values), model.path, tabulated, switched)
     own = {cell: value for cell, value in values.items() if cell.sheet in feeding.first.sheets}
-    alone = build_model(with_values(feeding.first, own), model.path, tabulated)
+    alone = build_model(with_values(feeding.first, own), model.path, tabulated, switched)
     sources = {name: build_model(book, Path(name)) for name, book in feeding.sources.items()}
     return joined(alone, feeding.feeds, sources)
 
 
-def build_model(workbook: Workbook, path: Path, tabulated: int = 1) -> CompiledModel:
+def build_model(
+    workbook: Workbook, path: Path, tabulated: int = 1, switched: Mapping[str, bool] = NO_SWITCHES
+) -> CompiledModel:
     """The model of a workbook that was read.
 
     Args:
         workbook: that was read.
         path: where it is.
         tabulated: which of its values every `RiskSimtable` gives, from 1.
+        switched: see `read_definitions`.
 
     Raises:
         DefinitionError: a definition is not what it must be; all faulty ones are listed.
         FormulaError: a needed cell cannot be computed.
     """
     workbook = calculate_labels(workbook)
-    definitions = read_definitions(workbook, ENGINES, tabulated)
+    definitions = read_definitions(workbook, ENGINES, tabulated, switched)
     if definitions.problems:
         raise _joined(definitions.problems)
     model = CompiledModel(workbook, definitions, path)

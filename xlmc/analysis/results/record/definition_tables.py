@@ -164,23 +164,26 @@ def _forecast_row(result: ForecastResult) -> tuple[Value, ...]:
 
 
 def filter_section(simulation: RunResult) -> Section:
-    """Every filter with its limits, its reason, and the trials it rejected."""
-    rows = tuple(_filter_row(simulation, *found) for found in enumerate(simulation.model.filters))
-    return Section("filters", "Filters", table=RecordTable(_FILTER, rows))
+    """Every filter with its limits, its reason, and the trials it rejected; then those that are not used."""
+    rows = [_filter_row(simulation, *found) for found in enumerate(simulation.model.filters)]
+    idle = simulation.model.definitions.unused
+    rows += [(*_filter_cells(each), None, None, None, notes_text(each.notes)) for each in idle]
+    return Section("filters", "Filters", table=RecordTable(_FILTER, tuple(rows)))
 
 
 def _filter_row(simulation: RunResult, index: int, filter_: Filter) -> tuple[Value, ...]:
     tally = simulation.tally
     return (
-        filter_.name,
-        str(filter_.cell),
-        limits_text(filter_),
-        filter_.because,
+        *_filter_cells(filter_),
         int(tally.rejected[index]),
         int(tally.only[index]),
         sum(tally.errors[index].values()),
         notes_text(filter_.notes),
     )
+
+
+def _filter_cells(filter_: Filter) -> tuple[Value, ...]:
+    return filter_.name, str(filter_.cell), limits_text(filter_), filter_.because
 
 
 def forecast_filter_section(simulation: RunResult) -> Section:

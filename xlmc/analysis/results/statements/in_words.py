@@ -18,6 +18,7 @@ from xlmc.montecarlo.definitions.scenarios import (
     Numbers,
     Range,
     Scenario,
+    Switched,
     Tabulated,
     Typed,
 )
@@ -101,7 +102,9 @@ def distribution_text(assumption: Assumption) -> str:
 
 
 def limits_text(filter_: Filter) -> str:
-    """`at least 0 and below 1`; `TRUE` where the filter has no limits; what evidence says, where it is some."""
+    """`at least 0 and below 1`; `TRUE` where it has no limits; what evidence says, where it is some; that it is off."""
+    if not filter_.used:
+        return "not used: Use is off"
     if filter_.evidence is not None:
         return evidence_text(filter_.evidence)
     limits = (
@@ -170,6 +173,8 @@ def _change_text(change: Change) -> str:
                 f"{key.replace('_', ' ')} {_plain_number(value)}" for key, value in values.items() if value is not None
             )
             return f"{name} {' and '.join(words) or 'without ' + ', '.join(key.replace('_', ' ') for key in values)}"
+        case Switched(name, used):
+            return f"{name} {'used' if used else 'not used'}"
         case Tabulated(number, values):
             return f"value {number} of RiskSimtable: {values}"
         case Typed(cell, value, _, named):

@@ -12,7 +12,7 @@ from xlmc.montecarlo.definitions.tables.filters import LIMITS
 from xlmc.montecarlo.definitions.tables.reserved_tables import definition_tables
 from xlmc.montecarlo.definitions.tables.table_rows import Row
 
-__all__ = ["NO_TABLE", "cells_that_change"]
+__all__ = ["NO_TABLE", "cells_that_change", "use_cell"]
 
 NO_TABLE = "of a table"
 
@@ -40,6 +40,12 @@ def cells_that_change(
     if isinstance(old, Assumption) and isinstance(new, Assumption) and old.base != new.base:
         found[old.cell] = new.base
     return found, lacking
+
+
+def use_cell(workbook: Workbook, first: Cell) -> Cell | None:
+    """The cell of the column `Use` in the row that begins there; None where its table has no such column."""
+    row = _row_of(workbook, first)
+    return row.cell("Use") if row is not None and row.has("Use") else None
 
 
 def _row_of(workbook: Workbook, first: Cell) -> Row | None:

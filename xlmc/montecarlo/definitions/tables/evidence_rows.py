@@ -13,7 +13,7 @@ from xlmc.excel.address import Cell
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.computed import Computed
 from xlmc.montecarlo.definitions.definitions import Filter, Parameter
-from xlmc.montecarlo.definitions.evidence import ERRORS, SIZES, Evidence, Within
+from xlmc.montecarlo.definitions.evidence import ERRORS, SIZES, USE_IS_OFF, Evidence, Within
 from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.identity import Claims, identify
 from xlmc.montecarlo.definitions.tables.reserved_tables import DefinitionTable
@@ -21,7 +21,8 @@ from xlmc.montecarlo.definitions.tables.table_rows import (
     Row,
     as_text,
     holds_rows,
-    logical,
+    is_used,
+    named_rows,
     optional_text,
     parameter,
     rows_of,
@@ -32,8 +33,6 @@ from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key, plain
 
 __all__ = ["as_filter", "check_sizes", "read_evidence"]
 
-_MOST_NAMED: Final = 4
-"""Rows that one notice names."""
 _KNOWN: Final = ("Name", "Value", "Cell", "Reading", "Error", *SIZES.values(), "±", "Source", "Use")
 
 _TAKES: Final[Mapping[str, tuple[tuple[str, ...], ...]]] = {
@@ -64,6 +63,7 @@ def read_evidence(
     computed: Computed,
     filters: Iterable[Filter],
     findings: Findings,
+    switched: Mapping[str, bool],
 ) -> tuple[Evidence, ...]:
     """The rows without a mistake, in their order, those that are not used among them.
 
@@ -73,6 +73,7 @@ def read_evidence(
         computed: which cells something gives a value; evidence must be on one.
         filters: the rows of `xlmc_filters`, whose names no evidence may have.
         findings: takes mistakes and remarks.
+        switched: see `is_used`.
     """
     tables = tuple(tables)
     for table in tables:
@@ -81,7 +82,7 @@ def read_evidence(
     claims, taken = Claims("evidence", shared=True), {name_key(each.name): each.row for each in filters}
     found = []
     for row in rows_of(workbook, tables, ("Name", "Reading"), _KNOWN, findings):
-        each = _evidence(row, computed, claims, findings)
+        each = _evidence(row, computed, claims, findings, switched)
         if each is None:
             continue
         if each.used and name_key(each.name) in taken:
@@ -89,25 +90,25 @@ def read_evidence(
             findings.problem(message, row.cell("Name"), "Give each its own name; state each fact once")
         found.append(each)
     for why, where in {each.unused: each.row for each in reversed(found) if not each.used}.items():
-        names = [repr(each.name) for each in found if each.unused == why]
-        named = ", ".join(names[:_MOST_NAMED])
-        more = f" and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
-        findings.notice(f"Evidence that is not used, because {why.replace('it has', 'there is')}: {named}{more}", where)
+        named = named_rows([each for each in found if each.unused == why])
+        findings.notice(f"Evidence that is not used, because {why.replace('it has', 'there is')}: {named}", where)
     return tuple(found)
 
 
-def _evidence(row: Row, computed: Computed, claims: Claims, findings: Findings) -> Evidence | None:
+def _evidence(
+    row: Row, computed: Computed, claims: Claims, findings: Findings, switched: Mapping[str, bool]
+) -> Evidence | None:
     before = len(findings.problems)
     identity = identify(row, claims, findings)
     source = findings.attempt(optional_text, row, "Source") or ""
-    used = findings.attempt(_used, row)
+    used = findings.attempt(_used, row, switched)
     error = findings.attempt(_error, row) if used else "uniform"
     if identity is None or used is None or error is None or len(findings.problems) > before:
         return None
     name, cell = identity
     notes = row.notes(_KNOWN)
     if not used:
-        why = "Use is off" if row.filled("Reading") else "it has no reading"
+        why = USE_IS_OFF if row.filled("Reading") else "it has no reading"
         return Evidence(name, cell, row.where, None, error, {}, source, why, notes)
     reading = findings.attempt(parameter, row, "Reading")
     sizes = findings.attempt(_sizes, row)
@@ -124,13 +125,13 @@ def _evidence(row: Row, computed: Computed, claims: Claims, findings: Findings) 
     return found
 
 
-def _used(row: Row) -> bool:
-    """Whether the row counts: its reading is there and nothing switches it off.
+def _used(row: Row, switched: Mapping[str, bool]) -> bool:
+    """Whether the row counts: its reading is there and nothing switches it off; see `is_used`.
 
     Raises:
         DefinitionError: `Use` is neither on nor off, or it is on and there is no reading.
     """
-    asked = not row.filled("Use") or logical(row, "Use")
+    asked = is_used(row, switched)
     if row.filled("Use") and asked and not row.filled("Reading"):
         message = f"{row.heading('Use')} is on, and there is no reading"
         raise DefinitionError(message, where=row.cell("Reading"), hint="Fill in Reading, or clear Use")

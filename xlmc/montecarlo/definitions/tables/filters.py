@@ -17,6 +17,8 @@ from xlmc.montecarlo.definitions.tables.table_rows import (
     Row,
     as_text,
     holds_rows,
+    is_used,
+    named_rows,
     optional_text,
     parameter,
     rows_of,
@@ -28,7 +30,7 @@ __all__ = ["LIMITS", "LIMIT_HINT", "contradiction", "read_checks", "read_filters
 
 LIMITS = {"at_least": "At least", "at_most": "At most", "above": "Above", "below": "Below"}
 """Limits of a filter and their headings."""
-_FILTER_COLUMNS = ("Name", "Value", "Cell", *LIMITS.values(), "Because", "Only for")
+_FILTER_COLUMNS = ("Name", "Value", "Cell", *LIMITS.values(), "Because", "Only for", "Use")
 LIMIT_HINT = "Fill in At least, At most, Above or Below, or make the cell a test such as =B7>0"
 """What to do where the cell of a filter is no test."""
 
@@ -41,8 +43,9 @@ def read_filters(
     computed: Computed,
     claims: Claims,
     findings: Findings,
+    switched: Mapping[str, bool],
 ) -> tuple[Filter, ...]:
-    """The filters without a mistake, in the order of the rows.
+    """The filters without a mistake, in the order of the rows, those that are not used among them.
 
     Args:
         workbook: where they are read.
@@ -50,15 +53,24 @@ def read_filters(
         computed: which cells something gives a value; a filter should be on one.
         claims: takes their names and cells.
         findings: takes mistakes and remarks.
+        switched: see `is_used`.
     """
     rows = rows_of(workbook, tables, ("Name",), _FILTER_COLUMNS, findings)
-    found = [_filter(row, computed, claims, findings) for row in rows]
-    return tuple(each for each in found if each is not None)
+    found = tuple(each for row in rows if (each := _filter(row, computed, claims, findings, switched)) is not None)
+    idle = [each for each in found if not each.used]
+    if idle:
+        findings.notice(f"Filters that are not used, because Use is off: {named_rows(idle)}", idle[0].row)
+    return found
 
 
-def _filter(row: Row, computed: Computed, claims: Claims, findings: Findings) -> Filter | None:
+def _filter(
+    row: Row, computed: Computed, claims: Claims, findings: Findings, switched: Mapping[str, bool]
+) -> Filter | None:
     before = len(findings.problems)
     identity = identify(row, claims, findings)
+    used = findings.attempt(is_used, row, switched)
+    if used is False:
+        return None if identity is None else _unused(row, *identity)
     limits = {key: findings.attempt(parameter, row, heading) for key, heading in LIMITS.items()}
     because = findings.attempt(optional_text, row, "Because") or ""
     only_for = findings.attempt(optional_text, row, "Only for") or ""
@@ -83,6 +95,15 @@ def _filter(row: Row, computed: Computed, claims: Claims, findings: Findings) ->
         "notes": row.notes(_FILTER_COLUMNS),
     }
     return Filter(name=name, cell=cell, row=row.where, **known)
+
+
+def _unused(row: Row, name: str, cell: Cell) -> Filter:
+    """A row that is switched off, with what can be read of it: its mistakes do not matter."""
+    aside = Findings()
+    limits: dict[str, Any] = {key: aside.attempt(parameter, row, heading) for key, heading in LIMITS.items()}
+    because, only_for = (aside.attempt(optional_text, row, heading) or "" for heading in ("Because", "Only for"))
+    told: dict[str, Any] = {"because": because, "only_for": _listed(only_for), "notes": row.notes(_FILTER_COLUMNS)}
+    return Filter(name=name, cell=cell, row=row.where, used=False, **limits, **told)
 
 
 def _listed(names: str) -> tuple[str, ...]:

@@ -22,11 +22,22 @@ from xlmc.excel.workbook.workbook import CellContent, CellValue, Workbook
 from xlmc.montecarlo.definitions.cell_references import cell_of_reference, is_address, split_sheet
 from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Filter
 from xlmc.montecarlo.definitions.problems import Findings
-from xlmc.montecarlo.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Scenario, Typed
+from xlmc.montecarlo.definitions.scenarios import (
+    Band,
+    Change,
+    Drawn,
+    Held,
+    Limits,
+    Numbers,
+    Range,
+    Scenario,
+    Switched,
+    Typed,
+)
 from xlmc.montecarlo.definitions.tables.filters import LIMITS
 from xlmc.montecarlo.definitions.tables.identity import Claims
 from xlmc.montecarlo.definitions.tables.reserved_tables import DefinitionTable
-from xlmc.montecarlo.definitions.tables.table_rows import Row, as_text, number_in, optional_text, rows_of
+from xlmc.montecarlo.definitions.tables.table_rows import Row, as_text, logical_in, number_in, optional_text, rows_of
 from xlmc.montecarlo.distributions.spelling import name_key, nearest, plain
 
 __all__ = ["read_scenarios"]
@@ -42,6 +53,9 @@ _OF_ASSUMPTION: Final = (
     "Type a number to hold it at, a range such as 0.6 to 0.8, a band such as P0 to P10, frozen, or drawn"
 )
 _OF_FILTER: Final = "Type limits such as 0 to 0.5, at least 0, at most 0.5, above 0 or below 1"
+_SWITCHES: Final = ("xlmc_filters", "xlmc_evidence")
+"""Tables whose rows can be used or not, also where they have no column `Use`."""
+
 _NOTHING: Final = "none"
 """What takes a cutoff or a limit away."""
 
@@ -177,7 +191,9 @@ class _Headings:
         found: dict[Cell, _Column] = {}
         for name, row in self._rows:
             rest = key.removeprefix(f"{name} ") if key.startswith(f"{name} ") else ""
-            if rest and row.has(rest) and plain(rest) != "name":
+            if rest == "use" and row.table.kind in _SWITCHES:
+                found[row.where] = _Column(heading, (row.where, "use"), _switch_of(as_text(row.content("Name").value)))
+            elif rest and row.has(rest) and plain(rest) != "name":
                 cell = row.cell(rest)
                 found[cell] = _Column(heading, cell, _typed(cell, heading, clears=_is_number_column(rest)))
         if found:
@@ -272,6 +288,13 @@ def _typed(cell: Cell, heading: str, *, clears: bool) -> Take:
         if clears and isinstance(value, str) and value.strip().casefold() == _NOTHING:
             value = None
         return Typed(cell, value, where, heading)
+
+    return take
+
+
+def _switch_of(name: str) -> Take:
+    def take(content: CellContent, where: Cell) -> Change:
+        return Switched(name, logical_in("The cell", content, where), where)
 
     return take
 

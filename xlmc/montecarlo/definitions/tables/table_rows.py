@@ -5,9 +5,9 @@ Each reader of a cell raises a `DefinitionError` that names the cell and says wh
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NoReturn
+from typing import Final, NoReturn, Protocol
 
 from xlmc.errors import DefinitionError, ErrorCode
 from xlmc.excel.address import Cell
@@ -16,14 +16,17 @@ from xlmc.excel.workbook.workbook import CellContent, CellValue, Workbook
 from xlmc.montecarlo.definitions.definitions import Parameter
 from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.reserved_tables import NEAR_MISS, DefinitionTable
-from xlmc.montecarlo.distributions.spelling import nearest, plain
+from xlmc.montecarlo.distributions.spelling import name_key, nearest, plain
 
 __all__ = [
     "Row",
     "as_text",
     "central_share",
     "holds_rows",
+    "is_used",
     "logical",
+    "logical_in",
+    "named_rows",
     "number",
     "number_in",
     "optional_text",
@@ -37,6 +40,9 @@ _MISSPELT = 0.85  # likeness above which a heading is taken for one that the tab
 
 _TOLD = frozenset({"units", "source", "because"})
 """Columns that are only shown: a slip in their heading changes no number."""
+
+_MOST_NAMED: Final = 4
+"""Rows that one notice names."""
 
 _WORDS = {"true": True, "yes": True, "on": True, "false": False, "no": False, "off": False}
 
@@ -249,16 +255,48 @@ def logical(row: Row, heading: str) -> bool:
     Raises:
         DefinitionError: the cell holds anything else.
     """
-    if not row.filled(heading):
-        return False
-    value = row.content(heading).value
+    return row.filled(heading) and logical_in(row.heading(heading), row.content(heading), row.cell(heading))
+
+
+def logical_in(what: str, content: CellContent, where: Cell) -> bool:
+    """TRUE or FALSE, also as these words, of a cell that is not blank.
+
+    Raises:
+        DefinitionError: the cell holds anything else.
+    """
+    value = content.value
     if isinstance(value, bool):
         return value
     word = _WORDS.get(value.strip().casefold()) if isinstance(value, str) else None
     if word is None:
-        message = f"{row.heading(heading)} holds {as_text(value)!r}, neither TRUE nor FALSE"
-        raise DefinitionError(message, where=row.cell(heading), hint="Type TRUE or FALSE, or leave the cell blank")
+        message = f"{what} holds {as_text(value)!r}, neither TRUE nor FALSE"
+        raise DefinitionError(message, where=where, hint="Type TRUE or FALSE, or leave the cell blank")
     return word
+
+
+def is_used(row: Row, switched: Mapping[str, bool]) -> bool:
+    """Whether a row counts: its column `Use` does not switch it off, blank is on.
+
+    Args:
+        row: with a column `Name`.
+        switched: rows that are used, or not, whatever their column says, by the keys of their names.
+
+    Raises:
+        DefinitionError: `Use` is neither on nor off.
+    """
+    own = not row.filled("Use") or logical(row, "Use")
+    return switched.get(name_key(as_text(row.content("Name").value)), own)
+
+
+def named_rows(rows: Sequence[_HasName]) -> str:
+    """The names of some rows for one message, the first few of them."""
+    more = f" and {len(rows) - _MOST_NAMED:,} more" if len(rows) > _MOST_NAMED else ""
+    return ", ".join(repr(each.name) for each in rows[:_MOST_NAMED]) + more
+
+
+class _HasName(Protocol):
+    @property
+    def name(self) -> str: ...
 
 
 def central_share(what: str, value: float, where: Cell, findings: Findings) -> float:

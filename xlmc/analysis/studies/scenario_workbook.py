@@ -132,7 +132,7 @@ def _holds(book: Workbook, cell: Cell, value: CellValue) -> bool:
 def _refuse_lacking(scenario: Scenario, lacking: Mapping[str, list[str]], model: CompiledModel) -> None:
     for name, headings in lacking.items():
         rows: tuple[Assumption | Filter, ...] = (*model.assumptions, *model.filters, *model.forecast_filters)
-        where = next(each.row for each in rows if each.name == name)
+        where = next((each.row for each in rows if each.name == name), None) or model.definitions.switches[name][0]
         if NO_TABLE in headings:
             message = f"The scenario {scenario.name!r} changes {name!r}, which stands in no table"
             hint = "Change its formula or its dialog in Excel, or let xlmc convert write tables first"

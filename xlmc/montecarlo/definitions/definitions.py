@@ -298,3 +298,7 @@ class Definitions:
     feeding: Feeding | None = None
     unused: tuple[Filter, ...] = ()
     switches: Mapping[str, tuple[Cell, bool]] = field(default_factory=dict)
+
+    def is_used(self, row: str) -> bool:
+        """Return whether a filter or a row of evidence is used; see `switches`. What is no such row is not off."""
+        return self.switches.get(row, (None, True))[1]

@@ -1,7 +1,8 @@
 """What was changed in the window, beside the workbook: numbers and switches of assumptions, limits of filters.
 
 Keys of an assumption are those of its parameters and cutoffs, `base` for the value that it is held at, `frozen`, and
-those of a band of its distribution that it is confined to; keys of a filter are those of its limits.
+those of a band of its distribution that it is confined to; keys of a filter are those of its limits, and `used`, which
+a row of evidence has, too.
 """
 
 from __future__ import annotations
@@ -14,11 +15,12 @@ from typing import Any, Final
 from xlmc.analysis.results.statements.in_words import number_text
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import Assumption, Definitions, Filter, Parameter
-from xlmc.montecarlo.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Scenario
+from xlmc.montecarlo.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Scenario, Switched
 
 __all__ = [
     "BAND",
     "LIMITS",
+    "SWITCHES",
     "Adjustments",
     "Amount",
     "adjusted_definitions",
@@ -37,6 +39,9 @@ LIMITS: Final = {"at_least": "at least", "above": "above", "at_most": "at most",
 
 BAND: Final = {"band_low": 0.0, "band_high": 100.0}
 """Key of each end of a band of a distribution, in percent -> where it is with no band."""
+
+SWITCHES: Final = frozenset({"frozen", "used"})
+"""Keys whose values are yes or no."""
 
 Amount = float | bool
 
@@ -78,8 +83,11 @@ class Adjustments:
         return found
 
     def held(self, definitions: Definitions) -> Adjustments:
-        """The part of it that says what is held, and where; nothing that has no effect."""
+        """The part of it that says what is held and where, and which rows are used; nothing that has no effect."""
         found = Adjustments()
+        for name, (_, used) in definitions.switches.items():
+            if self.filters.get(name, {}).get("used", used) != used:
+                found = found.having("filter", name, "used", not used)
         for assumption in definitions.assumptions:
             given = self.assumptions.get(assumption.name, {})
             frozen = given.get("frozen", assumption.frozen)
@@ -90,8 +98,11 @@ class Adjustments:
         return found
 
     def numbers(self, definitions: Definitions) -> Adjustments:
-        """The other part: numbers of what is drawn, and limits."""
-        found = Adjustments(filters=self.filters)
+        """The other part: numbers of what is drawn, and limits of filters that are used."""
+        found = Adjustments()
+        for name, given in self.filters.items():
+            if given.get("used", definitions.is_used(name)):
+                found = found._with("filter", name, {key: value for key, value in given.items() if key != "used"})
         for assumption in definitions.assumptions:
             given = self.assumptions.get(assumption.name, {})
             if not given.get("frozen", assumption.frozen):
@@ -147,8 +158,10 @@ def assumption_numbers(assumption: Assumption) -> dict[str, tuple[str, Parameter
 def own_values(definitions: Definitions, of: str, name: str) -> dict[str, Parameter | bool | None]:
     """What can be set of an assumption or a filter, as the workbook has it; of a name that it has not, nothing."""
     if of == "filter":
-        filter_ = next((each for each in definitions.filters if each.name == name), None)
-        return {} if filter_ is None else {**movable_limits(filter_)}
+        rows = (*definitions.filters, *definitions.forecast_filters, *definitions.unused)
+        filter_ = next((each for each in rows if each.name == name), None)
+        switch = {"used": definitions.is_used(name)} if name in definitions.switches else {}
+        return {**({} if filter_ is None else movable_limits(filter_)), **switch}
     assumption = next((each for each in definitions.assumptions if each.name == name), None)
     if assumption is None:
         return {}
@@ -167,8 +180,14 @@ def changes_of(definitions: Definitions, adjustments: Adjustments) -> list[Chang
     found: list[Change] = []
     for assumption in definitions.assumptions:
         found += _of_assumption(assumption, dict(adjustments.assumptions.get(assumption.name, {})))
-    for name, limits in adjustments.filters.items():
-        found.append(Limits(name, {key: float(value) for key, value in limits.items()}))
+    for name, given in adjustments.filters.items():
+        own = definitions.is_used(name)
+        used = bool(given.get("used", own))
+        limits = {key: float(value) for key, value in given.items() if key != "used"}
+        if used != own:
+            found.append(Switched(name, used))
+        if used and limits:
+            found.append(Limits(name, limits))
     return found
 
 
@@ -201,13 +220,22 @@ def adjustments_of(definitions: Definitions, scenario: Scenario) -> Adjustments 
         values = _values(change, assumptions)
         if values is None:
             return None
-        of = "filter" if isinstance(change, Limits) else "assumption"
-        name = change.filter if isinstance(change, Limits) else change.assumption  # type: ignore[union-attr]
+        of, name = _row_of(change)
         for key, value in values.items():
             if key not in own_values(definitions, of, name):
                 return None
             found = found.having(of, name, key, value)
     return found
+
+
+def _row_of(change: Change) -> tuple[str, str]:
+    """What a change with values is of, and its name."""
+    match change:
+        case Limits(name) | Switched(name):
+            return "filter", name
+        case Held(name) | Drawn(name) | Band(name) | Range(name) | Numbers(name):
+            return "assumption", name
+    raise TypeError(change)
 
 
 def _values(change: Change, assumptions: Mapping[str, Assumption]) -> dict[str, Amount] | None:
@@ -217,6 +245,8 @@ def _values(change: Change, assumptions: Mapping[str, Assumption]) -> dict[str, 
             return {"frozen": True} | ({} if value is None else {"base": value})
         case Drawn():
             return {"frozen": False}
+        case Switched(_, used):
+            return {"used": used}
         case Band(_, low, high):
             return dict(zip(BAND, (low, high), strict=True))
         case Range(name, low, high) if name in assumptions and {"low", "high"} <= {*assumptions[name].parameters}:
@@ -233,6 +263,8 @@ def adjusted_definitions(definitions: Definitions, adjustments: Adjustments) -> 
         definitions,
         assumptions=tuple(_assumption(each, adjustments.assumptions) for each in definitions.assumptions),
         filters=tuple(_filter(each, adjustments.filters) for each in definitions.filters),
+        forecast_filters=tuple(_filter(each, adjustments.filters) for each in definitions.forecast_filters),
+        unused=tuple(_filter(each, adjustments.filters) for each in definitions.unused),
     )
 
 
@@ -247,7 +279,9 @@ def _assumption(assumption: Assumption, changed: Changed) -> Assumption:
 
 
 def _filter(filter_: Filter, changed: Changed) -> Filter:
-    return replace(filter_, **{key: float(value) for key, value in changed.get(filter_.name, {}).items()})  # type: ignore[arg-type]
+    given = dict(changed.get(filter_.name, {}))
+    used = bool(given.pop("used", filter_.used))
+    return replace(filter_, used=used, **{key: float(value) for key, value in given.items()})  # type: ignore[arg-type]
 
 
 def in_words(definitions: Definitions, adjustments: Adjustments) -> list[str]:
@@ -258,7 +292,7 @@ def in_words(definitions: Definitions, adjustments: Adjustments) -> list[str]:
         if key in own:
             said = changed_text(definitions, of, name, key, own[key], value)
         else:
-            number = value if isinstance(value, bool) else number_text(value)
+            number = ("off", "on")[value] if isinstance(value, bool) else number_text(value)
             said = f"{LIMITS.get(key, key.replace('_', ' '))} {number} (no longer in the workbook)"
         found.append(f"{name}: {said}")
     return found
@@ -270,6 +304,8 @@ def changed_text(
     """`High 0.75 → 0.85`, `frozen`, `at least 0 → 0.1`."""
     if key == "frozen":
         return "frozen" if after else "not frozen"
+    if key == "used":
+        return "used" if after else "not used"
     if of == "filter":
         heading = LIMITS[key]
     elif key in BAND:

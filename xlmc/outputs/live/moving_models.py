@@ -37,7 +37,9 @@ _KEPT: Final = 3
 """Sets of held assumptions whose models are kept."""
 
 _Held = tuple[tuple[str, bool, float | None], ...]
-"""Each assumption that is held or drawn differently from the workbook: its name, whether it is held, and where."""
+"""Each assumption that is held or drawn differently from the workbook: its name, whether it is held, and where. Each
+filter or row of evidence that is used or not, likewise: its name, and whether it is used, with no place.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,7 +154,11 @@ def _shapes(graph: Graph) -> int:
 
 
 def _held(definitions: Definitions, adjustments: Adjustments) -> _Held:
-    found, changed = [], adjustments.held(definitions).assumptions
+    held = adjustments.held(definitions)
+    found: list[tuple[str, bool, float | None]] = [
+        (name, bool(each["used"]), None) for name, each in held.filters.items()
+    ]
+    changed = held.assumptions
     for assumption in definitions.assumptions if changed else ():
         given = changed.get(assumption.name)
         if given is not None:

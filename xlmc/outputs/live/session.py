@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import XlmcError
 from xlmc.outputs.live.adjustments import (
+    SWITCHES,
     Adjustments,
     Amount,
     in_words,
@@ -237,7 +238,7 @@ class Session:
         """Set numbers and switches; None for the workbook's own."""
         own = own_values(self.own.definitions, of, name)
         for key, value in values.items():
-            if key not in own or ((key == "frozen") != isinstance(value, bool) and value is not None):
+            if key not in own or ((key in SWITCHES) != isinstance(value, bool) and value is not None):
                 raise XlmcError(f"the workbook has no {of} {name!r} with {key!r} to be set")
         found = self.adjustments
         for key, value in values.items():

@@ -6,10 +6,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 
 from xlmc.analysis.results.statements.in_words import distribution_text, limits_text, number_text
+from xlmc.montecarlo.definitions.definitions import Filter
 from xlmc.outputs.live.adjustments import LIMITS, assumption_numbers
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.definitions.definitions import Assumption, Filter
+    from xlmc.montecarlo.definitions.definitions import Assumption
     from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["what_changed"]
@@ -23,7 +24,7 @@ def what_changed(before: CompiledModel, after: CompiledModel) -> list[str]:
     """Phrases, those on assumptions first; none where nothing that a run depends on is other."""
     found = [
         *_rows("assumption", _named(before.assumptions), _named(after.assumptions), _assumption),
-        *_rows("filter", _named(before.filters), _named(after.filters), _filter),
+        *_rows("filter", _filters(before), _filters(after), _filter),
         *_names("forecast", _named(before.forecasts), _named(after.forecasts)),
         *_names("check", _named(before.checks), _named(after.checks)),
         *_correlations(before, after),
@@ -39,6 +40,17 @@ class _HasName(Protocol):
 
 def _named(rows: Iterable[Row]) -> dict[str, Row]:
     return {each.name: each for each in rows}
+
+
+def _filters(model: CompiledModel) -> dict[str, Filter]:
+    """All filters by name, and evidence, those that are not used among them."""
+    definitions = model.definitions
+    idle = (
+        Filter(each.name, each.cell, each.row, evidence=each, used=False)
+        for each in definitions.evidence
+        if not each.used
+    )
+    return _named((*definitions.filters, *definitions.forecast_filters, *definitions.unused, *idle))
 
 
 def _names(what: str, before: Iterable[str], after: Iterable[str]) -> Iterator[str]:
@@ -74,7 +86,9 @@ def _assumption(before: Assumption, after: Assumption) -> Iterator[str]:
 
 
 def _filter(before: Filter, after: Filter) -> Iterator[str]:
-    if any(getattr(before, key) != getattr(after, key) for key in LIMITS):
+    if before.used != after.used:
+        yield "used" if after.used else "not used"
+    elif any(getattr(before, key) != getattr(after, key) for key in LIMITS):
         yield f"{limits_text(before)} → {limits_text(after)}"
 
 

@@ -9,9 +9,16 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.analysis.results.statements.in_words import changes_text, distribution_text, limits_text, status
+from xlmc.analysis.results.statements.in_words import (
+    changes_text,
+    distribution_text,
+    evidence_text,
+    limits_text,
+    status,
+)
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Parameter
+from xlmc.montecarlo.definitions.evidence import Evidence
 from xlmc.montecarlo.distributions.whole_numbers import WholeNumbers
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
@@ -143,12 +150,35 @@ def _shape(values: NDArray[np.float64]) -> dict[str, Any] | None:
 
 
 def filter_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[str, Any]]:
-    """Every filter with its limits as they are now; see `assumption_rows`."""
-    now = adjusted_definitions(own.definitions, adjustments)
-    return [_filter(each, before) for each, before in zip(now.filters, own.filters, strict=True)]
+    """Every filter with its limits as they are now, those that are not used among them; see `assumption_rows`."""
+    definitions, now = own.definitions, adjusted_definitions(own.definitions, adjustments)
+    pairs = zip(_filters(now), _filters(definitions), strict=True)
+    rows = [_filter(each, before, before.name in definitions.switches) for each, before in pairs]
+    idle = [each for each in own.evidence if not each.used and each.can_be_used]
+    return [*rows, *(_idle_evidence(each, adjustments) for each in idle)]
 
 
-def _filter(filter_: Filter, own: Filter) -> dict[str, Any]:
+def _filters(definitions: Definitions) -> tuple[Filter, ...]:
+    return *definitions.filters, *definitions.forecast_filters, *definitions.unused
+
+
+def _idle_evidence(evidence: Evidence, adjustments: Adjustments) -> dict[str, Any]:
+    """A row of evidence that the workbook does not use; where the window does, its reading is told with the answer."""
+    used = bool(adjustments.filters.get(evidence.name, {}).get("used", False))
+    return {
+        "name": evidence.name,
+        "cell": str(evidence.cell),
+        "keeps": "what agrees with its reading" if used else evidence_text(evidence),
+        "because": evidence.source,
+        "step": 1.0,
+        "changed": used,
+        "switches": True,
+        "used": used,
+        "limits": [],
+    }
+
+
+def _filter(filter_: Filter, own: Filter, switches: bool) -> dict[str, Any]:
     given = [(key, getattr(filter_, key), before) for key, before in movable_limits(own).items()]
     typed = [now for _, now, _ in given if not isinstance(now, Cell)]
     step = _step(max(typed) - min(typed) if len(typed) > 1 else 0.0, max(map(abs, typed), default=1.0) or 1.0)
@@ -156,9 +186,11 @@ def _filter(filter_: Filter, own: Filter) -> dict[str, Any]:
         "name": filter_.name,
         "cell": str(filter_.cell),
         "keeps": limits_text(filter_),
-        "because": filter_.because,
+        "because": " · ".join(filter(None, (*_reach(filter_), filter_.because))),
         "step": step,
-        "changed": any(now != before for _, now, before in given),
+        "changed": filter_.used != own.used or any(now != before for _, now, before in given),
+        "switches": switches,
+        "used": filter_.used,
         "limits": [
             {
                 "key": key,
@@ -170,6 +202,12 @@ def _filter(filter_: Filter, own: Filter) -> dict[str, Any]:
             for key, now, before in given
         ],
     }
+
+
+def _reach(filter_: Filter) -> Iterator[str]:
+    """Of which forecasts a filter is, where it is not of all."""
+    if filter_.only_for:
+        yield f"only for {'; '.join(filter_.only_for)}"
 
 
 def forecast_rows(model: CompiledModel) -> list[dict[str, Any]]:

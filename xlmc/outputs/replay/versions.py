@@ -234,6 +234,9 @@ RULES: Final = (
     Rule("0.12.0", "the sheet XLRisk says trials, seed, sampling, and what RiskLognorm means", _SHOWN),
     Rule("0.12.0", "results that are asked by other cells are computed from what these cells show of the run", _SHOWN),
     Rule("0.12.0", "results of an input by its name, and of further simulations, are shown", _SHOWN),
+    Rule(
+        "0.12.0", "a column Use of xlmc_filters says whether a row is used", re.compile(r"^\W*use\W*$", re.IGNORECASE)
+    ),
     Rule("0.12.0", "adjustment weights of matrices of rank correlations are honoured", _calls("RiskCorrmat")),
 )
 """The rules in the order of versions."""

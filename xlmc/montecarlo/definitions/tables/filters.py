@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from xlmc.errors import DefinitionError, ErrorCode
@@ -67,8 +68,9 @@ def _filter(
     row: Row, computed: Computed, claims: Claims, findings: Findings, switched: Mapping[str, bool]
 ) -> Filter | None:
     before = len(findings.problems)
-    identity = identify(row, claims, findings)
     used = findings.attempt(is_used, row, switched)
+    # a row that is off may be another version of one that is on, of the same cell
+    identity = identify(row, claims if used else replace(claims, shared=True, cells={}), findings)
     if used is False:
         return None if identity is None else _unused(row, *identity)
     limits = {key: findings.attempt(parameter, row, heading) for key, heading in LIMITS.items()}

@@ -118,8 +118,11 @@ class FilterCard {
       "aria-label": `${row.name} (filter) as in the workbook`,
       on: { click: () => wire.say({ kind: "reset", of: "filter", name: row.name }) } });
     this.about = make("p", { class: "about" });
+    this.used = make("input", { type: "checkbox", role: "switch" });
+    this.used.addEventListener("change", (event) => this.sent(this.wire.set("filter", this.row.name, "used", this.used.checked, false), event));
+    this.switch = make("label", { class: "switch" }, this.used, " Use", make("span", { class: "aside", text: ` ${row.name}` }));
     this.root = make("article", { class: "card", "aria-label": `Filter ${row.name}` },
-      make("h3", {}, named(row.name), this.back), this.rejected, this.track.box, this.numbers, this.about);
+      make("h3", {}, named(row.name), this.back), this.switch, this.rejected, this.track.box, this.numbers, this.about);
   }
 
   set(key, value, held, event) {
@@ -150,7 +153,11 @@ class FilterCard {
     this.row = row;
     const numbers = row.limits.filter((each) => each.value !== null);
     this.track.box.hidden = !numbers.length;
-    this.track.update({ numbers, step: row.step, shape: row.shape ?? null, own: null, mark: null, off: false });
+    this.track.update({ numbers, step: row.step, shape: row.shape ?? null, own: null, mark: null, off: !row.used });
+    this.switch.hidden = !row.switches;
+    this.used.checked = row.used;
+    this.root.classList.toggle("off", !row.used);
+    this.rejected.hidden = !row.used;
     for (const limit of row.limits) {
       if (!this.boxes.has(limit.key)) {
         const heading = limit.heading[0].toUpperCase() + limit.heading.slice(1);
@@ -159,11 +166,11 @@ class FilterCard {
         this.boxes.set(limit.key, box);
         this.numbers.append(box.root);
       }
-      this.boxes.get(limit.key).update(limit.value, row.step, { why: limit.value === null ? `computed in ${limit.cell}` : "" });
+      this.boxes.get(limit.key).update(limit.value, row.step, { off: !row.used, why: limit.value === null ? `computed in ${limit.cell}` : "" });
     }
     this.root.classList.toggle("changed", row.changed);
     this.back.hidden = !row.changed;
-    this.about.textContent = [`keeps ${row.keeps}`, row.cell, row.because].filter(Boolean).join(" · ");
+    this.about.textContent = [row.used ? `keeps ${row.keeps}` : "not used", row.cell, row.because].filter(Boolean).join(" · ");
   }
 
   count(rejected, trials) {

@@ -80,7 +80,8 @@ def model_with_values(
     Args:
         model: of the workbook as it is.
         values: cell -> what is typed into it; those of workbooks that feed it stay as they are.
-        tabulated, switched: as for `build_model`; rows of workbooks that feed it stay as they are.
+        tabulated: as for `build_model`.
+        switched: as for `build_model`; rows of workbooks that feed it stay as they are.
 
     Raises:
         DefinitionError, FormulaError, SimulationError: as for `load`.

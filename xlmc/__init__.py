@@ -12,32 +12,111 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from xlmc.api import Model, Simulation, compare, load, open_run, screen, sensitivities
+    from xlmc.api import (
+        Model,
+        Simulation,
+        check,
+        compare,
+        convert,
+        fit,
+        load,
+        methods,
+        model,
+        open_run,
+        replay,
+        screen,
+        sensitivities,
+        stability,
+        verify,
+    )
+    from xlmc.montecarlo.definitions.distribution import (
+        Beta,
+        BetaPERT,
+        DiscreteUniform,
+        Distribution,
+        Exponential,
+        Gamma,
+        Lognormal,
+        Normal,
+        Poisson,
+        Trapezoid,
+        Triangular,
+        Uniform,
+        Weibull,
+        YesNo,
+    )
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
     from xlmc.montecarlo.loop.version import __version__
+    from xlmc.montecarlo.statistics import Estimate
 
 __all__ = [
+    "Beta",
+    "BetaPERT",
+    "DiscreteUniform",
+    "Distribution",
+    "Estimate",
+    "Exponential",
     "ForecastResult",
+    "Gamma",
+    "Lognormal",
     "Model",
+    "Normal",
+    "Poisson",
     "Simulation",
+    "Trapezoid",
+    "Triangular",
+    "Uniform",
+    "Weibull",
+    "YesNo",
     "__version__",
+    "check",
     "compare",
+    "convert",
+    "fit",
     "load",
+    "methods",
+    "model",
     "open_run",
+    "replay",
     "screen",
     "sensitivities",
+    "stability",
+    "verify",
 ]
 
 _MODULES = {
+    "Beta": "montecarlo.definitions.distribution",
+    "BetaPERT": "montecarlo.definitions.distribution",
+    "DiscreteUniform": "montecarlo.definitions.distribution",
+    "Distribution": "montecarlo.definitions.distribution",
+    "Estimate": "montecarlo.statistics",
+    "Exponential": "montecarlo.definitions.distribution",
     "ForecastResult": "montecarlo.loop.forecast_result",
+    "Gamma": "montecarlo.definitions.distribution",
+    "Lognormal": "montecarlo.definitions.distribution",
     "Model": "api",
+    "Normal": "montecarlo.definitions.distribution",
+    "Poisson": "montecarlo.definitions.distribution",
     "Simulation": "api",
+    "Trapezoid": "montecarlo.definitions.distribution",
+    "Triangular": "montecarlo.definitions.distribution",
+    "Uniform": "montecarlo.definitions.distribution",
+    "Weibull": "montecarlo.definitions.distribution",
+    "YesNo": "montecarlo.definitions.distribution",
     "__version__": "montecarlo.loop.version",
+    "check": "api",
     "compare": "api",
+    "convert": "api",
+    "fit": "api",
     "load": "api",
+    "methods": "api",
+    "model": "api",
     "open_run": "api",
+    "replay": "api",
     "screen": "api",
     "sensitivities": "api",
+    "stability": "api",
+    "verify": "api",
 }
 
 
@@ -48,3 +127,8 @@ def __getattr__(name: str) -> Any:
     from importlib import import_module
 
     return getattr(import_module(f"xlmc.{_MODULES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    """Return the public names, which a notebook completes."""
+    return list(__all__)

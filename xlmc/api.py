@@ -8,24 +8,32 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from numbers import Real
 from pathlib import Path
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, Any, Final, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from xlmc.errors import Notice
+from xlmc.errors import DefinitionError, Notice, SimulationError, XlmcError
+from xlmc.montecarlo.definitions.distribution import Distribution
 from xlmc.montecarlo.definitions.run_options import RunArguments, RunOptions
 from xlmc.montecarlo.model import loading
 
 if TYPE_CHECKING:
     import pandas
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from xlmc.analysis.studies.comparison import CompareArguments, Comparison
+    from xlmc.analysis.studies.fitting import Fitting
+    from xlmc.analysis.studies.methods import Study
     from xlmc.analysis.studies.scenario_answers import ScenarioAnswers
     from xlmc.analysis.studies.screening import ScreenArguments, Screening
     from xlmc.analysis.studies.sensitivity import Sensitivities
+    from xlmc.analysis.studies.stability import Stability
+    from xlmc.analysis.studies.verify import Verification
     from xlmc.excel.workbook.workbook import Workbook
     from xlmc.montecarlo.definitions.definitions import Assumption, Check, Filter, Forecast
     from xlmc.montecarlo.definitions.evidence import Evidence
@@ -37,14 +45,40 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
     from xlmc.montecarlo.loop.stopping import Stopped
     from xlmc.montecarlo.model.model import CompiledModel
+    from xlmc.montecarlo.model.python_function import FilterColumns, ForecastColumns, Vectorised
     from xlmc.montecarlo.rare.account import RareAccount
     from xlmc.montecarlo.simulation.simulate import OnProgress
     from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.montecarlo.statistics import Estimate
+    from xlmc.outputs.replay import Replayed
 
-__all__ = ["Model", "Simulation", "compare", "load", "open_run", "screen", "sensitivities"]
+__all__ = [
+    "Model",
+    "Simulation",
+    "check",
+    "compare",
+    "convert",
+    "fit",
+    "load",
+    "methods",
+    "model",
+    "open_run",
+    "replay",
+    "screen",
+    "sensitivities",
+    "stability",
+    "verify",
+]
 
 Floats = NDArray[np.float64]
+
+_SETTINGS: Final = frozenset(
+    {
+        *("trials", "seed", "sampling", "engine", "evidence", "rare", "time_limit", "forecasts"),
+        *("until_accepted", "precision", "precision_of", "confidence", "adaptive"),
+    }
+)
+"""Keywords of `Model.with_` that are settings of a run."""
 
 
 class Simulation:
@@ -54,8 +88,14 @@ class Simulation:
     of accepted trials.
     """
 
-    def __init__(self, run: RunResult) -> None:
-        self._run = run
+    def __init__(self, run: RunResult, changed: _Changed | None = None) -> None:
+        self._run, self._changed = run, changed
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows: warnings, answers, filters, notices."""
+        from xlmc.outputs.notebook import run_html
+
+        return run_html(self._run)
 
     def __repr__(self) -> str:
         if self.rare is not None:
@@ -73,7 +113,7 @@ class Simulation:
     @property
     def model(self) -> Model:
         """The model that was run."""
-        return Model(self._run.model)
+        return Model(self._run.model, self._changed)
 
     @property
     def settings(self) -> Settings:
@@ -192,7 +232,7 @@ class Simulation:
         """Return the accepted trials, one a row, indexed by trial: assumptions, then forecasts.
 
         An assumption with the name of a forecast is called `name (assumption)`; what is called `Trial`, as the index
-        is, `Trial (assumption)` or `Trial (forecast)`.
+        is, `Trial (assumption)` or `Trial (forecast)`. `frame.attrs["units"]` is a dict: column -> units.
 
         Args:
             inputs: with the assumptions.
@@ -227,7 +267,7 @@ class Simulation:
         """
         from xlmc.outputs import save
 
-        return save(self._run, Path(path), overwrite=overwrite)
+        return save(_of_a_file(self._run, self._changed), Path(path), overwrite=overwrite)
 
     def save_page(self, path: str | Path, *, beside: Simulation | None = None, overwrite: bool = False) -> Path:
         """Write the results as one page for a browser, which needs no network.
@@ -254,7 +294,7 @@ class Simulation:
         """
         from xlmc.analysis.results.saved import keep
 
-        return keep(self._run, Path(path), overwrite=overwrite)
+        return keep(_of_a_file(self._run, self._changed), Path(path), overwrite=overwrite)
 
     def extract(self, path: str | Path, *, overwrite: bool = False) -> Path:
         """Write the accepted trials, with assumptions and forecasts, to a `.csv` or a `.parquet` file.
@@ -310,25 +350,39 @@ class Simulation:
         wanted = Wanted(case or {}, sections, forecasts, paper)
         return save_report(self._run, Path(path), wanted, overwrite=overwrite)
 
-    def plot(self) -> Figure:
-        """Return a matplotlib figure: every forecast's histogram and cumulative share, with the central range shaded.
+    def plot(self, forecast: str | None = None, kind: str | None = None, ax: Axes | None = None) -> Figure:
+        """Return a matplotlib figure, which a notebook shows as it is.
+
+        Args:
+            forecast: its name; before and after filtering, that of an assumption. None for all forecasts, and where a
+                kind is named for the first that can be drawn.
+            kind: `histogram`, `cumulative`, `tornado`, `scatter`, `trend` or `before-after`; None for a histogram and
+                the cumulative share side by side.
+            ax: axes to draw into; None for a figure of its own.
 
         Raises:
-            SimulationError: matplotlib is not installed, or there is nothing to draw.
+            SimulationError: matplotlib is not installed, there is no such kind or forecast, or nothing to draw.
         """
         from xlmc.outputs.plot import plot
 
-        return plot(self._run)
+        return plot(self._run, forecast, kind, ax)
 
 
 class Model:
     """A workbook's assumptions, forecasts and filters, which can be simulated and used as a function."""
 
-    def __init__(self, compiled: CompiledModel) -> None:
-        self._compiled = compiled
+    def __init__(self, compiled: CompiledModel, changed: _Changed | None = None) -> None:
+        self._compiled, self._changed = compiled, changed
 
     def __repr__(self) -> str:
-        return f"<Model: {self.workbook.name}>"
+        changes = "" if self._changed is None else f", with {self._changed.words}"
+        return f"<Model: {self.workbook.name}{changes}>"
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows: assumptions, forecasts, filters."""
+        from xlmc.outputs.notebook import model_html
+
+        return model_html(self._compiled)
 
     @property
     def path(self) -> Path:
@@ -418,9 +472,71 @@ class Model:
             DefinitionError: the scenario is not possible.
             FormulaError: a cell cannot be computed in it.
         """
-        from xlmc.analysis.studies.scenario_answers import model_of
+        from xlmc.analysis.studies.scenario_answers import scenario_named
 
-        return Model(model_of(self._compiled, scenario))
+        return self._with(scenario_named(self._compiled, scenario))
+
+    def with_(
+        self, changes: Mapping[str, Distribution | float] | None = None, /, **named: Distribution | float | str | None
+    ) -> Model:
+        """Return the model with other distributions, values or settings; this one and its workbook stay as they are.
+
+        `model.with_(friction=Uniform(0.6, 0.8), trials=10_000)` draws an assumption from another distribution;
+        `model.with_(friction=0.7)` holds it at a value.
+
+        Args:
+            changes: name of an assumption -> its distribution, or the value to hold it at.
+            named: the same by keyword, where blanks and signs are underscores: `road_friction`; and settings of a run:
+                `trials`, `seed`, `sampling`, `engine`, `evidence`, `until_accepted`, `precision`, …
+
+        Raises:
+            SimulationError: there is no such assumption, or a setting is out of its range.
+            DefinitionError: the change is not possible.
+        """
+        from xlmc.montecarlo.definitions.scenarios import Change, Held, Redrawn, Scenario
+        from xlmc.montecarlo.model.keywords import assumption_named
+
+        settings = {name: value for name, value in named.items() if name in _SETTINGS}
+        by_name = {**(changes or {}), **{name: value for name, value in named.items() if name not in _SETTINGS}}
+        found: list[Change] = []
+        for name, value in by_name.items():
+            assumption = assumption_named(self._compiled, name)
+            if isinstance(value, Distribution):
+                found.append(Redrawn(assumption, value))
+            elif isinstance(value, Real) and not isinstance(value, bool):
+                found.append(Held(assumption, float(value)))
+            else:
+                hint = "Give a distribution, such as xlmc.Uniform(0.6, 0.8), or a number to hold it at"
+                raise SimulationError(f"{name!r} cannot be {value!r}", hint=hint)
+        changed = self._with(Scenario("changed in Python", tuple(found))) if found else self
+        if not settings:
+            return changed
+        compiled = changed._compiled
+        asked = RunOptions.of(**settings).settings(compiled.definitions.settings)
+        definitions = replace(compiled.definitions, settings=asked)
+        return Model(compiled.changed(compiled.workbook, definitions), changed._changed)
+
+    def frozen(self, *names: str) -> Model:
+        """Return the model with these assumptions held at their base values.
+
+        Raises:
+            SimulationError: there is no such assumption.
+            DefinitionError: it has no base value.
+        """
+        from xlmc.montecarlo.definitions.scenarios import Held, Scenario
+        from xlmc.montecarlo.model.keywords import assumption_named
+
+        held = tuple(Held(assumption_named(self._compiled, name)) for name in names)
+        return self._with(Scenario("changed in Python", held))
+
+    def _with(self, scenario: Scenario) -> Model:
+        from xlmc.analysis.studies.scenario_answers import model_of
+        from xlmc.montecarlo.definitions.scenarios import Scenario
+
+        own = self._compiled if self._changed is None else self._changed.own
+        before = () if self._changed is None else self._changed.scenario.changes
+        every = Scenario(scenario.name, (*before, *scenario.changes))
+        return Model(model_of(self._compiled, scenario), _Changed(own, every))
 
     def save_scenario(self, scenario: str | Scenario, path: str | Path, *, overwrite: bool = False) -> Path:
         """Write a copy of the workbook with a scenario typed into its cells, and give the path back.
@@ -496,7 +612,56 @@ class Model:
             from xlmc.analysis.studies.scenario_answers import refuse_no_scenarios
 
             refuse_no_scenarios(self._compiled)
-        return Simulation(run_model(self._compiled, asked, progress=progress, tell=tell))
+        run = run_model(self._compiled, asked, progress=progress, tell=tell)
+        return Simulation(run if self._changed is None else self._changed.named_in(run), self._changed)
+
+
+@dataclass(frozen=True, slots=True)
+class _Changed:
+    """What a model differs in from that of its workbook.
+
+    Attributes:
+        own: the model of the workbook.
+        scenario: all changes.
+    """
+
+    own: CompiledModel
+    scenario: Scenario
+
+    @property
+    def words(self) -> str:
+        """The changes, as results say them."""
+        from xlmc.analysis.results.statements.in_words import changes_text
+
+        return changes_text(self.scenario)
+
+    def named_in(self, run: RunResult) -> RunResult:
+        """Return the run with the sentence that it is none of the workbook as it is."""
+        from xlmc.montecarlo.simulation.simulation import ChangedFrom
+
+        book = self.own.workbook
+        return replace(run, changed_from=ChangedFrom(book.name, book.sha256, tuple(self.words.split("; "))))
+
+
+def _of_a_file(run: RunResult, changed: _Changed | None) -> RunResult:
+    """Return the run of a workbook that says what was run: a copy with the changes typed in, where there are any.
+
+    Raises:
+        DefinitionError: a table lacks a column for a change.
+        WorkbookError: a cell that changes holds a formula.
+    """
+    if changed is None:
+        return run
+    from xlmc.analysis.studies.scenario_workbook import edited_workbook
+    from xlmc.excel.workbook.reader import read_workbook
+    from xlmc.montecarlo.model.loading import build_model
+
+    if changed.own.definitions.feeding is not None:
+        hint = "Type the changes into the workbooks first, and run these"
+        raise SimulationError("no file holds the workbooks of this run with their changes", hint=hint)
+    book = read_workbook(edited_workbook(changed.own, changed.scenario).data, changed.own.workbook.name)
+    model = build_model(book, changed.own.path, python=changed.own.definitions.python)
+    return replace(run, model=model.changed(book, replace(model.definitions, settings=run.model.definitions.settings)))
 
 
 def load(path: str | Path, *, feeds: Mapping[str, str] | None = None) -> Model:
@@ -518,6 +683,41 @@ def load(path: str | Path, *, feeds: Mapping[str, str] | None = None) -> Model:
     from xlmc.montecarlo.definitions.feeds import read_feeds
 
     return Model(loading.load(path, read_feeds(feeds or {})))
+
+
+def model(
+    function: Vectorised,
+    assumptions: Mapping[str, Distribution],
+    forecasts: Mapping[str, str | ForecastColumns] | Sequence[str],
+    filters: Mapping[str, FilterColumns] | Sequence[str] = (),
+    *,
+    correlations: Mapping[tuple[str, str], float] | None = None,
+    name: str | None = None,
+) -> Model:
+    """Make a model of a function of NumPy arrays, without a workbook.
+
+    The same sampling, filters, statistics, studies and reports work on it. `stability`, which looks at formulas, does
+    not, and the derivatives of `methods` are differences. Only this process calls the function, in threads where there
+    are several jobs.
+
+    Args:
+        function: takes an array `(n,)` for each assumption, by name, and gives a dict: name of each forecast and filter
+            -> `(n,)`; where one is asked for, the array alone. It must compute each trial from that trial's values,
+            and draw nothing at random.
+        assumptions: name -> distribution.
+        forecasts: name -> units, or a dict with some of `units`, `range_percent`, `threshold`, `report_to`, `kind` and
+            `role`; or the names alone.
+        filters: name -> dict with some of `at_least`, `at_most`, `above`, `below` and `because`; or names of logicals.
+        correlations: (name, name) -> rank correlation.
+        name: of the model; by default that of the function.
+
+    Raises:
+        DefinitionError: a definition is not what it must be.
+        FormulaError: the function fails, does not take arrays, or gives something else than it must.
+    """
+    from xlmc.montecarlo.model.python_function import function_model
+
+    return Model(function_model(function, assumptions, forecasts, filters, correlations=correlations, name=name))
 
 
 def open_run(path: str | Path) -> Simulation:
@@ -592,3 +792,144 @@ def screen(model: Model, tolerance: Iterable[str] | str = (), **options: Unpack[
     from xlmc.analysis.studies.screening import screen
 
     return screen(model._compiled, tolerance, **options)
+
+
+def check(path: str | Path) -> tuple[XlmcError, ...]:
+    """Return every problem of a workbook, each with its cell: what keeps it from being run, and impossible scenarios.
+
+    Raises:
+        WorkbookError: the file cannot be read.
+    """
+    from xlmc.analysis.studies.scenario_answers import scenario_faults
+    from xlmc.engine.engines import ENGINES
+    from xlmc.excel.workbook.reader import read_workbook
+    from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+    from xlmc.montecarlo.model.labels import calculate_labels
+
+    problems = read_definitions(calculate_labels(read_workbook(path)), ENGINES).problems
+    if problems:
+        return problems
+    try:
+        return tuple(scenario_faults(loading.load(path)).values())
+    except XlmcError as error:
+        return (error,)
+
+
+def verify(path: str | Path, *, everything: bool = False) -> Verification:
+    """Compute the formulas of a workbook again at the base case, and compare with the values that Excel saved.
+
+    Args:
+        path: of the workbook.
+        everything: every formula cell, not only those that forecasts and filters need.
+
+    Raises:
+        WorkbookError: the file cannot be read.
+        DefinitionError: it defines neither a forecast nor a filter, and not everything is asked for.
+    """
+    from xlmc.analysis.studies.verify import verify
+    from xlmc.engine.engines import ENGINES
+    from xlmc.excel.workbook.reader import read_workbook
+    from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+    from xlmc.montecarlo.model.labels import calculate_labels
+
+    workbook = read_workbook(path)
+    if everything:
+        return verify(workbook)
+    definitions = read_definitions(calculate_labels(workbook), ENGINES)
+    if not definitions.forecasts and not definitions.filters:
+        message, hint = "The workbook has no forecasts and no filters", "Give everything=True to check every formula"
+        raise DefinitionError(message, where=workbook.name, hint=hint)
+    return verify(workbook, definitions)
+
+
+def fit(values: ArrayLike, *, kind: str | None = None, by: str = "aic") -> Fitting:
+    """Rank the distributions that describe measurements.
+
+    Args:
+        values: `(n,)`, two or more, not all equal.
+        kind: `continuous` or `counts`; None: counts where every value is a whole number from 0 up.
+        by: `aic`, `bic`, `ad` or `ks`.
+
+    Raises:
+        SimulationError: the values cannot be fitted, or there is no such kind or criterion.
+    """
+    from xlmc.analysis.studies.fitting import CRITERIA, KINDS, fit
+
+    for given, known in ((kind, KINDS), (by, CRITERIA)):
+        if given is not None and given not in known:
+            raise SimulationError(f"{given!r} is unknown here", hint=f"Choose one of {', '.join(known)}")
+    return fit(values, kind=kind, by=by)
+
+
+def methods(
+    model: Model,
+    *,
+    accuracy: str = "1%",
+    trials: int | None = None,
+    replicates: int | None = None,
+    reference_trials: int | None = None,
+    seed: int | None = None,
+    quick: bool = False,
+) -> Study:
+    """Measure what each method of uncertainty analysis costs on a model, and what it misses.
+
+    Args:
+        model: to measure them on.
+        accuracy: wanted of mean, SD and both ends of the central range in 95 of 100 runs: `1%` of the range from 5 to
+            95 %, or a number in the forecasts' units.
+        trials: of the longest runs.
+        replicates: runs of each length.
+        reference_trials: of the long run that errors are measured against.
+        seed: of the reference.
+        quick: few and short runs, in about half a minute.
+
+    Raises:
+        SimulationError: an argument is out of its range, or the reference accepts too few trials.
+    """
+    from xlmc.analysis.studies.methods import quick_settings, study
+
+    asked = {"trials": trials, "replicates": replicates, "reference_trials": reference_trials}
+    given: dict[str, Any] = {name: value for name, value in asked.items() if value is not None}
+    return study(model._compiled, accuracy=accuracy, seed=seed, **(quick_settings(given) if quick else given))
+
+
+def stability(model: Model, *, trials: int | None = None, seed: int | None = None, jobs: int = 1) -> Stability:
+    """Find where a model loses digits, or its numbers are not what they seem, within the ranges of its assumptions.
+
+    Args:
+        model: of a workbook.
+        trials: of the run that is looked at; by default the book's own.
+        seed: of it.
+        jobs: threads or processes.
+
+    Raises:
+        SimulationError: an argument is out of its range, or a function of Python computes the model.
+    """
+    from xlmc.analysis.studies.stability import stability
+
+    return stability(model._compiled, trials=trials, seed=seed, jobs=jobs)
+
+
+def replay(path: str | Path, *, jobs: int = 1) -> Replayed:
+    """Repeat the run that a result workbook or a saved run records, and say whether it is identical.
+
+    Raises:
+        WorkbookError: the file cannot be read, or holds no record.
+        XlmcError: its workbook cannot be run.
+    """
+    from xlmc.outputs.replay import replay
+
+    return replay(path, jobs=jobs)
+
+
+def convert(path: str | Path, to: str | Path, *, overwrite: bool = False) -> Path:
+    """Write a copy of a workbook of Crystal Ball or @RISK with its definitions as tables, and give the path back.
+
+    Raises:
+        WorkbookError: there is nothing to convert, or the file cannot be written.
+        DefinitionError, FormulaError: the workbook cannot be understood.
+    """
+    from xlmc.outputs.conversion.convert import convert
+
+    convert(loading.load(path), Path(to), overwrite=overwrite)
+    return Path(to)

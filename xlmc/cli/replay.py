@@ -93,7 +93,7 @@ def _other_version(found: Replayed) -> Iterator[str]:
     if found.version:
         yield "To repeat it as it was made, install that version beside this one, in a clone of xlmc's repository:"
         yield f"  {install(found.version)}"
-        yield f"If the clone has no tag v{found.version}, CHANGELOG.md names the last commit of that version."
+        yield f"If the clone has no tag v{found.version}, CHANGELOG-archive.md names the last commit of that version."
 
 
 def _verdict(found: Replayed) -> str:

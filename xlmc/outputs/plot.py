@@ -1,16 +1,22 @@
-"""A run as a figure of matplotlib: every forecast's histogram and cumulative share, with the central range shaded."""
+"""A run as a figure of matplotlib: histograms and cumulative shares, and one picture each of what else is asked."""
 
 from __future__ import annotations
 
+import io
+import math
 import textwrap
+from collections.abc import Callable, Mapping
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.distributions.parameters import show
+from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
+from xlmc.montecarlo.statistics import rank_correlation
 from xlmc.outputs.histogram import Figure as Drawn
 from xlmc.outputs.histogram import figures_of
 from xlmc.outputs.sheets.styles import DARK, GRID, INK, LIGHT
@@ -22,7 +28,7 @@ if TYPE_CHECKING:
 
     from xlmc.montecarlo.simulation.simulation import RunResult
 
-__all__ = ["plot"]
+__all__ = ["KINDS", "notebook_figure", "plot"]
 
 _WIDTH, _HEIGHT, _HEAD = 10.0, 2.9, 0.75
 """Lengths in inches: the width of the figure, the heights of a forecast and of the title."""
@@ -31,33 +37,225 @@ _POINTS: Final = 1_001
 """Points of a cumulative curve: one for each tenth of a percent, finer than a line is thick."""
 
 _LONGEST: Final = 55
+_BARS, _DOTS = 12, 4_000
+"""The most bars of a tornado, and dots of a scatter."""
+
+_TITLE: Final[Mapping[str, Any]] = {
+    "loc": "left",
+    "color": INK,
+    "fontsize": 10,
+    "fontweight": "bold",
+    "parse_math": False,
+}
 
 Floats = NDArray[np.float64]
 
 
-def plot(simulation: RunResult) -> Figure:
-    """The figure, one row for each forecast that has a number in an accepted trial: histogram and cumulative share.
+def plot(simulation: RunResult, name: str | None = None, kind: str | None = None, ax: Axes | None = None) -> Figure:
+    """Draw a run.
 
-    It belongs to no window: `figure.savefig("run.png")` writes it, and a notebook shows it.
+    The figure belongs to no window: `figure.savefig("run.png")` writes it, and a notebook shows it.
+
+    Args:
+        simulation: the finished run.
+        name: of a forecast, of an assumption before and after filtering, or None: all forecasts where no kind is named,
+            otherwise the first that can be drawn.
+        kind: one of `KINDS`; None for a histogram and the cumulative share side by side.
+        ax: to draw into; None for a figure of its own.
 
     Raises:
-        SimulationError: matplotlib is not installed, or there is nothing to draw.
+        SimulationError: matplotlib is not installed, there is no such kind or name, or there is nothing to draw.
     """
     if find_spec("matplotlib") is None:
         hint = "Install it: pip install 'xlmc[plots]'"
         raise SimulationError("figures need matplotlib, which is not installed", hint=hint)
-    drawn = figures_of(simulation)
-    if not drawn:
-        raise SimulationError("there is nothing to draw: no accepted trial has a number", hint="See the warnings")
+    if kind is None and ax is None:
+        return _overview(simulation, name)
+    kind = kind or "histogram"
+    if kind not in KINDS:
+        raise SimulationError(f"{kind!r} is not a kind of picture", hint=f"Choose one of {', '.join(KINDS)}")
+    if ax is None:
+        ax = notebook_figure(_WIDTH * 0.7, _HEAD + 1.3 * _HEIGHT).subplots()
+    KINDS[kind](ax, simulation, name)
+    return ax.get_figure(root=True) or ax.figure  # type: ignore[return-value]  # axes stand in a figure
+
+
+def notebook_figure(width: float, height: float) -> Figure:
+    """Make an empty figure, in inches, that a notebook shows as a picture without being told to."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(_WIDTH, _HEAD + _HEIGHT * len(drawn)), layout="constrained")
+    class Shown(Figure):
+        """A figure that knows how to be a picture."""
+
+        def _repr_png_(self) -> bytes:
+            """Return the picture that a notebook shows."""
+            stream = io.BytesIO()
+            self.savefig(stream, format="png", dpi=110)
+            return stream.getvalue()
+
+    return Shown(figsize=(width, height), layout="constrained")
+
+
+def _overview(simulation: RunResult, name: str | None) -> Figure:
+    """One row for each forecast that has a number in an accepted trial: histogram and cumulative share."""
+    drawn = figures_of(simulation, None if name is None else [simulation[_known(simulation, name)].definition.name])
+    if not drawn:
+        raise _nothing()
+    figure = notebook_figure(_WIDTH, _HEAD + _HEIGHT * len(drawn))
     rows = figure.subplots(len(drawn), 2, squeeze=False, width_ratios=[3, 2])
     figure.suptitle(_title(simulation), color=INK, fontsize=12, fontweight="bold", parse_math=False)
     for (left, right), each in zip(rows, drawn, strict=True):
         _draw_histogram(left, each)
         _draw_cumulative(right, each, simulation)
     return figure
+
+
+def _nothing() -> SimulationError:
+    return SimulationError("there is nothing to draw: no accepted trial has a number", hint="See the warnings")
+
+
+def _known(simulation: RunResult, name: str) -> str:
+    """The name of a forecast as defined.
+
+    Raises:
+        SimulationError: there is none.
+    """
+    names = {name_key(each): each for each in simulation.forecasts}
+    if name_key(name) not in names:
+        raise SimulationError(f"there is no forecast {name!r}", hint=did_you_mean(name, names.values()))
+    return names[name_key(name)]
+
+
+def _one(simulation: RunResult, name: str | None) -> Drawn:
+    """The forecast of a name, or the first that can be drawn."""
+    found = figures_of(simulation, None if name is None else [_known(simulation, name)])
+    if not found:
+        raise _nothing()
+    return found[0]
+
+
+def _histogram(axes: Axes, simulation: RunResult, name: str | None) -> None:
+    _draw_histogram(axes, _one(simulation, name))
+
+
+def _cumulative(axes: Axes, simulation: RunResult, name: str | None) -> None:
+    each = _one(simulation, name)
+    _draw_cumulative(axes, each, simulation)
+    axes.set_title(f"{_heading(each)}: cumulative", loc="left", color=INK, fontsize=10, fontweight="bold")
+
+
+def _tornado(axes: Axes, simulation: RunResult, name: str | None) -> None:
+    """Each assumption moved alone from its 10th to its 90th percentile, the widest bar on top."""
+    each = _one(simulation, name)
+    found = sensitivities(simulation, [each.answer.name])[each.answer.name]
+    bars = [bar for bar in found.bars if bar.low is not None and bar.high is not None][:_BARS]
+    if not bars or found.base is None:
+        hint = "Look at the base case: xlmc check says which cell is an error there"
+        raise SimulationError(f"{each.answer.name!r} has no number at the base case", hint=hint)
+    lows, highs = (np.array([getattr(bar, end) for bar in bars], float) - found.base for end in ("low", "high"))
+    places = np.arange(len(bars))[::-1]
+    axes.barh(places, lows, left=found.base, color=LIGHT, label="at the 10th percentile of the assumption")
+    axes.barh(places, highs, left=found.base, color=DARK, label="at its 90th percentile")
+    axes.axvline(found.base, color=INK, linewidth=1.0)
+    axes.set_yticks(places, [_short(bar.assumption) for bar in bars], parse_math=False)
+    axes.set_title(f"{_heading(each)}: one assumption at a time, no filter", **_TITLE)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), fontsize=8, frameon=False, ncols=2)
+    _plain(axes, each.answer.units or "value")
+
+
+def _scatter(axes: Axes, simulation: RunResult, name: str | None) -> None:
+    """The forecast over the draws of the assumption that it follows most."""
+    each = _one(simulation, name)
+    answer = simulation.results[each.answer.name].column[: simulation.kept_inputs]
+    known = ~np.isnan(answer)
+    ranks = {
+        other: rank_correlation(draws[known], answer[known]).value
+        for other, draws in simulation.inputs.items()
+        if known.sum() > 2
+    }
+    ranks = {other: rank for other, rank in ranks.items() if not math.isnan(rank)}
+    if not ranks:
+        raise SimulationError(f"no assumption was drawn that {each.answer.name!r} could follow", hint="Run more trials")
+    most = max(ranks, key=lambda other: abs(ranks[other]))
+    x, y = simulation.inputs[most][known][:_DOTS], answer[known][:_DOTS]
+    axes.plot(x, y, ".", color=DARK, markersize=2.5, alpha=0.5)
+    units = next(a.units for a in simulation.model.assumptions if a.name == most)
+    axes.set_ylabel(", ".join(filter(None, (each.name, each.answer.units))), parse_math=False)
+    axes.set_title(f"{_heading(each)}: rank correlation {ranks[most]:.2f}", **_TITLE)
+    _plain(axes, ", ".join(filter(None, (most, units))))
+
+
+def _trend(axes: Axes, simulation: RunResult, name: str | None) -> None:
+    """Central ranges of the forecasts that have the units of the first, side by side."""
+    first = _one(simulation, name)
+    rows = [each for each in figures_of(simulation) if each.answer.units == first.answer.units]
+    places = np.arange(len(rows))
+    shades = {0.95: "#DCE6F1", 0.8: "#B8CCE4", first.answer.share: DARK}
+    for share, shade in sorted(shades.items(), reverse=True):
+        ends = [simulation.results[each.answer.name].central(share) for each in rows]
+        low, high = (np.array([end[side].value for end in ends]) for side in (0, 1))
+        axes.bar(places, high - low, bottom=low, width=0.5, color=shade, label=f"central {percent(share)}")
+    means = [each.answer.mean.value for each in rows]
+    axes.plot(places, means, "o", color=INK, markersize=4, label="mean")
+    axes.set_xticks(places, [textwrap.fill(each.name, 18) for each in rows], parse_math=False)
+    axes.use_sticky_edges = False
+    axes.margins(y=0.05)
+    axes.set_title("Central ranges", **_TITLE)
+    axes.legend(loc="best", fontsize=8, frameon=False)
+    _plain(axes, "")
+    axes.set_ylabel(first.answer.units or "value", parse_math=False)
+
+
+def _before_after(axes: Axes, simulation: RunResult, name: str | None) -> None:
+    """An assumption before and after filtering: the one that was asked for, or that the filters move most."""
+    names = {name_key(each): each for each in simulation.inputs}
+    if name is not None and name_key(name) not in names:
+        raise SimulationError(f"there is no assumption {name!r}", hint=did_you_mean(name, names.values()))
+    if not simulation.accepted or not names:
+        raise _nothing()
+    weights = None if simulation.weighting is None else simulation.weighting.weights[: simulation.kept_inputs]
+    chosen = names[name_key(name)] if name else max(simulation.inputs, key=lambda each: _moved(simulation, each))
+    before, after = simulation.prior[chosen], simulation.inputs[chosen]
+    edges = np.histogram_bin_edges(before[np.isfinite(before)], 40).tolist()
+    axes.hist(before, edges, density=True, color=LIGHT, label="before the filters")
+    axes.hist(after, edges, density=True, weights=weights, histtype="step", color=INK, linewidth=1.6, label="accepted")
+    units = next(a.units for a in simulation.model.assumptions if a.name == chosen)
+    axes.set_title(f"{_short(chosen)}, before and after the filters", **_TITLE)
+    axes.set_ylabel("Density")
+    axes.legend(loc="best", fontsize=8, frameon=False)
+    _plain(axes, units or "value")
+
+
+def _moved(simulation: RunResult, name: str) -> float:
+    """How far apart the distributions before and after filtering are: the largest difference of cumulative shares."""
+    before, after = np.sort(simulation.prior[name]), np.sort(simulation.inputs[name])
+    return float(
+        np.abs(np.searchsorted(after, before, "right") / after.size - np.arange(1, before.size + 1) / before.size).max()
+    )
+
+
+KINDS: Final[Mapping[str, Callable[[Axes, RunResult, str | None], None]]] = {
+    "histogram": _histogram,
+    "cumulative": _cumulative,
+    "tornado": _tornado,
+    "scatter": _scatter,
+    "trend": _trend,
+    "before-after": _before_after,
+}
+"""Kind of picture -> what draws it."""
+
+
+def _short(name: str) -> str:
+    return textwrap.shorten(name, _LONGEST, placeholder="…")
+
+
+def _plain(axes: Axes, below: str) -> None:
+    """Dress axes alike: a grid behind, no frame, small labels."""
+    axes.set_xlabel(below, parse_math=False)
+    axes.grid(color=GRID, linewidth=0.6)
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.tick_params(colors=INK, labelsize=9)
 
 
 def _title(simulation: RunResult) -> str:
@@ -113,13 +311,9 @@ def _near(each: Drawn, values: Floats) -> Floats:
 
 
 def _heading(each: Drawn) -> str:
-    return textwrap.shorten(each.name, _LONGEST, placeholder="…")
+    return _short(each.name)
 
 
 def _dress(axes: Axes, each: Drawn, edges: np.typing.NDArray[np.float64]) -> None:
     axes.set_xlim(float(edges[0]), float(edges[-1]))
-    axes.set_xlabel(each.answer.units or "value", parse_math=False)
-    axes.grid(color=GRID, linewidth=0.6)
-    axes.set_axisbelow(True)
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.tick_params(colors=INK, labelsize=9)
+    _plain(axes, each.answer.units or "value")

@@ -71,9 +71,9 @@ def test_what_a_rule_concerns(said, formula, met):
 
 
 def test_the_changelog_names_the_last_commit_of_every_version_before_this_one():
-    changelog = (REPOSITORY / "CHANGELOG.md").read_text("utf-8")
-    newest, *earlier = re.findall(r"^## (\S+)$", changelog, re.MULTILINE)
-    commits = dict(re.findall(r"^## (\S+)\n\nLast commit: ([0-9a-f]{40})$", changelog, re.MULTILINE))
+    changelog, archive = ((REPOSITORY / name).read_text("utf-8") for name in ("CHANGELOG.md", "CHANGELOG-archive.md"))
+    newest, *earlier = re.findall(r"^## (\S+)(?: - \d{4}-\d\d-\d\d)?$", changelog, re.MULTILINE)
+    commits = dict(re.findall(r"^## (\S+)\n\nLast commit: ([0-9a-f]{40})$", archive, re.MULTILINE))
     assert newest == xlmc.__version__
     assert list(commits) == earlier
     for version, commit in commits.items():

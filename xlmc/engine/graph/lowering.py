@@ -246,7 +246,7 @@ class Lowering(TreeLowering):
         try:
             if cell in self.graph.faults:
                 raise self.graph.faults[cell]
-            if formula is None and not isinstance(cell, InFormula):
+            if formula is None and isinstance(tree, Cell) and not isinstance(cell, InFormula):
                 return self._filled_cell(cell, tree)
             array = formula is not None and (formula.array is not None or formula.dynamic)
             node = self._lower_formula(tree, Scope(cell, array))
@@ -471,6 +471,8 @@ class Lowering(TreeLowering):
 
     def _call(self, call: ir.Call, scope: Scope) -> int:
         name, arguments = call.name, call.arguments
+        if call.given is not None:
+            return self._call_function(call.given, arguments, scope.inside(), {})
         if self._moment is not None:
             now = self._moment.formula(name, arguments, self.graph.workbook.date1904)
             if now is not None:

@@ -8,10 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Final, assert_never
+from typing import TYPE_CHECKING, Final, assert_never
 
 from xlmc.errors import ErrorCode
 from xlmc.excel.address import Area, Cell
+
+if TYPE_CHECKING:
+    from xlmc.excel.functions.registry import Function
 
 __all__ = [
     "Array",
@@ -149,11 +152,13 @@ class Call:
 
     Attributes:
         foreign: whether the file marks it as of an add-in (`_xll.`, `[1]!`) or of a newer Excel (`_xlfn.`).
+        given: what computes it, where it is a function that no file holds; None for one of the registry.
     """
 
     name: str
     arguments: tuple[Expression, ...]
     foreign: bool = field(default=False, compare=False)
+    given: Function | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,11 +17,12 @@ class Computed:
     Args:
         workbook: whose cells are asked about.
         drawn: the assumption cells; it may grow.
+        python: the cells that a function of Python computes.
     """
 
-    def __init__(self, workbook: Workbook, drawn: Container[Cell]) -> None:
+    def __init__(self, workbook: Workbook, drawn: Container[Cell], python: Container[Cell] = ()) -> None:
         self._workbook = workbook
-        self._drawn = drawn
+        self._drawn, self._python = drawn, python
         self._spills = Spills(workbook)
 
     def by_formula(self, cell: Cell) -> bool:
@@ -30,4 +31,4 @@ class Computed:
 
     def at_all(self, cell: Cell) -> bool:
         """Whether anything does; otherwise the cell is a constant."""
-        return cell in self._drawn or self.by_formula(cell)
+        return cell in self._drawn or cell in self._python or self.by_formula(cell)

@@ -275,7 +275,8 @@ class Definitions:
     `left_out` are these forecasts and what filters of theirs. `forecast_filters` are filters of some forecasts only,
     which are not among `filters`; `unused` are the rows of `xlmc_filters` that are switched off, which nothing else
     holds. `switches` are the names of the rows of filters and evidence that can be used or not, each with the first
-    cell of its row, and whether it is used. `feeding` are the other workbooks whose answers feed assumptions.
+    cell of its row, and whether it is used. `feeding` are the other workbooks whose answers feed assumptions, `python`
+    the cells that a function of Python computes, each with the call.
     """
 
     assumptions: tuple[Assumption, ...] = ()
@@ -298,6 +299,7 @@ class Definitions:
     feeding: Feeding | None = None
     unused: tuple[Filter, ...] = ()
     switches: Mapping[str, tuple[Cell, bool]] = field(default_factory=dict)
+    python: Mapping[Cell, Expression] = field(default_factory=dict)
 
     def is_used(self, row: str) -> bool:
         """Return whether a filter or a row of evidence is used; see `switches`. What is no such row is not off."""

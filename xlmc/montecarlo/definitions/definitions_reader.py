@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 from typing import Final
 
 from xlmc.errors import DefinitionError
 from xlmc.excel.address import Cell
+from xlmc.excel.formula.ir import Expression
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.computed import Computed
 from xlmc.montecarlo.definitions.crystal_ball.dialogs import FromDialogs, read_dialogs
@@ -48,15 +49,23 @@ from xlmc.montecarlo.definitions.unavailable import (
 from xlmc.montecarlo.definitions.xlrisk_sheet import read_xlrisk
 from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 
-__all__ = ["NO_SWITCHES", "read_definitions"]
+__all__ = ["COMPUTED_BY", "NO_SWITCHES", "read_definitions"]
 
 NO_SWITCHES: Final[Mapping[str, bool]] = MappingProxyType({})
 
 SAVE_AGAIN: Final = "Open the workbook in Excel with Crystal Ball, and save it again"
 
 
+COMPUTED_BY: Final = "Computed by"
+"""The heading of what computes a forecast or a filter that no formula computes."""
+
+
 def read_definitions(
-    workbook: Workbook, engines: Collection[str], tabulated: int = 1, switched: Mapping[str, bool] = NO_SWITCHES
+    workbook: Workbook,
+    engines: Collection[str],
+    tabulated: int = 1,
+    switched: Mapping[str, bool] = NO_SWITCHES,
+    python: Mapping[Cell, Expression] | None = None,
 ) -> Definitions:
     """What the tables `xlmc_assumptions`, `xlmc_forecasts`, … of a workbook say, and calls such as `RiskNormal`.
 
@@ -68,15 +77,17 @@ def read_definitions(
         tabulated: which of its values every `RiskSimtable` gives, from 1.
         switched: filters and evidence that are used, or not, whatever their column Use says, by the keys of their
             names.
+        python: the cells that a function of Python computes, each with the call; None for none.
     """
-    findings = Findings()
+    findings, python = Findings(), python or {}
     tables = definition_tables(workbook, findings)
     uncertain, answers, tests = Claims("assumption"), Claims("forecast"), Claims("filter")
     settings, central, said = read_settings(workbook, tables["xlmc_settings"], engines, findings)
-    computed = Computed(workbook, drawn=uncertain.cells)
+    computed = Computed(workbook, drawn=uncertain.cells, python=python)
     assumptions = read_assumptions(workbook, tables["xlmc_assumptions"], computed, uncertain, findings)
     forecasts = read_forecasts(workbook, tables["xlmc_forecasts"], computed, central, answers, findings)
     rows = read_filters(workbook, tables["xlmc_filters"], computed, tests, findings, switched)
+    _refuse_without_function((*forecasts, *rows), python, findings)
     evidence = read_evidence(workbook, tables["xlmc_evidence"], computed, rows, findings, switched)
     unused = tuple(each for each in rows if not each.used)
     filters = *(each for each in rows if each.used), *(as_filter(each) for each in evidence if each.used)
@@ -119,7 +130,7 @@ def read_definitions(
     remark_on_tables(workbook.data_tables, what_if, findings)
     unavailable = {**calls.unavailable, **dict.fromkeys(faults_of(workbook, what_if.stale), TABLE_REASON)}
     remark_on_unavailable(calls.unavailable, findings)
-    rewritten = {**dialogs.rewritten, **calls.rewritten, **faults_of(workbook, what_if.varying)}
+    rewritten = {**dialogs.rewritten, **calls.rewritten, **faults_of(workbook, what_if.varying), **python}
     asked = forecasts
     refused = tuple(DefinitionError(damage, where=workbook.name, hint=SAVE_AGAIN) for damage in dialogs.damages)
     if dialogs.refused:
@@ -159,6 +170,7 @@ def read_definitions(
         left_out=left_out,
         unused=unused,
         switches=dict(_switches([*rows, *evidence])),
+        python=python,
     )
 
 
@@ -167,6 +179,16 @@ def _switches(rows: Iterable[Filter | Evidence]) -> Iterator[tuple[str, tuple[Ce
     for each in rows:
         if each.can_be_used:
             yield each.name, (each.row, each.used)
+
+
+def _refuse_without_function(rows: Iterable[Forecast | Filter], python: Container[Cell], findings: Findings) -> None:
+    """Refuse numbers that a function of Python computed, where that function is not at hand."""
+    lost = [each for each in rows if COMPUTED_BY in each.notes and each.cell not in python]
+    if lost:
+        names = ", ".join(dict.fromkeys(repr(each.name) for each in lost))
+        hint = "Run it from Python, where the function is: xlmc.model(function, …)"
+        by = lost[0].notes[COMPUTED_BY]
+        findings.problem(f"The {by} computes {names}, and a workbook does not hold it", lost[0].cell, hint)
 
 
 def _remark_on_calls(calls: InCells, settings: Settings, findings: Findings) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from numbers import Integral, Real
 from typing import Any, Final, TypedDict
 
 from xlmc.errors import SimulationError
@@ -15,6 +16,10 @@ __all__ = ["KEPT_INPUTS", "RunArguments", "RunOptions"]
 
 KEPT_INPUTS: Final = 1 << 20
 """Accepted trials whose draws are kept, unless asked otherwise: more than a sheet has rows."""
+
+
+_WHOLE: Final = frozenset({"trials", "seed", "jobs", "workers", "keep_inputs"})
+"""Options that are whole numbers."""
 
 
 class RunArguments(TypedDict, total=False):
@@ -78,6 +83,7 @@ class RunOptions:
             SimulationError: something of it cannot be meant.
             TypeError: there is no such option.
         """
+        asked |= {name: _whole(name, asked[name]) for name in _WHOLE & asked.keys()}
         own = {each.name for each in fields(cls)} - {"stopping"}
         ends = {name: asked.pop(name) for name in asked.keys() - own}
         return cls(**asked, stopping=stopping(**ends))
@@ -146,6 +152,21 @@ class RunOptions:
         if not isinstance(goal, WholeGoal):
             return []
         return [f"--{goal.options[0].name.replace('_', '-')}", str(goal.number)]
+
+
+def _whole(name: str, given: Any) -> int | None:
+    """Return a whole number that was given in Python, `1e6` among them.
+
+    Raises:
+        SimulationError: it is none.
+    """
+    if given is None:
+        return None
+    if isinstance(given, Integral) and not isinstance(given, bool):
+        return int(given)
+    if not isinstance(given, Real) or isinstance(given, bool) or not float(given).is_integer():
+        raise SimulationError(f"{name} is {given!r}", hint=f"Give a whole number for {name}")
+    return int(float(given))
 
 
 def _of_settings(found: Settings | RunOptions) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.workbook import CellValue
+from xlmc.montecarlo.definitions.distribution import Distribution
 
 __all__ = [
     "Band",
@@ -20,6 +21,7 @@ __all__ = [
     "Limits",
     "Numbers",
     "Range",
+    "Redrawn",
     "Scenario",
     "Switched",
     "Tabulated",
@@ -77,6 +79,15 @@ class Numbers:
 
 
 @dataclass(frozen=True, slots=True)
+class Redrawn:
+    """An assumption is drawn from another distribution."""
+
+    assumption: str
+    distribution: Distribution
+    where: Cell | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Limits:
     """A filter has other limits: `at_least`, `at_most`, `above`, `below` -> number; None takes the limit away."""
 
@@ -121,7 +132,7 @@ class Tabulated:
     where: Cell | None = None
 
 
-Change = Held | Drawn | Range | Band | Numbers | Limits | Switched | Typed | Tabulated
+Change = Held | Drawn | Range | Band | Numbers | Redrawn | Limits | Switched | Typed | Tabulated
 """One change. `where` is the cell that asks for it, for messages; None where a program does."""
 
 

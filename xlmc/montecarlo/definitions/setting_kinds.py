@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
+from numbers import Integral
 from typing import Any
 
 from xlmc.errors import SimulationError
@@ -30,11 +31,13 @@ class Whole:
     as_text: bool = False
 
     def check(self, value: int) -> None:
-        """Refuse a number beyond the limits.
+        """Refuse a number beyond the limits, and what is no whole number.
 
         Raises:
             SimulationError: it is.
         """
+        if isinstance(value, bool) or not isinstance(value, Integral):
+            raise SimulationError(f"{value!r} is no whole number", hint=self.hint)
         if value < self.least or (self.most is not None and value > self.most):
             raise SimulationError(self.fault.format(value), hint=self.hint)
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from numbers import Real
 from typing import Any, ClassVar, Final, NamedTuple, Self
 
 from xlmc.errors import SimulationError
@@ -118,6 +119,8 @@ class WholeGoal(Goal):
         limits = self.options[0].takes
         assert isinstance(limits, tuple)
         least, most = limits
+        if isinstance(self.number, bool) or not isinstance(self.number, Real):
+            raise SimulationError(f"{self.number!r} {self.things} were asked for", hint=self.hint)
         if not least <= self.number <= most or self.number != int(self.number):
             raise SimulationError(f"{self.number:,} {self.things} were asked for", hint=self.hint)
 

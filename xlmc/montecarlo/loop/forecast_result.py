@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cached_property
+from numbers import Real
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.errors import Notice
+from xlmc.errors import Notice, SimulationError
 from xlmc.montecarlo import statistics
 from xlmc.montecarlo.columns import numbers
 from xlmc.montecarlo.definitions.definitions import Forecast
@@ -153,12 +155,38 @@ class ForecastResult:
         return statistics.standard_deviation(self.sample)
 
     def percentile(self, percent: float) -> Estimate:
-        """The value that `percent` (0 to 100) of the trials do not exceed, as Excel's PERCENTILE.INC."""
+        """Return the value that `percent` (0 to 100) of the trials do not exceed, as Excel's PERCENTILE.INC.
+
+        A percentage between 0 and 1 is warned of: `quantile` takes shares.
+
+        Raises:
+            SimulationError: it is no number from 0 to 100.
+        """
+        percent = _number(percent, "a percentage", 100.0)
+        if 0.0 < percent < 1.0:
+            message = f"percentile({percent:g}) is below the first percent; quantile({percent:g}) takes a share"
+            warnings.warn(message, stacklevel=2)
+        return self.percentile_at(percent)
+
+    def percentile_at(self, percent: float) -> Estimate:
+        """Return the percentile of any percentage from 0 to 100, below the first percent, too."""
         return self._where_told(statistics.percentile(self.sample, percent), percent / 100.0)
 
+    def quantile(self, share: float) -> Estimate:
+        """Return the value that this share (0 to 1) of the trials do not exceed: `quantile(0.95)` is `percentile(95)`.
+
+        Raises:
+            SimulationError: it is no number from 0 to 1.
+        """
+        return self.percentile_at(100.0 * _number(share, "a share", 1.0))
+
     def central(self, share: float | None = None) -> tuple[Estimate, Estimate]:
-        """Both ends of the central range that holds `share` of the trials; the forecast's own share by default."""
-        share = self.definition.central if share is None else share
+        """Return both ends of the central range that holds `share` of the trials; by default the forecast's own share.
+
+        Raises:
+            SimulationError: the share is no number from 0 to 1.
+        """
+        share = self.definition.central if share is None else _number(share, "a share", 1.0)
         low, high = statistics.central_interval(self.sample, share)
         return self._where_told(low, (1.0 - share) / 2.0), self._where_told(high, (1.0 - share) / 2.0)
 
@@ -169,8 +197,31 @@ class ForecastResult:
         return None if asked is None or not self.sample.n else statistics.probability_between(self.sample, *asked)
 
     def probability_above(self, threshold: float) -> Estimate:
-        """P(forecast > threshold)."""
-        return statistics.probability_above(self.sample, threshold)
+        """P(forecast > threshold).
+
+        Raises:
+            SimulationError: the threshold is no number.
+        """
+        return statistics.probability_above(self.sample, _number(threshold, "a threshold"))
+
+
+def _number(given: object, what: str, most: float = math.inf) -> float:
+    """Return a number that was given in Python.
+
+    Args:
+        given: by the person.
+        what: it is, in words.
+        most: the largest that it may be; where it has a limit, the least is 0.
+
+    Raises:
+        SimulationError: it is none, or lies outside.
+    """
+    limited = math.isfinite(most)
+    hint = f"Give a number from 0 to {most:g}" if limited else "Give a number, in the units of the forecast"
+    number = math.nan if isinstance(given, bool) or not isinstance(given, Real) else float(given)
+    if math.isnan(number) or (limited and not 0.0 <= number <= most):
+        raise SimulationError(f"{given!r} is not {what}", hint=hint)
+    return number
 
 
 def tail_notices(samples: Mapping[str, Sample], method: str) -> list[Notice]:

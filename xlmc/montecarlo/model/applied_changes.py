@@ -32,6 +32,7 @@ from xlmc.excel.address import Cell
 from xlmc.excel.workbook.lazy_sheets import with_values
 from xlmc.excel.workbook.workbook import CellValue
 from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter
+from xlmc.montecarlo.definitions.distribution import Distribution
 from xlmc.montecarlo.definitions.scenarios import (
     Band,
     Change,
@@ -40,6 +41,7 @@ from xlmc.montecarlo.definitions.scenarios import (
     Limits,
     Numbers,
     Range,
+    Redrawn,
     Switched,
     Tabulated,
     Typed,
@@ -282,9 +284,28 @@ def _other(assumption: Assumption, change: Change, lowering: Lowering) -> Assump
             return assumption.with_numbers(given)
         case Numbers(_, values):
             return assumption.with_numbers(values)
+        case Redrawn(_, distribution):
+            return _redrawn(assumption, distribution)
         case Band(_, low, high):
             return assumption.with_numbers(_cutoffs(assumption, change, lowering))
     raise TypeError(change)
+
+
+def _redrawn(assumption: Assumption, to: Distribution) -> Assumption:
+    """The assumption, drawn from another distribution; its base value, units and source stay where none are given."""
+    return replace(
+        assumption,
+        distribution=to.family,
+        given=to.given,
+        base=assumption.base if to.base is None else to.base,
+        units=to.units or assumption.units,
+        source=to.source or assumption.source,
+        frozen=False,
+        own_family=None,
+        data=None,
+        call=None,
+        checked=None,
+    )
 
 
 def _cutoffs(assumption: Assumption, band: Band, lowering: Lowering) -> dict[str, float]:

@@ -88,7 +88,8 @@ def model_with_values(
     """
     feeding = model.definitions.feeding
     if feeding is None:
-        return build_model(with_values(model.workbook, values), model.path, tabulated, switched)
+        book = with_values(model.workbook, values)
+        return build_model(book, model.path, tabulated, switched, model.definitions.python)
     own = {cell: value for cell, value in values.items() if cell.sheet in feeding.first.sheets}
     alone = build_model(with_values(feeding.first, own), model.path, tabulated, switched)
     sources = {name: build_model(book, Path(name)) for name, book in feeding.sources.items()}
@@ -96,7 +97,11 @@ def model_with_values(
 
 
 def build_model(
-    workbook: Workbook, path: Path, tabulated: int = 1, switched: Mapping[str, bool] = NO_SWITCHES
+    workbook: Workbook,
+    path: Path,
+    tabulated: int = 1,
+    switched: Mapping[str, bool] = NO_SWITCHES,
+    python: Mapping[Cell, ir.Expression] | None = None,
 ) -> CompiledModel:
     """The model of a workbook that was read.
 
@@ -105,13 +110,14 @@ def build_model(
         path: where it is.
         tabulated: which of its values every `RiskSimtable` gives, from 1.
         switched: see `read_definitions`.
+        python: the cells that a function of Python computes, each with the call; None for none.
 
     Raises:
         DefinitionError: a definition is not what it must be; all faulty ones are listed.
         FormulaError: a needed cell cannot be computed.
     """
     workbook = calculate_labels(workbook)
-    definitions = read_definitions(workbook, ENGINES, tabulated, switched)
+    definitions = read_definitions(workbook, ENGINES, tabulated, switched, python)
     if definitions.problems:
         raise _joined(definitions.problems)
     model = CompiledModel(workbook, definitions, path)

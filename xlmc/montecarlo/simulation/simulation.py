@@ -386,7 +386,11 @@ class RunResult:
         if inputs:
             drawn = {assumption_heading(name, self.forecasts): values for name, values in self.inputs.items()}
             columns = drawn | columns
-        return pandas.DataFrame(columns, index=pandas.Index(self.trial_index, name=TRIAL))
+        found = pandas.DataFrame(columns, index=pandas.Index(self.trial_index, name=TRIAL))
+        units = {assumption_heading(a.name, self.forecasts): a.units for a in self.model.assumptions}
+        units |= {forecast_heading(f.name): f.units for f in self.model.forecasts}
+        found.attrs["units"] = {name: units.get(name, "") for name in found.columns}
+        return found
 
 
 def forecast_heading(name: str) -> str:

@@ -22,7 +22,7 @@ _EXACT_DIGITS = range(6, 13)  # of a value whose error is 0
 _NOISE = 1e-9  # share of such a value that may come from rounding in formulas
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Estimate:
     """One printed number, in the unit of the values it came from.
 
@@ -34,12 +34,19 @@ class Estimate:
         interval: its confidence interval, 95 % unless asked otherwise; an end is infinite where the sample cannot
             bound it, as in the far tail of a small sample.
         n: the trials it rests on.
+
+    >>> Estimate(11.77412, 0.0418)
+    11.774 ± 0.042
     """
 
     value: float
     error: float | None = None
     interval: tuple[float, float] | None = None
     n: int = 0
+
+    def __repr__(self) -> str:
+        """Write the value with its error, as results show it."""
+        return format_estimate(self.value, self.error)
 
 
 def finite(value: float | None) -> float | None:

@@ -418,7 +418,16 @@ def repeat_command(simulation: RunResult) -> str:
     feeding = simulation.model.definitions.feeding
     for feed in () if feeding is None else feeding.feeds:
         arguments += ["--feed", feed.text]
+    if simulation.model.definitions.python:
+        return f"in Python, of the model of {Path(book).stem}: {_python_call(arguments)}"
     return first + simulate_command(book, arguments)
+
+
+def _python_call(arguments: Sequence[str]) -> str:
+    """Return the arguments of a command as those of a method: `simulate(trials=1000, sampling='lhs')`."""
+    names = [each[2:].replace("-", "_") for each in arguments[::2]]
+    values = [each if each.isdecimal() else repr(each) for each in arguments[1::2]]
+    return f"simulate({', '.join(f'{name}={value}' for name, value in zip(names, values, strict=True))})"
 
 
 def simulate_command(book: str, arguments: Sequence[str]) -> str:

@@ -17,6 +17,7 @@ from xlmc.montecarlo.definitions.scenarios import (
     Limits,
     Numbers,
     Range,
+    Redrawn,
     Scenario,
     Switched,
     Tabulated,
@@ -175,6 +176,8 @@ def _change_text(change: Change) -> str:
             return f"{name} {' and '.join(words) or 'without ' + ', '.join(key.replace('_', ' ') for key in values)}"
         case Switched(name, used):
             return f"{name} {'used' if used else 'not used'}"
+        case Redrawn(name, distribution):
+            return f"{name} {distribution!r}"
         case Tabulated(number, values):
             return f"value {number} of RiskSimtable: {values}"
         case Typed(cell, value, _, named):

@@ -69,9 +69,9 @@ def stated_range(result: ForecastResult) -> RoundedRange | None:
     definition, share = result.definition, result.definition.central
     ends: tuple[Estimate | None, Estimate | None] = result.statistics.central
     if definition.role is Role.LOWER:
-        ends = result.percentile(100.0 * (1.0 - share)), None
+        ends = result.percentile_at(100.0 * (1.0 - share)), None
     elif definition.role is Role.UPPER:
-        ends = None, result.percentile(100.0 * share)
+        ends = None, result.percentile_at(100.0 * share)
     return rounded_range(result.sample, ends, share, definition.report_to)
 
 

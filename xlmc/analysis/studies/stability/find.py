@@ -22,6 +22,7 @@ from xlmc.analysis.studies.stability.rounding_errors import cell_digits, lost_di
 from xlmc.analysis.studies.stability.starts import dependence_on_starts
 from xlmc.engine.graph.graph import Apply
 from xlmc.engine.passes.derivatives.sweep import owners
+from xlmc.errors import SimulationError
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.montecarlo.simulation.simulation import RunResult
 
@@ -68,6 +69,9 @@ def stability(
     Raises:
         SimulationError: an argument is out of its range.
     """
+    if model.definitions.python:
+        hint = "Write the model as formulas of a workbook, which can be computed again with 50 digits"
+        raise SimulationError("A function of Python has no formulas to look through", where=model.path, hint=hint)
     tell = told or (lambda _: None)
     tell("a run")
     run: RunResult = simulate(model, trials=trials, seed=seed, jobs=jobs)

@@ -59,9 +59,12 @@ def _columns(old: Assumption | Filter, new: Assumption | Filter) -> Iterator[tup
     if isinstance(old, Assumption) and isinstance(new, Assumption):
         if old.frozen != new.frozen:
             yield ("Frozen",), new.frozen
-        for spec in old.family.parameters:
-            if old.parameters[spec.key] != new.parameters[spec.key]:
-                yield spec.headings, _number(new.parameters[spec.key])
+        if old.distribution != new.distribution:
+            yield ("Distribution",), new.distribution
+        specs = {spec.key: spec for spec in (*old.family.parameters, *new.family.parameters)}
+        for key, spec in specs.items():
+            if old.parameters.get(key) != new.parameters.get(key):
+                yield spec.headings, _number(new.parameters.get(key))
         for key, heading in CUTOFFS.items():
             if old.cutoffs.get(key) != new.cutoffs.get(key):
                 yield (heading,), _number(new.cutoffs.get(key))

@@ -72,6 +72,8 @@ class WorkerPool:
         blocks = -(-plan.trials // block)
         jobs = min(self.jobs, blocks)
         scheduler = self.scheduler or _scheduler(settings.engine, jobs, blocks)
+        if model.definitions.python:
+            scheduler = _near_the_function(self.scheduler)
 
         def runner() -> ModelRunner:
             return model_runner(model, program, settings.engine, settings.seed, block, plan)
@@ -91,6 +93,18 @@ class WorkerPool:
             yield from by_processes(portable, own, jobs - 1, blocks, tasks)
         else:
             yield from by_cluster(spec, scheduler, self.workers, blocks, tasks)
+
+
+def _near_the_function(asked: str | None) -> str:
+    """The scheduler of a model that a function of Python computes.
+
+    Raises:
+        SimulationError: another one was asked for.
+    """
+    if asked not in (None, "threads"):
+        message = "a function of Python is called in this process alone"
+        raise SimulationError(message, hint="Use threads; they run side by side where NumPy does the work")
+    return "threads"
 
 
 def _scheduler(engine: str, jobs: int, blocks: int) -> str:

@@ -62,7 +62,7 @@ async def measure(folder: Path, moves: int) -> None:
     """Move, save, and print."""
     book = long_book(folder / "book.xlsx")
     other = long_book(folder / "other.xlsx", first=1.6)
-    desk = Desk(book, Library(Keeper(folder / "state"), book=book))
+    desk = Desk(book, Library(Keeper(folder / "state"), book=book), offer=lambda page: "")
     desk.start()
     window = desk.join()
     await _next(window, lambda said: said["kind"] == "rest")

@@ -702,3 +702,38 @@ def test_the_probability_above_a_threshold_is_said_at_once_and_follows(chromium,
     assert abs(count - above) <= 3
     page.type(page.one(".above"), "much")
     assert "no number" in page.run(f"return {share}")
+
+
+def test_print_prints_the_page_of_results_of_what_is_shown(chromium, running, tmp_path):
+    page = Page(chromium, running(book=wide_book(tmp_path / "case.xlsx", assumptions=6, forecasts=1)))
+    page.run(
+        "const hand = Live.right.hand; window.printed = [];"
+        "hand.print = ({ document: { title, body } }) =>"
+        " window.printed.push([title, body.innerText, body.querySelectorAll('canvas').length]);"
+    )
+    page.tab("studies")
+    page.click(page.button("Print"))
+    page.until("window.printed.length === 1")
+    page.at_rest(lambda: page.type(page.box(page.card(FRICTION), "High"), "1.2"))
+    page.click(page.button("Print"))
+    page.until("window.printed.length === 2")
+    first, second = page.run("return window.printed")
+    for title, text, charts in (first, second):
+        assert title == "case.xlsx: results of the simulation"
+        assert "Results of the simulation" in text
+        assert charts >= 1
+    assert "copy with changes" not in first[1]
+    assert f"{FRICTION}: High 0.8 → 1.2" in second[1]
+
+
+def test_one_filter_is_switched_off_and_on(chromium, running, tmp_path):
+    book = wide_book(tmp_path / "case.xlsx", assumptions=6, forecasts=1, most=18.0)
+    page = Page(chromium, running(book=book))
+    kept = page.stand
+    switch = "[role=switch]", "each.closest('label').innerText.includes(given[0])", "Plausible 1"
+    page.at_rest(lambda: page.click(page.of(*switch)))
+    assert page.changes == ["Plausible 1: not used"]
+    assert page.run("return document.querySelectorAll('article.card.off').length") == 1
+    page.at_rest(lambda: page.click(page.of(*switch)))
+    assert page.changes == []
+    assert page.stand == kept

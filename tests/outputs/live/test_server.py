@@ -185,6 +185,34 @@ def test_a_file_needs_origin_and_ticket(open_book, missing):
     assert not list(open_book.library.keeper.dropped.parent.glob("dropped/*"))
 
 
+def test_a_page_to_be_printed_is_handed_over_once_within_a_minute_and_runs_its_own_scripts_alone(running, book):
+    now = [0.0]
+    server = running(book=book, clock=lambda: now[0])
+    with server.window(server.library.only) as window:
+        window.next("rest")
+        window.say("print")
+        path = window.next("page")["path"]
+        assert server.ask(path, host="evil.example")[0] == 421
+        status, headers, body = server.ask(path)
+        assert (status, "Results of the simulation" in body) == (200, True)
+        policy = headers["content-security-policy"]
+        assert "script-src 'sha256-" in policy
+        assert "frame-ancestors 'self'" in policy
+        assert "'self'" not in policy.replace("frame-ancestors 'self'", "")
+        assert server.ask(path)[0] == 404
+        window.say("print")
+        path = window.next("page")["path"]
+        now[0] = 61.0
+        assert server.ask(path)[0] == 404
+    assert server.ask("/print/nothing")[0] == 404
+
+
+def test_only_few_pages_wait_to_be_printed():
+    guard = Guard(80)
+    tickets = [guard.new_page(f"page {number}") for number in range(6)]
+    assert [guard.use_page(ticket) for ticket in tickets] == [None, None, *(f"page {number}" for number in range(2, 6))]
+
+
 def test_a_ticket_is_good_once_and_the_oldest_go(open_book):
     guard = open_book.server.guard
     tickets = [guard.new_ticket() for _ in range(150)]

@@ -16,7 +16,7 @@ from watchfiles import awatch
 from xlmc.errors import WorkbookError, XlmcError
 from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.live.adjustments import Adjustments, in_words
-from xlmc.outputs.live.hand_over import KINDS, edited_state, save_result, write_changes
+from xlmc.outputs.live.hand_over import KINDS, edited_state, page_of, save_result, write_changes
 from xlmc.outputs.live.jobs import Job, Outcome, SupersededError, View
 from xlmc.outputs.live.library import Library
 from xlmc.outputs.live.protocol import Message, Said, written
@@ -78,13 +78,15 @@ class Desk:
     Args:
         path: of the workbook.
         library: of the workbooks that may be opened beside it.
+        offer: takes a page of results, and gives the ticket for it.
     """
 
-    def __init__(self, path: Path, library: Library) -> None:
+    def __init__(self, path: Path, library: Library, offer: Callable[[str], str]) -> None:
         self.path = path
         self.session: Session | None = None
         self._library, self._keeper, self._windows = library, library.keeper, set[Window]()
         self._study: StudyRun | None = None
+        self._offer = offer
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="xlmc-window")
         self._aside = ThreadPoolExecutor(2, thread_name_prefix="xlmc-files")
         self._wake = asyncio.Event()
@@ -157,6 +159,9 @@ class Desk:
             return
         if said.kind == "save":
             self._later(self._save(said["what"]))
+            return
+        if said.kind == "print":
+            self._later(self._print(window))
             return
         try:
             replies = self.session.receive(said)
@@ -304,6 +309,19 @@ class Desk:
         else:
             self._say("save", "")
             self._tell([{"kind": "news", "text": text, "link": ""}])
+
+    async def _print(self, window: Window) -> None:
+        """Make the page of what is shown, and tell the window that asked where it is; or why there is none."""
+        if self.session is None:
+            return
+        try:
+            state = self.session.at_rest()
+            text = await self._beside(lambda: page_of(state))
+        except (XlmcError, OSError) as error:
+            self._say("save", str(error))
+        else:
+            self._say("save", "")
+            window.put("page", written({"kind": "page", "path": f"/print/{self._offer(text)}"}))
 
     def _ask(self, window: Window, what: str, other: str) -> None:
         """Start a study, unless one is going on."""

@@ -4,7 +4,8 @@ A browser sends cookies to every port of an address, and a port may belong to an
 cookie, and no page ever says the secret. The link carries a code that is good once, for a minute. The two ends of a new
 connection prove to each other that they know the code, or the secret that the page got for it: each names a number
 that is used once, and the other answers with a keyed hash (HMAC) of both numbers. A file that is dropped comes by a
-request of its own; it carries a ticket that the page got over its connection, and that is good once. And everything
+request of its own; it carries a ticket that the page got over its connection, and that is good once; so is the address
+of a page of results that is to be printed. And everything
 must come from this very address: `Host` is checked against names that lead elsewhere, `Origin` against pages from
 elsewhere.
 """
@@ -17,7 +18,9 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Final, Literal
 
-__all__ = ["HEADERS", "MOST_UPLOADED", "SECRET", "Guard", "proof"]
+from xlmc.outputs.page import page_policy
+
+__all__ = ["HEADERS", "MOST_UPLOADED", "PRINTED", "SECRET", "Guard", "proof"]
 
 MOST_UPLOADED: Final = 64 << 20
 """Bytes of a workbook that is dropped; Excel's own largest ones are seldom larger."""
@@ -30,6 +33,9 @@ _CODE_SECONDS: Final = 60.0
 
 _MOST_TICKETS: Final = 100
 
+_MOST_PAGES: Final = 4
+"""Pages that wait to be printed."""
+
 _POLICY: Final = "; ".join(
     (
         "default-src 'none'",
@@ -37,6 +43,7 @@ _POLICY: Final = "; ".join(
         "style-src 'self'",
         "img-src 'self' data: blob:",
         "connect-src 'self'",
+        "frame-src 'self'",
         "base-uri 'none'",
         "form-action 'none'",
         "frame-ancestors 'none'",
@@ -52,7 +59,13 @@ HEADERS: Final[Mapping[str, str]] = {
     "Cross-Origin-Resource-Policy": "same-origin",
     "Cache-Control": "no-store",
 }
-"""Headers of every answer."""
+"""Headers of every answer, unless it has others."""
+
+PRINTED: Final[Mapping[str, str]] = {
+    "Content-Security-Policy": f"{page_policy()}; frame-ancestors 'self'",
+    "X-Frame-Options": "SAMEORIGIN",
+}
+"""Headers of a page of results, which is shown in a frame of the window alone."""
 
 
 def proof(key: str, end: Literal["server", "page"], page_nonce: str, server_nonce: str) -> str:
@@ -74,6 +87,7 @@ class Guard:
         self._clock = clock
         self._codes: dict[str, tuple[str, float]] = {}
         self._tickets: dict[str, None] = {}
+        self._pages: dict[str, tuple[str, float]] = {}
         self._hosts = (f"127.0.0.1:{port}", f"localhost:{port}")
 
     def new_code(self) -> str:
@@ -104,6 +118,19 @@ class Guard:
     def use_ticket(self, ticket: str | None) -> bool:
         """Return whether the ticket is good; it is not a second time."""
         return ticket is not None and self._tickets.pop(ticket, ticket) is None
+
+    def new_page(self, text: str) -> str:
+        """Keep a page that is to be printed, and return the ticket for it."""
+        ticket = secrets.token_urlsafe(32)
+        self._pages[ticket] = text, self._clock() + _CODE_SECONDS
+        while len(self._pages) > _MOST_PAGES:
+            del self._pages[next(iter(self._pages))]
+        return ticket
+
+    def use_page(self, ticket: str) -> str | None:
+        """Return the page of a ticket, once, within a minute; None where there is none."""
+        text, until = self._pages.pop(ticket, ("", 0.0))
+        return text if text and self._clock() <= until else None
 
     def is_host(self, host: str | None) -> bool:
         """Return whether the address that was typed, or that a page asked for, is this server's own."""

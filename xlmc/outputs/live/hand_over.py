@@ -26,13 +26,13 @@ from xlmc.montecarlo.simulation.simulation import ChangedFrom
 from xlmc.outputs import save
 from xlmc.outputs.json_document import save_json
 from xlmc.outputs.live.adjustments import Adjustments, in_words, scenario_of
-from xlmc.outputs.page import save_page
+from xlmc.outputs.page import page_text, save_page
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.simulation.simulation import RunResult
 
-__all__ = ["KINDS", "AtRest", "edited_state", "save_result", "write_changes"]
+__all__ = ["KINDS", "AtRest", "edited_state", "page_of", "save_result", "write_changes"]
 
 _NO_NAME: Final = re.compile(r"[^\w .,+()-]+")
 _LONGEST: Final = 60
@@ -109,6 +109,15 @@ def edited_state(own: CompiledModel, adjustments: Adjustments, name: str) -> Edi
         WorkbookError, DefinitionError: as for `save_result`.
     """
     return edited_workbook(own, scenario_of(own.definitions, name or "shown in the window", adjustments))
+
+
+def page_of(state: AtRest) -> str:
+    """The page of results of a state, as `save_result` writes it.
+
+    Raises:
+        WorkbookError, DefinitionError, SimulationError: as for `save_result`.
+    """
+    return page_text(state.run if not state.adjustments else _run_of_copy(state))
 
 
 def _run_of_copy(state: AtRest) -> RunResult:

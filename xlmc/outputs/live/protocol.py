@@ -26,6 +26,7 @@ shows, whether fitted distributions are wanted |
 | `compare` | | run every kept scenario, and put them into one table |
 | `save` | `what` | write the result `book`, `page`, `json` or `run` beside the workbook; `copy`: a copy of the \
 workbook with the changes; `into`: the changes into the workbook itself |
+| `print` | | make the page of results of the state that is shown, to be printed |
 | `variants` | | keep the usual variants of the workbook as scenarios |
 | `study` | `what`, `other` | start `verify` on the workbook's file, or `stability`, `screen`, `methods` or `compare` \
 on the state that is shown; `other`: the key of the workbook to compare it with |
@@ -54,6 +55,7 @@ from too few trials; `stage`: \
 | `study` | `what`, `of`, `state`, `step`, `seconds`, `text` | how far a study is; `of`: the changes that it is asked \
 with; `state`: `running`, `done`, `cancelled`, \
 `failed`; `text`: its answer |
+| `page` | `path` | the page of results to be printed; its address is good once, for a minute |
 | `trouble` | `about`, `text` | why something could not be done; an empty text: the trouble is over |
 | `news` | `text`, `link` | what was done, such as a file that was written |
 
@@ -181,6 +183,7 @@ _FIELDS: Final[Mapping[str, Mapping[str, Callable[[object], bool]]]] = {
     "drop": {"name": _is_text},
     "compare": {},
     "save": {"what": _one_of("book", "page", "json", "run", "copy", "into")},
+    "print": {},
     "variants": {},
     "study": {"what": _one_of("verify", "stability", "screen", "methods", "compare"), "other": _is_text},
     "cancel": {},

@@ -27,7 +27,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from xlmc.errors import XlmcError
 from xlmc.outputs.live.desk import Desk
-from xlmc.outputs.live.guard import HEADERS, MOST_UPLOADED, Guard, proof
+from xlmc.outputs.live.guard import HEADERS, MOST_UPLOADED, PRINTED, Guard, proof
 from xlmc.outputs.live.library import Library
 from xlmc.outputs.live.protocol import MOST_BYTES, Message, ProtocolError, Said, read_message, written
 from xlmc.outputs.live.timed_requests import TimedRequests
@@ -137,6 +137,7 @@ class LiveServer:
             Route("/", self._start_page),
             Route("/book/{key}", self._book_page),
             Route("/static/{name}", _asset),
+            Route("/print/{ticket}", self._print),
             Route("/drop", self._drop, methods=["POST"]),
             WebSocketRoute("/start", self._start),
             WebSocketRoute("/live/{key}", self._live),
@@ -199,6 +200,13 @@ class LiveServer:
 
     async def _book_page(self, request: Request) -> Response:
         return _page("window.html", SCRIPTS)
+
+    async def _print(self, request: Request) -> Response:
+        """Hand over a page of results, once: the window prints it in a frame, in which its own scripts alone run."""
+        text = self.guard.use_page(request.path_params["ticket"])
+        if text is None:
+            return _refusal("This page was printed already; print it again from the window.", 404)
+        return HTMLResponse(text.encode("utf-8", "xmlcharrefreplace"), headers=PRINTED)
 
     # Files
 
@@ -315,7 +323,7 @@ class LiveServer:
 
     def _desk(self, key: str, path: Path) -> Desk:
         if key not in self._desks:
-            self._desks[key] = Desk(path, self._library)
+            self._desks[key] = Desk(path, self._library, self.guard.new_page)
             self._library.opened(path)
             self._desks[key].start()
         return self._desks[key]
@@ -393,7 +401,7 @@ class _Guarded:
             if message["type"] == "http.response.start":
                 headers = MutableHeaders(scope=message)
                 for name, value in HEADERS.items():
-                    headers[name] = value
+                    headers.setdefault(name, value)
             await send(message)
 
         hosts = Headers(scope=scope).getlist("host")

@@ -44,7 +44,7 @@ from xlmc.outputs.page.sheet_sections import (
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
 
-__all__ = ["check_page_path", "page_text", "save_page"]
+__all__ = ["check_page_path", "page_policy", "page_text", "save_page"]
 
 ENDINGS = (".html", ".htm")
 
@@ -159,9 +159,9 @@ def page_text(simulation: RunResult, *, beside: RunResult | None = None, command
         "notices": notices(simulation),
         "record": record(make_record(simulation, command)),
     }
-    styles, scripts = [_asset(path) for path in _STYLES], [_asset(path) for path in _SCRIPTS]
+    styles, scripts = _code()
     return Template(_asset("page.html")).substitute(
-        policy=escape(_policy(styles, scripts)),
+        policy=escape(page_policy()),
         title=escape(f"{name}: results of the simulation"),
         licence=_asset(_LICENCE),
         styles="".join(f"<style>{style}</style>\n" for style in styles),
@@ -176,7 +176,14 @@ def _asset(path: str) -> str:
     return files("xlmc.outputs.page").joinpath(path).read_text(encoding="utf-8")
 
 
-def _policy(styles: list[str], scripts: list[str]) -> str:
+def _code() -> tuple[list[str], list[str]]:
+    """The styles and the scripts of a page."""
+    return [_asset(path) for path in _STYLES], [_asset(path) for path in _SCRIPTS]
+
+
+def page_policy() -> str:
+    """The Content-Security-Policy of a page: its own scripts and styles, and nothing else."""
+    styles, scripts = _code()
     return "; ".join(
         (
             "default-src 'none'",

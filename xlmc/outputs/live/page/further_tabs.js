@@ -159,7 +159,7 @@ class HandView {
     place.append(
       make("h2", { text: "Files" }), this.changes,
       make("p", { class: "actions-left" }, save("Result workbook", "book"), save("Page", "page"), save("JSON", "json"),
-        save("Saved run", "run"), make("button", { type: "button", text: "Print", on: { click: () => print() } })),
+        save("Saved run", "run"), make("button", { type: "button", text: "Print", on: { click: () => wire.say({ kind: "print" }) } })),
       make("h2", { text: "Type the changes into" }),
       make("p", { class: "actions-left" }, this.copy, this.into), this.sure,
       make("h2", { text: "Further studies" }),
@@ -177,6 +177,19 @@ class HandView {
     this.changes.replaceChildren("Written beside the workbook, ", ...of);
     for (const button of [this.copy, this.into]) button.disabled = !changes.length;
     if (!changes.length) this.sure.hidden = true;
+  }
+
+  /** Print the page of results, in a frame that goes when another one is printed. */
+  page({ path }) {
+    document.querySelector("iframe.printed")?.remove();
+    const frame = make("iframe", { class: "printed", title: "Page to be printed", tabindex: "-1", "aria-hidden": "true", src: path });
+    frame.addEventListener("load", () => this.print(frame.contentWindow), { once: true });
+    document.body.append(frame);
+  }
+
+  print(view) {
+    view.focus();
+    view.print();
   }
 
   /** Ask once more before a file of the user's own is written to. */

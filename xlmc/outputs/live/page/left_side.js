@@ -122,7 +122,8 @@ class FilterCard {
     this.used.addEventListener("change", (event) => this.sent(this.wire.set("filter", this.row.name, "used", this.used.checked, false), event));
     this.switch = make("label", { class: "switch" }, this.used, " Use", make("span", { class: "aside", text: ` ${row.name}` }));
     this.root = make("article", { class: "card", "aria-label": `Filter ${row.name}` },
-      make("h3", {}, named(row.name), this.back), this.switch, this.rejected, this.track.box, this.numbers, this.about);
+      make("h3", {}, named(row.name), this.back), this.rejected, this.track.box, this.numbers, this.about);
+    this.numbers.append(this.switch);
   }
 
   set(key, value, held, event) {

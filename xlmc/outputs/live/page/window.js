@@ -109,6 +109,10 @@ const Live = {
     this.right.hand.others(message);
   },
 
+  on_page(message) {
+    this.right.hand.page(message);
+  },
+
   on_study(message) {
     this.right.hand.study(message);
   },

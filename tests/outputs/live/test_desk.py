@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
+import json
 import os
 import shutil
 
@@ -12,6 +15,7 @@ from simulated import simulated
 
 from xlmc.analysis.results.saved import open_run
 from xlmc.montecarlo.model.loading import load
+from xlmc.outputs.live.desk import Window
 
 
 @pytest.fixture
@@ -157,3 +161,26 @@ def test_studies_are_asked_of_the_state_that_is_shown(running, book):
         window.say("cancel")
         assert window.next("study", lambda message: message["state"] != "running")["state"] == "cancelled"
     assert [each.name for each in book.parent.glob("*.xlsx")] == ["case.xlsx"]
+
+
+def test_what_waits_for_a_window_that_sleeps_does_not_grow():
+    async def waiting():
+        window = Window()
+        for number in range(500):
+            window.put({"kind": "moved", "of": "assumption", "name": f"a{number % 3}", "key": "low", "value": number})
+            for kind, more in (("frame", {}), ("rest", {}), ("part", {"tab": ("matters", "tables")[number % 2]})):
+                window.put({"kind": kind, "version": number, **more})
+            window.put({"kind": "news", "text": f"news {number}", "link": ""})
+            window.put({"kind": "trouble", "about": "save", "text": str(number)})
+        found = []
+        with contextlib.suppress(TimeoutError):
+            while True:
+                found.append(json.loads(await asyncio.wait_for(window.next(), 0.01)))
+        return found
+
+    found = asyncio.run(waiting())
+    assert len(found) == 3 + 1 + 1 + 2 + 20 + 1
+    assert {each["value"] for each in found if each["kind"] == "moved"} == {497, 498, 499}
+    assert {each["version"] for each in found if each["kind"] == "part"} == {498, 499}
+    assert [each["text"] for each in found if each["kind"] == "news"] == [f"news {n}" for n in range(480, 500)]
+    assert [each["text"] for each in found if each["kind"] == "trouble"] == ["499"]

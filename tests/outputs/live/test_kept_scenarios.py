@@ -174,3 +174,19 @@ def test_what_is_written_is_read_again(book, keeper):
     assert keeper.scenarios(book) == (named, changed("y"))
     (file,) = keeper._folder.glob("*.json")
     assert json.loads(file.read_text(encoding="utf-8"))["book"] == str(book)
+
+
+def test_many_large_scenarios_are_read_back_and_too_many_are_not_written(tmp_path, monkeypatch):
+    """A file of more than 4 MB was cut when it was read, and set aside as damaged."""
+    keeper, book = Keeper(tmp_path / "state"), tmp_path / "book.xlsx"
+    large = Adjustments({f"assumption {n}": {"low": float(n), "high": n + 0.123456789} for n in range(300)})
+    kept = {f"scenario {n}": large for n in range(200)}
+    keeper.keep(book, kept, Adjustments())
+    (path,) = (tmp_path / "state").glob("*.json")
+    assert path.stat().st_size > 4 << 20
+    assert Keeper(tmp_path / "state").scenarios(book) == (kept, Adjustments())
+    monkeypatch.setattr("xlmc.outputs.live.kept_scenarios._MOST_BYTES", path.stat().st_size)
+    with pytest.raises(WorkbookError, match="there are too many"):
+        keeper.keep(book, {**kept, "one more": large}, Adjustments())
+    assert Keeper(tmp_path / "state").scenarios(book) == (kept, Adjustments())
+    assert [each.suffix for each in (tmp_path / "state").iterdir()] == [".json"]

@@ -460,6 +460,24 @@ def test_it_listens_on_the_loopback_address_alone(open_book):
     assert open_book.server._socket.getsockname()[0] == "127.0.0.1"
 
 
+@pytest.mark.parametrize(
+    "sent", [b"\x00\x01\r\n\r\n", b"GET / HTTP/1.1\r\nHost: {host}\r\nUpgrade: h2c\r\nConnection: Upgrade\r\n\r\n"]
+)
+def test_what_another_program_sends_is_not_printed(open_book, sent, capfd):
+    with socket.create_connection(("127.0.0.1", open_book.port)) as connection:
+        connection.sendall(sent.replace(b"{host}", open_book.host.encode()))
+        assert connection.recv(100)
+    open_book.ask("/static/wire.js")
+    assert capfd.readouterr().err == ""
+
+
+@pytest.mark.parametrize("name", ["con.xlsx", "NUL.xlsx", "com1.backup.xlsm", "LPT9.xls"])
+def test_a_dropped_workbook_has_no_name_of_a_device(tmp_path, name):
+    library = Library(Keeper(tmp_path / "state"))
+    data = b"PK" if not name.endswith(".xls") else b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
+    assert library.path(library.take(name, data)).name == f"_{name}"
+
+
 def test_secrets_are_long_and_all_different():
     guards = [Guard(1), Guard(1)]
     secrets = [

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import time
-from collections.abc import Callable, Coroutine, Iterable, Sequence
+from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
@@ -41,8 +41,17 @@ _SETTLING: Final = (0.0, 0.1, 0.3, 0.6, 1.0)
 _CHANGING: Final = frozenset({"set", "numbers", "reset", "keep", "show", "drop", "restore", "variants", "undo", "redo"})
 """Kinds after which what outlives the window is other."""
 
-_NEWEST: Final = frozenset({"frame", "running", "state", "study"})
-"""Kinds of which a window that lags behind needs the newest alone."""
+_TELLS: Final[Mapping[str, tuple[str, ...]]] = {
+    "moved": ("of", "name", "key"),
+    "part": ("tab",),
+    "trouble": ("about",),
+    "news": ("text",),
+}
+"""Kind -> what else tells what a message is of. Of one thing a window that lags behind needs the newest message alone:
+so what waits for a window that sleeps does not grow with the time.
+"""
+
+_MOST_NEWS: Final = 20
 
 
 T = TypeVar("T")
@@ -54,14 +63,18 @@ class Window:
     def __init__(self) -> None:
         self.view: Said | None = None
         self.refused = False
-        self._waiting: list[tuple[str, str]] = []
+        self._waiting: dict[tuple[str, ...], str] = {}
         self._more = asyncio.Event()
 
-    def put(self, kind: str, text: str) -> None:
-        """Add a message; it takes the place of an older one of its kind that was not sent yet."""
-        if kind in _NEWEST:
-            self._waiting = [each for each in self._waiting if each[0] != kind]
-        self._waiting.append((kind, text))
+    def put(self, message: Message, text: str | None = None) -> None:
+        """Add a message, which may be written already; an older one of the same that was not sent yet goes."""
+        kind = message["kind"]
+        of = (kind, *(str(message[name]) for name in _TELLS.get(kind, ())))
+        self._waiting.pop(of, None)
+        self._waiting[of] = written(message) if text is None else text
+        news = [each for each in self._waiting if each[0] == "news"]
+        for old in news[:-_MOST_NEWS]:
+            del self._waiting[old]
         self._more.set()
 
     async def next(self) -> str:
@@ -69,7 +82,7 @@ class Window:
         while not self._waiting:
             self._more.clear()
             await self._more.wait()
-        return self._waiting.pop(0)[1]
+        return self._waiting.pop(next(iter(self._waiting)))
 
 
 class Desk:
@@ -122,13 +135,13 @@ class Desk:
         window = Window()
         self._windows.add(window)
         for message in self.session.greeting() if self.session is not None else ():
-            window.put(message["kind"], written(message))
+            window.put(message)
         for about, text in self._trouble.items():
-            window.put("trouble", written({"kind": "trouble", "about": about, "text": text}))
+            window.put({"kind": "trouble", "about": about, "text": text})
         others = [each for each in self._library.books() if self._library.path(each["key"]) != self.path]
-        window.put("others", written({"kind": "others", "books": others}))
+        window.put({"kind": "others", "books": others})
         if self._study is not None:
-            window.put("study", written(self._study.last))
+            window.put(self._study.last)
         return window
 
     def leave(self, window: Window) -> None:
@@ -171,7 +184,7 @@ class Desk:
         if said.kind in _CHANGING:
             self._is_over(window)
         for message in replies.own:
-            window.put(message["kind"], written(message))
+            window.put(message)
         self._tell(replies.all)
         if said.kind in _CHANGING and not (said.kind == "set" and said["held"]):
             self._keep()
@@ -180,7 +193,7 @@ class Desk:
     def _refuse(self, window: Window, why: str) -> None:
         """Say why what a window asked for is not done; with an empty text, that this does not matter any more."""
         if why or window.refused:
-            window.put("trouble", written({"kind": "trouble", "about": "request", "text": why}))
+            window.put({"kind": "trouble", "about": "request", "text": why})
         window.refused = bool(why)
 
     def _is_over(self, window: Window) -> None:
@@ -198,7 +211,7 @@ class Desk:
         for message in messages:
             text = written(message)
             for window in self._windows:
-                window.put(message["kind"], text)
+                window.put(message, text)
 
     def _tell_study(self, message: Message) -> None:
         self._tell([message])
@@ -321,7 +334,7 @@ class Desk:
             self._say("save", str(error))
         else:
             self._say("save", "")
-            window.put("page", written({"kind": "page", "path": f"/print/{self._offer(text)}"}))
+            window.put({"kind": "page", "path": f"/print/{self._offer(text)}"})
 
     def _ask(self, window: Window, what: str, other: str) -> None:
         """Start a study, unless one is going on."""

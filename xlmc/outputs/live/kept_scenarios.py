@@ -6,6 +6,7 @@ Windows in `%LOCALAPPDATA%`. A file that cannot be read counts as none, and is t
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import json
 import os
@@ -23,7 +24,9 @@ from xlmc.outputs.live.adjustments import Adjustments
 __all__ = ["Keeper", "state_folder"]
 
 _MOST_RECENT: Final = 12
-_MOST_BYTES: Final = 4 << 20
+_MOST_BYTES: Final = 64 << 20
+"""Bytes of a file of scenarios: many thousands of large ones. More is not written, since it would not be read back."""
+
 _PATIENCE: Final = 5.0
 """Seconds after which a lock is that of a program that died: a file is written within milliseconds."""
 
@@ -146,7 +149,8 @@ class Keeper:
             WorkbookError: it is no JSON object; it is set aside.
         """
         try:
-            text = path.read_bytes()[:_MOST_BYTES]
+            with path.open("rb") as file:
+                text = file.read(_MOST_BYTES + 1)
         except FileNotFoundError:
             return None
         except OSError as error:
@@ -164,10 +168,13 @@ class Keeper:
         return found
 
     def _write(self, path: Path, found: Mapping[str, Any]) -> None:
+        text = json.dumps(found, indent=1)
+        if len(text) > _MOST_BYTES:
+            raise OSError(errno.EFBIG, "there are too many")
         unfinished = path.with_suffix(f".{os.getpid()}-{time.monotonic_ns()}.tmp")
         try:
             self.make_folder()
-            unfinished.write_text(json.dumps(found, indent=1), encoding="utf-8")
+            unfinished.write_text(text, encoding="utf-8")
             unfinished.replace(path)
         except OSError:
             unfinished.unlink(missing_ok=True)

@@ -26,6 +26,8 @@ __all__ = ["Library", "Sample"]
 _ENDINGS: Final = (".xlsx", ".xlsm", ".xls")
 _MOST_LISTED: Final = 500
 _LONGEST: Final = 120
+_DEVICE: Final = re.compile(r"(?i)(con|prn|aux|nul|com\d|lpt\d)(\.|$)")
+"""Names that Windows gives to devices, whatever the ending."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +133,7 @@ class Library:
             hint = "drop a workbook whose name ends in .xlsx, .xlsm or .xls"
             raise WorkbookError("this is not an Excel workbook", where=printable(plain) or None, hint=hint)
         folder = self.keeper.dropped / secrets.token_hex(8)
-        target = folder / plain
+        target = folder / (f"_{plain}" if _DEVICE.match(plain) else plain)
         try:
             self.keeper.make_folder()
             self.keeper.dropped.mkdir(exist_ok=True, mode=0o700)

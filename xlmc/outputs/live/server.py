@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import hmac
+import logging
 import secrets
 import socket
 import sys
@@ -147,6 +148,7 @@ class LiveServer:
             self.app,
             http=TimedRequests,
             log_config=None,
+            log_level=logging.CRITICAL + 1,  # what another program sends is not for the person's terminal
             access_log=False,
             lifespan="off",
             ws_max_size=MOST_BYTES,

@@ -233,6 +233,8 @@ class Template:
         optional: inputs that may stay blank, or that only the drawing uses.
         vehicles: what the vehicles are called, where labels name them (see `vehicles.py`).
         named: what these names are of: `vehicle`, or `phase`.
+        waiting: uncertain inputs that do nothing until they have a value; they have a sheet of their own.
+        waiting_note: what that sheet says of them.
     """
 
     title: str
@@ -254,11 +256,13 @@ class Template:
     vehicles: tuple[str, ...] = ()
     named: str = "vehicle"
     evidence: tuple[EvidenceRow, ...] = ()
+    waiting: tuple[Input, ...] = ()
+    waiting_note: str = ""
 
     @property
     def inputs(self) -> tuple[Input, ...]:
-        """Uncertain, fixed and optional inputs together."""
-        return self.assumptions + self.constants + self.optional
+        """Uncertain, fixed, optional and waiting inputs together."""
+        return self.assumptions + self.constants + self.optional + self.waiting
 
     @property
     def equations(self) -> tuple[Equation, ...]:

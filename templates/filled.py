@@ -40,6 +40,7 @@ def filled(
         assumptions=with_numbers(template.assumptions),
         constants=with_numbers(template.constants),
         optional=with_numbers(template.optional),
+        waiting=with_numbers(template.waiting),
         correlations=tuple(row for row in template.correlations if not {row.first, row.second} & set(numbers)),
         guide=(about, *template.guide[1:]),
     )

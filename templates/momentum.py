@@ -20,6 +20,15 @@ from templates.two_vehicles.options import (
 )
 from templates.two_vehicles.readings import direction_section, readings
 from templates.two_vehicles.results import direction_forecasts, paper_forecasts, shared_road_note
+from templates.two_vehicles.run_out import (
+    RUN_OUT_CHECK,
+    RUN_OUT_GUIDE,
+    RUN_OUT_NOTE,
+    before_section,
+    run_out_forecasts,
+    run_out_inputs,
+    segmented_run_out,
+)
 from templates.two_vehicles.scene import Scene, assumptions_of_momentum, constants_of_momentum
 from templates.two_vehicles.together import SWITCH, drawn_together, leave_together
 from templates.units import MPH
@@ -133,7 +142,7 @@ def describe(scene: Scene) -> Template:
         constants=(*((SWITCH,) if more else ()), *constants_of_momentum()),
         optional=(duration_input(), *turn_inputs(), *drawing_inputs()),
         sections=leave_together(_sections(more=True)) if more else _sections(more=False),
-        forecasts=paper_forecasts() + direction_forecasts(yaw=False, near=more),
+        forecasts=paper_forecasts() + direction_forecasts(yaw=False, near=more) + (run_out_forecasts() if more else ()),
         filters=(*_filters(scene), *turn_filters()),
         settings=(("Trials", 200_000), ("Seed", 999)),
         correlations=(CorrelationRow("f_1", "f_2", 0),),
@@ -141,21 +150,23 @@ def describe(scene: Scene) -> Template:
         guide=(
             scene.guide,
             FIRST_STEPS,
-            *((READINGS,) if more else ()),
+            *((READINGS, RUN_OUT_GUIDE) if more else ()),
             NAMES,
             _WHEN,
             _TRUST,
             CAVEATS,
             _CORRECTIONS,
         ),
-        diagram=drawn_together(_diagram()) if more else _diagram(),
+        diagram=drawn_together(_diagram("travel")) if more else _diagram("s"),
         evidence=readings(yaw=False) if more else (),
+        waiting=run_out_inputs() if more else (),
+        waiting_note=RUN_OUT_NOTE,
     )
 
 
 def _sections(*, more: bool) -> tuple[Section, ...]:
     patterns = {
-        "1  Masses and run-out speeds": MASSES + RUN_OUT,
+        "1  Masses and run-out speeds": MASSES + (segmented_run_out() if more else RUN_OUT),
         "2  Impact speeds, by conservation of momentum": IMPACT_SPEEDS,
         "3  Impulse and change in velocity": DELTA_V,
         "4  Answers (the forecasts)": ANSWERS,
@@ -165,8 +176,10 @@ def _sections(*, more: bool) -> tuple[Section, ...]:
         *(Section(title, for_both(rows)) for title, rows in patterns.items()),
         duration_section(6),
         turn_section(7),
-        *((direction_section(8),) if more else ()),
-        checks_section(9 if more else 8, ENERGY, _CLOSING, ANGLES, FORWARD, FRICTION),
+        *((direction_section(8), before_section(9)) if more else ()),
+        checks_section(
+            10 if more else 8, ENERGY, _CLOSING, ANGLES, FORWARD, FRICTION, *((RUN_OUT_CHECK,) if more else ())
+        ),
     )
 
 
@@ -178,15 +191,15 @@ def _filters(scene: Scene) -> tuple[FilterRow, ...]:
     )
 
 
-def _diagram() -> Diagram:
+def _diagram(way: str) -> Diagram:
     first, second = _CENTRES
     return Diagram(
         "Plan view of the base case",
         "X, [ft|m]",
         "Y, [ft|m]",
         (
-            *vehicle_curves((first, second)),
-            rest_points((first, second)),
+            *vehicle_curves((first, second), way),
+            rest_points((first, second), way),
             mark("Point of impact", ("0", "0")),
         ),
         plan=True,

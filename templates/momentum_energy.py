@@ -23,11 +23,20 @@ from templates.plan_view import mark, turned
 from templates.two_vehicles.answers import ANSWERS, FORCE
 from templates.two_vehicles.checks import FRICTION
 from templates.two_vehicles.drawing import rest_points, vehicle_curves
-from templates.two_vehicles.equations import MASSES, RUN_OUT
+from templates.two_vehicles.equations import MASSES
 from templates.two_vehicles.example_scene import MOMENTUM_EXAMPLE
 from templates.two_vehicles.options import drawing_inputs
 from templates.two_vehicles.readings import direction_reading, direction_section
 from templates.two_vehicles.results import direction_forecasts, paper_forecasts, shared_road_note
+from templates.two_vehicles.run_out import (
+    RUN_OUT_CHECK,
+    RUN_OUT_GUIDE,
+    RUN_OUT_NOTE,
+    before_section,
+    run_out_forecasts,
+    run_out_inputs,
+    segmented_run_out,
+)
 from templates.two_vehicles.scene import assumptions_of_momentum, constants_of_momentum, yaw_rates
 from templates.two_vehicles.together import SWITCH, drawn_together, leave_together
 from templates.units import MPH
@@ -407,6 +416,7 @@ _CHECKS = (
         "FALSE: more than road tyres give. A percentage entered as a number?",
     ),
     FRICTION,
+    RUN_OUT_CHECK,
 )
 
 _WHEN = GuideSection(
@@ -415,8 +425,7 @@ _WHEN = GuideSection(
         "Two vehicles whose approaches are near-parallel, head-on or from behind, where momentum alone says little: "
         "an angle uncertain by 3° can make a speed uncertain by hundreds of [mph|km/h]. The energy that crush took "
         "gives the closing speed at any angle; momentum gives only its direction.",
-        "Where a speed after the impact is known rather than the travel to rest, enter the travel V²/(2·g·f) that goes "
-        "with it.",
+        "Where a speed after the impact is known rather than the travel to rest, enter it on sheet Run-out.",
         "The approach angle of the other vehicle is an answer. Compare it with its lane: sheet Evidence has a row.",
         "The reverse: where the closing momentum m2·c is hardly more than the momentum across (the quantity prest = "
         "m2·c − |p⊥| on sheet Model, near 0), energy says little, and momentum is better. Fill in both templates: "
@@ -443,7 +452,7 @@ TEMPLATE = Template(
     optional=drawing_inputs(),
     sections=leave_together(
         (
-            Section("1  Masses, run-out and rotation", for_both(MASSES + RUN_OUT + _ROTATIONS)),
+            Section("1  Masses, run-out and rotation", for_both(MASSES + segmented_run_out() + _ROTATIONS)),
             Section("2  Closing speed, from energy", _ENERGY),
             Section("3  Impact speeds, from momentum", _SPEEDS),
             Section("4  Change in velocity", _CHANGES),
@@ -452,13 +461,15 @@ TEMPLATE = Template(
             ),
             Section("6  Direction of force, energy", for_both(_FORCE + _BALANCE)),
             direction_section(7),
-            checks_section(8, *_CHECKS),
+            before_section(8),
+            checks_section(9, *_CHECKS),
         )
     ),
     forecasts=(
         *paper_forecasts(),
         ForecastRow(f"{vehicle(2)} approach angle", "alpha_2", "deg"),
         *direction_forecasts(yaw=False, near=True),
+        *run_out_forecasts(),
     ),
     filters=(
         FilterRow("Closing momentum", "reach", "The closing speed can carry the momentum across", at_least=0),
@@ -488,7 +499,8 @@ TEMPLATE = Template(
             None,
             "Normal",
             {},
-            "Enter the mean and the standard deviation of edr-speed or video-speed",
+            "A reading of its own: middle and standard deviation of edr-speed or video-speed, if they share "
+            "no input with this workbook",
         ),
     ),
     settings=(("Trials", 200_000), ("Seed", 999)),
@@ -504,6 +516,7 @@ TEMPLATE = Template(
         ),
         FIRST_STEPS,
         READINGS,
+        RUN_OUT_GUIDE,
         NAMES,
         _WHEN,
         CAVEATS,
@@ -514,8 +527,8 @@ TEMPLATE = Template(
             "X, [ft|m]",
             "Y, [ft|m]",
             (
-                *vehicle_curves(_CENTRES),
-                rest_points(_CENTRES),
+                *vehicle_curves(_CENTRES, "travel"),
+                rest_points(_CENTRES, "travel"),
                 mark("Point of impact", ("0", "0")),
             ),
             plan=True,
@@ -523,4 +536,6 @@ TEMPLATE = Template(
         )
     ),
     vehicles=_SCENE.vehicles,
+    waiting=run_out_inputs(),
+    waiting_note=RUN_OUT_NOTE,
 )

@@ -408,7 +408,8 @@ TEMPLATE = Template(
             None,
             "Normal",
             {},
-            "Enter the mean and the standard deviation of edr-speed or video-speed",
+            "A reading of its own: middle and standard deviation of edr-speed or video-speed, if they share "
+            "no input with this workbook",
         ),
     ),
     settings=(("Trials", 200_000), ("Seed", 999)),

@@ -12,6 +12,7 @@ from templates.two_vehicles.drawing import rest_points, vehicle_curves
 from templates.two_vehicles.options import drawing_inputs, duration_input, turn_filters, turn_inputs
 from templates.two_vehicles.readings import lever_inputs, readings, rotation_inputs
 from templates.two_vehicles.results import direction_forecasts, paper_forecasts, shared_road, shared_road_note
+from templates.two_vehicles.run_out import RUN_OUT_NOTE, run_out_forecasts, run_out_inputs
 from templates.two_vehicles.scene import (
     Scene,
     assumptions_of_planar_impact,
@@ -29,7 +30,7 @@ _CENTRES = (("a_1", "b_1"), ("a_2", "b_2"))
 def describe(scene: Scene) -> Template:
     """The workbook of one scene."""
     more = not scene.paper_only
-    sections = model_sections() + answer_sections(more=more)
+    sections = model_sections(more=more) + answer_sections(more=more)
     return Template(
         title=scene.title,
         subtitle=scene.subtitle,
@@ -45,14 +46,17 @@ def describe(scene: Scene) -> Template:
             *drawing_inputs(),
         ),
         sections=leave_together(sections) if more else sections,
-        forecasts=paper_forecasts() + (direction_forecasts(yaw=True, near=True) if more else ()),
+        forecasts=paper_forecasts()
+        + ((*direction_forecasts(yaw=True, near=True), *run_out_forecasts()) if more else ()),
         filters=_filters(scene) + (turn_filters() if more else ()),
         settings=(("Trials", 200_000), ("Seed", 999)),
         correlations=(CorrelationRow("f_1", "f_2", 0),) if more else (),
         correlation_note=shared_road_note() if more else shared_road(),
         guide=guide(scene.guide, more=more),
-        diagram=drawn_together(_diagram()) if more else _diagram(),
+        diagram=drawn_together(_diagram("travel")) if more else _diagram("s"),
         evidence=readings(yaw=True) if more else (),
+        waiting=run_out_inputs() if more else (),
+        waiting_note=RUN_OUT_NOTE,
     )
 
 
@@ -65,15 +69,15 @@ def _filters(scene: Scene) -> tuple[FilterRow, ...]:
     )
 
 
-def _diagram() -> Diagram:
+def _diagram(way: str) -> Diagram:
     return Diagram(
         "Plan view of the base case",
         "X, [ft|m]",
         "Y, [ft|m]",
         (
-            *vehicle_curves(_CENTRES),
+            *vehicle_curves(_CENTRES, way),
             line("Contact direction γ", Look.LINE, "gamma_t", "0.4*length_1"),
-            rest_points(_CENTRES),
+            rest_points(_CENTRES, way),
             mark("Impact centre", ("0", "0")),
         ),
         plan=True,

@@ -8,6 +8,7 @@ from templates.two_vehicles.answers import ANSWERS, APPROACH, FORCE, ROTATION
 from templates.two_vehicles.checks import ANGLES, BOUNDS, CLOSING, ENERGY, FORWARD, FRICTION
 from templates.two_vehicles.options import duration_section, turn_section
 from templates.two_vehicles.readings import recorder_section
+from templates.two_vehicles.run_out import RUN_OUT_CHECK, before_section
 from templates.vehicles import for_both
 
 __all__ = ["answer_sections"]
@@ -30,10 +31,11 @@ def answer_sections(*, more: bool) -> tuple[Section, ...]:
     Args:
         more: give the rows of a turning vehicle, and those that readings are held against, too.
     """
-    optional = (duration_section(8), *((turn_section(9), recorder_section(10)) if more else ()))
+    optional = (duration_section(8), *((turn_section(9), recorder_section(10), before_section(11)) if more else ()))
+    checks = (ENERGY, CLOSING, ANGLES, FORWARD, BOUNDS, FRICTION, *((RUN_OUT_CHECK,) if more else ()))
     return (
         Section("6  Answers (the forecasts)", for_both(ANSWERS)),
         Section("7  Direction of force, yaw, energy", for_both(FORCE + ROTATION + _NORMAL + APPROACH)),
         *optional,
-        checks_section(8 + len(optional), ENERGY, CLOSING, ANGLES, FORWARD, BOUNDS, FRICTION),
+        checks_section(8 + len(optional), *checks),
     )

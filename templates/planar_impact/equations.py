@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from templates.description import Equation, Section
 from templates.two_vehicles.equations import CENTRES, DELTA_V, IMPACT_SPEEDS, MASSES, RUN_OUT
+from templates.two_vehicles.run_out import segmented_run_out
 from templates.vehicles import for_both
 
 __all__ = ["model_sections"]
@@ -109,10 +110,14 @@ _RESTITUTION = (
 )
 
 
-def model_sections() -> tuple[Section, ...]:
-    """The model of two vehicles, in the order of the paper."""
+def model_sections(*, more: bool) -> tuple[Section, ...]:
+    """The model of two vehicles, in the order of the paper.
+
+    Args:
+        more: with run-outs of several segments.
+    """
     patterns = {
-        "1  Masses, run-out speeds, centres of gravity": MASSES + RUN_OUT + CENTRES,
+        "1  Masses, run-out speeds, centres of gravity": MASSES + (segmented_run_out() if more else RUN_OUT) + CENTRES,
         "2  Impact speeds, by conservation of momentum": IMPACT_SPEEDS,
         "3  Impulse and change in velocity": DELTA_V,
         "4  Change in yaw rate": _YAW,

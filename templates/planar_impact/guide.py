@@ -5,6 +5,7 @@ from __future__ import annotations
 from templates.description import GuideSection
 from templates.guidance import CAVEATS, FIRST_STEPS, NAMES, READINGS
 from templates.restitution import RESTITUTION
+from templates.two_vehicles.run_out import RUN_OUT_GUIDE
 
 __all__ = ["guide"]
 
@@ -67,5 +68,5 @@ def guide(scene: GuideSection, *, more: bool) -> tuple[GuideSection, ...]:
         scene: that.
         more: the workbook has a sheet Evidence.
     """
-    readings = (READINGS,) if more else ()
+    readings = (READINGS, RUN_OUT_GUIDE) if more else ()
     return (scene, FIRST_STEPS, *readings, NAMES, _WHEN, RESTITUTION, _TRUST, CAVEATS, _CORRECTIONS)

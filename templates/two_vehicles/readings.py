@@ -158,7 +158,8 @@ def readings(*, yaw: bool) -> tuple[EvidenceRow, ...]:
                 None,
                 "Normal",
                 {},
-                "Enter the mean and the standard deviation of edr-speed or video-speed",
+                "A reading of its own: middle and standard deviation of edr-speed or video-speed, if they share "
+                "no input with this workbook",
             ),
             direction_reading(j),
         ]

@@ -29,7 +29,7 @@ _DIRECTION = Equation(
     "input",
     number_format="0.00",
 )
-_ANGLE, _TRAVEL = re.compile(r"\bbeta_2\b"), re.compile(r"\bs_2\b")
+_ANGLE, _TRAVEL = re.compile(r"\bbeta_2\b"), re.compile(r"\b(s|travel)_2\b")
 
 
 def leave_together(sections: tuple[Section, ...]) -> tuple[Section, ...]:
@@ -52,6 +52,6 @@ def drawn_together(diagram: Diagram) -> Diagram:
 
 def _switched_curve(curve: Curve) -> Curve:
     def switched(formula: str) -> str:
-        return _TRAVEL.sub("IF(together=1,s_1,s_2)", _ANGLE.sub("beta_out_2", formula))
+        return _TRAVEL.sub(r"IF(together=1,\1_1,\1_2)", _ANGLE.sub("beta_out_2", formula))
 
     return replace(curve, points=tuple((switched(x), switched(y)) for x, y in curve.points))

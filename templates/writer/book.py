@@ -15,9 +15,9 @@ from templates.writer.cached import Values, computed
 from templates.writer.evidence_sheet import draw_evidence
 from templates.writer.fixed_size import fix_chart_sizes
 from templates.writer.guide_sheet import draw_guide
-from templates.writer.inputs_sheet import draw_inputs
+from templates.writer.inputs_sheet import draw_inputs, draw_waiting
 from templates.writer.model_sheet import draw_model
-from templates.writer.places import name_cells, places, reference
+from templates.writer.places import WAITING, name_cells, places, reference
 from templates.writer.results_sheet import draw_results_wanted
 from templates.writer.scene_sheet import chart_size, draw_scene
 from templates.writer.styles import Styles
@@ -66,6 +66,8 @@ def _write(template: Template, target: Path | BytesIO, values: Values) -> None:
         styles = Styles(workbook)
         inputs, model = map(workbook.add_worksheet, ("Inputs", "Model"))
         draw_inputs(inputs, styles, template, at, values)
+        if template.waiting:
+            draw_waiting(workbook.add_worksheet(WAITING), styles, template, at, values)
         draw_model(model, styles, template, at, values)
         if template.diagram is not None:
             draw_scene(workbook, workbook.add_worksheet("Scene"), styles, template.diagram, values)

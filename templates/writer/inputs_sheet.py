@@ -20,7 +20,7 @@ from templates.writer.page import (
 from templates.writer.places import HEADER_ROW, MOST_CAPTIONS, VALUE_COLUMN, Place, name_cells
 from templates.writer.styles import Styles
 
-__all__ = ["draw_inputs"]
+__all__ = ["draw_inputs", "draw_waiting"]
 
 _DISTRIBUTIONS = ("Uniform", "Normal", "Triangular", "Trapezoid")
 _BEFORE = ("Name", "Symbol", "Cell name", "Value", "Units", "Distribution")
@@ -45,6 +45,19 @@ def draw_inputs(sheet: Worksheet, styles: Styles, template: Template, at: dict[s
     _guard_table(sheet, styles, HEADER_ROW + 1, HEADER_ROW + len(template.assumptions))
     _draw_fixed(sheet, styles, "Held fixed", template.constants, at, values)
     _draw_fixed(sheet, styles, "Optional: leave blank what does not apply", template.optional, at, values)
+    repeat_header(sheet, HEADER_ROW, 1)
+    fit_to_pages(sheet)
+
+
+def draw_waiting(sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: Values) -> None:
+    """Write the sheet of the inputs that wait: a second table of assumptions, its rows without values and frozen."""
+    begin_sheet(sheet, styles, template.title, template.waiting_note, _WIDTHS)
+    _fold_columns(sheet)
+    sheet.set_row(HEADER_ROW, 32)
+    add_table(sheet, styles, "xlmc_assumptions_more", HEADER_ROW, _HEADERS, len(template.waiting))
+    for given in template.waiting:
+        _draw_assumption(sheet, styles, given, at[given.symbol][1], values)
+    _guard_table(sheet, styles, HEADER_ROW + 1, HEADER_ROW + len(template.waiting))
     repeat_header(sheet, HEADER_ROW, 1)
     fit_to_pages(sheet)
 
@@ -90,7 +103,10 @@ def _draw_vehicles(sheet: Worksheet, styles: Styles, template: Template) -> None
 def _draw_assumption(sheet: Worksheet, styles: Styles, given: Input, row: int, values: Values) -> None:
     shown = given.number_format
     _draw_name(sheet, styles, given, row, values)
-    sheet.write_number(row, VALUE_COLUMN, given.base, styles("assumption", shown))
+    if given.base is None:
+        sheet.write_blank(row, VALUE_COLUMN, None, styles("assumption", shown))
+    else:
+        sheet.write_number(row, VALUE_COLUMN, given.base, styles("assumption", shown))
     sheet.write_string(row, 5, given.distribution, styles("open centred"))
     for column, header in enumerate(PARAMETER_COLUMNS, len(_BEFORE)):
         value = given.parameters.get(header)

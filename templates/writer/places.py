@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from xlsxwriter.utility import xl_rowcol_to_cell
+from xlsxwriter.utility import quote_sheetname, xl_rowcol_to_cell
 
 from templates.description import Template
 
-__all__ = ["HEADER_ROW", "MOST_CAPTIONS", "VALUE_COLUMN", "Place", "name_cells", "places", "reference"]
+__all__ = ["HEADER_ROW", "MOST_CAPTIONS", "VALUE_COLUMN", "WAITING", "Place", "name_cells", "places", "reference"]
 
 Place = tuple[str, int]
 """Sheet and row, the row counted from 0."""
 
 HEADER_ROW = 4
 VALUE_COLUMN = 3
+WAITING = "Run-out"
+"""The sheet of inputs that wait."""
 MOST_CAPTIONS = 3
 """Names that have the defined name of their cell beside them, within the columns that are not folded away."""
 _GAP = 4
@@ -28,6 +30,7 @@ def places(template: Template) -> dict[str, Place]:
             found[given.symbol] = "Inputs", row
             row += 1
         row += _GAP
+    found |= {given.symbol: (WAITING, row) for row, given in enumerate(template.waiting, HEADER_ROW + 1)}
     row = HEADER_ROW + 1
     for section in template.sections:
         for equation in section.equations:
@@ -49,4 +52,4 @@ def name_cells(template: Template) -> list[tuple[int, int]]:
 def reference(place: Place, *, absolute: bool = False) -> str:
     """`Model!D12`, or `Model!$D$12`."""
     sheet, row = place
-    return f"{sheet}!{xl_rowcol_to_cell(row, VALUE_COLUMN, row_abs=absolute, col_abs=absolute)}"
+    return f"{quote_sheetname(sheet)}!{xl_rowcol_to_cell(row, VALUE_COLUMN, row_abs=absolute, col_abs=absolute)}"

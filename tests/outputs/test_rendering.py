@@ -43,7 +43,7 @@ CHART = (180.0, 110.0)
 ENDS = [(1.5, 7.5), (None, 13.0), (11.0, None), (None, None)]
 """Of ranges that a person types, one for each forecast."""
 
-CASE, MOST = 15, 26
+CASE, MOST = 15, 27
 """The most pages of the case study, and of any book that belongs to the project."""
 
 OF_REPORT = {"Case number": "2026-17", "Client": '#x *b* <i> & "q"'}

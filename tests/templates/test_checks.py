@@ -76,6 +76,8 @@ CASES = [
     ("momentum-energy", "check_crush", {"EES_1": -10}),
     ("momentum-energy", "check_spin", {"mu_1": 35}),
     ("momentum-energy", "check_friction", {"f_1": 1.3, "s_1": 12}),
+    ("momentum-energy", "check_run_out", {"share_2_2": 70}),
+    ("momentum", "check_run_out", {"share_1_2": 70}),
     ("pedestrian", "check_lengths check_braked", {"d_before": -1}),
     ("pedestrian", "check_known", {"d_after": 0}),
     ("pedestrian", "check_friction", {"f": 1.3}),

@@ -7,6 +7,7 @@ is computed, not read: a file may hold no saved values, or stale ones.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -15,7 +16,7 @@ import numpy as np
 from xlmc.engine.engine import TEXT_RESULT, Column, Target
 from xlmc.engine.engines import ENGINES
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
-from xlmc.errors import DefinitionError, DefinitionsError, SimulationError
+from xlmc.errors import DefinitionError, DefinitionsError, Notice, SimulationError
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir
 from xlmc.excel.workbook.lazy_sheets import with_values
@@ -30,8 +31,12 @@ from xlmc.montecarlo.model.joining import joined
 from xlmc.montecarlo.model.labels import calculate_labels
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.model.needed import filter_limits
+from xlmc.montecarlo.model.plain_words import list_of
 
 __all__ = ["build_model", "fed", "filter_faults", "load", "model_with_values"]
+
+_DASHES: Final = ("–", "—", "-")
+"""What the cell of a forecast holds that waits for inputs."""
 
 _DRAWN: Final = 64
 """Trials that are looked at beside the base case, in which a quantity may happen to be 0 or 1."""
@@ -120,10 +125,33 @@ def build_model(
     definitions = read_definitions(workbook, ENGINES, tabulated, switched, python)
     if definitions.problems:
         raise _joined(definitions.problems)
-    model = CompiledModel(workbook, definitions, path)
+    model = _without_dashes(CompiledModel(workbook, definitions, path))
     if faults := filter_faults(model):
         raise _joined(faults)
     return model
+
+
+def _without_dashes(model: CompiledModel) -> CompiledModel:
+    """The model without the forecasts whose cells are a dash in every trial: they wait for inputs; itself without any.
+
+    One of which nothing else is asked stays, so that it is told of.
+    """
+    known = {each.name: model.lowering.known(Target(each.cell, each.cell)) for each in model.forecasts}
+    waiting = {name for name, value in known.items() if value is not None and value.objects().ravel()[0] in _DASHES}
+    if not waiting or len(waiting) == len(model.forecasts):
+        return model
+    definitions = model.definitions
+    left = tuple(each for each in definitions.forecasts if each.name not in waiting)
+    said = f"forecasts whose cells are a dash, and which wait for inputs: {list_of([*map(repr, sorted(waiting))])}"
+    first = next(each for each in definitions.forecasts if each.name in waiting)
+    notices = (*definitions.notices, Notice(said, first.row))
+    filters = tuple(
+        replace(each, only_for=tuple(name for name in each.only_for if name not in waiting))
+        for each in definitions.forecast_filters
+        if not waiting.issuperset(each.only_for)
+    )
+    changed = replace(definitions, forecasts=left, forecast_filters=filters, notices=notices)
+    return model.changed(model.workbook, changed)
 
 
 def _joined(problems: Sequence[DefinitionError]) -> DefinitionError:

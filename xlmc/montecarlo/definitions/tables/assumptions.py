@@ -65,8 +65,21 @@ def read_assumptions(
     found = []
     for row in rows:
         with findings.recording():
-            found.append(_assumption(row, known, computed, claims, findings))
+            if not _waits(row):
+                found.append(_assumption(row, known, computed, claims, findings))
     return tuple(filter(None, found))
+
+
+def _waits(row: Row) -> bool:
+    """Whether a row is ready and not used: Frozen, without a value to be held at, and without a parameter."""
+    frozen = row.filled("Frozen") and row.has("Value") and not row.filled("Value") and logical(row, "Frozen")
+    return bool(frozen) and _is_bare(row, _family(row))
+
+
+def _is_bare(row: Row, family: Family) -> bool:
+    """Whether a row has no parameter of its distribution, no cutoff and no data."""
+    headings = {heading for spec in family.parameters for heading in spec.headings}
+    return not any(map(row.filled, headings | {*CUTOFFS.values(), "Data"}))
 
 
 def _assumption(
@@ -87,7 +100,10 @@ def _assumption(
     family = data = None
     if kind is not None:
         refuse_options(row, kind, findings)
-        given = _given(row, kind, findings)
+        if frozen and base is not None and kind is FAMILIES["Uniform"] and _is_bare(row, kind):
+            given = {"low": base, "high": base}  # held at its value, whatever its range would be
+        else:
+            given = _given(row, kind, findings)
         data = None if kind.data is None else findings.attempt(given_data, row, kind, computed, findings)
         family = kind if data is None else findings.attempt(cached_data_family, data, kind, row.workbook)
     units = findings.attempt(optional_text, row, "Units") or ""

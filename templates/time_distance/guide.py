@@ -22,9 +22,9 @@ GUIDE = (
             "A pedestrian: set the acceleration to 0 and Frozen to TRUE, enter the walking speed as the intruder's "
             "speed, with its range, and set its Frozen to FALSE.",
             "The speed at the impact comes from another model (momentum, crush-energy, pedestrian-throw) or from an "
-            'EDR (edr-speed). Carry its trials through, with xlmc simulate this-file.xlsx --feed "Vehicle speed at the '
-            'impact=momentum.xlsx!Vehicle 1 impact speed". A mean and a standard deviation would lose what that speed '
-            "goes together with, such as the friction of a shared road.",
+            "EDR (edr-speed). xlmc simulate --feed carries its trials through this workbook, one by one (docs, Books "
+            "in a chain). A mean and a standard deviation would lose what that speed goes together with, such as the "
+            "friction of a shared road.",
             "Not where the vehicle braked in parts, steered, or was itself accelerating.",
         ),
     ),

@@ -108,7 +108,7 @@ def main(given: Sequence[str] | None = None) -> None:
         reference_trials=asked.reference_trials,
         trials=asked.trials,
         replicates=asked.replicates,
-        told=lambda what: print(what, file=sys.stderr, flush=True),
+        tell=lambda what: print(what, file=sys.stderr, flush=True),
     )
     write(found, theory_runs(model, found))
 

@@ -105,8 +105,8 @@ class XlmcError(Exception):
 
     def __str__(self) -> str:
         start = f"{shortened(self.where)}: " if self.where else ""
-        said = sentence(f"{start}{shortened(self.message)}")
-        return sentence(f"{said} {_begun(self.hint)}") if self.hint else said
+        spoken = sentence(f"{start}{shortened(self.message)}")
+        return sentence(f"{spoken} {_begun(self.hint)}") if self.hint else spoken
 
 
 def shortened(text: str) -> str:
@@ -183,5 +183,5 @@ class Notice:
     where: object = None
 
     def __str__(self) -> str:
-        said = shortened(self.message)
-        return f"{shortened(str(self.where))}: {said}" if self.where is not None else said
+        spoken = shortened(self.message)
+        return f"{shortened(str(self.where))}: {spoken}" if self.where is not None else spoken

@@ -19,7 +19,7 @@ from typing import Final
 
 from fuzzing.inputs import Kind, Reached, generator
 from fuzzing.verdict import Finding, of_error
-from xlmc.excel.workbook.temporary_names import new_folder_name, owned, remove_stray_folders
+from xlmc.excel.workbook.temporary_names import new_folder_name, owned, remove_abandoned_folders
 
 __all__ = ["MEMORY", "Outcome", "judged", "serve"]
 
@@ -66,7 +66,7 @@ def serve(kind: str, how: Kind, seed: int, numbers: Iterable[int], parent: Conne
 @contextlib.contextmanager
 def _folder_of_its_own() -> Iterator[Path]:
     """A temporary folder; those of children that were killed are removed first, known by the process in their names."""
-    remove_stray_folders()
+    remove_abandoned_folders()
     name = new_folder_name()
     folder = Path(tempfile.gettempdir()) / name
     with owned(name):

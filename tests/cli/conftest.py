@@ -201,10 +201,10 @@ def made_once(studies_made: dict[tuple[object, ...], object], monkeypatch: pytes
     def patch(module: ModuleType, name: str) -> None:
         study = getattr(module, name)
 
-        def once(model: CompiledModel, *given: object, told: object = None, **asked: object) -> object:
+        def once(model: CompiledModel, *given: object, tell: object = None, **asked: object) -> object:
             key = name, model.path, model.workbook.sha256, *given, *asked.items()
             if key not in studies_made:
-                studies_made[key] = study(model, *given, told=told, **asked)
+                studies_made[key] = study(model, *given, tell=tell, **asked)
             return studies_made[key]
 
         monkeypatch.setattr(module, name, once)

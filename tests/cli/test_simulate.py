@@ -251,10 +251,10 @@ def test_the_engine_jit_prints_the_same_answers_and_keeps_its_code_unless_it_is_
     xlmc, book, tmp_path, monkeypatch
 ):
     pytest.importorskip("llvmlite")
-    from xlmc.engine.llvm import kept_code
+    from xlmc.engine.llvm import code_cache
     from xlmc.engine.llvm.machine import machine
 
-    monkeypatch.setattr(kept_code, "_caches", lambda: tmp_path)
+    monkeypatch.setattr(code_cache, "_caches", lambda: tmp_path)
     answer = xlmc("simulate", book, "-o", "r.xlsx")
     for option, there in ((["--no-kept-code"], False), ([], True)):
         monkeypatch.setenv("XLMC_KEEP_CODE", "1")

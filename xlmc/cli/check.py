@@ -186,8 +186,10 @@ def _show_need(model: CompiledModel, workbook: Workbook) -> None:
     formulas = sum(c.formula is not None for sheet in workbook.sheets.values() for c in sheet.cells.values())
     needed, varying = model.needed.graph.formulas, model.needed.graph.varying
     count = sum(cell in varying for cell in needed)
-    said = f"Of {formulas} formula cells the forecasts and filters need {len(needed)}; {count} vary with an assumption."
-    say(paragraph(said))
+    counted = (
+        f"Of {formulas} formula cells the forecasts and filters need {len(needed)}; {count} vary with an assumption."
+    )
+    say(paragraph(counted))
     if model.needed.idle:
         say(paragraph("No forecast or filter needs: " + ", ".join(a.name for a in model.needed.idle) + "."))
 

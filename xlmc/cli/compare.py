@@ -76,7 +76,7 @@ def compare(
     books = load(first), load(second)
     files = Files((*output, *also), [first, second], overwrite=overwrite)
     files.check()
-    with step_line(quiet) as told:
+    with step_line(quiet) as tell:
         found = comparison.compare(
             *books,
             tolerance,
@@ -88,7 +88,7 @@ def compare(
             engine=engine,
             jobs=jobs,
             causes=not no_causes,
-            told=told,
+            tell=tell,
         )
     report = _report(found)
     written = write_files(files.writers(report))
@@ -96,9 +96,9 @@ def compare(
         say_json(report.as_json())
     else:
         show([report.below, *report.blocks])
-        written.tell()
+        written.report_failures()
     runs = list(zip(book_names(found), (found.first, found.second), strict=True))
-    notices([replace(said, where=name) for name, run in runs for said in direction_notices(run.results.values())])
+    notices([replace(notice, where=name) for name, run in runs for notice in direction_notices(run.results.values())])
     doubts = [f"{name}: {warning}" for name, run in runs for warning in run.warnings]
     warnings(doubts, [f"{name}: {warning}" for name, run in runs for warning in run.refused])
     written.check()
@@ -205,7 +205,10 @@ def _as_json(found: Comparison) -> dict[str, object]:
         "acceptance": acceptance_json(found.acceptance),
         "assumptions": {
             "alike": inputs.alike,
-            "unlike": [{"name": u.name, "first": u.first, "second": u.second} for u in (*inputs.unlike, *inputs.held)],
+            "unlike": [
+                {"name": u.name, "first": u.first, "second": u.second}
+                for u in (*inputs.unlike, *inputs.frozen_differently)
+            ],
             "drawn_only_in": dict(zip(books, inputs.drawn, strict=True)),
         },
         "filters_only_in": dict(zip(books, inputs.filters, strict=True)),

@@ -15,7 +15,7 @@ import click
 from xlmc.cli.options import OneOf
 from xlmc.cli.study_output import STUDY, show, study_options
 from xlmc.cli.terminal import say, say_json
-from xlmc.cli.writing import NOT_WRITTEN, write_files, written_or_told
+from xlmc.cli.writing import NOT_WRITTEN, write_files, written_or_reported
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.fitting import Fitted, Fitting
@@ -101,15 +101,15 @@ def fit(
     if as_json:
         say_json(report.as_json())
     else:
-        said = _cautions(found)  # as warnings, below
-        show([each for each in report.blocks[:-1] if each not in said])
+        as_warnings = _cautions(found)  # as warnings, below
+        show([each for each in report.blocks[:-1] if each not in as_warnings])
         say(f"\n{chosen.name} as a row of xlmc_assumptions, to paste under these headings:\n")
         say("\t".join(row))
         say("\t".join(row.values()))
         if edited is not None and into is not None:
             done = "a new row" if edited.row.is_new else "its row"
             say(f"Written: {chosen.name} for {label(name)}, {done} in {into}, {edited.row.where}")
-        written.tell()
+        written.report_failures()
     for caution in _cautions(found):
         say(f"warning: {caution}", err=True)
     written.check()
@@ -172,10 +172,10 @@ def _values(book: Path, reference: str) -> tuple[list[float], str, int, tuple[st
     only_sheet = next(iter(workbook.sheets)) if len(workbook.sheets) == 1 else None
     area = area_of_reference(workbook, reference, only_sheet, book)
     rows = list(area_values(workbook, area, Computed(workbook, ())))
-    held = [value for row in rows for value in row if value is not None]
+    numbers = [value for row in rows for value in row if value is not None]
     values = [
         value if isinstance(value, float) else number_in("The data cell", workbook.content(value), value)
-        for value in held
+        for value in numbers
     ]
     return values, str(area), area.rows * area.columns - len(values), _pooled(area, rows)
 

@@ -85,7 +85,7 @@ def methods(
         say_json(study_json(found))
     else:
         _show(found)
-        written.tell()
+        written.report_failures()
     written.check()
     if found.reference.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
@@ -100,8 +100,8 @@ def _show(found: Study) -> None:
     for each in shown:
         if each.rows:
             table(each.title, each.headings, each.rows, right=range(each.right, len(each.headings)))
-    for name, said in methods_tables.cannot_lines(found):
-        say(paragraph(f"{name}: {said}.", hanging="    "))
+    for name, line in methods_tables.cannot_lines(found):
+        say(paragraph(f"{name}: {line}.", hanging="    "))
     say()
     for advice in recommendation(found):
         say(paragraph(advice))

@@ -100,7 +100,7 @@ _ALIASES: Final = {
 }
 """Options from the time when each kind of file had one: with them alone the default is written, too."""
 
-_WISHES = (
+_CONTENTS = (
     click.option(
         "--case",
         "case",
@@ -119,7 +119,7 @@ _WISHES = (
     ),
     click.option("--paper", type=OneOf("letter", "a4"), default="letter", show_default=True, help="Paper size."),
 )
-"""What the reports are to hold: each is a field of `Wishes`, and is named where they are refused without a report."""
+"""Options for what reports hold, each a field of `ReportContents`; a command without a report refuses them by name."""
 
 _OVERWRITE = click.option(
     "--overwrite",
@@ -199,8 +199,8 @@ def _aliased(given: Mapping[_Kind, Path | tuple[Path, ...] | None]) -> Iterator[
             yield path
 
 
-class Wishes(NamedTuple):
-    """What the reports are to hold, as it was typed: a field for each of `_WISHES`; see `report.document.Wanted`."""
+class ReportContents(NamedTuple):
+    """What the reports are to hold, as it was typed: a field for each of `_CONTENTS`; see `report.document.Wanted`."""
 
     case: tuple[str, ...] = ()
     sections: str | None = None
@@ -379,8 +379,8 @@ class Outputs(NamedTuple):
         from xlmc.api import Simulation
 
         written, lines = True, []
-        for path, said, write in self._files(Simulation(run)):
-            found = written_or_told(path, partial(self._write_beside, path, write))
+        for path, label, write in self._files(Simulation(run)):
+            found = written_or_reported(path, partial(self._write_beside, path, write))
             if found is None:
                 written = False
             else:
@@ -438,7 +438,7 @@ class Outputs(NamedTuple):
         return None if self.beside is None else open_run(self.beside)
 
     def _write_report(self, run: Simulation, path: Path, *, overwrite: bool = False) -> Path:
-        found = self.wishes.wanted()
+        found = self.contents.wanted()
         return run.save_report(
             path,
             case=found.case,

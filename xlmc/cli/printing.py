@@ -52,8 +52,8 @@ def warnings(found: Sequence[str], missing: Collection[str] = ()) -> None:
     """Print why an answer must not be used, to stderr; of those that are `missing`, that others do not need them."""
     for warning in found:
         meaning = "this answer is missing, and the others do not need it"
-        said = meaning if warning in missing else "the answer must not be used as it is"
-        say(f"warning: {shortened(warning)}; {said}.", err=True)
+        verdict = meaning if warning in missing else "the answer must not be used as it is"
+        say(f"warning: {shortened(warning)}; {verdict}.", err=True)
 
 
 def _one_line(cell: str) -> str:
@@ -117,11 +117,11 @@ def table_lines(
 def _widths(columns: Sequence[_Column], width: int, gap: str) -> list[int] | None:
     """The width of each column; None where they cannot be made narrow enough."""
     widths = [column.natural for column in columns]
-    room = width - 2 - len(gap) * (len(columns) - 1)
+    available = width - 2 - len(gap) * (len(columns) - 1)
     least = [column.least for column in columns]
-    if sum(least) > room:
+    if sum(least) > available:
         return None
-    while sum(widths) > room:  # the widest that can give way does
+    while sum(widths) > available:  # the widest that can give way does
         index = max((index for index in range(len(widths)) if widths[index] > least[index]), key=widths.__getitem__)
         widths[index] -= 1
     return widths

@@ -87,7 +87,7 @@ def _other_version(found: Replayed) -> Iterator[str]:
     yield f"{made} made this run, and this is xlmc {__version__}."
     if found.rules:
         yield "Rules of calculation that have changed since then, and that its formulas may depend on:"
-        yield from (f"  {rule.said} ({rule.since})" for rule in found.rules)
+        yield from (f"  {rule.sentence} ({rule.since})" for rule in found.rules)
     elif not found.identical:
         yield "As far as xlmc knows, no rule that its formulas depend on has changed since then."
     if found.version:
@@ -136,8 +136,8 @@ def _sheet_lines(found: Replayed) -> Iterator[str]:
     yield from _rest(differences)
     for name in found.shown.missing:
         yield f"The result sheet {name} is missing."
-    for said in found.shown.left_out:
-        yield f"Not compared: {said}."
+    for sentence in found.shown.left_out:
+        yield f"Not compared: {sentence}."
 
 
 def _value(value: CellValue) -> str:
@@ -202,7 +202,7 @@ def _as_json(found: Replayed) -> dict[str, object]:
         },
         "checks": [] if found.repeated is None else failing_lines(found.repeated),
         "made_by": found.version,
-        "rules_since": [{"version": rule.since, "rule": rule.said} for rule in found.rules],
+        "rules_since": [{"version": rule.since, "rule": rule.sentence} for rule in found.rules],
         "fault": None if found.fault is None else str(found.fault),
     }
 

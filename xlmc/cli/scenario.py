@@ -77,9 +77,9 @@ def _show(edited: EditedWorkbook, model: CompiledModel) -> None:
     if edited.computed:
         say(paragraph(f"{many}, computed by xlmc."))
     if edited.left:
-        told = [f"{cell} ({why})" for cell, why in list(edited.left.items())[:_MOST_TOLD]]
+        skipped = [f"{cell} ({why})" for cell, why in list(edited.left.items())[:_MOST_TOLD]]
         more = f" and {len(edited.left) - _MOST_TOLD:,} more" if len(edited.left) > _MOST_TOLD else ""
-        message = f"could not be computed: {'; '.join(told)}{more}. Excel calculates the workbook when it opens it"
+        message = f"could not be computed: {'; '.join(skipped)}{more}. Excel calculates the workbook when it opens it"
         say(f"note: {message}", err=True)
     if edited.has_results:
         say("note: the workbook's result sheets are those of the run before, and stay as they are.", err=True)

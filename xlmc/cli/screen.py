@@ -88,7 +88,7 @@ def screen(
     model = load(book)
     files = Files((*output, *also), [book], overwrite=overwrite, of_run=True)
     files.check()
-    with step_line(quiet) as told:
+    with step_line(quiet) as tell:
         found = screening.screen(
             model,
             tolerance,
@@ -101,7 +101,7 @@ def screen(
             seed=seed,
             engine=engine,
             jobs=jobs,
-            told=told,
+            tell=tell,
         )
     report = _report(found)
     written = write_files(files.writers(report))
@@ -109,7 +109,7 @@ def screen(
         say_json(report.as_json())
     else:
         show([f"{report.below.partition(':')[0]}: what it could do without", *report.blocks])
-        written.tell()
+        written.report_failures()
     warnings(found.run.warnings, found.run.refused)
     written.check()
     if found.run.warnings:

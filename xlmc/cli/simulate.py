@@ -99,8 +99,8 @@ def simulate(
     of_scenarios = _of_scenarios(run, answers)
     warnings([*run.warnings, *of_scenarios], run.refused)
     if run.stopped.interrupted:
-        kept = "; those that were accepted were written" if written else ""
-        say(f"xlmc: interrupted after {run.trials:,} trials{kept}.", err=True)
+        filtered = "; those that were accepted were written" if written else ""
+        say(f"xlmc: interrupted after {run.trials:,} trials{filtered}.", err=True)
     if not written:
         raise click.exceptions.Exit(NOT_WRITTEN)
     if run.stopped.interrupted or (scenarios and not answers):
@@ -119,8 +119,8 @@ def _with_scenarios(run: RunResult, jobs: int, quiet: bool) -> tuple[RunResult, 
     try:
         if run.stopped.interrupted and run.settings.scenarios:
             raise KeyboardInterrupt
-        with step_line(quiet) as told:
-            return run, scenario_answers(run, jobs=jobs, told=told)
+        with step_line(quiet) as tell:
+            return run, scenario_answers(run, jobs=jobs, tell=tell)
     except KeyboardInterrupt:
         say(
             "xlmc: interrupted before all scenarios were run: the results are those of the workbook as it is.", err=True
@@ -183,8 +183,8 @@ def _show_sentences(run: RunResult) -> None:
     from xlmc.analysis.results.statements import statements
 
     if any(each.says_how for each in run.model.forecasts):
-        said = [paragraph(f"{each.text}.") for each in statements(run)]
-        say("\n".join([*said, ""]) if said else "")
+        sentences = [paragraph(f"{each.text}.") for each in statements(run)]
+        say("\n".join([*sentences, ""]) if sentences else "")
 
 
 def _show_evidence(run: RunResult) -> None:
@@ -196,8 +196,8 @@ def _show_evidence(run: RunResult) -> None:
     if found is None:
         return
     table("Evidence", ITEM_HEADS, item_rows(found), right=range(2, 7))
-    said = [] if found.sentence in found.remarks else [f"{found.sentence[0].upper()}{found.sentence[1:]}."]
-    say(paragraph(" ".join([*said, trials_sentence(found)])) + "\n")  # remarks come with the other notices
+    sentences = [] if found.sentence in found.remarks else [f"{found.sentence[0].upper()}{found.sentence[1:]}."]
+    say(paragraph(" ".join([*sentences, trials_sentence(found)])) + "\n")  # remarks come with the other notices
     names = list(found.found.forecasts)[:_MOST_MOVED]
     heads = ("Means with", "Effective trials", *names)
     table("What each item of evidence moves", heads, move_rows(found, names), right=range(1, len(heads)))
@@ -229,8 +229,10 @@ def _acceptance_sentence(run: RunResult) -> str:
 
         return f"{run.accepted:,} accepted trials; a trial is accepted with probability {probability_text(run.rare)}"
     if any(errors.total() for errors in run.faults.values()) or run.model.forecast_filters:
-        kept = [f"the filters kept {run.accepted:,}, {share_text(run.acceptance)}"] if run.accepted < run.trials else []
-        return "; ".join((*rest_sentences(run), *kept))
+        filtered = (
+            [f"the filters kept {run.accepted:,}, {share_text(run.acceptance)}"] if run.accepted < run.trials else []
+        )
+        return "; ".join((*rest_sentences(run), *filtered))
     if not run.model.filters and run.accepted == run.trials:
         return f"The workbook has no filters: all {run.trials:,} trials are accepted"
     return f"Accepted {run.accepted:,} of {run.trials:,} trials, {share_text(run.acceptance)}"

@@ -45,7 +45,7 @@ def stability(
     quiet: bool,
 ) -> None:
     """Find where BOOK loses digits, or its numbers are not what they seem, within the ranges of its assumptions."""
-    from xlmc.analysis.studies import stability as room
+    from xlmc.analysis.studies import stability as study
     from xlmc.cli.printing import warnings
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.model.loading import load
@@ -62,7 +62,7 @@ def stability(
         say_json(report.as_json())
     else:
         _show(found, all_cells)
-        written.tell()
+        written.report_failures()
     warnings(found.run.warnings, found.run.refused)
     written.check()
     if found.wrong or found.run.warnings:

@@ -65,7 +65,7 @@ def verify(
         say_json(report.as_json())
     else:
         show(_blocks(found, _SHOWN))
-        written.tell()
+        written.report_failures()
     written.check()
     if found.count(Status.DIFFERING):
         raise click.exceptions.Exit(DIFFERS)

@@ -11,7 +11,7 @@ import click
 from xlmc.cli.terminal import say
 from xlmc.errors import XlmcError
 
-__all__ = ["NOT_WRITTEN", "Written", "write_files", "written_or_told"]
+__all__ = ["NOT_WRITTEN", "Written", "write_files", "written_or_reported"]
 
 NOT_WRITTEN = 2
 """Exit code where a file could not be written."""
@@ -23,7 +23,7 @@ class Written(NamedTuple):
     paths: list[Path]
     complete: bool
 
-    def tell(self) -> None:
+    def report_failures(self) -> None:
         """Print where they are."""
         for path in self.paths:
             say(f"Written: {path}")
@@ -36,12 +36,12 @@ class Written(NamedTuple):
 
 def write_files(files: Iterable[tuple[Path, Callable[[], Path]]]) -> Written:
     """Write one file after the other; of each that cannot be written, say so."""
-    found = [written_or_told(path, write) for path, write in files]
+    found = [written_or_reported(path, write) for path, write in files]
     paths = [path for path in found if path is not None]
     return Written(paths, len(paths) == len(found))
 
 
-def written_or_told(path: Path, write: Callable[[], Path]) -> Path | None:
+def written_or_reported(path: Path, write: Callable[[], Path]) -> Path | None:
     """The path that was written to; None where nothing could be written, which is told."""
     try:
         return write()
@@ -50,6 +50,6 @@ def written_or_told(path: Path, write: Callable[[], Path]) -> Path | None:
     except OSError as error:
         say(f"xlmc: {path}: the file cannot be written ({error.strerror or error}).", err=True)
     except Exception as error:  # a fault of xlmc's own in one output must not cost the others, nor the answer
-        said = f"{type(error).__name__}: {error}"[:500]
-        say(f"xlmc: {path}: xlmc has failed ({said}), and this file was not written. Please report it.", err=True)
+        message = f"{type(error).__name__}: {error}"[:500]
+        say(f"xlmc: {path}: xlmc has failed ({message}), and this file was not written. Please report it.", err=True)
     return None

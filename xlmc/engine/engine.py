@@ -18,13 +18,13 @@ __all__ = [
     "DISCARDED_FIRST",
     "TEXT_RESULT",
     "UNDECIDED_RESULT",
+    "AcceptedBlock",
+    "BlockMemory",
     "BlockRunner",
     "Column",
     "Evaluator",
-    "KeptBlock",
     "Linear",
     "Program",
-    "Room",
     "RunsWholeBlocks",
     "Target",
     "UniformStream",
@@ -69,7 +69,7 @@ class Evaluator(Protocol):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class KeptBlock:
+class AcceptedBlock:
     """A block without errors, evaluated and filtered. The next block overwrites its columns.
 
     Attributes:
@@ -93,7 +93,7 @@ class KeptBlock:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Room:
+class BlockMemory:
     """Memory that a block's columns may be written to, `(block,)` each.
 
     Attributes:
@@ -126,14 +126,16 @@ class Linear:
 class BlockRunner(Protocol):
     """Runs a block at once."""
 
-    def __call__(self, start: int, trials: int, inputs: bool, room: Callable[[], Room] | None) -> KeptBlock | None:
+    def __call__(
+        self, start: int, trials: int, inputs: bool, block_memory: Callable[[], BlockMemory] | None
+    ) -> AcceptedBlock | None:
         """The first trials of a block; None where one needs the careful path, or one of those behind them.
 
         Args:
             start: the block's first trial.
             trials: how many count.
             inputs: whether to keep draws.
-            room: gives memory for the block's columns, which it writes to if it keeps all trials of a whole block.
+            block_memory: gives memory for the block's columns; it is written to if all trials of a whole block stay.
         """
 
 

@@ -149,7 +149,7 @@ class _Part:
         peak: the most bytes that values other than single numbers took at a time in the last run.
     """
 
-    def __init__(self, dag: Dag, nodes: Sequence[int], kept: set[int]) -> None:
+    def __init__(self, dag: Dag, nodes: Sequence[int], outputs: set[int]) -> None:
         self._dag, self._nodes = dag, nodes
         self.inputs = [node.name for node_id in nodes if isinstance(node := dag.nodes[node_id], Input)]
         self.peak = 0
@@ -157,7 +157,7 @@ class _Part:
         last = {used: node_id for node_id in nodes for used in uses(dag.nodes[node_id]) if used in own}
         self._done: dict[int, list[int]] = {}
         for used, node_id in last.items():
-            if used not in kept:
+            if used not in outputs:
                 self._done.setdefault(node_id, []).append(used)
 
     def run(self, values: dict[int, Value], inputs: Inputs) -> None:

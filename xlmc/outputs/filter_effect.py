@@ -135,9 +135,9 @@ def filter_effect_of(simulation: RunResult, assumption: str) -> FilterEffect | N
     found = _FOUND.setdefault(simulation, {})
     if assumption not in found:
         accepted, replicate, weighting = simulation.inputs[assumption], simulation.replicate, simulation.weighting
-        kept = None if replicate is None else replicate[: accepted.size]
+        accepted_replicates = None if replicate is None else replicate[: accepted.size]
         weights = None if weighting is None else weighting.weights
-        found[assumption] = filter_effect(simulation.prior[assumption], accepted, kept, weights)
+        found[assumption] = filter_effect(simulation.prior[assumption], accepted, accepted_replicates, weights)
     return found[assumption]
 
 

@@ -246,13 +246,13 @@ class Figure:
         """What the figure shows, in words."""
         row, bins = self.answer, self.bins
         units = f" {row.units}" if row.units else ""
-        said = (
+        label = (
             f"mean {estimate_text(row.mean)}{units}; the central {percent(row.share)} of {row.trials:,} accepted "
             f"trials lie from {central_text(row)}{units}"
         )
         if row.yes is not None:
-            said = f"yes (1) in {answer_text(row)} of {row.trials:,} accepted trials, else no (0)"
-        text = f"Figure {self.number}. {self.name}: {said}."
+            label = f"yes (1) in {answer_text(row)} of {row.trials:,} accepted trials, else no (0)"
+        text = f"Figure {self.number}. {self.name}: {label}."
         if bins.counted < row.trials:
             text += f" Trials are weighted: the chart shows {bins.counted:,} trials of equal weight in their place."
         if bins.below or bins.above:

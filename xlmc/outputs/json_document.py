@@ -198,8 +198,8 @@ def _scenario(each: ScenarioAnswers) -> Json:
 def _scenario_forecast(found: ForecastAnswer) -> Json:
     answers = {"mean": found.mean, "low": found.low, "high": found.high, "above": found.above}
     asked = found.forecast
-    told = {"name": asked.name, "units": asked.units, "share": asked.central, "threshold": asked.threshold}
-    return told | {
+    described = {"name": asked.name, "units": asked.units, "share": asked.central, "threshold": asked.threshold}
+    return described | {
         key: {
             "estimate": _estimate_or_none(value),
             "difference": _estimate_or_none(found.differences.get(key)),
@@ -270,8 +270,8 @@ def _filter(simulation: RunResult, index: int, each: Filter) -> Json:
 def _weights(found: Weighting | None) -> Json | None:
     if found is None:
         return None
-    told = {"mean": found.mean, "largest": found.largest, "effective_trials": found.effective}
-    return {**told, "left_out": UNWEIGHTED}
+    described = {"mean": found.mean, "largest": found.largest, "effective_trials": found.effective}
+    return {**described, "left_out": UNWEIGHTED}
 
 
 def _evidence(found: Agreement) -> Json:

@@ -79,8 +79,8 @@ def drawing_of(curves: Curves) -> Drawing:
         ]
     found.append(text_at((left + right) / 2, bottom + 34, curves.across))
     found.append(text_at(14, (top + bottom) / 2, curves.upwards, turned=True))
-    said = f"{curves.title}: {', '.join(line.name for line in curves.lines)}"
-    return drawing(found, 570.0, bottom + 42, said, _PRINTED)
+    label = f"{curves.title}: {', '.join(line.name for line in curves.lines)}"
+    return drawing(found, 570.0, bottom + 42, label, _PRINTED)
 
 
 def write_chart(page: Page, book: Workbook, curves: Curves, numbers: Page) -> None:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = [
     "ERROR_SENTENCE",
     "BaseCase",
-    "Said",
+    "Phrase",
     "SummaryRow",
     "answer_text",
     "base_case",
@@ -262,17 +262,17 @@ def _number(column: Column) -> float | None:
     return finite(column.values[0] if discarded else column.as_floats()[0])
 
 
-class Said(NamedTuple):
+class Phrase(NamedTuple):
     """A part of a sentence; a name of the workbook's may be in a script that runs from right to left."""
 
     text: str
     is_name: bool = False
 
 
-def question(simulation: RunResult) -> Iterator[Said]:
+def question(simulation: RunResult) -> Iterator[Phrase]:
     """What was asked of the workbook, in sentences: how many answers, from what, and which trials count."""
     model = simulation.model
-    yield Said(
+    yield Phrase(
         f"The workbook computes {_count_text(len(model.forecasts), 'answer (forecast)', 'answers (forecasts)')} from "
         f"{_count_text(len(model.live), 'quantity', 'quantities')} known only within ranges (assumptions). "
         f"{simulation.evaluated:,} combinations of values from these ranges were tried. "
@@ -281,14 +281,14 @@ def question(simulation: RunResult) -> Iterator[Said]:
     if not asked:
         without = "no filters" if not model.forecast_filters else "no filters of all forecasts"
         without = f"has {without}" if not model.filters else "has no filter that a trial could break"
-        yield Said(f"The workbook {without}: every trial is accepted.")
+        yield Phrase(f"The workbook {without}: every trial is accepted.")
         yield from _of_some(simulation)
         return
     filters, evidence = ([each for each in asked if (each.evidence is None) is plain] for plain in (True, False))
-    yield Said(_counted(simulation, bool(filters), bool(evidence)))
+    yield Phrase(_counted(simulation, bool(filters), bool(evidence)))
     yield from _listed(" The filters ask: ", filters)
     yield from _listed(" The evidence: ", evidence)
-    yield Said(" The answers are those of these accepted trials.")
+    yield Phrase(" The answers are those of these accepted trials.")
     yield from _of_some(simulation)
 
 
@@ -307,29 +307,29 @@ def _counted(simulation: RunResult, filters: bool, evidence: bool) -> str:
         each = f"{count} of them ({share}) {does[0]}, and each" if does else "Each of them"
         return f"{each} counts with the chance that the evidence would keep it."
     does += ["agrees with the evidence" if one else "agree with the evidence"] * evidence
-    said = " and ".join(does)
+    phrase = " and ".join(does)
     if simulation.rare is not None:
         chance = probability_text(simulation.rare)
-        return f"{count} that {said} were kept; one as they come does so with probability {chance}."
-    return f"{count} of them ({share}) {said}."
+        return f"{count} that {phrase} were kept; one as they come does so with probability {chance}."
+    return f"{count} of them ({share}) {phrase}."
 
 
-def _listed(opening: str, filters: Sequence[Filter]) -> Iterator[Said]:
+def _listed(opening: str, filters: Sequence[Filter]) -> Iterator[Phrase]:
     """What filters ask, one after the other."""
     for index, filter_ in enumerate(filters):
-        yield Said("; " if index else opening)
-        yield Said(filter_.name, is_name=True)
-        yield Said(f" {limits_text(filter_)}" + "." * (filter_ is filters[-1]))
+        yield Phrase("; " if index else opening)
+        yield Phrase(filter_.name, is_name=True)
+        yield Phrase(f" {limits_text(filter_)}" + "." * (filter_ is filters[-1]))
 
 
-def _of_some(simulation: RunResult) -> Iterator[Said]:
+def _of_some(simulation: RunResult) -> Iterator[Phrase]:
     """What the filters of some forecasts only ask."""
     for each in discards_of(simulation):
-        yield Said(" Of ")
-        yield Said(each.forecast, is_name=True)
-        yield Said(f" only those {simulation.accepted - each.trials:,} count in which ")
-        yield Said(each.filter.name, is_name=True)
-        yield Said(f" {limits_text(each.filter)}.")
+        yield Phrase(" Of ")
+        yield Phrase(each.forecast, is_name=True)
+        yield Phrase(f" only those {simulation.accepted - each.trials:,} count in which ")
+        yield Phrase(each.filter.name, is_name=True)
+        yield Phrase(f" {limits_text(each.filter)}.")
 
 
 def _count_text(count: int, one: str, several: str) -> str:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from xlmc.engine.engines import ENGINES
-from xlmc.engine.graph.arrays import MOST_WAYS
+from xlmc.engine.graph.arrays import MOST_OUTCOMES
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.address import Area
 from xlmc.excel.workbook.workbook import CellContent, Formula
@@ -86,7 +86,7 @@ def test_sums_of_choices_stay_on_the_fast_path(run):
 def test_many_choices_together_are_not_written_out(lower):
     text = "SUM(" + "+".join(f"IF(A1>{i},B1:D1,{i})" for i in range(40)) + ")"
     lowering, _ = lower(CELLS | {"A1": 0.0, "Z9": array(text)}, ["A1"], ["Z9"])
-    assert len(lowering.dag.nodes) < 40 * MOST_WAYS
+    assert len(lowering.dag.nodes) < 40 * MOST_OUTCOMES
 
 
 @pytest.mark.parametrize("formula", ["=ISREF(INDEX(B1:D1,A1))", "=ISREF(IF(A1>0,B1,5))", "=ISREF(CHOOSE(A1,B1,5))"])

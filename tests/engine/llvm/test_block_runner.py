@@ -10,7 +10,7 @@ pytest.importorskip("llvmlite")
 
 from simulated import simulated
 
-from xlmc.engine.engine import Room
+from xlmc.engine.engine import BlockMemory
 from xlmc.engine.llvm import block_runner, phase
 from xlmc.engine.llvm.loop import compile_loop
 from xlmc.engine.llvm.machine import NativeLoop
@@ -194,14 +194,14 @@ def test_where_all_trials_are_kept_they_are_written_to_the_room(book, forecasts,
     for block in (5, 6):
         rows = np.empty((len(forecasts) + len(GIVEN), BLOCK))
         draws = dict(zip(GIVEN, rows[len(forecasts) :], strict=True))
-        room = Room(np.empty(BLOCK, np.int64), dict(draws), list(rows[: len(forecasts)]))
+        memory = BlockMemory(np.empty(BLOCK, np.int64), dict(draws), list(rows[: len(forecasts)]))
         task = Task(block * BLOCK, BLOCK, False)
-        found = runner.borrow(task, lambda room=room: room)
+        found = runner.borrow(task, lambda memory=memory: memory)
         assert bits(found) == bits(runner.run(task))
-        found = runner.borrow(task, lambda room=room: room)
-        there = zip(forecasts, found.forecasts, room.forecasts, strict=False)
+        found = runner.borrow(task, lambda memory=memory: memory)
+        there = zip(forecasts, found.forecasts, memory.forecasts, strict=False)
         assert {name for name, column, memory in there if np.shares_memory(column, memory)} == in_room
-        assert np.shares_memory(found.accepted, room.accepted) is bool(in_room)
+        assert np.shares_memory(found.accepted, memory.accepted) is bool(in_room)
 
 
 def test_a_block_that_ends_early_asks_for_no_room(book):

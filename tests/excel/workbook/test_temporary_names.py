@@ -14,8 +14,8 @@ from xlmc.excel.workbook.temporary_names import (
     new_file_name,
     new_folder_name,
     owned,
-    remove_stray_files,
-    remove_stray_folders,
+    remove_abandoned_files,
+    remove_abandoned_folders,
 )
 from xlmc.montecarlo.columns.column_store import ColumnStore
 
@@ -38,7 +38,7 @@ def test_what_a_dead_process_left_goes_and_nothing_else(tmp_path, dead):
     kept = [living, other, ".xlmc-mine.tmp", "case.xlsx", f"{stray}.xlsx", ".~lock.case.xlsx#"]
     for name in (stray, *kept):
         (tmp_path / name).write_bytes(b"")
-    remove_stray_files(tmp_path)
+    remove_abandoned_files(tmp_path)
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(kept)
 
 
@@ -47,7 +47,7 @@ def test_an_earlier_process_may_have_had_our_number(tmp_path):
     for name in (ours, earlier):
         (tmp_path / name).write_bytes(b"")
     with owned(ours):
-        remove_stray_files(tmp_path)
+        remove_abandoned_files(tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == [ours]
 
 
@@ -56,12 +56,12 @@ def test_a_file_nobody_wrote_to_for_a_day_goes_whoever_began_it(tmp_path):
     old = tmp_path / name.replace(name[6:14], "0" * 8)
     old.write_bytes(b"")
     os.utime(old, (time.time() - 100_000,) * 2)
-    remove_stray_files(tmp_path)
+    remove_abandoned_files(tmp_path)
     assert not old.exists()
 
 
 def test_no_folder_no_stray_files(tmp_path):
-    remove_stray_files(tmp_path / "none")
+    remove_abandoned_files(tmp_path / "none")
 
 
 def test_folders_of_dead_processes_go_with_the_next_run(tmp_path, monkeypatch, dead):
@@ -79,7 +79,7 @@ def test_a_link_is_not_followed(tmp_path, monkeypatch, dead):
     (tmp_path / "theirs").mkdir()
     (tmp_path / "theirs" / "file").write_bytes(b"")
     (tmp_path / of(new_folder_name(), dead)).symlink_to("theirs")
-    remove_stray_folders()
+    remove_abandoned_folders()
     assert (tmp_path / "theirs" / "file").exists()
 
 

@@ -25,7 +25,7 @@ def filled(blocks):
         expected["trial"] += n.tolist()
         keeper.add("x", x)
         keeper.add("n", n)
-        keeper.settle()
+        keeper.write_if_full()
     return keeper.columns(NAMES), expected
 
 
@@ -54,17 +54,17 @@ def test_every_column_of_a_keeper_may_be_asked_for_twice():
 def test_what_was_written_to_the_room_is_there(expected):
     keeper = ColumnStore(TYPES, expected)
     keeper.add("x", np.arange(3.0))
-    room = keeper.room("x", 4)
+    room = keeper.reserve("x", 4)
     room[:] = [3, 4, 5, 99]
     keeper.add("x", room[:3])
-    keeper.add("x", keeper.room("x", 2)[:0])
+    keeper.add("x", keeper.reserve("x", 2)[:0])
     keeper.add("x", np.array([6.0]))
     assert keeper.columns({"a": "x"})["a"].tolist() == [0, 1, 2, 3, 4, 5, 6]
 
 
 def test_one_part_of_the_room_may_be_two_columns():
     keeper = ColumnStore(TYPES)
-    room = keeper.room("x", 2)
+    room = keeper.reserve("x", 2)
     room[:] = [1, 2]
     keeper.add("x", room)
     keeper.add("never", room)
@@ -77,7 +77,7 @@ def test_a_column_that_was_given_away_stays_as_it_is(monkeypatch, in_memory):
     keeper, given = ColumnStore(TYPES, {"x": 40}), []
     for number in range(12):
         keeper.add("x", np.full(3, float(number)))
-        keeper.settle()
+        keeper.write_if_full()
         given.append(keeper.columns({"a": "x"})["a"])
     for number, column in enumerate(given):
         assert column.tolist() == [float(each) for each in range(number + 1) for _ in range(3)]
@@ -93,11 +93,11 @@ def test_columns_in_one_piece_of_memory_are_what_was_added(monkeypatch, in_memor
     for number in range(5):
         for key, numbers in expected.items():
             added = np.arange(4 if key != "c" else 7) + 100 * number
-            room = keeper.room(key, added.size)
+            room = keeper.reserve(key, added.size)
             room[:] = added
             keeper.add(key, room if number % 2 else room.copy())
             numbers += room.tolist()
-        keeper.settle()
+        keeper.write_if_full()
     found = keeper.columns({key: key for key in expected})
     assert {key: column.tolist() for key, column in found.items()} == expected
     assert {key: column.dtype for key, column in found.items()} == {**types, "e": types["a"]}

@@ -74,7 +74,7 @@ def test_failing_trials_are_counted_as_numpy_counts_them(checked):
     assert below.trials == rooted.trials == run.accepted == 30_000
     assert below.failed == np.count_nonzero(drawn >= 0.9)
     assert rooted.failed == np.count_nonzero(drawn <= 0.7)
-    assert (below.held, rooted.held) == ("FALSE", "#NUM!")
+    assert (below.value_text, rooted.value_text) == ("FALSE", "#NUM!")
     assert below.share.value == below.failed / 30_000
     assert below.share.error == pytest.approx(np.sqrt(below.share.value * (1 - below.share.value) / 30_000))
     assert "first with #NUM!" in rooted.warnings[0]

@@ -44,9 +44,9 @@ def test_what_is_said_is_what_is_written(model, small_memory, monkeypatch, input
     monkeypatch.setattr(DiskNeeded, "check", lambda needed: found.append(needed))
     sentences, run = told(model, TRIALS, keep_inputs=inputs)
     (needed,) = found
-    assert needed.kept == pytest.approx(written(run), rel=0.03)
+    assert needed.stored == pytest.approx(written(run), rel=0.03)
     assert needed.sorted == pytest.approx(2 * run.accepted, rel=0.03)
-    assert needed.bytes == 8 * (needed.kept + needed.sorted)
+    assert needed.bytes == 8 * (needed.stored + needed.sorted)
     assert needed.folder == Path(tempfile.gettempdir())
     assert sentences == [needed.sentence()]
 
@@ -69,14 +69,14 @@ def test_nobody_knows_how_long_a_run_with_another_goal_will_be(model, small_memo
 
 
 def test_a_disk_with_too_little_room_refuses_the_run_before_it_starts(model, small_memory, monkeypatch):
-    monkeypatch.setattr(module, "room_on_disk", lambda: (Path("small"), 300_000))
+    monkeypatch.setattr(module, "free_disk", lambda: (Path("small"), 300_000))
     said, begun = [], []
     with pytest.raises(SimulationError, match="the run needs about") as refused:
         simulated(model, TRIALS, tell=said.append, progress=begun.append)
     assert (said, begun) == ([], [])
     assert refused.value.where == "small"
     assert "TMPDIR" in str(refused.value)
-    monkeypatch.setattr(module, "room_on_disk", lambda: (Path("large"), 3_000_000))
+    monkeypatch.setattr(module, "free_disk", lambda: (Path("large"), 3_000_000))
     simulated(model, TRIALS, tell=said.append)
     assert len(said) == 1
 

@@ -37,7 +37,7 @@ def rules(monkeypatch):
     ],
 )
 def test_rules_are_those_since_the_version_that_the_cells_may_meet(rules, version, contents, expected):
-    assert [rule.said for rule in rules_since(version, contents)] == expected
+    assert [rule.sentence for rule in rules_since(version, contents)] == expected
 
 
 def test_rules_are_in_the_order_of_versions_and_none_is_of_the_future():
@@ -66,7 +66,7 @@ def test_rules_are_in_the_order_of_versions_and_none_is_of_the_future():
     ],
 )
 def test_what_a_rule_concerns(said, formula, met):
-    [rule] = [rule for rule in RULES if rule.said.startswith(said)]
+    [rule] = [rule for rule in RULES if rule.sentence.startswith(said)]
     assert bool(rule.met.search(formula)) is met
 
 
@@ -97,5 +97,5 @@ def test_a_rule_that_concerns_two_cells_together():
         (["Normal", "Correlation"], False),
         (["Yes-No"], False),
     ):
-        said = [rule.said for rule in rules_since("0.1.0", contents)]
+        said = [rule.sentence for rule in rules_since("0.1.0", contents)]
         assert any(each.startswith(correlated) for each in said) is expected

@@ -119,7 +119,7 @@ _FOUND: Final[WeakKeyDictionary[RunResult, _Found]] = WeakKeyDictionary()
 
 
 def scenario_answers(
-    run: RunResult, *, jobs: int = 1, told: Callable[[str], None] | None = None
+    run: RunResult, *, jobs: int = 1, tell: Callable[[str], None] | None = None
 ) -> tuple[ScenarioAnswers, ...]:
     """The answers of the workbook itself, then of each scenario; none where the run was made without them.
 
@@ -129,7 +129,7 @@ def scenario_answers(
     Args:
         run: of the workbook itself.
         jobs: threads or processes.
-        told: called before every run with what it is for.
+        tell: called before every run with what it is for.
 
     Raises:
         DefinitionError: the workbook defines no scenario.

@@ -173,12 +173,12 @@ def _refuse_difference(wanted: CompiledModel, found: CompiledModel, scenario: Sc
     Raises:
         WorkbookError: it does.
     """
-    if _said(wanted) != _said(found):
+    if _definitions(wanted) != _definitions(found):
         message = f"the workbook would not say what the scenario {scenario.name!r} says"
         raise WorkbookError(message, where=wanted.path, hint="Nothing was written; please report this")
 
 
-def _said(model: CompiledModel) -> list[object]:
+def _definitions(model: CompiledModel) -> list[object]:
     assumptions = [(a.name, a.frozen, a.base, a.distribution, a.parameters, a.cutoffs) for a in model.assumptions]
     filters = [(f.name, f.at_least, f.at_most, f.above, f.below) for f in (*model.filters, *model.forecast_filters)]
     frozen = {a.name for a in model.assumptions if a.frozen}  # whose correlations have no effect, and are not read

@@ -68,7 +68,7 @@ _FEWEST: Final = 2
 """Values of a forecast: a standard deviation takes so many."""
 
 Floats = NDArray[np.float64]
-Told = Callable[[str], None]
+Tell = Callable[[str], None]
 
 
 class ScreenArguments(TypedDict, total=False):
@@ -83,7 +83,7 @@ class ScreenArguments(TypedDict, total=False):
     seed: int | None
     engine: str | None
     jobs: int
-    told: Told | None
+    tell: Tell | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,7 +190,7 @@ def screen(
     seed: int | None = None,
     engine: str | None = None,
     jobs: int = 1,
-    told: Told | None = None,
+    tell: Tell | None = None,
 ) -> Screening:
     """Find which assumptions may be held, and which filters left out, without moving an answer beyond the tolerance.
 
@@ -210,7 +210,7 @@ def screen(
         seed: of every run.
         engine: of every run.
         jobs: of every run.
-        told: called before every run with what it is for.
+        tell: called before every run with what it is for.
 
     Raises:
         SimulationError: an argument is out of its range, no name fits a set, or fewer than two trials are accepted, or
@@ -222,7 +222,7 @@ def screen(
     stated = read_tolerances([tolerance] if isinstance(tolerance, str) else tolerance, model.forecasts)
     wanted = [_names_of(pattern, [a.name for a in model.live], "assumption that is drawn") for pattern in sets]
     asked = [name for text in judged_by for name in _names_of(text, [f.name for f in model.forecasts], "forecast")]
-    tell = told or (lambda _: None)
+    tell = tell or (lambda _: None)
     tell("the book as it is")
     run = simulate(with_plain_sampling(model), trials=trials, seed=seed, engine=engine, jobs=jobs)
     if run.accepted < 2:
@@ -243,7 +243,7 @@ class _Screen:
         acceptance_tolerance: float,
         engine: str | None,
         jobs: int,
-        tell: Told,
+        tell: Tell,
         asked: Sequence[str],
     ) -> None:
         self._run, self._chance, self._acceptance_tolerance = run, chance, acceptance_tolerance
@@ -261,11 +261,11 @@ class _Screen:
 
     def screening(self, sets: Sequence[tuple[str, ...]], *, ends: bool) -> Screening:
         model = self._run.model
-        held = [a for a in model.live if a.base is not None]
-        expected = sorted((Expected(a.name, self._expect_cost(a)) for a in held), key=lambda each: each.size)
-        single = tuple(self._hold([each.name]) for each in expected)
-        groups = tuple(map(self._hold, self._correlated(single)))
-        joint = self._together((*single, *groups), self._hold)
+        freezable = [a for a in model.live if a.base is not None]
+        expected = sorted((Expected(a.name, self._expect_cost(a)) for a in freezable), key=lambda each: each.size)
+        single = tuple(self._freeze([each.name]) for each in expected)
+        groups = tuple(map(self._freeze, self._correlated(single)))
+        joint = self._together((*single, *groups), self._freeze)
         frozen = joint.names if joint else ()
 
         def left_out(names: Sequence[str]) -> Cost:
@@ -290,7 +290,7 @@ class _Screen:
             single=single,
             groups=groups,
             joint=joint,
-            sets=tuple(self._hold(names) for names in sets),
+            sets=tuple(self._freeze(names) for names in sets),
             filters=filters,
             reduced=reduced,
             constant=tuple(c for c in sorted(after.formulas) if c in before.varying and c not in after.varying),
@@ -308,7 +308,7 @@ class _Screen:
         )
         return AtEnds(name, (low, high), (costs[0], costs[1]))
 
-    def _hold(self, names: Sequence[str]) -> Cost:
+    def _freeze(self, names: Sequence[str]) -> Cost:
         return self._cost(names, names, (), f"{_names_text(names)} held")
 
     def _cost(
@@ -317,12 +317,12 @@ class _Screen:
         frozen: Sequence[str],
         without: Sequence[str],
         purpose: str,
-        held_at: Mapping[str, float] | None = None,
+        frozen_at: Mapping[str, float] | None = None,
     ) -> Cost:
         """Run the book with a change, over the same trials."""
         self._tell(purpose)
         self._runs += 1
-        model = with_changes(self._run.model, frozen=frozen, without=without, held_at=held_at)
+        model = with_changes(self._run.model, frozen=frozen, without=without, frozen_at=frozen_at)
         settings = self._run.settings
         run = simulate(
             model, trials=settings.trials, seed=settings.seed, engine=self._engine, jobs=self._jobs, keep_inputs=0

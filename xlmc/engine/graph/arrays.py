@@ -33,7 +33,7 @@ from xlmc.excel.functions.registry import Anything, Cells
 from xlmc.excel.functions.values import BLANK, ShapeVaries, Value, constant
 
 __all__ = [
-    "MOST_WAYS",
+    "MOST_OUTCOMES",
     "NodeBuilder",
     "beside",
     "cell_by_cell",
@@ -47,7 +47,7 @@ __all__ = [
     "spread",
 ]
 
-MOST_WAYS: Final = 256
+MOST_OUTCOMES: Final = 256
 """The most combinations of outcomes of the choices in a function's arguments for which `share_out` still works."""
 
 _LARGEST: Final = 10_000
@@ -249,13 +249,13 @@ def _parts_of(dag: Dag, node_id: int) -> tuple[int, int, int] | None:
     return condition, yes, no
 
 
-def _ways(dag: Dag, node: int) -> int:
-    """The number of outcomes of choices within each other, counted up to `MOST_WAYS` and a little beyond."""
-    parts, ways = _parts_of(dag, node), 1
-    while parts is not None and ways <= MOST_WAYS:
-        ways += 1 + _ways(dag, parts[1])
+def _outcomes(dag: Dag, node: int) -> int:
+    """The number of outcomes of choices within each other, counted up to `MOST_OUTCOMES` and a little beyond."""
+    parts, outcomes = _parts_of(dag, node), 1
+    while parts is not None and outcomes <= MOST_OUTCOMES:
+        outcomes += 1 + _outcomes(dag, parts[1])
         parts = _parts_of(dag, parts[2])
-    return ways
+    return outcomes
 
 
 def share_out(
@@ -271,7 +271,7 @@ def share_out(
     """
     for position, node in enumerate(arguments):
         parts = _parts_of(dag, node)
-        if parts is not None and prod(_ways(dag, each) for each in arguments) <= MOST_WAYS:
+        if parts is not None and prod(_outcomes(dag, each) for each in arguments) <= MOST_OUTCOMES:
             before, after = arguments[:position], arguments[position + 1 :]
             wrong, yes, no = (made((*before, part, *after)) for part in parts)
             return select(is_error(parts[0]), wrong, select(parts[0], yes, no))

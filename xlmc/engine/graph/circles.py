@@ -143,7 +143,7 @@ class Lowers(Protocol):
     def iterate(self, cell: Cell) -> None:
         """Lower the cells of the circle that a cell is in, to be computed again and again."""
 
-    def tell_circle(self, cell: Cell) -> None:
+    def note_circle(self, cell: Cell) -> None:
         """Note that some trials may read a cell while it is computed."""
 
 
@@ -204,9 +204,9 @@ def _is_open(need: Cell, at: _Open, open_: Mapping[Cell, _Open], lowers: Lowers)
 def _too_many(cells: Sequence[Cell]) -> FormulaError:
     """What is said where too many cells may read each other."""
     listed = ", ".join(map(str, sorted(cells)))
-    said = f"more than {_MOST_OPEN} cells may need each other in a circle, others in each trial: {listed}"
+    message = f"more than {_MOST_OPEN} cells may need each other in a circle, others in each trial: {listed}"
     hint = "have numbers that do not vary decide which cells are read, or break the circle"
-    return FormulaError(said, where=min(cells), hint=hint)
+    return FormulaError(message, where=min(cells), hint=hint)
 
 
 def _close(at: _Open, open_: dict[Cell, _Open], lowers: Lowers) -> None:
@@ -225,4 +225,4 @@ def _close(at: _Open, open_: dict[Cell, _Open], lowers: Lowers) -> None:
         lowers.forget(at.cell)
         lowers.refuse(at.loop, circle_error(at.loop))
     elif at.loop:
-        lowers.tell_circle(at.cell)
+        lowers.note_circle(at.cell)

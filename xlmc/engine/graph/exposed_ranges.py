@@ -89,7 +89,9 @@ def change_exposed(lowering: TreeLowering, tree: ir.Expression, scope: Scope, ch
             check_count(name, arguments)
             spared = [is_spared(function, i, scope) or _is_refused(function, i, a) for i, a in enumerate(arguments)]
             parts = zip(arguments, spared, strict=True)
-            made = tuple(part if kept else change_exposed(lowering, part, scope, change) for part, kept in parts)
+            made = tuple(
+                part if unchanged else change_exposed(lowering, part, scope, change) for part, unchanged in parts
+            )
             return ir.Call(name, made)
         case _:
             return tree

@@ -53,8 +53,8 @@ def level(direct: Mapping[int, Sequence[Area]]) -> dict[int, list[Area]]:
 def _lengths(sizes: Iterable[tuple[int, int]]) -> dict[int, int]:
     """How far to read areas of each size, further cells included; larger sizes are read further."""
     longest: dict[int, int] = {}
-    for held, whole in sizes:
-        longest[whole] = max(held, longest.get(whole, 0))
+    for filled_count, whole in sizes:
+        longest[whole] = max(filled_count, longest.get(whole, 0))
     last = 0
     for whole in sorted(longest):
         longest[whole] = last = max(longest[whole], last + 1)
@@ -105,15 +105,15 @@ def by_halves(area: Area) -> Area:
     return resize(resize(area, rows, False), columns, True)
 
 
-def _halve(held: int, whole: int, least: int) -> int:
-    """The end of a search of `whole` cells once its middle is below `held`, and no less than `least`.
+def _halve(filled_count: int, whole: int, least: int) -> int:
+    """The end of a search of `whole` cells once its middle is below `filled_count`, and no less than `least`.
 
     With `least` a range keeps its long side.
     """
-    if held == whole:
-        return held
+    if filled_count == whole:
+        return filled_count
     end = whole
-    while (middle := (end - 1) // 2) >= max(held, least):
+    while (middle := (end - 1) // 2) >= max(filled_count, least):
         end = middle
     return end
 
@@ -124,24 +124,26 @@ def refusal(name: str) -> FormulaError:
 
 
 @cache
-def keep_within(held: int, whole: int, zero_is_all: bool) -> Function:
-    """A function that makes `held` of numbers of rows or columns above it, up to `whole`."""
-    body = partial(_within, held=held, whole=whole, zero_is_all=zero_is_all)
-    return Function(f"within {held} of {whole}", (Anything,), body, Kind.NUMBER)
+def keep_within(filled_count: int, whole: int, zero_is_all: bool) -> Function:
+    """A function that makes `filled_count` of numbers of rows or columns above it, up to `whole`."""
+    body = partial(_within, filled_count=filled_count, whole=whole, zero_is_all=zero_is_all)
+    return Function(f"within {filled_count} of {whole}", (Anything,), body, Kind.NUMBER)
 
 
 @cache
-def to_the_last(held: int, whole: int) -> Function:
-    """A function that makes `whole` of numbers of rows or columns above `held`."""
-    return Function(f"{held} or {whole}", (Number,), partial(_of_whole, held=held, whole=whole), Kind.NUMBER)
+def to_the_last(filled_count: int, whole: int) -> Function:
+    """A function that makes `whole` of numbers of rows or columns above `filled_count`."""
+    return Function(
+        f"{filled_count} or {whole}", (Number,), partial(_of_whole, filled_count=filled_count, whole=whole), Kind.NUMBER
+    )
 
 
-def _of_whole(numbers: Floats, held: int, whole: int) -> Floats:
-    return np.where(numbers > held, float(whole), numbers)
+def _of_whole(numbers: Floats, filled_count: int, whole: int) -> Floats:
+    return np.where(numbers > filled_count, float(whole), numbers)
 
 
-def _within(given: Value, held: int, whole: int, zero_is_all: bool) -> Value:
+def _within(given: Value, filled_count: int, whole: int, zero_is_all: bool) -> Value:
     numbers, errors = given.to_numbers()
     if zero_is_all and ((np.trunc(numbers) == 0) & (errors == 0)).any():
         raise TooLargeError(_MESSAGE.format("INDEX with row or column 0"), hint=_HINT)
-    return Value.of_numbers(np.where(numbers < whole + 1, np.minimum(numbers, held), numbers), errors)
+    return Value.of_numbers(np.where(numbers < whole + 1, np.minimum(numbers, filled_count), numbers), errors)

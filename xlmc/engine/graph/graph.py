@@ -390,7 +390,7 @@ class Dag:
         self.missing: set[int] = set()
         self.folded: dict[int, int] = {}
         self._known: dict[object, int] = {}
-        self._kept = 0
+        self._bytes = 0
         self.hosts: list[Cell] = []
         self.ends: list[int] = []
 
@@ -425,8 +425,8 @@ class Dag:
 
     def _keep(self, value: Value) -> None:
         """Count the memory of an array's numbers, and of its copy in the key."""
-        self._kept += value.nbytes
-        if self._kept > MOST_KEPT:
+        self._bytes += value.nbytes
+        if self._bytes > MOST_KEPT:
             raise TooLargeError(
                 f"the arrays of constants of the workbook take more than {MOST_KEPT >> 20} MB up to here",
                 hint="make the arrays smaller, or fewer",

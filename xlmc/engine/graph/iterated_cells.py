@@ -18,7 +18,7 @@ from xlmc.engine.graph.recursive_calls import join_trials, spread_trials
 from xlmc.excel.functions.values import ERROR, TEXT, Bools, Value, constant
 from xlmc.excel.iteration import Iteration
 
-__all__ = ["Formula", "Round", "settle"]
+__all__ = ["Formula", "Round", "iterate"]
 
 Step = Apply | Select | IfErrorNode | Range
 
@@ -46,7 +46,7 @@ class Round:
     iteration: Iteration
 
 
-def settle(round_: Round, start: Value, *taken: Value) -> Value:
+def iterate(round_: Round, start: Value, *taken: Value) -> Value:
     """Iterate from a start.
 
     Args:

@@ -14,7 +14,7 @@ import numpy as np
 
 from xlmc.engine.graph.arrays import element
 from xlmc.engine.graph.graph import Apply, Constant, Dag, in_slots, uses
-from xlmc.engine.graph.iterated_cells import Formula, Round, Step, settle
+from xlmc.engine.graph.iterated_cells import Formula, Round, Step, iterate
 from xlmc.engine.graph.recursion import placeholder
 from xlmc.errors import Notice
 from xlmc.excel.address import Cell
@@ -33,13 +33,13 @@ class IteratedCells:
     Attributes:
         nodes: of each.
         start: the node of what they hold at first, in a column.
-        settled: the node that says whether a trial has settled.
+        converged: the node that says whether a trial has settled.
     """
 
     cells: tuple[Cell, ...]
     nodes: tuple[int, ...]
     start: int
-    settled: int
+    converged: int
 
     @property
     def name(self) -> str:
@@ -83,11 +83,11 @@ def iterate_cells(
     round_, taken = _round(dag, list(parameters.values()), results, iteration)
     column = np.empty((1, len(cells) + 1, 1), object)
     column[0, :, 0] = [*(0.0 if value is None else value for value in saved), False]
-    function = Function("iterative calculation", (Anything, Cells(repeat=True)), partial(settle, round_), Kind.ANY)
+    function = Function("iterative calculation", (Anything, Cells(repeat=True)), partial(iterate, round_), Kind.ANY)
     start = dag.constant(from_objects(column))
     node = dag.add(Apply(function, (start, *taken)))
-    *nodes, settled = (element(dag, node, row, 0) for row in range(len(cells) + 1))
-    return IteratedCells(tuple(cells), tuple(nodes), start, settled)
+    *nodes, converged = (element(dag, node, row, 0) for row in range(len(cells) + 1))
+    return IteratedCells(tuple(cells), tuple(nodes), start, converged)
 
 
 def _round(

@@ -83,7 +83,7 @@ def lower_until_complete(lower: Callable[[Mapping[Cell, set[Cell]]], L]) -> L:
 
 
 def lower_cells(
-    resolver: Resolver, cells: Collection[Cell], inputs: Mapping[Cell, str], held: Mapping[Cell, float]
+    resolver: Resolver, cells: Collection[Cell], inputs: Mapping[Cell, str], frozen: Mapping[Cell, float]
 ) -> Lowering:
     """Lower what some cells need.
 
@@ -91,14 +91,14 @@ def lower_cells(
         resolver: of the workbook.
         cells: that are wanted.
         inputs: assumption cell -> name of its input.
-        held: cell -> the value of its own that it is held at.
+        frozen: cell -> the value of its own that it is held at.
 
     Raises:
         FormulaError: a needed cell cannot be computed.
     """
 
     def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
-        return Lowering(build_graph(resolver, cells, frozenset(inputs), frozenset(held), more=more), inputs, held)
+        return Lowering(build_graph(resolver, cells, frozenset(inputs), frozenset(frozen), more=more), inputs, frozen)
 
     return lower_until_complete(lower)
 
@@ -109,7 +109,7 @@ class Lowering(TreeLowering):
     Args:
         graph: the needed cells, in dependency order.
         inputs: the assumption cells and the names of their inputs; any other cell that holds a value is constant.
-        held: cells held at a value of their own: frozen assumptions.
+        frozen: cells held at a value of their own: frozen assumptions.
         audit: every formula reads what Excel saved in the cells it needs, so that each is checked on its own; one that
             cannot be computed is a fault, not an exception.
         one_trial: a cell that reads itself is an error, as in a trial of many, and no reason to refuse the cells.
@@ -117,7 +117,7 @@ class Lowering(TreeLowering):
         moment: of a recalculation, at which NOW, RAND and their like are computed; otherwise they are faults.
 
     Attributes:
-        graph, inputs, held: as given.
+        graph, inputs, frozen: as given.
         saved: the cells that xlmc cannot compute, with the values that Excel saved.
         faults: these cells -> why it cannot.
         more: formula cell -> cells that OFFSET and its like turned out to need and the graph does not hold. Where there
@@ -132,7 +132,7 @@ class Lowering(TreeLowering):
         self,
         graph: Graph,
         inputs: Mapping[Cell, str],
-        held: Mapping[Cell, float],
+        frozen: Mapping[Cell, float],
         *,
         audit: bool = False,
         one_trial: bool = False,
@@ -145,7 +145,7 @@ class Lowering(TreeLowering):
         self.graph, self._audit, self._strict, self._one_trial = graph, audit, strict and not audit, one_trial
         self._moment = moment
         self.calls, self.lambda_calls = CallCount(), LambdaCalls()
-        self.inputs, self.held = inputs, held
+        self.inputs, self.frozen = inputs, frozen
         self.saved: dict[Cell, object] = {}
         self.faults: dict[Cell, FormulaError] = {}
         self.more: dict[Cell, set[Cell]] = {}
@@ -163,7 +163,7 @@ class Lowering(TreeLowering):
         self._complete: dict[Area, frozenset[Cell]] = {}
         self._spills = Spills(graph.workbook)
         self._cells = {cell: dag.input(name) for cell, name in inputs.items()}
-        self._cells |= {cell: dag.constant(constant(value)) for cell, value in held.items()}
+        self._cells |= {cell: dag.constant(constant(value)) for cell, value in frozen.items()}
         self._fill_down = FillDownCache(dag)
         if self._circles:
             lower_as_read(graph.formulas.ordered, self)
@@ -201,7 +201,7 @@ class Lowering(TreeLowering):
     @property
     def read(self) -> frozenset[Cell]:
         """Every cell that the targets read: formulas, inputs, constants, and blank cells of ranges."""
-        unread = (self.inputs.keys() | self.held.keys()) - self.graph.reached
+        unread = (self.inputs.keys() | self.frozen.keys()) - self.graph.reached
         return frozenset(self._cells) - unread
 
     def refuse_cells_beyond(self) -> None:
@@ -214,10 +214,12 @@ class Lowering(TreeLowering):
         sheets = dict.fromkeys(cell.sheet for cell in self._cells)
         for array in unneeded_arrays(self.graph, sheets, self._ranges):
             try:
-                apart = lower_cells(Resolver(self.graph.workbook, self.inputs), [array], self.inputs, self.held)
+                apart = lower_cells(Resolver(self.graph.workbook, self.inputs), [array], self.inputs, self.frozen)
             except FormulaError as error:
-                said = f"formulas that name cells beyond this dynamic array read them as the file holds them: {error}"
-                self.notices.append(Notice(said, array))
+                message = (
+                    f"formulas that name cells beyond this dynamic array read them as the file holds them: {error}"
+                )
+                self.notices.append(Notice(message, array))
             else:
                 refuse_cells_beyond(self.graph, apart.dag, apart._arrays, self._ranges)
 
@@ -227,7 +229,7 @@ class Lowering(TreeLowering):
         self.dag.host_ends(cell)
         self.calls.next_formula()
         saved = self.graph.workbook.content(cell).value if self._audit and node not in self.dag.missing else None
-        self._cells[cell] = node if saved is None else self._held_cell(cell)
+        self._cells[cell] = node if saved is None else self._saved_cell(cell)
 
     def _lower_placed(self, cell: Cell, placed: ir.Expression | Filled) -> int:
         if not isinstance(placed, Filled):
@@ -252,11 +254,11 @@ class Lowering(TreeLowering):
             node = self._lower_formula(tree, Scope(cell, array))
             self._arrays[cell] = node
             node = self._show(self.first_cell(node))
-            self._tell_unknown(cell, self.lookup_constant(node))
+            self._report_unknown(cell, self.lookup_constant(node))
         except NotYetNeeded as needed:
             if not self._wait_for_graph(cell, needed.cells):
                 raise
-            return self._held_cell(cell)  # only until the graph is built again
+            return self._saved_cell(cell)  # only until the graph is built again
         except CircleError as error:
             self.refuse([cell], error.at(cell))
             return self._computed[cell]
@@ -276,7 +278,7 @@ class Lowering(TreeLowering):
             self.more.setdefault(cell, set()).update(needed)
         return bool(needed)
 
-    def _tell_unknown(self, cell: Cell, value: Value | None) -> None:
+    def _report_unknown(self, cell: Cell, value: Value | None) -> None:
         """Report the names and functions in a cell that Excel does not know.
 
         Raises:
@@ -286,8 +288,8 @@ class Lowering(TreeLowering):
         agrees = saved is ErrorCode.NAME or (value is not None and saved is not None and value.objects()[0] == saved)
         for name, unless_saved in (self._unknown or {}).items():
             if agrees:
-                said = f"Excel does not know {name}, which gives #NAME?: the saved value agrees"
-                self.notices.append(Notice(said, cell))
+                message = f"Excel does not know {name}, which gives #NAME?: the saved value agrees"
+                self.notices.append(Notice(message, cell))
             elif unless_saved is not None:
                 raise unless_saved
 
@@ -310,7 +312,7 @@ class Lowering(TreeLowering):
         """A cell that the array formula of another fills."""
         assert isinstance(anchor, Cell)
         if anchor in self.saved:
-            return self._hold_saved(cell, self.faults[anchor])
+            return self._use_saved(cell, self.faults[anchor])
         at = cell.row - anchor.row, cell.column - anchor.column
         formula = self.graph.workbook.content(anchor).formula
         if formula is None or not formula.dynamic:
@@ -325,7 +327,7 @@ class Lowering(TreeLowering):
                 return self.dag.circle()
             if self._circles and cell in self.graph.formulas.ordered:
                 raise NotYetNeeded([cell])
-            self._cells[cell] = self._held_cell(cell)
+            self._cells[cell] = self._saved_cell(cell)
         return self._cells[cell]
 
     def array(self, cell: Cell) -> int:
@@ -381,14 +383,14 @@ class Lowering(TreeLowering):
         if self._strict and (cell in self.graph.varying or saved is None):
             raise complete from None
         self.notices.append(Notice(f"{error.message}; Excel's saved value is used (no assumption reaches it)", cell))
-        return self._hold_saved(cell, complete)
+        return self._use_saved(cell, complete)
 
-    def _hold_saved(self, cell: Cell, fault: FormulaError) -> int:
+    def _use_saved(self, cell: Cell, fault: FormulaError) -> int:
         self.saved[cell] = self.graph.workbook.content(cell).value
         self.faults[cell] = fault
-        return self._held_cell(cell)
+        return self._saved_cell(cell)
 
-    def _held_cell(self, cell: Cell) -> int:
+    def _saved_cell(self, cell: Cell) -> int:
         value = self.graph.workbook.content(cell).value
         return self._blank if value is None else self.dag.constant(constant(value))
 
@@ -647,14 +649,14 @@ class Lowering(TreeLowering):
         if self._strict and not self._one_trial:
             raise error
         for cell in cells:
-            self._set(cell, self.dag.circle() if self._strict else self._hold_saved(cell, error))
+            self._set(cell, self.dag.circle() if self._strict else self._use_saved(cell, error))
 
-    def tell_circle(self, cell: Cell) -> None:
+    def note_circle(self, cell: Cell) -> None:
         """Note that some trials may read a cell while it is computed."""
         if self._iteration is not None:
             raise Iterates(cell)
-        said = "trials in which this cell needs itself in a circle are errors, #CALC!"
-        self.notices.append(Notice(said, cell))
+        message = "trials in which this cell needs itself in a circle are errors, #CALC!"
+        self.notices.append(Notice(message, cell))
 
     def iterate(self, cell: Cell) -> None:
         """Lower the cells of the circle that a cell is in, to be computed again and again."""

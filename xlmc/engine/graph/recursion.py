@@ -176,7 +176,7 @@ def _body(dag: Dag, definition: RecursiveLambda, result: int, deepest: int) -> t
 def _find_last_calls(steps: Mapping[int, Step], result: int) -> frozenset[int]:
     """The calls of itself that end the calculation, and the `IF`s on the way to them."""
     used = Counter(slot for step in steps.values() for slot in _uses(step))
-    way, waiting = list[int](), [result]
+    path, waiting = list[int](), [result]
     while waiting:
         slot = waiting.pop()
         step = steps.get(slot)
@@ -185,9 +185,9 @@ def _find_last_calls(steps: Mapping[int, Step], result: int) -> frozenset[int]:
         if isinstance(step, Select):
             waiting += [step.yes, step.no]
         if isinstance(step, Select | SelfCall):
-            way.append(slot)
+            path.append(slot)
     found = set[int]()
-    for slot in reversed(way):  # an `IF` comes before what it leads to
+    for slot in reversed(path):  # an `IF` comes before what it leads to
         step = steps[slot]
         if isinstance(step, SelfCall) or (isinstance(step, Select) and not found.isdisjoint((step.yes, step.no))):
             found.add(slot)

@@ -203,8 +203,8 @@ def _cell(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
             raise NotYetNeeded([cell])
         return lowering.zero_if_blank(lowering.cell(cell)) if what == "contents" else _cell_type(lowering, cell, scope)
     if what not in _OF_ADDRESS:
-        told = ", ".join(("contents", "type", *_OF_ADDRESS))
-        raise FormulaError(f"CELL({what!r}) is not supported", hint=f"xlmc knows {told}")
+        known_texts = ", ".join(("contents", "type", *_OF_ADDRESS))
+        raise FormulaError(f"CELL({what!r}) is not supported", hint=f"xlmc knows {known_texts}")
     return lowering.dag.constant(constant(_OF_ADDRESS[what](cell, lowering, host_of(scope.cell))))
 
 

@@ -273,8 +273,8 @@ def _from_behind(call: _Call) -> int:
     if len(sizes) > 1:
         raise call.refusal()
     across = area.further_columns > 0
-    held, whole = (area.columns, area.whole.columns) if across else (area.rows, area.whole.rows)
-    return call.lowering.apply(to_the_last(held, whole), (call.make(made, {}),))
+    filled_count, whole = (area.columns, area.whole.columns) if across else (area.rows, area.whole.rows)
+    return call.lowering.apply(to_the_last(filled_count, whole), (call.make(made, {}),))
 
 
 def _is_not_found(call: _Call) -> bool:

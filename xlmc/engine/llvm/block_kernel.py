@@ -39,7 +39,7 @@ class Layout:
         jump: the address of where `fills` begin; -1 without fills.
         filters: addresses of truth values, `(chunk,)`.
         by_chunk: addresses of doubles that move on with every chunk.
-        by_kept: addresses of doubles that move on by the trials kept.
+        by_accepted: addresses of doubles that move on by the trials kept.
         survivors: the address of `(chunk,)` int64 for the trials kept of a chunk; without filters it holds all of them.
         trials: the address of int64 for all trials kept, counted from the block's first; not written without filters.
         counts: the address of the counters: pairs of filters, the lower triangle by rows, then each filter alone.
@@ -53,7 +53,7 @@ class Layout:
     jump: int
     filters: tuple[int, ...]
     by_chunk: tuple[int, ...]
-    by_kept: tuple[int, ...]
+    by_accepted: tuple[int, ...]
     survivors: int
     trials: int
     counts: int
@@ -83,23 +83,25 @@ def compile_kernel(machine: Machine, layout: Layout) -> NativeLoop:
         _advance_jump(builder, table.address(layout.jump, _LONG), layout.chunk)
     _fail_if(builder, table.call_all(layout.first, _LONG(layout.chunk)), failed)
     survivors = table.address(layout.survivors, _LONG)
-    kept = _LONG(layout.chunk)
+    survived = _LONG(layout.chunk)
     if layout.filters:
         filters = [table.address(position, _BYTE) for position in layout.filters]
         counts = table.address(layout.counts, _LONG)
-        kept = builder.call(_sieve(module, len(filters), layout.chunk), [*filters, survivors, counts])
+        survived = builder.call(_sieve(module, len(filters), layout.chunk), [*filters, survivors, counts])
         trials = builder.gep(table.address(layout.trials, _LONG), [total])
         first_trial = builder.mul(chunk, _LONG(layout.chunk))
-        _for_each(builder, kept, lambda i: _store_shifted(builder, survivors, trials, first_trial, i))
-    _fail_if(builder, table.call_all(layout.late, kept), failed)
+        _for_each(builder, survived, lambda i: _store_shifted(builder, survivors, trials, first_trial, i))
+    _fail_if(builder, table.call_all(layout.late, survived), failed)
     _for_each(
-        builder, table.word(layout.gathers), lambda i: table.gather_column(gather, layout.gathers, i, survivors, kept)
+        builder,
+        table.word(layout.gathers),
+        lambda i: table.gather_column(gather, layout.gathers, i, survivors, survived),
     )
     for position in layout.by_chunk:
         table.move(position, _LONG(8 * layout.chunk))
-    for position in layout.by_kept:
-        table.move(position, builder.mul(kept, _LONG(8)))
-    ahead, so_far = builder.add(chunk, _LONG(1)), builder.add(total, kept)
+    for position in layout.by_accepted:
+        table.move(position, builder.mul(survived, _LONG(8)))
+    ahead, so_far = builder.add(chunk, _LONG(1)), builder.add(total, survived)
     for value, start, following in ((chunk, _LONG(0), ahead), (total, _LONG(0), so_far)):
         value.add_incoming(start, before)
         value.add_incoming(following, builder.block)
@@ -145,14 +147,14 @@ class _ArgumentTable:
         _for_each(builder, self.word(position), call)
         return builder.load(wrong)
 
-    def gather_column(self, gather: ir.Function, gathers: int, i: Any, survivors: Any, kept: Any) -> None:
+    def gather_column(self, gather: ir.Function, gathers: int, i: Any, survivors: Any, survived: Any) -> None:
         """Gather a column, and move its target on for the next chunk."""
         builder = self._builder
         first = builder.add(builder.mul(i, _LONG(2)), _LONG(gathers + 1))
         source, target = self._at(first), self._at(builder.add(first, _LONG(1)))
         arrays = [builder.inttoptr(builder.load(at), _DOUBLE.as_pointer()) for at in (source, target)]
-        builder.call(gather, [*arrays, survivors, kept])
-        builder.store(builder.add(builder.load(target), builder.mul(kept, _LONG(8))), target)
+        builder.call(gather, [*arrays, survivors, survived])
+        builder.store(builder.add(builder.load(target), builder.mul(survived, _LONG(8))), target)
 
     def _at(self, position: Any) -> Any:
         return self._builder.gep(self._words, [position])
@@ -224,8 +226,8 @@ def _sieve(module: ir.Module, filters: int, chunk: int) -> ir.Function:
     function.linkage = "internal"
     *answers, survivors, counters = function.args
     builder = ir.IRBuilder(function.append_basic_block("entry"))
-    kept = builder.alloca(_LONG)
-    builder.store(_LONG(0), kept)
+    survived = builder.alloca(_LONG)
+    builder.store(_LONG(0), survived)
 
     def word(w: Any) -> None:
         first = builder.mul(w, _LONG(WORD))
@@ -240,10 +242,10 @@ def _sieve(module: ir.Module, filters: int, chunk: int) -> ir.Function:
         for position, bits in enumerate(sets):
             at = builder.gep(counters, [_LONG(position)])
             builder.store(builder.add(builder.load(at), builder.ctpop(bits)), at)
-        _list_bits(builder, builder.not_(once), first, survivors, kept)
+        _list_bits(builder, builder.not_(once), first, survivors, survived)
 
     _for_each(builder, _LONG(chunk // WORD), word)
-    builder.ret(builder.load(kept))
+    builder.ret(builder.load(survived))
     return function
 
 
@@ -255,15 +257,15 @@ def _rejected_bits(builder: ir.IRBuilder, answers: Any, first: Any) -> Any:
     return builder.bitcast(false, _LONG)
 
 
-def _list_bits(builder: ir.IRBuilder, bits: Any, first: Any, survivors: Any, kept: Any) -> None:
+def _list_bits(builder: ir.IRBuilder, bits: Any, first: Any, survivors: Any, survived: Any) -> None:
     """Add the trials of the bits that are set to the list of those kept."""
-    target = builder.gep(survivors, [builder.load(kept)])
+    target = builder.gep(survivors, [builder.load(survived)])
     with builder.if_else(builder.icmp_signed("==", bits, _LONG(-1))) as (whole, some):
         with whole:
             _for_each(builder, _LONG(WORD), lambda i: builder.store(builder.add(first, i), builder.gep(target, [i])))
         with some:
             _list_some(builder, bits, first, target)
-    builder.store(builder.add(builder.load(kept), builder.ctpop(bits)), kept)
+    builder.store(builder.add(builder.load(survived), builder.ctpop(bits)), survived)
 
 
 def _list_some(builder: ir.IRBuilder, bits: Any, first: Any, target: Any) -> None:

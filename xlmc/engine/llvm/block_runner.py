@@ -17,7 +17,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.engine.engine import KeptBlock, Linear, Room
+from xlmc.engine.engine import AcceptedBlock, BlockMemory, Linear
 from xlmc.engine.graph.graph import Dag, Input
 from xlmc.engine.llvm.block_kernel import WORD, Layout, compile_kernel
 from xlmc.engine.llvm.loop_rules import Literal, Operand, literal
@@ -132,7 +132,7 @@ class NativeBlockRunner:
         self._rows = dict(zip(self._names, rows, strict=True))
         self._memory = Memory(parts.slots, self._chunk)
         self._trials, self._survivors = np.arange(block), np.arange(self._chunk)
-        self._room = Room(
+        self._block_memory = BlockMemory(
             np.empty(block, np.int64),
             dict(zip(self._names, np.empty((len(self._names), block)), strict=True)),
             [np.empty(block) for _ in parts.forecasts],
@@ -147,7 +147,9 @@ class NativeBlockRunner:
         self._draw_targets: dict[str, int] = {}
         self._write_table()
 
-    def __call__(self, start: int, trials: int, inputs: bool, room: Callable[[], Room] | None) -> KeptBlock | None:
+    def __call__(
+        self, start: int, trials: int, inputs: bool, block_memory: Callable[[], BlockMemory] | None
+    ) -> AcceptedBlock | None:
         """See `BlockRunner`."""
         if _PATIENCE * self._careful > max(self._runs, _PATIENCE):
             return None
@@ -162,10 +164,10 @@ class NativeBlockRunner:
             self._words[self._slots] = np.array([_address_of(row) for row in rows], np.uint64)[self._slot_rows]
         if inputs:
             self._words[self._gathers] += len(self._names)
-        into = self._room
-        if room is not None and not self._parts.rejecting and trials == self._trials.size:
-            given = room()
-            into = replace(given, forecasts=[*given.forecasts, *self._room.forecasts[len(given.forecasts) :]])
+        into = self._block_memory
+        if block_memory is not None and not self._parts.rejecting and trials == self._trials.size:
+            given = block_memory()
+            into = replace(given, forecasts=[*given.forecasts, *self._block_memory.forecasts[len(given.forecasts) :]])
             targets = list(self._targets(into))
             addresses = np.array([_address_of(array) for _, array in targets], np.uint64)
             self._words[np.array([at for at, _ in targets], np.intp)] = addresses
@@ -208,33 +210,33 @@ class NativeBlockRunner:
         nodes = self._parts.rejecting.values()
         return np.array([self._memory.of(node, self._chunk)[:n] == 0 for node in nodes]).astype(np.int64)
 
-    def _targets(self, room: Room) -> Iterable[tuple[int, Floats]]:
-        """Positions in the argument table of addresses that columns are written to, and these columns in `room`."""
-        yield from ((at, room.forecasts[number]) for at, number in self._forecast_targets)
-        yield from ((self._draw_targets[name], array) for name, array in room.draws.items())
+    def _targets(self, block_memory: BlockMemory) -> Iterable[tuple[int, Floats]]:
+        """Yield each position in the argument table of a column's address, and that column in `block_memory`."""
+        yield from ((at, block_memory.forecasts[number]) for at, number in self._forecast_targets)
+        yield from ((self._draw_targets[name], array) for name, array in block_memory.draws.items())
 
     def _result(
         self,
         start: int,
         inputs: bool,
-        room: Room,
+        block_memory: BlockMemory,
         drawn: Mapping[str, Floats] | None,
         m: int,
         pairs: Counts,
         alone: Counts,
-    ) -> KeptBlock:
+    ) -> AcceptedBlock:
         parts = self._parts
         f, rejecting = len(parts.filters), list(parts.rejecting)
         together, only = np.zeros((f, f), np.int64), np.zeros(f, np.int64)
         if rejecting:
             together[np.ix_(rejecting, rejecting)], only[rejecting] = pairs, alone
-        return KeptBlock(
-            np.add(self._trials[:m], start, out=room.accepted[:m]),
-            {name: room.draws[name][:m] for name in self._names} if inputs else {},
+        return AcceptedBlock(
+            np.add(self._trials[:m], start, out=block_memory.accepted[:m]),
+            {name: block_memory.draws[name][:m] for name in self._names} if inputs else {},
             [
                 np.broadcast_to(float(each.value), m)
                 if isinstance(each, Literal)
-                else room.forecasts[self._column[each]][:m]
+                else block_memory.forecasts[self._column[each]][:m]
                 for each in parts.forecasts
             ],
             together,
@@ -267,7 +269,7 @@ class NativeBlockRunner:
             self._add_forecast_address(table, node)
         for name in self._names:
             self._add_draw_address(table, name)
-            self._draw_targets[name] = table.add(_address_of(self._room.draws[name]))
+            self._draw_targets[name] = table.add(_address_of(self._block_memory.draws[name]))
         self._table = np.array(table.words, np.uint64)
         self._words = self._table.copy()
         self._address = _address_of(self._words)
@@ -282,7 +284,7 @@ class NativeBlockRunner:
             machine(),
             Layout(
                 *(self._chunk, fills, first, late, jump, tuple(filters)),
-                *(by_chunk, tuple(table.by_kept), survivors, trials, counts, gathers),
+                *(by_chunk, tuple(table.by_accepted), survivors, trials, counts, gathers),
             ),
         )
 
@@ -300,14 +302,14 @@ class NativeBlockRunner:
         if isinstance(node, Input):
             self._add_draw_address(table, node.name)
         elif node_id in self._column and node_id in self._parts.computed_late:
-            table.by_kept.append(self._add_forecast_address(table, node_id))
+            table.by_accepted.append(self._add_forecast_address(table, node_id))
         else:
             table.add(_address_of(self._memory.of(node_id, self._chunk)))
 
     def _add_forecast_address(self, table: _TableWriter, node: int) -> int:
         """Add the address that a forecast is written to; give its position."""
         number = self._column[node]
-        at = table.add(_address_of(self._room.forecasts[number]))
+        at = table.add(_address_of(self._block_memory.forecasts[number]))
         self._forecast_targets.append((at, number))
         return at
 
@@ -320,13 +322,13 @@ class _TableWriter:
 
     Attributes:
         draws: position -> the assumption whose draws are there.
-        by_kept: positions of results that are written one after another.
+        by_accepted: positions of results that are written one after another.
     """
 
     def __init__(self) -> None:
         self.words: list[int] = []
         self.draws: dict[int, str] = {}
-        self.by_kept: list[int] = []
+        self.by_accepted: list[int] = []
 
     def add(self, *words: int) -> int:
         """Add words; give the position where they begin."""

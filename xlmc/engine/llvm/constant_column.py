@@ -22,11 +22,11 @@ class ConstantColumn:
         name = f"column.{sha256(numbers.tobytes()).hexdigest()[:32]}"
         known = body.builder.module.globals
         if name not in known:
-            held = ir.GlobalVariable(body.builder.module, type_, name)
-            held.linkage, held.global_constant = "internal", True
-            held.initializer = ir.Constant(type_, [ir.Constant(body.real, float(number)) for number in numbers])
-        self._held = known[name]
+            column = ir.GlobalVariable(body.builder.module, type_, name)
+            column.linkage, column.global_constant = "internal", True
+            column.initializer = ir.Constant(type_, [ir.Constant(body.real, float(number)) for number in numbers])
+        self._column = known[name]
 
     def at(self, index: Any) -> Any:
         """The double at an index."""
-        return self._builder.load(self._builder.gep(self._held, [index.type(0), index]))
+        return self._builder.load(self._builder.gep(self._column, [index.type(0), index]))

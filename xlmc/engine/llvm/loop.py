@@ -87,7 +87,7 @@ def _inner(
         argument.add_attribute("noalias")
     *pointers, survivors, wrongs, constants, n = function.args
     builder = ir.IRBuilder(function.append_basic_block("entry"))
-    held = {of: builder.load(builder.gep(constants, [_LONG(at)])) for of, at in numbers.items()}
+    constants_in = {of: builder.load(builder.gep(constants, [_LONG(at)])) for of, at in numbers.items()}
     before, body_block, after = builder.block, *(function.append_basic_block(name) for name in ("body", "after"))
     builder.cbranch(builder.icmp_signed("<", _LONG(0), n), body_block, after)
 
@@ -98,7 +98,7 @@ def _inner(
         load.operand: Loaded(_load(builder, pointer, picked if load.picked else i), load.fallible)
         for load, pointer in zip(loads, pointers, strict=False)
     }
-    body = Body(dag, builder, loaded, contexts(dag, rules, stores), machine, held)
+    body = Body(dag, builder, loaded, contexts(dag, rules, stores), machine, constants_in)
     for node, rule in rules.items():
         body.compute(node, rule)
     for node, pointer in zip(stores, pointers[len(loads) :], strict=True):

@@ -114,8 +114,8 @@ def _on_grid(digits: int, further: Callable[[Emitter, _Grid, Any], Any] | None) 
 
 
 def _from_half_on(body: Emitter, grid: _Grid, _: Any) -> Any:
-    half_way = body.builder.fadd(grid.n, body.number(0.5))
-    return body.builder.and_(grid.coarse, grid.reaches(half_way))
+    middle = body.builder.fadd(grid.n, body.number(0.5))
+    return body.builder.and_(grid.coarse, grid.reaches(middle))
 
 
 def _above(_: Emitter, grid: _Grid, __: Any) -> Any:

@@ -15,7 +15,7 @@ from typing import Any, Final
 
 from llvmlite import binding, ir
 
-from xlmc.engine.llvm.kept_code import code_key, load_code, save_code
+from xlmc.engine.llvm.code_cache import code_key, load_code, save_code
 
 __all__ = ["Machine", "NativeLoop", "machine", "this_machine", "while_flushing"]
 
@@ -80,7 +80,7 @@ class Machine:
     def native(self, module: ir.Module, name: str) -> NativeLoop:
         """The function `name` of a module, as native code that runs without holding Python's lock.
 
-        The last modules are kept: a model that is run again is not compiled again. See `kept_code` for other programs.
+        The last modules are kept: a model that is run again is not compiled again. See `code_cache` for other programs.
         Its own type is `i64 (i8**, i64)`.
         """
         return self._compiled(str(module), name)

@@ -98,12 +98,12 @@ class Stages:
         early: frozenset[int] | None,
         may_err: frozenset[str],
     ) -> None:
-        self.dag, self.reads, self.may_err, self.kept = dag, reads, may_err, frozenset(keep)
+        self.dag, self.reads, self.may_err, self.outputs = dag, reads, may_err, frozenset(keep)
         self._rules, self._early = rules, early
         computed = [node for node in nodes if not isinstance(dag.nodes[node], Input)]
         forms = Forms(rules, dag.types)
         groups = [_Group(*group, self._read_by(group[0])) for group in _groups(computed, rules, reads, forms)]
-        wanted = self.kept.union(*(group.read for group in groups))
+        wanted = self.outputs.union(*(group.read for group in groups))
         self.in_order = [
             Stage(*group, tuple(node for node in group.nodes if node in wanted) if group.forms else None)
             for group in _in_order(groups)
@@ -120,11 +120,11 @@ class Stages:
     def slots(self, written: Sequence[Sequence[int]]) -> dict[int, Slot]:
         """The memory of the nodes that each stage writes."""
         stages = [(stage.read, nodes) for stage, nodes in zip(self.in_order, written, strict=True)]
-        return assign_slots(self.dag, stages, self.kept, late=self._early is not None)
+        return assign_slots(self.dag, stages, self.outputs, late=self._early is not None)
 
     def last_reads(self) -> dict[int, list[int]]:
         """The stage after which nothing reads them -> nodes that are computed outside of loops."""
-        outside = {node for stage in self.in_order if stage.stores is None for node in stage.nodes} - self.kept
+        outside = {node for stage in self.in_order if stage.stores is None for node in stage.nodes} - self.outputs
         last = {node: at for at, stage in enumerate(self.in_order) for node in outside.intersection(stage.read)}
         found: dict[int, list[int]] = {}
         for node, at in last.items():

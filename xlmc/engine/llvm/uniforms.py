@@ -124,7 +124,7 @@ def _loop(k: int) -> NativeLoop:
     arrays = [builder.load(builder.gep(addresses, [_LONG(i)])) for i in range(2 * k + 1)]
     rows = [builder.bitcast(array, _DOUBLE.as_pointer()) for array in arrays[:k]]
     jump_ = _load_numbers(builder, arrays[-1])
-    held = [_load_stream(builder, array, jump_) for array in arrays[k:-1]]
+    loaded = [_load_stream(builder, array, jump_) for array in arrays[k:-1]]
     buffers = [tuple(builder.alloca(_LONG, _TILE) for _ in range(2)) for _ in range(k)]
     before, body, after = builder.block, *(function.append_basic_block(name) for name in ("body", "after"))
     builder.cbranch(builder.icmp_signed("<", _LONG(0), n), body, after)
@@ -134,13 +134,13 @@ def _loop(k: int) -> NativeLoop:
     states = [builder.phi(_STATE) for _ in range(k)]
     left = builder.sub(n, first)
     size = builder.select(builder.icmp_signed("<", left, _LONG(_TILE)), left, _LONG(_TILE))
-    advanced = _advance(builder, states, [increment for _, increment, _, _ in held], buffers, size)
-    for row, halves_, (_, _, offset, factor) in zip(rows, buffers, held, strict=True):
+    advanced = _advance(builder, states, [increment for _, increment, _, _ in loaded], buffers, size)
+    for row, halves_, (_, _, offset, factor) in zip(rows, buffers, loaded, strict=True):
         builder.call(finished, [*halves_, builder.gep(row, [first]), offset, factor, size])
     following = builder.add(first, size)
     first.add_incoming(_LONG(0), before)
     first.add_incoming(following, builder.block)
-    for state, (beginning, _, _, _), ahead in zip(states, held, advanced, strict=True):
+    for state, (beginning, _, _, _), ahead in zip(states, loaded, advanced, strict=True):
         state.add_incoming(beginning, before)
         state.add_incoming(ahead, builder.block)
     builder.cbranch(builder.icmp_signed("<", following, n), body, after)

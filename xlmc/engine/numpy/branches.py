@@ -118,11 +118,14 @@ def _divides(result: Kind, condition: Kind) -> bool:
 
 def _find_safe_branches(dag: Dag, sets: dict[int, TrialSet]) -> dict[TrialSet, TrialSet]:
     """The branches in which nothing can err -> the nearest set around each that is kept."""
-    kept = {ALL_TRIALS, SURVIVORS}
+    used_sets = {ALL_TRIALS, SURVIVORS}
     for node, trials in sets.items():
-        if trials not in kept and not _is_safe(dag, node):
-            kept.update(trials.outwards())
-    return {trials: next(outer for outer in trials.outwards() if outer in kept) for trials in set(sets.values()) - kept}
+        if trials not in used_sets and not _is_safe(dag, node):
+            used_sets.update(trials.outwards())
+    return {
+        trials: next(outer for outer in trials.outwards() if outer in used_sets)
+        for trials in set(sets.values()) - used_sets
+    }
 
 
 def _is_safe(dag: Dag, node_id: int) -> bool:

@@ -42,17 +42,17 @@ class Buffers:
         self._dag = dag
         self._types: list[Kind] = []
         self._idle: defaultdict[Kind, list[int]] = defaultdict(list)
-        self._held: dict[int, int] = {}
+        self._in_use: dict[int, int] = {}
 
     def take(self, node_id: int) -> int | None:
         """A buffer for the node's value; None where it makes its own array."""
         node, kind = self._dag.nodes[node_id], self._dag.types[node_id]
         if isinstance(node, IfErrorNode):
-            self._held.pop(node.value, None)  # this node has the same array: its buffer is never given back
+            self._in_use.pop(node.value, None)  # this node has the same array: its buffer is never given back
             return None
         if (kind is not Kind.NUMBER and kind is not Kind.LOGICAL) or not isinstance(node, (Apply, Select)):
             return None
-        self._held[node_id] = buffer = self.take_for(kind)
+        self._in_use[node_id] = buffer = self.take_for(kind)
         return buffer
 
     def take_for(self, kind: Kind) -> int:
@@ -64,9 +64,9 @@ class Buffers:
 
     def free(self, nodes: Iterable[int]) -> list[int]:
         """Give back the buffers of values that nothing reads any more; return the nodes that are in no buffer."""
-        held, loose = self._held, []
+        in_use, loose = self._in_use, []
         for node in nodes:
-            buffer = held.pop(node, None)
+            buffer = in_use.pop(node, None)
             if buffer is None:
                 loose.append(node)
             else:
@@ -75,16 +75,16 @@ class Buffers:
 
     def exchange(self, done: Iterable[int], node: int, loose: list[int]) -> int | None:
         """Do `free`, appending to `loose` the nodes in no buffer; then `take`, for a number or a logical."""
-        held, idle = self._held, self._idle
+        in_use, idle = self._in_use, self._idle
         for gone in done:
-            buffer = held.pop(gone, None)
+            buffer = in_use.pop(gone, None)
             if buffer is None:
                 loose.append(gone)
             else:
                 idle[self._types[buffer]].append(buffer)
         kind = self._dag.types[node]
         ready = idle[kind]
-        held[node] = taken = ready.pop() if ready else self.take_for(kind)
+        in_use[node] = taken = ready.pop() if ready else self.take_for(kind)
         return taken
 
     def give_back(self, buffer: int) -> None:

@@ -63,8 +63,8 @@ class RandomRounding:
     """
 
     def __init__(self, seed: int | Sequence[int], unit: float = DOUBLE) -> None:
-        ways = np.array([-1.0, 0.0, 1.0, 0.0])[np.random.default_rng(seed).integers(0, 4, _POOL, np.int8)]
-        self._steps = ways * (_SURELY * unit)
+        directions = np.array([-1.0, 0.0, 1.0, 0.0])[np.random.default_rng(seed).integers(0, 4, _POOL, np.int8)]
+        self._steps = directions * (_SURELY * unit)
         self._next = 0
 
     def move(self, value: Value, n: int, *, whole_too: bool = False) -> Value:

@@ -37,7 +37,7 @@ class FormulasProgram:
             raise FormulaError(message, where=next(iter(graph.circles)), hint=_OTHER_ENGINE)
         self.inputs = {cell: name for cell, name in lowering.inputs.items() if cell in graph.reached}
         self.content = lambda cell: graph.workbook.content(cell).value
-        self.held: Cells = {**lowering.saved, **lowering.held}
+        self.constants: Cells = {**lowering.saved, **lowering.frozen}
         computed = {cell: tree for cell, tree in graph.formulas.items() if cell not in lowering.saved}
         for cell in computed:
             formula = graph.workbook.content(host_of(cell)).formula
@@ -66,7 +66,7 @@ class _FormulasEvaluator:
 
     def _trial(self, inputs: Mapping[str, Floats], i: int) -> Cells:
         program = self._program
-        values: Cells = program.held.copy()
+        values: Cells = program.constants.copy()
         for cell, name in program.inputs.items():
             values[cell] = ErrorCode.NUM if np.isnan(inputs[name][i]) else float(inputs[name][i])
         for cell, compiled in program.cells:

@@ -265,8 +265,8 @@ def without_line_breaks(text: str) -> str:
     if not any(blank in text for blank in "\n\r\t"):
         return text
     pieces = re.split(f"({QUOTED.pattern})", text, flags=re.DOTALL)
-    kept = [p.replace("\n", _LINE_BREAK_IN_TEXT) if i % 2 else p.translate(_BLANKS) for i, p in enumerate(pieces)]
-    return "".join(kept)
+    parts = [p.replace("\n", _LINE_BREAK_IN_TEXT) if i % 2 else p.translate(_BLANKS) for i, p in enumerate(pieces)]
+    return "".join(parts)
 
 
 def _with_line_breaks(text: str) -> str:

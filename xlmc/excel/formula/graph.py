@@ -88,7 +88,7 @@ def build_graph(
     resolver: Resolver,
     targets: Iterable[Cell],
     inputs: frozenset[Cell],
-    held: frozenset[Cell] = frozenset(),
+    frozen: frozenset[Cell] = frozenset(),
     *,
     more: Mapping[Cell, Iterable[Cell]] | None = None,
     strict: bool = True,
@@ -99,14 +99,14 @@ def build_graph(
         resolver: of the workbook.
         targets: the cells wanted.
         inputs: cells that vary.
-        held: cells that do not, whatever they hold.
+        frozen: cells that do not, whatever they hold.
         more: cells that a formula cell turned out to need beside those its formula names.
         strict: raise at the first faulty formula; collect the faults otherwise.
 
     Raises:
         FormulaError: a needed formula cannot be read.
     """
-    walk = _Walk(resolver, inputs | held, more or {}, strict)
+    walk = _Walk(resolver, inputs | frozen, more or {}, strict)
     for target in targets:
         walk.upstream(target)
     circles = circular(walk.needs) if walk.circular else {}
@@ -126,7 +126,7 @@ class _Walk:
         self._workbook, self._spills = resolver.workbook, Spills(resolver.workbook)
         self.ordered: dict[Cell, ir.Expression | Filled] = {}
         self.needs = Needs()
-        self._strips = Strips(self._counts, lambda area: _held(self._workbook, area, given), resolver.last_cell)
+        self._strips = Strips(self._counts, lambda area: _filled_cells(self._workbook, area, given), resolver.last_cell)
         self.reached: set[Cell] = set()
         self.faults: dict[Cell, FormulaError] = {}
         self.circular = False
@@ -221,7 +221,7 @@ class _Walk:
         return known
 
 
-def _held(workbook: Workbook, area: Area, inputs: frozenset[Cell]) -> Iterator[Cell]:
+def _filled_cells(workbook: Workbook, area: Area, inputs: frozenset[Cell]) -> Iterator[Cell]:
     """The area's cells that hold something, row by row."""
     sheet = workbook.sheet_of(area)
     if sheet is None:
@@ -230,8 +230,8 @@ def _held(workbook: Workbook, area: Area, inputs: frozenset[Cell]) -> Iterator[C
         yield from area.cells()
         return
     extra = {cell for cell in inputs if cell in area}
-    held = {Cell(area.sheet, row, column) for row, column in sheet.cells}
-    yield from sorted(cell for cell in held | extra if cell in area)
+    frozen = {Cell(area.sheet, row, column) for row, column in sheet.cells}
+    yield from sorted(cell for cell in frozen | extra if cell in area)
 
 
 def _varying(formulas: Iterable[Cell], needs: Needs, inputs: Iterable[Cell]) -> frozenset[Cell]:

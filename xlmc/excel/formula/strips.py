@@ -104,17 +104,17 @@ class Strips:
 
     Args:
         counts: whether a cell counts.
-        held: the cells of a large area that may count.
+        filled: the cells of a large area that may count.
         last: the last row and column of a sheet that may hold such a cell.
     """
 
     def __init__(
         self,
         counts: Callable[[Cell], bool],
-        held: Callable[[Area], Iterator[Cell]],
+        filled: Callable[[Area], Iterator[Cell]],
         last: Callable[[str], tuple[int, int]],
     ) -> None:
-        self._counts, self._held, self._last = counts, held, last
+        self._counts, self._filled, self._last = counts, filled, last
         self._strips: dict[tuple[str, int, int], _Strip] = {}
         self._tables: dict[Area, tuple[Cell, ...]] = {}
 
@@ -129,7 +129,7 @@ class Strips:
                 yield self._stretch(self._row(area.sheet, row), area.left, area.right)
             return
         if area not in self._tables:
-            self._tables[area] = tuple(filter(self._counts, self._held(area)))
+            self._tables[area] = tuple(filter(self._counts, self._filled(area)))
         yield self._tables[area]
 
     def _column(self, sheet: str, column: int) -> _Strip:
@@ -147,7 +147,7 @@ class Strips:
         return self._strips[key]
 
     def _counted(self, area: Area) -> list[Cell]:
-        return list(filter(self._counts, self._held(area)))
+        return list(filter(self._counts, self._filled(area)))
 
     def _stretch(self, strip: _Strip, first: int, last: int) -> Stretch:
         return Stretch(strip, bisect_left(strip.at, first), bisect_right(strip.at, last))

@@ -74,9 +74,9 @@ def unfold(tree: ir.Expression) -> ir.Expression:
     _look_for_let(tree, found)
     if not all(isinstance(part, ir.Let) and not part.recursive for part in found) or not found:
         return tree
-    room = _Room()
+    budget = _Budget()
     try:
-        return _write_out(tree, {}, room)
+        return _write_out(tree, {}, budget)
     except OverflowError:
         return tree
 
@@ -91,7 +91,7 @@ def _look_for_let(tree: ir.Expression, found: list[ir.Expression]) -> None:
     substitute(tree, look)
 
 
-class _Room:
+class _Budget:
     """How many parts there may still be."""
 
     def __init__(self) -> None:
@@ -113,16 +113,16 @@ class _Room:
         return tree
 
 
-def _write_out(tree: ir.Expression, known: Mapping[str, ir.Expression], room: _Room) -> ir.Expression:
+def _write_out(tree: ir.Expression, known: Mapping[str, ir.Expression], budget: _Budget) -> ir.Expression:
     def change(part: ir.Expression) -> ir.Expression | None:
         match part:
             case ir.Variable(name) if name in known:
-                return room.take(known[name])
+                return budget.take(known[name])
             case ir.Let(bindings, body):
                 inner = dict(known)
                 for name, value in bindings:
-                    inner[name] = _write_out(value, inner, room)
-                return _write_out(body, inner, room)
+                    inner[name] = _write_out(value, inner, budget)
+                return _write_out(body, inner, budget)
             case _:
                 return None
 

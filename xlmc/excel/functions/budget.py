@@ -239,7 +239,7 @@ _MEMORY = threading.local()
 
 def work_arrays(n: int, arrays: int) -> list[NDArray[np.float64]]:
     """Return one or two arrays `(n,)` that this thread may write to until it calls this again."""
-    kept: list[NDArray[np.float64]] = getattr(_MEMORY, "arrays", [])
-    if len(kept) < arrays or kept[0].size < n:
-        _MEMORY.arrays = kept = [np.empty(n) for _ in range(_KEPT)]
-    return [array[:n] for array in kept[:arrays]]
+    arrays_here: list[NDArray[np.float64]] = getattr(_MEMORY, "arrays", [])
+    if len(arrays_here) < arrays or arrays_here[0].size < n:
+        _MEMORY.arrays = arrays_here = [np.empty(n) for _ in range(_KEPT)]
+    return [array[:n] for array in arrays_here[:arrays]]

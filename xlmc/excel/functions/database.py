@@ -31,11 +31,11 @@ def _match(database: Value, criteria: Value, date1904: bool) -> Bools:
     """Return which records match the criteria: (n, k)."""
     result = np.zeros((1, database.shape[1] - 1), bool)
     for row in range(1, criteria.shape[1]):
-        held = np.ones((1, 1), bool)
+        matching = np.ones((1, 1), bool)
         for column in range(criteria.shape[2]):
             name, criterion = cell_of(criteria, 0, column), cell_of(criteria, row, column)
-            held = held & _match_cell(database, name, criterion, date1904)
-        result = result | held
+            matching = matching & _match_cell(database, name, criterion, date1904)
+        result = result | matching
     return result
 
 
@@ -52,8 +52,8 @@ def _match_cell(database: Value, name: Value, criterion: Value, date1904: bool) 
         )
     result = empty[:, None]
     for field in np.unique(index[index >= 0]):
-        held = which_meet(criterion, _records(database, field), begins=True, date1904=date1904)
-        result = result | ((index == field)[:, None] & held)
+        matching = which_meet(criterion, _records(database, field), begins=True, date1904=date1904)
+        result = result | ((index == field)[:, None] & matching)
     return result
 
 
@@ -101,10 +101,10 @@ def _reduce_records(database: Value, field: Value, criteria: Value, reduce: Redu
     return with_errors(arrange(results, *field.shape[1:]), errors.reshape(-1, 1, 1))
 
 
-def _reduce_field(cells: Value, field: Value, reduce: Reduce, held: Bools) -> Value:
+def _reduce_field(cells: Value, field: Value, reduce: Reduce, matching: Bools) -> Value:
     index, known = _find_field(cells, field)
     column = pick(cells, np.arange(1, cells.shape[1])[None, :, None], index[:, None, None])
-    return with_errors(reduce(column, held), error_where(~known, ErrorCode.VALUE))
+    return with_errors(reduce(column, matching), error_where(~known, ErrorCode.VALUE))
 
 
 _OF_NUMBERS: Final = Facts(empty_cells=EmptyCells.IGNORED_IN_FIRST)
@@ -129,10 +129,10 @@ _register("DSTDEV", "Standard deviation, the records being a sample.", fold_of_n
 _register("DSTDEVP", "Standard deviation of the records.", fold_of_numbers(aggregate.population_deviation))
 
 
-def _only_cell(column: Value, held: Bools) -> Value:
+def _only_cell(column: Value, matching: Bools) -> Value:
     """Return the cell of the only record; `#VALUE!` for no record, `#NUM!` for several."""
-    found = pick(column, held.argmax(axis=1), np.zeros(1, np.intp))
-    count = held.sum(axis=1)
+    found = pick(column, matching.argmax(axis=1), np.zeros(1, np.intp))
+    count = matching.sum(axis=1)
     none, several = error_where(count == 0, ErrorCode.VALUE), error_where(count > 1, ErrorCode.NUM)
     return with_errors(found, first_error(none, several))
 
@@ -143,12 +143,12 @@ _register("DGET", "The field of the only record that matches the criteria.", _on
 def _register_count(name: str, meaning: str, counts: Callable[[Value], Bools]) -> None:
     """Register a count, which needs no field: without one it counts the records."""
 
-    def of_field(column: Value, held: Bools) -> Value:
-        kept = np.broadcast_to(counts(column), column.shape)[:, :, 0]
-        return Value.of_numbers((held & kept).sum(axis=1).astype(np.float64))
+    def of_field(column: Value, matching: Bools) -> Value:
+        is_counted = np.broadcast_to(counts(column), column.shape)[:, :, 0]
+        return Value.of_numbers((matching & is_counted).sum(axis=1).astype(np.float64))
 
-    def of_all(column: Value, held: Bools) -> Value:
-        return Value.of_numbers(held.sum(axis=1).astype(np.float64))
+    def of_all(column: Value, matching: Bools) -> Value:
+        return Value.of_numbers(matching.sum(axis=1).astype(np.float64))
 
     def body(database: Value, field: Value, criteria: Value, *, date1904: bool = False) -> Value:
         counted = _reduce_records(database, field, criteria, of_field, date1904)

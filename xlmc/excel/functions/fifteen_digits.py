@@ -90,12 +90,12 @@ def equal_range(number: float) -> tuple[float, float]:
     return _last_equal(number, -1), _last_equal(number, 1)
 
 
-def _last_equal(number: float, way: int) -> float:
-    """Return the last double above (`way` 1) or below (-1) that is equal to a positive number."""
+def _last_equal(number: float, sign: int) -> float:
+    """Return the last double above (`sign` 1) or below (-1) that is equal to a positive number."""
     (bits,) = struct.unpack("<q", struct.pack("<d", number))  # doubles are in the order of their bits
 
     def at(steps: int) -> float:
-        (found,) = struct.unpack("<d", struct.pack("<q", bits + way * steps))
+        (found,) = struct.unpack("<d", struct.pack("<q", bits + sign * steps))
         return float(found)
 
     near, far = 0, _FARTHEST

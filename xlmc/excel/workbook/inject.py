@@ -234,19 +234,19 @@ def remove_result_sheets(parts: Mapping[str, bytes]) -> dict[str, bytes]:
     marked = [sheets.children[index] for index in gone]
     pointers = relationships(parts, role.workbook)
     ids = {sheet.foreign("id") or "" for sheet in marked} | _stale_chains(parts, pointers, marked)
-    kept = {
+    remaining = {
         **parts,
         role.workbook: without_sheets(document, gone),
         role.rels: drop_pointers(parts[role.rels], role.rels, ids),
     }
-    dropped = _only_reached_from([pointers[i].target for i in ids if i in pointers], parts, kept)
-    kept = {name: content for name, content in kept.items() if name not in dropped}
-    kept[CONTENT_TYPES] = drop_types(parts[CONTENT_TYPES], dropped, kept)
+    dropped = _only_reached_from([pointers[i].target for i in ids if i in pointers], parts, remaining)
+    remaining = {name: content for name, content in remaining.items() if name not in dropped}
+    remaining[CONTENT_TYPES] = drop_types(parts[CONTENT_TYPES], dropped, remaining)
     if role.properties is not None:
         present, removed = _names(sheets.children), _names(marked)
         with suppress(WorkbookError):  # damaged: no more than a list for file managers, it stays as it is
-            kept[role.properties] = unlist_sheets(parts[role.properties], role.properties, present, removed)
-    return kept
+            remaining[role.properties] = unlist_sheets(parts[role.properties], role.properties, present, removed)
+    return remaining
 
 
 def result_sheets(parts: Mapping[str, bytes]) -> list[str]:
@@ -276,20 +276,20 @@ def original_hash(parts: Mapping[str, bytes]) -> str:
     own = without_formula_values(remove_result_sheets(parts))
     role = roles(own)
     untouched = {name: content for name, content in own.items() if name not in role.changing}
-    said = _said(parse_spans(as_utf8(own[role.workbook], role.workbook), role.workbook))
+    identity = _workbook_content(parse_spans(as_utf8(own[role.workbook], role.workbook), role.workbook))
     pointers = relationships(own, role.workbook).items()
     leads = sorted([i, r.type, r.target, r.external] for i, r in pointers if r.kind != "styles")
-    return hash_parts({**untouched, role.workbook: _canonical(said), role.rels: _canonical(leads)})
+    return hash_parts({**untouched, role.workbook: _canonical(identity), role.rels: _canonical(leads)})
 
 
-def _said(root: Element) -> list[object]:
+def _workbook_content(root: Element) -> list[object]:
     """What the workbook part says, but for its windows; no names and an empty list of names are one and the same."""
     children = [child for child in root.children if child.local != "bookViews"]
     return [child.canonical() for child in children if child.local != "definedNames" or child.children]
 
 
-def _canonical(said: object) -> bytes:
-    return json.dumps(said, ensure_ascii=True, separators=(",", ":")).encode()
+def _canonical(identity: object) -> bytes:
+    return json.dumps(identity, ensure_ascii=True, separators=(",", ":")).encode()
 
 
 def _stale_chains(

@@ -81,8 +81,8 @@ def _content_type_faults(parts: Mapping[str, bytes]) -> Iterator[str]:
     yield from (f"{CONTENT_TYPES} names the ending {name!r} twice" for name in _repeated(defaults))
     stated, by_ending = set(overrides), set(defaults)
     for name in parts:
-        said = f"/{name}".casefold() in stated or name.rpartition(".")[2].casefold() in by_ending
-        if name != CONTENT_TYPES and not said:
+        declared = f"/{name}".casefold() in stated or name.rpartition(".")[2].casefold() in by_ending
+        if name != CONTENT_TYPES and not declared:
             yield f"{CONTENT_TYPES} does not say what {name} is"
 
 
@@ -104,12 +104,12 @@ def _sheet_faults(parts: Mapping[str, bytes], workbook: str) -> Iterator[str]:
         if name != "" and (pointer is None or pointer.target not in parts):  # "": a module sheet of the 1990s
             yield f"the sheet {sheet.attributes.get('name', '')!r} has no part"
     names = root.find("definedNames")
-    said = [
+    declared = [
         (each.attributes.get("name", "").casefold(), each.attributes.get("localSheetId", ""))
         for each in (names.children if names else ())
     ]
-    yield from (f"the name {name!r} is defined twice for one sheet" for name, _ in _repeated(said))
-    for name, index in said:
+    yield from (f"the name {name!r} is defined twice for one sheet" for name, _ in _repeated(declared))
+    for name, index in declared:
         if index.isdecimal() and int(index) >= len(sheets):
             yield f"the name {name!r} belongs to a sheet that does not exist"
 

@@ -265,8 +265,8 @@ def _cells(data: Element, part: str) -> Iterator[tuple[tuple[int, int], CellCont
         corner = _A1.fullmatch(cell.get("r", ""))
         if corner is None:
             at = cell.get("r")
-            said = "a value without a cell" if at is None else f"a value of the cell {at!r}, which is none"
-            raise WorkbookError(f"{part} holds {said}", hint=REPAIR)
+            what = "a value without a cell" if at is None else f"a value of the cell {at!r}, which is none"
+            raise WorkbookError(f"{part} holds {what}", hint=REPAIR)
         yield (int(corner[2]), column_number(corner[1])), CellContent(_value(cell, part))
 
 

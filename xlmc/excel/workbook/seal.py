@@ -85,8 +85,11 @@ def sealed_parts(parts: Mapping[str, bytes], sheet: str, book: str) -> dict[str,
     if pointers not in parts:
         types[pointers] = "application/vnd.openxmlformats-package.relationships+xml"
     found[CONTENT_TYPES] = add_types(parts[CONTENT_TYPES], types)
-    said = {"book": book, "sha256": {name: hashlib.sha256(content).hexdigest() for name, content in found.items()}}
-    return {**found, part: json.dumps(said, indent=1).encode()}
+    seal_content = {
+        "book": book,
+        "sha256": {name: hashlib.sha256(content).hexdigest() for name, content in found.items()},
+    }
+    return {**found, part: json.dumps(seal_content, indent=1).encode()}
 
 
 def sealed_text(content: bytes, ending: str, book: str) -> bytes:
@@ -160,8 +163,8 @@ def _seal_of_package(path: Path) -> Seal | None:
     if len(seals) != 1:
         return None
     try:
-        said = json.loads(parts.pop(seals[0]))
-        book, digests = str(said["book"]), said["sha256"]
+        seal_content = json.loads(parts.pop(seals[0]))
+        book, digests = str(seal_content["book"]), seal_content["sha256"]
     except (ValueError, KeyError, TypeError, RecursionError):  # somebody wrote it, and not xlmc
         return None
     return Seal(book, digests == {name: hashlib.sha256(content).hexdigest() for name, content in parts.items()})

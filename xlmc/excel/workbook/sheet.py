@@ -229,8 +229,8 @@ class _Pass:
 
     def _data_table(self) -> DataTable:
         found = self._attributes
-        kept = (key for key, deleted in (("r1", "del1"), ("r2", "del2")) if not is_true(found.get(deleted, "0")))
-        inputs = (found[key] for key in kept if key in found)
+        existing = (key for key, deleted in (("r1", "del1"), ("r2", "del2")) if not is_true(found.get(deleted, "0")))
+        inputs = (found[key] for key in existing if key in found)
         cells = [area_of(each, self._sheet, "an input of a data table") for each in inputs]
         return DataTable(
             area_of(found.get("ref"), self._sheet, "a data table"),

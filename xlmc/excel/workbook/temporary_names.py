@@ -15,7 +15,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
-__all__ = ["new_file_name", "new_folder_name", "owned", "remove_stray_files", "remove_stray_folders"]
+__all__ = ["new_file_name", "new_folder_name", "owned", "remove_abandoned_files", "remove_abandoned_folders"]
 
 _FILE: Final = re.compile(r"\.xlmc-(?P<machine>[0-9a-f]{8})-(?P<process>\d+)-[0-9a-f]{16}\.tmp")
 _FOLDER: Final = re.compile(r"xlmc-(?P<machine>[0-9a-f]{8})-(?P<process>\d+)-[0-9a-f]{16}")
@@ -46,20 +46,20 @@ def owned(name: str) -> Iterator[None]:
         _OURS.discard(name)
 
 
-def remove_stray_files(folder: Path) -> None:
+def remove_abandoned_files(folder: Path) -> None:
     """Remove temporary files in this folder whose writers have died; what cannot be removed stays."""
     now = time.time()
     for path in _matching(folder, _FILE):
         with suppress(OSError):  # another process removed it, or it belongs to another person
-            if _is_stray(path.name, _FILE) or now - path.lstat().st_mtime > _DAY:
+            if _is_abandoned(path.name, _FILE) or now - path.lstat().st_mtime > _DAY:
                 path.unlink()
 
 
-def remove_stray_folders() -> None:
+def remove_abandoned_folders() -> None:
     """Remove folders of columns in the temporary folder whose processes have died; what cannot be removed stays."""
     with suppress(OSError):  # there is no temporary folder: whoever needs one is told so
         for path in _matching(Path(tempfile.gettempdir()), _FOLDER):
-            if _is_stray(path.name, _FOLDER) and not path.is_symlink():
+            if _is_abandoned(path.name, _FOLDER) and not path.is_symlink():
                 shutil.rmtree(path, ignore_errors=True)
 
 
@@ -71,7 +71,7 @@ def _matching(folder: Path, pattern: re.Pattern[str]) -> list[Path]:
     return [folder / name for name in names if pattern.fullmatch(name)]
 
 
-def _is_stray(name: str, pattern: re.Pattern[str]) -> bool:
+def _is_abandoned(name: str, pattern: re.Pattern[str]) -> bool:
     found = pattern.fullmatch(name)
     if found is None or found["machine"] != _machine():
         return False

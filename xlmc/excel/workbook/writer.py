@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from xlmc.errors import WorkbookError
-from xlmc.excel.workbook.temporary_names import new_file_name, owned, remove_stray_files
+from xlmc.excel.workbook.temporary_names import new_file_name, owned, remove_abandoned_files
 
 __all__ = [
     "TakenError",
@@ -100,7 +100,7 @@ def _write_whole(path: str | os.PathLike[str], check: Callable[[], None] | None)
     with _naming_file(path):
         target = _meant(path)
         _refuse_protected(target)
-        remove_stray_files(target.parent)
+        remove_abandoned_files(target.parent)
         with _new_file_beside(target) as temporary:
             yield temporary
             _publish(temporary, target, check)

@@ -4,7 +4,7 @@ Flat files rather than Parquet: they need no further library, any rank of a colu
 column is an ordinary array to whoever reads it. Parquet is a format to hand results on in, not to work in.
 """
 
-from xlmc.montecarlo.columns.column_store import Columns, ColumnStore, Folder, on_disk, release, room_on_disk
+from xlmc.montecarlo.columns.column_store import Columns, ColumnStore, Folder, free_disk, on_disk, release
 from xlmc.montecarlo.columns.passes import PART, ascending, numbers, pairwise_sum, parts, picked
 
 __all__ = [
@@ -13,11 +13,11 @@ __all__ = [
     "Columns",
     "Folder",
     "ascending",
+    "free_disk",
     "numbers",
     "on_disk",
     "pairwise_sum",
     "parts",
     "picked",
     "release",
-    "room_on_disk",
 ]

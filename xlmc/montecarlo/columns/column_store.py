@@ -31,10 +31,10 @@ __all__ = [
     "ColumnStore",
     "Columns",
     "Folder",
+    "free_disk",
     "mapped",
     "on_disk",
     "release",
-    "room_on_disk",
 ]
 
 
@@ -88,10 +88,10 @@ class Folder:
     def __init__(self) -> None:
         with _naming_folder(None):
             self.path = Path(tempfile.gettempdir(), new_folder_name())
-            kept = ExitStack()
-            kept.enter_context(owned(self.path.name))
+            resources = ExitStack()
+            resources.enter_context(owned(self.path.name))
             # Before there is a folder: a signal that ends the process may come at any time.
-            self._end = weakref.finalize(self, _remove, self.path, os.getpid(), kept)
+            self._end = weakref.finalize(self, _remove, self.path, os.getpid(), resources)
             self.path.mkdir(mode=0o700)
 
     def append(self, name: str, arrays: Iterable[NDArray[Any]]) -> None:
@@ -122,13 +122,13 @@ class Folder:
                 return
 
 
-def _remove(path: Path, owner: int, kept: ExitStack) -> None:
+def _remove(path: Path, owner: int, resources: ExitStack) -> None:
     if os.getpid() == owner:  # a forked child inherits the object, not the folder
         shutil.rmtree(path, ignore_errors=True)
-        kept.close()
+        resources.close()
 
 
-def room_on_disk() -> tuple[Path, int]:
+def free_disk() -> tuple[Path, int]:
     """The temporary folder and the bytes that are free there.
 
     Raises:
@@ -224,7 +224,7 @@ class ColumnStore:
         self._sizes = dict.fromkeys(types, 0)
         self._bytes = 0
         self._folder: Folder | None = None
-        remove_stray_folders()
+        remove_abandoned_folders()
 
     def add(self, key: Hashable, values: Array) -> None:
         """Put `(m,)` values at the end of a column; those that were written to `room` are there already.
@@ -239,25 +239,25 @@ class ColumnStore:
         self._sizes[key] += values.size
         self._bytes += values.nbytes
 
-    def room(self, key: Hashable, n: int) -> Array:
+    def reserve(self, key: Hashable, n: int) -> Array:
         """The memory of a column's next `n` numbers."""
         begin = self._sizes[key]
         if begin + n > self._arrays[key].size:
-            self._make_room(key, begin + n)
+            self._grow(key, begin + n)
         return self._arrays[key][begin : begin + n]
 
-    def _make_room(self, key: Hashable, least: int) -> None:
+    def _grow(self, key: Hashable, least: int) -> None:
         """Move a column into an array for at least so many numbers, and for twice as many as it was made for."""
-        held = self._arrays[key]
-        size = max(least, 2 * held.size, self._likely_room(key))
-        if self._filled and not held.size and self._folder is None and size * held.itemsize < _LARGE:
-            self._make_room_together(key, size)
+        array_now = self._arrays[key]
+        size = max(least, 2 * array_now.size, self._expected_size(key))
+        if self._filled and not array_now.size and self._folder is None and size * array_now.itemsize < _LARGE:
+            self._grow_together(key, size)
             return
-        array = np.empty(size, held.dtype)
+        array = np.empty(size, array_now.dtype)
         array[: self._sizes[key]] = self._added(key)
         self._arrays[key] = array
 
-    def _make_room_together(self, key: Hashable, size: int) -> None:
+    def _grow_together(self, key: Hashable, size: int) -> None:
         """Make arrays for so many numbers, in one piece of memory: for a column, and for those that will be as long."""
         expected = self._expected.get(key)
         alike = [other for other, rows in self._expected.items() if rows == expected and not self._arrays[other].size]
@@ -267,7 +267,7 @@ class ColumnStore:
         for other, row in zip(dict.fromkeys((key, *alike)), memory, strict=True):
             self._arrays[other] = row.view(self._types[other])[:size]
 
-    def _likely_room(self, key: Hashable) -> int:
+    def _expected_size(self, key: Hashable) -> int:
         """How many numbers a column will have, or have when all columns are written, if they grow together.
 
         These are written after the block that fills the memory, which may be large.
@@ -279,7 +279,7 @@ class ColumnStore:
         """The numbers of a column that are in memory, `(m,)`."""
         return self._arrays[key][: self._sizes[key]]
 
-    def settle(self) -> None:
+    def write_if_full(self) -> None:
         """Write what waits, if it is much; to be called when all columns of a block are added.
 
         Raises:

@@ -49,10 +49,10 @@ def formula_at(formula: Formula, cell: Cell) -> str:
         return text
 
     def moved(corner: re.Match[str]) -> str:
-        held_column, letters, held_row, row = corner.groups()
-        column = column_number(letters) + (0 if held_column else across)
-        line = int(row) + (0 if held_row else down)
-        return f"{held_column}{column_letters(column)}{held_row}{line}" if column > 0 and line > 0 else "#REF!"
+        fixed_column, letters, fixed_row, row = corner.groups()
+        column = column_number(letters) + (0 if fixed_column else across)
+        line = int(row) + (0 if fixed_row else down)
+        return f"{fixed_column}{column_letters(column)}{fixed_row}{line}" if column > 0 and line > 0 else "#REF!"
 
     return f"{head}{bang}{_CORNER.sub(moved, tail)}"
 
@@ -198,7 +198,7 @@ def area_of_reference(workbook: Workbook, text: str, sheet: str | None, where: o
         if sheet is None:
             hint = f"Write the sheet, too, such as {next(iter(workbook.sheets), 'Sheet1')}!{tail}"
             raise DefinitionError(f"{text!r} names no sheet", where=where, hint=hint)
-        return _held_to_size(parse_address(tail, sheet), where)
+        return _checked_size(parse_address(tail, sheet), where)
     table = workbook.table_named(text)
     if table is not None:
         return table.body
@@ -217,7 +217,7 @@ def _area_of_name(workbook: Workbook, meaning: str, where: object) -> Area:
         return _columns(workbook, columns, text, where)
     if head is None or not is_address(tail):
         raise DefinitionError(f"The name stands for {text}, not for one range", where=where, hint=_ONE_RANGE)
-    return _held_to_size(parse_address(tail, _sheet_named(workbook, head, text, where)), where)
+    return _checked_size(parse_address(tail, _sheet_named(workbook, head, text, where)), where)
 
 
 def _columns(workbook: Workbook, found: re.Match[str], text: str, where: object) -> Area:
@@ -239,7 +239,7 @@ def _column(table: Table, heading: str, where: object) -> int:
     return known[heading.strip().casefold()]
 
 
-def _held_to_size(found: Cell | Area, where: object) -> Area:
+def _checked_size(found: Cell | Area, where: object) -> Area:
     area = found if isinstance(found, Area) else Area(found.sheet, found.row, found.column, found.row, found.column)
     if area.rows * area.columns > _MOST:
         message = f"{area} is {area.rows * area.columns:,} cells"

@@ -102,7 +102,7 @@ def read_definitions(
     lognorm = settings.lognorm or ("@RISK" if xlrisk is None else "XLRisk")
     calls = read_in_cells(workbook, computed, lognorm, uncertain, findings, tabulated)
     if xlrisk is not None and calls:
-        settings = xlrisk.settings(settings, said, of_xlrisk)
+        settings = xlrisk.settings(settings, stated, of_xlrisk)
         findings.add(of_xlrisk)
     if not dialogs.stored:
         remark_on_lost_data(workbook, bool(calls or any(tables.values())), findings)
@@ -140,7 +140,7 @@ def read_definitions(
     if refused and not forecasts:
         findings.problems += refused
     own, left_out = _parted(own, asked, forecasts)
-    settings = with_precision(settings, said, dialogs.precisions, forecasts, findings)
+    settings = with_precision(settings, stated, dialogs.precisions, forecasts, findings)
     if not (calls.assumptions or dialogs.assumptions):
         _refuse_no_assumption(workbook, calls, tables["xlmc_assumptions"], findings)
     if calls and not (forecasts or tables["xlmc_forecasts"] or refused):
@@ -239,14 +239,14 @@ def _parted(
 ) -> tuple[tuple[Filter, ...], tuple[Forecast | Filter, ...]]:
     """The filters of some forecasts only, of those that can be run; the other forecasts, and filters of theirs."""
     names = {each.name for each in left}
-    kept: list[Filter] = []
+    wanted_filters: list[Filter] = []
     out: list[Forecast | Filter] = [each for each in every if each.name not in names]
     for each in own:
-        for found, wanted in ((kept, True), (out, False)):
+        for found, wanted in ((wanted_filters, True), (out, False)):
             of = tuple(name for name in each.only_for if (name in names) == wanted)
             if of:
                 found.append(replace(each, only_for=of))
-    return tuple(kept), tuple(out)
+    return tuple(wanted_filters), tuple(out)
 
 
 def _refuse_no_assumption(

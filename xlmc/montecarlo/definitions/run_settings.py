@@ -13,7 +13,7 @@ from operator import attrgetter
 from typing import Any, Final, Literal
 
 from xlmc.engine.engines import ENGINES
-from xlmc.montecarlo.definitions.evidence_ways import EVIDENCE_WAYS
+from xlmc.montecarlo.definitions.evidence_methods import EVIDENCE_METHODS
 from xlmc.montecarlo.definitions.setting_kinds import Kind, Names, Seconds, Switch, Whole, Word
 from xlmc.montecarlo.definitions.stopping import MOST_TRIALS, NO_GOAL, RARE, Stopping
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
@@ -31,7 +31,7 @@ class Settings:
     Attributes:
         trials: how many; at most, where `stopping` has a goal or a time.
         stopping: what else ends the run.
-        evidence: how evidence whose error is no limit is used: one of `EVIDENCE_WAYS`; empty where nothing is said, or
+        evidence: how evidence without a limit is used: one of `EVIDENCE_METHODS`; empty where nothing is said, or
             where a run has no such evidence.
         lognorm: whose `RiskLognorm` is meant, `@RISK` (also where it is empty) or `XLRisk`.
         scenarios: whether the workbook's scenarios are run, too, and compared with it.
@@ -153,7 +153,7 @@ SETTINGS: Final[dict[str, Setting]] = {
             key="evidence",
             heading="Evidence",
             label="Evidence by",
-            kind=Word(lambda: EVIDENCE_WAYS, "{} is not a way to use evidence"),
+            kind=Word(lambda: EVIDENCE_METHODS, "{} is not a way to use evidence"),
             repeat="unlike the workbook",
             options=("--evidence",),
             help="How evidence with a normal or lognormal error is used: rejection: it rejects trials; weights: it"

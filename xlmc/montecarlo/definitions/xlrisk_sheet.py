@@ -63,21 +63,21 @@ class XLRiskSheet:
     hypercube: bool | None = None
     outputs: dict[Cell, tuple[str, tuple[Cell, ...]]] = field(default_factory=dict)
 
-    def settings(self, own: Settings, said: Collection[str], findings: Findings) -> Settings:
+    def settings(self, own: Settings, stated: Collection[str], findings: Findings) -> Settings:
         """The settings with those of the sheet for all that the table `xlmc_settings` does not say.
 
         Args:
             own: of the table.
-            said: what is set there, by plain names.
+            stated: what is set there, by plain names.
             findings: takes the remark where they come from.
         """
         method = None if self.hypercube is None else "lhs" if self.hypercube else "mc"
         found: dict[str, int | str | None] = {"trials": self.trials, "seed": self.seed, "sampling": method}
-        taken = {key: value for key, value in found.items() if value is not None and key not in said}
+        taken = {key: value for key, value in found.items() if value is not None and key not in stated}
         if own.stopping.has_goal:
             taken.pop("trials", None)
         words = [f"{key} {value:,}" if isinstance(value, int) else f"{key} {value}" for key, value in taken.items()]
-        words += [] if "lognorm" in said else ["RiskLognorm's meaning"]
+        words += [] if "lognorm" in stated else ["RiskLognorm's meaning"]
         if words:
             findings.notice(f"{', '.join(words)} are those of the sheet {self.name}, as in XLRisk", self.name)
         return replace(own, **taken, lognorm=own.lognorm or "XLRisk")  # type: ignore[arg-type]  # by key

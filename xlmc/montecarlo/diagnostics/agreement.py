@@ -283,13 +283,13 @@ def _judge(index: int, item: Evidence, found: EvidenceTrials, best: int | None, 
     logs, m = found.log_weights, found.quantities[index]
     others = _weights(np.delete(logs, index, axis=0)) if len(logs) > 1 else np.ones(found.n)
     others = np.where(np.isnan(m), 0.0, others)  # where the quantity is an error nothing can be read
-    kept, law = np.exp(logs[index]), item.law
-    alone, given = _mean(kept), _mean(kept, others)
-    ratio = _ratio(kept, others)
+    chances, law = np.exp(logs[index]), item.law
+    alone, given = _mean(chances), _mean(chances, others)
+    ratio = _ratio(chances, others)
     effective = _effective(others)
     tail = _tail(law, m, others, given)
-    settled = _effective(every) >= _FEWEST and _beyond_all(law, m[every > _HARDLY])
-    verdict = _verdict(law, m[others > 0.0], tail, effective, settled=settled)
+    certain = _effective(every) >= _FEWEST and _beyond_all(law, m[every > _HARDLY])
+    verdict = _verdict(law, m[others > 0.0], tail, effective, certain=certain)
     if verdict is Verdict.INDEPENDENT and len(logs) > 1:
         verdict = _by_ratio(ratio)
     z = law.z(m) if isinstance(law, Bell) else None
@@ -333,29 +333,31 @@ def _mean(values: Floats, weights: Floats | None = None) -> Estimate:
     return Estimate(value, error or (high - low) / (2.0 * _Z95), (low, high), n=values.size)
 
 
-def _ratio(kept: Floats, others: Floats) -> Estimate:
+def _ratio(chances: Floats, others: Floats) -> Estimate:
     """What an item keeps given the others by what it keeps alone."""
-    alone, given = _mean(kept), _mean(kept, others)
+    alone, given = _mean(chances), _mean(chances, others)
     if not (alone.value > 0.0 and given.value >= 0.0):
-        return Estimate(math.nan, n=kept.size)
+        return Estimate(math.nan, n=chances.size)
     if not given.value:
-        return Estimate(0.0, None, n=kept.size)
-    pulls = others * (kept - given.value) / (others.sum() * given.value) - (kept / alone.value - 1.0) / kept.size
+        return Estimate(0.0, None, n=chances.size)
+    pulls = (
+        others * (chances - given.value) / (others.sum() * given.value) - (chances / alone.value - 1.0) / chances.size
+    )
     value = given.value / alone.value
-    return _with_error(value, value * float(np.sqrt(np.sum(pulls * pulls))), kept.size)
+    return _with_error(value, value * float(np.sqrt(np.sum(pulls * pulls))), chances.size)
 
 
-def _joint_ratio(kept: Floats) -> Estimate:
+def _joint_ratio(chances: Floats) -> Estimate:
     """What all items keep together by the product of what each keeps alone; `(k, n)`."""
-    k, n = kept.shape
-    alone, together = kept.mean(axis=1) if n else np.zeros(k), kept.prod(axis=0)
+    k, n = chances.shape
+    alone, together = chances.mean(axis=1) if n else np.zeros(k), chances.prod(axis=0)
     if not alone.all():
         return Estimate(math.nan, n=n)
     joint = float(together.mean())
     value = joint / float(alone.prod())
     if not joint:
         return Estimate(0.0, None, n=n)
-    pulls = together / joint - (kept / alone[:, None]).sum(axis=0) + (k - 1.0)
+    pulls = together / joint - (chances / alone[:, None]).sum(axis=0) + (k - 1.0)
     return _with_error(value, value * float(np.sqrt(np.sum(pulls * pulls))) / n, n)
 
 
@@ -379,7 +381,7 @@ def _tail(law: Law, m: Floats, others: Floats, given: Estimate) -> float:
     return min(below, above)
 
 
-def _verdict(law: Law, m: Floats, tail: float, effective: float, *, settled: bool) -> Verdict:
+def _verdict(law: Law, m: Floats, tail: float, effective: float, *, certain: bool) -> Verdict:
     """The verdict by the chance of such a reading; `INDEPENDENT` where the reading is no surprise.
 
     Args:
@@ -387,7 +389,7 @@ def _verdict(law: Law, m: Floats, tail: float, effective: float, *, settled: boo
         m: the quantity in the trials that the other items keep.
         tail: as `_tail` gives it.
         effective: how many trials these are, in effect.
-        settled: whether the reading lies beyond all trials that all items keep, although these are many in effect.
+        certain: whether the reading lies beyond all trials that all items keep, although these are many in effect.
     """
     if math.isnan(tail) or effective < _FEWEST:
         return Verdict.TOO_FEW
@@ -395,7 +397,7 @@ def _verdict(law: Law, m: Floats, tail: float, effective: float, *, settled: boo
     p = min(1.0, 2.0 * tail)
     if effective >= _BEYOND and _beyond_all(law, m):
         return Verdict.INCONSISTENT
-    if p < INCONSISTENT and (settled or high < INCONSISTENT or effective * INCONSISTENT / 2.0 >= _TELLING):
+    if p < INCONSISTENT and (certain or high < INCONSISTENT or effective * INCONSISTENT / 2.0 >= _TELLING):
         return Verdict.INCONSISTENT
     telling = effective * STRAINED / 2.0 >= _TELLING
     if p < STRAINED:
@@ -484,17 +486,17 @@ def _together(found: Agreement) -> str:
 
 def _conflict(found: Agreement, names: Sequence[str]) -> str:
     shown = [each for each in found.items if each.verdict is Verdict.INCONSISTENT]
-    said = f"the evidence is inconsistent: {list_of(names)} {_are(names)} out of reach of the model"
+    message = f"the evidence is inconsistent: {list_of(names)} {_are(names)} out of reach of the model"
     if len(found.items) > 1:
-        said += " given the other evidence"
+        message += " given the other evidence"
         if not found.together.value:
             shown = list(found.items)
             every = list_of([repr(each.name) for each in shown])
-            said = f"the evidence is inconsistent: no trial agrees with {every} together"
+            message = f"the evidence is inconsistent: no trial agrees with {every} together"
     alone = list_of([f"{each.alone.value * 100.0:.2g} %" for each in shown])
     they = "it keeps" if len(shown) == 1 else "they keep"
     return (
-        f"{said}. Alone {they} {alone} of the trials that pass the filters. Either a measurement is wrong by more "
+        f"{message}. Alone {they} {alone} of the trials that pass the filters. Either a measurement is wrong by more "
         "than its stated error, or a range of an assumption is too narrow, or the model does not apply (second impact, "
         "tyre forces, a pulse that was cut off)"
     )

@@ -51,7 +51,7 @@ def errors_at_base(model: CompiledModel) -> BaseErrors:
     definitions = model.definitions
     if any(a.base is None and isinstance(a.cell, InFormula) for a in model.live):
         return BaseErrors({}, {}, answers=False)
-    lowering = _held(model, {})
+    lowering = _frozen_at(model, {})
     found, needs = dict(_errors(lowering)), lowering.graph.needs
     round_ = lowering.graph.circles  # whose cells all have their error from each other
     wrong = {cell: [need for need in needs[cell] if need in found] for cell in found}
@@ -77,7 +77,7 @@ def error_roots(model: CompiledModel, cells: Sequence[Cell], drawn: Sequence[Map
     found = {}
     for cell in dict.fromkeys(cells):
         trial = next((trial for draws in drawn if (trial := _first_error(model, cell, draws)) is not None), None)
-        root = None if trial is None else _root(_held(model, trial), cell)
+        root = None if trial is None else _root(_frozen_at(model, trial), cell)
         if root is not None:
             found[cell] = root
     return found
@@ -109,20 +109,20 @@ def _root(lowering: Lowering, cell: Cell) -> Root | None:
     return cell, code
 
 
-def _held(model: CompiledModel, trial: Mapping[str, float]) -> Lowering:
+def _frozen_at(model: CompiledModel, trial: Mapping[str, float]) -> Lowering:
     """The nodes of all that is asked for, every assumption held: at its draw in a trial, or at its base value."""
     return lower_needed(model.workbook, _without_draws(model.definitions, trial), one_trial=True)[1]
 
 
 def _without_draws(definitions: Definitions, trial: Mapping[str, float]) -> Definitions:
-    def held(assumption: Assumption) -> Assumption:
+    def frozen_at(assumption: Assumption) -> Assumption:
         return replace(assumption, frozen=True, base=trial.get(assumption.name, assumption.base))
 
     cells = [(check.name, check.cell) for check in definitions.checks]
     cells += [(a.name, cell) for a in definitions.assumptions if not a.frozen for cell in a.cells]
     return replace(
         definitions,
-        assumptions=tuple(held(a) for a in definitions.assumptions),
+        assumptions=tuple(frozen_at(a) for a in definitions.assumptions),
         forecasts=(*definitions.forecasts, *(Forecast(name, cell, cell) for name, cell in cells)),
         correlations=(),
         checks=(),

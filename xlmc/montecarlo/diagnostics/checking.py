@@ -78,14 +78,14 @@ class CheckResult:
         accepted: trials of the run.
         trials: accepted trials that it was evaluated in, from the first on.
         failed: how many of them failed it.
-        held: what its cell held in the first of these, in words; empty where none failed.
+        value_text: what its cell held in the first of these, in words; empty where none failed.
     """
 
     base: BaseCheck
     accepted: int
     trials: int
     failed: int
-    held: str
+    value_text: str
 
     @property
     def name(self) -> str:
@@ -121,10 +121,10 @@ class CheckResult:
         found = [] if self.holds in (None, True) else [self.base.fault]
         if self.failed > FAILING_SHARE * self.trials:
             check = self.base.definition
-            held = "" if self.held == "FALSE" else f", first with {self.held}"
+            value_text = "" if self.value_text == "FALSE" else f", first with {self.value_text}"
             found.append(
                 f"{self.failed:,} of {self.looked_at} ({self.share.value:.2%}) fail the check "
-                f"{check.name!r} ({check.cell}{held}){meaning(check)}"
+                f"{check.name!r} ({check.cell}{value_text}){meaning(check)}"
             )
         return found
 
@@ -145,7 +145,7 @@ def base_checks(model: CompiledModel) -> tuple[BaseCheck, ...]:
     if known is None:
         return tuple(BaseCheck(check, None) for check in model.checks)
     columns = model.check_program().evaluator(1).filters(known, 1)
-    return tuple(BaseCheck(check, _held(column, 0)) for check, column in zip(model.checks, columns, strict=True))
+    return tuple(BaseCheck(check, _value_text(column, 0)) for check, column in zip(model.checks, columns, strict=True))
 
 
 def check_results(model: CompiledModel, inputs: Mapping[str, Floats], accepted: int) -> tuple[CheckResult, ...]:
@@ -160,10 +160,10 @@ def check_results(model: CompiledModel, inputs: Mapping[str, Floats], accepted: 
         return ()
     draws = {a.name: inputs[a.name] for a in model.checked}
     trials = min(accepted, MOST_CHECKED, *(values.size for values in draws.values()))
-    failed, held = _failures(model, draws, trials)
+    failed, value_text = _failures(model, draws, trials)
     return tuple(
         CheckResult(base, accepted, trials, int(count), first)
-        for base, count, first in zip(base_checks(model), failed, held, strict=True)
+        for base, count, first in zip(base_checks(model), failed, value_text, strict=True)
     )
 
 
@@ -188,7 +188,7 @@ def _counted(checks: int) -> str:
 
 def _failures(model: CompiledModel, draws: Mapping[str, Floats], trials: int) -> tuple[NDArray[np.int64], list[str]]:
     """How many trials fail each check, and what the first of them holds."""
-    failed, held = np.zeros(len(model.checks), np.int64), [""] * len(model.checks)
+    failed, value_text = np.zeros(len(model.checks), np.int64), [""] * len(model.checks)
     program = model.check_program()
     size = min(_BLOCK, program.largest_block)
     evaluator = program.evaluator(size)
@@ -196,9 +196,9 @@ def _failures(model: CompiledModel, draws: Mapping[str, Floats], trials: int) ->
         for index, column in enumerate(evaluator.filters(block, part.stop - part.start)):
             fails = np.flatnonzero(_fails(column))
             failed[index] += fails.size
-            if fails.size and not held[index]:
-                held[index] = _held(column, int(fails[0]))
-    return failed, held
+            if fails.size and not value_text[index]:
+                value_text[index] = _value_text(column, int(fails[0]))
+    return failed, value_text
 
 
 def _fails(column: Column) -> NDArray[np.bool_]:
@@ -206,7 +206,7 @@ def _fails(column: Column) -> NDArray[np.bool_]:
     return fails if column.codes is None else np.asarray(fails | (column.codes > 0))
 
 
-def _held(column: Column, trial: int) -> str:
+def _value_text(column: Column, trial: int) -> str:
     """What the cell holds in a trial: `TRUE`, `FALSE`, `0.35, neither TRUE nor FALSE`, `#DIV/0!`, `blank` and so on."""
     code = 0 if column.codes is None else int(column.codes[trial])
     if code:

@@ -98,20 +98,20 @@ def _lost(
     if not lost and not blurred and not still:
         return []
     dust = term_sizes(model.lowering.dag, needed, plain)
-    told = [
+    sentences = [
         f"the digits of {name!r} cannot be trusted: rounding alone moves it by more than a thousandth of its central "
         f"range in {np.count_nonzero(where):,} of {n:,} accepted trials (xlmc stability says where)"
         for name, where in lost.items()
         if _is_confirmed(model, nodes[name], draws, numbers_of(plain[nodes[name]], n), where, DUST * dust[nodes[name]])
     ]
-    told += [
+    sentences += [
         f"the digits of {name!r} cannot be trusted: it shows {shown:.6g} in all trials, and with 50 digits it is "
         f"{exact:.6g} in the first (xlmc stability says where)"
         for name, node in still.items()
         for shown, exact in _absorbed(model, node, draws, numbers_of(plain[node], n), DUST * dust[node])
     ]
-    others = {name: node for name, node in blurred.items() if not any(repr(name) in sentence for sentence in told)}
-    return told + [
+    others = {name: node for name, node in blurred.items() if not any(repr(name) in sentence for sentence in sentences)}
+    return sentences + [
         f"the digits of {name!r} cannot be trusted: its spread comes from rounding. In the median trial rounding moves "
         f"it by {error:.1g}, and its true central range is {width:.1g} wide (xlmc stability says where)"
         for name, node in others.items()

@@ -110,11 +110,11 @@ def evidence_trials(model: CompiledModel, seed: int, trials: int) -> EvidenceTri
         start, n = drawn, min(block, (least if drawn < least else most) - drawn)
         drawn += n
         draws = sampler.draw(start)
-        kept = np.ones(block, bool)
+        accepted = np.ones(block, bool)
         for column in evaluator.filters(draws, block):
-            kept &= ~_fails(column)
-        kept[n:] = False
-        survivors = np.flatnonzero(kept)
+            accepted &= ~_fails(column)
+        accepted[n:] = False
+        survivors = np.flatnonzero(accepted)
         past += survivors.size
         if not survivors.size:
             continue

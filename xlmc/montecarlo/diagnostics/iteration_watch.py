@@ -37,7 +37,7 @@ def unsettled_notices(model: CompiledModel, drawn: Mapping[str, Floats]) -> list
         return []
     draws = {name: values[:_TRIALS] for name, values in drawn.items()}
     n = next((values.size for values in draws.values()), 0)
-    evaluator = TrackingEvaluator(model.lowering.dag, [circle.settled for circle in circles], [])
+    evaluator = TrackingEvaluator(model.lowering.dag, [circle.converged for circle in circles], [])
     counts = np.zeros(len(circles), np.int64)
     for part, block in portions(draws, n, _BLOCK):
         for index, column in enumerate(evaluator.filters(block, part.stop - part.start)):

@@ -158,8 +158,8 @@ def _statistic(result: ForecastResult, asked: ResultCall, number: float | None) 
         case "certainty from above":
             return result.probability_above(number).value
         case "trial":
-            held = number.is_integer() and 1 <= number <= result.values.size
-            return float(result.values[int(number) - 1]) if held else None
+            exists = number.is_integer() and 1 <= number <= result.values.size
+            return float(result.values[int(number) - 1]) if exists else None
         case "confidence":
             ends = result.mean_interval(number) if 0 < number < 1 else None
             return None if ends is None else ends[asked.upper]

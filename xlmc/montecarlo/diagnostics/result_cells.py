@@ -56,13 +56,12 @@ class ShownResults:
         if not self.missing:
             return ""
         reasons = dict.fromkeys(self.missing.values())
-        told = [f"{areas_text(c for c, why in self.missing.items() if why == each)} ({each})" for each in reasons]
+        listed = [f"{areas_text(c for c, why in self.missing.items() if why == each)} ({each})" for each in reasons]
         count = len(self.missing)
         cells = "1 cell of the workbook depends" if count == 1 else f"{count:,} cells of the workbook depend"
         them = "it shows" if count == 1 else "they show"
-        return (
-            f"{cells} on the run and cannot be computed, so that {them} #N/A in the result workbook: {'; '.join(told)}"
-        )
+        faults = "; ".join(listed)
+        return f"{cells} on the run and cannot be computed, so that {them} #N/A in the result workbook: {faults}"
 
 
 def filled_sheets(workbook: Workbook, shown: ShownResults) -> dict[str, bytes]:
@@ -321,10 +320,10 @@ def _innermost(tree: ir.Expression) -> list[ir.Call]:
 class _Watching(Lowering):
     """A lowering that remembers which cells each formula asked for while it was lowered."""
 
-    def __init__(self, graph: Graph, held: Mapping[Cell, float]) -> None:
+    def __init__(self, graph: Graph, frozen: Mapping[Cell, float]) -> None:
         self.looked_at: dict[Cell, set[Cell]] = {}
         self._asking: set[Cell] = set()
-        super().__init__(graph, {}, held, audit=True)
+        super().__init__(graph, {}, frozen, audit=True)
 
     def awaits(self, cell: Cell) -> bool:
         self._asking.add(cell)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.definitions import Filter
-from xlmc.montecarlo.definitions.evidence_ways import EVIDENCE_WAYS
+from xlmc.montecarlo.definitions.evidence_methods import EVIDENCE_METHODS
 from xlmc.montecarlo.diagnostics.evidence_trials import evidence_trials
 from xlmc.montecarlo.loop.blocks import portions
 from xlmc.montecarlo.model.draw_binding import parameter_target
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Settings
     from xlmc.montecarlo.model.model import CompiledModel
 
-__all__ = ["Weighting", "chosen_way", "weighing", "weighting_of"]
+__all__ = ["Weighting", "choose_method", "weighing", "weighting_of"]
 
 FIRST_TRIALS: Final = 1 << 16
 """Trials of the run that the rule looks at."""
@@ -71,7 +71,7 @@ class Weighting:
         )
 
 
-def chosen_way(model: CompiledModel, settings: Settings) -> str:
+def choose_method(model: CompiledModel, settings: Settings) -> str:
     """How a run uses evidence whose error is no limit: `rejection` or `weights`; empty where there is none.
 
     By itself it takes weights where the first trials say that rejection would keep fewer than a thousand in the whole
@@ -81,7 +81,7 @@ def chosen_way(model: CompiledModel, settings: Settings) -> str:
     Raises:
         SimulationError: weights were asked for in such a run.
     """
-    asked = settings.evidence or EVIDENCE_WAYS[0]
+    asked = settings.evidence or EVIDENCE_METHODS[0]
     if not model.chances:
         return ""
     goal = settings.stopping.goal is not None or settings.scenarios
@@ -97,9 +97,9 @@ def chosen_way(model: CompiledModel, settings: Settings) -> str:
     if largest == -np.inf:
         return "rejection"
     shares = np.exp(logs - largest)
-    kept, effective = float(np.exp(logs).sum()), float(shares.sum()) ** 2 / float(np.sum(shares * shares))
-    few = kept * settings.trials / found.trials < FEWEST_KEPT
-    return "weights" if few and effective >= GAIN * kept else "rejection"
+    accepted, effective = float(np.exp(logs).sum()), float(shares.sum()) ** 2 / float(np.sum(shares * shares))
+    few = accepted * settings.trials / found.trials < FEWEST_KEPT
+    return "weights" if few and effective >= GAIN * accepted else "rejection"
 
 
 def weighing(model: CompiledModel) -> CompiledModel:

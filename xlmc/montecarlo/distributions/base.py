@@ -133,13 +133,13 @@ class Family(ABC):
     def valid(self, *params: Values, **named: Values) -> bool | NDArray[np.bool_]:
         """Where the parameters keep every rule: a logical, or one for each trial, `(n,)`."""
         values = self.bind(params, named)
-        kept: Any = True
+        valid_here: Any = True
         for value in values:
-            kept = kept & (value >= -LARGEST) & (value <= LARGEST)
+            valid_here = valid_here & (value >= -LARGEST) & (value <= LARGEST)
         for rule in self.rules:
-            kept = kept & rule.holds(*values)
+            valid_here = valid_here & rule.holds(*values)
         points = self.point(*values)
-        return kept if points is None else kept | np.isfinite(points)  # type: ignore[no-any-return]  # as the values are
+        return valid_here if points is None else valid_here | np.isfinite(points)  # type: ignore[no-any-return]  # as the values are
 
     def checked(self, *params: Values, **named: Values) -> Member:
         """The member of the family that has these parameters: they are checked here, and by none of its functions."""
@@ -316,16 +316,16 @@ class Member:
         return self._evaluate(self.family.percentile, _open(self.family, _own_copy(p, self.values)))
 
     def cdf(self, x: Values) -> Array:
-        return self._evaluate(self.family._cdf, x, said=lambda point: 1.0 * np.greater_equal(x, point))
+        return self._evaluate(self.family._cdf, x, of_point=lambda point: 1.0 * np.greater_equal(x, point))
 
     def sf(self, x: Values) -> Array:
-        return self._evaluate(self.family._sf, x, said=lambda point: 1.0 * np.less_equal(x, point))
+        return self._evaluate(self.family._sf, x, of_point=lambda point: 1.0 * np.less_equal(x, point))
 
     def mean(self) -> Array:
         return self._evaluate(self.family._mean)
 
     def variance(self) -> Array:
-        return self._evaluate(self.family._variance, said=lambda point: 0.0 * point)
+        return self._evaluate(self.family._variance, of_point=lambda point: 0.0 * point)
 
     def support(self) -> tuple[Array, Array]:
         return (
@@ -333,15 +333,15 @@ class Member:
             self._evaluate(lambda *values: self.family._support(*values)[1]),
         )
 
-    def _evaluate(self, hook: Callable[..., Any], *at: Values, said: Callable[[Any], Any] = np.asarray) -> Array:
-        """What the hook gives; where the parameters leave one value only, what is `said` of that (`Family.point`)."""
+    def _evaluate(self, hook: Callable[..., Any], *at: Values, of_point: Callable[[Any], Any] = np.asarray) -> Array:
+        """Return what the hook gives; if the parameters leave one value only, `of_point` of it (`Family.point`)."""
         point = self.family.point(*self.values)
         if point is not None and np.ndim(point) == 0:
             shape = np.broadcast_shapes(*map(np.shape, at))
-            return np.array(np.broadcast_to(said(point), shape), dtype=float)
+            return np.array(np.broadcast_to(of_point(point), shape), dtype=float)
         with np.errstate(all="ignore"):
             result = self._masked(hook(*at, *self.values))
-        return result if point is None else np.where(np.isnan(point), result, said(point))
+        return result if point is None else np.where(np.isnan(point), result, of_point(point))
 
     def _masked(self, result: Values) -> Array:
         if self.invalid is not None:

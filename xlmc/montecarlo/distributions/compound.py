@@ -225,10 +225,10 @@ class Compound(Family):
         """Where the parameters keep every rule."""
         values = self.bind(params, named)
         counts, amounts, _, limit = self._split(values)
-        kept: Any = self.count.valid(counts) & self.amount.valid(amounts) & np.greater_equal(limit, 0)
+        valid_here: Any = self.count.valid(counts) & self.amount.valid(amounts) & np.greater_equal(limit, 0)
         for value in values:
-            kept = kept & (value >= -LARGEST) & (value <= LARGEST)
-        return kept
+            valid_here = valid_here & (value >= -LARGEST) & (value <= LARGEST)
+        return valid_here
 
     def _ppf(self, u: Array, *values: Values) -> Array:
         given, amounts, deductible, limit = self._split(values)

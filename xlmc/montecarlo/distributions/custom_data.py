@@ -121,10 +121,10 @@ def custom_pieces(rows: Sequence[Row], *, cumulative: bool = False) -> list[Piec
     for (number, row), weight in zip(_filled(rows), weights, strict=True):
         found.append(_Read(_pieces_of(row, number, weight, before), number))
         before = row[0] if row[1] is None else row[1]
-    kept = [read for read, weight in zip(found, weights, strict=True) if weight > 0]
-    _refuse_many(sum(len(read.pieces) for read in kept))
-    _refuse_overlaps(kept)
-    return [piece for read in sorted(kept, key=lambda read: (read.low, read.high)) for piece in read.pieces]
+    weighted = [read for read, weight in zip(found, weights, strict=True) if weight > 0]
+    _refuse_many(sum(len(read.pieces) for read in weighted))
+    _refuse_overlaps(weighted)
+    return [piece for read in sorted(weighted, key=lambda read: (read.low, read.high)) for piece in read.pieces]
 
 
 def _refuse_extreme(rows: Sequence[Row]) -> None:

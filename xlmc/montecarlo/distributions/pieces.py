@@ -54,13 +54,13 @@ class Pieces(Family):
     open_below = True  # u = 0 stands for its half step, so that it finds the first piece with a weight
 
     def __init__(self, pieces: Sequence[Piece] = ()) -> None:
-        kept = [piece for piece in pieces if piece.weight > 0]
-        if kept:
-            self._hold(kept)
+        weighted = [piece for piece in pieces if piece.weight > 0]
+        if weighted:
+            self._set_arrays(weighted)
 
-    def _hold(self, kept: Sequence[Piece]) -> None:
+    def _set_arrays(self, weighted: Sequence[Piece]) -> None:
         self.low, self.high, weights, left, right = (
-            np.array([getattr(piece, field) for piece in kept], dtype=float)
+            np.array([getattr(piece, field) for piece in weighted], dtype=float)
             for field in ("low", "high", "weight", "left", "right")
         )
         whole = weights.sum()

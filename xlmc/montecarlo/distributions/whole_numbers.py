@@ -199,10 +199,10 @@ def smallest(holds: Holds, guess: Array, low: Array, high: Array) -> Array:
     open_ = np.flatnonzero(np.isfinite(k) & (above - below > 1))
     while open_.size:
         here = k[open_]
-        held = holds(here, open_)
-        above[open_] = np.where(held, here, above[open_])
-        below[open_] = np.where(held, below[open_], here)
-        onward = np.where(held, here - step[open_], here + step[open_])
+        satisfied = holds(here, open_)
+        above[open_] = np.where(satisfied, here, above[open_])
+        below[open_] = np.where(satisfied, below[open_], here)
+        onward = np.where(satisfied, here - step[open_], here + step[open_])
         within = (onward > below[open_]) & (onward < above[open_])
         k[open_] = np.where(within, onward, np.floor((below[open_] + above[open_]) / 2))
         step[open_] *= 2

@@ -19,12 +19,12 @@ from xlmc.engine.engine import (
     DISCARDED_FIRST,
     TEXT_RESULT,
     UNDECIDED_RESULT,
+    AcceptedBlock,
+    BlockMemory,
     BlockRunner,
     Column,
     Evaluator,
-    KeptBlock,
     Linear,
-    Room,
     RunsWholeBlocks,
 )
 from xlmc.errors import ErrorCode
@@ -185,13 +185,13 @@ class ModelRunner:
         """See `Runner`."""
         return self.borrow(task).owned()
 
-    def borrow(self, task: Task, room: Callable[[], Room] | None = None) -> Block:
+    def borrow(self, task: Task, block_memory: Callable[[], BlockMemory] | None = None) -> Block:
         """The same as `run` gives, in memory that the next block overwrites: copy what you keep.
 
-        Where all trials are kept, the columns may be written to what `room` gives.
+        Where all trials are kept, the columns may be written to what `block_memory` gives.
         """
         start, trials = task.start, task.trials
-        whole = None if self._run_whole is None else self._run_whole(start, trials, task.inputs, room)
+        whole = None if self._run_whole is None else self._run_whole(start, trials, task.inputs, block_memory)
         if whole is not None:
             return _block_of(whole, self._prior(whole.drawn, whole.draws, whole.accepted.size, task), task.trials)
         draws = self._sampler.draw(start)
@@ -203,8 +203,8 @@ class ModelRunner:
         forecasts = self._forecasts(survivors)
         used = _spoiled([*invalid.values()], columns, survivors, forecasts, self.block)
         if used.any():
-            kept = ~used[survivors]
-            survivors, forecasts = survivors[kept], [_part(column, kept) for column in forecasts]
+            accepted_block = ~used[survivors]
+            survivors, forecasts = survivors[accepted_block], [_part(column, accepted_block) for column in forecasts]
         survivors = survivors[: np.searchsorted(survivors, trials)]
         lost = undecided | used[:trials]
         counted = {name: np.count_nonzero(bad[:trials] & used[:trials]) for name, bad in invalid.items()}
@@ -227,20 +227,20 @@ class ModelRunner:
         )
 
     def _prior(
-        self, drawn: Mapping[str, Floats] | None, kept: dict[str, Floats], accepted: int, task: Task
+        self, drawn: Mapping[str, Floats] | None, accepted_block: dict[str, Floats], accepted: int, task: Task
     ) -> dict[str, Floats] | None:
         """The draws of all trials of a block, if they are asked for: those that were kept, where these are all.
 
         Args:
             drawn: the block's draws; where it is None they are drawn once more.
-            kept: those of the accepted trials; empty where they were not asked for.
+            accepted_block: those of the accepted trials; empty where they were not asked for.
             accepted: how many trials are accepted.
             task: what was asked for.
         """
         if not task.prior:
             return None
         if task.inputs and accepted == task.trials:
-            return kept
+            return accepted_block
         drawn = self._sampler.draw(task.start) if drawn is None else drawn
         return {name: values[: task.trials] for name, values in drawn.items()}
 
@@ -251,12 +251,25 @@ class ModelRunner:
         return [Column(np.empty(0)) for _ in range(self._width)]
 
 
-def _block_of(kept: KeptBlock, prior: dict[str, Floats] | None, trials: int) -> Block:
+def _block_of(accepted_block: AcceptedBlock, prior: dict[str, Floats] | None, trials: int) -> Block:
     """A block of so many trials without errors; `prior` are the draws of all, if they are asked for."""
-    faults: list[Counter[str]] = [Counter() for _ in kept.forecasts]
-    errors: list[Counter[str]] = [Counter() for _ in kept.only]
-    tally = FilterTally(np.diagonal(kept.together).copy(), kept.only, kept.together, errors, 0)
-    return Block(trials, kept.accepted, kept.draws, kept.forecasts, faults, tally, Counter(), 0, prior, kept.discards)
+    faults: list[Counter[str]] = [Counter() for _ in accepted_block.forecasts]
+    errors: list[Counter[str]] = [Counter() for _ in accepted_block.only]
+    tally = FilterTally(
+        np.diagonal(accepted_block.together).copy(), accepted_block.only, accepted_block.together, errors, 0
+    )
+    return Block(
+        trials,
+        accepted_block.accepted,
+        accepted_block.draws,
+        accepted_block.forecasts,
+        faults,
+        tally,
+        Counter(),
+        0,
+        prior,
+        accepted_block.discards,
+    )
 
 
 def _any(masks: Sequence[Bools], n: int) -> Bools:
@@ -342,8 +355,8 @@ def _any_error(columns: Sequence[Column], n: int) -> Bools:
     return _any([(each > 0) & (each < DISCARDED_FIRST) for each in codes], n)
 
 
-def _part(column: Column, kept: Bools) -> Column:
-    return Column(column.values[kept], None if column.codes is None else column.codes[kept])
+def _part(column: Column, accepted_block: Bools) -> Column:
+    return Column(column.values[accepted_block], None if column.codes is None else column.codes[accepted_block])
 
 
 def _faults(column: Column, trials: int) -> Counter[str]:

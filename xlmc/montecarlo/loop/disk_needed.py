@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import SimulationError
-from xlmc.montecarlo.columns import column_store, room_on_disk
+from xlmc.montecarlo.columns import column_store, free_disk
 from xlmc.montecarlo.loop.blocks import Task
 
 if TYPE_CHECKING:
@@ -34,13 +34,13 @@ class DiskNeeded:
     """About how much a run writes.
 
     Attributes:
-        kept: numbers that the run keeps: of each accepted trial its number, the forecasts, and the draws kept.
+        stored: numbers that the run keeps: of each accepted trial its number, the forecasts, and the draws kept.
         sorted: numbers that the statistics write besides: the forecasts in ascending order, and one while it is merged.
         folder: where.
         free: bytes on that disk.
     """
 
-    kept: int
+    stored: int
     sorted: int
     folder: Path
     free: int
@@ -48,12 +48,13 @@ class DiskNeeded:
     @property
     def bytes(self) -> int:
         """The bytes that all these numbers take."""
-        return NUMBER * (self.kept + self.sorted)
+        return NUMBER * (self.stored + self.sorted)
 
     def sentence(self) -> str:
         """What a person reads before the run starts."""
         return (
-            f"This run keeps about {self.kept / 1e6:,.0f} million numbers and sorts {self.sorted / 1e6:,.0f} million: "
+            f"This run keeps about {self.stored / 1e6:,.0f} million numbers "
+            f"and sorts {self.sorted / 1e6:,.0f} million: "
             f"about {_gigabytes(self.bytes)} on disk in {self.folder} (free: {_gigabytes(self.free)})."
         )
 
@@ -97,18 +98,18 @@ def disk_needed(
     rows = min(trials, trials if stopping.accepted is None else stopping.accepted)
     forecasts, inputs = len(model.forecasts), len(model.live)
 
-    def kept(accepted: int) -> int:
+    def stored(accepted: int) -> int:
         return accepted * (1 + forecasts) + min(accepted, most_inputs) * inputs
 
-    if NUMBER * kept(rows) <= column_store.IN_MEMORY:
+    if NUMBER * stored(rows) <= column_store.IN_MEMORY:
         return None
     if model.filters:
         sampled, run = min(SAMPLED, trials), runner().run
         tasks = (Task(start, min(block, sampled - start), False, False) for start in range(0, sampled, block))
         rows = min(rows, round(sum(run(task).accepted.size for task in tasks) / sampled * trials))
-    if NUMBER * kept(rows) <= column_store.IN_MEMORY:
+    if NUMBER * stored(rows) <= column_store.IN_MEMORY:
         return None
-    return DiskNeeded(kept(rows), rows * (forecasts + 1), *room_on_disk())
+    return DiskNeeded(stored(rows), rows * (forecasts + 1), *free_disk())
 
 
 def _gigabytes(count: int) -> str:

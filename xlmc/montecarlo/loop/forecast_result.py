@@ -132,12 +132,12 @@ class ForecastResult:
         return replace(
             found,
             trials=int(self.values.size),
-            median=self._where_told(found.median, 0.5),
-            percentiles={key: self._where_told(each, key / 100.0) for key, each in found.percentiles.items()},
-            central=(self._where_told(low, tail), self._where_told(high, tail)),
+            median=self._if_known(found.median, 0.5),
+            percentiles={key: self._if_known(each, key / 100.0) for key, each in found.percentiles.items()},
+            central=(self._if_known(low, tail), self._if_known(high, tail)),
         )
 
-    def _where_told(self, found: Estimate, share: float) -> Estimate:
+    def _if_known(self, found: Estimate, share: float) -> Estimate:
         """A quantile; nan where trials are weighted and too few lie beyond it in effect."""
         few = self.sample.w is not None and self.sample.effective * min(share, 1.0 - share) < LEAST_BEYOND
         return Estimate(math.nan, n=found.n) if few else found
@@ -148,7 +148,7 @@ class ForecastResult:
 
     @property
     def median(self) -> Estimate:
-        return self._where_told(statistics.median(self.sample), 0.5)
+        return self._if_known(statistics.median(self.sample), 0.5)
 
     @property
     def standard_deviation(self) -> Estimate:
@@ -188,7 +188,7 @@ class ForecastResult:
         """
         share = self.definition.central if share is None else _number(share, "a share", 1.0)
         low, high = statistics.central_interval(self.sample, share)
-        return self._where_told(low, (1.0 - share) / 2.0), self._where_told(high, (1.0 - share) / 2.0)
+        return self._if_known(low, (1.0 - share) / 2.0), self._if_known(high, (1.0 - share) / 2.0)
 
     @cached_property
     def certainty(self) -> Estimate | None:

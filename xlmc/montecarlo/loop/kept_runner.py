@@ -111,7 +111,7 @@ def _targets(filter_: Filter) -> tuple[Target, ...]:
 
 
 @dataclass(slots=True)
-class _Kept:
+class _Column:
     """The draws of an assumption in a block, `(block,)`, and how they were drawn."""
 
     draw: Draw
@@ -126,7 +126,7 @@ class _Draws:
 
     def __init__(self, seed: int, block: int, trials: int) -> None:
         self._seed, self._block, self._trials = seed, block, trials
-        self._columns: dict[tuple[str, int], _Kept] = {}
+        self._columns: dict[tuple[str, int], _Column] = {}
         self._versions = 0
         self._draws: tuple[Draw, ...] = ()
         self._whole: Sampler | None = None
@@ -153,8 +153,10 @@ class _Draws:
         if self._whole is not None:
             self.known = None
             return self._whole.draw(start)
-        kept = self._columns
-        other = tuple(d for d in self._draws if (d.name, start) not in kept or kept[d.name, start].draw != d)
+        stored_columns = self._columns
+        other = tuple(
+            d for d in self._draws if (d.name, start) not in stored_columns or stored_columns[d.name, start].draw != d
+        )
         if other:
             if self._some is None or self._some[0] != other:
                 self._some = other, Sampler(self._seed, [DrawStage(other)], (), (), self._block)
@@ -162,8 +164,8 @@ class _Draws:
                 self._versions += 1
                 own = values.copy()
                 own.flags.writeable = False
-                kept[draw.name, start] = _Kept(draw, own, self._versions)
-        found = [kept[draw.name, start] for draw in self._draws]
+                stored_columns[draw.name, start] = _Column(draw, own, self._versions)
+        found = [stored_columns[draw.name, start] for draw in self._draws]
         self.known = start, tuple(each.version for each in found)
         return {each.draw.name: each.values for each in found}
 
@@ -207,9 +209,9 @@ class _MovedEvaluator:
         known = self._draws.known
         if known is None:
             return self._evaluator.filters(inputs, n)
-        kept = self._columns.get(known[0])
-        if kept is not None and kept[0] == known:
-            return kept[1]
+        stored_columns = self._columns.get(known[0])
+        if stored_columns is not None and stored_columns[0] == known:
+            return stored_columns[1]
         columns = self._evaluator.filters(inputs, n)
         if self._last.get(known[0]) == known:
             columns = [_owned(column) for column in columns]

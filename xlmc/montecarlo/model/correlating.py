@@ -67,25 +67,25 @@ def copula_groups(copulas: Sequence[Copula], drawn: Collection[str]) -> list[Cor
     """
     groups = []
     for copula in copulas:
-        kept = [i for i, name in enumerate(copula.names) if name in drawn]
-        if len(kept) > 1:
-            names = tuple(copula.names[i] for i in kept)
-            groups.append(CorrelatedGroup(names, _joining(copula, kept), copula.row))
+        drawn_indices = [i for i, name in enumerate(copula.names) if name in drawn]
+        if len(drawn_indices) > 1:
+            names = tuple(copula.names[i] for i in drawn_indices)
+            groups.append(CorrelatedGroup(names, _joining(copula, drawn_indices), copula.row))
     return groups
 
 
-def _joining(copula: Copula, kept: Sequence[int]) -> Joining:
+def _joining(copula: Copula, drawn_indices: Sequence[int]) -> Joining:
     if copula.trials is not None:
-        return SameTrials(copula.trials[list(kept)])
+        return SameTrials(copula.trials[list(drawn_indices)])
     if copula.kind in ("Gaussian", "t"):
-        matrix = np.array(copula.matrix)[np.ix_(kept, kept)]
+        matrix = np.array(copula.matrix)[np.ix_(drawn_indices, drawn_indices)]
         if copula.parameter is None:
             return GaussianCopula(6 / np.pi * np.arcsin(matrix / 2))
         return StudentTCopula(matrix, copula.parameter)
     assert copula.parameter is not None
     families: dict[str, Callable[[int, float], Joining]] = {"Clayton": Clayton, "Gumbel": Gumbel, "Frank": Frank}
-    joined = families[copula.kind](len(kept), copula.parameter)
-    turned = [copula.turned[i] for i in kept]
+    joined = families[copula.kind](len(drawn_indices), copula.parameter)
+    turned = [copula.turned[i] for i in drawn_indices]
     return Reflected(joined, turned) if any(turned) else joined
 
 
@@ -183,7 +183,7 @@ def _repair(group: CorrelatedGroup, asked: dict[frozenset[str], Correlation]) ->
         row_text = "in no row, which counts as 0" if row is None else str(row.row)
         changes.append((-abs(after - before), f"{pair} ({row_text})"))
     changes.sort()
-    told = [text for change, text in changes if -change >= CHANGED] or [changes[0][1]]
+    reported = [text for change, text in changes if -change >= CHANGED] or [changes[0][1]]
     rows = [row.row for pair, row in asked.items() if pair <= set(group.names)]
     never = np.linalg.eigvalsh(group.copula.wanted)[0] < -_ROUNDING
     why = (
@@ -194,7 +194,7 @@ def _repair(group: CorrelatedGroup, asked: dict[frozenset[str], Correlation]) ->
     )
     if any(row.weight for row in asked.values() if {row.first, row.second} <= set(group.names)):
         why += ", as their adjustment weights say"
-    message = f"{why}; the largest change is {-changes[0][0]:.2g}: {'; '.join(told)}"
+    message = f"{why}; the largest change is {-changes[0][0]:.2g}: {'; '.join(reported)}"
     return Notice(message, rows[0])
 
 

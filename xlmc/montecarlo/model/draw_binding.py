@@ -153,9 +153,9 @@ def _lower_fixed(workbook: Workbook, definitions: Definitions, cells: Collection
     """Cells of definitions that must hold numbers, lowered: `_fold_cell` finds the number, or that it varies."""
     assumptions = definitions.assumptions
     drawn = {a.cell: a.name for a in assumptions if not a.frozen}
-    held = {a.cell: a.base for a in assumptions if a.frozen and a.base is not None}
+    frozen = {a.cell: a.base for a in assumptions if a.frozen and a.base is not None}
     resolver = Resolver(workbook, [a.cell for a in assumptions], rewritten=definitions.rewritten)
-    return lower_cells(resolver, cells, drawn, held)
+    return lower_cells(resolver, cells, drawn, frozen)
 
 
 def _with_evidence_numbers(filter_: Filter, lowering: Lowering) -> Filter:
@@ -254,8 +254,8 @@ class _Own:
         """What the cell is with the assumption at its base value; the cell where another assumption reaches it."""
         assumptions, own = self._definitions.assumptions, self._assumption.cell
         drawn = {a.cell: a.name for a in assumptions if not a.frozen and a.cell != own}
-        held = {a.cell: a.base for a in assumptions if a.cell not in drawn and a.base is not None}
-        return _fold_cell(cell, lower_cells(self._resolver, [cell], drawn, held))
+        frozen = {a.cell: a.base for a in assumptions if a.cell not in drawn and a.base is not None}
+        return _fold_cell(cell, lower_cells(self._resolver, [cell], drawn, frozen))
 
 
 def _notice(assumption: Assumption, numbers: Mapping[str, float]) -> Notice:

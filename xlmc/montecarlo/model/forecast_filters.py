@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 from xlmc.engine.engine import (
     DISCARDED_FIRST,
     UNDECIDED_RESULT,
+    AcceptedBlock,
+    BlockMemory,
     BlockRunner,
     Column,
     Evaluator,
-    KeptBlock,
     Linear,
     Program,
-    Room,
     RunsWholeBlocks,
     Target,
 )
@@ -108,17 +108,21 @@ class _FilteringRunner:
     run: BlockRunner
     own: tuple[tuple[int, ...], ...]
 
-    def __call__(self, start: int, trials: int, inputs: bool, room: Callable[[], Room] | None) -> KeptBlock | None:
+    def __call__(
+        self, start: int, trials: int, inputs: bool, block_memory: Callable[[], BlockMemory] | None
+    ) -> AcceptedBlock | None:
         """See `BlockRunner`."""
-        kept = self.run(start, trials, inputs, room)
-        if kept is None:
+        accepted_block = self.run(start, trials, inputs, block_memory)
+        if accepted_block is None:
             return None
-        forecasts, conditions = kept.forecasts[: len(self.own)], kept.forecasts[len(self.own) :]
+        forecasts, conditions = accepted_block.forecasts[: len(self.own)], accepted_block.forecasts[len(self.own) :]
         fails = [condition == 0 for condition in conditions]
         found = [
             _discard(column, [fails[index] for index in own]) for column, own in zip(forecasts, self.own, strict=True)
         ]
-        return replace(kept, forecasts=[column for column, _ in found], discards=[counts for _, counts in found])
+        return replace(
+            accepted_block, forecasts=[column for column, _ in found], discards=[counts for _, counts in found]
+        )
 
 
 def _discarding(column: Column, conditions: Sequence[Column]) -> Column:

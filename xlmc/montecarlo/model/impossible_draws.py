@@ -56,18 +56,20 @@ def with_errors(definitions: Definitions, faults: Mapping[str, DefinitionError],
     """The definitions with `#VALUE!` instead of these draws, told where a trial may use one."""
     gone = [a for a in definitions.assumptions if a.name in faults]
     usable = _reached(lowering, definitions, uses)
-    told = [a for a in gone if a.name in usable]
+    reported = [a for a in gone if a.name in usable]
     return replace(
         definitions,
         assumptions=tuple(a for a in definitions.assumptions if a.name not in faults),
         rewritten={**definitions.rewritten, **{a.cell: ir.ErrorLiteral(ErrorCode.VALUE) for a in gone}},
-        notices=(*definitions.notices, *([_notice(told, faults[told[0].name])] if told else [])),
+        notices=(*definitions.notices, *([_notice(reported, faults[reported[0].name])] if reported else [])),
     )
 
 
-def _notice(told: list[Assumption], error: DefinitionError) -> Notice:
-    what = "this draw is" if len(told) == 1 else f"{len(told):,} draws in cells, of which this is the first, are"
-    return Notice(f"{what} no distribution ({error.message}): #VALUE! in the trials that use it", told[0].row)
+def _notice(reported: list[Assumption], error: DefinitionError) -> Notice:
+    what = (
+        "this draw is" if len(reported) == 1 else f"{len(reported):,} draws in cells, of which this is the first, are"
+    )
+    return Notice(f"{what} no distribution ({error.message}): #VALUE! in the trials that use it", reported[0].row)
 
 
 def _reached(lowering: Lowering, definitions: Definitions, parts: Callable[[Node], Iterable[int]]) -> set[str]:

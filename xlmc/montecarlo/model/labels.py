@@ -90,8 +90,8 @@ def _calculated(workbook: Workbook, cells: Collection[Cell]) -> dict[Cell, CellV
             return {}
         return {found: value for cell in cells for found, value in _calculated(workbook, [cell]).items()}
     values = {cell: lowering.value(cell) for cell in cells if not lowering.is_saved(cell)}
-    held = {cell: value.objects().ravel()[0] for cell, value in values.items() if value is not None}
-    return {cell: value for cell, value in held.items() if not isinstance(value, ErrorCode)}
+    known = {cell: value.objects().ravel()[0] for cell, value in values.items() if value is not None}
+    return {cell: value for cell, value in known.items() if not isinstance(value, ErrorCode)}
 
 
 def _body(table: Table, skipped: Collection[str]) -> Iterator[Cell]:

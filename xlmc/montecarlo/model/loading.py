@@ -209,8 +209,8 @@ def _faults(
         if texts and np.any((codes == TEXT_RESULT) & (np.asarray(length.values, np.float64) > 0)):
             message = f"The cell of the filter {filter_.name!r} is a text {when}"
         elif quantities.size and not filter_limits(filter_):
-            held = f"{show(float(quantities[0]))} {when}"
-            message = f"The filter {filter_.name!r} has no limit, and its cell is {held}, neither TRUE nor FALSE"
+            shown = f"{show(float(quantities[0]))} {when}"
+            message = f"The filter {filter_.name!r} has no limit, and its cell is {shown}, neither TRUE nor FALSE"
         else:
             continue
         yield filter_.cell, DefinitionError(message, where=filter_.cell, hint=LIMIT_HINT)

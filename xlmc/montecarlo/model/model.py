@@ -66,12 +66,12 @@ def lower_needed(workbook: Workbook, definitions: Definitions, *, one_trial: boo
     """
     definitions = replace(definitions, assumptions=(*definitions.assumptions, *chances_of(definitions.filters)))
     inputs = {a.cell: a.name for a in definitions.assumptions if not a.frozen}
-    held = {a.cell: a.base for a in definitions.assumptions if a.frozen and a.base is not None}
+    frozen = {a.cell: a.base for a in definitions.assumptions if a.frozen and a.base is not None}
     found: list[Needed] = []
 
     def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
         found.append(find_needed(workbook, definitions, more))
-        return Lowering(found[-1].graph, inputs, held, one_trial=one_trial)
+        return Lowering(found[-1].graph, inputs, frozen, one_trial=one_trial)
 
     lowering = lower_until_complete(lower)
     lowering.refuse_cells_beyond()
@@ -130,8 +130,8 @@ def _asks_for_the_same(old: Definitions, new: Definitions, live: Collection[str]
 
 def _cells_of(assumption: Assumption, live: Collection[str]) -> tuple[object, ...]:
     """What of an assumption the nodes depend on; the base value of one that is drawn is not among it."""
-    held = None if assumption.name in live else assumption.base
-    return assumption.name, assumption.cell, assumption.frozen, assumption.formulas, assumption.data, held
+    frozen = None if assumption.name in live else assumption.base
+    return assumption.name, assumption.cell, assumption.frozen, assumption.formulas, assumption.data, frozen
 
 
 def _lower_checks(workbook: Workbook, definitions: Definitions, live: Collection[str]) -> Lowering:
@@ -431,20 +431,20 @@ class CompiledModel:
             Name of the assumption -> `(q,)`; NaN where the parameters are not a distribution.
         """
         wanted = np.atleast_1d(np.asarray(probabilities, np.float64))
-        held: dict[str, NDArray[np.float64]] = {}
+        frozen: dict[str, NDArray[np.float64]] = {}
         found: dict[str, NDArray[np.float64]] = {}
         needs_medians = len(self.needed.stages) > 1
         for number, stage in enumerate(self.needed.stages):
             varying: Mapping[Cell, NDArray[np.float64]] = {}
             if number:  # no chance: its parameters are numbers
-                varying = dynamic_parameters([self.draws[name] for name in stage], self.lowering, 1)(held, 1)
+                varying = dynamic_parameters([self.draws[name] for name in stage], self.lowering, 1)(frozen, 1)
             for name in (name for name in stage if name in self.bases):
                 base = self.bases[name]
                 if names is None or name in names or (base is None and needs_medians):
                     values = self.draws[name].percentiles(np.append(wanted, 0.5), varying)
-                    found[name], held[name] = values[:-1], values[-1:]
+                    found[name], frozen[name] = values[:-1], values[-1:]
                 if base is not None:
-                    held[name] = np.full(1, base)
+                    frozen[name] = np.full(1, base)
         return found
 
     def program_of(self, filters: Sequence[Target]) -> Program:

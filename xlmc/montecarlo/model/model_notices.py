@@ -26,7 +26,7 @@ def example_notices(sources: Iterable[tuple[str, Cell, str]]) -> list[Notice]:
     Args:
         sources: what each is the source of, the row where it stands, and what it says.
     """
-    found = [(named, row) for named, row, said in sources if _EXAMPLE.match(said.strip())]
+    found = [(named, row) for named, row, text in sources if _EXAMPLE.match(text.strip())]
     if not found:
         return []
     named = ", ".join(name for name, _ in found[:_MOST_NAMED])

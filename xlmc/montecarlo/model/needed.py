@@ -15,13 +15,13 @@ from xlmc.montecarlo.definitions.evidence import Bell
 
 __all__ = [
     "Needed",
+    "accepted_by_chance",
     "chances_of",
     "definitions_of_checks",
     "drawing_order",
     "filter_condition",
     "filter_limits",
     "find_needed",
-    "kept_by_chance",
     "refuse_without_base",
     "targets_of",
     "upstream",
@@ -59,8 +59,8 @@ class Needed:
         """
 
         def notice(what: str, cell: Cell) -> Notice:
-            held = ": the checks take its base value" if cell in checked else ""
-            return Notice(f"no forecast or filter needs {what}{held}", cell)
+            frozen = ": the checks take its base value" if cell in checked else ""
+            return Notice(f"no forecast or filter needs {what}{frozen}", cell)
 
         calls = [a.cell for a in self.idle if isinstance(a.cell, InFormula)]
         found = [notice(f"the assumption {a.name!r}", a.cell) for a in self.idle if not isinstance(a.cell, InFormula)]
@@ -85,11 +85,11 @@ def find_needed(
         DefinitionError: assumptions need each other in a circle, or there are too many draws in cells.
     """
     needs = {a.cell: a.cells for a in definitions.assumptions if not a.frozen}
-    held = frozenset(a.cell for a in definitions.assumptions if a.frozen)
-    resolver = Resolver(workbook, [*needs, *held], rewritten=definitions.rewritten)
+    frozen = frozenset(a.cell for a in definitions.assumptions if a.frozen)
+    resolver = Resolver(workbook, [*needs, *frozen], rewritten=definitions.rewritten)
     targets = targets_of(definitions.forecasts, (*definitions.filters, *definitions.forecast_filters))
     while True:  # the parameters of needed assumptions may need more cells, and these more assumptions
-        graph = build_graph(resolver, targets, frozenset(needs), held, more=more)
+        graph = build_graph(resolver, targets, frozenset(needs), frozen, more=more)
         wanted = [cell for drawn, cells in needs.items() if drawn in graph.reached for cell in cells]
         if set(wanted) <= set(targets):
             break
@@ -153,8 +153,8 @@ def refuse_without_base(checks: Sequence[Check], needed: Needed, definitions: De
     Raises:
         DefinitionError: one does.
     """
-    held = [a for a in definitions.assumptions if a.frozen and a.base is None]
-    without = next((a for a in held if a.cell in needed.graph.reached), None)
+    frozen = [a for a in definitions.assumptions if a.frozen and a.base is None]
+    without = next((a for a in frozen if a.cell in needed.graph.reached), None)
     if without is None:
         return
     message = f"the checks need {without.name!r}, which no forecast or filter needs and which has no base value"
@@ -199,7 +199,7 @@ def filter_condition(filter_: Filter, *, certain: bool = False) -> ir.Expression
     """
     if filter_.evidence is not None and (bell := filter_.evidence.bell) is not None:
         by_chance = filter_.evidence.by_chance and not certain
-        return kept_by_chance(bell, filter_.cell, filter_.evidence.chance if by_chance else None)
+        return accepted_by_chance(bell, filter_.cell, filter_.evidence.chance if by_chance else None)
     number = ir.Binary("+", filter_.cell, ir.Number(0.0))
     limits = filter_limits(filter_)
     if not limits:
@@ -208,7 +208,7 @@ def filter_condition(filter_: Filter, *, certain: bool = False) -> ir.Expression
     return parts[0] if len(parts) == 1 else ir.Call("AND", parts)
 
 
-def kept_by_chance(bell: Bell, cell: Cell, chance: Cell | None) -> ir.Expression:
+def accepted_by_chance(bell: Bell, cell: Cell, chance: Cell | None) -> ir.Expression:
     """Whether a trial is kept, with probability exp(-z²/2): the quantity is z standard deviations from the reading.
 
     An item of evidence has a uniform number U of its own, from a random stream of its own, and keeps the trial where
@@ -222,13 +222,13 @@ def kept_by_chance(bell: Bell, cell: Cell, chance: Cell | None) -> ir.Expression
     """
     exponent = ir.Binary("*", ir.Number(-0.5), bell.tree_of_square(cell))
     probability = ir.Call("EXP", (exponent,))
-    kept: ir.Expression = ir.Binary(">", probability, ir.Number(0.0), all_bits=True)
+    accepted: ir.Expression = ir.Binary(">", probability, ir.Number(0.0), all_bits=True)
     if chance is not None:
-        kept = ir.Binary("<=", chance, probability, all_bits=True)
+        accepted = ir.Binary("<=", chance, probability, all_bits=True)
     if not bell.logarithmic:
-        return kept
+        return accepted
     positive = ir.Binary(">", ir.Binary("+", cell, ir.Number(0.0)), ir.Number(0.0), all_bits=True)
-    return ir.Call("IF", (positive, kept, ir.Logical(value=False)))
+    return ir.Call("IF", (positive, accepted, ir.Logical(value=False)))
 
 
 def chances_of(filters: Iterable[Filter]) -> tuple[Assumption, ...]:

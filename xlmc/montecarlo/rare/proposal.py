@@ -144,7 +144,7 @@ def _directions(points: Floats, weights: Floats) -> tuple[Floats, int, int]:
     spread about the mean.
     """
     shares = weights / weights.sum()
-    matter, rest = _told_apart(points, shares)
+    matter, rest = _separate(points, shares)
     along = np.einsum("nd,dr->nr", points, matter)
     apart = along - np.einsum("n,nr->r", shares, along)
     spreads, turned = np.linalg.eigh(np.einsum("nr,nq->rq", apart * shares[:, None], apart))
@@ -153,7 +153,7 @@ def _directions(points: Floats, weights: Floats) -> tuple[Floats, int, int]:
     return np.linalg.qr(np.round(basis, 9))[0], min(thin, points.shape[1] - 1), matter.shape[1]
 
 
-def _told_apart(points: Floats, shares: Floats) -> tuple[Floats, Floats]:
+def _separate(points: Floats, shares: Floats) -> tuple[Floats, Floats]:
     """(d, r) directions that matter, and (d, d − r) that do not."""
     dimensions = points.shape[1]
     if dimensions <= _FEW:

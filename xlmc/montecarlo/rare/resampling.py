@@ -157,56 +157,56 @@ class _Drawing:
     ) -> None:
         self._accepts, self._proposal, self._random = accepts, proposal, random
         self._wanted, self._envelope, self._bar = wanted, lowest, bar
-        self._kept = _Kept(np.empty((0, len(proposal.basis))), np.empty(0), np.empty(0))
+        self._accepted = _Accepted(np.empty((0, len(proposal.basis))), np.empty(0), np.empty(0))
         self.surprise: Round | None = None
 
     @property
     def enough(self) -> bool:
         """Whether as many are kept as are wanted."""
-        return bool(self._kept.copies(self._envelope).sum() >= self._wanted)
+        return bool(self._accepted.copies(self._envelope).sum() >= self._wanted)
 
     def hopeless(self, proposals: int, most: int) -> bool:
         """Whether so many proposals say that not half of what is wanted will be kept of the most there may be."""
-        kept = float(self._kept.copies(self._envelope).sum())
-        return proposals >= _PATIENCE and 2.0 * kept * most < self._wanted * proposals
+        expected = float(self._accepted.copies(self._envelope).sum())
+        return proposals >= _PATIENCE and 2.0 * expected * most < self._wanted * proposals
 
     def batch(self) -> Floats:
         """(m,) logarithms of the weights of the accepted ones among another batch."""
         points, luck = self._proposal.draw(BATCH, self._random), self._random.random(BATCH)
         indices = np.flatnonzero(self._accepts(points))
         logs = self._proposal.log_weights(points[indices])
-        self._kept = self._kept.joined(points[indices], logs, luck[indices])
-        self._envelope = height(self._kept.logs, self._wanted, self._envelope)
+        self._accepted = self._accepted.joined(points[indices], logs, luck[indices])
+        self._envelope = height(self._accepted.logs, self._wanted, self._envelope)
         if self._envelope > self._bar:
             self.surprise = Round(self._proposal, BATCH, points[indices], logs)
-        self._kept = self._kept.under(self._envelope)
+        self._accepted = self._accepted.under(self._envelope)
         return logs
 
     def trials(self) -> Floats:
         """The last `wanted` points of equal weight, or what there is of them."""
-        repeated = np.repeat(np.arange(len(self._kept.points)), self._kept.copies(self._envelope))
-        return self._kept.points[repeated[-self._wanted :]]
+        repeated = np.repeat(np.arange(len(self._accepted.points)), self._accepted.copies(self._envelope))
+        return self._accepted.points[repeated[-self._wanted :]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Kept:
+class _Accepted:
     """Points (m, d) with the logarithms of their weights, (m,), and the luck, (m,), that they are kept by."""
 
     points: Floats
     logs: Floats
     luck: Floats
 
-    def joined(self, points: Floats, logs: Floats, luck: Floats) -> _Kept:
+    def joined(self, points: Floats, logs: Floats, luck: Floats) -> _Accepted:
         parts = ((self.points, points), (self.logs, logs), (self.luck, luck))
-        return _Kept(*(np.concatenate(part) for part in parts))
+        return _Accepted(*(np.concatenate(part) for part in parts))
 
     def copies(self, envelope: float) -> NDArray[np.int64]:
         return copies(self.logs, self.luck, envelope)
 
-    def under(self, envelope: float) -> _Kept:
+    def under(self, envelope: float) -> _Accepted:
         """The trials that are left under an envelope, and under any higher one among them."""
         inside = self.luck < np.exp(self.logs - envelope)
-        return _Kept(self.points[inside], self.logs[inside], self.luck[inside])
+        return _Accepted(self.points[inside], self.logs[inside], self.luck[inside])
 
 
 class _Sums:

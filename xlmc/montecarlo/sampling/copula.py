@@ -283,12 +283,12 @@ def _refined_cuts(quantiles: Quantiles, u: Floats, found: Floats, new: NDArray[n
 def _join_rare_values(cuts: Floats) -> Floats:
     """Return the cuts without those between improbable values."""
     following = np.append(cuts[1:], 1.0)
-    kept, last = [], 0.0
+    distinct, last = [], 0.0
     for cut, after in zip(cuts, following, strict=True):
         if cut - last >= _FINE or after - cut >= 2 * _FINE:
-            kept.append(cut)
+            distinct.append(cut)
             last = cut
-    return np.array(kept)
+    return np.array(distinct)
 
 
 def spearman(first: Ties | None, second: Ties | None, r: float) -> float:

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.engine.engine import Room
+from xlmc.engine.engine import BlockMemory
 from xlmc.montecarlo.columns import ColumnStore
 from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.diagnostics.checking import LEAST_CHECKED
-from xlmc.montecarlo.diagnostics.weighing import chosen_way, weighing
+from xlmc.montecarlo.diagnostics.weighing import choose_method, weighing
 from xlmc.montecarlo.loop.blocks import Block, FilterTally, ModelRunner, Task
 from xlmc.montecarlo.loop.disk_needed import disk_needed
 from xlmc.montecarlo.loop.scheduling.run_spec import model_runner
@@ -93,7 +93,7 @@ def run_model(
     """
     settings, keep_inputs = options.settings(model.definitions.settings), options.keep_inputs
     refuse_other_sampling(settings.sampling, settings.stopping)
-    settings = replace(settings, evidence=chosen_way(model, settings))
+    settings = replace(settings, evidence=choose_method(model, settings))
     if settings.evidence == "weights":
         model, keep_inputs = weighing(model), None  # weights are computed from the draws
     largest = model.program(settings.engine).largest_block if own_runner is None else own_runner.block
@@ -117,8 +117,10 @@ def run_model(
 
     def blocks_of(tasks: Iterator[Task]) -> Generator[Block, None, None]:
         if own_runner is not None:
-            return (own_runner.borrow(task, gathered.room) for task in tasks)
-        return pool.blocks(model, model.program(settings.engine), settings, plan, computed, tasks, gathered.room)
+            return (own_runner.borrow(task, gathered.block_memory) for task in tasks)
+        return pool.blocks(
+            model, model.program(settings.engine), settings, plan, computed, tasks, gathered.block_memory
+        )
 
     needed = disk_needed(model, settings.stopping, plan.trials, piece, most_inputs, runner)
     if needed is not None:
@@ -267,18 +269,18 @@ class _Gathered:
 
     def _keep(self, block: Block) -> None:
         self._keeper.add(("trial", 0), block.accepted)
-        room = max(0, self._keep_inputs - self.accepted)
+        left = max(0, self._keep_inputs - self.accepted)
         for name, values in block.draws.items():
-            self._keeper.add(("input", name), values[:room])
+            self._keeper.add(("input", name), values[:left])
         if block.prior is not None:
-            self._keep_prior(block, block.prior, room)
+            self._keep_prior(block, block.prior, left)
         for number, values in enumerate(block.forecasts):
             self._keeper.add(("forecast", number), values)
-        self._keeper.settle()
+        self._keeper.write_if_full()
 
-    def _keep_prior(self, block: Block, prior: Mapping[str, NDArray[np.float64]], room: int) -> None:
+    def _keep_prior(self, block: Block, prior: Mapping[str, NDArray[np.float64]], left: int) -> None:
         """Keep the draws of all trials; as long as every trial is accepted they are the draws that are kept anyway."""
-        if self._prior_is_inputs and (prior is not block.draws or room < block.trials):
+        if self._prior_is_inputs and (prior is not block.draws or left < block.trials):
             self._prior_is_inputs = False
             if self._prior_trials:
                 for name, values in self._prior_columns(self._inputs).items():
@@ -291,13 +293,13 @@ class _Gathered:
     def _prior_columns(self, keys: Mapping[str, Hashable]) -> Mapping[str, NDArray[np.float64]]:
         return self._keeper.columns(keys, self._prior_trials)
 
-    def room(self) -> Room:
-        """The memory that the next block's columns go to."""
-        room, inputs = self._keeper.room, self._inputs.values() if self.wants_inputs else ()
-        return Room(
-            room(("trial", 0), self._piece),
-            {name: room((kind, name), self._piece) for kind, name in inputs},
-            [room(key, self._piece) for key in self._forecasts.values()],
+    def block_memory(self) -> BlockMemory:
+        """Return the memory that the next block's columns go to."""
+        reserve, inputs = self._keeper.reserve, self._inputs.values() if self.wants_inputs else ()
+        return BlockMemory(
+            reserve(("trial", 0), self._piece),
+            {name: reserve((kind, name), self._piece) for kind, name in inputs},
+            [reserve(key, self._piece) for key in self._forecasts.values()],
         )
 
     @property

@@ -102,5 +102,5 @@ def decides_spread(ascending: Floats, mean: float, scale: float, kurtosis: float
     if not (few and scale > 0.0):
         return False
     ends = (np.concatenate([ascending[:few], ascending[-few:]]) - mean) / scale
-    held = float(np.sort(ends**4)[-few:].sum())
-    return held > 0.5 * kurtosis * ascending.size or _heavier_than(_LIMIT_OF_SPREAD, ascending) is not None
+    top_sum = float(np.sort(ends**4)[-few:].sum())
+    return top_sum > 0.5 * kurtosis * ascending.size or _heavier_than(_LIMIT_OF_SPREAD, ascending) is not None

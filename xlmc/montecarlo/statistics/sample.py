@@ -160,9 +160,9 @@ Values = ArrayLike | Sample
 def _interpolate(left: Floats, right: Floats, share: Floats) -> Floats:
     """Interpolate from left to right, even where their distance is larger than the largest double."""
     with np.errstate(over="ignore"):
-        way = right - left
-    if np.isfinite(way).all():
-        return np.asarray(left + way * share)
+        step = right - left
+    if np.isfinite(step).all():
+        return np.asarray(left + step * share)
     return np.asarray(left * (1.0 - share) + right * share)
 
 

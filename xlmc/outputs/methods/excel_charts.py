@@ -79,8 +79,8 @@ def write_charts(
     page.row += 1
     picture = picture_of(study, "seconds")
     if picture is not None:
-        for said in HOW_TO_READ:
-            page.wide(said, "paragraph", _WIDE)
+        for sentence in HOW_TO_READ:
+            page.wide(sentence, "paragraph", _WIDE)
         page.sheet.insert_chart(page.row + 1, 0, _main(made, _Data(data), picture), {"object_position": 1})
     top = page.row + 1 + _MAIN_ROWS
     titles = {FIRST_ERROR + n: f"{name}, % of the 5–95 % range" for n, name in enumerate(STATISTICS.values())}
@@ -121,9 +121,9 @@ def _main(made: Workbook, data: _Data, picture: Picture) -> ChartScatter:
     for each, height in zip(column, at, strict=True):
         style = Style(INK, "o") if each.line is None else _style(each.line.curve)
         level = bottom * 10.0 ** (height * high)
-        way = [(each.x, each.y), (right, level), (right * 10.0 ** (0.04 * wide), level)]
-        _add(chart, data, each.brief, way, style.colour, width=0.5)
-        _words(chart, data, each.brief, way[-1], style.colour, style.marker, bold=each.line is None)
+        leader = [(each.x, each.y), (right, level), (right * 10.0 ** (0.04 * wide), level)]
+        _add(chart, data, each.brief, leader, style.colour, width=0.5)
+        _words(chart, data, each.brief, leader[-1], style.colour, style.marker, bold=each.line is None)
     axis = {"log_base": 10, "name_font": {**FONT, "bold": False}, "num_font": FONT, "num_format": "General"}
     chart.set_x_axis({**axis, "name": f"{picture.across} ({_SIGNS})", "min": start, "max": end, "crossing": start})
     up = {"name": picture.upwards, "min": bottom, "max": top, "crossing": bottom, "major_gridlines": _GRIDLINES}

@@ -80,14 +80,14 @@ def _title(study: Study, picture: Picture | None) -> str:
 
 
 def _below(study: Study, picture: Picture | None) -> str:
-    said = (
+    label = (
         f"Each number apart: root mean square error over up to {study.replicates} runs and "
         f"{len(study.model.forecasts)} forecasts, in % of the 5–95 % range, against the trials of a run. "
         f"Reference: {study.reference.trials:,} trials. Bars: 95 % intervals of the errors themselves. "
         "Dotted: not run, but carried on by the law that the runs follow."
     )
     absent = " ".join(picture.absent) if picture is not None else ""
-    return "\n".join(textwrap.wrap(f"{said} {absent}", 175))
+    return "\n".join(textwrap.wrap(f"{label} {absent}", 175))
 
 
 def _main(axis: Axes, picture: Picture) -> None:

@@ -76,14 +76,15 @@ def page(study: Study) -> str:
 def _lines(lines: Sequence[tuple[str, str]]) -> str:
     """A table of two columns, the second of which is wrapped."""
     rows = "".join(
-        f'<tr><td class="left">{escape(name)}</td><td class="long">{escape(said)}</td></tr>\n' for name, said in lines
+        f'<tr><td class="left">{escape(name)}</td><td class="long">{escape(sentence)}</td></tr>\n'
+        for name, sentence in lines
     )
     return f'<div class="wide"><table>{rows}</table></div>\n'
 
 
-def _text(said: str) -> str:
+def _text(sentence: str) -> str:
     """Escaped, what stands between backticks as code."""
-    parts = escape(said).split("`")
+    parts = escape(sentence).split("`")
     return "".join(f"<code>{part}</code>" if index % 2 else part for index, part in enumerate(parts))
 
 

@@ -192,8 +192,8 @@ def ends_lines(study: Study) -> list[tuple[str, str]]:
     for curve in study.once:
         for (name, end), point in curve.ends.items():
             value = curve.ranges[name][end == "most"]
-            said = f"{'Lowest' if end == 'least' else 'Highest'} {name}: {value:.6g}{units[name]}"
-            found.append((said, "; ".join(f"{assumption} = {at:.10g}" for assumption, at in point.items())))
+            sentence = f"{'Lowest' if end == 'least' else 'Highest'} {name}: {value:.6g}{units[name]}"
+            found.append((sentence, "; ".join(f"{assumption} = {at:.10g}" for assumption, at in point.items())))
     return found
 
 
@@ -216,8 +216,8 @@ def cannot(study: Study, method: Method) -> str:
         return method.cannot
     return "; ".join(
         part
-        for said in method.cannot.split("; ")
-        if (part := said.replace(", does not see filters,", "")) and not part.startswith(_OF_FILTERS)
+        for sentence in method.cannot.split("; ")
+        if (part := sentence.replace(", does not see filters,", "")) and not part.startswith(_OF_FILTERS)
     )
 
 

@@ -59,8 +59,8 @@ def _write_words(page: Page, study: Study) -> None:
     name = study.model.workbook.name
     page.title("Methods of uncertainty analysis", name)
     page.row += 1
-    for said in recommendation(study):
-        page.wide(said.replace("`", ""), "paragraph", _LAST)
+    for sentence in recommendation(study):
+        page.wide(sentence.replace("`", ""), "paragraph", _LAST)
     for table in (
         methods_tables.error_table(study),
         methods_tables.bounds_table(study),
@@ -70,8 +70,8 @@ def _write_words(page: Page, study: Study) -> None:
             page.heading(table.title)
             _texts(page, table)
     page.heading("What each method says of itself, and cannot do")
-    for method, said in methods_tables.cannot_lines(study):
-        page.line([Shown(method, look="name"), Shown(said)], [0, 1], _LAST)
+    for method, sentence in methods_tables.cannot_lines(study):
+        page.line([Shown(method, look="name"), Shown(sentence)], [0, 1], _LAST)
     ends = methods_tables.ends_lines(study)
     if ends:
         page.heading(ENDS)

@@ -319,9 +319,9 @@ def _mark(study: Study, height: float, accuracy: tuple[str, float, bool], found:
     if not found.cheapest:
         return (text, *apart)
     first, *others = found.cheapest
-    said = (f"{text}; cheapest:", f"{first.method.name}, {seconds_text(found.needs[first].seconds)}")
+    first_line = (f"{text}; cheapest:", f"{first.method.name}, {seconds_text(found.needs[first].seconds)}")
     named, rest = [f"tie: {each.method.name}" for each in others[:_NAMED]], len(others) - _NAMED
-    return (*said, *named, *([f"and {rest} more"] if rest > 0 else []), *apart)
+    return (*first_line, *named, *([f"and {rest} more"] if rest > 0 else []), *apart)
 
 
 def _recommended_run(study: Study, found: Choice, work: Work, scale: float) -> tuple[float, float, str] | None:

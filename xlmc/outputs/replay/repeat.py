@@ -207,10 +207,10 @@ def _replay(
     shown = SheetComparison()
     if path is not None:
         rewritten = not _is_untouched(path)
-        told = tuple(change for change in changes if not (same_bits and rewritten and is_rewritten_number(change)))
+        reported = tuple(change for change in changes if not (same_bits and rewritten and is_rewritten_number(change)))
         # Numbers with fewer digits beside the model move the last digits of what is computed from the base case.
-        closeness = Closeness(rewritten=rewritten, elsewhere=bool(environment) or len(told) < len(changes))
-        changes, same_run = told, same_bits or not told
+        closeness = Closeness(rewritten=rewritten, elsewhere=bool(environment) or len(reported) < len(changes))
+        changes, same_run = reported, same_bits or not reported
         shown = compare_shown(workbook, as_recorded(repeated, record, settings), record, closeness, same_run=same_run)
     return Replayed(
         record=record,
@@ -284,10 +284,10 @@ def _repeat(
     model: CompiledModel, record: Record, settings: Settings, jobs: int, progress: OnProgress | None
 ) -> RunResult:
     """The run again: up to the trial that ended it, whatever did."""
-    trials, accepted, kept = (_count(record, key) for key in ("trials", "accepted", "inputs_kept"))
+    trials, accepted, stored = (_count(record, key) for key in ("trials", "accepted", "inputs_kept"))
     by = str(record["end.by"])
     options = RunOptions.repeating(settings, trials=trials, by=by, weighable=bool(model.chances))
-    keep_inputs = kept if kept < accepted else max(kept, KEPT_INPUTS)
+    keep_inputs = stored if stored < accepted else max(stored, KEPT_INPUTS)
     return run_model(model, replace(options, jobs=jobs, keep_inputs=keep_inputs), progress=progress)
 
 

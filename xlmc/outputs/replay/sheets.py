@@ -110,7 +110,7 @@ def compare_sheets(workbook: Workbook, run: RunResult, command: str | None, clos
         sheets=tuple(pair.sheet.name for pair in pairs),
         differences=tuple(difference for pair in pairs for difference in pair.differences()),
         missing=tuple(name for name in built.sheets if name not in found),
-        left_out=tuple(said for pair in pairs for said in pair.left_out()),
+        left_out=tuple(sentence for pair in pairs for sentence in pair.left_out()),
     )
 
 
@@ -120,9 +120,9 @@ def _build(run: RunResult, command: str | None, rows: int) -> Workbook:
 
 def _trial_rows(trials: Sheet) -> int:
     """The most trials that were to be written, as the sheet says, or else as its rows show."""
-    said = _ONLY_FIRST.fullmatch(str(trials.cells.get((HEADER, 1), _BLANK).value))
-    if said is not None:
-        return int(said[1].replace(",", ""))
+    sentence = _ONLY_FIRST.fullmatch(str(trials.cells.get((HEADER, 1), _BLANK).value))
+    if sentence is not None:
+        return int(sentence[1].replace(",", ""))
     last = max((row for row, column in trials.cells if column == 1), default=0)
     return max(TRIAL_ROWS, last - HEADER - 1)
 
@@ -199,7 +199,11 @@ class _Pair:
             return 0, 0
         ends = [
             max(
-                (row for (row, column), held in sheet.cells.items() if column == 1 and _MACHINE.match(str(held.value))),
+                (
+                    row
+                    for (row, column), shown in sheet.cells.items()
+                    if column == 1 and _MACHINE.match(str(shown.value))
+                ),
                 default=0,
             )
             for sheet in (self.expected, self.sheet)

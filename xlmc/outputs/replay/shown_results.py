@@ -42,8 +42,8 @@ def compare_shown(
         same_run: the model is the recorded one, or gives the same trials; nothing is compared otherwise.
     """
     if not same_run:
-        said = "the result sheets: the model is no longer the one that they were computed from"
-        return SheetComparison(left_out=(said,))
+        reason = "the result sheets: the model is no longer the one that they were computed from"
+        return SheetComparison(left_out=(reason,))
     scenario_answers(run)  # cells may ask about them
     command = _entry(record, "run.command")
     sheets = compare_sheets(workbook, run, None if command is None else str(command), closeness)
@@ -64,13 +64,13 @@ def _of_version(found: SheetComparison, version: str) -> SheetComparison:
     laid_out = {each.where.sheet for each in found.differences if not (is_number(each.says) and is_number(each.gives))}
     otherwise = dict.fromkeys((*found.missing, *(each.where.sheet for each in found.differences)))
     wrote = f"xlmc {version} wrote" if version else "another xlmc wrote"
-    said = tuple(
+    reason = tuple(
         f"the sheet {sheet}, which {wrote} differently from {__version__}"
         for sheet in otherwise
         if sheet in laid_out or sheet in found.missing
     )
     differences = tuple(each for each in found.differences if each.where.sheet not in laid_out)
-    return replace(found, differences=differences, missing=(), left_out=(*found.left_out, *said))
+    return replace(found, differences=differences, missing=(), left_out=(*found.left_out, *reason))
 
 
 def _compare_own_cells(workbook: Workbook, run: RunResult, closeness: Closeness) -> SheetComparison:
@@ -146,6 +146,6 @@ def _rename(model: CompiledModel, name: str) -> CompiledModel:
 
 def _recorded_end(record: Record) -> Stopped:
     by, sentence, goal = (_entry(record, f"end.{key}") for key in ("by", "in_words", "goal"))
-    said = str(sentence or "")
-    stopped = Stopped(str(by), said, None if goal is None else str(goal))
-    return stopped if stopped.reached else replace(stopped, because=said.removesuffix(f" before {goal}"))
+    reason = str(sentence or "")
+    stopped = Stopped(str(by), reason, None if goal is None else str(goal))
+    return stopped if stopped.reached else replace(stopped, because=reason.removesuffix(f" before {goal}"))

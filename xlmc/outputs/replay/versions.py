@@ -21,13 +21,13 @@ class Rule:
 
     Attributes:
         since: the first version that computes so.
-        said: what it does now, in words.
+        sentence: what it does now, in words.
         met: the pattern of a formula, or of another content of a cell, that it may concern.
         beside: a pattern that another cell must match, too; None where one is enough.
     """
 
     since: str
-    said: str
+    sentence: str
     met: re.Pattern[str]
     beside: re.Pattern[str] | None = None
 
@@ -82,8 +82,8 @@ _ANY: Final = re.compile("=")
 
 RULES: Final = (
     *(
-        Rule("0.2.0", said, met)
-        for said, met in (
+        Rule("0.2.0", sentence, met)
+        for sentence, met in (
             ("= <> < <= > >= between numbers compare 15 significant digits, as in Excel", _COMPARED),
             ("the + or - that a formula ends with gives 0 where it cancels but for the last bits", _LAST_SUM),
             (

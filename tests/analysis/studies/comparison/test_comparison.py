@@ -99,7 +99,7 @@ def test_an_assumption_that_only_one_book_draws(linear):
     (step,) = only(found).cause.steps
     assert (step.kind, step.side, step.name) == ("assumption", 0, "b")
     assert only(found).cause.left.value == 0.0
-    assert [u.name for u in found.inputs.held] == ["b"]
+    assert [u.name for u in found.inputs.frozen_differently] == ["b"]
     assert "because only x.xlsx draws 'b'; with it held at the base value" in verdict_text(found)[0]
 
 

@@ -213,7 +213,10 @@ def with_reach(found, reach):
     def runs_of(place, times):
         value = times * found.tolerance(kind[0]) / 1.959964
         return replace(
-            curve.lengths[-1], budget=128 * 4**place, settled=True, errors={kind: Rms(value, value / 4, 0.0, value, 8)}
+            curve.lengths[-1],
+            budget=128 * 4**place,
+            converged=True,
+            errors={kind: Rms(value, value / 4, 0.0, value, 8)},
         )
 
     lengths = tuple(runs_of(place, times) for place, times in enumerate(reach))

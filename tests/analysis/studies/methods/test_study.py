@@ -66,7 +66,7 @@ def test_every_method_is_there(small):
     assert keys[10:] == ["mc/jit", "mc/formulas"]
     assert small.absent == {}
     assert small.ladder == (512, 2_048, 8_192)
-    assert [runs.settled for runs in small.curves[0].lengths] == [False, True, True]
+    assert [runs.converged for runs in small.curves[0].lengths] == [False, True, True]
 
 
 def test_what_every_method_tells(small):

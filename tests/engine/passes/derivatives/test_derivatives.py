@@ -130,7 +130,7 @@ def test_errors_of_a_branch_not_taken_are_not_told(of):
 def test_kinks_inside_the_ranges(of, formula, x, function, ways, jumps):
     found = of(formula, {"x": np.array(x, float)})
     (kink,) = found.kinks
-    assert (str(kink.cell), kink.function, kink.ways, kink.jumps) == ("S!Z1", function, ways, jumps)
+    assert (str(kink.cell), kink.function, kink.branches, kink.jumps) == ("S!Z1", function, ways, jumps)
     assert kink.share == pytest.approx(1 - (2 if ways == 2 else 1) / 3)
     assert not of(formula, {"x": np.full(3, 2.3)}).kinks
 

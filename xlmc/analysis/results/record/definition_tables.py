@@ -209,11 +209,11 @@ def evidence_section(simulation: RunResult) -> Section:
     rows = []
     for each in simulation.model.evidence:
         judged = found.get(each.name)
-        told: tuple[Value, ...] = (None, None, "not used")
+        judgement: tuple[Value, ...] = (None, None, "not used")
         if judged is not None:
-            told = finite(judged.alone.value), finite(judged.chance), judged.verdict.value
-        said = (each.name, str(each.cell), evidence_text(each), each.source)
-        rows.append((*said, *told, notes_text(each.notes)))
+            judgement = finite(judged.alone.value), finite(judged.chance), judged.verdict.value
+        described = (each.name, str(each.cell), evidence_text(each), each.source)
+        rows.append((*described, *judgement, notes_text(each.notes)))
     return Section("evidence", "Evidence", table=RecordTable(_EVIDENCE, tuple(rows)))
 
 
@@ -238,10 +238,10 @@ def assumption_section(simulation: RunResult) -> Section:
     """Every assumption, drawn or not."""
     rows: list[tuple[Value, ...]] = []
     for assumption in simulation.model.assumptions:
-        said = status(simulation.model, assumption.name, assumption.frozen), assumption.distribution
+        described = status(simulation.model, assumption.name, assumption.frozen), assumption.distribution
         given = parameters_text(assumption), cutoffs_text(assumption.cutoffs), assumption.base
         notes = assumption.units, assumption.source, notes_text(assumption.notes)
-        rows.append((assumption.name, str(assumption.cell), *said, *given, *notes))
+        rows.append((assumption.name, str(assumption.cell), *described, *given, *notes))
     return Section("assumptions", "Assumptions", table=RecordTable(_ASSUMPTION, tuple(rows)))
 
 

@@ -89,11 +89,11 @@ def _lost(simulation: RunResult, met: ErrorMet) -> str:
     accepted = met.kind == "forecast" and bool(simulation.model.filters)
     of = simulation.accepted if met.kind == "forecast" else simulation.trials
     share = float(f"{100 * met.trials / max(of, 1):.2g}")
-    said = f"{met.what} in {met.trials:,} of {of:,} {'accepted ' * accepted}trials ({share:g} %)"
+    sentence = f"{met.what} in {met.trials:,} of {of:,} {'accepted ' * accepted}trials ({share:g} %)"
     if met.root is None:
-        return said
+        return sentence
     cell, code = met.root
-    return f"{said}, from {cell} {code.text}: {content_text(simulation.model.workbook, host_of(cell))}"
+    return f"{sentence}, from {cell} {code.text}: {content_text(simulation.model.workbook, host_of(cell))}"
 
 
 def rest_sentences(simulation: RunResult) -> list[str]:

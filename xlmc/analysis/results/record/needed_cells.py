@@ -134,10 +134,10 @@ def _filled_cells(workbook: Workbook, area: Area) -> list[Cell]:
     sheet = workbook.sheet_of(area)
     if sheet is None:
         return []
-    held = sheet.cells.keys()
-    if area.rows * area.columns > len(held):
-        return [cell for cell in (Cell(area.sheet, *address) for address in held) if cell in area]
-    return [cell for cell in area.cells() if cell[1:] in held]
+    filled = sheet.cells.keys()
+    if area.rows * area.columns > len(filled):
+        return [cell for cell in (Cell(area.sheet, *address) for address in filled) if cell in area]
+    return [cell for cell in area.cells() if cell[1:] in filled]
 
 
 def cell_section(needed: Mapping[Cell, str], *, rows: int = MOST_ROWS) -> Section:

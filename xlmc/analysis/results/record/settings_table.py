@@ -33,9 +33,9 @@ def _setting_entries(rows: Iterable[Setting], settings: Settings) -> Iterator[En
     """An entry for every setting: empty, or none at all, where nothing is said of it."""
     for row in rows:
         value = row.of(settings)
-        said = bool(value) or not row.blank
-        if said or not row.sparse:
-            yield Entry(row.entry_key, row.label, row.kind.entry(value) if said else None)
+        stated = bool(value) or not row.blank
+        if stated or not row.sparse:
+            yield Entry(row.entry_key, row.label, row.kind.entry(value) if stated else None)
 
 
 def _goal_entries(kind: type[Goal], asked: Goal | None) -> Iterator[Entry]:

@@ -197,7 +197,7 @@ class _Columns:
             with package.reading(about.entry) as entry:
                 for part in read_column(entry, _KINDS[about.kind], about.count, about.entry, digest):
                     self._keeper.add(self._key(about), part)
-                    self._keeper.settle()
+                    self._keeper.write_if_full()
             require(digest.hexdigest() == about.sha256, f"the column {about.entry}: its SHA-256 is another")
         accepted = lengths["trial"]
         require(all(len(found) <= 1 for found in lengths.values()), "columns of different lengths")

@@ -174,13 +174,13 @@ def changed_from_of(found: object) -> ChangedFrom | None:
     return None if found is None else build(ChangedFrom, found, "its account of what was changed")
 
 
-def require(kept: bool, what: str) -> None:
+def require(holds: bool, what: str) -> None:
     """Refuse a saved run in which something is not as it must be.
 
     Raises:
         ValueError: it is not; the message names what.
     """
-    if not kept:
+    if not holds:
         raise ValueError(what)
 
 

@@ -143,12 +143,12 @@ def evidence_text(evidence: Evidence) -> str:
         return f"not used: {evidence.unused}"
     known = None if any(evidence.cells) else evidence.law
     sizes = ", ".join(f"{SIZES[key]} {number_text(value)}" for key, value in evidence.sizes.items())
-    kept = ""
+    ends_text = ""
     if isinstance(known, Within):
         ends = [("from", known.low), ("to", known.high)]
-        kept = ": " + " ".join(f"{word} {end:.6g}" for word, end in ends if end is not None)
+        ends_text = ": " + " ".join(f"{word} {end:.6g}" for word, end in ends if end is not None)
     given, weights = f" ({sizes})" if sizes else "", ", as weights" if evidence.weighed else ""
-    return f"reads {number_text(evidence.reading)}, {ERRORS[evidence.error].lower()}{given}{kept}{weights}"
+    return f"reads {number_text(evidence.reading)}, {ERRORS[evidence.error].lower()}{given}{ends_text}{weights}"
 
 
 def changes_text(scenario: Scenario) -> str:

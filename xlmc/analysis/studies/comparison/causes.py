@@ -57,14 +57,14 @@ class Inputs:
     Attributes:
         alike: assumptions that both draw, with equal draws in every trial.
         unlike: assumptions that both draw, but differently.
-        held: assumptions of both that only one draws, the other holds.
+        frozen_differently: assumptions of both that only one draws, the other holds.
         drawn: for either book, the assumptions that it draws and the other does not: it has none, or holds it.
         filters: for either book, the filters that the other has not, or not with the same limits.
     """
 
     alike: tuple[str, ...]
     unlike: tuple[Unlike, ...]
-    held: tuple[Unlike, ...]
+    frozen_differently: tuple[Unlike, ...]
     drawn: tuple[tuple[str, ...], tuple[str, ...]]
     filters: tuple[tuple[str, ...], tuple[str, ...]]
 
@@ -75,11 +75,11 @@ def inputs_of(first: RunResult, second: RunResult) -> Inputs:
     both = [(mine[key], theirs[key]) for key in mine if key in theirs]
     drawn = [(a, b) for a, b in both if not (a.frozen or b.frozen)]
     same = [(a, b) for a, b in drawn if _draws_alike(a, b, first.prior[a.name], second.prior[b.name])]
-    held = [(a, b) for a, b in both if a.frozen != b.frozen or (a.frozen and not _held_alike(a, b))]
+    frozen_differently = [(a, b) for a, b in both if a.frozen != b.frozen or (a.frozen and not _frozen_alike(a, b))]
     return Inputs(
         alike=tuple(a.name for a, _ in same),
         unlike=tuple(_unlike(a, b) for a, b in drawn if (a, b) not in same),
-        held=tuple(_unlike(a, b) for a, b in held),
+        frozen_differently=tuple(_unlike(a, b) for a, b in frozen_differently),
         drawn=(_drawn_only(mine, theirs), _drawn_only(theirs, mine)),
         filters=(_filters_only(first.model, second.model), _filters_only(second.model, first.model)),
     )
@@ -102,7 +102,7 @@ def _draws_alike(first: Assumption, second: Assumption, mine: Floats, theirs: Fl
     return np.allclose(theirs[:n] * factor, mine[:n], rtol=0.0, atol=atol, equal_nan=True)
 
 
-def _held_alike(first: Assumption, second: Assumption) -> bool:
+def _frozen_alike(first: Assumption, second: Assumption) -> bool:
     factor = factor_between(second.units, first.units)
     if factor is None or first.base is None or second.base is None:
         return False

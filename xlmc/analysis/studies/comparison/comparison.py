@@ -49,7 +49,7 @@ class CompareArguments(TypedDict, total=False):
     jobs: int
     chance: float | None
     causes: bool
-    told: Callable[[str], None] | None
+    tell: Callable[[str], None] | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +162,7 @@ def compare(
     jobs: int = 1,
     chance: float | None = None,
     causes: bool = True,
-    told: Callable[[str], None] | None = None,
+    tell: Callable[[str], None] | None = None,
 ) -> Comparison:
     """Run two books of one scene over the same trials, and judge whether their answers agree.
 
@@ -185,7 +185,7 @@ def compare(
             it or of its complement, and a tenth of a point at least. The threshold is the first book's; that of the
             second where the first has none.
         causes: look for the cause of what differs; each step is a further run.
-        told: called before every run with what it is for.
+        tell: called before every run with what it is for.
 
     Raises:
         SimulationError: no forecast has a counterpart, a pair has units of two kinds, or an argument is out of its
@@ -199,8 +199,8 @@ def compare(
     def run(model: CompiledModel, purpose: str, keep_inputs: int = 0) -> RunResult:
         nonlocal made
         made += 1
-        if told is not None:
-            told(purpose)
+        if tell is not None:
+            tell(purpose)
         return simulate(model, trials=trials, seed=seed, engine=engine, jobs=jobs, keep_inputs=keep_inputs)
 
     source = None
@@ -302,9 +302,9 @@ def _match_forecasts(
     """
     mine, theirs = ({name_key(f.name): f for f in model.forecasts} for model in (first, second))
     given = {name_key(a): name_key(b) for a, b in pairs.items()}
-    for held, names, model in ((mine, pairs.keys(), first), (theirs, pairs.values(), second)):
+    for names_here, names, model in ((mine, pairs.keys(), first), (theirs, pairs.values(), second)):
         for name in names:
-            if name_key(name) not in held:
+            if name_key(name) not in names_here:
                 hint = f"there are {', '.join(repr(f.name) for f in model.forecasts)}"
                 raise SimulationError(f"there is no forecast {name.strip()!r}", where=model.path.name, hint=hint)
     taken = set(given.values())

@@ -221,8 +221,8 @@ def _wasserstein(pair: Pair) -> Estimate:
     gaps = (_share_below(second.sample.x, points) - _share_below(first.sample.x, points))[:-1]
     widths = np.diff(points)
     potential = np.concatenate([[0.0], -np.cumsum(np.sign(gaps) * widths)])
-    held = [potential[np.searchsorted(points, run.values)] for run in (first, second)]
-    pulls = [(g - g.mean()) / g.size for g in held]
+    potentials = [potential[np.searchsorted(points, run.values)] for run in (first, second)]
+    pulls = [(g - g.mean()) / g.size for g in potentials]
     return with_error(float(np.sum(np.abs(gaps) * widths)), pair.error(*pulls), n - 1.0, 0.95, n)
 
 

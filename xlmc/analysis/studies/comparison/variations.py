@@ -23,7 +23,7 @@ def with_changes(
     frozen: Collection[str] = (),
     without: Collection[str] = (),
     drawn_as: Mapping[str, Assumption] | None = None,
-    held_at: Mapping[str, float] | None = None,
+    frozen_at: Mapping[str, float] | None = None,
 ) -> CompiledModel:
     """A model with changed definitions, and without the book's checks: these move no number of a run.
 
@@ -32,14 +32,14 @@ def with_changes(
         frozen: names of the assumptions to hold at their base values.
         without: names of the filters to leave out.
         drawn_as: name of an assumption -> the one whose distribution it takes.
-        held_at: name of an assumption to hold -> the value to hold it at, instead of its base value.
+        frozen_at: name of an assumption to hold -> the value to hold it at, instead of its base value.
 
     Raises:
         SimulationError: an assumption to hold has no base value.
     """
     definitions = replace(
         model.definitions,
-        assumptions=tuple(_assumption(a, frozen, drawn_as or {}, held_at or {}) for a in model.assumptions),
+        assumptions=tuple(_assumption(a, frozen, drawn_as or {}, frozen_at or {}) for a in model.assumptions),
         filters=tuple(f for f in model.filters if f.name not in without),
         checks=(),
     )
@@ -63,11 +63,11 @@ def _assumption(
     assumption: Assumption,
     frozen: Collection[str],
     drawn_as: Mapping[str, Assumption],
-    held_at: Mapping[str, float],
+    frozen_at: Mapping[str, float],
 ) -> Assumption:
     name = assumption.name
-    if name in held_at:
-        return replace(assumption, frozen=True, base=held_at[name])
+    if name in frozen_at:
+        return replace(assumption, frozen=True, base=frozen_at[name])
     if name in frozen:
         if assumption.base is None:
             message = f"the assumption {name!r} has no base value to be held at"

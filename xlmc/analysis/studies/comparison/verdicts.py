@@ -223,7 +223,9 @@ def inputs_text(comparison: Comparison) -> list[str]:
     inputs, books = comparison.inputs, book_names(comparison)
     alike = len(inputs.alike)
     lines = [f"{alike} assumption{' is' if alike == 1 else 's are'} drawn alike in both books."]
-    lines += [f"{u.name!r} is not the same: {u.first} | {u.second}." for u in (*inputs.unlike, *inputs.held)]
+    lines += [
+        f"{u.name!r} is not the same: {u.first} | {u.second}." for u in (*inputs.unlike, *inputs.frozen_differently)
+    ]
     for book, drawn, filters, unpaired in zip(books, inputs.drawn, inputs.filters, comparison.unpaired, strict=True):
         for what, names in (("Drawn", drawn), ("Filters", filters), ("Forecasts", unpaired)):
             if names:

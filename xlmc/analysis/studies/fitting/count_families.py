@@ -63,8 +63,8 @@ def _binomial(x: Floats) -> Params:
 def _binomial_log(x: Floats, probability: float, trials: float) -> Floats:
     from scipy.special import gammaln, xlog1py, xlogy
 
-    ways = gammaln(trials + 1) - gammaln(x + 1) - gammaln(trials - x + 1)
-    return np.asarray(ways + xlogy(x, probability) + xlog1py(trials - x, -probability))
+    log_count = gammaln(trials + 1) - gammaln(x + 1) - gammaln(trials - x + 1)
+    return np.asarray(log_count + xlogy(x, probability) + xlog1py(trials - x, -probability))
 
 
 def _geometric(x: Floats) -> Params:
@@ -95,8 +95,8 @@ def _negative_binomial(x: Floats) -> Params:
 def _negative_log(x: Floats, probability: float, shape: float) -> Floats:
     from scipy.special import gammaln
 
-    ways = gammaln(x) - gammaln(shape) - gammaln(x - shape + 1)
-    return np.asarray(ways + shape * np.log(probability) + (x - shape) * np.log1p(-probability))
+    log_count = gammaln(x) - gammaln(shape) - gammaln(x - shape + 1)
+    return np.asarray(log_count + shape * np.log(probability) + (x - shape) * np.log1p(-probability))
 
 
 def _negbin(x: Floats) -> Params:

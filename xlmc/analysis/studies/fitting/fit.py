@@ -145,10 +145,10 @@ def _judged(kind: str, x: Floats, found: Sequence[tuple[Candidate, Params, float
     best = min((_aic(candidate, top) for candidate, _, top in found), default=0.0)
     fits = []
     for candidate, params, top in found:
-        said: tuple[Errors, str] = (None,) * len(params), "not worked out"
+        sentences: tuple[Errors, str] = (None,) * len(params), "not worked out"
         if errors:
-            said = _errors(candidate, params, x, _aic(candidate, top) - best < _IN_THE_RACE)
-        fits.append(_judge_fit(candidate, params, top, x, kind, *said))
+            sentences = _errors(candidate, params, x, _aic(candidate, top) - best < _IN_THE_RACE)
+        fits.append(_judge_fit(candidate, params, top, x, kind, *sentences))
     return fits
 
 
@@ -259,20 +259,22 @@ def cautions(n: int, rivals: list[str]) -> tuple[str, ...]:
         n: how many values there are.
         rivals: the families whose AIC lies within 2 of the best, the best first.
     """
-    said = []
+    sentences = []
     if n < FEW:
-        said.append(
+        sentences.append(
             f"{n} values cannot tell families of distributions apart. Their order is chance as much as evidence; a "
             "uniform range, wide enough for every value that is possible, claims less"
         )
     elif n < _ENOUGH:
-        said.append(
+        sentences.append(
             f"{n} values tell families of distributions apart only roughly; a uniform range, wide enough for every "
             "value that is possible, claims less"
         )
     if len(rivals) > 1:
-        said.append(f"{_join_names(rivals)} describe the values about equally well: their AIC lie within {_CLOSE:g}")
-    return tuple(said)
+        sentences.append(
+            f"{_join_names(rivals)} describe the values about equally well: their AIC lie within {_CLOSE:g}"
+        )
+    return tuple(sentences)
 
 
 def _join_names(names: list[str]) -> str:

@@ -57,11 +57,11 @@ def _corners(k: int, seed: int) -> tuple[NDArray[np.bool_], tuple[str, ...]]:
     if 1 << k <= _MOST_CORNERS:
         numbers = np.arange(1 << k)
         plural = "s" * (k != 1)
-        said = f"all 2^{k} = {1 << k:,} corners of the {k} assumption{plural} that the forecasts depend on"
-        return (numbers[:, None] >> np.arange(k)) & 1 == 1, (said,)
+        remark = f"all 2^{k} = {1 << k:,} corners of the {k} assumption{plural} that the forecasts depend on"
+        return (numbers[:, None] >> np.arange(k)) & 1 == 1, (remark,)
     count = min(_MOST_CORNERS, _MOST_NUMBERS // k)
-    said = f"{count:,} random corners of 2^{k}: the true bounds may be wider"
-    return np.random.default_rng(seed).random((count, k)) < 0.5, (said,)
+    remark = f"{count:,} random corners of 2^{k}: the true bounds may be wider"
+    return np.random.default_rng(seed).random((count, k)) < 0.5, (remark,)
 
 
 def _bounds(column: Floats) -> Answer:

@@ -126,7 +126,7 @@ class Runs:
         acceptance: of the share of accepted trials; None where the method gives none.
         effective: accepted trials that count fully, the median; None where all weigh alike.
         failed: runs without any number.
-        settled: whether so many trials are accepted that errors fall as theory says; only such runs are extrapolated.
+        converged: whether so many trials are accepted that errors fall as theory says; only such runs are extrapolated.
         measured: whether the seconds were, and not worked out from the rate of a shorter run.
     """
 
@@ -139,7 +139,7 @@ class Runs:
     acceptance: Rms | None
     effective: float | None = None
     failed: int = 0
-    settled: bool = True
+    converged: bool = True
     measured: bool = True
 
 
@@ -172,17 +172,17 @@ class Curve:
         return any(np.isfinite(value) for value in self.lengths[-1].shares.values())
 
     @property
-    def settled(self) -> tuple[Runs, ...]:
+    def converged(self) -> tuple[Runs, ...]:
         """The runs that errors are extrapolated from; the longest where too few trials are accepted even there."""
-        return tuple(runs for runs in self.lengths if runs.settled) or self.lengths[-1:]
+        return tuple(runs for runs in self.lengths if runs.converged) or self.lengths[-1:]
 
     def slope(self, statistic: str, against: str = "seconds") -> float:
         """The slope of the error, in logarithms, against `seconds`, `evaluations` or `budget`; NaN where these hardly
         differ.
         """
-        across = [float(getattr(runs, against)) for runs in self.settled]
-        weights = [max(max(error.n for error in runs.errors.values()) - 1.0, 1.0) for runs in self.settled]
-        return slope_of(across, [runs.shares[statistic] for runs in self.settled], weights)
+        across = [float(getattr(runs, against)) for runs in self.converged]
+        weights = [max(max(error.n for error in runs.errors.values()) - 1.0, 1.0) for runs in self.converged]
+        return slope_of(across, [runs.shares[statistic] for runs in self.converged], weights)
 
 
 def in_order(lengths: Sequence[Runs]) -> tuple[Runs, ...]:
@@ -223,7 +223,7 @@ def runs_of(budget: int, results: Sequence[MethodResult], reference: Reference) 
         acceptance=rms_of(np.array(accepted) - reference.acceptance.value) if accepted else None,
         effective=median(effective) if effective else None,
         failed=lost,
-        settled=budget * reference.acceptance.value >= _SETTLED,
+        converged=budget * reference.acceptance.value >= _SETTLED,
     )
 
 

@@ -55,14 +55,14 @@ def expansion_of(model: CompiledModel, seed: int, order: int) -> Expansion:
 
 
 def _remarks(found: Derivatives) -> list[str]:
-    said = [f"no derivative: {each.why} ({each.function} in {each.cell})" for each in found.undefined]
+    sentences = [f"no derivative: {each.why} ({each.function} in {each.cell})" for each in found.undefined]
     if found.numerical:
         names = ", ".join(f"{each.function} in {each.cell}" for each in found.numerical)
-        said.append(f"derivatives from differences, because there is no rule for {names}")
+        sentences.append(f"derivatives from differences, because there is no rule for {names}")
     lost = [name for name, each in found.forecasts.items() if np.isnan(each.gradient).any()]
     if lost:
-        said.append(f"no answer for {', '.join(lost)}: a derivative is missing")
-    return said
+        sentences.append(f"no answer for {', '.join(lost)}: a derivative is missing")
+    return sentences
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -66,9 +66,9 @@ class ImportanceGrid:
         answers = {f.name: answer_of(c, weights, f.central) for f, c in zip(model.forecasts, columns, strict=True)}
         total, squares = float(weights.sum()), float(np.sum(weights**2))
         effective = total**2 / squares if squares else 0.0
-        said = f"of {weights.size:,} accepted trials, {effective:,.0f} count fully (effective sample size)"
+        remark = f"of {weights.size:,} accepted trials, {effective:,.0f} count fully (effective sample size)"
         seconds = time.perf_counter() - started
-        return MethodResult(seconds, pilot + trials, answers, total / trials, effective, (said,), extremes=ends)
+        return MethodResult(seconds, pilot + trials, answers, total / trials, effective, (remark,), extremes=ends)
 
 
 def _learned(model: CompiledModel, trials: int, seed: int) -> dict[str, Floats]:

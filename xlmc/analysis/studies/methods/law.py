@@ -89,7 +89,7 @@ def _comparisons(study: Study) -> int:
 def law(study: Study, curve: Curve, kind: Kind) -> Law:
     """The law of one number of a method that draws."""
     theory, tolerance = study.reference.theory(*kind, 1), study.tolerance(kind[0])
-    lengths = curve.settled
+    lengths = curve.converged
     match curve.method.errors:
         case "independent":
             return _law_of_quantile(study, lengths, kind) or _law_of_independent(lengths, kind, theory, tolerance)

@@ -246,8 +246,8 @@ class _Search:
         if unseen:
             found.append(f"checked, but not followed by the search: {', '.join(unseen)}")
         if self._whole.any():
-            held = ", ".join(name for name, whole in zip(self._names, self._whole, strict=True) if whole)
-            found.append(f"held at their values in the starting trials, because they are not continuous: {held}")
+            whole_names = ", ".join(name for name, whole in zip(self._names, self._whole, strict=True) if whole)
+            found.append(f"held at their values in the starting trials, because they are not continuous: {whole_names}")
         return (*found, *self._box.remarks)
 
     @cached_property
@@ -366,14 +366,14 @@ class _Known:
         return self._point
 
 
-def _constraint(known: _Known, name: str, way: float, limit: float, margin: float) -> dict[str, Any]:
-    """`way` (cell − limit) ≥ 0, with room for a step of `margin` widths of the box."""
+def _constraint(known: _Known, name: str, direction: float, limit: float, margin: float) -> dict[str, Any]:
+    """`direction` (cell − limit) ≥ 0, with room for a step of `margin` widths of the box."""
 
-    def room(z: Floats) -> float:
+    def distance(z: Floats) -> float:
         value, slope = known(z).filters[name]
-        return way * (value - limit) - margin * float(np.linalg.norm(slope))
+        return direction * (value - limit) - margin * float(np.linalg.norm(slope))
 
-    return {"type": "ineq", "fun": room, "jac": lambda z: way * known(z).filters[name][1]}
+    return {"type": "ineq", "fun": distance, "jac": lambda z: direction * known(z).filters[name][1]}
 
 
 def _distance(end: Floats, z: Floats) -> tuple[float, Floats]:

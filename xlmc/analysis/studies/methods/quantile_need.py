@@ -64,11 +64,11 @@ def _solved(up: float, down: float, p: float) -> float:
     from scipy.special import ndtr
 
     def missing(log_trials: float) -> float:
-        kept = -1.0
+        certainty = -1.0
         for share in (up, down):
             spread = share * (1.0 - share)
-            kept += 1.0 if spread <= 0.0 else float(ndtr(np.exp(log_trials / 2.0) * abs(share - p) / spread**0.5))
-        return kept - _CONFIDENCE
+            certainty += 1.0 if spread <= 0.0 else float(ndtr(np.exp(log_trials / 2.0) * abs(share - p) / spread**0.5))
+        return certainty - _CONFIDENCE
 
     low, high = (float(np.log(end)) for end in _RANGE)
     if missing(low) >= 0.0:

@@ -61,26 +61,26 @@ def _paragraphs(study: Study) -> list[str]:
     found = choice(study)
     once = [(curve, shortfall(study, curve)) for curve in study.once if curve.answers]
     verdict, *others = _drawing_text(study, found)
-    said = [verdict, _accuracy_text(study), *_heavy_text(study), *others, *_once_text(once)]
-    said += [_never_text(study, curve, each) for curve, each in found.needs.items() if each.reaches == "no"]
-    said += [_unknown_text(curve, each) for curve, each in found.needs.items() if each.reaches == "unknown"]
-    said += [_missed_text(study, curve, each) for curve, each in once if each.reaches == "no"]
-    said += [_undecided_text(study, curve, each) for curve, each in once if each.reaches == "unknown"]
-    said += _bounds_text(study)
-    return [*said, _ERROR_WORDS]
+    sentences = [verdict, _accuracy_text(study), *_heavy_text(study), *others, *_once_text(once)]
+    sentences += [_never_text(study, curve, each) for curve, each in found.needs.items() if each.reaches == "no"]
+    sentences += [_unknown_text(curve, each) for curve, each in found.needs.items() if each.reaches == "unknown"]
+    sentences += [_missed_text(study, curve, each) for curve, each in once if each.reaches == "no"]
+    sentences += [_undecided_text(study, curve, each) for curve, each in once if each.reaches == "unknown"]
+    sentences += _bounds_text(study)
+    return [*sentences, _ERROR_WORDS]
 
 
 def _accuracy_text(study: Study) -> str:
     text, _, relative = study.accuracy
     what = f"{text} of its 5–95 % range" if relative else f"{text} in its units"
     numbers = "mean, standard deviation and both ends of the central range of every forecast"
-    said = f"Asked for: {numbers}, each known to within {what}, in 95 of 100 runs."
+    sentences = f"Asked for: {numbers}, each known to within {what}, in 95 of 100 runs."
     if relative:
-        said += (
+        sentences += (
             " The 5–95 % range of a forecast is what nine tenths of its accepted trials lie in: "
             f"{'; '.join(_range(study, name) for name in study.varying)}."
         )
-    return said
+    return sentences
 
 
 def _range(study: Study, name: str) -> str:
@@ -103,18 +103,18 @@ def _drawing_text(study: Study, found: Choice) -> list[str]:
     if found.chosen is None:
         return ["No method that draws reaches this accuracy: ask for an accuracy above 0."]
     chosen, wanted = found.chosen, found.needs[found.chosen]
-    said = (
+    sentences = (
         f"Recommended: {chosen.method.name}, about {trials_text(wanted.trials)} trials, "
         f"{seconds_text(wanted.seconds)}; the {statistic_words(wanted.statistic)} of {wanted.forecast} needs the most. "
         f"{_saving(found)}"
     )
     if wanted.beyond > _FAR:
-        said += (
+        sentences += (
             f" That is {wanted.beyond:,.0f} times as many trials as the longest measured runs had; it is computed from "
             "how their errors fall."
         )
     if wanted.beyond > 1.0 and wanted.error >= _NOTABLE:
-        said += f" The number of trials is computed, and known to a factor of {np.exp(2.0 * wanted.error):.2g}."
+        sentences += f" The number of trials is computed, and known to a factor of {np.exp(2.0 * wanted.error):.2g}."
     others = sorted(
         (curve for curve, each in found.needs.items() if curve is not chosen and each.usable),
         key=lambda curve: found.needs[curve].seconds,
@@ -124,7 +124,7 @@ def _drawing_text(study: Study, found: Choice) -> list[str]:
         f"{seconds_text(found.needs[curve].seconds)}"
         for curve in others
     )
-    return [f"{said} {_command(study, chosen, wanted)}", *([f"The others would need: {rest}."] if rest else [])]
+    return [f"{sentences} {_command(study, chosen, wanted)}", *([f"The others would need: {rest}."] if rest else [])]
 
 
 def _saving(found: Choice) -> str:
@@ -137,11 +137,11 @@ def _saving(found: Choice) -> str:
             return "No other method saves a tenth of a second."
         return f"{_names([c for c in found.cheapest if c is not found.chosen])} take the same time within 20 %."
     tied = [curve for curve in found.cheapest if curve is not least]
-    said = f"By the clock alone {least.method.name} is cheapest, {seconds_text(found.needs[least].seconds)}"
+    sentences = f"By the clock alone {least.method.name} is cheapest, {seconds_text(found.needs[least].seconds)}"
     if tied:
-        said += f", and {_names(tied)} take the same time within 20 % or a tenth of a second"
+        sentences += f", and {_names(tied)} take the same time within 20 % or a tenth of a second"
     saved = found.needs[found.chosen].seconds - found.needs[least].seconds
-    return f"{said}: it saves {seconds_text(saved)}{_price(least, found.chosen)}."
+    return f"{sentences}: it saves {seconds_text(saved)}{_price(least, found.chosen)}."
 
 
 def _price(cheap: Curve, chosen: Curve) -> str:
@@ -193,8 +193,10 @@ def _once_text(once: Sequence[tuple[Curve, Shortfall]]) -> list[str]:
     if not enough:
         return []
     verbs = ("is", "needs") if len(enough) == 1 else ("are", "need")
-    said = f"{_names(enough)} {verbs[0]} near enough, and {verbs[1]} no draws at all; only the reference shows that."
-    return [said]
+    sentences = (
+        f"{_names(enough)} {verbs[0]} near enough, and {verbs[1]} no draws at all; only the reference shows that."
+    )
+    return [sentences]
 
 
 def _never_text(study: Study, curve: Curve, found: Need) -> str:

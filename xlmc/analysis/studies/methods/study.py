@@ -69,7 +69,7 @@ _FEW: Final = 8
 _PATIENCE: Final = 1.0
 """Seconds of a run that is too long to be repeated."""
 
-Told = Callable[[str], None]
+Tell = Callable[[str], None]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -130,7 +130,7 @@ def study(
     replicates: int | None = None,
     patience: float | None = None,
     seed: int | None = None,
-    told: Told | None = None,
+    tell: Tell | None = None,
 ) -> Study:
     """Measure every method on a workbook.
 
@@ -144,7 +144,7 @@ def study(
         patience: seconds after which one method is not run again at one length, after six runs at least; by default
             four, or as long as it takes where `replicates` is given.
         seed: of the reference; by default the workbook's.
-        told: called with what is being measured.
+        tell: called with what is being measured.
 
     Raises:
         SimulationError: an argument is out of its range, or the reference accepts too few trials.
@@ -152,7 +152,7 @@ def study(
     wanted = (accuracy.strip(), *as_tolerance(accuracy))
     own = model.definitions.settings.seed if seed is None else seed
     _check(own, replicates, trials, reference_trials, model)
-    tell = told or (lambda _: None)
+    tell = tell or (lambda _: None)
     engine = fastest_engine(model)
     tell("how fast the workbook is")
     size, sampling = reference_size(model, engine, own, _REFERENCE_SECONDS)
@@ -237,7 +237,7 @@ class _Measuring:
         replicates: int,
         patience: float,
         seed: int,
-        tell: Told,
+        tell: Tell,
     ) -> None:
         self._model, self._reference, self._ladder = model, reference, ladder
         self._replicates, self._patience = replicates, patience
@@ -273,8 +273,8 @@ class _Measuring:
             for a in (wider.get(name, Answer()),)
         }
         names = ", ".join(f"{end} {name}" for name, end in ends)
-        said = f"searched again from drawn trials that lie farther out: {names}"
-        return replace(curve, ranges=ranges, ends={**curve.ends, **ends}, remarks=(*curve.remarks, said))
+        remark = f"searched again from drawn trials that lie farther out: {names}"
+        return replace(curve, ranges=ranges, ends={**curve.ends, **ends}, remarks=(*curve.remarks, remark))
 
     def run_drawn(self, methods: Sequence[Method], engines: Sequence[Sampled]) -> tuple[Curve, ...]:
         """Run the methods that draw, and the engines, which compute again the trials of the first of these.
@@ -345,8 +345,8 @@ class _Measuring:
         apart = max(
             self._apart(results[engine.key, budget], results[MONTE_CARLO.key, budget]) for budget in self._ladder
         )
-        said = f"answers at the same trials differ from those of numpy by {apart:.1g} SD at the most"
-        return Curve(engine, ordered, _setup(first, ordered[0]), (said,), {}, apart)
+        remark = f"answers at the same trials differ from those of numpy by {apart:.1g} SD at the most"
+        return Curve(engine, ordered, _setup(first, ordered[0]), (remark,), {}, apart)
 
     def time_slow(self, engine: Sampled, numpy: Curve) -> tuple[Curve, ...]:
         """An engine that is too slow for runs of any length: its time is worked out from a few trials."""
@@ -359,8 +359,8 @@ class _Measuring:
         lengths = tuple(
             replace(r, seconds=each * r.budget, usual=each * r.budget, measured=False) for r in numpy.lengths
         )  # fmt: skip
-        said = f"the same trials as {numpy.method.name}; time worked out from {_FEW} of them"
-        return (Curve(engine, lengths, max(0.0, first.seconds - again), (said,), {}),)
+        remark = f"the same trials as {numpy.method.name}; time worked out from {_FEW} of them"
+        return (Curve(engine, lengths, max(0.0, first.seconds - again), (remark,), {}),)
 
     def _try(self, method: Method, budget: int) -> MethodResult | None:
         """A method's first run; None, and why, where it cannot be used."""

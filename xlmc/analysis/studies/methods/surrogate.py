@@ -84,8 +84,8 @@ class Surrogate:
         accepted, columns = _run(model, replaced, polynomials, budget, seed + _APART)
         answers = {f.name: answer_of(c, None, f.central) for f, c in zip(model.forecasts, columns.T, strict=True)}
         names = ", ".join(map(str, replaced))
-        said = f"fitted to {pilot:,} trials; polynomials instead of {names}"
-        return MethodResult(time.perf_counter() - started, pilot, answers, accepted / budget, remarks=(said,))
+        remark = f"fitted to {pilot:,} trials; polynomials instead of {names}"
+        return MethodResult(time.perf_counter() - started, pilot, answers, accepted / budget, remarks=(remark,))
 
 
 def _pilot_size(k: int) -> int:

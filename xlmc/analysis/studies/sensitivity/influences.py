@@ -255,10 +255,10 @@ def _trials_for(pairs: int) -> int:
 
 def _examined_rows(simulation: RunResult, most: int) -> tuple[NDArray[np.intp], NDArray[np.int64] | None]:
     """The rows of at most `most` accepted trials with known draws, ascending, and their replicates, if any."""
-    kept = simulation.kept_inputs if simulation.model.live else 0
+    stored = simulation.kept_inputs if simulation.model.live else 0
     if not simulation.plan.size:
-        return np.arange(min(kept, most)), None
-    replicate = simulation.plan.replicate_of(np.asarray(simulation.trial_index[:kept]))
+        return np.arange(min(stored, most)), None
+    replicate = simulation.plan.replicate_of(np.asarray(simulation.trial_index[:stored]))
     assert replicate is not None
     starts = np.flatnonzero(np.diff(replicate, prepend=-1))
     ends = np.append(starts[1:], replicate.size)

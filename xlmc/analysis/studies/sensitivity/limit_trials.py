@@ -91,16 +91,16 @@ class _LimitCells:
 
     def rejected_by_one(self, looked: _CellValues) -> list[Bools]:
         """For each limit, the trials `(n,)` that it rejects and nothing else does."""
-        held = [
+        within = [
             holds_to(limit.relation, looked.filters[limit.filter_index], bound)
             for limit, bound in zip(self.limits, looked.bounds, strict=True)
         ]
         limited = {limit.filter_index for limit in self.limits}
         logical = [cell for i, cell in enumerate(looked.filters) if i not in limited]
-        broken = np.sum([~each for each in held], axis=0)
+        broken = np.sum([~each for each in within], axis=0)
         for cell in logical:
             broken += (cell == 0.0) | np.isnan(cell)
-        return [(broken == 1) & ~each for each in held]
+        return [(broken == 1) & ~each for each in within]
 
 
 def _asked_of(filter_: Filter) -> Target:

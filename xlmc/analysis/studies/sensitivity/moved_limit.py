@@ -64,9 +64,9 @@ class LimitTrials:
         """`(n,)` the trials accepted with the limit at this value."""
         if limit == self.limit:
             return self.accepted
-        held = holds_to(self.relation, self.values, limit)
+        accepted_now = holds_to(self.relation, self.values, limit)
         looser = (limit < self.limit) == self.relation.startswith(">")
-        return held | self.accepted if looser else held & self.accepted
+        return accepted_now | self.accepted if looser else accepted_now & self.accepted
 
 
 def holds_to(relation: str, values: Floats, limit: float | Floats) -> Bools:
@@ -81,10 +81,10 @@ def grid(relation: str, limit: float, values: Floats) -> tuple[float, ...]:
     Up to half of the accepted trials are cut off by `_STEPS` steps on the tight side.
     """
     apart = np.abs(values[np.isfinite(values)] - limit)
-    room = float(np.median(apart)) if apart.size else 0.0
-    if not (math.isfinite(room) and room > 1e-9 * abs(limit) and room > 1e-300):
+    spacing = float(np.median(apart)) if apart.size else 0.0
+    if not (math.isfinite(spacing) and spacing > 1e-9 * abs(limit) and spacing > 1e-300):
         return ()
-    step = _round_below(room / _STEPS)
+    step = _round_below(spacing / _STEPS)
     return tuple(float(f"{limit + count * step:.12g}") if count else limit for count in range(-_STEPS, _STEPS + 1))
 
 
@@ -143,10 +143,10 @@ def _answers_at(
     made: dict[bytes, _Moved] = {}  # many limits may keep the same trials
     moved = []
     for mask in inside:
-        held = mask[order]
-        key = held.tobytes()
+        accepted_now = mask[order]
+        key = accepted_now.tobytes()
         if key not in made:
-            made[key] = _move(y, weights, held, units, now, central)
+            made[key] = _move(y, weights, accepted_now, units, now, central)
         moved.append(made[key])
     slope = _slope(found, [(each.value, each.pulls) for each in moved], limits, units, accepted)
     return [each.estimates for each in moved], slope
@@ -160,27 +160,33 @@ class _Moved(NamedTuple):
     estimates: tuple[Estimate, Estimate, Estimate, Estimate]
 
 
-def _move(y: Floats, weights: Floats, held: Bools, units: Units, now: tuple[float, Floats], central: float) -> _Moved:
+def _move(
+    y: Floats, weights: Floats, accepted_now: Bools, units: Units, now: tuple[float, Floats], central: float
+) -> _Moved:
     """The result of a moved limit, from the trials held, in ascending order; `now` is the mean of the accepted ones."""
-    mean, pulls = _mean(y, weights, held, units)
-    change = _estimate(mean - now[0], pulls - now[1], units, held)
-    low, high = central_interval(_sample(y, weights, held, units), central)
-    return _Moved(mean, pulls, (_estimate(mean, pulls, units, held), change, low, high))
+    mean, pulls = _mean(y, weights, accepted_now, units)
+    change = _estimate(mean - now[0], pulls - now[1], units, accepted_now)
+    low, high = central_interval(_sample(y, weights, accepted_now, units), central)
+    return _Moved(mean, pulls, (_estimate(mean, pulls, units, accepted_now), change, low, high))
 
 
 def _slope(
-    found: LimitTrials, means: Sequence[tuple[float, Floats]], limits: Sequence[float], units: Units, held: Bools
+    found: LimitTrials,
+    means: Sequence[tuple[float, Floats]],
+    limits: Sequence[float],
+    units: Units,
+    accepted_now: Bools,
 ) -> Estimate:
     """The slope of the mean, over one step on either side."""
     index = list(limits).index(found.limit)
     (before, pulls), (after, more) = means[index - 1], means[index + 1]
     width = limits[index + 1] - limits[index - 1]
-    return _estimate((after - before) / width, (more - pulls) / width, units, held)
+    return _estimate((after - before) / width, (more - pulls) / width, units, accepted_now)
 
 
-def _mean(y: Floats, weights: Floats, held: Bools, units: Units) -> tuple[float, Floats]:
+def _mean(y: Floats, weights: Floats, accepted_now: Bools, units: Units) -> tuple[float, Floats]:
     """The weighted mean, nan of no trial, and how each of the `(n,)` trials pulls it, times n."""
-    w = np.where(held, weights, 0.0)
+    w = np.where(accepted_now, weights, 0.0)
     total = float(w.sum())
     if total == 0.0:
         return math.nan, np.zeros(y.size)
@@ -189,18 +195,18 @@ def _mean(y: Floats, weights: Floats, held: Bools, units: Units) -> tuple[float,
     return mean, w * (y - mean) * units.n
 
 
-def _estimate(value: float, pulls: Floats, units: Units, held: Bools) -> Estimate:
-    if np.count_nonzero(held) < 2:
+def _estimate(value: float, pulls: Floats, units: Units, accepted_now: Bools) -> Estimate:
+    if np.count_nonzero(accepted_now) < 2:
         return Estimate(value)
     return units.estimate(value, units.error(pulls))
 
 
-def _sample(y: Floats, weights: Floats, held: Bools, units: Units) -> Sample:
+def _sample(y: Floats, weights: Floats, accepted_now: Bools, units: Units) -> Sample:
     """A sample of ascending values; it is made directly, because they are in order."""
-    w = weights[held]
+    w = weights[accepted_now]
     even = bool(np.all(w == w[0])) if w.size else True
     group, groups = None, 0
     if units.replicate is not None:
-        group = np.unique(units.replicate[held] % MOST_GROUPS, return_inverse=True)[1].astype(np.intp)
+        group = np.unique(units.replicate[accepted_now] % MOST_GROUPS, return_inverse=True)[1].astype(np.intp)
         groups = int(group.max(initial=-1)) + 1
-    return Sample(y[held], None if even else w / w.sum(), group, groups)
+    return Sample(y[accepted_now], None if even else w / w.sum(), group, groups)

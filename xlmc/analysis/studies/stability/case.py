@@ -84,13 +84,13 @@ class Case:
         if not self.names:
             return {}
         special = self._special()
-        prior = np.column_stack([self.run.prior[a.name][: self._room(_PRIOR)] for a in self.model.live])
-        accepted = np.column_stack([self.run.inputs[a.name][: self._room(_ACCEPTED)] for a in self.model.live])
+        prior = np.column_stack([self.run.prior[a.name][: self._share_of(_PRIOR)] for a in self.model.live])
+        accepted = np.column_stack([self.run.inputs[a.name][: self._share_of(_ACCEPTED)] for a in self.model.live])
         rows = np.concatenate([special, prior, accepted])
         rows = rows[np.isfinite(rows).all(axis=1)]
         return {name: np.ascontiguousarray(column) for name, column in zip(self.names, rows.T, strict=True)}
 
-    def _room(self, trials: int) -> int:
+    def _share_of(self, trials: int) -> int:
         """How many trials of so many there is room for."""
         each = 24 * len(self.nodes) + 8 * len(self.cells) * (2 * len(self.names) + 1)
         share = _BYTES / (each * (_PRIOR + _ACCEPTED))
@@ -118,8 +118,8 @@ class Case:
     @cached_property
     def first_accepted(self) -> int:
         """The index of the first accepted trial; the trials before it are of all that were drawn."""
-        kept = min(self.run.kept_inputs, self.run.accepted, self._room(_ACCEPTED))
-        return self.n - kept if self.names else self.n
+        stored = min(self.run.kept_inputs, self.run.accepted, self._share_of(_ACCEPTED))
+        return self.n - stored if self.names else self.n
 
     @property
     def n(self) -> int:
@@ -259,8 +259,8 @@ class Case:
             share = float(np.mean((draws >= here.min()) & (draws <= here.max())))
             width = float(draws.max() - draws.min())
             if assumption.name in needed and width > 0 and _by_chance(share, count) * len(needed) < _RARELY:
-                told = self.draws[assumption.name][trials]
-                shares.append((float(here.max() - here.min()) / width, number, assumption, told))
+                drawn_here = self.draws[assumption.name][trials]
+                shares.append((float(here.max() - here.min()) / width, number, assumption, drawn_here))
         shares.sort(key=lambda each: each[:2])
         named = [each for each in shares if each[0] < _TELLING][:most]
         return tuple(

@@ -167,9 +167,9 @@ def _with(case: Case, whole: int, node: int, cured: Floats, trials: Sequence[int
     rows = np.asarray(trials, np.intp)
     after = set(case.after(node))
     order = [one for one in closure(case.dag, [whole]) if one in after]
-    held = {one: case.values[one].take(rows) for one in closure(case.dag, [whole])}
+    fixed = {one: case.values[one].take(rows) for one in closure(case.dag, [whole])}
     return np.array(
-        numbers_of(evaluate_changes(case.dag, order, held, {node: Value.of_numbers(cured)})[whole], rows.size)
+        numbers_of(evaluate_changes(case.dag, order, fixed, {node: Value.of_numbers(cured)})[whole], rows.size)
     )
 
 

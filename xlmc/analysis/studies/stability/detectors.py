@@ -194,7 +194,7 @@ def jumps(case: Case) -> Iterator[Finding]:
     for kink in case.derivatives.kinks:
         row = POSITION if kink.function == POSITION.name else function_named(kink.function)
         if row is not None and row.facts.jumps and kink.cell in case.node:
-            text = f"{kink.function} finds {kink.ways} different cells among the trials"
+            text = f"{kink.function} finds {kink.branches} different cells among the trials"
             yield _jump_finding(case, kink.cell, text, "the result steps from one cell to the next", kink.share)
 
 

@@ -126,14 +126,14 @@ def _edge_finding(case: Case, cell: Cell, edge: _Edge) -> Finding | None:
             f"the cell is an error in {share:.2%} of the trials",
         )
         return _finding(case, cell, edge, Level.DOUBTFUL, what, effect, outside, share)
-    room = np.minimum(x - low, high - x)
+    distance = np.minimum(x - low, high - x)
     spread = float(x.max() - x.min())
-    if room.min() > _CLOSE * spread or edge.function in _OVERFLOWS:
+    if distance.min() > _CLOSE * spread or edge.function in _OVERFLOWS:
         return None
     near = edge.matters & (np.minimum(every - low, high - every) <= 10 * _CLOSE * spread)
-    what = f"{takes} comes as near as {room.min():.2g} to that edge"
+    what = f"{takes} comes as near as {distance.min():.2g} to that edge"
     effect = "close to it the function is steep, and a trial beyond it is an error"
-    return _finding(case, cell, edge, Level.NOTE, what, effect, near, float(room.min() / spread))
+    return _finding(case, cell, edge, Level.NOTE, what, effect, near, float(distance.min() / spread))
 
 
 def _in_words(domain: Domain) -> str:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 __all__ = ["stability"]
 
-Told = Callable[[str], None]
+Tell = Callable[[str], None]
 
 _DETECTORS: Final[Mapping[str, Callable[[Case], Iterable[Finding]]]] = {
     "lost quadrants": lost_quadrants,
@@ -55,7 +55,7 @@ def stability(
     trials: int | None = None,
     seed: int | None = None,
     jobs: int = 1,
-    told: Told | None = None,
+    tell: Tell | None = None,
 ) -> Stability:
     """Look through the cells that a model needs.
 
@@ -64,7 +64,7 @@ def stability(
         trials: of the run that is looked at; by default the book's own.
         seed: of it.
         jobs: threads or processes.
-        told: called with what is being done.
+        tell: called with what is being done.
 
     Raises:
         SimulationError: an argument is out of its range.

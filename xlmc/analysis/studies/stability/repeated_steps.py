@@ -66,5 +66,5 @@ def _worst(case: Case, chain: list[Finding]) -> Finding:
     if len(chain) == 1:
         return worst
     order = sorted((one.cell for one in chain), key=lambda cell: len(case.upstream(cell)))
-    said = f"; {len(chain)} cells repeat this step, from {order[0]} to {order[-1]}, and each loses more"
-    return replace(worst, what=f"{worst.what}{said}")
+    addition = f"; {len(chain)} cells repeat this step, from {order[0]} to {order[-1]}, and each loses more"
+    return replace(worst, what=f"{worst.what}{addition}")

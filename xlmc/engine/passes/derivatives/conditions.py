@@ -15,7 +15,7 @@ from xlmc.errors import ErrorCode
 from xlmc.excel.functions import Function
 from xlmc.excel.functions.values import ERROR, TEXT, Bools, Value
 
-__all__ = ["hold_still", "if_", "if_error"]
+__all__ = ["constant_jet", "if_", "if_error"]
 
 _STEP: Final = "the value jumps there"
 
@@ -26,12 +26,12 @@ _NEAR: Final = 1e-14
 @rule("<", "<=", ">", ">=", why="the two sides are equal there", jumps=True)
 def ordered(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
     """Comparisons by size: no derivative where both sides are equal and do not change alike."""
-    ways = result.numbers
+    branches = result.numbers
     if any((operand.value.kinds == TEXT).any() for operand in operands):
-        return Outcome(Jet.still(result.numbers), ways)
+        return Outcome(Jet.still(result.numbers), branches)
     left, right = level_jets(operands)
     equal: Bools = np.asarray(left.x == right.x)
-    return Outcome(_condition(result, [left, right], equal), ways)
+    return Outcome(_condition(result, [left, right], equal), branches)
 
 
 @rule("=", "<>", why="one side has no derivative there", jumps=True)
@@ -140,7 +140,7 @@ def steps(function: Function, result: Value, operands: Sequence[Operand]) -> Out
     where = _find_nudged(function, result, operands)
     if function.name == "SIGN":
         where = where | (jets[0].x == 0)
-    return Outcome(hold_still(result, jets, where), result.numbers)
+    return Outcome(constant_jet(result, jets, where), result.numbers)
 
 
 @rule(
@@ -155,11 +155,11 @@ def multiples(function: Function, result: Value, operands: Sequence[Operand]) ->
     where = _find_nudged(function, result, operands)
     multiple = jets[1] if len(jets) > 1 else Jet.still(np.ones((1,) * result.numbers.ndim))
     times = np.where(multiple.x == 0, 0.0, result.numbers / np.where(multiple.x == 0, 1.0, multiple.x))
-    still = hold_still(result, jets[:1] + jets[2:], where)
+    still = constant_jet(result, jets[:1] + jets[2:], where)
     return Outcome(still + multiple.times(times), times)
 
 
-def hold_still(result: Value, jets: Sequence[Jet], where: Bools) -> Jet:
+def constant_jet(result: Value, jets: Sequence[Jet], where: Bools) -> Jet:
     """A value that is constant between steps; no derivatives at a step, and where an operand has none."""
     if not where.any() and all(np.isfinite(jet.first).all() for jet in jets):
         return Jet.still(result.numbers)

@@ -50,14 +50,14 @@ class Kink:
     Attributes:
         cell: whose formula it is in.
         function: its name in Excel.
-        ways: how many there are among the trials; a rounding has one for each result.
+        branches: how many there are among the trials; a rounding has one for each result.
         share: of the trials that do not go the way that most go.
         jumps: whether the value itself may jump, as that of an IF, a lookup or a rounding; ABS, MIN and MAX only turn.
     """
 
     cell: Cell
     function: str
-    ways: int
+    branches: int
     share: float
     jumps: bool
 
@@ -127,24 +127,24 @@ class Notes:
     """Notes, collected over the portions of a run.
 
     Attributes:
-        ways: node -> way -> in how many trials.
+        branches: node -> way -> in how many trials.
         lost: node -> why -> the trials, counted from 0.
         errors: node -> the largest relative error of a difference.
     """
 
-    ways: dict[int, Counter[float]] = field(default_factory=lambda: defaultdict(Counter))
+    branches: dict[int, Counter[float]] = field(default_factory=lambda: defaultdict(Counter))
     lost: dict[int, dict[str, list[NDArray[np.intp]]]] = field(default_factory=lambda: defaultdict(dict))
     errors: dict[int, float] = field(default_factory=dict)
     names: dict[int, str] = field(default_factory=dict)
     jumping: set[int] = field(default_factory=set)
 
-    def took(self, node: int, name: str, ways: NDArray[np.generic], jumps: bool) -> None:
+    def took(self, node: int, name: str, branches: NDArray[np.generic], jumps: bool) -> None:
         """Note the ways that a function took, one for each trial."""
         self.names[node] = name
         if jumps:
             self.jumping.add(node)
-        found, counts = np.unique(np.asarray(ways, np.float64), return_counts=True)
-        self.ways[node].update(dict(zip(found.tolist(), counts.tolist(), strict=True)))
+        found, counts = np.unique(np.asarray(branches, np.float64), return_counts=True)
+        self.branches[node].update(dict(zip(found.tolist(), counts.tolist(), strict=True)))
 
     def lose(self, node: int, name: str, why: str, trials: Bools, start: int) -> None:
         """Note that a function lost the derivatives in these trials of a portion that starts at `start`."""
@@ -164,10 +164,10 @@ class Notes:
     def kinks(self, owners: Mapping[int, Cell]) -> tuple[Kink, ...]:
         """The functions that took more than one way, the most evenly divided first."""
         found = []
-        for node, ways in self.ways.items():
-            if len(ways) > 1:
-                share = 1 - max(ways.values()) / ways.total()
-                found.append(Kink(owners[node], self.names[node], len(ways), share, node in self.jumping))
+        for node, branches in self.branches.items():
+            if len(branches) > 1:
+                share = 1 - max(branches.values()) / branches.total()
+                found.append(Kink(owners[node], self.names[node], len(branches), share, node in self.jumping))
         return tuple(sorted(found, key=lambda kink: -kink.share))
 
     def undefined(self, owners: Mapping[int, Cell], concerned: Iterable[int]) -> tuple[Undefined, ...]:

@@ -104,7 +104,7 @@ elementwise(
         -2 * x * y / _radius(x, y) ** 2,
     ),
     why="the angle jumps from -180° to 180° there",
-    ways=_turn,
+    branches=_turn,
     jumps=True,
 )
 
@@ -126,7 +126,7 @@ elementwise(
     lambda y, x: (np.where(x == 0, np.nan, np.sign(x)),),
     lambda y, x: (np.where(x == 0, np.nan, 0.0),),
     why="it turns at 0",
-    ways=lambda y, x: np.sign(x),
+    branches=lambda y, x: np.sign(x),
 )
 
 

@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.engine.passes.derivatives.conditions import hold_still
+from xlmc.engine.passes.derivatives.conditions import constant_jet
 from xlmc.engine.passes.derivatives.jet import Jet, align, concatenate, flat
 from xlmc.engine.passes.derivatives.rules import RULES, DerivativeRule, Operand, Outcome, level_jets, rule
 from xlmc.excel.functions import Function
@@ -80,7 +80,7 @@ def _tag(value: Value, numbers: NDArray[np.float64]) -> Value:
 def match(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
     """A position, whose derivative is 0 except where it steps."""
     step = _steps(function, result, [operand.value for operand in operands])
-    return Outcome(hold_still(result, level_jets([operands[0]]), step), result.numbers)
+    return Outcome(constant_jet(result, level_jets([operands[0]]), step), result.numbers)
 
 
 def _steps(call: Callable[[Values], Value], found: Value, values: Values) -> Bools:
@@ -103,7 +103,7 @@ def _look_up(call: Callable[[Values], Value], result: Value, operands: Sequence[
     key = operands[0].jet
     if key.active:
         level = key.as_range() if jet.x.ndim == 3 else key
-        jet = replace(jet + hold_still(result, [level], _steps(call, found, values)), x=result.numbers)
+        jet = replace(jet + constant_jet(result, [level], _steps(call, found, values)), x=result.numbers)
     return Outcome(_without(jet, operands[2:]), found.numbers)
 
 
@@ -197,4 +197,4 @@ register_moving(range, "VSTACK", "HSTACK")
 @rule(CELL_AT.name)
 def cell_at(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
     """A constant number: its derivative is that of the position, 0 where it does not step."""
-    return Outcome(hold_still(result, level_jets([operands[1]]), np.zeros(1, bool)))
+    return Outcome(constant_jet(result, level_jets([operands[1]]), np.zeros(1, bool)))

@@ -82,7 +82,7 @@ def _through_text(result: Value, jets: Sequence[Jet]) -> Jet:
 
 
 @dataclass(frozen=True, slots=True)
-class _Way:
+class _Path:
     """A way to move the operands: by `t·first + t²/2·second` each; their shapes are those of the operands."""
 
     first: tuple[Floats | None, ...]
@@ -103,11 +103,11 @@ def _by_arguments(moved: Moved, result: Value, jets: Sequence[Jet], live: Sequen
     """Differences by the arguments, then the chain rule."""
     order = jets[live[0]].order
 
-    def way(*indices: int) -> _Way:
+    def path(*indices: int) -> _Path:
         first = tuple(_scale(jet.x) if index in indices else None for index, jet in enumerate(jets))
-        return _Way(first, (None,) * len(jets))
+        return _Path(first, (None,) * len(jets))
 
-    singles = {index: _along(moved, result, way(index)) for index in live}
+    singles = {index: _along(moved, result, path(index)) for index in live}
     sizes = {index: _scale(jets[index].x) for index in live}
     firsts = [singles[index].first / sizes[index] if index in singles else 0.0 for index in range(len(jets))]
     errors = {index: singles[index].first_error / sizes[index] for index in live}
@@ -120,7 +120,7 @@ def _by_arguments(moved: Moved, result: Value, jets: Sequence[Jet], live: Sequen
             second_errors[i, i] = singles[i].second_error / sizes[i] ** 2
             for j in live:
                 if j > i:
-                    both = _along(moved, result, way(i, j))
+                    both = _along(moved, result, path(i, j))
                     seconds[i, j], second_errors[i, j] = _mixed(both, singles[i], singles[j], sizes[i] * sizes[j])
     jet = chain(result.numbers, jets, firsts, lambda: seconds)
     return _with_errors(jet, [jets[index] for index in live], list(errors.values()), live, second_errors)
@@ -161,7 +161,7 @@ def _by_assumptions(moved: Moved, result: Value, operands: Sequence[Operand]) ->
     order = jets[indices[0]].order
     a = range(len(active))
 
-    def way(weights: dict[int, Floats]) -> _Way:
+    def path(weights: dict[int, Floats]) -> _Path:
         """Along a sum of assumptions, each by a weight `(n,)`."""
         firsts: list[Floats | None] = [None] * len(operands)
         seconds: list[Floats | None] = [None] * len(operands)
@@ -171,11 +171,11 @@ def _by_assumptions(moved: Moved, result: Value, operands: Sequence[Operand]) ->
             if jet.second is not None:
                 curve = [v * w * jet.second[i, j] for i, v in level.items() for j, w in level.items()]
                 seconds[index] = sum(curve, np.zeros(1))
-        return _Way(tuple(firsts), tuple(seconds))
+        return _Path(tuple(firsts), tuple(seconds))
 
     n = result.shape[0]
     weight = [_weight([jets[index].first[i] for index in indices], x, n) for i in a]
-    singles = [_along(moved, result, way({i: weight[i]})) for i in a]
+    singles = [_along(moved, result, path({i: weight[i]})) for i in a]
     level = [w.reshape(-1, *(1,) * (result.numbers.ndim - 1)) for w in weight]
     first = np.stack([singles[i].first / level[i] for i in a])
     error = np.stack([singles[i].first_error / level[i] for i in a])
@@ -186,7 +186,7 @@ def _by_assumptions(moved: Moved, result: Value, operands: Sequence[Operand]) ->
             second[i, i] = singles[i].second / level[i] ** 2
             second_error[i, i] = singles[i].second_error / level[i] ** 2
             for j in range(i):
-                both = _along(moved, result, way({i: weight[i], j: weight[j]}))
+                both = _along(moved, result, path({i: weight[i], j: weight[j]}))
                 second[i, j], second_error[i, j] = _mixed(both, singles[i], singles[j], level[i] * level[j])
                 second[j, i], second_error[j, i] = second[i, j], second_error[i, j]
     error, second_error = _inherit(jets, singles, error, second_error)
@@ -249,19 +249,19 @@ class _Along:
         )
 
 
-def _along(moved: Moved, result: Value, way: _Way) -> _Along:
+def _along(moved: Moved, result: Value, path: _Path) -> _Along:
     """The better result of steps that suit the arguments' size, and of steps that suit a size of 1."""
     n = result.shape[0]
     most = np.zeros(n)
-    for step in way.first:
+    for step in path.first:
         if step is not None:
             most = np.maximum(most, np.abs(step).reshape(step.shape[0], -1).max(axis=1))
-    found = _extrapolate(moved, result, way, np.ones(n))
+    found = _extrapolate(moved, result, path, np.ones(n))
     small = (most < 1) & (most >= _SMALLEST)
     if small.any():
-        found = found.or_better(_extrapolate(moved, result, way, np.where(small, 1 / most, 1.0)))
+        found = found.or_better(_extrapolate(moved, result, path, np.where(small, 1 / most, 1.0)))
     if not np.isfinite(found.first_error).all():
-        found = found.or_better(_extrapolate(moved, result, way, np.full(n, _FINER)))
+        found = found.or_better(_extrapolate(moved, result, path, np.full(n, _FINER)))
     return found
 
 
@@ -274,14 +274,14 @@ def _mixed(both: _Along, one: _Along, other: _Along, size: Floats) -> tuple[Floa
     return np.where(sure, second, np.nan) / (2 * size), np.where(sure, error, np.inf) / (2 * size)
 
 
-def _extrapolate(moved: Moved, result: Value, way: _Way, scale: Floats) -> _Along:
+def _extrapolate(moved: Moved, result: Value, path: _Path, scale: Floats) -> _Along:
     middle = np.broadcast_to(np.where(result.kinds >= ERROR, np.nan, result.numbers), result.shape)
     level = scale.reshape(-1, *(1,) * (result.numbers.ndim - 1))
     slopes, bends, steps = [], [], []
     largest = np.abs(middle)
     for share in [*(_FIRST_STEP / 2**halving for halving in range(_STEPS)), _CLOSE]:
         t = scale * share
-        up, down = moved(way.at(t)), moved(way.at(-t))
+        up, down = moved(path.at(t)), moved(path.at(-t))
         size = level * share
         slopes.append((up - down) / (2 * size))
         bends.append(((up - middle) - (middle - down)) / size**2)

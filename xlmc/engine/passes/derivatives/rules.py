@@ -18,7 +18,7 @@ from xlmc.excel.functions.values import Floats, Value
 
 __all__ = ["RULES", "DerivativeRule", "Operand", "Outcome", "elementwise", "level_jets", "rule"]
 
-Ways = NDArray[Any]
+Branches = NDArray[Any]
 
 
 class Operand(NamedTuple):
@@ -33,12 +33,12 @@ class Outcome(NamedTuple):
 
     Attributes:
         jet: the result with its derivatives; those that are not finite count as none.
-        ways: `(n,)` which way the function took in each trial, as any number; None where it has only one.
+        branches: `(n,)` which way the function took in each trial, as any number; None where it has only one.
         numerical: whether differences were taken.
     """
 
     jet: Jet
-    ways: Ways | None = None
+    branches: Branches | None = None
     numerical: bool = False
 
 
@@ -88,7 +88,7 @@ def elementwise(
     seconds: Callable[..., Sequence[Any]],
     *,
     why: str = "",
-    ways: Callable[..., Ways] | None = None,
+    branches: Callable[..., Branches] | None = None,
     jumps: bool = False,
 ) -> None:
     """Register a function of single numbers by its partial derivatives.
@@ -98,7 +98,7 @@ def elementwise(
         firsts: of (value, arguments): one derivative an argument.
         seconds: of the same: second derivatives in the order 11, 12, …, 22, 23, …
         why: see `DerivativeRule`.
-        ways: of (value, arguments): which way it takes.
+        branches: of (value, arguments): which way it takes.
         jumps: see `DerivativeRule`.
     """
 
@@ -108,6 +108,6 @@ def elementwise(
         x = [jet.x for jet in jets]
         pairs = [(i, j) for i in range(len(jets)) for j in range(i, len(jets))]
         jet = chain(y, jets, list(firsts(y, *x)), lambda: dict(zip(pairs, seconds(y, *x), strict=True)))
-        return Outcome(jet, None if ways is None else np.asarray(ways(y, *x)))
+        return Outcome(jet, None if branches is None else np.asarray(branches(y, *x)))
 
     rule(name, why=why, jumps=jumps)(apply)

@@ -125,8 +125,8 @@ def _differentiate(
         except ShapeVaries:
             raise UnequalSizes from None
         jet = _mask_undefined(outcome.jet, result)
-    if outcome.ways is not None and (valued or not _is_condition(dag.nodes[node])):
-        notes.took(node, name, outcome.ways, jumps)
+    if outcome.branches is not None and (valued or not _is_condition(dag.nodes[node])):
+        notes.took(node, name, outcome.branches, jumps)
     if outcome.numerical:
         notes.note_difference(node, name, jet.first, jet.error)
     _note_losses(node, name, why, result, jet, operands, notes, start)

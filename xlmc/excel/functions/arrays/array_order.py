@@ -24,9 +24,9 @@ from xlmc.excel.functions.arrays.array_shapes import (
     Refusal,
     array_function,
     grid_of,
-    kept_indices,
     read_size,
     refuse_errors,
+    selected_indices,
 )
 from xlmc.excel.functions.lookup.picked_cells import Indices, by_portions, flatten_cells, pick, transpose_cells
 from xlmc.excel.functions.ordering import to_ordered
@@ -53,7 +53,7 @@ def _filter_rows(grid: Value, test: Value, if_empty: Value | None) -> Value:
     mask = np.broadcast_to(truth, test.shape)[:, :, 0]
     if not mask.any() and if_empty is not None and not _is_blank(if_empty):
         return if_empty.as_range()
-    return _pick_rows(grid, kept_indices(mask))
+    return _pick_rows(grid, selected_indices(mask))
 
 
 def _is_blank(value: Value) -> bool:
@@ -142,7 +142,7 @@ def _unique_rows(grid: Value, once: bool) -> Value:
         return Value.of_logicals(_is_new(grid, once)[:, :, None])
 
     mask = by_portions(which, [grid], grid.shape[1] * grid.shape[2])
-    return _pick_rows(grid, kept_indices(mask.numbers[:, :, 0] != 0))
+    return _pick_rows(grid, selected_indices(mask.numbers[:, :, 0] != 0))
 
 
 def _is_new(grid: Value, once: bool) -> Bools:

@@ -38,7 +38,7 @@ from xlmc.excel.functions.lookup.picked_cells import (
 from xlmc.excel.functions.registry import Anything, Arrays, Kind, Logical, Number, Parameter, excel
 from xlmc.excel.functions.values import BLANK, ERROR, Bools, Codes, Floats, Value, constant
 
-__all__ = ["Refusal", "array_function", "grid_of", "kept_indices", "read_size", "refuse_errors"]
+__all__ = ["Refusal", "array_function", "grid_of", "read_size", "refuse_errors", "selected_indices"]
 
 
 class Refusal(Exception):  # noqa: N818 - it is no error of xlmc: Excel shows one
@@ -98,7 +98,7 @@ def read_size(value: Value | None, default: float | None = None) -> int | None:
     return int(np.trunc(require_same_in_all_trials(flatten_cells(numbers, value))[0]))
 
 
-def kept_indices(mask: Bools) -> Indices:
+def selected_indices(mask: Bools) -> Indices:
     """Return the indices at which a mask is TRUE: (n, k) -> (n, how many these are).
 
     Raises:
@@ -241,7 +241,7 @@ def to_column(array: Value, ignore: Value | None = None, by_column: Value | None
     if ignored not in (0, 1, 2, 3):
         raise Refusal(ErrorCode.VALUE)
     blank, wrong = (column.kinds == BLANK) & (ignored in (1, 3)), (column.kinds >= ERROR) & (ignored in (2, 3))
-    return pick(column, kept_indices(~(blank | wrong)[:, :, 0])[:, :, None], np.zeros((1, 1, 1), np.intp))
+    return pick(column, selected_indices(~(blank | wrong)[:, :, 0])[:, :, None], np.zeros((1, 1, 1), np.intp))
 
 
 @array_function("TOROW", Arrays, Number(default=0.0), Logical(default=False), sized_by_numbers=True)

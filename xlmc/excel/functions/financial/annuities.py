@@ -53,7 +53,7 @@ def _nan_if_zero(x: Any) -> Floats:
     return np.where(np.asarray(x) == 0, np.nan, x)
 
 
-def _nan_unless_kept(rate: Any) -> Floats:
+def _nan_unless_valid(rate: Any) -> Floats:
     """The rate, NaN where it leaves nothing of a unit: at -1 and below."""
     return np.where(np.asarray(rate) > -1, rate, np.nan)
 
@@ -72,7 +72,7 @@ def _future_value(rate: Any, nper: Any, pmt: Any, pv: Any, when: Any) -> Floats:
 @excel("PV", Number, Number, Number, Number(default=0.0), Number(default=0.0))
 def present_value(rate: Any, nper: Any, pmt: Any, fv: Any, when: Any) -> Floats:
     """What all payments are worth now; `#NUM!` at rates of -100 % and below."""
-    rate = _nan_unless_kept(rate)
+    rate = _nan_unless_valid(rate)
     later = fv + pmt * _timing_factor(rate, when) * _accumulation(rate, nper)
     return np.asarray(-later / _nan_if_zero(growth(rate, nper)) + 0.0)
 
@@ -80,7 +80,7 @@ def present_value(rate: Any, nper: Any, pmt: Any, fv: Any, when: Any) -> Floats:
 @excel("PMT", Number, Number, Number, Number(default=0.0), Number(default=0.0))
 def payment(rate: Any, nper: Any, pv: Any, fv: Any, when: Any) -> Floats:
     """Payment per period; `#NUM!` without periods, and at rates of -100 % and below."""
-    rate = _nan_unless_kept(rate)
+    rate = _nan_unless_valid(rate)
     worth = _timing_factor(rate, when) * _accumulation(rate, nper)
     return np.asarray(-(fv + pv * growth(rate, nper)) / _nan_if_zero(worth) + 0.0)
 

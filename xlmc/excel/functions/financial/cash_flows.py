@@ -65,9 +65,9 @@ def _pack_payments(flows: Floats, counts: Bools) -> tuple[Floats, Indices]:
     alive = counts & (flows != 0)
     begun = np.logical_or.accumulate(alive, axis=1)
     to_come = np.logical_or.accumulate(alive[:, ::-1], axis=1)[:, ::-1]
-    kept = counts & begun & to_come
-    order = np.argsort(~kept, axis=1, kind="stable")
-    return np.take_along_axis(np.where(kept, flows, 0.0), order, axis=1), kept.sum(axis=1)
+    used = counts & begun & to_come
+    order = np.argsort(~used, axis=1, kind="stable")
+    return np.take_along_axis(np.where(used, flows, 0.0), order, axis=1), used.sum(axis=1)
 
 
 def _has_both_signs(flows: Floats, counts: Bools) -> Bools:

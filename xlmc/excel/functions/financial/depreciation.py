@@ -49,8 +49,8 @@ def fixed_declining(cost: Any, salvage: Any, life: Any, period: Any, month: Any)
     years = np.floor(life) + (months < 12)
     wrong = (cost < 0) | (salvage < 0) | (life <= 0) | (whole < 1) | (whole > years) | (months < 1) | (months > 12)
     gone = wrong | (cost == 0)
-    kept = raise_to_power(salvage / np.where(gone, 1.0, cost), 1 / np.where(gone, 1.0, life))
-    rate = np.floor((1 - kept) * 1000 + 0.5) / 1000
+    remaining = raise_to_power(salvage / np.where(gone, 1.0, cost), 1 / np.where(gone, 1.0, life))
+    rate = np.floor((1 - remaining) * 1000 + 0.5) / 1000
     first = cost * rate * months / 12
     later = (cost - first) * raise_to_power(1 - rate, np.maximum(whole - 2, 0.0)) * rate
     last = np.where(whole > life, (12 - months) / 12, 1.0)
@@ -109,8 +109,8 @@ class _Declining:
 
     def _after(self, periods: Floats) -> Floats:
         """The value at the end of the shortened period and so many whole ones."""
-        kept = np.maximum(1 - self._rate, 0.0)
-        grown = self._after_part * raise_to_power(kept, periods)
+        remaining = np.maximum(1 - self._rate, 0.0)
+        grown = self._after_part * raise_to_power(remaining, periods)
         return np.where(self._after_part > self._salvage, np.maximum(grown, self._salvage), self._after_part)
 
     def left(self, time: Floats) -> Floats:

@@ -26,16 +26,16 @@ Reduce = Callable[[Value, Bools], Value]
 """One number per trial, from a range (n, r, c) and which of its cells, (n, k), meet all criteria."""
 
 
-def _count(cells: Value, held: Bools) -> Value:
-    return Value.of_numbers(held.sum(axis=1).astype(np.float64))
+def _count(cells: Value, matching: Bools) -> Value:
+    return Value.of_numbers(matching.sum(axis=1).astype(np.float64))
 
 
 def fold_of_numbers(fold: Callable[[Floats, Bools], Floats]) -> Reduce:
     """Make a `Reduce` of a function of numbers: it takes the numbers among the cells, and gives an error among them."""
 
-    def reduce(cells: Value, held: Bools) -> Value:
-        counts = held & (flatten_cells(cells.kinds, cells) == NUMBER)
-        errors = np.where(held, flatten_cells(cells.errors, cells), np.uint8(0))
+    def reduce(cells: Value, matching: Bools) -> Value:
+        counts = matching & (flatten_cells(cells.kinds, cells) == NUMBER)
+        errors = np.where(matching, flatten_cells(cells.errors, cells), np.uint8(0))
         return Value.of_numbers(fold(flatten_cells(cells.numbers, cells), counts), first_error_in_row(errors))
 
     return reduce
@@ -60,10 +60,10 @@ def _conditional(values: Value, pairs: Sequence[Value], reduce: Reduce, date1904
 
     def compute(values: Value, *others: Value) -> Value:
         ranges, criteria = others[: len(cells) - 1], others[len(cells) - 1 :]
-        held = np.ones((1, width), bool)
+        matching = np.ones((1, width), bool)
         for cells_, criterion in zip(ranges, criteria, strict=True):
-            held = held & which_meet(criterion, cells_, date1904=date1904)
-        return reduce(values, held)
+            matching = matching & which_meet(criterion, cells_, date1904=date1904)
+        return reduce(values, matching)
 
     if not shape:
         return with_errors(by_portions(compute, [*cells, *criteria], width), errors)

@@ -75,7 +75,7 @@ def lcm(*values: Value) -> Value:
     return Value.of_numbers(np.where(result < _EXACT, result, NUM), _first_error(x, errors, bad))
 
 
-def _ways(n: Floats, k: Floats) -> Floats:
+def _choices(n: Floats, k: Floats) -> Floats:
     """Binomial coefficients of whole n ≥ k ≥ 0: C(n, i) = C(n-1, i-1)·n/i, which stays whole at each step."""
     fewer = np.minimum(k, n - k)
     result = np.ones(np.broadcast_shapes(n.shape, k.shape))
@@ -88,7 +88,7 @@ def _ways(n: Floats, k: Floats) -> Floats:
 
 def _combinations(n: Floats, k: Floats) -> Floats:
     bad = (n < 0) | (k < 0) | (k > n) | (n >= _MOST)
-    return np.where(bad, NUM, _ways(np.where(bad, 0.0, n), np.where(bad, 0.0, k)))
+    return np.where(bad, NUM, _choices(np.where(bad, 0.0, n), np.where(bad, 0.0, k)))
 
 
 @excel("COMBIN", Number, Number)
@@ -102,8 +102,8 @@ def combina(number: Floats, chosen: Floats) -> Floats:
     """Ways to choose, each thing as often as one likes."""
     n, k = np.floor(number), np.floor(chosen)
     bad = (n < 0) | (k < 0) | ((n == 0) & (k > 0)) | (n >= _MOST)
-    ways = _combinations(np.where(bad | (n + k == 0), 0.0, n + k - 1), np.where(bad, 0.0, k))
-    return np.where(bad, NUM, ways)
+    choices = _combinations(np.where(bad | (n + k == 0), 0.0, n + k - 1), np.where(bad, 0.0, k))
+    return np.where(bad, NUM, choices)
 
 
 @excel("PERMUT", Number, Number)
@@ -144,7 +144,7 @@ def multinomial(*values: Value) -> Value:
     sums = np.add.accumulate(counts, axis=1)
     result = np.ones(x.shape[0])
     for total, count in zip(sums.T, counts.T, strict=True):
-        result = result * _ways(total, count)
+        result = result * _choices(total, count)
     return Value.of_numbers(result, _first_error(x, errors, bad))
 
 

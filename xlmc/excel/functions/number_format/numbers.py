@@ -58,12 +58,12 @@ class _DecimalLayout:
 
 def decimal_layout(tokens: Sequence[Token]) -> _DecimalLayout:
     """The layout of a section with digit placeholders."""
-    settled, grouped, thousands = read_commas(tokens)
+    places, grouped, thousands = read_commas(tokens)
     percents = sum(token.mark is Mark.PERCENT for token in tokens)
-    points = [index for index, token in enumerate(settled) if token.mark is Mark.POINT]
-    split = points[0] if points else len(settled)
-    after = tuple(settled[split + 1 :]) if points else None
-    return _DecimalLayout(tuple(settled[:split]), after, grouped, 2 * percents - 3 * thousands)
+    points = [index for index, token in enumerate(places) if token.mark is Mark.POINT]
+    split = points[0] if points else len(places)
+    after = tuple(places[split + 1 :]) if points else None
+    return _DecimalLayout(tuple(places[:split]), after, grouped, 2 * percents - 3 * thousands)
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,9 +185,9 @@ class _FractionLayout:
 
     def _zero_fraction(self, whole: tuple[Token, ...]) -> str:
         """What stands for a fraction of 0: spaces where any `?` aligns the number, else nothing."""
-        room = len(self.gap) + len(self.numerator) + len(self.stroke) + len(self.denominator)
+        width = len(self.gap) + len(self.numerator) + len(self.stroke) + len(self.denominator)
         aligned = "?" in _placeholders(whole) + _placeholders(self.numerator) + _placeholders(self.denominator)
-        return " " * room if aligned else ""
+        return " " * width if aligned else ""
 
     def _gap_without_whole(self, whole: tuple[Token, ...]) -> str:
         """What stands for the gap behind a whole number that is left out."""

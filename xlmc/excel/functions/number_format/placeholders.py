@@ -161,20 +161,20 @@ def read_commas(tokens: Sequence[Token]) -> tuple[list[Token], bool, int]:
     A comma right after a digit placeholder has a meaning: between two of the whole part it asks for separators, behind
     the last one it divides, between decimals it is ignored. Any other comma stands for itself, and stays a token.
     """
-    kept: list[Token] = []
+    remaining: list[Token] = []
     grouped, thousands, after_digit, in_whole = False, 0, False, True
     for index, token in enumerate(tokens):
         in_whole = in_whole and token.mark is not Mark.POINT
         if token.mark is not Mark.COMMA:
-            kept.append(token)
+            remaining.append(token)
             after_digit = token.mark in (Mark.DIGIT, Mark.POINT)
         elif not after_digit:
-            kept.append(literal(","))
+            remaining.append(literal(","))
         elif _digits_follow(tokens[index:], in_whole):
             grouped = grouped or in_whole
         else:
             thousands += 1
-    return kept, grouped, thousands
+    return remaining, grouped, thousands
 
 
 def _digits_follow(tokens: Sequence[Token], in_whole: bool) -> bool:

@@ -180,17 +180,17 @@ def _layout(tokens: Sequence[Token]) -> Layout:
         return _general(tokens)
     if is_moment(tokens):
         return moment_layout(tokens)
-    kept = [token for token in tokens if token.mark is not Mark.LANGUAGE]
-    marks = {token.mark for token in kept}
+    remaining = [token for token in tokens if token.mark is not Mark.LANGUAGE]
+    marks = {token.mark for token in remaining}
     if Mark.AT in marks:
         raise FormatError("a section for numbers holds a text placeholder")
     if Mark.EXPONENT in marks:
-        return exponent_layout(kept)
+        return exponent_layout(remaining)
     if Mark.SLASH in marks:
-        return fraction_layout(kept)
-    if count_digits(kept):
-        return decimal_layout(kept)
-    return BareLayout("".join(token.text for token in kept))
+        return fraction_layout(remaining)
+    if count_digits(remaining):
+        return decimal_layout(remaining)
+    return BareLayout("".join(token.text for token in remaining))
 
 
 def _general(tokens: Sequence[Token]) -> Layout:

@@ -102,8 +102,8 @@ def trimmed_mean(sample: Sample, share: Floats) -> Floats:
 
 
 def _mean_between(ordered: Floats, index: Floats, cut: Floats, size: Floats) -> Floats:
-    kept = (index >= cut) & (index < size - cut)
-    return row_sums(np.where(kept, ordered, 0.0)) / np.maximum(row_sums(kept.astype(np.float64)), 1.0)
+    inner = (index >= cut) & (index < size - cut)
+    return row_sums(np.where(inner, ordered, 0.0)) / np.maximum(row_sums(inner.astype(np.float64)), 1.0)
 
 
 def _sample_of_all(value: Value) -> Sample:

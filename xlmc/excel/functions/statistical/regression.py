@@ -267,7 +267,7 @@ def fit(y: Floats, x: Floats, free: Bools) -> _Fit:
     rest = frame.residual(centred, slopes)
     inverse = frame.inverse()
     leverage = [sum(mean * row[j] for mean, row in zip(means, inverse, strict=True)) for j in range(len(means))]
-    used = np.stack(frame.kept).sum(axis=0).astype(np.float64)
+    used = np.stack(frame.independent).sum(axis=0).astype(np.float64)
     return _Fit(
         _side_by_side(slopes),
         mean_y - sum(slope * mean for slope, mean in zip(slopes, means, strict=True)),
@@ -298,13 +298,13 @@ class _Frame:
         columns: as they were given, p of (n, m).
         directions: of length 1, or 0 where the column depends on those before it; p of (n, m).
         parts: an upper triangle of (n,); 1 on its diagonal for a column that depends on others.
-        kept: whether a column does not depend on others, p of (n,).
+        independent: whether a column does not depend on others, p of (n,).
     """
 
     columns: Sequence[Floats]
     directions: list[Floats]
     parts: list[list[Floats]]
-    kept: list[Bools]
+    independent: list[Bools]
 
     def solve(self, y: Floats) -> list[Floats]:
         """Find the coefficients with which the columns come closest to y: (n, m) -> p of (n,)."""
@@ -314,7 +314,7 @@ class _Frame:
             total = row_sums(self.directions[i] * y)
             for j in range(i + 1, p):
                 total = total - self.parts[i][j] * found[j]
-            found[i] = np.where(self.kept[i], total / self.parts[i][i], 0.0)
+            found[i] = np.where(self.independent[i], total / self.parts[i][i], 0.0)
         return found
 
     def residual(self, y: Floats, slopes: list[Floats]) -> Floats:
@@ -330,7 +330,7 @@ class _Frame:
         for j in range(p):
             for i in reversed(range(j + 1)):
                 total = np.asarray(float(i == j)) - sum(self.parts[i][h] * rows[h][j] for h in range(i + 1, j + 1))
-                rows[i][j] = np.where(self.kept[i] & self.kept[j], total / self.parts[i][i], 0.0)
+                rows[i][j] = np.where(self.independent[i] & self.independent[j], total / self.parts[i][i], 0.0)
         return rows
 
 
@@ -338,7 +338,7 @@ def _orthogonalize(columns: Sequence[Floats]) -> _Frame:
     p = len(columns)
     directions: list[Floats] = []
     parts: list[list[Floats]] = [[np.zeros(1)] * p for _ in range(p)]
-    kept: list[Bools] = []
+    independent: list[Bools] = []
     for j, column in enumerate(columns):
         rest = column
         for _ in range(2):
@@ -350,5 +350,5 @@ def _orthogonalize(columns: Sequence[Floats]) -> _Frame:
         own = after > _DEPENDENT * before
         parts[j][j] = np.where(own, after, 1.0)
         directions.append(np.where(own[:, None], rest / parts[j][j][:, None], 0.0))
-        kept.append(own)
-    return _Frame(columns, directions, parts, kept)
+        independent.append(own)
+    return _Frame(columns, directions, parts, independent)

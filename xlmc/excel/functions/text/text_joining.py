@@ -59,13 +59,13 @@ def text_join(delimiters: Value, ignore_empty: Value, *values: Value) -> Value:
 
 
 def _join(delimiters: list[str], texts: list[str], ignore_empty: bool) -> object:
-    kept = [text for text in texts if text] if ignore_empty else texts
-    whole, rest = divmod(max(len(kept) - 1, 0), len(delimiters))
+    joined_texts = [text for text in texts if text] if ignore_empty else texts
+    whole, rest = divmod(max(len(joined_texts) - 1, 0), len(delimiters))
     lengths = [len(delimiter) for delimiter in delimiters]
-    if sum(map(len, kept)) + whole * sum(lengths) + sum(lengths[:rest]) > LONGEST:
+    if sum(map(len, joined_texts)) + whole * sum(lengths) + sum(lengths[:rest]) > LONGEST:
         return ErrorCode.VALUE
     turns = [*delimiters * whole, *delimiters[:rest], ""]
-    joined = "".join(text + delimiter for text, delimiter in zip(kept, turns, strict=False))
+    joined = "".join(text + delimiter for text, delimiter in zip(joined_texts, turns, strict=False))
     return joined if fits_in_a_cell(joined) else ErrorCode.VALUE
 
 
@@ -97,9 +97,9 @@ def _refuse_long(texts: Objects) -> Value:
     """`#VALUE!` for texts longer than a cell holds."""
     flat = texts.ravel().tolist()
     codes = [0 if fits_in_a_cell(text) else ErrorCode.VALUE for text in flat]
-    kept = ["" if code else text for text, code in zip(flat, codes, strict=True)]
+    joined_texts = ["" if code else text for text, code in zip(flat, codes, strict=True)]
     box: Objects = np.empty(texts.shape, object)
-    box.reshape(-1)[:] = list(count_characters(kept))
+    box.reshape(-1)[:] = list(count_characters(joined_texts))
     return Value.of_texts(box, np.array(codes, np.uint8).reshape(texts.shape))
 
 

@@ -58,7 +58,7 @@ def add_sheets(xml: bytes, part: str, new: Sequence[NewSheet]) -> bytes:
     ids = _free_ids(sheets, len(new))
     for sheet, sheet_id in zip(new, ids, strict=True):
         document.append(sheets, _sheet_element(document, sheet, sheet_id))
-    _keep_strays_astray(document, present, len(new))
+    _keep_unlisted_apart(document, present, len(new))
     _add_names(document, [(present + i, name) for i, sheet in enumerate(new) for name in sheet.names])
     return document.result()
 
@@ -131,7 +131,7 @@ def _free_ids(sheets: Element, wanted: int) -> list[int]:
     return [number for _, number in zip(range(wanted), free, strict=False)]
 
 
-def _keep_strays_astray(document: SplicedXml, present: int, added: int) -> None:
+def _keep_unlisted_apart(document: SplicedXml, present: int, added: int) -> None:
     """A damaged book may have names of a sheet that does not exist: they must not become names of a new one."""
     holder = document.root.find("definedNames")
     for name in holder.children if holder else ():

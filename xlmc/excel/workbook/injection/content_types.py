@@ -90,7 +90,7 @@ def add_types(xml: bytes, types: Mapping[str, str]) -> bytes:
     return document.result()
 
 
-def drop_types(xml: bytes, dropped: Collection[str], kept: Collection[str]) -> bytes:
+def drop_types(xml: bytes, dropped: Collection[str], remaining: Collection[str]) -> bytes:
     """The part without the dropped parts, and without extensions that only they had.
 
     Raises:
@@ -98,7 +98,7 @@ def drop_types(xml: bytes, dropped: Collection[str], kept: Collection[str]) -> b
     """
     document = SplicedXml(xml, CONTENT_TYPES)
     overrides, defaults = _overrides(document.root), _defaults(document.root)
-    unused = {_extension(name) for name in dropped} - {_extension(name) for name in kept}
+    unused = {_extension(name) for name in dropped} - {_extension(name) for name in remaining}
     gone = [overrides.get(_part_name(name)) for name in dropped] + [defaults.get(extension) for extension in unused]
     for element in gone:
         if element is not None:

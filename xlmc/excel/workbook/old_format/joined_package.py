@@ -171,13 +171,13 @@ def _refusal(message: str, where: object = None) -> WorkbookError:
 
 def _put_texts(parts: dict[str, bytes], entry: SheetEntry, texts: Iterable[ShapeText], number: int) -> None:
     """Put the shapes into the sheet's legacy drawing, which may hold comments, or into a new one."""
-    held = [rel.target for rel in relationships(parts, entry.part).values() if rel.kind == "vmlDrawing"]
+    drawings = [rel.target for rel in relationships(parts, entry.part).values() if rel.kind == "vmlDrawing"]
     shapes = [_shape(text, 1024 * number + 512 + at) for at, text in enumerate(texts)]
-    if held and held[0] in parts:
-        document = SplicedXml(parts[held[0]], held[0])
+    if drawings and drawings[0] in parts:
+        document = SplicedXml(parts[drawings[0]], drawings[0])
         for each in (_PICTURE, *shapes):
             document.append(document.root, each.replace(" ", f" {_SPACES} ", 1).encode())
-        parts[held[0]] = document.result()
+        parts[drawings[0]] = document.result()
         return
     part = f"xl/drawings/xlmcDrawing{number}.vml"
     layout = f'<o:shapelayout v:ext="edit"><o:idmap v:ext="edit" data="{number}"/></o:shapelayout>'
@@ -201,16 +201,16 @@ def _put_texts(parts: dict[str, bytes], entry: SheetEntry, texts: Iterable[Shape
 def _shape(text: ShapeText, number: int) -> str:
     """A hidden picture of one pixel, as Excel writes it for Crystal Ball."""
     name = _NOT_IN_NAMES.sub(lambda found: f"_x{ord(found[0]):04x}_", text.shape)
-    more = f"<x:ScriptExtended>{_said(text.more)}</x:ScriptExtended>" if text.more else ""
+    more = f"<x:ScriptExtended>{_text_of(text.more)}</x:ScriptExtended>" if text.more else ""
     return (
         f'<v:shape id="{escape(name)}" o:spid="_x0000_s{number}" type="#_x0000_t75" '
         f"style='position:absolute;margin-left:0;margin-top:0;width:.75pt;height:.75pt;z-index:{number};"
         'visibility:hidden\' o:userhidden="t" print="f" o:insetmode="auto"><o:lock v:ext="edit" grouping="t"/>'
         '<x:ClientData ObjectType="Pict"><x:SizeWithCells/><x:Anchor>0, 0, 0, 0, 0, 1, 0, 1</x:Anchor>'
-        f"<x:CF>Bitmap</x:CF><x:ScriptText>{_said(text.text)}</x:ScriptText>{more}"
+        f"<x:CF>Bitmap</x:CF><x:ScriptText>{_text_of(text.text)}</x:ScriptText>{more}"
         "<x:ScriptLanguage>4</x:ScriptLanguage><x:ScriptLocation>2</x:ScriptLocation></x:ClientData></v:shape>"
     )
 
 
-def _said(text: str) -> str:
+def _text_of(text: str) -> str:
     return escape(_NO_XML.sub("\ufffd", text), quote=False)

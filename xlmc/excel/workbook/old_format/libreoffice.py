@@ -60,13 +60,13 @@ def converted_to_xlsx(data: bytes) -> bytes:
             settings = Path(folder, "profile", "user", "registrymodifications.xcu")
             settings.parent.mkdir(parents=True)
             settings.write_text(_PROFILE, encoding="utf-8")
-            said = _run(program, folder, old)
+            output = _run(program, folder, old)
             if new.is_file():
                 return new.read_bytes()
     except OSError as error:
         message = f"the old Excel workbook (.xls) cannot be converted by LibreOffice: {error.strerror or error}"
         raise WorkbookError(message, hint="Make room on the disk that temporary files go to, and try again") from error
-    message = f"LibreOffice could not convert the old Excel workbook (.xls){f' ({said})' if said else ''}"
+    message = f"LibreOffice could not convert the old Excel workbook (.xls){f' ({output})' if output else ''}"
     raise WorkbookError(message, hint=IN_CRYSTAL_BALL)
 
 
@@ -97,14 +97,14 @@ def _run(program: str, folder: str, old: Path) -> str:
         message = f"LibreOffice ({program}) cannot be started: {error.strerror or error}"
         raise WorkbookError(message, hint=IN_CRYSTAL_BALL) from error
     try:
-        _, said = process.communicate(timeout=_SECONDS)
+        _, output = process.communicate(timeout=_SECONDS)
     except subprocess.TimeoutExpired:
         message = f"LibreOffice has not converted the old Excel workbook (.xls) in {_SECONDS // 60} minutes"
         raise WorkbookError(message, hint=IN_CRYSTAL_BALL) from None
     finally:
         if process.returncode is None:
             _end(process)
-    lines = said.decode("utf-8", "replace").split("\n")
+    lines = output.decode("utf-8", "replace").split("\n")
     return next((line.strip() for line in reversed(lines) if line.strip()), "")
 
 

@@ -336,14 +336,14 @@ class _Dialogs:
             self._findings.notice(message, cell)
         self._found.filters.append(
             replace(
-                self._kept_outside(stored, cell) if stored.inside else _kept_inside(stored, cell),
+                self._accepts_outside(stored, cell) if stored.inside else _accepts_inside(stored, cell),
                 name=f"Filter of {name}",
                 because="Crystal Ball's filter of this forecast",
                 only_for=() if stored.everywhere else (name,),
             )
         )
 
-    def _kept_outside(self, stored: ForecastFilter, cell: Cell) -> Filter:
+    def _accepts_outside(self, stored: ForecastFilter, cell: Cell) -> Filter:
         """A test in a cell of its own, because a filter's limits cannot say `or`."""
         ends = [("<", stored.low)] * math.isfinite(stored.low) + [(">", stored.high)] * math.isfinite(stored.high)
         parts = [ir.Binary(sign, cell, ir.Number(end), all_bits=True) for sign, end in ends]
@@ -359,14 +359,14 @@ class _Dialogs:
         ends = [end for end in certainty if math.isfinite(end) and abs(end) < _BEYOND]
         if not ends:
             return None, None
-        said = f"the certainty of {name!r} was last shown for values {range_text(low, high)}"
+        certainty_text = f"the certainty of {name!r} was last shown for values {range_text(low, high)}"
         if len(ends) == 1:
-            self._findings.notice(f"{said}: its end is taken as the threshold", cell)
+            self._findings.notice(f"{certainty_text}: its end is taken as the threshold", cell)
             return ends[0], None
         if low > high:
-            self._findings.notice(f"{said}, which is not a range: it is left out", cell)
+            self._findings.notice(f"{certainty_text}, which is not a range: it is left out", cell)
             return None, None
-        self._findings.notice(f"{said}: the certainty of this range is reported", cell)
+        self._findings.notice(f"{certainty_text}: the certainty of this range is reported", cell)
         return None, certainty
 
     # correlations
@@ -397,9 +397,9 @@ class _Dialogs:
             message = f"Crystal Ball correlates {first!r} and {second!r} twice"
             raise DefinitionError(message, where=where, hint="Keep one of the two correlations")
         refers = any(reference.kind == OF_COEFFICIENTS for reference in stored.references)
-        held = where if refers and self._computed.by_formula(where) else value
-        if held != 0:
-            self._found.correlations.append(Correlation(first, second, held, where))
+        coefficient_cell = where if refers and self._computed.by_formula(where) else value
+        if coefficient_cell != 0:
+            self._found.correlations.append(Correlation(first, second, coefficient_cell, where))
 
     def _end(self, sheet: str, end: tuple[str, str], known: Mapping[_Key, StoredAssumption]) -> _Key | None:
         """The assumption that is meant, if it was read; copies of a sheet have assumptions of the same GUIDs."""
@@ -499,7 +499,7 @@ def _free_name(name: str, cell: Cell, claims: Claims, findings: Findings) -> str
     return claims.take_name(name, cell)
 
 
-def _kept_inside(stored: ForecastFilter, cell: Cell) -> Filter:
+def _accepts_inside(stored: ForecastFilter, cell: Cell) -> Filter:
     at_least = stored.low if math.isfinite(stored.low) else None
     at_most = stored.high if math.isfinite(stored.high) else None
     return Filter("", cell, cell, at_least=at_least, at_most=at_most)

@@ -140,10 +140,10 @@ class _Reader:
     def _resolve(self) -> None:
         """Replace references to objects by the objects themselves."""
         for each in self._made:
-            held: Any = each.members if isinstance(each, Thing) else each
-            for key, value in list(held.items() if isinstance(held, dict) else enumerate(held)):
+            contents: Any = each.members if isinstance(each, Thing) else each
+            for key, value in list(contents.items() if isinstance(contents, dict) else enumerate(contents)):
                 if isinstance(value, _Reference):
-                    held[key] = self._object(value.number)
+                    contents[key] = self._object(value.number)
 
     # records
 

@@ -25,7 +25,7 @@ __all__ = ["with_precision"]
 
 def with_precision(
     settings: Settings,
-    said: Collection[str],
+    stated: Collection[str],
     asked: Mapping[str, Precision],
     forecasts: Sequence[Forecast],
     findings: Findings,
@@ -34,7 +34,7 @@ def with_precision(
 
     Args:
         settings: of the table `xlmc_settings`, which wins.
-        said: what is set there.
+        stated: what is set there.
         asked: forecast -> what its dialog asks for.
         forecasts: that are run.
         findings: takes remarks.
@@ -50,7 +50,7 @@ def with_precision(
         return settings
     where = next(each.cell for each in forecasts if each.name in goals)
     what = "; ".join(f"{_words(goal)} of {name!r}" for name, goal in goals.items())
-    reason = _why_not(said, goals)
+    reason = _why_not(stated, goals)
     if reason:
         message = f"Crystal Ball's precision control is not used, as {reason}. It asks for {what}"
         findings.notice(message, where)
@@ -78,9 +78,9 @@ def _goal(asked: Precision) -> Goal:
     return Goal(width, relative, asked.numbers)
 
 
-def _why_not(said: Collection[str], goals: Mapping[str, Goal]) -> str:
+def _why_not(stated: Collection[str], goals: Mapping[str, Goal]) -> str:
     """Why the goals are not used for the run, in words; empty if they are used."""
-    if said:
+    if stated:
         return "the table xlmc_settings says how to run (its rows Precision, Precision of and Look at ask for one)"
     if len(set(goals.values())) > 1:
         return "a run has one precision, and the forecasts ask for several (--precision and --for ask for one)"

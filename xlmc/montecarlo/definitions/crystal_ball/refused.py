@@ -79,12 +79,12 @@ def refused_forecasts(
         each.name: (each.cell, *(cell for filter_ in own if each.name in filter_.only_for for cell in _cells(filter_)))
         for each in forecasts
     }
-    kept = {each.name: tuple(_cells(each)) for each in filters}
+    cells_of_filters = {each.name: tuple(_cells(each)) for each in filters}
     kinds = {each.name: "filter" if each.evidence is None else "evidence" for each in filters}
-    targets = [cell for cells in (*asked.values(), *kept.values(), *parameters.values()) for cell in cells]
+    targets = [cell for cells in (*asked.values(), *cells_of_filters.values(), *parameters.values()) for cell in cells]
     resolver = Resolver(workbook, parameters, strict=False, rewritten=rewritten)
-    held = frozenset(a.cell for a in assumptions if a.frozen)
-    graph = build_graph(resolver, targets, frozenset(parameters), held, strict=False)
+    frozen = frozenset(a.cell for a in assumptions if a.frozen)
+    graph = build_graph(resolver, targets, frozenset(parameters), frozen, strict=False)
     reached: set[Cell] = set()
 
     def fault(what: str, name: str, cells: Iterable[Cell]) -> DefinitionError | None:
@@ -96,7 +96,9 @@ def refused_forecasts(
         return DefinitionError(f"the {what} {name!r} needs {error.where}. {error.message}", hint=error.hint)
 
     found = {name: error for name, cells in asked.items() if (error := fault("forecast", name, cells))}
-    findings.problems += [error for name, cells in kept.items() if (error := fault(kinds[name], name, cells))]
+    findings.problems += [
+        error for name, cells in cells_of_filters.items() if (error := fault(kinds[name], name, cells))
+    ]
     for cell in refused:
         if cell not in reached:
             findings.notice(f"no forecast or filter needs this cell: {refused[cell].message}", cell)

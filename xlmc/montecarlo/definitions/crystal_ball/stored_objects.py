@@ -280,8 +280,8 @@ def _enumerated(thing: Thing) -> int:
 
 def _items(thing: Any) -> list[Any]:
     """The elements of an ArrayList, which has room for more than it holds."""
-    held = _as_thing(thing, "the root")
-    items, size = _list(held, "_items"), _member(held, "_size")
+    top = _as_thing(thing, "the root")
+    items, size = _list(top, "_items"), _member(top, "_size")
     if type(size) is not int or not 0 <= size <= len(items):
         raise StoredError("a list claims more than it holds")
     return items[:size]

@@ -117,9 +117,9 @@ def _compare_halves(workbook: Workbook, area: Area, used: Cell, findings: Findin
     if not isinstance(number, int | float) or isinstance(other, bool | NoneType) or workbook.content(across).is_blank:
         return
     if not isinstance(other, int | float) or not math.isclose(number, other, rel_tol=1e-12, abs_tol=1e-12):
-        said = show(other) if isinstance(other, int | float) else repr(str(other))
+        shown = show(other) if isinstance(other, int | float) else repr(str(other))
         findings.notice(
-            f"the halves of the matrix {area} contradict each other: {used} is {show(number)}, and {across} is {said}; "
+            f"the halves of the matrix {area} contradict each other: {used} is {show(number)}, and {across} is {shown}; "
             f"{used}, below the diagonal, is used. Make them equal, or clear one of them",
             across,
         )

@@ -108,12 +108,12 @@ def simtable_scenarios(
     findings.notice(message, first)
     for number in range(2, most + 1):
         shown = "; ".join(
-            f"{cell} = {', '.join(_said(values[number - 1]) for values in found if number <= len(values))}"
+            f"{cell} = {', '.join(_shown(values[number - 1]) for values in found if number <= len(values))}"
             for cell, found in tables.items()
         )
         yield Scenario(f"simulation {number}", (Tabulated(number, shown, first),), row=first)
 
 
-def _said(value: ir.Expression) -> str:
+def _shown(value: ir.Expression) -> str:
     """A value of a table in words: 2 and not 2.0."""
     return f"{value.value:.15g}" if isinstance(value, ir.Number) else formula_text(value)

@@ -99,8 +99,8 @@ class Distribution:
         if not (isinstance(family, Pieces) and family.single.all()):
             return None
         low, high = self.whole.support()
-        kept = (family.low >= low) & (family.low <= high)
-        return family.low[kept], family.share[kept] / family.share[kept].sum()
+        inside = (family.low >= low) & (family.low <= high)
+        return family.low[inside], family.share[inside] / family.share[inside].sum()
 
     @property
     def is_discrete(self) -> bool:

@@ -37,9 +37,9 @@ def read_correlations(
         frozen: the names of assumptions that do not vary.
         findings: takes mistakes and remarks.
     """
-    held, pairs = frozenset(frozen), _Pairs()
+    frozen_names, pairs = frozenset(frozen), _Pairs()
     rows = rows_of(workbook, tables, _KNOWN, _KNOWN, findings)
-    found = [_correlation(row, names, held, pairs, findings) for row in rows]
+    found = [_correlation(row, names, frozen_names, pairs, findings) for row in rows]
     return tuple(each for each in found if each is not None)
 
 
@@ -51,10 +51,10 @@ def _correlation(
     value = findings.attempt(_coefficient, row)
     if first is None or second is None or findings.attempt(_take_pair, row, first, second, pairs) is None:
         return None
-    held = [name for name in (first, second) if name in frozen]
-    if held:
-        findings.notice(f"{held[0]!r} is frozen, so this correlation has no effect", row.where)
-    return None if held or value is None else Correlation(first, second, value, row.where)
+    frozen_names = [name for name in (first, second) if name in frozen]
+    if frozen_names:
+        findings.notice(f"{frozen_names[0]!r} is frozen, so this correlation has no effect", row.where)
+    return None if frozen_names or value is None else Correlation(first, second, value, row.where)
 
 
 def _assumption_named(row: Row, heading: str, names: Mapping[str, str]) -> str:

@@ -100,11 +100,11 @@ def data_family(family: Family, data: DataRange, number: Callable[[Cell], float]
         DefinitionError: the data are not a distribution; it names the cell to look at first.
     """
 
-    def settled(value: Parameter | None) -> float | None:
+    def constant(value: Parameter | None) -> float | None:
         return number(value) if isinstance(value, Cell) else value
 
-    rows = [[np.nan if value is None else settled(value) for value in row] for row in data.rows]
-    bandwidth = settled(data.bandwidth)
+    rows = [[np.nan if value is None else constant(value) for value in row] for row in data.rows]
+    bandwidth = constant(data.bandwidth)
     if bandwidth is not None and not bandwidth > 0:
         message = f"Bandwidth ({show(bandwidth)}) must be above 0"
         raise DefinitionError(message, where=data.area, hint="Type a number above 0, or leave the cell blank")
@@ -113,10 +113,10 @@ def data_family(family: Family, data: DataRange, number: Callable[[Cell], float]
     try:
         return family.built(np.array(rows, dtype=float), **given)
     except DataError as fault:
-        raise _told(fault, data.area) from None
+        raise _located(fault, data.area) from None
 
 
-def _told(fault: DataError, area: Area) -> DefinitionError:
+def _located(fault: DataError, area: Area) -> DefinitionError:
     """The fault with its cells."""
 
     def cell(row: int, column: int) -> Cell:

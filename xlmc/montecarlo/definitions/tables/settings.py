@@ -61,7 +61,7 @@ def read_settings(
     values: dict[str, Any] = {}
     for row in rows_of(workbook, tables[:1], _KNOWN, _KNOWN, findings):
         findings.attempt(_take, row, values, settings, findings)
-    said = frozenset(values)
+    stated = frozenset(values)
     central = values.pop("range%", None)
     ends = _read_stopping(tables, values, findings)
     if ends.has_goal:
@@ -69,7 +69,7 @@ def read_settings(
     return (
         Settings(**{key: value for key, value in values.items() if value is not None}, stopping=ends),
         _DEFAULT_CENTRAL if central is None else central,
-        said,
+        stated,
     )
 
 

@@ -57,7 +57,7 @@ class Worker(ABC):
         self._asked: deque[int] = deque()
 
     @property
-    def has_room(self) -> bool:
+    def can_take(self) -> bool:
         """Whether it may be given a batch."""
         return self._ready and len(self._asked) < _QUEUED
 
@@ -123,7 +123,7 @@ class Sharing:
             while not self._answers.empty():
                 self._receive()
             for worker in self._workers:
-                while worker.has_room and (batch := self._next_tasks(self._batch_size)):
+                while worker.can_take and (batch := self._next_tasks(self._batch_size)):
                     worker.ask(self._given - len(batch), batch)
             while self._turn in self._done:
                 block = self._done.pop(self._turn)
@@ -153,8 +153,8 @@ class Sharing:
 
     def _next_tasks(self, wanted: int) -> list[Task]:
         """The next tasks; none where there are no more, or where too many blocks are ahead of their turn."""
-        room = _AHEAD * self._runners - (self._given - self._turn)
-        found = list(islice(self._tasks, max(0, min(wanted, room))))
+        free = _AHEAD * self._runners - (self._given - self._turn)
+        found = list(islice(self._tasks, max(0, min(wanted, free))))
         self._given += len(found)
         return found
 

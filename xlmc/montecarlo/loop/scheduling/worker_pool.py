@@ -15,7 +15,7 @@ from xlmc.montecarlo.loop.scheduling.processes import by_processes
 from xlmc.montecarlo.loop.scheduling.run_spec import RunSpec, model_runner
 
 if TYPE_CHECKING:
-    from xlmc.engine.engine import Program, Room
+    from xlmc.engine.engine import BlockMemory, Program
     from xlmc.montecarlo.definitions.definitions import Settings
     from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
@@ -60,11 +60,11 @@ class WorkerPool:
         plan: SamplingPlan,
         block: int,
         tasks: Iterator[Task],
-        room: Callable[[], Room],
+        block_memory: Callable[[], BlockMemory],
     ) -> Generator[Block, None, None]:
         """The blocks of a run, of `block` trials each, in the order of their tasks; copy what you keep of each.
 
-        Where they are run one after another, the columns of the next block may be written to what `room` gives.
+        Where they are run one after another, the columns of the next block may be written to what `block_memory` gives.
 
         Raises:
             SimulationError: the workers cannot be had, or did not finish.
@@ -81,7 +81,7 @@ class WorkerPool:
         if scheduler == "threads" and jobs == 1:
             own = runner()
             for task in tasks:
-                yield own.borrow(task, room)
+                yield own.borrow(task, block_memory)
             return
         if scheduler == "threads":
             yield from by_threads([runner() for _ in range(jobs)], blocks, tasks)

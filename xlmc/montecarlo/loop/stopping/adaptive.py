@@ -64,7 +64,7 @@ class Sequences:
         self._length, tail = sequence_length(share), (1.0 - share) / 2.0
         self._ends = (tail, 1.0 - tail)
         self._waiting: list[Floats] = []
-        self._held = self.count = 0
+        self._waiting_count = self.count = 0
         self._average, self._squares = np.zeros(4), np.zeros(4)
         self._all = RunningMoments(spread=False)
 
@@ -72,15 +72,15 @@ class Sequences:
         """Take `(m,)` more; NaN is no number."""
         self._all.add(column)
         self._waiting.append(column[~np.isnan(column)])
-        self._held += self._waiting[-1].size
-        if self._held < self._length:
+        self._waiting_count += self._waiting[-1].size
+        if self._waiting_count < self._length:
             return
-        held = np.concatenate(self._waiting)
-        whole = held.size // self._length
-        for sequence in held[: whole * self._length].reshape(whole, self._length):
+        waiting = np.concatenate(self._waiting)
+        whole = waiting.size // self._length
+        for sequence in waiting[: whole * self._length].reshape(whole, self._length):
             self._take(sequence)
-        self._waiting = [held[whole * self._length :].copy()]
-        self._held = self._waiting[0].size
+        self._waiting = [waiting[whole * self._length :].copy()]
+        self._waiting_count = self._waiting[0].size
 
     def _take(self, sequence: Floats) -> None:
         found = np.array([sequence.mean(), sequence.std(ddof=1), *np.quantile(sequence, self._ends)])

@@ -62,11 +62,11 @@ def load_code(key: str) -> bytes | None:
         with os.fdopen(os.open(path, _READING), "rb") as file:
             if not _is_own(os.fstat(file.fileno()), stat.S_ISREG, _WRITABLE_BY_OTHERS):
                 return None
-            held = file.read()
+            content = file.read()
         os.utime(path)
     except OSError:  # there is none, or it went meanwhile
         return None
-    before, code = held[: len(_MARK) + _DIGEST], held[len(_MARK) + _DIGEST :]
+    before, code = content[: len(_MARK) + _DIGEST], content[len(_MARK) + _DIGEST :]
     return code if before == _header(key, code) else None
 
 
@@ -121,17 +121,17 @@ def _is_own(found: os.stat_result, is_kind: Callable[[int], bool], others: int) 
 
 def _remove_oldest(folder: Path) -> None:
     """Remove what was not read for the longest time, where there is too much, and what was left half-way."""
-    now, kept = time.time(), []
+    now, files = time.time(), []
     with suppress(OSError), os.scandir(folder) as entries:
         for entry in entries:
             with suppress(OSError):  # another program removed it
                 found = entry.stat(follow_symlinks=False)
                 if entry.name.endswith(_SUFFIX):
-                    kept.append((found.st_mtime, found.st_size, entry.path))
+                    files.append((found.st_mtime, found.st_size, entry.path))
                 elif entry.name.endswith(_UNFINISHED) and now - found.st_mtime > _HOUR:
                     os.unlink(entry.path)
-    size = sum(size for _, size, _ in kept)
-    for _, each, path in sorted(kept):
+    size = sum(size for _, size, _ in files)
+    for _, each, path in sorted(files):
         if size <= _MOST_BYTES:
             break
         with suppress(OSError):

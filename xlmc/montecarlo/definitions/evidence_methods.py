@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-__all__ = ["EVIDENCE_WAYS"]
+__all__ = ["EVIDENCE_METHODS"]
 
-EVIDENCE_WAYS: Final = ("auto", "rejection", "weights")
+EVIDENCE_METHODS: Final = ("auto", "rejection", "weights")
 """How a run uses evidence whose error is no limit; `auto` decides by the run's first trials."""

@@ -12,8 +12,8 @@ pytest.importorskip("llvmlite")
 from llvmlite import binding, ir
 from simulated import simulated
 
-from xlmc.engine.llvm import kept_code
-from xlmc.engine.llvm.kept_code import SWITCH, code_key, load_code, save_code
+from xlmc.engine.llvm import code_cache
+from xlmc.engine.llvm.code_cache import SWITCH, code_key, load_code, save_code
 from xlmc.engine.llvm.machine import this_machine
 
 POSIX = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such modes")
@@ -23,7 +23,7 @@ POSIX = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such 
 def folder(monkeypatch, tmp_path):
     """The folder, which is not there yet."""
     monkeypatch.setenv(SWITCH, "1")
-    monkeypatch.setattr(kept_code, "_caches", lambda: tmp_path / "caches")
+    monkeypatch.setattr(code_cache, "_caches", lambda: tmp_path / "caches")
     return tmp_path / "caches" / "xlmc" / "code"
 
 
@@ -121,13 +121,13 @@ def test_switched_off_nothing_is_read_or_written(folder, monkeypatch):
 
 def test_without_a_place_for_a_folder_code_is_compiled(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("", encoding="utf-8")
-    monkeypatch.setattr(kept_code, "_caches", lambda: tmp_path / "file")
+    monkeypatch.setattr(code_cache, "_caches", lambda: tmp_path / "file")
     save_code("a", b"one")
     assert load_code("a") is None
 
 
 def test_the_files_that_were_not_read_for_longest_go_first(folder, monkeypatch):
-    monkeypatch.setattr(kept_code, "_MOST_BYTES", 3000)
+    monkeypatch.setattr(code_cache, "_MOST_BYTES", 3000)
     for age, key in enumerate("abcd"):
         save_code(key, b"x" * 900)
         os.utime(folder / f"{key}.code", (1000 + age, 1000 + age))
@@ -158,7 +158,7 @@ def test_a_full_disk_leaves_nothing_behind(folder, monkeypatch):
 
 
 def _write_often(caches, text):
-    kept_code._caches = lambda: caches
+    code_cache._caches = lambda: caches
     os.environ[SWITCH] = "1"
     for _ in range(200):
         save_code("a", text * 5000)

@@ -187,12 +187,12 @@ class Simulation:
 
     @property
     def agreement(self) -> Agreement | None:
-        """Whether the evidence agrees with the model and with itself; None where no evidence is used."""
+        """Whether the evidence agrees with the model and with itself; None if no evidence is used."""
         return self._run.agreement
 
     @property
     def weights(self) -> Floats | None:
-        """`(m,)` the weights of the accepted trials; None where they count alike."""
+        """`(m,)` the weights of the accepted trials; None if they count alike."""
         return None if self._run.weighting is None else self._run.weighting.weights
 
     @property
@@ -406,7 +406,7 @@ class Model:
 
     @property
     def bases(self) -> Mapping[str, float | None]:
-        """Name of each live assumption -> its base value; None where its cell is blank."""
+        """Name of each live assumption -> its base value; None if its cell is blank."""
         return self._compiled.bases
 
     @property
@@ -601,7 +601,7 @@ class Model:
             tell: called before the run with a sentence on the disk that it needs, if it needs any.
 
         Raises:
-            SimulationError: an argument is out of its range, there is no room on the disk for the accepted trials,
+            SimulationError: an argument is out of its range, there is no space on the disk for the accepted trials,
                 or the workers cannot be used.
             TypeError: there is no such argument.
         """
@@ -749,7 +749,12 @@ def sensitivities(run: Simulation, *, assumptions: Collection[str] = ()) -> Sens
 
 
 def compare(
-    first: Model, second: Model, tolerance: Iterable[str] | str = (), **options: Unpack[CompareArguments]
+    first: Model,
+    second: Model,
+    tolerance: Iterable[str] | str = (),
+    *,
+    told: Callable[[str], None] | None = None,
+    **options: Unpack[CompareArguments],
 ) -> Comparison:
     """Run two books of one scene over the same trials, and judge whether their answers agree.
 
@@ -761,7 +766,8 @@ def compare(
         second: the other; either may be the simpler.
         tolerance: `0.5`, `0.5 mph`, `10 %` (of the forecast's SD in the first book), `Name=0.5 mph`; a tenth of the SD
             where none is stated. It holds for mean, SD and both ends of the central range.
-        options: `pairs`, `feeds`, `trials`, `seed`, `engine`, `jobs`, `chance`, `causes` and `told`, which
+        told: the former name of `tell`.
+        options: `pairs`, `feeds`, `trials`, `seed`, `engine`, `jobs`, `chance`, `causes` and `tell`, which
             `xlmc.analysis.studies.comparison.compare` describes.
 
     Raises:
@@ -770,11 +776,18 @@ def compare(
     """
     from xlmc.analysis.studies.comparison import compare
 
+    options.setdefault("tell", told)
     return compare(first._compiled, second._compiled, tolerance, **options)
 
 
-def screen(model: Model, tolerance: Iterable[str] | str = (), **options: Unpack[ScreenArguments]) -> Screening:
-    """Find which assumptions may be held, and which filters left out, without moving an answer beyond the tolerance.
+def screen(
+    model: Model,
+    tolerance: Iterable[str] | str = (),
+    *,
+    told: Callable[[str], None] | None = None,
+    **options: Unpack[ScreenArguments],
+) -> Screening:
+    """Find which assumptions may be frozen, and which filters left out, without moving an answer beyond the tolerance.
 
     The model and its workbook stay as they are. The trials are plain Monte Carlo, whatever its settings say.
 
@@ -782,8 +795,9 @@ def screen(model: Model, tolerance: Iterable[str] | str = (), **options: Unpack[
         model: to screen.
         tolerance: `0.5`, `0.5 mph`, `10 %` (of the forecast's SD), `Name=0.5 mph`; a tenth of the SD where none is
             stated. It holds for mean, SD and both ends of the central range.
+        told: the former name of `tell`.
         options: `chance`, `acceptance_tolerance`, `sets`, `judged_by`, `ends`, `trials`, `seed`, `engine`, `jobs` and
-            `told`, which `xlmc.analysis.studies.screening.screen` describes.
+            `tell`, which `xlmc.analysis.studies.screening.screen` describes.
 
     Raises:
         SimulationError: an argument is out of its range, no name fits a set, or fewer than two trials are accepted, or
@@ -791,6 +805,7 @@ def screen(model: Model, tolerance: Iterable[str] | str = (), **options: Unpack[
     """
     from xlmc.analysis.studies.screening import screen
 
+    options.setdefault("tell", told)
     return screen(model._compiled, tolerance, **options)
 
 

@@ -133,7 +133,7 @@ REFUSED = {
     "no room": (
         lambda book: book["Inputs"].__setitem__("C4", "taken"),
         ("new", "normal"),
-        "Inputs!C4: there is no room for another row below the table xlmc_assumptions",
+        "Inputs!C4: there is no free row below the table xlmc_assumptions",
     ),
     "no table": (
         lambda book: book["Inputs"].tables.__delitem__("xlmc_assumptions"),

@@ -64,7 +64,7 @@ def test_threads_change_nothing(xlmc, book):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (("--workers", 2), "only a local cluster is told how many workers to have"),
+        (("--workers", 2), "the number of workers can be set for a local cluster only"),
         (("--scheduler", "ray"), "there is no scheduler 'ray'"),
     ],
 )

@@ -115,7 +115,7 @@ def table_lines(
 
 
 def _widths(columns: Sequence[_Column], width: int, gap: str) -> list[int] | None:
-    """The width of each column; None where they cannot be made narrow enough."""
+    """The width of each column; None if they cannot be made narrow enough."""
     widths = [column.natural for column in columns]
     available = width - 2 - len(gap) * (len(columns) - 1)
     least = [column.least for column in columns]

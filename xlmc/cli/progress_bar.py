@@ -63,7 +63,7 @@ def progress_bar(quiet: bool) -> Iterator[OnProgress | None]:
 
 @contextmanager
 def step_line(quiet: bool) -> Iterator[Callable[[str], None] | None]:
-    """A line on stderr that says which step is running; None where there is no terminal to show it on."""
+    """A line on stderr that says which step is running; None if there is no terminal to show it on."""
     if quiet or not on_terminal(err=True):
         yield None
         return

@@ -78,7 +78,7 @@ class AcceptedBlock:
         forecasts: one a forecast, `(m,)`.
         together: `(f, f)` trials that both of two filters reject.
         only: `(f,)` trials that one filter alone rejects.
-        drawn: assumption -> its draws in the whole block; None where native code made them.
+        drawn: assumption -> its draws in the whole block; None if native code made them.
         discards: per forecast, number of one of its own filters -> accepted trials that this discards; empty where no
             forecast has filters of its own.
     """
@@ -129,7 +129,7 @@ class BlockRunner(Protocol):
     def __call__(
         self, start: int, trials: int, inputs: bool, block_memory: Callable[[], BlockMemory] | None
     ) -> AcceptedBlock | None:
-        """The first trials of a block; None where one needs the careful path, or one of those behind them.
+        """The first trials of a block; None if one needs the careful path, or one of those behind them.
 
         Args:
             start: the block's first trial.
@@ -146,7 +146,7 @@ class RunsWholeBlocks(Protocol):
     def block_runner(
         self, names: Sequence[str], draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None
     ) -> BlockRunner | None:
-        """What runs a block at once and gives the same numbers; None where the model does not allow it.
+        """What runs a block at once and gives the same numbers; None if the model does not allow it.
 
         Args:
             names: the assumptions that are drawn.

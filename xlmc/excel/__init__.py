@@ -20,7 +20,7 @@ __all__ = ["load"]
 def load(path: str | Path) -> Workbook:
     """Read an `.xlsx` or `.xlsm` workbook: cells with formulas and saved values, names, tables.
 
-    Nothing is calculated: `book["Sheet!B4"]` is the value that is saved in the file, None where none is. Sheets are
+    Nothing is calculated: `book["Sheet!B4"]` is the value that is saved in the file, None if none is. Sheets are
     parsed when they are first looked up. An `.xls` is converted by LibreOffice, where it is installed.
 
     Raises:

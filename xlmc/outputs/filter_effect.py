@@ -90,7 +90,7 @@ class Shapes:
 def shapes(
     prior: NDArray[np.float64], accepted: NDArray[np.float64], weights: NDArray[np.float64] | None = None
 ) -> Shapes | None:
-    """The shapes of `(n,)` draws before filtering and of `(m,)` accepted ones; None where they are one value."""
+    """The shapes of `(n,)` draws before filtering and of `(m,)` accepted ones; None if they are one value."""
     before, after = numbers(prior), numbers(accepted)
     w = np.ones(after.size) if weights is None else weights[~np.isnan(accepted)]
     if not before.size or not after.size or not w.any():
@@ -129,7 +129,7 @@ def marginal(
 
 
 def filter_effect_of(simulation: RunResult, assumption: str) -> FilterEffect | None:
-    """What the filters of a run did to one of its assumptions; None where the assumption is not drawn."""
+    """What the filters of a run did to one of its assumptions; None if the assumption is not drawn."""
     if assumption not in simulation.inputs:
         return None
     found = _FOUND.setdefault(simulation, {})
@@ -142,7 +142,7 @@ def filter_effect_of(simulation: RunResult, assumption: str) -> FilterEffect | N
 
 
 def shapes_of(simulation: RunResult, assumption: str) -> Shapes | None:
-    """The shapes of one of a run's assumptions; None where it is not drawn, or is one value."""
+    """The shapes of one of a run's assumptions; None if it is not drawn, or is one value."""
     prior, accepted = simulation.prior.get(assumption), simulation.inputs.get(assumption)
     if prior is None or accepted is None:
         return None

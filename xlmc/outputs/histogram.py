@@ -108,7 +108,7 @@ class Histogram:
 
 
 def histogram(values: Values, low: float, high: float) -> Histogram | None:
-    """Count finite values `(n,)`, or a `Sample` of them, apart for those in [low, high]; None where there are none.
+    """Count finite values `(n,)`, or a `Sample` of them, apart for those in [low, high]; otherwise None.
 
     Of weighted trials as many are counted as carry as much.
     """

@@ -63,10 +63,10 @@ class SummaryRow:
     Attributes:
         trials: accepted trials in which it is a number.
         share: of the trials, held by the central range from `low` to `high`.
-        base: at the assumptions' base values; None where that is no number.
+        base: at the assumptions' base values; None if that is no number.
         threshold, above: the probability above the threshold, where one was asked for.
         asked, certainty: the probability of a range, where one was asked for; its ends, infinite where it has none.
-        yes: the share of the trials that say yes; None where it is no yes/no answer.
+        yes: the share of the trials that say yes; None if it is no yes/no answer.
     """
 
     name: str
@@ -169,7 +169,7 @@ def answer_text(row: SummaryRow) -> str:
 
 
 def base_text(row: SummaryRow) -> str:
-    """A forecast at the base case; empty where there is none."""
+    """A forecast at the base case; otherwise empty."""
     if row.base is None or row.yes is None:
         return "" if row.base is None else _beside_mean(row.base, row.mean)
     return "yes" if row.base else "no"
@@ -225,7 +225,7 @@ class BaseCase:
     """What the workbook shows before any simulation.
 
     Attributes:
-        forecasts: forecast -> its value; None where it is no number.
+        forecasts: forecast -> its value; None if it is no number.
         rejected_by: the filters that reject it.
     """
 
@@ -234,7 +234,7 @@ class BaseCase:
 
 
 def base_case(simulation: RunResult) -> BaseCase | None:
-    """The base case of a run's model; None where an assumption has none.
+    """The base case of a run's model; None if an assumption has none.
 
     It is computed, not read: a file may hold no cached values, or stale ones.
     """
@@ -257,7 +257,7 @@ def _fails(column: Column) -> bool:
 
 
 def _number(column: Column) -> float | None:
-    """The only value, also that of a forecast which its own filter discards: a base case is told all the same."""
+    """The only value, also that of a forecast which its own filter discards: a base case is shown all the same."""
     discarded = column.codes is not None and column.codes[0] >= UNDECIDED_RESULT
     return finite(column.values[0] if discarded else column.as_floats()[0])
 

@@ -187,7 +187,7 @@ def test_the_memory_of_others_is_not_released(tmp_path):
 def test_a_full_disk_is_told():
     folder = Folder()
     (folder.path / "a").symlink_to("/dev/full")
-    with pytest.raises(SimulationError, match="no room left on the disk") as caught:
+    with pytest.raises(SimulationError, match="no space left on the disk") as caught:
         folder.append("a", [np.zeros(100_000)])
     assert caught.value.where == str(folder.path)
     assert "TMPDIR" in caught.value.hint

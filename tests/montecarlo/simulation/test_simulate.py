@@ -383,7 +383,7 @@ def test_settings_of_the_book_and_of_the_call(model):
         ({"engine": "excel"}, "There is no engine 'excel'"),
         ({"scheduler": "ray"}, "there is no scheduler 'ray'"),
         ({"scheduler": "local", "workers": 0}, "0 workers were asked for"),
-        ({"workers": 2}, "only a local cluster is told how many workers to have"),
+        ({"workers": 2}, "the number of workers can be set for a local cluster only"),
         ({"keep_inputs": -1}, "the draws of -1 trials were asked for"),
     ],
 )

@@ -57,7 +57,7 @@ class ForecastAnswer:
 
     Attributes:
         low, high: the ends of its central range.
-        above: P(> threshold); None where it has no threshold.
+        above: P(> threshold); None if it has no threshold.
         differences: `mean`, `low`, `high`, `above` -> this less the workbook's own; empty for the workbook itself. A
             scenario may have another threshold or central range: the numbers that stand there are compared.
     """

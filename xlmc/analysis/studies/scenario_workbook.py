@@ -1,7 +1,7 @@
 """A scenario typed into a workbook: into the very cells that it changes, with the values that Excel would show then.
 
 Every other byte of the file stays as it was. Formulas that depend on the changed cells get the values that they compute
-to. Where one cannot be computed, it keeps the value that Excel saved, and Excel is told to calculate all formulas when
+to. Where one cannot be computed, it keeps the value that Excel saved, and Excel is asked to calculate all formulas when
 it opens the file.
 """
 

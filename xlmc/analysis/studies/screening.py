@@ -129,16 +129,16 @@ class Screening:
         expected: the cheap ranking, the cheapest first.
         single: each assumption held alone, in that order.
         groups: correlated assumptions held at once, the most correlated first.
-        joint: those that may be held together, in one run; None where there are none.
+        joint: those that may be held together, in one run; None if there are none.
         sets: the sets asked for, each held at once.
         filters: each filter left out, with the assumptions of `joint` held.
-        reduced: those assumptions held and the filters left out that may be, in one run; None where no filter may.
+        reduced: those assumptions held and the filters left out that may be, in one run; None if no filter may.
         constant: formula cells that then do not vary any more.
         dropped: formula cells that are needed no more once the filters are left out.
         cells: how many formula cells the book as it is needs.
         varying: how many then vary.
         runs: how many were made.
-        ends: those of `single` that are within the tolerance, held at either end; None where that was not asked.
+        ends: those of `single` that are within the tolerance, held at either end; None if that was not asked.
     """
 
     run: RunResult

@@ -45,7 +45,7 @@ class CellCheck:
     Attributes:
         formula: that of the cell, as Excel shows it: with its `=`.
         expected: what Excel saved.
-        got: what xlmc computes; None where it computes nothing.
+        got: what xlmc computes; None if it computes nothing.
         reason: why it is unsupported, or cannot be compared.
         anchor: the cell that holds the formula, where that is another.
     """

@@ -162,7 +162,7 @@ def _has_zero(dag: Dag, node_id: int) -> bool:
 def cell_by_cell(
     dag: Dag, nodes: tuple[int, ...], apply: Callable[[tuple[int, ...]], int], *, constants: bool = False
 ) -> int | None:
-    """The array of what `apply` makes of the cells of each of `nodes`; None where that is not worth it.
+    """The array of what `apply` makes of the cells of each of `nodes`; None if that is not worth it.
 
     Constants are computed at once, unless `constants` is set; values of unknown sizes cannot be taken apart. Where
     sizes do not fit each other, a cell without a partner is `#N/A`.
@@ -267,7 +267,7 @@ def share_out(
 ) -> int | None:
     """The function of arguments of which one is a choice, as that choice between its results; `made` makes these.
 
-    None where there is no such choice, or too many of them. Where the condition is an error, it is the argument.
+    None if there is no such choice, or too many of them. Where the condition is an error, it is the argument.
     """
     for position, node in enumerate(arguments):
         parts = _parts_of(dag, node)
@@ -309,7 +309,7 @@ class NodeBuilder:
         return node.value if isinstance(node, Constant) and self.dag.sizes[node_id] is None else None
 
     def lookup_condition(self, node: int) -> bool | None:
-        """What a condition is known to be; None where it varies, is an error, a text or many cells."""
+        """What a condition is known to be; None if it varies, is an error, a text or many cells."""
         known = self.lookup_constant(node)
         return None if known is None or not known.plain else bool(known.numbers[0])
 

@@ -46,7 +46,7 @@ class NotYetNeeded(Exception):  # noqa: N818 - it asks for more; nothing is wron
 
 
 def areas_of(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
-    """The areas that a tree refers to; None where it is no reference.
+    """The areas that a tree refers to; None if it is no reference.
 
     Raises:
         NotYetNeeded, NoReference: see the classes.
@@ -162,13 +162,13 @@ def _stop_at_error(errors: Codes) -> None:
 
 
 def _whole_number(lowering: TreeLowering, tree: ir.Expression, scope: Scope, function: str) -> int | None:
-    """A known argument, cut to a whole number; None where it is left out."""
+    """A known argument, cut to a whole number; None if it is left out."""
     number = _known_number(lowering, tree, scope, function)
     return None if number is None else int(number)
 
 
 def _known_number(lowering: TreeLowering, tree: ir.Expression, scope: Scope, function: str) -> float | None:
-    """A known argument; None where it is left out."""
+    """A known argument; None if it is left out."""
     if isinstance(tree, ir.Missing):
         return None
     node = lowering.lower(tree, scope.inside())
@@ -240,7 +240,7 @@ def _is_true(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:
 
 
 def _resolve(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
-    """What a text refers to; None where it is no reference."""
+    """What a text refers to; None if it is no reference."""
     try:
         return areas_of(lowering, lowering.resolver.tree(tree, host_of(scope.cell)), scope)
     except FormulaError:
@@ -288,7 +288,7 @@ def _index(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[A
 
 
 def _choose(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
-    """CHOOSE of references; None where the choice is not known."""
+    """CHOOSE of references; None if the choice is not known."""
     if not any(isinstance(part, Cell | Area | ir.Call) for part in arguments[1:]):
         return None
     known = lowering.lookup_constant(lowering.lower(arguments[0], scope.plainly()))
@@ -307,7 +307,7 @@ def _if(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area
 
 
 def _spill(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
-    """`A1#`: the range that the file declares for the dynamic array in A1; None where its size varies, or is another,
+    """`A1#`: the range that the file declares for the dynamic array in A1; None if its size varies, or is another,
     or where the file holds none of its values.
 
     Raises:

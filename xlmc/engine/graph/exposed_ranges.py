@@ -33,7 +33,7 @@ Taken = Callable[[ir.Call], Sequence[ir.Expression]]
 
 
 def find_areas(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
-    """The areas that a tree refers to; None where it is no reference, or one that gives an error."""
+    """The areas that a tree refers to; None if it is no reference, or one that gives an error."""
     if not isinstance(tree, Cell | Area | ir.Binary | ir.Call | ir.Variable):
         return None
     if isinstance(tree, ir.Call) and tree.name in CHOICES:

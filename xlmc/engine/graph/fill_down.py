@@ -80,7 +80,7 @@ class FillDownCache:
         return local[pattern.result]
 
     def _record(self, leaves: Sequence[int], lower: Callable[[], int]) -> tuple[int, _Pattern | None]:
-        """The node, and the pattern of its nodes; None where this cell does not show a pattern."""
+        """The node, and the pattern of its nodes; None if this cell does not show a pattern."""
         dag = self._dag
         made: list[int] = []
         dag.recording = made

@@ -1,9 +1,9 @@
-"""Cells of a circle, computed again and again until they settle: Excel's iterative calculation.
+"""Compute the cells of a circle again and again until they converge: Excel's iterative calculation.
 
 Every trial starts from the values that Excel saved. In each iteration the cells are computed one after another, in the
 order of the tabs, and on a sheet row by row from left to right; each reads what the others hold by then. A trial ends
 when no cell has changed by as much as the workbook's maximum change, or after its maximum number of iterations. Trials
-do not depend on each other: one that has settled is left alone.
+do not depend on each other: a trial that has converged is left alone.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def iterate(round_: Round, start: Value, *taken: Value) -> Value:
         taken: what the cells read beside each other.
 
     Returns:
-        (n, k + 1, 1): the cells, and in the last row whether the trial has settled.
+        (n, k + 1, 1): the cells, and in the last row whether the trial has converged.
     """
     n = max((value.shape[0] for value in taken), default=1)
     cells = [spread_trials(_row(start, row), n) for row in range(len(round_.formulas))]

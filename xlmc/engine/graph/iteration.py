@@ -33,7 +33,7 @@ class IteratedCells:
     Attributes:
         nodes: of each.
         start: the node of what they hold at first, in a column.
-        converged: the node that says whether a trial has settled.
+        converged: the node that says whether a trial has converged.
     """
 
     cells: tuple[Cell, ...]

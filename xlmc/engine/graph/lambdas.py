@@ -190,7 +190,7 @@ class _Items:
 
 
 def _range_of(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> Area | None:
-    """The one range that a tree refers to; None where it is another value, or goes on beyond the filled cells."""
+    """The one range that a tree refers to; None if it is another value, or goes on beyond the filled cells."""
     areas = areas_of(lowering, tree, scope)
     return areas[0] if areas is not None and len(areas) == 1 and not areas[0].is_cut else None
 

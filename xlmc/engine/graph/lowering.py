@@ -176,15 +176,15 @@ class Lowering(TreeLowering):
         return self.first_cell(self.lower(target.tree, Scope(target.cell)))
 
     def known(self, target: Target) -> Value | None:
-        """The target's value where no input reaches it; None where one does."""
+        """The target's value where no input reaches it; None if one does."""
         return self.lookup_constant(self.target(target))
 
     def value(self, cell: Cell) -> Value | None:
-        """What a formula cell computes where that is constant; None where it is not."""
+        """What a formula cell computes where that is constant; None if it is not."""
         return self.lookup_constant(self._computed[cell])
 
     def filled(self, cell: Cell, anchor: Cell) -> Value | None:
-        """What the array formula of another cell puts into a cell, where that is constant; None where it is not."""
+        """What the array formula of another cell puts into a cell, where that is constant; None if it is not."""
         return self.lookup_constant(self._filled_cell(cell, anchor))
 
     def last_step(self, cell: Cell) -> tuple[str, list[Value]] | None:
@@ -539,7 +539,7 @@ class Lowering(TreeLowering):
     def _as_read(
         self, function: Function, picked: int, tree: ir.Expression, scope: Scope, given: Mapping[int, list[int]]
     ) -> int | None:
-        """The node of a range of which a function reads a few cells; None where it is to be read whole."""
+        """The node of a range of which a function reads a few cells; None if it is to be read whole."""
         try:
             areas = areas_of(self, tree, scope.of(function.parameter(picked).ranges).pointed_at())
         except NoReference:

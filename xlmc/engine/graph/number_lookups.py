@@ -94,7 +94,7 @@ class NumberLookups:
         return None if position is None else self._dag.add(Apply(CELL_AT, (results, position)))
 
     def _position(self, key: int, column: int, order: float) -> int | None:
-        """The position of a key in a column; None where the key is no number, or the column not in order."""
+        """The position of a key in a column; None if the key is no number, or the column not in order."""
         dag = self._dag
         varies = dag.types[key] is Kind.NUMBER and dag.sizes[key] is None and not isinstance(dag.nodes[key], Constant)
         cells = _constant_cells(dag, column)
@@ -120,7 +120,7 @@ class NumberLookups:
         return self._column(table, 0, across=rows == 1) if 1 in (rows, columns) else None
 
     def _column(self, table: int, at: int, *, across: bool = False) -> int | None:
-        """A column of a constant table, or its row if `across`, as a column; None where not all cells are numbers."""
+        """A column of a constant table, or its row if `across`, as a column; None if not all cells are numbers."""
         if (table, at, across) not in self._columns:
             self._columns[table, at, across] = self._make_column(table, at, across=across)
         return self._columns[table, at, across]

@@ -59,7 +59,7 @@ def range_as_read(
         given: the nodes of all other arguments.
 
     Returns:
-        The node; None where it is not known before the run which cells are read.
+        The node; None if it is not known before the run which cells are read.
     """
     waiting = lowering.not_there(area)
     others = {position: _known(lowering.dag, nodes) for position, nodes in given.items()}
@@ -84,7 +84,7 @@ def _known(dag: Dag, nodes: Sequence[int]) -> Value | None:
 
 
 def _searched_cells(lowering: Reads, name: str, area: Area, waiting: Collection[Cell]) -> Value | None:
-    """(1, r, c): zeros, but for the column (or row) of a table that is searched; None where that varies."""
+    """(1, r, c): zeros, but for the column (or row) of a table that is searched; None if that varies."""
     shape = (1, area.rows, area.columns)
     cells = Value(np.zeros(shape), np.full(shape, NUMBER, np.uint8))
     if name not in ("VLOOKUP", "HLOOKUP"):

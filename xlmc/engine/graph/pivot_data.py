@@ -147,7 +147,7 @@ class _Choice:
         return found
 
     def _cell(self, chosen: _Chosen) -> ir.Expression:
-        """The cell that shows these items, or, alone, these and others; `#REF!` where there is none.
+        """The cell that shows these items, or, alone, these and others; otherwise `#REF!`.
 
         Raises:
             FormulaError: it is empty; what Excel makes of that is not known.

@@ -172,7 +172,7 @@ class RunningTotals:
         return node_id
 
     def _stand_in(self, function: Function, arguments: Sequence[int]) -> int | None:
-        """The node that stands for the function on the fast path; None where there is none."""
+        """The node that stands for the function on the fast path; otherwise None."""
         match function.name:
             case "SUMPRODUCT":
                 return self._fold_products(arguments)
@@ -186,7 +186,7 @@ class RunningTotals:
                 return self._fold(function, arguments)
 
     def _count(self, arguments: Sequence[int]) -> int | None:
-        """How many cells of ranges are numbers where none is an error; None where they are none, or it may vary."""
+        """Count the number cells of ranges without errors; None if the count may vary or there are no ranges."""
         parts = [self._dag.nodes[argument] for argument in arguments]
         if not all(isinstance(part, Range) for part in parts):
             return None
@@ -311,7 +311,7 @@ class _RunningRanges:
         self._down, self._up = _group(areas, _start, 2), _group(areas, _end, _MANY_UPWARDS)
 
     def chain(self, area: Area, *, by_rows: bool) -> _Chain | None:
-        """The chain that an area is part of; None where it is to be taken by itself.
+        """The chain that an area is part of; None if it is to be taken by itself.
 
         Args:
             area: which may be in no group.

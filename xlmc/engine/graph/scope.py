@@ -411,7 +411,7 @@ def _of_if(lowering: TreeLowering, condition: int, yes: ir.Expression, no: ir.Ex
 
 
 def find_function(lowering: TreeLowering, argument: int | Thunk | Closure) -> Callee | None:
-    """The function that an argument is; None where it is a value, or where its tree does not show it."""
+    """The function that an argument is; None if it is a value, or where its tree does not show it."""
     while isinstance(argument, Thunk):
         match argument.tree:
             case ir.Variable(name):

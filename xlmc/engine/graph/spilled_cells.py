@@ -26,7 +26,7 @@ __all__ = ["refuse_cells_beyond", "spilled_cell", "unneeded_arrays"]
 
 
 def spilled_cell(dag: Dag, node: int, row: int, column: int) -> int | None:
-    """The node of what a dynamic array gives one cell, counted from 0 from its own; None where it never fills it."""
+    """The node of what a dynamic array gives one cell, counted from 0 from its own; None if it never fills it."""
     size = dag.sizes[node] or (1, 1)
     if size == MANY:
         return dag.add(Apply(_picker(row, column), (node,)))

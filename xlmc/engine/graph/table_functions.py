@@ -48,7 +48,7 @@ class TableFunction(NamedTuple):
 
 
 def table_function_of(dag: Dag, node: int, last_only: Container[str] = ()) -> TableFunction | None:
-    """The chain that ends with a node; None where there is none, or its last function is no slow one.
+    """Return the chain that ends with a node; None without a chain, or if its last function is not slow.
 
     Args:
         dag: of the node.

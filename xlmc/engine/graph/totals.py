@@ -60,7 +60,7 @@ _OF_A_RANK: Final = range(14, 20)
 
 
 def _is_ranked(lowering: TreeLowering, number: int) -> bool | None:
-    """Whether AGGREGATE's function takes a rank; None where it varies."""
+    """Whether AGGREGATE's function takes a rank; None if it varies."""
     known = lowering.lookup_constant(number)
     return int(known.numbers[0]) in _OF_A_RANK if known is not None and known.plain else None
 
@@ -88,7 +88,7 @@ _TOTAL = re.compile(r"\b(SUBTOTAL|AGGREGATE)\(", re.IGNORECASE)
 
 
 def _find_skips(lowering: TreeLowering, name: str, options: list[int]) -> Skips | None:
-    """Which cells are left out of ranges; None where that varies."""
+    """Which cells are left out of ranges; None if that varies."""
     known = [lowering.lookup_constant(option) for option in options]
     numbers = [int(value.numbers[0]) if value is not None and value.plain else None for value in known]
     if numbers[-1] is None:
@@ -114,7 +114,7 @@ def _hidden_rows(lowering: TreeLowering, area: Area, skips: Skips | None) -> fro
 
 
 def _range_that_counts(lowering: TreeLowering, area: Area, skips: Skips | None, nested: bool | None) -> int:
-    """The cells of an area that count; `nested` is whether totals are left out, None where that varies.
+    """The cells of an area that count; `nested` is whether totals are left out, None if that varies.
 
     Raises:
         FormulaError: a cell is hidden, or such a total, and whether it is left out varies.

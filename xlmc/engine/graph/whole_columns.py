@@ -368,7 +368,7 @@ def _with_one_further(call: _Call) -> Arguments:
 
 
 def _kinds(call: _Call, tree: ir.Expression) -> set[tuple[int, float]] | None:
-    """Kinds and numbers of the cells of an argument; None where they vary."""
+    """Kinds and numbers of the cells of an argument; None if they vary."""
     dag = call.lowering.dag
     node = dag.nodes[call.lowering.lower(tree, call.scope)]
     cells = [dag.nodes[cell] for row in node.rows for cell in row] if isinstance(node, Range) else [node]

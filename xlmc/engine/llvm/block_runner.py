@@ -79,7 +79,7 @@ class BlockParts:
 def block_parts(
     dag: Dag, first: Phase, late: Phase, filters: Sequence[int], forecasts: Sequence[int], block: int
 ) -> BlockParts | None:
-    """The parts of a model that can be run in whole blocks; None where it cannot."""
+    """The parts of a model that can be run in whole blocks; None if it cannot."""
     early_loops, late_loops = first.loops, late.loops
     if early_loops is None or late_loops is None:
         return None
@@ -181,7 +181,7 @@ class NativeBlockRunner:
     def _run_chunks(self, trials: int) -> tuple[int, Counts, Counts] | None:
         """How many of the first trials are kept; of the filters that may reject, what pairs do, and each alone.
 
-        None where a trial must be computed again.
+        None if a trial must be computed again.
         """
         chunks, rest = divmod(trials, self._chunk)
         self._counts.fill(0)

@@ -134,7 +134,7 @@ class Body:
         return self._value(own)
 
     def wrong(self) -> Any:
-        """Whether the trial must be computed again; None where none ever needs to be."""
+        """Whether the trial must be computed again; None if none ever needs to be."""
         total, flag = self._sums.get(ALL_TRIALS), self._flags.get(ALL_TRIALS)
         if total is None:
             return flag

@@ -53,7 +53,7 @@ def code_key(*about: str) -> str:
 
 
 def load_code(key: str) -> bytes | None:
-    """The code that was saved under a key; None where there is none that can be trusted."""
+    """Return the code that was saved under a key; None if there is none, or it cannot be trusted."""
     folder = _folder()
     if folder is None:
         return None
@@ -91,7 +91,7 @@ def _header(key: str, code: bytes) -> bytes:
 
 
 def _folder() -> Path | None:
-    """The folder, made if need be; None where there is none of the user's own, or none is wanted."""
+    """Return the folder, made if need be; None if the user has none of their own, or wants none."""
     if os.environ.get(SWITCH) == "0":
         return None
     try:

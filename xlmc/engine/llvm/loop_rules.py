@@ -103,14 +103,14 @@ def first_operand(_: Emitter, parts: Sequence[Any]) -> Any:
 
 
 def part_of(dag: Dag, node: int, kind: Kind) -> Operand | Literal | None:
-    """How a rule takes a node as a kind; None where it is many cells, or a constant that is not of that kind."""
+    """How a rule takes a node as a kind; None if it is many cells, or a constant that is not of that kind."""
     if type(dag.nodes[node]) is Constant:
         return literal(dag, Operand(node, kind))
     return Operand(node, kind) if dag.sizes[node] is None else None
 
 
 def literal(dag: Dag, operand: Operand) -> Literal | None:
-    """The constant that a node is; None where it varies, is an error, many cells, or a text that is no number."""
+    """The constant that a node is; None if it varies, is an error, many cells, or a text that is no number."""
     node = dag.nodes[operand.node]
     if not isinstance(node, Constant) or dag.sizes[operand.node] is not None:
         return None

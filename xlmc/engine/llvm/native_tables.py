@@ -76,7 +76,7 @@ def _at_every_row(
     forms: Forms,
     compiled: dict[object, NativeLoop],
 ) -> Floats | None:
-    """The last of the functions at every row of the table, `(rows,)`; None where a row is marked.
+    """The last of the functions at every row of the table, `(rows,)`; None if a row is marked.
 
     Loops that were compiled before are used again where they differ in constants alone.
     """

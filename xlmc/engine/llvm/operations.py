@@ -64,7 +64,7 @@ _LARGEST_ANGLE: Final = 2.0**27
 
 
 def loop_rule_of(dag: Dag, node: int) -> LoopRule | None:
-    """How the loop computes a node; None where it cannot."""
+    """How the loop computes a node; None if it cannot."""
     kind = dag.types[node]
     if dag.sizes[node] is not None or kind not in PLAIN:
         return None
@@ -105,7 +105,7 @@ class _Row:
 
 
 def _of_single_values(dag: Dag, taken: Iterable[tuple[int, Kind]], row: _Row) -> LoopRule | None:
-    """The rule of a function of nodes that are taken as these kinds; None where one cannot be."""
+    """The rule of a function of nodes that are taken as these kinds; None if one cannot be."""
     operands = []
     for node, kind in taken:
         if kind is Kind.ANY:
@@ -120,7 +120,7 @@ def _of_single_values(dag: Dag, taken: Iterable[tuple[int, Kind]], row: _Row) ->
 
 
 def _operation(dag: Dag, node: Apply) -> LoopRule | None:
-    """The rule of a function of single values; None where there is none."""
+    """The rule of a function of single values; otherwise None."""
     function, arguments = node
     if isinstance(function.ufunc, Comparison):
         return _compare(dag, node, function.ufunc.symbol)

@@ -104,7 +104,7 @@ class Trials:
         return self.wider.value(node).take(self.survivors)
 
     def plain(self, node_id: int) -> NDArray[Any] | float | bool | None:
-        """A node's numbers or truth values, `(n,)`, or the one that it always is; None where only a `Value` tells."""
+        """A node's numbers or truth values, `(n,)`, or the one that it always is; None if only a `Value` tells."""
         node = self._dag.nodes[node_id]
         if isinstance(node, Constant):
             known = plain_constant(node.value)

@@ -38,7 +38,7 @@ class _Members:
 
 
 def over_cells(dag: Dag, node: Apply) -> LoopRule | None:
-    """The rule of a function of ranges; None where there is none."""
+    """The rule of a function of ranges; otherwise None."""
     try:
         if node.function.name == "SUMPRODUCT":
             return _sum_of_products(dag, node)
@@ -103,7 +103,7 @@ def _cells_of_constant(value: Value) -> Iterator[Value]:
 
 
 def _counted(dag: Dag, cell: int | Value, kind: Kind) -> Part | None:
-    """A cell of a range where it counts; None where it does not."""
+    """A cell of a range where it counts; None if it does not."""
     if isinstance(cell, Value):
         return _counted_constant(cell, kind)
     if dag.sizes[cell] is not None or dag.types[cell] not in (Kind.NUMBER, Kind.LOGICAL):

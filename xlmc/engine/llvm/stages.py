@@ -62,7 +62,7 @@ class Stage:
     Attributes:
         forms: of the nodes of a loop, see `Forms`.
         read: the nodes of other stages that they need.
-        stores: the nodes of a loop that others need, or that are wanted afterwards; None where this is no loop.
+        stores: the nodes of a loop that others need, or that are wanted afterwards; None if this is no loop.
     """
 
     nodes: tuple[int, ...]
@@ -80,7 +80,7 @@ class Stages:
         reads: what each reads.
         nodes: to be computed, in order.
         keep: the nodes whose values are wanted afterwards.
-        early: the nodes that were computed before, on a wider set of trials; None where there are none.
+        early: the nodes that were computed before, on a wider set of trials; otherwise None.
         may_err: the inputs whose draws may be errors.
 
     Attributes:

@@ -58,7 +58,7 @@ def find_looked_up(dag: Dag, sets: Sequence[Sequence[int]]) -> dict[int, LookedU
 
 
 def _table(dag: Dag, chain: TableFunction, *, paired: bool) -> Pick | None:
-    """The last of the functions at every row of the table; None where a row gives no number."""
+    """The last of the functions at every row of the table; None if a row gives no number."""
     values: dict[int, Any] = {chain.cell: _filled(chain.numbers)}
     last = chain.links[-1]
     try:

@@ -45,7 +45,7 @@ class Buffers:
         self._in_use: dict[int, int] = {}
 
     def take(self, node_id: int) -> int | None:
-        """A buffer for the node's value; None where it makes its own array."""
+        """A buffer for the node's value; None if it makes its own array."""
         node, kind = self._dag.nodes[node_id], self._dag.types[node_id]
         if isinstance(node, IfErrorNode):
             self._in_use.pop(node.value, None)  # this node has the same array: its buffer is never given back
@@ -275,7 +275,7 @@ class Steps:
         self._paired |= {sine, cosine}
 
     def _guard(self, node_id: int) -> Callable[..., bool] | None:
-        """The guard of an `Apply`; None where there is none to ask."""
+        """Return the guard of an `Apply`; otherwise None."""
         node = self._dag.nodes[node_id]
         assert type(node) is Apply
         guard = node.function.guard

@@ -166,7 +166,7 @@ Reader = Callable[[list[Any]], Any]
 
 
 def _reader(dag: Dag, node_id: int, kind: Kind) -> Reader | None:
-    """How a step gets an argument as plain numbers or logicals; None where only the careful path can tell."""
+    """How a step gets an argument as plain numbers or logicals; None if only the careful path can tell."""
     node, found = dag.nodes[node_id], dag.types[node_id]
     if isinstance(node, Constant):
         return _constant_reader(node.value, kind)
@@ -236,7 +236,7 @@ def _body(function: Function, node: int, readers: list[Reader]) -> Step:
 
 
 def _find_folded(dag: Dag, node: Apply) -> list[int] | None:
-    """The cells that a set function folds, without those that do not count; None where the careful path must do it."""
+    """The cells that a set function folds, without those that do not count; None if the careful path must do it."""
     function = node.function
     if not function.takes_sets or function.ufunc is None:
         return None

@@ -32,7 +32,7 @@ class NodeBounds:
         self._found: list[Bounds] = []
 
     def of(self, node: int) -> Bounds | None:
-        """The bounds of a node; None where they are not known."""
+        """The bounds of a node; None if they are not known."""
         if not self._inputs:
             return _of_constant(self._dag, node)
         while len(self._found) <= node:

@@ -133,7 +133,7 @@ def as_area(reference: Cell | Area) -> Area:
 
 
 def table_rows(table: Table, items: tuple[str, ...], host: Cell) -> tuple[int, int] | None:
-    """First and last row that the items of a structured reference name; None where the table has no such row.
+    """First and last row that the items of a structured reference name; None if the table has no such row.
 
     Raises:
         FormulaError: an item is none of Excel's.

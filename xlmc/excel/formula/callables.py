@@ -55,7 +55,7 @@ _DEEPEST: Final = 60
 
 
 def _last(tree: ir.Expression, bound: _Bound, depth: int) -> ir.Lambda | ir.FunctionName | None:
-    """The function that a resolved tree gives; None where it gives none, or that cannot be seen."""
+    """The function that a resolved tree gives; None if it gives none, or that cannot be seen."""
     if depth > _DEEPEST:
         return None
     match tree:

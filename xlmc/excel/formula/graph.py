@@ -237,7 +237,7 @@ def _filled_cells(workbook: Workbook, area: Area, inputs: frozenset[Cell]) -> It
 def _varying(formulas: Iterable[Cell], needs: Needs, inputs: Iterable[Cell]) -> frozenset[Cell]:
     varying = set(inputs)
     constant: set[int] = set()  # large parts, by their identity
-    for cell in formulas:  # in dependency order: what a cell needs was settled before it
+    for cell in formulas:  # in dependency order: what a cell needs was decided before it
         for part in needs.parts[cell]:
             if isinstance(part, Stretch):
                 varies = part.varies(varying)
@@ -343,7 +343,7 @@ class Spills:
         self._sheets: dict[str, tuple[dict[Cell, Cell], list[tuple[Area, Cell]]]] = {}
 
     def anchor(self, cell: Cell) -> Cell | None:
-        """The cell whose array formula fills this other one; None where there is none."""
+        """The cell whose array formula fills this other one; otherwise None."""
         if cell.sheet not in self._sheets:
             sheet = self._workbook.sheets.get(cell.sheet)
             self._sheets[cell.sheet] = ({}, []) if sheet is None else _filled(sheet.arrays)

@@ -26,7 +26,7 @@ def _unpad(found: re.Match[str]) -> str:
 
 
 def read_a1(text: str) -> ir.Expression | None:
-    """Read a reference in the usual style; None where the text is none."""
+    """Read a reference in the usual style; None if the text is none."""
     sheet, mark, place = text.rpartition("!")
     if _CELLS.fullmatch(place):
         text = sheet + mark + _PADDED.sub(_unpad, place)

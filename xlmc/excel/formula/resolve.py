@@ -81,7 +81,7 @@ class Resolver:
         """The tree of a cell's formula.
 
         Raises:
-            FormulaError: told of the cell; the formula cannot be read, or names something that is not there.
+            FormulaError: names the cell; the formula cannot be read, or names something that is not there.
         """
         found = self.tree_or_stencil(cell, formula)
         return found.at(cell) if isinstance(found, Stencil) else found

@@ -114,7 +114,7 @@ class _Filling(NamedTuple):
 
 
 def _filling(text: str, row: int) -> _Filling | None:
-    """None where the text refers to whole rows."""
+    """None if the text refers to whole rows."""
     pieces, steps, end = [], [], 0
     for found in _TOKEN.finditer(text):
         if found["r1"] is not None:
@@ -137,7 +137,7 @@ class _Shape:
     Attributes:
         tree: the formula as written in one cell.
         origin: row and column of that cell, from which the tree's relative references are seen.
-        stencils: by sheet, once resolved there; None where each cell must be resolved for itself.
+        stencils: by sheet, once resolved there; None if each cell must be resolved for itself.
     """
 
     tree: ir.Expression

@@ -96,7 +96,7 @@ def _shift(target: Cell | Area, down: int, right: int) -> Cell | Area:
 
 
 def stencil(written: ir.Expression, resolved: ir.Expression, home: Cell) -> Stencil | None:
-    """The stencil of a formula as written and as resolved at `home`; None where it holds what does not simply move."""
+    """The stencil of a formula as written and as resolved at `home`; None if it holds what does not simply move."""
     before, after = _leaves(written), _leaves(resolved)
     if before is None or after is None or len(before) != len(after):
         return None
@@ -119,7 +119,7 @@ _Leaf = ir.Reference | Cell | Area
 
 
 def _leaves(tree: ir.Expression) -> list[_Leaf] | None:
-    """The references from left to right; None where the tree holds names, binds variables or asks where cells are."""
+    """The references from left to right; None if the tree holds names, binds variables or asks where cells are."""
     match tree:
         case ir.Reference() | Cell() | Area():
             return [tree]
@@ -147,7 +147,7 @@ def _join(parts: list[ir.Expression] | tuple[ir.Expression, ...]) -> list[_Leaf]
 
 
 def _steps(reference: _Leaf) -> tuple[int, int] | None:
-    """Whether row and column move with the host; None where not as a whole."""
+    """Whether row and column move with the host; None if not as a whole."""
     if not isinstance(reference, ir.Reference) or reference.last_sheet is not None:
         return None
     first, last = reference.first, reference.last or reference.first

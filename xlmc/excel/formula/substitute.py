@@ -101,7 +101,7 @@ class _Budget:
         """Count the parts of what stands for a variable once more.
 
         Raises:
-            OverflowError: there is no room left.
+            OverflowError: there are more than `_MOST`.
         """
 
         def count(_: ir.Expression) -> None:

@@ -78,7 +78,7 @@ class TooLargeError(FormulaError):
     """A formula asks for more than xlmc takes. With fewer trials at a time it may ask for less.
 
     Attributes:
-        node: the node of the graph that asked for it; None where that is not known.
+        node: the node of the graph that asked for it; None if that is not known.
     """
 
     node: int | None = None

@@ -73,7 +73,7 @@ class Facts:
         measures: `xlmc stability` takes a number typed into its arguments for a measurement, unless it is a count.
         condition: it compares, or joins conditions.
         result_range: the least and the largest number that it ever gives.
-        domain: which numbers it takes; None where it takes all, or where it is not known.
+        domain: which numbers it takes; None if it takes all, or where it is not known.
     """
 
     spills: bool = False

@@ -125,7 +125,7 @@ class Comparison:
     nin: ClassVar[int] = 2
 
     def within(self, first: Bounds | None, second: Bounds | None) -> Comparison:
-        """The same of numbers that have these bounds; None where there are none."""
+        """The same of numbers that have these bounds; otherwise None."""
         return replace(self, largest=_least_size(first, second))
 
     def __call__(self, x: Any, y: Any, out: Bools | None = None) -> Bools:
@@ -230,7 +230,7 @@ class SnapToZero:
 
     @classmethod
     def within(cls, first: Bounds | None, second: Bounds | None) -> SnapToZero:
-        """The one for sums of numbers, or differences, that have these bounds; None where there are none.
+        """The one for sums of numbers, or differences, that have these bounds; otherwise None.
 
         Where all but the last bits cancel, the first number is less than twice the second.
         """

@@ -163,7 +163,7 @@ class Function:
         home: the module that registers it.
         takes_values, takes_sets: whether any argument is of `ANY` kind, or all are one set.
         on_numbers: if all arguments are numbers, the ufunc may replace the body.
-        fast_arity: how many arguments that ufunc takes, one or two; 0 where there is none or it takes more.
+        fast_arity: how many arguments that ufunc takes, one or two; 0 without one, or if it takes more.
     """
 
     name: str

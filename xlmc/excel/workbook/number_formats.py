@@ -26,7 +26,7 @@ class NumberFormat:
     """What a format code shows of a number, whatever program wrote it.
 
     Attributes:
-        decimals: the most that are shown; None where the program decides (General).
+        decimals: the most that are shown; None if the program decides (General).
     """
 
     decimals: int | None

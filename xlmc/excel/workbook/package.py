@@ -112,7 +112,7 @@ def read_parts(data: bytes, limits: Limits = LIMITS) -> dict[str, bytes]:
 
 
 def relationships(parts: Mapping[str, bytes], part: str = "") -> dict[str, Relationship]:
-    """The relationships of one part by their id; those of the package itself for `""`. None where it has no rels part.
+    """The relationships of one part by their id; those of the package itself for `""`. None if it has no rels part.
 
     Targets are names as in `parts`, also where the file writes them in another case; a target that does not exist
     is given as the file means it.

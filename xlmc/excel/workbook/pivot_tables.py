@@ -39,7 +39,7 @@ def pivot_tables(parts: Mapping[str, bytes], sheets: Sequence[SheetEntry], date1
 
 
 def _whole(parts: Mapping[str, bytes], part: str, sheet: str, date1904: bool) -> PivotTable | None:
-    """The pivot table; None where its definition is damaged, which is of concern to GETPIVOTDATA alone."""
+    """The pivot table; None if its definition is damaged, which is of concern to GETPIVOTDATA alone."""
     try:
         return _Reading(parts, part, sheet, date1904).table()
     except (WorkbookError, IndexError, ValueError):

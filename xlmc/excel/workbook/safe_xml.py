@@ -85,7 +85,7 @@ def is_true(text: str | None) -> bool:
 
 
 def whole_number(text: str | None) -> int | None:
-    """A count or position as XML writes it; None where it is absent, none, or longer than any in a workbook."""
+    """A count or position as XML writes it; None if it is absent, none, or longer than any in a workbook."""
     return int(text) if text is not None and _DIGITS.fullmatch(text) else None
 
 

@@ -58,7 +58,7 @@ class Seal:
 
 
 def read_seal(path: Path) -> Seal | None:
-    """The seal of a file; None where it has none: xlmc did not write it, or another program has saved it since.
+    """The seal of a file; None if it has none: xlmc did not write it, or another program has saved it since.
 
     Raises:
         OSError: the file cannot be read.

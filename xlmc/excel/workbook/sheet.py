@@ -55,7 +55,7 @@ def parse_sheet(xml: bytes, entry: SheetEntry, context: CellContext) -> Sheet:
 
     Raises:
         WorkbookError: the part is not XML, or is a worksheet in a foreign namespace, whose cells would all be blank;
-            or a cell holds what no cell can; told of the cell.
+            or a cell holds what no cell can; the message names it.
     """
     reading = _Pass(entry.name, context)
     parser = expat_parser()

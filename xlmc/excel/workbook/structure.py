@@ -134,9 +134,7 @@ def _sheet_entry(element: Element, rels: Mapping[str, Relationship], parts: Mapp
     name = decode(element.get("name", ""))
     if "\n" in name or "\t" in name or printable(name) != name:
         hint = "Rename it in Excel, with letters and digits alone"
-        raise WorkbookError(
-            f"the name of the sheet {printable(name)!r} holds a character that steers a screen", hint=hint
-        )
+        raise WorkbookError(f"the name of the sheet {printable(name)!r} holds a control character", hint=hint)
     pointer = attribute(element, "id")
     if pointer == "":
         return SheetEntry(name, "", "module", visible=False)
@@ -210,7 +208,7 @@ def read_table(xml: bytes, part: str, sheet: str) -> Table:
 
 
 def _filtered(root: Element, sheet: str, name: str) -> Area | None:
-    """The range of its filter; None where no column of it has a condition."""
+    """The range of its filter; None if no column of it has a condition."""
     element = root.find("{*}autoFilter")
     if element is None or not any(len(column) for column in element.findall("{*}filterColumn")):
         return None

@@ -57,7 +57,7 @@ def remove_abandoned_files(folder: Path) -> None:
 
 def remove_abandoned_folders() -> None:
     """Remove folders of columns in the temporary folder whose processes have died; what cannot be removed stays."""
-    with suppress(OSError):  # there is no temporary folder: whoever needs one is told so
+    with suppress(OSError):  # there is no temporary folder: whoever needs one gets an error
         for path in _matching(Path(tempfile.gettempdir()), _FOLDER):
             if _is_abandoned(path.name, _FOLDER) and not path.is_symlink():
                 shutil.rmtree(path, ignore_errors=True)

@@ -169,7 +169,7 @@ class Place:
 
     Attributes:
         items: (field, item), both counted from 0; what no pair names is added up.
-        data: which of several data fields, from 0; None where the other axis says that, or there is one.
+        data: which of several data fields, from 0; None if the other axis says that, or there is one.
     """
 
     items: frozenset[tuple[int, int]]
@@ -195,8 +195,8 @@ class PivotTable:
         fields: of its source, in order.
         data: the names of each data field, as shown and as in the source.
         rows, columns: what the rows from the origin down, and the columns to the right, show; None for a blank one.
-        filters: field of a report filter -> its item; None where all are shown, or several.
-        source: the cells that it is made from, as text for `INDIRECT`; None where these are not in the workbook.
+        filters: field of a report filter -> its item; None if all are shown, or several.
+        source: the cells that it is made from, as text for `INDIRECT`; None if these are not in the workbook.
     """
 
     area: Area
@@ -245,12 +245,12 @@ class Workbook:
         pivots: the pivot tables, where a formula asks for one.
         links: to other workbooks, as formulas write them (`[1]`), with the values that Excel stored.
         macintosh: last saved by Excel for the Macintosh, whose CHAR and CODE use its own character set.
-        iteration: how cells that need each other in a circle are computed; None where they are an error.
+        iteration: how cells that need each other in a circle are computed; None if they are an error.
         may_be_stale: saved values may be older than the formulas: calculation is manual, or Excel has yet to do it.
         parts: every part of the zip package in its order, name -> bytes, as in the file.
         origin: the parts of the file that it was read from, where values have been typed since and it has no `parts`.
         sha256: of the file.
-        data: the file itself, byte for byte; empty where there is none.
+        data: the file itself, byte for byte; otherwise empty.
     """
 
     name: str
@@ -271,9 +271,9 @@ class Workbook:
     data: bytes = field(default=b"", repr=False)
 
     def __getitem__(self, place: str) -> CellValue:
-        """Return the value that is saved in a cell: a number, True or False, a text, an error, None where it is blank.
+        """Return the value that is saved in a cell: a number, True or False, a text, an error, None if it is blank.
 
-        Dates are serial numbers, as Excel counts them. A formula's value is the one that Excel saved; None where the
+        Dates are serial numbers, as Excel counts them. A formula's value is the one that Excel saved; None if the
         program that wrote the file saved none: `xlmc.engine.calculate` computes it.
 
         Args:

@@ -72,7 +72,7 @@ def _mapping(values: NDArray[Any]) -> _Mapping | None:
 
 
 _FULL = (errno.ENOSPC, errno.EDQUOT)
-_HINT = "Set TMPDIR to a folder on a disk with more room, or ask for fewer trials"
+_HINT = "Set TMPDIR to a folder on a disk with more space, or ask for fewer trials"
 _TOO_MANY = (errno.EMFILE, errno.ENFILE)
 
 
@@ -148,7 +148,7 @@ def _naming_folder(path: Path | None) -> Iterator[None]:
         where, hint = path or "temporary folder", _HINT
         message = f"the accepted trials cannot be kept there: {error.strerror or error}"
         if error.errno in _FULL:
-            message = "there is no room left on the disk for the accepted trials"
+            message = "there is no space left on the disk for the accepted trials"
         elif error.errno in _TOO_MANY:
             hint = "Allow more open files: ulimit -n 8192"
         raise SimulationError(message, where=where, hint=hint) from error
@@ -283,7 +283,7 @@ class ColumnStore:
         """Write what waits, if it is much; to be called when all columns of a block are added.
 
         Raises:
-            SimulationError: there is no room on the disk.
+            SimulationError: there is no space on the disk.
         """
         if self._bytes > self._most:
             self._write()
@@ -308,7 +308,7 @@ class ColumnStore:
         """The columns so far, each under a name of its own, or their first `rows`; in memory if none was written yet.
 
         Raises:
-            SimulationError: there is no room on the disk.
+            SimulationError: there is no space on the disk.
         """
         if self._folder is None:
             return {name: self._compact(key)[:rows] for name, key in keys.items()}

@@ -81,7 +81,7 @@ def ascending(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """`(n,)` values without NaN in ascending order: in memory, or on disk where they were on disk.
 
     Raises:
-        SimulationError: there is no room on the disk.
+        SimulationError: there is no space on the disk.
     """
     if not on_disk(values):
         return np.sort(values)

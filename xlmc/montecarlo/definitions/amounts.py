@@ -108,7 +108,7 @@ def _number(text: str) -> float | None:
 
 
 def typed_whole_number(text: str) -> int | None:
-    """The number; None where the text is none, or could mean two (`200.000`).
+    """The number; None if the text is none, or could mean two (`200.000`).
 
     >>> [typed_whole_number(text) for text in ("200000", "200,000", "2e5", "1.5e6", "200k", "1.5M", "200.000", "2,5")]
     [200000, 200000, 200000, 1500000, 200000, 1500000, None, None]

@@ -133,7 +133,7 @@ def is_address(text: str) -> bool:
 
 
 def split_sheet(text: str) -> tuple[str | None, str]:
-    """`"'My sheet'!B7" -> ("'My sheet'", "B7")`; None where no sheet is named."""
+    """`"'My sheet'!B7" -> ("'My sheet'", "B7")`; None if no sheet is named."""
     head, bang, tail = text.strip().rpartition("!")
     return (head if bang else None), tail.strip()
 
@@ -181,7 +181,7 @@ def area_of_reference(workbook: Workbook, text: str, sheet: str | None, where: o
     Args:
         workbook: where sheets, names and tables are looked up.
         text: the reference, without `=`.
-        sheet: the sheet of a reference that names none; None where it must name one.
+        sheet: the sheet of a reference that names none; None if it must name one.
         where: what holds the text, for the message.
 
     Raises:

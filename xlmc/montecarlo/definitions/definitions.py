@@ -84,10 +84,10 @@ class Assumption:
         frozen: held at `base`, not drawn.
         row: where it is defined.
         notes: the table's other columns, echoed in the record.
-        own_family: built for this row; None where `FAMILIES` has it, or where a cell of the data awaits calculation.
+        own_family: built for this row; None if `FAMILIES` has it, or where a cell of the data awaits calculation.
         data: what the distribution is built from; None for one that has parameters alone.
         call: the call of a formula that a row of a table stands for; None elsewhere.
-        checked: how it is drawn by the numbers that the row held as it was read, which are a distribution; None where
+        checked: how it is drawn by the numbers that the row held as it was read, which are a distribution; None if
             one was not known then. A run checks all numbers that are not these, whoever gives them.
     """
 
@@ -151,8 +151,8 @@ class Forecast:
         central: the share of its central range.
         threshold: to report P(> threshold) for.
         asked: both ends of a range, which belong to it, to report its certainty for; infinite where it has none.
-        report_to: the resolution at which it is stated, in its units; None where its error alone decides.
-        kind: what its numbers are; None where the row does not say.
+        report_to: the resolution at which it is stated, in its units; None if its error alone decides.
+        kind: what its numbers are; None if the row does not say.
         role: what it is to the question asked.
     """
 

@@ -63,7 +63,7 @@ class Within:
 
     @property
     def low(self) -> float | None:
-        """The least m that is kept; None where there is none."""
+        """The least m that is kept; otherwise None."""
         if not self.sides[0]:
             return None
         rest = self.reading - self.width
@@ -71,7 +71,7 @@ class Within:
 
     @property
     def high(self) -> float | None:
-        """The largest m that is kept; None where there is none."""
+        """The largest m that is kept; otherwise None."""
         if not self.sides[1]:
             return None
         rest = self.reading + self.width
@@ -154,7 +154,7 @@ class Evidence:
 
     Attributes:
         cell: what the model has in place of the reading.
-        reading: the measured number; None where none was entered, or where the row is not used.
+        reading: the measured number; None if none was entered, or where the row is not used.
         error: a key of `ERRORS`.
         sizes: key of `SIZES` -> number or cell, of those that are filled in.
         unused: why it does not count, in words, such as `USE_IS_OFF`; empty where it does.
@@ -213,7 +213,7 @@ class Evidence:
 
     @property
     def bell(self) -> Bell | None:
-        """The law of the reading's error; None where the evidence is a limit."""
+        """The law of the reading's error; None if the evidence is a limit."""
         law = self.law if self.error in ("normal", "lognormal") else None
         return law if isinstance(law, Bell) else None
 

@@ -141,7 +141,7 @@ class Scenario:
     """A named set of changes.
 
     Attributes:
-        row: where it is defined; None where a program made it.
+        row: where it is defined; None if a program made it.
     """
 
     name: str

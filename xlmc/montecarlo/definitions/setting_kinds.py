@@ -18,7 +18,7 @@ class Whole:
     """A setting that is a whole number from `least` to `most`.
 
     Attributes:
-        least, most: the limits; `most` is None where there is none.
+        least, most: the limits; `most` is None if there is none.
         fault: of a number beyond them, with `{}` for it.
         hint: what to give instead.
         as_text: whether the record holds it as text: a worksheet's numbers have 15 to 17 digits.

@@ -261,7 +261,7 @@ class Stopping:
     """What a run goes on until, and how long at most.
 
     Attributes:
-        goal: what it goes on until; None where it is to run its trials.
+        goal: what it goes on until; None if it is to run its trials.
         forecasts: names of those that the goal looks at; empty for all.
         seconds: how long at most.
         rare: one of `RARE`; None for `auto`.

@@ -108,7 +108,7 @@ class XLRiskSheet:
 
 
 def read_xlrisk(workbook: Workbook, findings: Findings) -> XLRiskSheet | None:
-    """What the workbook's sheet `XLRisk` says; None where it has none that XLRisk made.
+    """What the workbook's sheet `XLRisk` says; None if it has none that XLRisk made.
 
     Args:
         workbook: that was read.

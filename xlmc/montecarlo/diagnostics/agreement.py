@@ -50,7 +50,7 @@ _FEWEST: Final = 100.0
 """Effective trials below which nothing is said."""
 
 _TELLING: Final = 10.0
-"""Effective trials that should lie beyond a threshold, if it is to be told by its estimate alone."""
+"""Effective trials that should lie beyond a threshold, if its estimate alone is to decide."""
 
 _BEYOND: Final = 2_000.0
 """Effective trials from which on a reading beyond all of them contradicts them."""
@@ -91,7 +91,7 @@ class ItemAgreement:
         ratio: of the two; nan where it cannot be formed.
         chance: p, that a reading so far out, or farther, is made, given the other items; nan where these keep none.
         effective: how many trials the other items leave, in effect.
-        best_z: standard deviations between reading and model in the trial that agrees best with all items; None where
+        best_z: standard deviations between reading and model in the trial that agrees best with all items; None if
             the error is no bell, or no trial agrees.
         mean_z: the mean of them over the trials that all items keep; None likewise.
     """
@@ -174,7 +174,7 @@ class Agreement:
         together: the share of these that all items keep.
         ratio: that share by the product of what each keeps alone; nan where it cannot be formed.
         effective: how many trials the items leave, in effect.
-        best_z: the distance of all readings with a bell in the trial that agrees best; None where there is none.
+        best_z: the distance of all readings with a bell in the trial that agrees best; otherwise None.
     """
 
     model: CompiledModel
@@ -244,7 +244,7 @@ class Agreement:
 
 
 def agreement(model: CompiledModel, seed: int, trials: int) -> Agreement | None:
-    """Judge the evidence of a workbook; None where none is used.
+    """Judge the evidence of a workbook; None if none is used.
 
     Args:
         model: the workbook.

@@ -51,7 +51,7 @@ class BaseCheck:
     """A check at the base case.
 
     Attributes:
-        found: what its cell holds, in words; None where there is no base case.
+        found: what its cell holds, in words; None if there is no base case.
     """
 
     definition: Check
@@ -59,7 +59,7 @@ class BaseCheck:
 
     @property
     def holds(self) -> bool | None:
-        """Whether the check holds at the base case; None where there is none."""
+        """Whether the check holds at the base case; None without a base case."""
         return None if self.found is None else self.found == "TRUE"
 
     @property
@@ -101,7 +101,7 @@ class CheckResult:
 
     @property
     def holds(self) -> bool | None:
-        """Whether the check holds at the base case; None where there is none."""
+        """Whether the check holds at the base case; None without a base case."""
         return self.base.holds
 
     @property

@@ -53,7 +53,7 @@ class TornDirection:
 
 
 def torn_direction(sample: Sample, turn: float) -> TornDirection | None:
-    """Return what the directions are, moved together; None where no jump lies among their numbers.
+    """Return what the directions are, moved together; None if no jump lies among their numbers.
 
     Args:
         sample: the accepted trials, `(n,)` in ascending order.

@@ -23,7 +23,7 @@ Simulations = Mapping[int, Sequence[ForecastResult]]
 """Number of a simulation, from 1 -> the results of its forecasts."""
 
 _Numbers = Callable[[ir.Expression], float | None]
-"""Gives the number that an argument is; None where it is none."""
+"""Gives the number that an argument is; otherwise None."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +125,7 @@ def _result(results: Sequence[ForecastResult], of: Cell | str) -> ForecastResult
 
 
 def _between(result: ForecastResult, limits: Limits, numbers: _Numbers) -> ForecastResult | None:
-    """The part of the values that a call asks about; None where its limits are no numbers."""
+    """The part of the values that a call asks about; None if its limits are no numbers."""
     ends = [None if end is None else numbers(end) for end in (limits.lower, limits.upper)]
     if any(end is None for end, tree in zip(ends, (limits.lower, limits.upper), strict=True) if tree is not None):
         return None
@@ -138,7 +138,7 @@ def _between(result: ForecastResult, limits: Limits, numbers: _Numbers) -> Forec
 
 
 def _statistic(result: ForecastResult, asked: ResultCall, number: float | None) -> float | None:
-    """One number of a result; None where there is no such percentile, trial or statistic."""
+    """One number of a result; None if there is no such percentile, trial or statistic."""
     what = asked.what
     if what == "mean_absolute_deviation":
         return float(np.mean(np.abs(result.values - result.values.mean())))

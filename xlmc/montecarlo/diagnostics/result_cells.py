@@ -47,7 +47,7 @@ class ShownResults:
 
     @property
     def cells(self) -> dict[Cell, CellValue]:
-        """The values of all these cells; #N/A where there is none."""
+        """Return the values of all these cells; #N/A for those without one."""
         return {**self.values, **dict.fromkeys(self.missing, ErrorCode.NA)}
 
     @property
@@ -167,7 +167,7 @@ class _Showing:
     def _numbers(
         self, asked: Iterable[tuple[Cell, ir.Call]], blocked: frozenset[Cell]
     ) -> dict[tuple[Cell, ir.Expression], float | None]:
-        """What the arguments of calls are; None where one is no number."""
+        """What the arguments of calls are; None if one is no number."""
         trees = [(cell, tree) for cell, call in asked for tree in result_call(call).arguments]
         found = {each: number_of(each[1]) for each in trees}
         open_ = [each for each, number in found.items() if number is None]

@@ -72,7 +72,7 @@ class Weighting:
 
 
 def choose_method(model: CompiledModel, settings: Settings) -> str:
-    """How a run uses evidence whose error is no limit: `rejection` or `weights`; empty where there is none.
+    """How a run uses evidence whose error is no limit: `rejection` or `weights`; otherwise empty.
 
     By itself it takes weights where the first trials say that rejection would keep fewer than a thousand in the whole
     run, and that weights leave at least twice as many in effect. A run with a goal always rejects, and so does one with
@@ -116,7 +116,7 @@ def _weighed(filter_: Filter) -> Filter:
 
 
 def weighting_of(model: CompiledModel, inputs: Mapping[str, Floats]) -> Weighting | None:
-    """The weights of accepted trials; None where they are all equal.
+    """The weights of accepted trials; None if they are all equal.
 
     Args:
         model: the workbook.

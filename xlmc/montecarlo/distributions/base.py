@@ -195,7 +195,7 @@ class Family(ABC):
             *values: the parameters in order, each a number or `(n,)`.
 
         Returns:
-            It, a number or `(n,)`, NaN in trials in which the draws scatter; None where they do in all.
+            It, a number or `(n,)`, NaN in trials in which the draws scatter; None if they do in all.
         """
         if not self.roles or self.roles[0] != "location" or self.roles.count("scale") != 1:
             return None
@@ -350,7 +350,7 @@ class Member:
 
 
 def point_where(degenerate: Any, value: Values) -> Values | None:
-    """Return the value where the parameters leave one only, NaN elsewhere; None where they never do."""
+    """Return the value where the parameters leave one only, NaN elsewhere; None if they never do."""
     if not np.any(degenerate):
         return None
     return value if np.ndim(degenerate) == np.ndim(value) == 0 else np.where(degenerate, value, np.nan)

@@ -1,4 +1,4 @@
-"""Subjective beta: a beta told by its limits, its likeliest value and its mean."""
+"""Subjective beta: a beta defined by its limits, its likeliest value and its mean."""
 
 from __future__ import annotations
 

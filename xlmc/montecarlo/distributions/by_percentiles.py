@@ -162,7 +162,7 @@ class ByPercentiles(Family):
 
 
 def match_percentiles(family: Family, given: Mapping[str, float], points: Points) -> Solution:
-    """The parameters of the member, in the family's order; None where none fits, or where any shape does.
+    """The parameters of the member, in the family's order; None if none fits, or where any shape does.
 
     Where several members fit, the one whose shape is nearest to 1 is taken, or else the narrowest.
 
@@ -216,7 +216,7 @@ class _Moved:
         self.p, self.x = (np.array(each) for each in zip(*points, strict=True))
 
     def parameters(self, shape: float) -> Solution:
-        """The family's parameters with this shape; None where they would be none."""
+        """The family's parameters with this shape; None if they would be none."""
         location, scale = (float(each) for each in self.fit(self.quantiles(shape)))
         if not (scale > 0 and math.isfinite(location)):
             return None

@@ -34,7 +34,7 @@ _TOLERANCE = 1e-9
 """A range may fall short of a whole number of steps by this share of a step: decimals are not exact."""
 
 Row = Sequence[float | None]
-"""The numbers of a row; None where the cell is blank."""
+"""The numbers of a row; None if the cell is blank."""
 
 Position = tuple[int, int]
 """Row and column within the data, counted from 0."""

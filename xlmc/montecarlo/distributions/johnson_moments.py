@@ -105,7 +105,7 @@ class JohnsonMoments(Family):
 
 
 def _by_member(hook: Callable[[Member, Array], Any], at: Values, skewness: Values, kurtosis: Values) -> Array:
-    """A function of the standardised member; NaN where there is none."""
+    """A function of the standardised member; otherwise NaN."""
     at, skewness, kurtosis = np.broadcast_arrays(*(np.asarray(each, dtype=float) for each in (at, skewness, kurtosis)))
     found = np.full(at.shape, np.nan)
     flat = found.reshape(-1)
@@ -120,7 +120,7 @@ def _by_member(hook: Callable[[Member, Array], Any], at: Values, skewness: Value
 
 @lru_cache(maxsize=256)
 def _member(skewness: float, kurtosis: float) -> Member | None:
-    """The member with mean 0, variance 1 and these moments; None where none is found."""
+    """The member with mean 0, variance 1 and these moments; None if none is found."""
     if not (math.isfinite(skewness) and math.isfinite(kurtosis) and abs(skewness) < 1e6 and kurtosis < 1e12):
         return None
     if skewness < 0:

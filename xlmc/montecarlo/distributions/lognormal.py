@@ -1,4 +1,4 @@
-"""Lognormal: products of many positive factors; told by its own mean and standard deviation, or by its logarithm's."""
+"""Lognormal: products of many positive factors; given by its own mean and standard deviation, or its logarithm's."""
 
 from __future__ import annotations
 

@@ -203,7 +203,7 @@ class Between(Family):
     @cached_property
     @abstractmethod
     def _middle(self) -> Piecewise | None:
-        """The distribution between the points; None where there is none."""
+        """The distribution between the points; otherwise None."""
 
     @cached_property
     @abstractmethod

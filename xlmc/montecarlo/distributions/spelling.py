@@ -35,7 +35,7 @@ def plain(text: str) -> str:
 
 
 def nearest(text: str, known: Iterable[str], closeness: float = 0.6) -> str | None:
-    """The known name most like `text`, or None where none is alike.
+    """The known name most like `text`, or None if none is alike.
 
     >>> nearest("Unifrom", ["Normal", "Uniform"])
     'Uniform'

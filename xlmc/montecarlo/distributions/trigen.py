@@ -1,4 +1,4 @@
-"""Trigen: a triangle told by its likeliest value and two percentiles, when nobody knows the extremes."""
+"""Trigen: a triangle defined by its likeliest value and two percentiles, when nobody knows the extremes."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ class Uniform(Family):
     )
 
     def offset_and_factor(self, low: float, high: float) -> tuple[float, float] | None:
-        """Two numbers with which offset + factor·u has the bits of `ppf(u)`; None where there are none."""
+        """Two numbers with which offset + factor·u has the bits of `ppf(u)`; otherwise None."""
         width = high - low
         return None if low + width > high else (low, width)
 

@@ -9,7 +9,7 @@ from xlmc.montecarlo.distributions.parameters import LOCATION, SCALE, SHAPE, abo
 
 __all__ = ["Weibull"]
 
-_BLUNT = 500.0  # shapes above it: their gamma functions are so close to 1 that the variance is better told by a series
+_BLUNT = 500.0  # shapes above it: their gamma functions are so close to 1 that a series gives a better variance
 _ZETA = (1.6449340668482264, 1.2020569031595942, 1.0823232337111382, 1.0369277551433699, 1.0173430619844491)
 
 

@@ -51,7 +51,7 @@ SHAPE = ParameterSpec("shape", ("Shape",))
 RATE = ParameterSpec("rate", ("Rate",))
 
 FARTHEST = 2.0**52
-"""Whole numbers are told apart up to here."""
+"""Whole numbers are exact up to here."""
 
 Holds = Callable[[Array, NDArray[np.intp]], NDArray[np.bool_]]
 """A test of candidates `(m,)` and their trials `(m,)`: whether it holds. It holds from some number up."""
@@ -141,7 +141,7 @@ def standard_normal(u: Array, q: Array) -> Array:
 
 @lru_cache(maxsize=64)
 def _table(family: WholeNumbers, params: tuple[float, ...]) -> tuple[float, Array] | None:
-    """The first whole number that a draw may be, and F from there to the last; None where that is too long."""
+    """The first whole number that a draw may be, and F from there to the last; None if that is too long."""
     ends = np.array([SMALLEST_U, LARGEST_U])
     first, last = family._searched(ends, ends, 1 - ends, params, lambda k, u, *of: family._cdf(k, *of) >= u)
     if not last - first < LONGEST:

@@ -68,7 +68,7 @@ class DiskNeeded:
             raise SimulationError(
                 f"the run needs about {_gigabytes(self.bytes)} on disk, and {_gigabytes(self.free)} are free",
                 where=self.folder,
-                hint="Set TMPDIR to a folder on a disk with more room, or ask for fewer trials",
+                hint="Set TMPDIR to a folder on a disk with more space, or ask for fewer trials",
             )
 
 
@@ -80,7 +80,7 @@ def disk_needed(
     most_inputs: int,
     runner: Callable[[], ModelRunner],
 ) -> DiskNeeded | None:
-    """What a run will write, from the acceptance of its first trials; None where it stays in memory, or nobody can say.
+    """What a run will write, from the acceptance of its first trials; None if it stays in memory, or nobody can say.
 
     Args:
         model: of which it is a run.

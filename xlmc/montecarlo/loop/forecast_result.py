@@ -114,7 +114,7 @@ class ForecastResult:
         return ForecastResult(self.definition, part, Counter(), self._replicate)
 
     def mean_interval(self, confidence: float) -> tuple[float, float] | None:
-        """Both ends of the interval that holds the mean with this probability; None where the trials are too few."""
+        """Both ends of the interval that holds the mean with this probability; None if the trials are too few."""
         return statistics.mean(self.sample, confidence=confidence).interval
 
     def __repr__(self) -> str:
@@ -192,7 +192,7 @@ class ForecastResult:
 
     @cached_property
     def certainty(self) -> Estimate | None:
-        """The share of the trials in the range that was asked for; None where none was, or no trial has a number."""
+        """The share of the trials in the range that was asked for; None if none was, or no trial has a number."""
         asked = self.definition.asked
         return None if asked is None or not self.sample.n else statistics.probability_between(self.sample, *asked)
 
@@ -268,7 +268,7 @@ def _only_from_trials(sample: Sample) -> list[str]:
 
 
 def _named(samples: Mapping[str, Sample], concerned: Callable[[Sample], list[str]]) -> str:
-    """The numbers in words, such as "the mean of 'x' and the standard deviation of 'y'"; empty where there is none."""
+    """The numbers in words, such as "the mean of 'x' and the standard deviation of 'y'"; otherwise empty."""
     numbers = [f"the {number} of {name!r}" for name, sample in samples.items() for number in concerned(sample)]
     more = [f"{len(numbers) - _MOST_NAMED} more"] if len(numbers) > _MOST_NAMED else []
     return list_of([*numbers[:_MOST_NAMED], *more]) if numbers else ""

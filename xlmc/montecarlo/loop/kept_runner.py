@@ -132,7 +132,7 @@ class _Draws:
         self._whole: Sampler | None = None
         self._some: tuple[tuple[Draw, ...], Sampler] | None = None
         self.known: Known | None = None
-        """The blocks of the last draws; None where they were not kept."""
+        """The blocks of the last draws; None if they were not kept."""
 
     def take(self, model: CompiledModel) -> None:
         """Draw this model from now on."""

@@ -109,7 +109,7 @@ def copula_notices(groups: Sequence[CorrelatedGroup], copulas: Sequence[Copula])
 
 
 def drawn_correlation(groups: Sequence[CorrelatedGroup], first: str, second: str) -> float | None:
-    """The rank correlation that two assumptions, by name, are drawn with; None where one of them is not drawn."""
+    """The rank correlation that two assumptions, by name, are drawn with; None if one of them is not drawn."""
     for group in groups:
         if first in group.names and second in group.names:
             return float(group.copula.spearman[group.names.index(first), group.names.index(second)])

@@ -42,7 +42,7 @@ def parameter_target(cell: Cell) -> Target:
 
 
 def base_point(bases: Mapping[str, float | None]) -> dict[str, NDArray[np.float64]] | None:
-    """Name of each assumption -> `(1,)` its base value; None where one of them has none."""
+    """Name of each assumption -> `(1,)` its base value; None if one of them has none."""
     known = {name: np.full(1, base) for name, base in bases.items() if base is not None}
     return known if len(known) == len(bases) else None
 
@@ -233,7 +233,7 @@ class _Own:
         return {key: number for key, number in numbers.items() if number is not None}
 
     def _number(self, key: str, cell: Cell, upstream: Set[Cell]) -> float | None:
-        """The number; None where another assumption reaches it, and this one is held, so that nothing asks for it."""
+        """The number; None if another assumption reaches it, and this one is held, so that nothing asks for it."""
         own = self._assumption
         if own.base is None:
             message = f"{own.headings[key]} of {own.name!r} depends on the assumption's own cell, which is blank"

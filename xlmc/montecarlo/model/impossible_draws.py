@@ -53,7 +53,7 @@ def possible_draws(
 
 
 def with_errors(definitions: Definitions, faults: Mapping[str, DefinitionError], lowering: Lowering) -> Definitions:
-    """The definitions with `#VALUE!` instead of these draws, told where a trial may use one."""
+    """The definitions with `#VALUE!` instead of these draws, with a notice if a trial may use one."""
     gone = [a for a in definitions.assumptions if a.name in faults]
     usable = _reached(lowering, definitions, uses)
     reported = [a for a in gone if a.name in usable]

@@ -31,7 +31,7 @@ def calculate_labels(workbook: Workbook) -> Workbook:
     """The workbook with the texts of its tables `xlmc_…` calculated where the file has none; itself if it has all.
 
     Where saved values may be older than the formulas, those of these tables are calculated again, whatever they are.
-    What differs from the saved value is told of.
+    A notice names what differs from the saved value.
     """
     tables = [table for table in workbook.tables if table.name.casefold().startswith(_TABLES)]
     missing = [cell for table in tables for cell in _body(table, _POINTS) if workbook.content(cell).is_uncalculated]

@@ -156,7 +156,7 @@ class CompiledModel:
         assumptions, forecasts, filters, checks: as defined.
         forecast_filters: filters of some forecasts only, as defined.
         live: the assumptions that are drawn: needed and not frozen.
-        bases: name of each live assumption -> its base value; None where its cell is blank.
+        bases: name of each live assumption -> its base value; None if its cell is blank.
         chances: what decides which trials are kept by evidence whose error is no limit; drawn as assumptions are.
         draws: name of a live assumption or a chance -> how it is drawn.
         lowering: the nodes of the needed cells.

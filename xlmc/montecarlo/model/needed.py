@@ -165,9 +165,9 @@ def refuse_without_base(checks: Sequence[Check], needed: Needed, definitions: De
 
 
 def _refuse_too_many(calls: Sequence[Assumption]) -> None:
-    """A sheet that repeats a model in thousands of rows draws more than a run, or its report, has room for."""
+    """A sheet that repeats a model in thousands of rows draws more than a run, or its report, can take."""
     if len(calls) > MOST_CALLS:
-        message = f"the forecasts and filters need {len(calls):,} draws in cells, and there is room for {MOST_CALLS:,}"
+        message = f"the forecasts and filters need {len(calls):,} draws in cells; a run takes at most {MOST_CALLS:,}"
         hint = "where rows repeat one model, mark the answer of a single row, and let the run repeat it"
         raise DefinitionError(message, where=calls[0].row, hint=hint)
 

@@ -86,7 +86,7 @@ class Inverting:
         self.turned: list[int] = []
 
     def region(self, of: LimitState) -> Region | None:
-        """The values with which a condition can hold; None where they are not known."""
+        """The values with which a condition can hold; None if they are not known."""
         if isinstance(of, Leaf):
             return self._comparison(of.holds)
         if not isinstance(of, Together):
@@ -131,7 +131,7 @@ class Inverting:
         return len(self.targets) - 1
 
     def _undo(self, tree: ir.Expression, cell: Cell) -> Undo | None:
-        """See `Undo`; None where the tree cannot be undone."""
+        """See `Undo`; None if the tree cannot be undone."""
         if self._depth > _DEEPEST:
             return None
         self._depth += 1
@@ -256,7 +256,7 @@ class Inverting:
         return lambda value, given: undo(step(value, *(given[index] for index in indices)), given)
 
     def _line(self, tree: ir.Expression, x: Cell) -> _Pair | None:
-        """The formulas a and b of a + b·x; None where the tree is no such line, or a long one."""
+        """The formulas a and b of a + b·x; None if the tree is no such line, or a long one."""
         steps = count()
         found = self._line_of(tree, x, steps)
         return found if next(steps) <= _MOST_STEPS else None

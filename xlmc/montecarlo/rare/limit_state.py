@@ -32,7 +32,7 @@ class Leaf:
 
     Attributes:
         holds: whether it does, 1 or 0.
-        gap: by how much it fails where it does; None where that is no number.
+        gap: by how much it fails where it does; None if that is no number.
     """
 
     holds: Target

@@ -58,7 +58,7 @@ class RareSwitch:
     """Watches the plain trials of a run.
 
     Args:
-        wanted: accepted trials; None where no search may be made.
+        wanted: accepted trials; None if no search may be made.
         limit: trials at most.
         certain: whether the search is made in any case.
     """

@@ -6,7 +6,7 @@ rejection sampling: Caffo, Booth & Davis 2002): where it grows, those kept befor
 [0, 1) that it was kept by. A few trials above the envelope stand more than once: see `proposal`.
 
 When there are enough depends on the weights met so far: where heavy ones have not come yet, there are enough too soon,
-and the trials lack what weighs much. So more are drawn after that, how many being settled before: the trials are the
+and the trials lack what weighs much. So more are drawn after that, how many being fixed before: the trials are the
 last ones, and the probability of acceptance comes from these draws alone.
 """
 

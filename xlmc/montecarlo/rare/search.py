@@ -48,7 +48,7 @@ class Found:
 
     Attributes:
         learned: what the search found.
-        used: the round whose proposal the trials come from; None where there is none to draw from.
+        used: the round whose proposal the trials come from; otherwise None.
         resampled: the trials; None likewise.
         checked: trials that were drawn from the widened assumptions afterwards.
         unexplained: accepted trials of other origin that the proposal hardly ever draws.

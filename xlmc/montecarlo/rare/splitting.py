@@ -135,7 +135,7 @@ def explore(
 
 
 def _next_level(found: Floats, wanted: int, before: float) -> float | None:
-    """The next lower level; None where hardly a point lies below the last one.
+    """The next lower level; None if hardly a point lies below the last one.
 
     Where most points stand level, as where a filter says no more than no, the few below them are taken.
     """

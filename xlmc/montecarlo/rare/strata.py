@@ -38,7 +38,7 @@ _RANKS: Final = np.concatenate([[1e-12, 1e-9, 1e-6], np.linspace(1e-4, 1.0 - 1e-
 
 
 def strata_of(model: CompiledModel, filters: Sequence[LimitState]) -> list[tuple[LimitState, ...]]:
-    """Return what each stratum asks beside the filters; a single stratum that asks nothing if none can be told apart.
+    """Return what each stratum asks beside the filters; a single one, which asks nothing, without switches.
 
     Args:
         model: with filters.

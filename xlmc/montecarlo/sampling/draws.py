@@ -67,7 +67,7 @@ class Draw:
         return cls(name, family, family.bind((), parameters), cutoffs if len(parameters) < len(given) else None)
 
     def fault(self) -> Fault | None:
-        """What keeps its numbers from being a distribution; None where some vary, for each trial has its own then."""
+        """What keeps its numbers from being a distribution; None if some vary, for each trial has its own then."""
         if not self.fixed:
             return None
         if self.cutoffs is None:
@@ -129,7 +129,7 @@ class Draw:
             raise SimulationError(message, hint="its parameters are too extreme: correct them in the workbook")
 
     def ties(self) -> Ties | None:
-        """The values that it takes; None where hardly any two draws are equal, or all, or where parameters vary."""
+        """The values that it takes; None if hardly any two draws are equal, or all, or where parameters vary."""
         return ties_of(self._quantiles) if self.fixed else None
 
     def _quantiles(self, u: Floats) -> Floats:
@@ -150,7 +150,7 @@ class Draw:
         return (float(ends[0]), float(ends[1])) if np.isfinite(ends).all() else None
 
     def offset_and_factor(self) -> tuple[float, float] | None:
-        """Two numbers with which offset + factor·u is the draw, to the bit; None where it is not so simple."""
+        """Two numbers with which offset + factor·u is the draw, to the bit; None if it is not so simple."""
         if not isinstance(self.family, Uniform) or self.cutoffs is not None:
             return None
         low, high = self.parameters
@@ -261,7 +261,7 @@ class Sampler:
 
     @property
     def linear(self) -> Linear | None:
-        """All draws as offset + factor·uniform of independent trials; None where any is more."""
+        """All draws as offset + factor·uniform of independent trials; None if any is more."""
         draws = [draw for stage in self._stages for draw in stage.draws]
         maps = [draw.offset_and_factor() for draw in draws]
         if self._groups or None in maps or len(self.streams) < len(draws):

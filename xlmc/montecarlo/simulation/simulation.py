@@ -190,12 +190,12 @@ class RunResult:
 
     @cached_property
     def weighting(self) -> Weighting | None:
-        """The weights of the accepted trials; None where they count alike."""
+        """The weights of the accepted trials; None if they count alike."""
         return weighting_of(self.model, self.inputs)
 
     @property
     def replicate(self) -> Replicates | None:
-        """`(m,)` the replicate of each accepted trial; None where the trials themselves are independent."""
+        """`(m,)` the replicate of each accepted trial; None if the trials themselves are independent."""
         return self.plan.replicate_of(self.trial_index)
 
     @property
@@ -341,7 +341,7 @@ class RunResult:
 
     @cached_property
     def agreement(self) -> Agreement | None:
-        """Whether the evidence agrees with the model and with itself; None where none is used."""
+        """Whether the evidence agrees with the model and with itself; None if none is used."""
         return agreement(self.model, self.settings.seed, self.evaluated)
 
     @cached_property
@@ -350,7 +350,7 @@ class RunResult:
         return lost_digits(self.model, self.inputs)
 
     def _sparse(self) -> list[str]:
-        """Whether too few trials were accepted in a replicate for the errors to be told from the replicates."""
+        """Whether too few trials were accepted in a replicate for errors that come from the replicates."""
         groups = min(self.plan.replicates, MOST_GROUPS)
         if not 0 < self.accepted < LEAST_ACCEPTED * groups:
             return []

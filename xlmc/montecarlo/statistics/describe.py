@@ -28,7 +28,7 @@ class Description:
         trials: how many values there are; with weights, how many have a weight above 0.
         percentiles: percent -> estimate.
         central: the lower and upper end of the central range.
-        probability_above: P(> threshold), None where no threshold was given.
+        probability_above: P(> threshold), None if no threshold was given.
     """
 
     trials: int

@@ -30,7 +30,7 @@ class Estimate:
 
     Attributes:
         value: the point estimate; nan where it does not exist.
-        error: its standard error; None where there is none to give (extremes, too few trials).
+        error: its standard error; None for extremes and with too few trials.
         interval: its confidence interval, 95 % unless asked otherwise; an end is infinite where the sample cannot
             bound it, as in the far tail of a small sample.
         n: the trials it rests on.
@@ -50,7 +50,7 @@ class Estimate:
 
 
 def finite(value: float | None) -> float | None:
-    """The number; None where it is none, or infinite, which JSON does not have.
+    """Return the number; None if it is NaN or infinite, which JSON does not have.
 
     >>> finite(1), finite(math.nan), finite(None)
     (1.0, None, None)
@@ -131,7 +131,7 @@ def one_tail(confidence: float) -> float:
 def supported_digits(estimate: Estimate) -> int | None:
     """Return the decimals of a value printed alone: the last is good to ± 1 with 95 % confidence (2 errors ≤ 1 unit).
 
-    The number is negative for tens, hundreds, …, and None where no error limits the digits.
+    The number is negative for tens, hundreds, …, and None if no error limits the digits.
 
     >>> supported_digits(Estimate(17.0213, error=0.0023))
     2

@@ -173,7 +173,7 @@ def guides_of(picture: Picture, bottom: float) -> tuple[float, float]:
 
 
 def picture_of(study: Study, work: Work) -> Picture | None:
-    """The chart of a study; None where no forecast varies."""
+    """The chart of a study; None if no forecast varies."""
     if not study.varying:
         return None
     found, finer = choice(study), choice(study, _finer(study))

@@ -117,8 +117,8 @@ class Change:
     Attributes:
         kind: `cell`, `defined name`, `table`, `assumption`, `software` and so on.
         where: which one.
-        old: what it was; None where the record does not have it, because a cell was blank or was not needed.
-        new: what it is now; None where it is not there any more.
+        old: what it was; None if the record does not have it, because a cell was blank or was not needed.
+        new: what it is now; None if it is not there any more.
     """
 
     kind: str

@@ -66,7 +66,7 @@ class Replayed:
 
     Attributes:
         record: of the run.
-        repeated: the run again, from the workbook as it is now; None where it cannot be run any more.
+        repeated: the run again, from the workbook as it is now; None if it cannot be run any more.
         fault: why it cannot be run.
         changes: what is not as the record has it: cells, names, tables, definitions.
         environment: the versions and the processor that differ.
@@ -228,7 +228,7 @@ def _replay(
 
 
 def _is_untouched(path: Path) -> bool:
-    """Whether a result workbook is as xlmc wrote it; False where that cannot be told."""
+    """Whether a result workbook is as xlmc wrote it; False if that cannot be decided."""
     seal = read_seal(path)
     return seal is not None and seal.whole
 

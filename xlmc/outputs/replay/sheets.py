@@ -59,7 +59,7 @@ class CellDifference:
 
     Attributes:
         says: what the file holds; the formula, with `=`, where it holds one that is not the run's.
-        gives: what the run gives; None where it leaves the cell blank.
+        gives: what the run gives; None if it leaves the cell blank.
     """
 
     where: Cell

@@ -127,7 +127,7 @@ def as_recorded(run: RunResult, record: Record, settings: Settings) -> RunResult
 
 
 def _entry(record: Record, key: str) -> Value:
-    """An entry of the record; None where it has no such entry."""
+    """An entry of the record; None if it has no such entry."""
     try:
         return record[key]
     except KeyError:

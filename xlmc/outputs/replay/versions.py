@@ -23,7 +23,7 @@ class Rule:
         since: the first version that computes so.
         sentence: what it does now, in words.
         met: the pattern of a formula, or of another content of a cell, that it may concern.
-        beside: a pattern that another cell must match, too; None where one is enough.
+        beside: a pattern that another cell must match, too; None if one is enough.
     """
 
     since: str

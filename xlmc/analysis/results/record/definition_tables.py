@@ -268,9 +268,9 @@ class CorrelationMet:
 
     Attributes:
         asked: the rank correlation in its row, or that of its copula; 0 where it has neither.
-        row: its first cell, or that of the copula; None where a repair changed a pair that no row names.
-        used: the rank correlation that it was drawn with; None where one of the two was not drawn.
-        accepted: that of the accepted trials whose draws are kept; None where one of the two was not drawn, or where
+        row: its first cell, or that of the copula; None if a repair changed a pair that no row names.
+        used: the rank correlation that it was drawn with; None if one of the two was not drawn.
+        accepted: that of the accepted trials whose draws are kept; None if one of the two was not drawn, or where
             trials are weighted.
     """
 

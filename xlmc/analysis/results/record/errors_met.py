@@ -32,7 +32,7 @@ class ErrorMet:
         kind: `filter`, `forecast` or `assumption`.
         error: the Excel error, `text`, `blank`, or what is wrong with the parameters.
         trials: all trials for filters and assumptions, accepted ones for forecasts.
-        root: the cell that the error comes from, and its error there; None where it is not known, or the cell itself.
+        root: the cell that the error comes from, and its error there; None if it is not known, or the cell itself.
     """
 
     kind: str

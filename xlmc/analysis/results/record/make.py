@@ -214,7 +214,7 @@ def _changed_from(found: ChangedFrom) -> Section:
 
 
 def changed_from_of(record: Record) -> ChangedFrom | None:
-    """What the run of a record says of the workbook that its own was made of; None where it says nothing."""
+    """What the run of a record says of the workbook that its own was made of; None if it says nothing."""
     if CHANGED_FROM not in record:
         return None
     changes = tuple(str(row["change"]) for row in record.rows(CHANGED_FROM))

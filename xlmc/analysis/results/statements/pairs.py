@@ -48,7 +48,7 @@ class Pair:
         trials: in which both are numbers.
         both_above: P(first > its limit and second > its limit).
         either_above: P(first > its limit or second > its limit).
-        first_greater: P(first > second); None where their units differ or are not given.
+        first_greater: P(first > second); None if their units differ or are not given.
         correlation: Spearman's.
         ranked: the trials that the correlation comes from.
     """

@@ -64,7 +64,7 @@ def statements(simulation: RunResult) -> list[Statement]:
 def stated_range(result: ForecastResult) -> RoundedRange | None:
     """Round the range that is stated of a forecast: its central one, or the side of it that a bound has.
 
-    None where too few trials have a number.
+    None if too few trials have a number.
     """
     definition, share = result.definition, result.definition.central
     ends: tuple[Estimate | None, Estimate | None] = result.statistics.central
@@ -88,7 +88,7 @@ def _of(result: ForecastResult) -> list[Statement]:
 
 
 def _main(result: ForecastResult, part: str) -> Statement | None:
-    """The sentence that answers the question; None where there are too few trials for one."""
+    """The sentence that answers the question; None if there are too few trials for one."""
     definition, trials = result.definition, result.statistics.trials
     name, units = definition.name, f" {definition.units}" if definition.units else ""
     if result.yes is not None:

@@ -61,7 +61,7 @@ def rounded_range(
     Each end is rounded to the nearest multiple of the resolution, or of a finer or coarser unit that the errors of the
     ends support. If the range then holds less than `nominal` of the trials, or if `nominal` is above one half and the
     95 % interval of its share is not, ends are rounded outwards, and moved out unit by unit until both hold. A single
-    value is rounded in words alone. None where there are no trials.
+    value is rounded in words alone. None if there are no trials.
 
     Args:
         sample: the accepted trials.
@@ -142,7 +142,7 @@ def surely_above(share: Estimate, bound: float) -> bool:
 
 
 def _widened(rounding: _Rounding, nominal: float) -> RoundedRange | None:
-    """The narrowest range, with ends as many steps out on both sides or one step less, that holds; None where none is.
+    """The narrowest range, with ends as many steps out on both sides or one step less, that holds; None if none is.
 
     The number of steps is doubled until a range holds, and then the least is sought.
     """
@@ -216,7 +216,7 @@ def reach_text(share: Estimate) -> str:
 def _unit(ends: Sequence[Estimate], resolution: float | None) -> Decimal | None:
     """The finest power of ten that is at least half the largest error, or the resolution if that is not finer.
 
-    None where there is neither.
+    None if there is neither.
     """
     errors = [end.error for end in ends if end.error]
     supported = Decimal(1).scaleb(-math.floor(-math.log10(max(errors) / 2.0))) if errors else None

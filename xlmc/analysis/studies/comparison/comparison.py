@@ -76,7 +76,7 @@ class ForecastComparison:
         tolerance: in that unit; `stated` where it was asked for, else a tenth of the standard deviation.
         limits: number -> its tolerance; that of P(> threshold) is a share.
         cause: where the difference is beyond the tolerance.
-        rivalry: where each book answers from inputs that the other has not; None where one of them has all.
+        rivalry: where each book answers from inputs that the other has not; None if one of them has all.
     """
 
     first: Forecast
@@ -144,7 +144,7 @@ class Comparison:
 
     @property
     def trials_needed(self) -> int | None:
-        """About how many trials would decide what is undecided; None where no number would."""
+        """About how many trials would decide what is undecided; None if no number would."""
         times = max((each.judgement.times for each in self.of(Verdict.UNDECIDED)), default=1.0)
         return None if times == inf else ceil(times * self.first.trials)
 

@@ -61,11 +61,11 @@ class Difference:
 
     Attributes:
         share: of the trials, held by the central range from `low` to `high`.
-        threshold: of the forecast; None where it has none.
-        above: P(> threshold); None where there is none.
+        threshold: of the forecast; None if it has none.
+        above: P(> threshold); None without a threshold.
         kolmogorov, wasserstein: distances of the two distributions, as above.
-        largest: the largest difference in a trial that both accept; nan where there is none.
-        typical: the root mean square of these differences; nan where there is none.
+        largest: the largest difference in a trial that both accept; nan without such trials.
+        typical: the root mean square of these differences; nan without such trials.
     """
 
     mean: Change

@@ -94,8 +94,8 @@ class Statistic:
 
     Attributes:
         estimate: of it.
-        influence: of the trials; None where they are too few for one.
-        hits: `(m,)` the trials that it is the share of; None where it is no share.
+        influence: of the trials; None if they are too few for one.
+        hits: `(m,)` the trials that it is the share of; None if it is no share.
     """
 
     estimate: Estimate

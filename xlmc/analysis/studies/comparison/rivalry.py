@@ -38,7 +38,7 @@ _CERTAINTY: Final = 3.0
 """Errors by which the spreads must differ, if one is to be called the smaller."""
 
 _FEWEST: Final = {STRAINED: 1_000, INCONSISTENT: 10_000}
-"""Trials that both accept, without which a chance below these is not told from one above."""
+"""Trials that both accept, without which a chance below these cannot be distinguished from one above."""
 
 
 class RivalVerdict(Enum):
@@ -61,7 +61,7 @@ class Rivalry:
         own: for either book, the assumptions that its answer takes and the other's does not.
         deviation: the standard deviations.
         width: those of the central ranges.
-        sharper: 0 or 1, the book whose answer is spread less; None where these trials cannot tell, or where the two
+        sharper: 0 or 1, the book whose answer is spread less; None if these trials cannot tell, or where the two
             spreads contradict each other.
         chance: of a difference as far from 0 as that of the two answers, or farther; nan without trials that both
             accept.
@@ -109,7 +109,7 @@ def rivalry(
     forecasts: tuple[Forecast, Forecast],
     answers: tuple[Accepted, Accepted],
 ) -> Rivalry | None:
-    """How two books rival for an answer; None where one is computed from no other assumptions than the other.
+    """How two books rival for an answer; None if one is computed from no other assumptions than the other.
 
     Args:
         runs: over the same trials.
@@ -143,7 +143,7 @@ def _change(pair: Pair, first: Statistic, second: Statistic) -> Change:
 
 
 def _smaller(spread: Change) -> int | None:
-    """The book with the smaller spread; None where the difference does not clear its error, or has none."""
+    """The book with the smaller spread; None if the difference does not clear its error, or has none."""
     value, error = spread.difference.value, spread.difference.error
     if error is None or not abs(value) > _CERTAINTY * error:
         return None

@@ -122,7 +122,7 @@ def chance_tolerance(share: float) -> float:
 
 
 def chance_of(points: float | None) -> float | None:
-    """A tolerance stated in percentage points as a share; None where none is.
+    """A tolerance stated in percentage points as a share; None if none is.
 
     Raises:
         SimulationError: it is out of its range.
@@ -144,7 +144,7 @@ class _Stated:
     unit: str
 
     def of(self, forecast: Forecast, deviation: float) -> float | None:
-        """The tolerance in the forecast's unit; None where the units are of different kinds."""
+        """The tolerance in the forecast's unit; None if the units are of different kinds."""
         if self.unit == "%":
             return self.value / 100.0 * deviation
         factor = 1.0 if not self.unit else factor_between(self.unit, forecast.units)

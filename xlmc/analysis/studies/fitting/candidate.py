@@ -84,7 +84,7 @@ def refuse(impossible: bool, reason: str) -> None:
 
 
 def standard_errors(log_likelihood: Callable[[Params], float], params: Params, free: Sequence[int]) -> Errors:
-    """The roots of the diagonal of the inverse of the negative second derivatives; None where there are none.
+    """The roots of the diagonal of the inverse of the negative second derivatives; otherwise None.
 
     Args:
         log_likelihood: of all parameters.

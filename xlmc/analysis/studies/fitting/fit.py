@@ -50,7 +50,7 @@ _LARGEST = 1e100
 _NEAR, _IN_THE_RACE = 2.0, 10.0
 
 FEW, _ENOUGH = 15, 30
-"""Below the first, families cannot be told apart at all; below the second, hardly."""
+"""Below the first, families cannot be distinguished at all; below the second, hardly."""
 
 _CLOSE = 2.0
 """Families whose AIC differ by less are about equally likely (K. P. Burnham and D. R. Anderson, 2002)."""
@@ -74,7 +74,7 @@ class Fitted:
 
     Attributes:
         parameters: by heading.
-        errors: their standard errors; None where there is none.
+        errors: their standard errors; None for one without.
         errors_from: what these come from.
         fixed: headings that were not estimated.
         aic, bic: Akaike's and the Bayesian information criterion: smaller is better.

@@ -102,8 +102,8 @@ class MethodResult:
         seconds: of the whole run, with what it learned from.
         evaluations: of the workbook.
         answers: forecast -> answer.
-        acceptance: the share of trials that all filters accept; None where the method does not see filters.
-        effective: how many equally weighted accepted trials carry as much; None where all weigh alike.
+        acceptance: the share of trials that all filters accept; None if the method does not see filters.
+        effective: how many equally weighted accepted trials carry as much; None if all weigh alike.
         remarks: on this run, in words: its point, its limits, what it left out.
         ends: (forecast, `least` or `most`) -> the point that the bound is reached at, by the assumptions' names; of
             methods whose bounds are forecasts of points that the workbook accepts.

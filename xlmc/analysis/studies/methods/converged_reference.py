@@ -162,7 +162,7 @@ def reference_of(model: CompiledModel, trials: int, sampling: str, engine: str, 
 def unfiltered_of(model: CompiledModel, reference: Reference) -> Reference | None:
     """The forecasts without the filters, by a run of up to 1,048,576 trials.
 
-    None where no filter rejects anything, or where forecasts are no numbers in trials that the filters reject: then
+    None if no filter rejects anything, or where forecasts are no numbers in trials that the filters reject: then
     there is no such answer.
     """
     if not model.filters or reference.accepted == reference.trials:

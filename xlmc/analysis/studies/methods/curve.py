@@ -123,8 +123,8 @@ class Runs:
         errors: (forecast, attribute of `Answer`) -> in the forecast's units.
         shares: attribute of `Answer` -> the same over the forecasts' 5–95 % ranges, root mean square over the
             forecasts in which it converges: one number without units.
-        acceptance: of the share of accepted trials; None where the method gives none.
-        effective: accepted trials that count fully, the median; None where all weigh alike.
+        acceptance: of the share of accepted trials; None if the method gives none.
+        effective: accepted trials that count fully, the median; None if all weigh alike.
         failed: runs without any number.
         converged: whether so many trials are accepted that errors fall as theory says; only such runs are extrapolated.
         measured: whether the seconds were, and not worked out from the rate of a shorter run.

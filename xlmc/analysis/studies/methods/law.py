@@ -218,7 +218,7 @@ def _known_errors(lengths: Sequence[Runs], kind: Kind) -> list[tuple[Runs, Rms]]
 
 
 def _exact_from(lengths: Sequence[Runs], kind: Kind) -> float | None:
-    """Trials from which on no run was off at all, as those of whole numbers; None where the longest ones are."""
+    """Trials from which on no run was off at all, as those of whole numbers; None if the longest ones are."""
     found = None
     for runs in reversed(lengths):
         if runs.errors[kind].value != 0.0:

@@ -200,7 +200,7 @@ class Choice:
     """Methods that draw, for one accuracy.
 
     Attributes:
-        chosen: what to use; None where no method reaches the accuracy, as for a tolerance of zero.
+        chosen: what to use; None if no method reaches the accuracy, as for a tolerance of zero.
         needs: what each method needs.
         cheapest: the method of the least seconds, and those that tie with it, the least first.
     """

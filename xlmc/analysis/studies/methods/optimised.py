@@ -281,7 +281,7 @@ class _Search:
     def _search(
         self, name: str, sign: float, start: Floats, ask: Callable[[Floats], _Point]
     ) -> tuple[float, Floats] | None:
-        """The end found from one accepted trial, in the forecast's units, and its point; None where there is none."""
+        """The end found from one accepted trial, in the forecast's units, and its point; otherwise None."""
         at, known = (start - self._low) / self._width, _Known(ask)
         value, _ = known(at).forecasts[name]
         factor = sign / max(abs(value), 1e-300)

@@ -268,7 +268,7 @@ class Parts:
 
 
 def parts_of(study: Study, found: Shortfall) -> Parts | None:
-    """The parts of an error; None where there are no filters that reject anything, or no answer without them."""
+    """The parts of an error; None if there are no filters that reject anything, or no answer without them."""
     if study.unfiltered is None:
         return None
     free, own = study.unfiltered.answers[found.forecast], study.unfiltered.errors[found.forecast]

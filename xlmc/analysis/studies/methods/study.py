@@ -81,7 +81,7 @@ class Study:
         seed: of the reference; the replicates have others.
         accuracy: what is asked of the answers, as typed, the number, and whether it is a share of each number.
         reference: what errors are measured against.
-        unfiltered: the same without the filters; None where they reject nothing, or where there is no such answer.
+        unfiltered: the same without the filters; None if they reject nothing, or where there is no such answer.
         ladder: trials of the runs of methods that draw.
         replicates: the most runs of each length.
         once: the methods that give one answer, the cheapest idea first.

@@ -119,7 +119,7 @@ def fit_lines(classes: Classes, y: Floats) -> Floats:
 
 
 def standardise(y: Floats) -> Floats | None:
-    """Mean 0 and mean square 1; None where y does not vary."""
+    """Mean 0 and mean square 1; None if y does not vary."""
     largest = float(np.max(np.abs(y), initial=0.0))
     if not largest > 0.0:
         return None

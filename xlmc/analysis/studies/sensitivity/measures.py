@@ -55,7 +55,7 @@ class Influence:
             on the assumption, 1 where it is a function of it. It also sees what `explained` cannot: an assumption that
             widens the forecast without moving its mean, or acts only together with others.
         dependence_floor: as `explained_floor`.
-        first_order, total: Sobol's indices, of all trials; None where they are not given, see
+        first_order, total: Sobol's indices, of all trials; None if they are not given, see
             `Sensitivities.sobol_reason`. `first_order` is what `explained` estimates too, by other means; `total` adds
             what the assumption does together with others.
     """
@@ -86,9 +86,9 @@ class Bar:
         assumption, units: its name and unit.
         base: its base value.
         inputs: `(5,)` its values at `PERCENTS` of its own distribution, before filtering.
-        answers: `(5,)` the forecast there, in its unit; None where it is no number.
+        answers: `(5,)` the forecast there, in its unit; None if it is no number.
         rejected: `(5,)` whether the filters would reject that case.
-        monotonic: whether the forecast only rises or only falls over `inputs`; None where a value is missing. Where it
+        monotonic: whether the forecast only rises or only falls over `inputs`; None if a value is missing. Where it
             is False, a bar from the first to the last value hides what lies between.
     """
 
@@ -112,7 +112,7 @@ class Bar:
 
     @property
     def span(self) -> float:
-        """The width from the smallest to the largest of the five answers; 0 where there are none."""
+        """The width from the smallest to the largest of the five answers; otherwise 0."""
         known = [answer for answer in self.answers if answer is not None]
         return max(known) - min(known) if known else 0.0
 
@@ -220,7 +220,7 @@ class Sensitivities:
         omitted: live assumptions that are measured for no forecast.
         medians: assumptions without a base value, which tornado and spider hold at their median.
         sobol_reason: why there are no Sobol indices; empty where there are.
-        sobol_trials: pairs of trials that the Sobol indices rest on; 0 where there are none.
+        sobol_trials: pairs of trials that the Sobol indices rest on; otherwise 0.
         filter_limits: one a limit, in the order of the workbook.
         omitted_limits: further ones that were left out, because there are very many.
         varying_limits: filters, by name, with a limit that varies with the assumptions and so cannot be moved.

@@ -41,7 +41,7 @@ class LimitTrials:
         values: `(n,)` of the filter's cell.
         accepted: `(n,)` whether the run accepted the trial; the others only this limit rejects.
         forecasts: `(f, n)`, NaN where one has no number.
-        replicate: `(n,)` ids; None where trials are independent.
+        replicate: `(n,)` ids; None if trials are independent.
         trials: of which the accepted ones are known.
         loosened: of which the others are known, the first of these; 0 where none is.
     """

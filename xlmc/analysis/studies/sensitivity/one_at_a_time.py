@@ -33,7 +33,7 @@ class OneAtATime:
     """Tornado and spider of every forecast.
 
     Attributes:
-        base: one a forecast, in the order of the workbook; None where it is no number.
+        base: one a forecast, in the order of the workbook; None if it is no number.
         bars: one list a forecast, the widest first.
         medians: assumptions without a base value, held at their median.
     """

@@ -26,7 +26,7 @@ class Units:
 
     Attributes:
         n: trials.
-        replicate: `(n,)` numbered from 0; None where the trials themselves are independent.
+        replicate: `(n,)` numbered from 0; None if the trials themselves are independent.
     """
 
     n: int

@@ -91,7 +91,7 @@ class Case:
         return {name: np.ascontiguousarray(column) for name, column in zip(self.names, rows.T, strict=True)}
 
     def _share_of(self, trials: int) -> int:
-        """How many trials of so many there is room for."""
+        """Limit a number of trials to what memory allows."""
         each = 24 * len(self.nodes) + 8 * len(self.cells) * (2 * len(self.names) + 1)
         share = _BYTES / (each * (_PRIOR + _ACCEPTED))
         return trials if share >= 1 else max(_FEWEST_OF_EITHER, int(share * trials))

@@ -130,7 +130,7 @@ def _size(case: Case, cell: Cell, tree: ir.Expression, trial: int) -> float:
 
 
 def culprit(case: Case, cell: Cell, trials: Sequence[int]) -> ir.Expression | None:
-    """The innermost part of a cell's formula that is to blame for its error; None where there is none.
+    """The innermost part of a cell's formula that is to blame for its error; otherwise None.
 
     Args:
         case: the evidence.
@@ -174,7 +174,7 @@ def _with(case: Case, whole: int, node: int, cured: Floats, trials: Sequence[int
 
 
 def only_assumption(case: Case, node: int) -> str | None:
-    """The name of the only assumption that a node depends on; None where there are none or several."""
+    """The name of the only assumption that a node depends on; None if it depends on none or several."""
     found = {
         formula.name
         for part in closure(case.dag, [node])

@@ -61,7 +61,7 @@ class Finding:
         what: what was found, in one sentence.
         effect: how wrong the number gets, in one sentence.
         where: the ranges that provoke it; empty where it happens everywhere, or it is of a whole run.
-        instead: a formula without the defect, with `=`; None where none is known.
+        instead: a formula without the defect, with `=`; None if none is known.
         size: findings of one level are ranked by it: the error as a share of what it concerns, or how many times it is
             larger than it need be.
     """

@@ -65,7 +65,7 @@ def domain_edges(case: Case) -> Iterator[Finding]:
 
 
 def _edge(case: Case, cell: Cell, part: ir.Expression) -> _Edge | None:
-    """The domain of a part of a formula; None where it takes any number."""
+    """The domain of a part of a formula; None if it takes any number."""
     every = np.ones(case.n, bool)
     match part:
         case ir.Binary("^", base, exponent):
@@ -91,7 +91,7 @@ def _of_power(case: Case, cell: Cell, name: str, base: ir.Expression, exponent: 
 
 
 def _numbers(case: Case, cell: Cell, tree: ir.Expression) -> Floats | None:
-    """The numbers of a part of a formula, `(n,)`; None where it has none."""
+    """The numbers of a part of a formula, `(n,)`; None if it has none."""
     node = case.trees.node_of(tree, cell)
     if node is None:
         return None

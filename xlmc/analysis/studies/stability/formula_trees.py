@@ -55,7 +55,7 @@ class _Naming:
                 self._names.setdefault(found, []).append(defined)
 
     def of(self, cell: Cell, sheet: str) -> str | None:
-        """The name that a formula on a sheet may use for a cell; None where there is none.
+        """The name that a formula on a sheet may use for a cell; otherwise None.
 
         A name of another sheet is not known there, and one of the whole workbook is hidden by one of the sheet.
         """
@@ -99,7 +99,7 @@ class Trees:
         return text and f"={text}"
 
     def node_of(self, tree: ir.Expression, cell: Cell) -> int | None:
-        """The node of a part of a cell's formula; None where it has none of its own."""
+        """The node of a part of a cell's formula; None if it has none of its own."""
         formula = self._graph.workbook.content(host_of(cell)).formula
         array = formula is not None and (formula.array is not None or formula.dynamic)
         try:
@@ -128,7 +128,7 @@ class Trees:
         return self._text(tree, host)[0]
 
     def read_back(self, tree: ir.Expression, cell: Cell) -> ir.Expression | None:
-        """What a formula is once its text is typed into a cell; None where it cannot be typed."""
+        """What a formula is once its text is typed into a cell; None if it cannot be typed."""
         resolver = Resolver(self._graph.workbook, self.lowering.inputs)
         try:
             return resolver.formula(cell, Formula(self.text(tree, cell), cell.row, cell.column))
@@ -138,7 +138,7 @@ class Trees:
     def offer_formula(self, tree: ir.Expression | None, cell: Cell) -> str | None:
         """A formula with `=` that may be typed into a cell.
 
-        None where its text does not say it: a number has more digits than Excel reads, or what it names has no address,
+        None if its text does not say it: a number has more digits than Excel reads, or what it names has no address,
         as the draw of `RAND()`.
         """
         typed = None if tree is None else self.read_back(tree, cell)

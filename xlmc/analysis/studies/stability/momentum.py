@@ -35,7 +35,7 @@ def times(*parts: Tree) -> Tree:
 
 
 def angle_of(tree: Tree, function: str) -> Tree | None:
-    """The angle of `COS(angle)`, RADIANS included; None where the tree is another function."""
+    """The angle of `COS(angle)`, RADIANS included; None if the tree is another function."""
     return tree.arguments[0] if isinstance(tree, ir.Call) and tree.name == function else None
 
 
@@ -169,7 +169,7 @@ def _component(known: Momentum, vehicle: int, function: str) -> Tree:
 
 
 def spin(tree: Tree) -> Tree | None:
-    """(17′) for a cell that is (17), with or without a yaw rate added; None where it is not."""
+    """(17′) for a cell that is (17), with or without a yaw rate added; None if it is not."""
     found = terms(tree)
     arms = [(sign, _arm(term)) for sign, term in found]
     swept = [(sign, arm) for sign, arm in arms if arm is not None]

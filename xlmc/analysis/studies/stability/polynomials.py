@@ -115,7 +115,7 @@ class Polynomials:
         return found
 
     def split(self, polynomial: Polynomial, key: str, power: int) -> tuple[Polynomial, Polynomial] | None:
-        """`K` and `R` of `K·atom^power + R`; None where the atom stands there in another power, or not at all."""
+        """`K` and `R` of `K·atom^power + R`; None if the atom stands there in another power, or not at all."""
         of, rest = {}, {}
         for monomial, coefficient in polynomial.items():
             powers = dict(monomial)
@@ -170,7 +170,7 @@ class Polynomials:
         return atom if power == 1 else ir.Binary("^", atom, ir.Number(float(power)))
 
     def square_root(self, polynomial: Polynomial) -> Polynomial | None:
-        """`a ± b` of `a² ± 2ab + b²`, or the root of a single square; None where it is neither."""
+        """`a ± b` of `a² ± 2ab + b²`, or the root of a single square; None if it is neither."""
         squares = [(m, c) for m, c in polynomial.items() if c > 0 and all(power % 2 == 0 for _, power in m)]
         roots = [(m, r) for m, c in squares if (r := _root(c)) is not None]
         halves = [(tuple((key, power // 2) for key, power in m), r) for m, r in roots]
@@ -195,7 +195,7 @@ def _join(monomials: Iterable[Monomial]) -> Monomial:
 
 
 def _root(x: Fraction) -> Fraction | None:
-    """The root of a square of a fraction; None where it is none."""
+    """The root of a square of a fraction; otherwise None."""
     root = Fraction(float(x) ** 0.5).limit_denominator(10**9)
     return root if root * root == x else None
 

@@ -211,7 +211,7 @@ def _without_bounds(u: Tree) -> Tree:
 def _great_circle(found: Polynomial, algebra: Polynomials) -> Tree | None:
     """The haversine of `SIN(a)·SIN(b)+COS(a)·COS(b)·COS(c)`, or with SIN and COS of a and b the other way round.
 
-    None where it is something else.
+    None if it is something else.
     """
     if len(found) != 2 or any(size != 1 for size in found.values()):
         return None

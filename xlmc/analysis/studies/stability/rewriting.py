@@ -100,7 +100,7 @@ def of_small_changes(case: Case, cell: Cell) -> ir.Expression | None:
 
 
 def angles_in_degrees(tree: ir.Expression) -> ir.Expression | None:
-    """(15′): differences of RADIANS as RADIANS of differences; None where there is none."""
+    """(15′): differences of RADIANS as RADIANS of differences; otherwise None."""
 
     def change(part: ir.Expression) -> ir.Expression | None:
         if isinstance(part, ir.Binary) and part.operator == "-":

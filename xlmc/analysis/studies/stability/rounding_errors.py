@@ -129,7 +129,7 @@ def _answers(case: Case) -> list[Cell]:
 
 
 def _absorbed(case: Case, answer: Cell) -> Cell | None:
-    """The first cell on the way to an answer that is visibly off in most trials; None where the answer is not.
+    """The first cell on the way to an answer that is visibly off in most trials; None if the answer is not.
 
     What is absorbed whole shows no error by random rounding: 1-COS(x) of a tiny x is 0, and 1 and 0 are exact.
     """

@@ -45,7 +45,7 @@ _LONGEST: Final = 1000
 
 
 def steady_form(case: Case, cell: Cell, part: ir.Expression, worst: Sequence[int]) -> ir.Expression | None:
-    """A cell's formula with another form of one part of it; None where none is known to be better.
+    """A cell's formula with another form of one part of it; None if none is known to be better.
 
     Args:
         case: the evidence.
@@ -103,7 +103,7 @@ def _product(tree: ir.Expression, part: ir.Expression) -> ir.Expression | None:
 
 
 def _draw_in(whole: ir.Expression, part: ir.Expression, above: Polynomial, algebra: Polynomials) -> Polynomial | None:
-    """What stands above the line, times the other factors; None where these are sums."""
+    """What stands above the line, times the other factors; None if these are sums."""
     found = above
     others, below = factors(whole)
     for one in others:

@@ -28,8 +28,8 @@ class Jet:
         x: the value, `s`; any number where the value is an error.
         active: the assumptions that reach it, counted from 0, rising.
         first: `(a, *s)`.
-        second: `(a, a, *s)`, symmetric; None where only first derivatives are wanted.
-        error: estimate of the error of `first`; None where it is rounding alone.
+        second: `(a, a, *s)`, symmetric; None if only first derivatives are wanted.
+        error: estimate of the error of `first`; None if it is rounding alone.
         second_error: likewise.
     """
 

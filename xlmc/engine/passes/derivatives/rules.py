@@ -33,7 +33,7 @@ class Outcome(NamedTuple):
 
     Attributes:
         jet: the result with its derivatives; those that are not finite count as none.
-        branches: `(n,)` which way the function took in each trial, as any number; None where it has only one.
+        branches: `(n,)` which way the function took in each trial, as any number; None if it has only one.
         numerical: whether differences were taken.
     """
 

@@ -99,7 +99,7 @@ def periods_needed(rate: Any, pmt: Any, pv: Any, fv: Any, when: Any) -> Floats:
 
 @excel("RATE", Number, Number, Number, Number(default=0.0), Number(default=0.0), Number(default=0.1))
 def rate_of_annuity(nper: Any, pmt: Any, pv: Any, fv: Any, when: Any, guess: Any) -> Floats:
-    """Rate per period; of several, the one nearest to the guess; `#NUM!` where there is none.
+    """Rate per period; of several, the one nearest to the guess; `#NUM!` without one.
 
     There is none unless something is paid and something received.
     """

@@ -57,7 +57,7 @@ class Search:
         rising: `(k,)` the numbers in rising order, each times `sign`; infinity follows.
         sign: -1 where they are in falling order.
         positions: `(k,)` where each of them stands, counted from 1, if a key must equal one of them, the first of equal
-            ones; None where a key has the position of the last number that is not beyond it.
+            ones; None if a key has the position of the last number that is not beyond it.
         step: from one of them to the next, where they are evenly spaced; else 0.
         divides: whether the whole steps from the first number to a key say where it is, whatever the key.
     """

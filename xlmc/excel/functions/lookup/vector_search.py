@@ -93,7 +93,7 @@ def _find_in_many(keys: Ordered, vector: Ordered, side: int, last: bool) -> Indi
 
 
 def _hit_of_each_row(hits: Bools, last: bool) -> Indices:
-    """Return the index of the first or the last hit of each row; -1 where there is none."""
+    """Return the index of the first or the last hit of each row; otherwise -1."""
     index = hits.shape[1] - 1 - hits[:, ::-1].argmax(axis=1) if last else hits.argmax(axis=1)
     return np.where(hits.any(axis=1), index, -1)
 
@@ -125,7 +125,7 @@ def before_first_smaller(keys: Value, vector: Value) -> Indices:
         vector: (n, k, 1) or (n, 1, k).
 
     Returns:
-        The shape of `keys`, with the trials of both, counted from 0; -1 where there is none.
+        The shape of `keys`, with the trials of both, counted from 0; otherwise -1.
     """
     return _search_each_kind(keys, vector, _go_down)
 

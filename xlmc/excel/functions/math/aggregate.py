@@ -225,7 +225,7 @@ def sum_product(*values: Value) -> Value:
 
 
 def _ranked(values: Value, rank: Value, index_of: Callable[[Floats, Indices], Floats]) -> Value:
-    """The numbers at `index_of(rank, k)` in rising order, in the shape of `rank`; `#NUM!` where there is none."""
+    """The numbers at `index_of(rank, k)` in rising order, in the shape of `rank`; otherwise `#NUM!`."""
     sample = sample_of(values)
     ordered, k = _ordered(sample.x, sample.counts)
     ranks, errors = (flatten_cells(array, rank) for array in rank.to_numbers())

@@ -71,7 +71,7 @@ def _numbers(value: Value) -> tuple[Floats, Codes]:
 
 
 def _read_known(ys: Value, xs: Value | None) -> _Known | None:
-    """The observations; None where the sizes of y and x do not go together. Without x it is 1, 2, 3, …"""
+    """The observations; None if the sizes of y and x do not go together. Without x it is 1, 2, 3, …"""
     y, wrong_y = _numbers(ys)
     shape = y.shape[1:]
     if (given := _none_if_blank(xs)) is None:
@@ -174,7 +174,7 @@ def logest(ys: Value, xs: Value | None = None, const: Value | None = None, stats
 
 
 def _read_new(known: _Known, xs: Value | None, new: Value | None) -> tuple[Floats, Codes, tuple[int, ...]] | None:
-    """New observations (n, m, p), their errors, and rows and columns of the result; None where they do not fit."""
+    """New observations (n, m, p), their errors, and rows and columns of the result; None if they do not fit."""
     given = _none_if_blank(new)
     if given is None:
         return known.x, np.zeros(1, np.uint8), known.shape

@@ -37,7 +37,7 @@ _BEFORE_NAMES = ("sheets", "functionGroups", "externalReferences")
 
 @dataclass(frozen=True, slots=True)
 class NewSheet:
-    """A sheet to add: `pointer` is the id of its relationship, `state` None where it is visible."""
+    """A sheet to add: `pointer` is the id of its relationship, `state` None if it is visible."""
 
     name: str
     pointer: str

@@ -18,7 +18,7 @@ __all__ = ["Roles", "add_types", "drop_types", "roles", "types_of"]
 
 @dataclass(frozen=True, slots=True)
 class Roles:
-    """Names of the parts that may change; `styles` and `properties` (docProps/app.xml) are None where absent."""
+    """Names of the parts that may change; `styles` and `properties` (docProps/app.xml) are None if absent."""
 
     workbook: str
     rels: str

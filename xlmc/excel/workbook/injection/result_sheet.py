@@ -159,7 +159,7 @@ class SheetName:
 
 @dataclass(frozen=True, slots=True)
 class BuiltSheet:
-    """A worksheet as built. `type` is the relationship type that leads to it, `state` is None where it is visible."""
+    """A worksheet as built. `type` is the relationship type that leads to it, `state` is None if it is visible."""
 
     name: str
     part: str

@@ -51,7 +51,7 @@ class Element:
 
     @property
     def namespace(self) -> str:
-        """The namespace; empty where there is none."""
+        """The namespace; otherwise empty."""
         return self.name.rpartition(" ")[0]
 
     def find_all(self, local: str) -> list[Element]:

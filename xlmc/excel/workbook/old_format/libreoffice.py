@@ -65,7 +65,7 @@ def converted_to_xlsx(data: bytes) -> bytes:
                 return new.read_bytes()
     except OSError as error:
         message = f"the old Excel workbook (.xls) cannot be converted by LibreOffice: {error.strerror or error}"
-        raise WorkbookError(message, hint="Make room on the disk that temporary files go to, and try again") from error
+        raise WorkbookError(message, hint="Free space on the disk that temporary files go to, and try again") from error
     message = f"LibreOffice could not convert the old Excel workbook (.xls){f' ({output})' if output else ''}"
     raise WorkbookError(message, hint=IN_CRYSTAL_BALL)
 

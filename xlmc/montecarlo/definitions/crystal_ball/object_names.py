@@ -36,7 +36,7 @@ class ObjectNames:
         self.any = any(_OF_OBJECT.fullmatch(each.name) or _OF_REFERENCE.fullmatch(each.name) for each in workbook.names)
 
     def cell_of(self, sheet: str, guid: str) -> Cell | None:
-        """The cell of an object whose block lies on this sheet; None where it was deleted."""
+        """The cell of an object whose block lies on this sheet; None if it was deleted."""
         name = self._workbook.defined_name(f"CB_{guid}", sheet)
         return None if name is None else self._cell(name)
 

@@ -279,7 +279,7 @@ def _enumerated(thing: Thing) -> int:
 
 
 def _items(thing: Any) -> list[Any]:
-    """The elements of an ArrayList, which has room for more than it holds."""
+    """The elements of an ArrayList, whose array may be longer than its contents."""
     top = _as_thing(thing, "the root")
     items, size = _list(top, "_items"), _member(top, "_size")
     if type(size) is not int or not 0 <= size <= len(items):

@@ -56,7 +56,7 @@ def _named(workbook: Workbook, name: str, sheet: str | None) -> list[DefinedName
 
 
 def _area(workbook: Workbook, name: DefinedName) -> Area | None:
-    """The range that a name stands for; None where it stands for something else."""
+    """The range that a name stands for; None if it stands for something else."""
     host = Cell(name.sheet or next(iter(workbook.sheets)), 1, 1)
     try:
         tree: ir.Expression = Resolver(workbook, strict=False).tree(parse(name.text), host)

@@ -23,11 +23,11 @@ def _no_cell(_: Cell) -> float | None:
 
 
 def number_of(tree: ir.Expression | None, value: Callable[[Cell], float | None] = _no_cell) -> float | None:
-    """The number that a tree of plain arithmetic is; None where it is none, or is not known without calculating.
+    """Return the number that a tree of plain arithmetic is; None if it is not known without calculating.
 
     Args:
         tree: resolved.
-        value: of a cell; None where that is not known. By default of no cell.
+        value: of a cell; None if that is not known. By default of no cell.
 
     >>> number_of(ir.Binary("/", ir.Number(1.0), ir.Unary("%", ir.Number(50.0))))
     2.0

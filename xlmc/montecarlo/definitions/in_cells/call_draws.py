@@ -198,7 +198,7 @@ def base_of(
     limits: tuple[float | None, ...],
     saved: Callable[[Cell], float | None],
 ) -> float | None:
-    """The mean; None where a number is not known before the workbook is calculated, or there is no finite mean.
+    """The mean; None if a number is not known before the workbook is calculated, or there is no finite mean.
 
     Args:
         family: of the draw; without its data.
@@ -224,7 +224,7 @@ def base_of(
 
 
 def _built(family: Family, data: DataRange, saved: Callable[[Cell], float | None]) -> Family | None:
-    """The family with its data; None where a cell is not calculated yet, or they are not a distribution.
+    """The family with its data; None if a cell is not calculated yet, or they are not a distribution.
 
     Of the latter the model tells when it is made.
     """

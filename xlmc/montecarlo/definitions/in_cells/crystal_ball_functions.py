@@ -56,7 +56,7 @@ _BY_NAME: Final = {name.upper(): (name, signature) for name, signature in CRYSTA
 
 
 def crystal_ball_draw(call: ir.Call) -> Drawn | None:
-    """What a call of a Crystal Ball function draws; None where it is none that draws.
+    """Return what a call of a Crystal Ball function draws; None if it draws nothing.
 
     Raises:
         FormulaError: it has too few or too many arguments.

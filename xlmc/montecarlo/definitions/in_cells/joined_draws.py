@@ -119,7 +119,8 @@ def _compare_halves(workbook: Workbook, area: Area, used: Cell, findings: Findin
     if not isinstance(other, int | float) or not math.isclose(number, other, rel_tol=1e-12, abs_tol=1e-12):
         shown = show(other) if isinstance(other, int | float) else repr(str(other))
         findings.notice(
-            f"the halves of the matrix {area} contradict each other: {used} is {show(number)}, and {across} is {shown}; "
+            f"the halves of the matrix {area} contradict each other: "
+            f"{used} is {show(number)}, and {across} is {shown}; "
             f"{used}, below the diagonal, is used. Make them equal, or clear one of them",
             across,
         )

@@ -45,7 +45,7 @@ _LIKE: Final = {
 
 
 def of_another_program(name: str) -> FormulaError | None:
-    """What to say of a function, by its name in capitals; None where it is not known to belong to such a program."""
+    """What to say of a function, by its name in capitals; None if it is not known to belong to such a program."""
     prefix = next((each for each in PREFIXES if name.startswith(each)), None)
     rest = name.removeprefix(prefix or "")
     if prefix is None or not (prefix == "VOSE" or rest in _LIKE or rest in _MARKS or _RESULTS.match(rest)):

@@ -67,7 +67,7 @@ _MOST: Final = 10_000
 
 
 def random_draw(tree: ir.Expression) -> Drawn | None:
-    """What a part of a formula draws with Excel's own functions; None where it is no draw.
+    """What a part of a formula draws with Excel's own functions; None if it is no draw.
 
     Raises:
         FormulaError: a call has arguments that it cannot have here.

@@ -162,7 +162,7 @@ class ResultCall:
     """What a call shows.
 
     Attributes:
-        of: of which cell, or of which forecast by name; None where it is about the run.
+        of: of which cell, or of which forecast by name; None if it is about the run.
         number: that it takes, if any.
         other: the second cell of a correlation.
         upper: it asks for the upper end of an interval.

@@ -139,7 +139,7 @@ _BY_NAME: Final = {name.upper(): name for name in RISK}
 
 
 def risk_draw(call: ir.Call, lognorm: str) -> Drawn | None:
-    """What a call of an @RISK function draws; None where it is none that draws.
+    """Return what a call of an @RISK function draws; None if it draws nothing.
 
     Args:
         call: resolved.
@@ -279,7 +279,7 @@ _ALTERNATES_BY_NAME: Final = {
 def _alternate_draw(
     name: str, arguments: tuple[ir.Expression, ...], properties: Callable[[str], Properties]
 ) -> Drawn | None:
-    """What a call of an alternate form draws; None where it is none.
+    """What a call of an alternate form draws; otherwise None.
 
     Args:
         name: of the function, in capitals.

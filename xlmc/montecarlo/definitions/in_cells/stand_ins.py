@@ -91,7 +91,7 @@ def stand_in(call: ir.Call, tabulated: int = 1) -> tuple[ir.Expression, tuple[ir
 def simtable_scenarios(
     tables: Mapping[Cell, Sequence[Sequence[ir.Expression]]], findings: Findings
 ) -> Iterator[Scenario]:
-    """The scenarios that `RiskSimtable` asks for: with its second value, with its third, … None where it has one.
+    """The scenarios that `RiskSimtable` asks for: with its second value, with its third, … None if it has one.
 
     Every `RiskSimtable` of the workbook gives its first value in the workbook itself, and its n-th in the scenario of
     that number, over the same random numbers.

@@ -85,7 +85,7 @@ def _is_bare(row: Row, family: Family) -> bool:
 def _assumption(
     row: Row, known: tuple[str, ...], computed: Computed, claims: Claims, findings: Findings
 ) -> Assumption | None:
-    """The assumption of a row; None where the findings have a problem of it.
+    """The assumption of a row; None if the findings have a problem of it.
 
     Raises:
         DefinitionError: its numbers break a rule of its distribution.
@@ -135,7 +135,7 @@ def _assumption(
 
 
 def _call(row: Row) -> InFormula | None:
-    """The call of a formula that the row stands for; None where it stands for none.
+    """The call of a formula that the row stands for; None if it stands for none.
 
     Raises:
         DefinitionError: the row says the cell of the call or its number alone, or has no Value.
@@ -215,7 +215,7 @@ def _checked(name: str, family: Family, given: Mapping[str, Parameter], row: Row
     A run checks dynamic ones in every trial.
 
     Returns:
-        How these are drawn; None where one is not known.
+        How these are drawn; None if one is not known.
 
     Raises:
         DefinitionError: a rule is broken; it names the cell of the parameter to look at first.

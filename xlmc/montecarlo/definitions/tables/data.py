@@ -130,7 +130,7 @@ def _located(fault: DataError, area: Area) -> DefinitionError:
 
 
 def cached_data_family(data: DataRange, family: Family, workbook: Workbook) -> Family | None:
-    """`data_family` of the values that Excel saved; None where it has not calculated a cell yet.
+    """`data_family` of the values that Excel saved; None if it has not calculated a cell yet.
 
     Raises:
         DefinitionError: see `data_family`.

@@ -126,7 +126,7 @@ def _refuse_contradiction(row: Row, limits: Mapping[str, Parameter | None]) -> N
 
 
 def contradiction(limits: Mapping[str, float | None]) -> tuple[str, str] | None:
-    """The first of two limits that no number can satisfy both, and why; None where there are none.
+    """The first of two limits that no number can satisfy both, and why; otherwise None.
 
     Args:
         limits: by key; None for one that is not given or not known.

@@ -82,7 +82,7 @@ def _forecast(row: Row, computed: Computed, central: float, claims: Claims, find
 
 
 def _named(row: Row, heading: str, words: type[Named]) -> Named | None:
-    """The role or kind in the cell; None where it is blank.
+    """The role or kind in the cell; None if it is blank.
 
     Raises:
         DefinitionError: the cell holds another word.
@@ -99,7 +99,7 @@ def _named(row: Row, heading: str, words: type[Named]) -> Named | None:
 
 
 def _resolution(row: Row, units: str) -> float | None:
-    """The resolution in the cell, a number or such as `1 mph` in the units of the row; None where it is blank.
+    """The resolution in the cell, a number or such as `1 mph` in the units of the row; None if it is blank.
 
     Raises:
         DefinitionError: it is no number above 0, or in other units.

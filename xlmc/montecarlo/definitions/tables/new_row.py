@@ -137,7 +137,5 @@ def _row_below(workbook: Workbook, table: DefinitionTable) -> int:
     if table.table.totals_rows or taken:
         hint = "Add an empty row to the table in Excel, with the name in it"
         where = taken[0] if taken else Cell(area.sheet, area.bottom, area.left)
-        raise DefinitionError(
-            f"there is no room for another row below the table {table.table.name}", where=where, hint=hint
-        )
+        raise DefinitionError(f"there is no free row below the table {table.table.name}", where=where, hint=hint)
     return number

@@ -177,7 +177,7 @@ def _whole_number(row: Row, name: str, least: int, most: int) -> int:
 
 
 def _whole_number_as_text(row: Row, name: str) -> int | None:
-    """What is written in a cell of text; None where the cell holds something else."""
+    """What is written in a cell of text; None if the cell holds something else."""
     text = row.content("Value").value
     if not isinstance(text, str):
         return None
@@ -231,7 +231,7 @@ def _precision(row: Row, _findings: Findings) -> float:
 
 
 def _percent(row: Row, findings: Findings) -> str:
-    """A cell in percent format holds 0.01 for 1 %: what could be meant so is refused or told."""
+    """Refuse, or note, a number that may be a percentage: a cell in percent format holds 0.01 for 1 %."""
     value, where = _number_of(row, "Precision %"), row.cell("Value")
     if value < LEAST_PERCENT:
         message = f"Precision % must be {LEAST_PERCENT} or more, not {show(value)}"

@@ -214,7 +214,7 @@ def optional_text(row: Row, heading: str) -> str:
 
 
 def number(row: Row, heading: str) -> float | None:
-    """The number in the cell, typed in or as Excel cached it; None where it is blank.
+    """The number in the cell, typed in or as Excel cached it; None if it is blank.
 
     Raises:
         DefinitionError: the cell holds anything else.
@@ -225,7 +225,7 @@ def number(row: Row, heading: str) -> float | None:
 
 
 def parameter(row: Row, heading: str) -> Parameter | None:
-    """The number in the cell, or the cell itself where it holds a formula; None where it is blank.
+    """The number in the cell, or the cell itself where it holds a formula; None if it is blank.
 
     Raises:
         DefinitionError: the cell holds text, a logical or an error, typed in or as Excel cached it. A formula that

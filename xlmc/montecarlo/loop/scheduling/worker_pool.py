@@ -46,7 +46,7 @@ class WorkerPool:
         if self.workers is not None and self.workers < 1:
             raise SimulationError(f"{self.workers} workers were asked for", hint="give 1 or more")
         if self.workers is not None and self.scheduler != "local":
-            message = "only a local cluster is told how many workers to have"
+            message = "the number of workers can be set for a local cluster only"
             raise SimulationError(message, hint="use --scheduler local")
         if self.scheduler not in (None, "threads", "processes", "local") and "://" not in self.scheduler:
             hint = "choose threads, processes or local, or give an address such as tcp://10.0.0.5:8786"

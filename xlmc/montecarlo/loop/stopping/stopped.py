@@ -8,7 +8,7 @@ from typing import Final
 __all__ = ["ALL_TRIALS", "WITHOUT_GOAL", "Stopped"]
 
 WITHOUT_GOAL: Final = ("trials", "time", "interruption", "search")
-"""What ends a run that has not come to its goal."""
+"""What ends a run that has not reached its goal."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,7 +19,7 @@ class Stopped:
         by: the key of the goal that was reached, `trials` (there were no more to run), `time`, `interruption` or
             `search` (no accepted trials were found where they are rare).
         because: in words, without a full stop.
-        goal: in words, what the run was to go on until; None where it was to run its trials.
+        goal: in words, what the run was to go on until; None if it was to run its trials.
     """
 
     by: str

@@ -1,4 +1,4 @@
-"""Watches a run: its goal, its number of trials, its time, and Ctrl-C, which is a wish to end it."""
+"""Watch a run: its goal, its number of trials, its time, and Ctrl-C, which asks it to end."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Watch:
     """Looks at the blocks of a run in their order, and says what ends it.
 
     Args:
-        rule: what it goes on until; None where it is to run its trials.
+        rule: what it goes on until; None if it is to run its trials.
         trials: how many at most.
         seconds: how long at most; None for as long as it takes.
         clock: seconds from any moment on; read for the first time now.
@@ -123,7 +123,7 @@ class Interruption:
 
 
 def chosen_rule(asked: Stopping, forecasts: Sequence[Forecast]) -> StopRule | None:
-    """The rule; None where the run is to run its trials.
+    """The rule; None if the run is to run its trials.
 
     Raises:
         SimulationError: there is no forecast of a name, or none at all.

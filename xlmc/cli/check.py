@@ -101,7 +101,7 @@ def _show_base_case(model: CompiledModel) -> list[str]:
 
 
 def _error_lines(model: CompiledModel, errors: BaseErrors) -> Iterator[str]:
-    """The cells that errors come from with their formulas, then the cells that have theirs from these."""
+    """Return the cells that errors come from with their formulas, then the cells that have theirs from these."""
     from xlmc.analysis.results.record.needed_cells import content_text
     from xlmc.excel.address import host_of
 

@@ -120,7 +120,7 @@ def fit(
 
 
 def _chosen(found: Fitting, distribution: str | None) -> Fitted:
-    """The distribution that the row is to have.
+    """Return the distribution that the row is to have.
 
     Raises:
         DefinitionError: there is none of that name.
@@ -139,7 +139,7 @@ def _chosen(found: Fitting, distribution: str | None) -> Fitted:
 
 
 def _book_and_range(source: str, cells: str | None) -> tuple[Path, str]:
-    """The workbook, and the reference in it.
+    """Return the workbook, and the reference in it.
 
     Raises:
         UsageError: no range is named, or two are.
@@ -157,7 +157,7 @@ def _book_and_range(source: str, cells: str | None) -> tuple[Path, str]:
 
 
 def _values(book: Path, reference: str) -> tuple[list[float], str, int, tuple[str, ...]]:
-    """The numbers, where they stand, how many blank cells were left out, and whether several columns are pooled.
+    """Return the numbers, where they stand, how many blank cells were left out, and whether several columns are pooled.
 
     Raises:
         DefinitionError: there is no such range, or a cell in it holds something else.
@@ -181,7 +181,7 @@ def _values(book: Path, reference: str) -> tuple[list[float], str, int, tuple[st
 
 
 def _pooled(area: Area, rows: Sequence[Sequence[object]]) -> tuple[str, ...]:
-    """A caution where the values of several columns are taken for one quantity; a single row is one."""
+    """Return a caution if the values of several columns are taken for one quantity; a single row is one."""
     from xlmc.excel.address import column_letters, quote_sheet
 
     filled = [at for at, column in enumerate(zip(*rows, strict=True)) if any(value is not None for value in column)]
@@ -274,7 +274,7 @@ def _ranking(found: Fitting, source: str, blank: int) -> Table:
 
 
 def _curves(found: Fitting, values: list[float]) -> Curves:
-    """The values and the families that describe them best, as shares at most."""
+    """Return the values and the families that describe them best, as shares at most."""
     import numpy as np
 
     from xlmc.analysis.studies.fitting import share_at_most
@@ -297,7 +297,7 @@ def _curves(found: Fitting, values: list[float]) -> Curves:
 
 
 def _staircase(x: Any, shares: Any) -> tuple[tuple[float, float], ...]:
-    """The corners of shares `(n,)` that step up at numbers `(n,)`."""
+    """Return the corners of shares `(n,)` that step up at numbers `(n,)`."""
     below = [0.0, *shares.tolist()[:-1]]
     return tuple(
         (at, share) for at, low, high in zip(x.tolist(), below, shares.tolist(), strict=True) for share in (low, high)

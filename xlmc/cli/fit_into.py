@@ -96,7 +96,7 @@ def _table_part(parts: Mapping[str, bytes], table: Table) -> str:
 
 
 def _refuse_new_problems(before: Workbook, after: Workbook) -> None:
-    """What the workbook did not have before: parameters outside the cutoffs that stand in the row, for example."""
+    """Return what the workbook did not have before: such as parameters outside the cutoffs in the row."""
     from xlmc.engine.engines import ENGINES
     from xlmc.montecarlo.definitions.definitions_reader import read_definitions
     from xlmc.montecarlo.model.labels import calculate_labels

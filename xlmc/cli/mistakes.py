@@ -15,7 +15,7 @@ _EXTRA: Final = re.compile(r"unexpected extra arguments? \((.*)\)")
 
 
 def mistake(error: click.ClickException) -> str:
-    """The line for a mistake that click has found."""
+    """Return the line for a mistake that click has found."""
     context = getattr(error, "ctx", None)
     command = context.command_path if context is not None else "xlmc"
     match error:
@@ -34,13 +34,13 @@ def mistake(error: click.ClickException) -> str:
 
 
 def _usage(context: click.Context) -> str:
-    """The command with its arguments, `[…]` round those that may be left out."""
+    """Write the command with its arguments, `[…]` around those that may be left out."""
     pieces = context.command.collect_usage_pieces(context)
     return " ".join([context.command_path, *(piece for piece in pieces if piece != "[OPTIONS]")])
 
 
 def _name(param: click.Parameter) -> str:
-    """The longest name of an option; of an argument what the usage line writes."""
+    """Return the longest name of an option; of an argument what the usage line writes."""
     if isinstance(param, click.Option):
         return max(param.opts, key=len)
     return (param.metavar or (param.name or "").upper()).strip("[]")
@@ -55,7 +55,7 @@ def _see(command: str) -> str:
 
 
 def did_you_mean(typed: str, known: Iterable[str]) -> str:
-    """A question to put behind a message, with a blank before it; empty where no known name is alike.
+    """Ask whether a known name was meant, with a blank before the question; empty if no known name is alike.
 
     >>> did_you_mean("planar-imapct", ["skid", "planar-impact"])
     ' Did you mean planar-impact?'

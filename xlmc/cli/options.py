@@ -36,7 +36,7 @@ class WholeNumber(click.ParamType):  # type: ignore[type-arg]  # no generic befo
         self._least, self._most = least, most
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> int:
-        """The number that was typed.
+        """Return the number that was typed.
 
         Raises:
             BadParameter: it is none, or lies outside.
@@ -60,7 +60,7 @@ class OneOf(click.Choice):  # type: ignore[type-arg]  # likewise
         super().__init__(words, case_sensitive=False)
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
-        """The word that was typed.
+        """Return the word that was typed.
 
         Raises:
             BadParameter: it is another.
@@ -97,7 +97,7 @@ feed_option = click.option(
 
 
 def _setting_option(setting: Setting) -> Callable[[F], F]:
-    """The option of a setting."""
+    """Make the option of a setting."""
     names = (*setting.options, setting.key) if setting.recorded_as else setting.options
     match setting.kind:
         case Whole(least=least):
@@ -135,7 +135,7 @@ def _goal_option(option: Option) -> Callable[[F], F]:
 
 
 def _run_options() -> Iterator[Callable[[F], F]]:
-    """The options of all settings, and of goals after the number of trials."""
+    """Yield the options of all settings, and of goals after the number of trials."""
     for setting in SETTINGS.values():
         if setting.options:
             yield _setting_option(setting)

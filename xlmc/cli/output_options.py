@@ -208,7 +208,7 @@ class ReportContents(NamedTuple):
     paper: str = "letter"
 
     def wanted(self) -> Wanted:
-        """What they mean.
+        """Return the wanted contents that these options describe.
 
         Raises:
             SimulationError: a field of the case has no name, or there is no such section.
@@ -296,7 +296,8 @@ class Outputs(NamedTuple):
             case_of(model.workbook, {})
 
     def check(self, like: Path) -> Outputs:
-        """The files as they will be written; a file that could not be written after the run is refused before it.
+        """Return the files as they will be written; a file that could not be written after the run is refused before
+        it.
 
         A result workbook that the person did not name gets a free name where its own is taken, and a note says so.
 
@@ -428,7 +429,7 @@ class Outputs(NamedTuple):
         return run.save_page(path, beside=self._second(), overwrite=overwrite)
 
     def _second(self) -> Simulation | None:
-        """The run that stands beside the one that is written.
+        """Return the run that stands beside the one that is written.
 
         Raises:
             WorkbookError: it cannot be read.
@@ -456,7 +457,7 @@ class _Write(Protocol):
 
 
 def results_beside(source: Path, ending: str | None = None) -> Path:
-    """The file that the results of a workbook or a saved run go to by default: `case.xlsx -> case-results.xlsx`."""
+    """Name the file for the results of a workbook or a saved run by default: `case.xlsx -> case-results.xlsx`."""
     from xlmc.excel.workbook.target import copy_ending
 
     return source.with_name(f"{source.stem}-results{copy_ending(source) if ending is None else ending}")

@@ -90,7 +90,7 @@ class _Column:
 def table_lines(
     headings: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence[int], width: int, rule: str
 ) -> Iterator[str]:
-    """The lines of a table.
+    """Return the lines of a table.
 
     Args:
         headings: of its columns.
@@ -115,7 +115,7 @@ def table_lines(
 
 
 def _widths(columns: Sequence[_Column], width: int, gap: str) -> list[int] | None:
-    """The width of each column; None if they cannot be made narrow enough."""
+    """Return the width of each column; None if they cannot be made narrow enough."""
     widths = [column.natural for column in columns]
     available = width - 2 - len(gap) * (len(columns) - 1)
     least = [column.least for column in columns]
@@ -175,7 +175,7 @@ def _wrap(pieces: Sequence[str], width: int) -> list[str]:
 
 
 def _fold(word: str, width: int) -> list[str]:
-    """The parts of a word that is longer than a line."""
+    """Return the parts of a word that is longer than a line."""
     parts = [""]
     for letter in word:
         if parts[-1] and _wide(parts[-1]) + _wide(letter) > width:

@@ -25,14 +25,14 @@ def trials_line(standing: Progress) -> str:
 
 
 def errors_line(standing: Progress) -> str:
-    """The standard error of every forecast's mean so far: `± Chevrolet delta-V 0.013, Nissan delta-V 0.02`."""
+    """Return the standard error of every forecast's mean so far: `± Chevrolet delta-V 0.013, Nissan delta-V 0.02`."""
     known = [(name, mean.error) for name, mean in standing.means.items() if mean.error is not None]
     return f"± {', '.join(f'{name} {error:.2g}' for name, error in known)}" if known else ""
 
 
 @contextmanager
 def progress_bar(quiet: bool) -> Iterator[OnProgress | None]:
-    """A bar and the standard errors below it, on stderr while the trials run, where there is a terminal to draw on."""
+    """Draw a bar and the standard errors below it on stderr while the trials run, if there is a terminal to draw on."""
     if quiet or not on_terminal(err=True):
         yield None
         return
@@ -63,7 +63,7 @@ def progress_bar(quiet: bool) -> Iterator[OnProgress | None]:
 
 @contextmanager
 def step_line(quiet: bool) -> Iterator[Callable[[str], None] | None]:
-    """A line on stderr that says which step is running; None if there is no terminal to show it on."""
+    """Show a line on stderr that says which step is running; gives None if there is no terminal to show it on."""
     if quiet or not on_terminal(err=True):
         yield None
         return

@@ -126,7 +126,7 @@ def _numbers(numbers: Sequence[NumberChange]) -> Iterator[str]:
 
 
 def _sheet_lines(found: Replayed) -> Iterator[str]:
-    """What the result sheets show that the repeated run does not give."""
+    """Yield what the result sheets show that the repeated run does not give."""
     differences = found.shown.differences
     if differences:
         count = len(differences)
@@ -141,7 +141,7 @@ def _sheet_lines(found: Replayed) -> Iterator[str]:
 
 
 def _value(value: CellValue) -> str:
-    """A value as a sentence quotes it, whole where it is a number."""
+    """Write a value as a sentence quotes it, whole where it is a number."""
     if value is None:
         return "nothing"
     if isinstance(value, str):

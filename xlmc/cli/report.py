@@ -83,7 +83,7 @@ def report(
 
 
 def _repeated(results: Path, quiet: bool) -> RunResult:
-    """The run that a result workbook records.
+    """Return the run that a result workbook records.
 
     Raises:
         WorkbookError: it holds no record, or its run cannot be repeated as it was.

@@ -145,7 +145,7 @@ def _tables(found: Screening) -> Iterator[Block]:
 
 
 def _table(found: Screening, title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]]) -> Table:
-    """What each change costs. `first` are columns with headings."""
+    """Make a table of what each change costs. `first` are columns with headings."""
     from xlmc.outputs.study_report import Table
 
     accepted = ["Accepted, %"] if found.run.model.filters else []  # without filters nothing can change it
@@ -163,7 +163,7 @@ def _table(found: Screening, title: str, costs: Sequence[Cost], *first: tuple[st
 
 
 def _at_ends(found: Screening, ends: Sequence[AtEnds]) -> Table:
-    """What holding each assumption at an end of its range costs."""
+    """Make a table of what holding each assumption at an end of its range costs."""
     pairs = [
         (f"{each.name} = {value:.4g}", cost)
         for each in ends
@@ -178,12 +178,12 @@ def _has_evidence(found: Screening) -> bool:
 
 
 def _size(tolerances: float) -> str:
-    """A move, counted in tolerances; infinite where the forecast does not vary and so has no tolerance."""
+    """Count a move in tolerances; infinite where the forecast does not vary and so has no tolerance."""
     return f"{tolerances:.2g}" if isfinite(tolerances) else "infinite"
 
 
 def _of_forecast(found: Screening, name: str) -> Table:
-    """A table of the number of a forecast that each change moves most, measured in its tolerance."""
+    """Make a table of the number of a forecast that each change moves most, measured in its tolerance."""
     from xlmc.analysis.studies.comparison.verdicts import amount
     from xlmc.outputs.study_report import Table
 
@@ -205,7 +205,7 @@ def _of_forecast(found: Screening, name: str) -> Table:
 
 
 def _most_moved(found: Screening, cost: Cost, name: str) -> tuple[str, float]:
-    """The number of a forecast that moves most, and by how many tolerances."""
+    """Return the number of a forecast that moves most, and by how many tolerances."""
     from xlmc.analysis.studies.comparison.tolerances import in_tolerances
 
     each = cost.forecasts[name]
@@ -216,7 +216,7 @@ def _most_moved(found: Screening, cost: Cost, name: str) -> tuple[str, float]:
 
 
 def _tolerance(found: Screening, name: str) -> str:
-    """The tolerance of a forecast in words: `1 mph, and P(> 18) 1.2 points`."""
+    """Return the tolerance of a forecast in words: `1 mph, and P(> 18) 1.2 points`."""
     from xlmc.analysis.studies.comparison.verdicts import is_chance, points
 
     value, stated = found.tolerances[name]

@@ -110,7 +110,7 @@ def simulate(
 
 
 def _with_scenarios(run: RunResult, jobs: int, quiet: bool) -> tuple[RunResult, Sequence[ScenarioAnswers]]:
-    """The answers of the scenarios; after Ctrl-C none, and the run as one that was made without them."""
+    """Return the answers of the scenarios; after Ctrl-C none, and the run as if made without them."""
     from dataclasses import replace
 
     from xlmc.analysis.studies.scenario_answers import scenario_answers
@@ -139,7 +139,7 @@ def _of_scenarios(run: RunResult, answers: Sequence[ScenarioAnswers]) -> list[st
 
 
 def _hints(model: CompiledModel, trials: int | None, engine: str | None) -> list[Notice]:
-    """What could make the run shorter."""
+    """Yield hints that could make the run shorter."""
     from xlmc.engine.llvm import REPAYS_FROM, available
     from xlmc.errors import Notice
 

@@ -65,7 +65,7 @@ def estimate_json(estimate: Estimate) -> dict[str, float | None]:
 
 
 def difference_json(found: Difference) -> dict[str, object]:
-    """The four numbers of a forecast in two runs, and the distances."""
+    """Return the four numbers of a forecast in two runs, and the distances."""
     from xlmc.montecarlo.statistics.estimate import finite
 
     return {

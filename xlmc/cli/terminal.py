@@ -78,7 +78,7 @@ def say(text: object = "", *, err: bool = False) -> None:
 
 
 def _wrap_note(line: str) -> str:
-    """A line wrapped to the terminal's width; words stay whole, so that a path or an address can be copied."""
+    """Wrap a line to the terminal's width; words stay whole, so that a path or an address can be copied."""
     line = encodable(line, err=True)
     wide = _columns(sys.stderr)
     return fill(line, wide, subsequent_indent="  ", break_on_hyphens=False, break_long_words=False)
@@ -119,7 +119,7 @@ def put(text: str, *, err: bool = False) -> None:
 
 
 def paragraph(text: str, *, indent: str = "", hanging: str | None = None) -> str:
-    """The text wrapped to the width; `hanging` indents every line but the first, by default as `indent`."""
+    """Wrap the text to the width; `hanging` indents every line but the first, by default as `indent`."""
     after = indent if hanging is None else hanging
     lines = text.split("\n")
     wide = width()
@@ -151,7 +151,7 @@ def on_terminal(*, err: bool = False) -> bool:
 
 
 def encodable(text: str, *, err: bool = False) -> str:
-    """The text as the stream's encoding can show it, so that columns can be measured."""
+    """Write the text as the stream's encoding can show it, so that columns can be measured."""
     encoding = getattr(sys.stderr if err else sys.stdout, "encoding", None) or "utf-8"
     return text.encode(encoding, _HANDLER).decode(encoding)
 
@@ -177,7 +177,7 @@ def _readable_instead(error: UnicodeError) -> tuple[str, int]:
 
 
 def _readable(character: str) -> str:
-    r"""What to write for a character: our spelling, a Greek letter's name, a letter without its marks, or `\u4e2d`."""
+    r"""Replace a character: by our spelling, a Greek letter's name, a letter without its marks, or `\u4e2d`."""
     if character in _INSTEAD:
         return _INSTEAD[character]
     words = unicodedata.name(character, "").split()

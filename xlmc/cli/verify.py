@@ -99,7 +99,7 @@ def _plain(value: object) -> object:
 
 
 def _blocks(found: Verification, most: int) -> list[Block]:
-    """What was found, with `most` differing cells."""
+    """Yield what was found, with `most` differing cells."""
     from xlmc.analysis.studies.verify import Status, groups
     from xlmc.outputs.study_report import Table
 

@@ -42,7 +42,7 @@ def write_files(files: Iterable[tuple[Path, Callable[[], Path]]]) -> Written:
 
 
 def written_or_reported(path: Path, write: Callable[[], Path]) -> Path | None:
-    """The path that was written to; None if it could not be written, which is reported later."""
+    """Return the path that was written to; None if it could not be written, which is reported later."""
     try:
         return write()
     except XlmcError as error:

@@ -14,7 +14,7 @@ CACHE_LINE: Final = 64
 
 
 def aligned_array(size: int, dtype: np.dtype[Any]) -> NDArray[Any]:
-    """An array of one dimension that begins with a line of the cache."""
+    """Make an array of one dimension that begins with a line of the cache."""
     raw = np.empty(size * dtype.itemsize + CACHE_LINE, np.uint8)
     start = -raw.ctypes.data % CACHE_LINE
     return raw[start : start + size * dtype.itemsize].view(dtype)

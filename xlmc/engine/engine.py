@@ -53,7 +53,7 @@ class Column:
     codes: Codes | None = None
 
     def as_floats(self, *, copy: bool = True) -> Floats:
-        """The numbers, `(n,)`, with `copy` in memory of their own; NaN where the trial does not count."""
+        """Return the numbers, `(n,)`, with `copy` in memory of their own; NaN where the trial does not count."""
         floats = self.values.astype(np.float64, copy=copy)
         return floats if self.codes is None else np.where(self.codes > 0, np.nan, floats)
 
@@ -62,10 +62,10 @@ class Evaluator(Protocol):
     """Evaluates one block after another; it may reuse its memory, so take what you keep before the next block."""
 
     def filters(self, inputs: Mapping[str, Floats], n: int) -> list[Column]:
-        """The filters of `n` trials, `(n,)` each. An input's errors are NaNs."""
+        """Evaluate the filters of `n` trials, `(n,)` each. An input's errors are NaNs."""
 
     def forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
-        """The forecasts of the surviving trials of the block that `filters` saw, `(m,)` each."""
+        """Evaluate the forecasts of the surviving trials of the block that `filters` saw, `(m,)` each."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -129,7 +129,7 @@ class BlockRunner(Protocol):
     def __call__(
         self, start: int, trials: int, inputs: bool, block_memory: Callable[[], BlockMemory] | None
     ) -> AcceptedBlock | None:
-        """The first trials of a block; None if one needs the careful path, or one of those behind them.
+        """Run the first trials of a block; None if one needs the careful path, or one of those behind them.
 
         Args:
             start: the block's first trial.
@@ -146,7 +146,7 @@ class RunsWholeBlocks(Protocol):
     def block_runner(
         self, names: Sequence[str], draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None
     ) -> BlockRunner | None:
-        """What runs a block at once and gives the same numbers; None if the model does not allow it.
+        """Return what runs a block at once and gives the same numbers; None if the model does not allow it.
 
         Args:
             names: the assumptions that are drawn.
@@ -168,11 +168,11 @@ class Program(Protocol):
     largest_block: int
 
     def evaluator(self, block: int) -> Evaluator:
-        """An evaluator for blocks of up to `block` trials."""
+        """Make an evaluator for blocks of up to `block` trials."""
 
 
 def column_of(value: Value, n: int) -> Column:
-    """A value as the numbers of `n` trials; an array gives its upper left value."""
+    """Turn a value into the numbers of `n` trials; an array gives its upper left value."""
     value = corner(value)
     codes = np.where(value.kinds >= ERROR, value.kinds - np.uint8(ERROR), np.uint8(0)).astype(np.uint8)
     codes = np.where(value.kinds == TEXT, np.uint8(TEXT_RESULT), codes)

@@ -80,7 +80,8 @@ class TrackingEvaluator:
         )
 
     def peak(self, inputs: Inputs) -> int:
-        """The most bytes that arrays, texts and what may be either take at a time, in the trials of these inputs.
+        """Return the most bytes that arrays, texts and what may be either take at a time, in the trials of these
+        inputs.
 
         Raises:
             TooLargeError: they are too many.
@@ -116,7 +117,7 @@ class TrackingEvaluator:
         return _columns(values, self._forecasts, survivors.size)
 
     def _repeat_forecasts(self, inputs: Inputs, n: int) -> list[Column]:
-        """The forecasts of a portion, whose filters are evaluated again for what they share."""
+        """Evaluate the forecasts of a portion, whose filters are evaluated again for what they share."""
         return self._run_late(self._run_early(inputs), np.arange(n), inputs)
 
     def _by_portions(self, n: int, run: Callable[[Trials], list[Column]]) -> list[Column]:
@@ -191,7 +192,7 @@ class _Part:
                 live -= sizes.pop(gone)
 
     def _in_arrays(self, node: int, size: int) -> int:
-        """The bytes of a value that belong to arrays, not to a single number."""
+        """Count the bytes of a value that belong to arrays, not to a single number."""
         return 0 if self._dag.sizes[node] is None and self._dag.types[node] in (Kind.NUMBER, Kind.LOGICAL) else size
 
 
@@ -212,7 +213,7 @@ def _side_by_side(columns: Sequence[Column]) -> Column:
 
 
 def array_bytes(lowering: Lowering, filters: Sequence[int], forecasts: Sequence[int], nodes: Iterable[int]) -> int:
-    """The most bytes that arrays and texts take at a time in one trial, measured with the inputs at their base values.
+    """Measure the most bytes that arrays and texts take at a time in one trial, with the inputs at their base values.
 
     It is 0, unmeasured, for a model without texts or wide arrays that vary.
 
@@ -241,7 +242,7 @@ def _may_be_wide(dag: Dag, node: int) -> bool:
 
 
 def fitting_block(block: int, array_bytes: int, number_bytes: int) -> int:
-    """The largest power of two up to `block` whose trials fit into the memory; 1 where not even that does.
+    """Return the largest power of two up to `block` whose trials fit into the memory; 1 where not even that does.
 
     Args:
         block: to start from.

@@ -61,7 +61,7 @@ class InFormula(Cell):
 
     @classmethod
     def of(cls, host: Cell, label: str) -> InFormula:
-        """The part of a cell's formula with this label."""
+        """Return the part of a cell's formula with this label."""
         return cls(f"{host.sheet}[{label}]", host.row, host.column)
 
     @property
@@ -80,7 +80,7 @@ class InFormula(Cell):
 
 
 def host_of(cell: Cell) -> Cell:
-    """The cell itself, or the one whose formula it is part of."""
+    """Return the cell itself, or the one whose formula it is part of."""
     return cell.host if isinstance(cell, InFormula) else cell
 
 
@@ -165,7 +165,7 @@ def column_number(letters: str) -> int:
 
 
 def quote_sheet(name: str) -> str:
-    """The sheet name as a formula writes it: in quotes where it needs them."""
+    """Write the sheet name as a formula does: in quotes where it needs them."""
     if _PLAIN_SHEET.fullmatch(name) and not _LOOKS_LIKE_A_CELL.fullmatch(name):
         return name
     return "'" + name.replace("'", "''") + "'"

@@ -50,7 +50,7 @@ class Case:
     dated: date | None
 
     def __getitem__(self, field: str) -> str:
-        """What the field says; empty where it is not given."""
+        """Return what the field says; empty where it is not given."""
         return self.fields.get(field, "")
 
     @property
@@ -60,7 +60,7 @@ class Case:
 
 
 def case_of(workbook: Workbook, given: Mapping[str, str]) -> Case:
-    """The case of a workbook; what is given wins over the table.
+    """Return the case of a workbook; what is given wins over the table.
 
     Args:
         workbook: its table `xlmc_case` has two columns, the field and what it says.
@@ -132,13 +132,13 @@ def _rows(workbook: Workbook) -> Iterable[tuple[str, CellValue]]:
 
 
 def _field(name: str) -> str:
-    """The field as the report names it."""
+    """Return the field as the report names it."""
     known = {plain(each): each for each in FIELDS} | _SPELLINGS
     return known.get(plain(name), label(name.strip()))
 
 
 def _day(value: CellValue, from_1904: bool) -> date | None:
-    """The day that a cell or a person gives: a serial number of Excel, or text such as 2026-11-23."""
+    """Return the day that a cell or a person gives: a serial number of Excel, or text such as 2026-11-23."""
     if isinstance(value, str):
         try:
             return date.fromisoformat(value.strip())

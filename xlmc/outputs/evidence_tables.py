@@ -47,7 +47,7 @@ _NONE: Final = "–"
 
 
 def trials_sentence(found: Agreement) -> str:
-    """What the evidence is judged by."""
+    """Say what the evidence is judged by."""
     return f"Judged by {found.trials:,} trials of the same seed, of which {found.past:,} pass all other filters."
 
 
@@ -56,7 +56,7 @@ def _share(item: ItemAgreement, given: bool) -> str:
 
 
 def item_rows(found: Agreement) -> list[tuple[str, ...]]:
-    """A row for each item, under `ITEM_HEADS`."""
+    """Yield a row for each item, under `ITEM_HEADS`."""
     several = len(found.items) > 1
     return [
         (
@@ -74,7 +74,7 @@ def item_rows(found: Agreement) -> list[tuple[str, ...]]:
 
 
 def move_rows(found: Agreement, forecasts: Sequence[str]) -> list[tuple[str, ...]]:
-    """A row for each set of items: which, how many effective trials, and the mean of each of these forecasts."""
+    """Yield a row for each set of items: which, how many effective trials, and the mean of each of these forecasts."""
     rows: dict[str, list[Answer]] = {}
     for each in found.answers:
         if each.forecast in forecasts:

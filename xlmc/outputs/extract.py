@@ -92,7 +92,7 @@ def check_extract_path(path: Path) -> None:
 
 
 def safe_heading(name: str) -> str:
-    """A name as a field of a CSV file that no spreadsheet takes for a formula: `=A1` becomes `'=A1`.
+    """Write a name as a field of a CSV file that no spreadsheet takes for a formula: `=A1` becomes `'=A1`.
 
     Where a semicolon separates fields, as in most of Europe, what stands behind one in a name begins a field, too.
 
@@ -131,7 +131,7 @@ def _columns(simulation: RunResult) -> list[Column]:
 def _chunks(
     simulation: RunResult, columns: list[Column], size: int
 ) -> Iterator[tuple[NDArray[np.int64], list[NDArray[np.float64]]]]:
-    """The trials a part at a time, and with them a part of every column, filled up with NaN."""
+    """Yield the trials a part at a time, and with them a part of every column, filled up with NaN."""
     index = simulation.trial_index
     for start in range(0, index.size, size):
         trials = index[start : start + size]

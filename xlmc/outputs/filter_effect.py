@@ -90,7 +90,7 @@ class Shapes:
 def shapes(
     prior: NDArray[np.float64], accepted: NDArray[np.float64], weights: NDArray[np.float64] | None = None
 ) -> Shapes | None:
-    """The shapes of `(n,)` draws before filtering and of `(m,)` accepted ones; None if they are one value."""
+    """Return the shapes of `(n,)` draws before filtering and of `(m,)` accepted ones; None if they are one value."""
     before, after = numbers(prior), numbers(accepted)
     w = np.ones(after.size) if weights is None else weights[~np.isnan(accepted)]
     if not before.size or not after.size or not w.any():
@@ -104,7 +104,9 @@ def shapes(
 
 
 def _shown(draws: NDArray[np.float64]) -> tuple[float, float]:
-    """The ends of a picture of draws: all of them, but without long tails, which would leave the rest in one bar."""
+    """Return the ends of a picture of draws: all of them, but without long tails, which would leave the rest in one
+    bar.
+    """
     low, high = (float(end) for end in np.quantile(draws, (0.002, 0.998)))
     least, most = float(draws.min()), float(draws.max())
     return (least, most) if most - least <= _LONG * (high - low) else (low, high)
@@ -115,7 +117,7 @@ def marginal(
     replicate: NDArray[np.int64] | None = None,
     weights: NDArray[np.float64] | None = None,
 ) -> Marginal:
-    """The marginal of `(n,)` draws; NaN, a trial whose parameters were no distribution, is left out."""
+    """Return the marginal of `(n,)` draws; NaN, a trial whose parameters were no distribution, is left out."""
     ids = None if replicate is None else replicate[~np.isnan(draws)]
     w = None if weights is None else weights[~np.isnan(draws)]
     values = numbers(draws)
@@ -129,7 +131,7 @@ def marginal(
 
 
 def filter_effect_of(simulation: RunResult, assumption: str) -> FilterEffect | None:
-    """What the filters of a run did to one of its assumptions; None if the assumption is not drawn."""
+    """Return what the filters of a run did to one of its assumptions; None if the assumption is not drawn."""
     if assumption not in simulation.inputs:
         return None
     found = _FOUND.setdefault(simulation, {})
@@ -142,7 +144,7 @@ def filter_effect_of(simulation: RunResult, assumption: str) -> FilterEffect | N
 
 
 def shapes_of(simulation: RunResult, assumption: str) -> Shapes | None:
-    """The shapes of one of a run's assumptions; None if it is not drawn, or is one value."""
+    """Return the shapes of one of a run's assumptions; None if it is not drawn, or is one value."""
     prior, accepted = simulation.prior.get(assumption), simulation.inputs.get(assumption)
     if prior is None or accepted is None:
         return None

@@ -138,7 +138,7 @@ def histogram(values: Values, low: float, high: float) -> Histogram | None:
 
 
 def _shown(x: Floats) -> tuple[float, float]:
-    """The smallest and largest of ascending values inside the fences."""
+    """Return the smallest and largest of ascending values inside the fences."""
     lower, upper = _quartiles(x)
     reach = _FENCE * (upper - lower)
     if reach == 0.0:
@@ -155,7 +155,7 @@ def _sane(value: float) -> float:
 
 
 def _quartiles(x: Floats) -> tuple[float, float]:
-    """The quartiles of ascending values, by straight lines between them."""
+    """Return the quartiles of ascending values, by straight lines between them."""
     lower, upper = Sample(x).quantile(np.array([0.25, 0.75]))
     return _sane(lower), _sane(upper)
 
@@ -173,12 +173,12 @@ def _width(x: Floats, first: float, last: float) -> float:
 
 
 def _round_below(width: float) -> float:
-    """The largest round number that is no larger."""
+    """Return the largest round number that is no larger."""
     return _scale(max(factor for factor in _ROUND if factor <= _mantissa(width)), width)
 
 
 def _round_above(width: float) -> float:
-    """The smallest round number that is larger."""
+    """Return the smallest round number that is larger."""
     return _scale(min(factor for factor in (*_ROUND, 10.0) if factor > _mantissa(width)), width)
 
 
@@ -191,7 +191,7 @@ def _scale(factor: float, like: float) -> float:
 
 
 def _step(width: float, first: int, last: int) -> int:
-    """The fewest bins from one label to the next that keep labels round and apart; bins are these multiples."""
+    """Return the fewest bins from one label to the next that keep labels round and apart; bins are these multiples."""
     for step in _STEPS:
         most = min(_MOST_LABELS, max(_FEWEST_LABELS, _LINE // (_longest_label(width, step, first, last) + 2)))
         if last - first <= step * most and _mantissa(width * step) in _ROUND_LABELS:
@@ -277,5 +277,5 @@ def figures_of(simulation: RunResult, names: Collection[str] | None = None) -> l
 
 
 def varying(figures: Sequence[Figure]) -> list[Figure]:
-    """The figures, without forecasts that are the same in all trials: their curve would be a step."""
+    """Return the figures, without forecasts that are the same in all trials: their curve would be a step."""
     return [figure for figure in figures if figure.answer.standard_deviation.value > 0.0]

@@ -97,7 +97,7 @@ _EstimateJson = dict[str, float | str | None]
 
 
 def document(simulation: RunResult, *, command: str | None = None) -> Json:
-    """The results of a run, every number as it is in Python and on the sheets.
+    """Return the results of a run, every number as it is in Python and on the sheets.
 
     Args:
         simulation: the finished run.

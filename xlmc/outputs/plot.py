@@ -305,7 +305,7 @@ def _ends(each: Drawn) -> tuple[float, float]:
 
 
 def _near(each: Drawn, values: Floats) -> Floats:
-    """The values, moved to at most the axis's own length outside it: matplotlib fails with the largest doubles."""
+    """Move the values to at most the axis's own length outside it: matplotlib fails with the largest doubles."""
     low, high = _ends(each)
     return values.clip(low - (high - low), high + (high - low))
 

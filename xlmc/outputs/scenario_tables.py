@@ -40,7 +40,7 @@ def scenario_rows(found: Sequence[ScenarioAnswers], impossible: Mapping[str, str
 
 
 def answer_heads(found: Sequence[ScenarioAnswers], index: int) -> list[str]:
-    """The headings of the table of the forecast at `index`."""
+    """Return the headings of the table of the forecast at `index`."""
     states = [each.forecasts[index] for each in found]
     above = above_head(states)
     heads = ["Scenario", *(heading for name in range_heads(states) for heading in (name, "Difference"))]
@@ -48,7 +48,9 @@ def answer_heads(found: Sequence[ScenarioAnswers], index: int) -> list[str]:
 
 
 def answer_rows(found: Sequence[ScenarioAnswers], index: int) -> list[tuple[str, ...]]:
-    """A row for the workbook itself and for each scenario, of the forecast at `index`, under its `answer_heads`."""
+    """Yield a row for the workbook itself and for each scenario, of the forecast at `index`, under its
+    `answer_heads`.
+    """
     above = bool(above_head([each.forecasts[index] for each in found]))
     return [(each.name, *_cells(each.forecasts[index], above)) for each in found]
 

@@ -55,7 +55,7 @@ class Curves:
 
 
 def drawing_of(curves: Curves) -> Drawing:
-    """The lines as SVG, with their names beside them."""
+    """Draw the lines as SVG, with their names beside them."""
     from xlmc.outputs.document.drawings import drawing, line_to, path_of, text_at
     from xlmc.outputs.page.svg import scale_of
 

@@ -164,12 +164,12 @@ def _line(row: SummaryRow, heading: str) -> dict[str, str]:
 
 
 def answer_text(row: SummaryRow) -> str:
-    """What is shown first: the mean, `11.799 ± 0.013`, or the share of yes, `5.44 ± 0.32 %`."""
+    """Write what is shown first: the mean, `11.799 ± 0.013`, or the share of yes, `5.44 ± 0.32 %`."""
     return estimate_text(row.mean) if row.yes is None else share_text(row.yes)
 
 
 def base_text(row: SummaryRow) -> str:
-    """A forecast at the base case; otherwise empty."""
+    """Write a forecast at the base case; empty without one."""
     if row.base is None or row.yes is None:
         return "" if row.base is None else _beside_mean(row.base, row.mean)
     return "yes" if row.base else "no"
@@ -184,7 +184,7 @@ def central_text(row: SummaryRow) -> str:
 
 
 def _beside_mean(value: float, mean: Estimate) -> str:
-    """A number without an error to six digits, or to more where it stands beside a mean that is known better."""
+    """Write a number without an error to six digits, or to more where it stands beside a mean that is known better."""
     allowed = math.inf if mean.error is None else _OF_ERROR * mean.error
     texts = (f"{value:.{digits}g}" for digits in range(6, 12))
     return next((text for text in texts if abs(float(text) - value) <= allowed), show(value))
@@ -207,7 +207,7 @@ def estimate_text(estimate: Estimate) -> str:
 
 
 def share_text(estimate: Estimate) -> str:
-    """A share in percent, `1.771 ± 0.029 %`; empty where there is no number.
+    """Write a share in percent, `1.771 ± 0.029 %`; empty where there is no number.
 
     Of none of the trials it is `0 %, at most 0.013 %`, of all of them `100 %, at least 99.987 %`: an error that is the
     same on both sides would not say how far off these are.
@@ -234,7 +234,7 @@ class BaseCase:
 
 
 def base_case(simulation: RunResult) -> BaseCase | None:
-    """The base case of a run's model; None if an assumption has none.
+    """Compute the base case of a run's model; None if an assumption has none.
 
     It is computed, not read: a file may hold no cached values, or stale ones.
     """
@@ -257,7 +257,9 @@ def _fails(column: Column) -> bool:
 
 
 def _number(column: Column) -> float | None:
-    """The only value, also that of a forecast which its own filter discards: a base case is shown all the same."""
+    """Return the only value, also that of a forecast which its own filter discards: a base case is shown all
+    the same.
+    """
     discarded = column.codes is not None and column.codes[0] >= UNDECIDED_RESULT
     return finite(column.values[0] if discarded else column.as_floats()[0])
 
@@ -270,7 +272,7 @@ class Phrase(NamedTuple):
 
 
 def question(simulation: RunResult) -> Iterator[Phrase]:
-    """What was asked of the workbook, in sentences: how many answers, from what, and which trials count."""
+    """Say what was asked of the workbook, in sentences: how many answers, from what, and which trials count."""
     model = simulation.model
     yield Phrase(
         f"The workbook computes {_count_text(len(model.forecasts), 'answer (forecast)', 'answers (forecasts)')} from "
@@ -293,7 +295,7 @@ def question(simulation: RunResult) -> Iterator[Phrase]:
 
 
 def _asked(simulation: RunResult) -> list[Filter]:
-    """The filters that trials can break, or have broken."""
+    """Return the filters that trials can break, or have broken."""
     may = {each.name for each in breakable(simulation.model)}
     rejected = zip(simulation.model.filters, simulation.tally.rejected, strict=True)
     return [each for each, trials in rejected if trials or each.name in may]
@@ -315,7 +317,7 @@ def _counted(simulation: RunResult, filters: bool, evidence: bool) -> str:
 
 
 def _listed(opening: str, filters: Sequence[Filter]) -> Iterator[Phrase]:
-    """What filters ask, one after the other."""
+    """Say what filters ask, one after the other."""
     for index, filter_ in enumerate(filters):
         yield Phrase("; " if index else opening)
         yield Phrase(filter_.name, is_name=True)
@@ -323,7 +325,7 @@ def _listed(opening: str, filters: Sequence[Filter]) -> Iterator[Phrase]:
 
 
 def _of_some(simulation: RunResult) -> Iterator[Phrase]:
-    """What the filters of some forecasts only ask."""
+    """Say what the filters of some forecasts only ask."""
     for each in discards_of(simulation):
         yield Phrase(" Of ")
         yield Phrase(each.forecast, is_name=True)

@@ -32,7 +32,7 @@ def work(monkeypatch, workbook):
     counted(Workbook, "content")
     counted(Spills, "anchor")
     counted(module, "references")
-    counted(module, "_held")
+    counted(module, "_filled_cells")
 
     def measure(cells, target, inputs=(), **of_workbook):
         counts.clear()

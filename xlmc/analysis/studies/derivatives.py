@@ -102,7 +102,7 @@ class _Found:
         self._second = {node: np.zeros((2, n, k, k)) for node in self.nodes} if order > 1 else {}
 
     def add(self, node: int, value: Value, jet: Jet, start: int, stop: int) -> None:
-        """What a sweep found in the trials from `start` to `stop`."""
+        """Return what a sweep found in the trials from `start` to `stop`."""
         here = slice(start, stop)
         self._values[node][here] = np.where((value.kinds >= TEXT) & (value.kinds != BLANK), np.nan, value.numbers)
         lost = np.asarray((value.kinds >= ERROR) | (value.kinds == TEXT))

@@ -121,7 +121,7 @@ _FOUND: Final[WeakKeyDictionary[RunResult, _Found]] = WeakKeyDictionary()
 def scenario_answers(
     run: RunResult, *, jobs: int = 1, tell: Callable[[str], None] | None = None
 ) -> tuple[ScenarioAnswers, ...]:
-    """The answers of the workbook itself, then of each scenario; none where the run was made without them.
+    """Return the answers of the workbook itself, then of each scenario; none where the run was made without them.
 
     A scenario that is not possible has none; `impossible_scenarios` says why. The others are run with the settings of
     the run: until as many trials are accepted, where the run waited for these, else for as many trials.
@@ -178,7 +178,7 @@ def scenario_faults(model: CompiledModel) -> dict[str, XlmcError]:
 
 
 def model_of(model: CompiledModel, scenario: Scenario | str) -> CompiledModel:
-    """The model of the workbook in a scenario, given itself or by its name.
+    """Return the model of the workbook in a scenario, given itself or by its name.
 
     Raises:
         SimulationError: there is no scenario of this name.
@@ -198,7 +198,7 @@ def model_of(model: CompiledModel, scenario: Scenario | str) -> CompiledModel:
 
 
 def scenario_named(model: CompiledModel, scenario: Scenario | str) -> Scenario:
-    """The scenario of this name, or itself.
+    """Return the scenario of this name, or itself.
 
     Raises:
         SimulationError: there is no scenario of this name.
@@ -241,7 +241,7 @@ def run_scenario(
 
 
 def answers_of(run: RunResult, scenario: Scenario | None, base: RunResult) -> ScenarioAnswers:
-    """The answers of a scenario's run, and how far they are from those of the workbook itself.
+    """Return the answers of a scenario's run, and how far they are from those of the workbook itself.
 
     Args:
         run: of the scenario.
@@ -277,7 +277,7 @@ def _forecast(run: RunResult, base: RunResult, forecast: Forecast, differs: bool
 def _differences(
     run: RunResult, base: RunResult, forecast: Forecast, found: Mapping[str, Estimate], *, paired: bool
 ) -> dict[str, Estimate]:
-    """The difference of each number from the workbook's own."""
+    """Return the difference of each number from the workbook's own."""
     own = base.results[forecast.name]
     low, high = own.central()
     theirs = {"mean": own.mean, "low": low, "high": high}
@@ -312,7 +312,7 @@ def _independent(first: Estimate, second: Estimate) -> Estimate:
 
 
 def _acceptance_difference(first: RunResult, second: RunResult, *, paired: bool) -> Estimate:
-    """The second's share of accepted trials less the first's."""
+    """Return the second's share of accepted trials less the first's."""
     mine, theirs = first.acceptance, second.acceptance
     if not paired or mine.error is None or theirs.error is None:
         return _independent(mine, theirs)
@@ -335,7 +335,8 @@ def _pulls(run: RunResult, count: int, size: int) -> NDArray[np.float64]:
 
 
 def _square_of_trials(first: RunResult, second: RunResult) -> float:
-    """The sum of the squared differences of the pulls of single trials; of the longer run the last have no partner.
+    """Return the sum of the squared differences of the pulls of single trials; of the longer run the last have no
+    partner.
 
     A trial pulls the share p of n trials by (1 - p)/n where it is accepted, and by -p/n where it is not.
     """

@@ -153,7 +153,7 @@ def _refuse_formulas(book: Workbook, cells: Mapping[Cell, CellValue]) -> None:
 
 
 def _typed(book: Workbook, cells: Mapping[Cell, CellValue]) -> dict[str, bytes]:
-    """The parts of the sheets with these contents in their cells."""
+    """Return the parts of the sheets with these contents in their cells."""
     by_sheet: dict[str, dict[tuple[int, int], Content]] = {}
     for cell, value in cells.items():
         assert not isinstance(value, ErrorCode), "no scenario has an error typed in"
@@ -163,7 +163,7 @@ def _typed(book: Workbook, cells: Mapping[Cell, CellValue]) -> dict[str, bytes]:
 
 
 def _of_what_if_tables(book: Workbook) -> list[Cell]:
-    """The first cell of each what-if table: Excel alone fills them."""
+    """Return the first cell of each what-if table: Excel alone fills them."""
     return [Cell(table.area.sheet, table.area.top, table.area.left) for table in book.data_tables]
 
 

@@ -371,7 +371,7 @@ class _Screen:
         return best
 
     def _correlated(self, single: Sequence[Cost]) -> list[tuple[str, ...]]:
-        """Groups of correlated assumptions with one at least that cannot be held alone."""
+        """Return groups of correlated assumptions with one at least that cannot be held alone."""
         alone = {cost.names[0]: cost.judgement.verdict is Verdict.WITHIN for cost in single}
         drawn = np.array([self._run.prior[name][:_RANKED] for name in alone])
         if len(drawn) < 2:
@@ -381,7 +381,7 @@ class _Screen:
         return [names for names in named if not all(alone[name] for name in names)]
 
     def _expect_cost(self, assumption: Assumption) -> float:
-        """The expected cost of holding an assumption, from the accepted trials near its base value."""
+        """Return the expected cost of holding an assumption, from the accepted trials near its base value."""
         drawn, prior = self._run.inputs[assumption.name], self._run.prior[assumption.name]
         base = assumption.base or 0.0
         width = float(np.quantile(np.abs(prior - base), SLICE))
@@ -401,12 +401,12 @@ def _all_names(costs: Iterable[Cost]) -> list[str]:
 
 
 def _ranks(drawn: Floats) -> Floats:
-    """The ranks of `(k, n)` draws in each row."""
+    """Return the ranks of `(k, n)` draws in each row."""
     return np.asarray(drawn.argsort(axis=1, kind="stable").argsort(axis=1, kind="stable"), np.float64)
 
 
 def _groups(correlations: Floats) -> list[frozenset[int]]:
-    """The groups that grow as `(k, k)` correlations are gone through, the strongest first: k − 1 at most.
+    """Return the groups that grow as `(k, k)` correlations are gone through, the strongest first: k − 1 at most.
 
     >>> [sorted(group) for group in _groups(np.array([[1, 0.6, 0.1], [0.6, 1, -0.9], [0.1, -0.9, 1]]))]
     [[1, 2], [0, 1, 2]]
@@ -426,7 +426,9 @@ def _groups(correlations: Floats) -> list[frozenset[int]]:
 def _largest_move(
     values: Floats, near: NDArray[np.bool_], forecast: Forecast, tolerance: float, chance: float | None
 ) -> float:
-    """The largest move of mean, SD, central range and P(> threshold) from all values to those near, in tolerances."""
+    """Return the largest move of mean, SD, central range and P(> threshold) from all values to those near, in
+    tolerances.
+    """
     known = ~np.isnan(values)
     every, some = values[known], values[known & near]
     if some.size < 2:
@@ -450,7 +452,7 @@ def _names_text(names: Sequence[str]) -> str:
 
 
 def _names_of(text: str, known: Sequence[str], kind: str) -> tuple[str, ...]:
-    """The known names that a list of patterns fits.
+    """Return the known names that a list of patterns fits.
 
     Raises:
         SimulationError: a pattern fits none.

@@ -75,7 +75,7 @@ class Verification:
         return sum(cell.status is status for cell in self.cells)
 
     def of(self, status: Status) -> list[CellCheck]:
-        """The cells that have that status."""
+        """Return the cells that have that status."""
         return [cell for cell in self.cells if cell.status is status]
 
 
@@ -125,7 +125,7 @@ def _check(lowering: Lowering, cell: Cell) -> CellCheck:
 
 
 def _filled_by(lowering: Lowering, anchor: Cell) -> Iterator[CellCheck]:
-    """The other cells that an array formula fills, as far as Excel saved a value there."""
+    """Return the other cells that an array formula fills, as far as Excel saved a value there."""
     workbook = lowering.graph.workbook
     formula = workbook.content(anchor).formula
     for cell, got in filled_cells(lowering, anchor):

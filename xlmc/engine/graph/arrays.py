@@ -67,7 +67,9 @@ def size_of(dag: Dag, node: int) -> tuple[int, int] | None:
 
 
 def element(dag: Dag, node_id: int, row: int, column: int) -> int:
-    """The node of one cell of a value, counted from 0; a single row, column or value repeats, beyond it is `#N/A`."""
+    """Return the node of one cell of a value, counted from 0; a single row, column or value repeats, beyond it is
+    `#N/A`.
+    """
     node, size = dag.nodes[node_id], dag.sizes[node_id]
     if size is None:
         return node_id
@@ -103,7 +105,7 @@ def pick(value: Value, row: int, column: int) -> Value:
 
 
 def beside(dag: Dag, node: int, row: int, column: int) -> int:
-    """The node of a single value: of a whole column or row of a range it is the cell beside the formula.
+    """Return the node of a single value: of a whole column or row of a range it is the cell beside the formula.
 
     Args:
         dag: of the nodes.
@@ -130,7 +132,7 @@ def _pick_beside(value: Value, row: int, column: int) -> Value:
 
 
 def grid(dag: Dag, rows: int, columns: int, at: Callable[[int, int], int]) -> int:
-    """The node of an array made of single nodes."""
+    """Return the node of an array made of single nodes."""
     return dag.add(Range(tuple(tuple(at(r, c) for c in range(columns)) for r in range(rows))))
 
 
@@ -162,7 +164,7 @@ def _has_zero(dag: Dag, node_id: int) -> bool:
 def cell_by_cell(
     dag: Dag, nodes: tuple[int, ...], apply: Callable[[tuple[int, ...]], int], *, constants: bool = False
 ) -> int | None:
-    """The array of what `apply` makes of the cells of each of `nodes`; None if that is not worth it.
+    """Apply `apply` to the cells of each of `nodes` and return the node of the array; None if that is not worth it.
 
     Constants are computed at once, unless `constants` is set; values of unknown sizes cannot be taken apart. Where
     sizes do not fit each other, a cell without a partner is `#N/A`.
@@ -208,7 +210,7 @@ def sizes_differ(dag: Dag, condition: int, yes: int, no: int) -> bool:
 
 
 def either(dag: Dag, condition: int, yes: int, no: int) -> int:
-    """The node of such a choice."""
+    """Return the node of such a choice."""
     return dag.add(Apply(_EITHER, (condition, yes, no)))
 
 
@@ -216,7 +218,7 @@ _AS_RANGE: Final = Function("as a range", (Cells,), Value.as_range, Kind.ANY, fa
 
 
 def as_range(dag: Dag, node: int) -> int:
-    """The node of a single value as a range of one cell; of a range, the range."""
+    """Return the node of a single value as a range of one cell; of a range, the range."""
     return dag.add(Range(((node,),)) if dag.sizes[node] is None else Apply(_AS_RANGE, (node,)))
 
 
@@ -230,7 +232,9 @@ _ONE_OF_TWO: Final = Function("one of two references", (Anything, Anything, Anyt
 
 
 def either_reference(dag: Dag, condition: int, yes: int, no: int) -> int:
-    """The node of a choice between two ranges of one size, in which an empty cell stays empty; an IF makes it 0."""
+    """Return the node of a choice between two ranges of one size, in which an empty cell stays empty; an IF
+    makes it 0.
+    """
 
     def one(picked: tuple[int, ...]) -> int:
         numbers = all(dag.types[node] is Kind.NUMBER for node in picked[1:])
@@ -241,7 +245,7 @@ def either_reference(dag: Dag, condition: int, yes: int, no: int) -> int:
 
 
 def _parts_of(dag: Dag, node_id: int) -> tuple[int, int, int] | None:
-    """The condition and the two values of such a choice; None for any other node."""
+    """Return the condition and the two values of such a choice; None for any other node."""
     node = dag.nodes[node_id]
     if not isinstance(node, Apply) or node.function is not _EITHER:
         return None
@@ -250,7 +254,7 @@ def _parts_of(dag: Dag, node_id: int) -> tuple[int, int, int] | None:
 
 
 def _outcomes(dag: Dag, node: int) -> int:
-    """The number of outcomes of choices within each other, counted up to `MOST_OUTCOMES` and a little beyond."""
+    """Count the outcomes of choices within each other, up to `MOST_OUTCOMES` and a little beyond."""
     parts, outcomes = _parts_of(dag, node), 1
     while parts is not None and outcomes <= MOST_OUTCOMES:
         outcomes += 1 + _outcomes(dag, parts[1])
@@ -265,7 +269,8 @@ def share_out(
     is_error: Callable[[int], int],
     select: Callable[[int, int, int], int],
 ) -> int | None:
-    """The function of arguments of which one is a choice, as that choice between its results; `made` makes these.
+    """Return the function of arguments of which one is a choice, as that choice between its results; `made` makes
+    these.
 
     None if there is no such choice, or too many of them. Where the condition is an error, it is the argument.
     """
@@ -290,36 +295,36 @@ class NodeBuilder:
         self._numbers: dict[float, int] = {}
 
     def number(self, value: float) -> int:
-        """The node of a number."""
+        """Return the node of a number."""
         if value not in self._numbers:
             self._numbers[value] = self.dag.constant(constant(value))
         return self._numbers[value]
 
     def error(self, code: ErrorCode) -> int:
-        """The node of an error."""
+        """Return the node of an error."""
         return self.dag.constant(constant(code))
 
     def first_cell(self, node: int) -> int:
-        """The node of one cell of a value: the first of many."""
+        """Return the node of one cell of a value: the first of many."""
         return element(self.dag, node, 0, 0)
 
     def lookup_constant(self, node_id: int) -> Value | None:
-        """The value of a single constant; None of any other node."""
+        """Return the value of a single constant; None of any other node."""
         node = self.dag.nodes[node_id]
         return node.value if isinstance(node, Constant) and self.dag.sizes[node_id] is None else None
 
     def lookup_condition(self, node: int) -> bool | None:
-        """What a condition is known to be; None if it varies, is an error, a text or many cells."""
+        """Return what a condition is known to be; None if it varies, is an error, a text or many cells."""
         known = self.lookup_constant(node)
         return None if known is None or not known.plain else bool(known.numbers[0])
 
     def zero_if_blank(self, node: int) -> int:
-        """What a formula gives for an empty cell."""
+        """Return what a formula gives for an empty cell."""
         known = self.lookup_constant(node)
         return self.number(0.0) if known is not None and int(known.kinds[0]) == BLANK else node
 
     def select(self, condition: int, yes: int, no: int) -> int:
-        """The node of an IF between two nodes."""
+        """Return the node of an IF between two nodes."""
         known = self.lookup_condition(condition)
         if known is not None:
             return yes if known else no
@@ -329,7 +334,7 @@ class NodeBuilder:
         return self.dag.add(Select(condition, yes, no)) if cells is None else cells
 
     def call(self, name: str, arguments: tuple[int, ...]) -> int:
-        """The node of an operator, or of a function that takes single values."""
+        """Return the node of an operator, or of a function that takes single values."""
         if name == "+" and self.number(0.0) in arguments:
             other = arguments[arguments[0] == self.number(0.0)]
             if self.dag.types[other] is Kind.NUMBER:
@@ -339,7 +344,7 @@ class NodeBuilder:
         return self.apply(REGISTRY[name], arguments)
 
     def apply(self, function: Function, arguments: tuple[int, ...]) -> int:
-        """The node of a function of nodes, cell by cell where it takes single values and is given many."""
+        """Return the node of a function of nodes, cell by cell where it takes single values and is given many."""
         if self.dag.missing:
             refuse_hidden(self.dag, function, arguments)
         if function.facts.factor is not None:
@@ -363,7 +368,9 @@ class NodeBuilder:
         return self.dag.add(Apply(function, arguments)) if cells is None else cells
 
     def _share_out(self, function: Function, arguments: tuple[int, ...]) -> int | None:
-        """The function of a choice between sizes, as a choice between two results; None without such an argument."""
+        """Return the function of a choice between sizes, as a choice between two results; None without such an
+        argument.
+        """
         return share_out(
             self.dag,
             arguments,
@@ -373,7 +380,9 @@ class NodeBuilder:
         )
 
     def _inverse(self, node_id: int) -> float | None:
-        """The inverse of a power of two: to multiply by it gives the quotient to the last bit. None of other nodes."""
+        """Return the inverse of a power of two: to multiply by it gives the quotient to the last bit. None of other
+        nodes.
+        """
         node = self.dag.nodes[node_id]
         if not isinstance(node, Constant) or self.dag.types[node_id] is not Kind.NUMBER:
             return None
@@ -382,6 +391,6 @@ class NodeBuilder:
 
 
 def _merge(function: Function, arguments: tuple[int, ...], picked: tuple[int, ...]) -> tuple[int, ...]:
-    """The arguments with those that take single values replaced, in order."""
+    """Return the arguments with those that take single values replaced, in order."""
     singles = iter(picked)
     return tuple(p if function.parameter(i).ranged else next(singles) for i, p in enumerate(arguments))

@@ -86,7 +86,7 @@ def check_count(name: str, arguments: Sequence[object]) -> None:
 
 
 def limits(name: str) -> tuple[int, int] | None:
-    """The fewest and the most arguments; None of a function that is not known."""
+    """Return the fewest and the most arguments; None of a function that is not known."""
     if name in SPECIAL:
         return SPECIAL[name]
     function = function_named(name)
@@ -118,7 +118,7 @@ def unknown_to_excel(call: ir.Call, parts: Iterable[str]) -> bool:
 
 
 def not_computed(name: str) -> FormulaError:
-    """The refusal of a function without a body here."""
+    """Refuse a function without a body here."""
     if name in LEFT_OUT:
         hint = "replace it by functions that xlmc computes: docs/functions.md lists them"
         return FormulaError(f"xlmc does not compute the function {name} of Excel", hint=hint)
@@ -127,8 +127,8 @@ def not_computed(name: str) -> FormulaError:
 
 @cache
 def _hint(name: str) -> str:
-    """What to do about an unknown function. A workbook of another program calls each many times, and may have the rest
-    computed: to look through all names takes longer than that.
+    """Say what to do about an unknown function. A workbook of another program calls each many times, and may have the
+    rest computed: to look through all names takes longer than that.
     """
     close = get_close_matches(name, [key for key in REGISTRY if key[0].isalpha()], n=1)
     return f"did you mean {close[0]}?" if close else "check its spelling, or replace it by functions xlmc knows"
@@ -136,7 +136,7 @@ def _hint(name: str) -> str:
 
 @cache
 def with_settings(function: Function, date1904: bool, macintosh: bool) -> Function:
-    """The function with the settings of a workbook; the same object each time, so that nodes are shared."""
+    """Return the function with the settings of a workbook; the same object each time, so that nodes are shared."""
     if function.dated:
         return replace(function, body=_WithOption(function, "date1904", date1904))
     if macintosh and function.macintosh:

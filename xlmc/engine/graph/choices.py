@@ -43,13 +43,13 @@ def _choose_branch(lowering: TreeLowering, condition: int, branches: Arguments, 
 
 
 def _branch(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> int:
-    """The node of a branch; an empty cell is 0, but where a range is wanted."""
+    """Lower a branch; an empty cell is 0, but where a range is wanted."""
     node = lower_reference(lowering, tree, scope)
     return node if lowering.dag.sizes[node] is not None else lowering.zero_if_blank(node)
 
 
 def lower_reference(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> int:
-    """The node of a tree; a reference to one cell is a range of one cell where a range is wanted.
+    """Lower a tree; a reference to one cell is a range of one cell where a range is wanted.
 
     Functions pass over empty cells, texts and logicals of ranges. A cell of which it is known that it holds a number
     stays a single value, which is the same to them.
@@ -91,7 +91,7 @@ def _holds_numbers(lowering: TreeLowering, area: Area) -> bool:
 
 
 def _select(lowering: TreeLowering, condition: int, yes: int, no: int, scope: Scope) -> int:
-    """The node of a choice; where a range is wanted, one of two ranges keeps its empty cells."""
+    """Lower a choice; where a range is wanted, one of two ranges keeps its empty cells."""
     sizes = lowering.dag.sizes
     if not scope.whole or sizes[condition] is not None or sizes[yes] is sizes[no] is None:
         return lowering.select(condition, yes, no)
@@ -103,7 +103,7 @@ def _select(lowering: TreeLowering, condition: int, yes: int, no: int, scope: Sc
 
 
 def _beside_range(lowering: TreeLowering, node: int, other: int) -> int:
-    """A number as a range of one cell where the other branch is one, as functions make no difference."""
+    """Turn a number into a range of one cell where the other branch is one, as functions make no difference."""
     dag = lowering.dag
     alone = dag.sizes[node] is None and dag.types[node] is Kind.NUMBER
     return as_range(dag, node) if alone and dag.sizes[other] == (1, 1) else node
@@ -120,7 +120,9 @@ def _ifs(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
 def _first_true(
     lowering: TreeLowering, pairs: Iterator[tuple[int, ir.Expression]], last: ir.Expression, scope: Scope
 ) -> int:
-    """The value behind the first condition that is true, else `last`; what known conditions exclude is not lowered."""
+    """Choose the value behind the first condition that is true, else `last`; what known conditions exclude is not
+    lowered.
+    """
     varying: list[tuple[int, int]] = []
     node = None
     for condition, value in pairs:

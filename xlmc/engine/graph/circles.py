@@ -135,7 +135,7 @@ class Lowers(Protocol):
         """Have a cell lowered again."""
 
     def node_of(self, cell: Cell) -> int:
-        """The node of a cell that is lowered."""
+        """Return the node of a cell that is lowered."""
 
     def refuse(self, cells: Sequence[Cell], error: FormulaError) -> None:
         """Take cells for faulty that need each other in a circle, or raise the error."""
@@ -202,7 +202,7 @@ def _is_open(need: Cell, at: _Open, open_: Mapping[Cell, _Open], lowers: Lowers)
 
 
 def _too_many(cells: Sequence[Cell]) -> FormulaError:
-    """What is said where too many cells may read each other."""
+    """Say that too many cells may read each other."""
     listed = ", ".join(map(str, sorted(cells)))
     message = f"more than {_MOST_OPEN} cells may need each other in a circle, others in each trial: {listed}"
     hint = "have numbers that do not vary decide which cells are read, or break the circle"

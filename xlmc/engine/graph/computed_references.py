@@ -46,7 +46,7 @@ class NotYetNeeded(Exception):  # noqa: N818 - it asks for more; nothing is wron
 
 
 def areas_of(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
-    """The areas that a tree refers to; None if it is no reference.
+    """Return the areas that a tree refers to; None if it is no reference.
 
     Raises:
         NotYetNeeded, NoReference: see the classes.
@@ -78,7 +78,7 @@ def _union(lowering: TreeLowering, tree: ir.Binary, scope: Scope) -> list[Area] 
 
 
 def join_areas(areas: Sequence[Area]) -> ir.Expression:
-    """The tree of areas joined by commas."""
+    """Join areas by commas."""
     tree: ir.Expression = areas[0]
     for area in areas[1:]:
         tree = ir.Binary(",", tree, area)
@@ -104,7 +104,7 @@ def _combine(
 
 
 def _end(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
-    """The areas that one side refers to; INDEX of single numbers refers to a cell in array formulas, too."""
+    """Return the areas that one side refers to; INDEX of single numbers refers to a cell in array formulas, too."""
     if scope.array and isinstance(tree, ir.Call) and tree.name == "INDEX":
         numbers = [number for number in tree.arguments[1:] if not isinstance(number, ir.Missing)]
         if all(lowering.dag.sizes[lowering.lower(number, scope.inside())] is None for number in numbers):
@@ -118,24 +118,24 @@ def _may_be_picked(end: ir.Expression, areas: list[Area] | None) -> bool:
 
 
 def _intersect(area: Area) -> Area:
-    """The cells that two areas share."""
+    """Intersect two areas."""
     if area.top > area.bottom or area.left > area.right:
         raise NoReference(ErrorCode.NULL)
     return area
 
 
 def cut(lowering: TreeLowering, area: Area) -> Area:
-    """The area, up to the last filled cell where it goes on far beyond it, once everything in it is lowered."""
+    """Return the area, up to the last filled cell where it goes on far beyond it, once everything in it is lowered."""
     return require(lowering, lowering.resolver.to_the_last_cell(area.whole))
 
 
 def _led_to(lowering: TreeLowering, area: Area, scope: Scope) -> Area:
-    """What a reference leads to: as `cut` gives it, but where only its place counts."""
+    """Return what a reference leads to: as `cut` gives it, but where only its place counts."""
     return lowering.resolver.to_the_last_cell(area.whole) if scope.pointing else cut(lowering, area)
 
 
 def require(lowering: TreeLowering, area: Area) -> Area:
-    """The area, once everything in it is lowered."""
+    """Return the area, once everything in it is lowered."""
     ask_for_reading(area.rows, area.columns)
     missing = lowering.awaited(area)
     if missing:
@@ -162,13 +162,13 @@ def _stop_at_error(errors: Codes) -> None:
 
 
 def _whole_number(lowering: TreeLowering, tree: ir.Expression, scope: Scope, function: str) -> int | None:
-    """A known argument, cut to a whole number; None if it is left out."""
+    """Return a known argument, cut to a whole number; None if it is left out."""
     number = _known_number(lowering, tree, scope, function)
     return None if number is None else int(number)
 
 
 def _known_number(lowering: TreeLowering, tree: ir.Expression, scope: Scope, function: str) -> float | None:
-    """A known argument; None if it is left out."""
+    """Return a known argument; None if it is left out."""
     if isinstance(tree, ir.Missing):
         return None
     node = lowering.lower(tree, scope.inside())
@@ -230,7 +230,7 @@ def _indirect(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> lis
 
 
 def _is_true(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:
-    """A known logical argument."""
+    """Return a known logical argument."""
     known = lowering.lookup_constant(lowering.first_cell(lowering.lower(tree, scope.inside())))
     if known is None:
         raise FormulaError("INDIRECT depends on a value that varies; where it leads must be fixed")
@@ -240,7 +240,7 @@ def _is_true(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:
 
 
 def _resolve(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
-    """What a text refers to; None if it is no reference."""
+    """Return what a text refers to; None if it is no reference."""
     try:
         return areas_of(lowering, lowering.resolver.tree(tree, host_of(scope.cell)), scope)
     except FormulaError:
@@ -338,7 +338,7 @@ REFERENCES: Mapping[str, Callable[[TreeLowering, Arguments, Scope], list[Area] |
 
 
 def of_one_cell(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> ir.Expression:
-    """The argument with `#VALUE!` for every range of several cells that it may give; arrays stay as they are.
+    """Return the argument with `#VALUE!` for every range of several cells that it may give; arrays stay as they are.
 
     Args:
         lowering: of the workbook.

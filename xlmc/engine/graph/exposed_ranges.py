@@ -33,7 +33,7 @@ Taken = Callable[[ir.Call], Sequence[ir.Expression]]
 
 
 def find_areas(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
-    """The areas that a tree refers to; None if it is no reference, or one that gives an error."""
+    """Return the areas that a tree refers to; None if it is no reference, or one that gives an error."""
     if not isinstance(tree, Cell | Area | ir.Binary | ir.Call | ir.Variable):
         return None
     if isinstance(tree, ir.Call) and tree.name in CHOICES:
@@ -59,7 +59,7 @@ def has_exposed(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bo
 
 
 def change_exposed(lowering: TreeLowering, tree: ir.Expression, scope: Scope, change: Change) -> ir.Expression:
-    """The tree with every cut range that it takes cell by cell changed."""
+    """Return the tree with every cut range that it takes cell by cell changed."""
     match tree:
         case Area():
             return change(tree) if tree.is_cut else tree

@@ -46,7 +46,7 @@ class FillDownCache:
         self._known: dict[Stencil, dict[_Marks, _Pattern | None] | None] = {}
 
     def lower(self, stencil: Stencil, leaves: Sequence[int], lower: Callable[[], int]) -> int:
-        """The node of a stencil's formula in one cell.
+        """Return the node of a stencil's formula in one cell.
 
         Args:
             stencil: of the formula.
@@ -80,7 +80,7 @@ class FillDownCache:
         return local[pattern.result]
 
     def _record(self, leaves: Sequence[int], lower: Callable[[], int]) -> tuple[int, _Pattern | None]:
-        """The node, and the pattern of its nodes; None if this cell does not show a pattern."""
+        """Return the node, and the pattern of its nodes; None if this cell does not show a pattern."""
         dag = self._dag
         made: list[int] = []
         dag.recording = made
@@ -115,7 +115,7 @@ _UNSEEN: Final[dict[_Marks, _Pattern | None]] = {}
 
 
 def _maker(node: Node) -> Callable[[tuple[int, ...]], Node]:
-    """Makes nodes like this one from what they use."""
+    """Return what makes nodes like this one from what they use."""
     match node:
         case Apply(function):
             return lambda used: Apply(function, used)

@@ -41,7 +41,7 @@ _HINT: Final = "name only the rows and columns that hold something"
 
 
 def level(direct: Mapping[int, Sequence[Area]]) -> dict[int, list[Area]]:
-    """The areas, read equally far where they have one size with their further cells; else read differently far."""
+    """Read the areas equally far where they have one size with their further cells; else read them differently far."""
     rows = _lengths((area.rows, area.whole.rows) for areas in direct.values() for area in areas)
     columns = _lengths((area.columns, area.whole.columns) for areas in direct.values() for area in areas)
     return {
@@ -72,7 +72,7 @@ def beyond(area: Area) -> Area:
 
 
 def resize(area: Area, length: int, across: bool) -> Area:
-    """The area with `length` rows, or columns, read; all others become further ones."""
+    """Return the area with `length` rows, or columns, read; all others become further ones."""
     whole = area.whole
     if across:
         right = area.left + length - 1
@@ -82,7 +82,7 @@ def resize(area: Area, length: int, across: bool) -> Area:
 
 
 def one_behind(area: Area, length: int, across: bool) -> Area:
-    """The row, or column, behind the first `length`."""
+    """Return the row, or column, behind the first `length`."""
     if across:
         return Area(area.sheet, area.top, area.left + length, area.bottom, area.left + length)
     return Area(area.sheet, area.top + length, area.left, area.top + length, area.right)
@@ -93,20 +93,20 @@ def to_filled(area: Area) -> Area:
 
 
 def one_further(area: Area) -> Area:
-    """The area with the first further row and column."""
+    """Return the area with the first further row and column."""
     rows, columns = area.rows + (area.further_rows > 0), area.columns + (area.further_columns > 0)
     return resize(resize(area, rows, False), columns, True)
 
 
 def by_halves(area: Area) -> Area:
-    """The area as far as a search by halves comes, which steps back from empty cells."""
+    """Return the area as far as a search by halves comes, which steps back from empty cells."""
     rows = _halve(area.rows, area.whole.rows, 0 if area.further_columns else area.columns)
     columns = _halve(area.columns, area.whole.columns, 0 if area.further_rows else area.rows + 1)
     return resize(resize(area, rows, False), columns, True)
 
 
 def _halve(filled_count: int, whole: int, least: int) -> int:
-    """The end of a search of `whole` cells once its middle is below `filled_count`, and no less than `least`.
+    """Return the end of a search of `whole` cells once its middle is below `filled_count`, and no less than `least`.
 
     With `least` a range keeps its long side.
     """
@@ -119,20 +119,20 @@ def _halve(filled_count: int, whole: int, least: int) -> int:
 
 
 def refusal(name: str) -> FormulaError:
-    """The error of a function that cannot be given a whole column."""
+    """Return the error of a function that cannot be given a whole column."""
     return FormulaError(_MESSAGE.format(name), hint=_HINT)
 
 
 @cache
 def keep_within(filled_count: int, whole: int, zero_is_all: bool) -> Function:
-    """A function that makes `filled_count` of numbers of rows or columns above it, up to `whole`."""
+    """Make a function that makes `filled_count` of numbers of rows or columns above it, up to `whole`."""
     body = partial(_within, filled_count=filled_count, whole=whole, zero_is_all=zero_is_all)
     return Function(f"within {filled_count} of {whole}", (Anything,), body, Kind.NUMBER)
 
 
 @cache
 def to_the_last(filled_count: int, whole: int) -> Function:
-    """A function that makes `whole` of numbers of rows or columns above `filled_count`."""
+    """Make a function that makes `whole` of numbers of rows or columns above `filled_count`."""
     return Function(
         f"{filled_count} or {whole}", (Number,), partial(_of_whole, filled_count=filled_count, whole=whole), Kind.NUMBER
     )

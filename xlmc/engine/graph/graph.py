@@ -127,7 +127,7 @@ Node = Constant | Input | Apply | Select | IfErrorNode | Range
 
 
 def uses(node: Node) -> tuple[int, ...]:
-    """The nodes that a node reads, from left to right."""
+    """Return the nodes that a node reads, from left to right."""
     match node:
         case Constant() | Input():
             return ()
@@ -144,7 +144,7 @@ def uses(node: Node) -> tuple[int, ...]:
 
 
 def in_slots(node: Node, slots: Mapping[int, int]) -> Apply | Select | IfErrorNode | Range:
-    """A node whose parts are known by other numbers.
+    """Return a node whose parts are known by other numbers.
 
     Raises:
         TypeError: it has no parts.
@@ -165,7 +165,7 @@ def in_slots(node: Node, slots: Mapping[int, int]) -> Apply | Select | IfErrorNo
 
 
 def evaluate_node(node: Apply | Select | IfErrorNode | Range, values: Mapping[int, Value]) -> Value:
-    """The value of a node: on the careful path, and of what is constant while formulas are lowered."""
+    """Evaluate a node: on the careful path, and if it is constant while formulas are lowered."""
     needed = {node_id: values[node_id] for node_id in uses(node)}
     if isinstance(node, Range):
         ask_for_cells(max(value.shape[0] for value in needed.values()), len(node.rows), len(node.rows[0]))
@@ -178,7 +178,7 @@ def evaluate_node(node: Apply | Select | IfErrorNode | Range, values: Mapping[in
 
 
 def in_own_memory(result: Value, arguments: Iterable[Value]) -> Value:
-    """The result in memory apart from the arguments, whose buffers are soon written to again."""
+    """Return the result in memory apart from the arguments, whose buffers are soon written to again."""
     if any(np.may_share_memory(result.numbers, argument.numbers) for argument in arguments):
         return Value(result.numbers.copy(), result.kinds, result.texts)
     return result
@@ -242,7 +242,7 @@ def _grid(columns: list[Any], size: tuple[int, int, int], dtype: Any) -> Any:
 
 
 def arguments_of(function: Function, values: Sequence[Value]) -> list[Value]:
-    """The arguments: those that are taken element by element get one size, ranges that are taken whole stay."""
+    """Give the arguments that are taken element by element one size; ranges that are taken whole stay."""
     loose = [i for i in range(len(values)) if not function.parameter(i).ranged]
     if sum(values[i].numbers.ndim == 3 for i in loose) < 2:
         return list(values)
@@ -266,7 +266,7 @@ def align(values: Sequence[Value]) -> list[Value]:
 
 
 def _pad(value: Value, rows: int, columns: int) -> Value:
-    """The array with #N/A below and to the right; a single row or column is not filled up, as it broadcasts."""
+    """Pad the array with #N/A below and to the right; a single row or column is not filled up, as it broadcasts."""
     shape = value.shape
     lacks = [(0, 0), *((0, 0 if has == 1 else to - has) for has, to in zip(shape[1:], (rows, columns), strict=True))]
     if not any(more for _, more in lacks):
@@ -279,14 +279,18 @@ def _pad(value: Value, rows: int, columns: int) -> Value:
 
 
 def single(value: Value) -> Value:
-    """The value for one cell of an array: a single value, or an array of one cell; a larger array there is #CALC!."""
+    """Return the value for one cell of an array: a single value, or an array of one cell; a larger array there is
+    #CALC!.
+    """
     if value.numbers.ndim == 1:
         return value
     return corner(value) if value.shape[1:] == (1, 1) else _CALC_ERROR
 
 
 def corner(value: Value) -> Value:
-    """What a cell shows of an array that it does not spill: its upper left value; #CALC! where it has no cell."""
+    """Return what a cell shows of an array that it does not spill: its upper left value; #CALC! where it has
+    no cell.
+    """
     if value.numbers.ndim == 1:
         return value
     if 0 in value.shape[1:]:
@@ -316,7 +320,7 @@ class Ragged(Value):
         return all(trial.plain for trial in self.trials)
 
     def take(self, index: NDArray[np.intp]) -> Value:
-        """The trials of `index`."""
+        """Return the trials of `index`."""
         return Ragged([self.trials[i] for i in index])
 
 
@@ -405,16 +409,16 @@ class Dag:
         self.ends.append(len(self.nodes))
 
     def naming_cell(self, error: TooLargeError) -> FormulaError:
-        """The error, naming the cell whose formula first asked for its node."""
+        """Return the error, naming the cell whose formula first asked for its node."""
         return error if error.node is None else self.naming_cell_of(error, error.node)
 
     def naming_cell_of(self, error: FormulaError, node: int) -> FormulaError:
-        """The error, naming the cell whose formula first asked for the node; one that names a cell stays as it is."""
+        """Return the error, naming the cell whose formula first asked for the node, unless it names a cell already."""
         at = bisect_right(self.ends, node)
         return error if at == len(self.ends) or error.where is not None else error.at(self.hosts[at])
 
     def constant(self, value: Value) -> int:
-        """The node of a known value.
+        """Return the node of a known value.
 
         Raises:
             TooLargeError: the constants of the workbook take too much memory.
@@ -433,27 +437,27 @@ class Dag:
             )
 
     def input(self, name: str) -> int:
-        """The node of an assumption."""
+        """Return the node of an assumption."""
         node = Input(name)
         return self._register(node, node, Kind.NUMBER, None)
 
     def circle(self) -> int:
-        """The node of a value that is not there: that of a cell which is asked for while it is computed."""
+        """Return the node of a value that is not there: that of a cell which is asked for while it is computed."""
         return self._register_missing(_CIRCLE, constant(ErrorCode.CALC))
 
     def part_of(self, node_id: int, cell: Value) -> int:
-        """The node of one cell of a constant."""
+        """Return the node of one cell of a constant."""
         here = node_id in self.missing and bool((cell.kinds == ERROR + ErrorCode.CALC).any())
         return self.circle() if here else self.constant(cell)
 
     def _register_missing(self, key: object, value: Value) -> int:
-        """A constant apart from those that are equal to it."""
+        """Add a constant apart from those that are equal to it."""
         node_id = self._register(key, Constant(value), _constant_type(value), value.shape[1:] or None)
         self.missing.add(node_id)
         return node_id
 
     def add(self, node: Apply | Select | IfErrorNode | Range) -> int:
-        """The index of the node; a node whose parts are all constant becomes a constant at once.
+        """Add a node and return its index; a node whose parts are all constant becomes a constant at once.
 
         Raises:
             ValueError: parts of many cells have sizes that do not go together.
@@ -513,7 +517,9 @@ class Dag:
         return self._register(node, node, self._type(node) if size is None else Kind.ANY, size)
 
     def _from_1904(self, node: Apply) -> Apply:
-        """The call with texts that are dates as days from 1904 on: known ones now, others when they are computed."""
+        """Return the call with texts that are dates as days from 1904 on: known ones now, others when they are
+        computed.
+        """
         arguments = list(node.arguments)
         for position, argument in enumerate(arguments):
             known = self._single_constant(argument) if self.types[argument] is Kind.TEXT else None
@@ -524,7 +530,7 @@ class Dag:
         return Apply(node.function if sure else from_1904(node.function), tuple(arguments))
 
     def to_numbers(self, value: Value) -> tuple[Floats, Codes]:
-        """What arithmetic reads of a value, by the workbook's calendar."""
+        """Return what arithmetic reads of a value, by the workbook's calendar."""
         with dates_from_1904() if self._date1904 else nullcontext():
             return value.to_numbers()
 
@@ -535,7 +541,7 @@ class Dag:
         return not all(isinstance(self.nodes[part], Constant) for part in node.arguments)
 
     def _fold_choice(self, node: Apply | Select | IfErrorNode | Range) -> int | None:
-        """What an `IF` or an `IFERROR` gives whose condition or value is a constant, which steps do not take."""
+        """Return what an `IF` or an `IFERROR` gives whose condition or value is a constant, which steps do not take."""
         match node:
             case Select(condition, yes, no):
                 known = self._single_constant(condition)
@@ -596,7 +602,9 @@ class Dag:
         return self.types[left] if self.types[left] is self.types[right] else Kind.ANY
 
     def upstream(self, targets: Sequence[int], reads: Callable[[int], Sequence[int]] | None = None) -> list[int]:
-        """The varying nodes that the targets need, in order; `reads` says what a node needs, if not all it uses."""
+        """Return the varying nodes that the targets need, in order; `reads` says what a node needs, if not
+        all it uses.
+        """
         needed, found = set(targets), []
         for node in range(max(needed, default=-1), -1, -1):
             if node in needed and not isinstance(self.nodes[node], Constant):

@@ -93,7 +93,7 @@ def _iterate(round_: Round, cells: Sequence[Value], given: Sequence[Value]) -> l
 
 
 def _are_still(before: Sequence[Value], after: Sequence[Value], change: float) -> Bools:
-    """The trials in which no cell has changed by so much: numbers by less, all else not at all."""
+    """Find the trials in which no cell has changed by so much: numbers by less, all else not at all."""
     still = np.ones(after[0].shape[0], bool)
     for old, new in zip(before, after, strict=True):
         moved = np.abs(new.numbers - old.numbers)
@@ -105,5 +105,5 @@ def _are_still(before: Sequence[Value], after: Sequence[Value], change: float) -
 
 
 def _kinds(value: Value) -> np.ndarray:
-    """The kinds, those that count as numbers being one."""
+    """Return the kinds, those that count as numbers being one."""
     return np.where((value.kinds >= ERROR) | (value.kinds == TEXT), value.kinds, np.uint8(0))

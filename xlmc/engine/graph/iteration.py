@@ -111,7 +111,7 @@ def _round(
 
 
 def _dependent(dag: Dag, needed: Iterable[int], parameters: Iterable[int]) -> list[int]:
-    """The nodes among those needed that depend on parameters, in order."""
+    """Return the nodes among those needed that depend on parameters, in order."""
     found = set(parameters)
     for node in needed:
         if not found.isdisjoint(uses(dag.nodes[node])):

@@ -49,7 +49,7 @@ class NothingCallsError(FormulaError):
 def lower(
     lowering: TreeLowering, tree: ir.Variable | ir.Let | ir.Lambda | ir.FunctionName | ir.Invoke, scope: Scope
 ) -> int:
-    """The node of a variable, a LET or a call.
+    """Lower a variable, a LET or a call.
 
     Raises:
         NothingCallsError: it is a LAMBDA that is not called.
@@ -80,7 +80,7 @@ def _variable(lowering: TreeLowering, name: str, scope: Scope) -> int:
 
 
 def _call(lowering: TreeLowering, function: Callee, arguments: Arguments, scope: Scope) -> int:
-    """The node of a call; another number of arguments than there are parameters is `#VALUE!`."""
+    """Lower a call; another number of arguments than there are parameters is `#VALUE!`."""
     if not _takes(function, len(arguments)):
         return lowering.error(ErrorCode.VALUE)
     match function:
@@ -96,7 +96,7 @@ def _call(lowering: TreeLowering, function: Callee, arguments: Arguments, scope:
 
 
 def _call_lambda(lowering: TreeLowering, function: Closure, arguments: Arguments, scope: Scope) -> int:
-    """A call written out, unless the LAMBDA calls itself too deep for that."""
+    """Write a call out, unless the LAMBDA calls itself too deep for that."""
     calls = lowering.lambda_calls
     if calls.is_open(function):
         check_depth(scope)
@@ -129,7 +129,7 @@ def _lower_array(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> i
 
 
 def _call_for_one_value(lowering: TreeLowering, function: Callee, arguments: Arguments, scope: Scope) -> int:
-    """A call that must give a single value; an array is `#CALC!`, as Excel has no arrays of arrays."""
+    """Lower a call that must give a single value; an array is `#CALC!`, as Excel has no arrays of arrays."""
     return _one_value(lowering, _call(lowering, function, arguments, scope.over_arrays()))
 
 
@@ -190,7 +190,7 @@ class _Items:
 
 
 def _range_of(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> Area | None:
-    """The one range that a tree refers to; None if it is another value, or goes on beyond the filled cells."""
+    """Return the one range that a tree refers to; None if it is another value, or goes on beyond the filled cells."""
     areas = areas_of(lowering, tree, scope)
     return areas[0] if areas is not None and len(areas) == 1 and not areas[0].is_cut else None
 
@@ -284,7 +284,7 @@ def _make_array(lowering: TreeLowering, arguments: Trees, scope: Scope) -> int:
 
 
 def _known_size(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> float | ErrorCode:
-    """A number of rows or columns; below 1 it is `#VALUE!`."""
+    """Read a number of rows or columns; below 1 it is `#VALUE!`."""
     known: Value | None = lowering.lookup_constant(lowering.call("TRUNC", (lowering.lower(tree, scope),)))
     if known is None:
         hint = "SEQUENCE and TAKE take a size that varies"

@@ -172,23 +172,25 @@ class Lowering(TreeLowering):
                 self._set(cell, self._lower_placed(cell, placed))
 
     def target(self, target: Target) -> int:
-        """The node of a target."""
+        """Lower a target."""
         return self.first_cell(self.lower(target.tree, Scope(target.cell)))
 
     def known(self, target: Target) -> Value | None:
-        """The target's value where no input reaches it; None if one does."""
+        """Return the target's value where no input reaches it; None if one does."""
         return self.lookup_constant(self.target(target))
 
     def value(self, cell: Cell) -> Value | None:
-        """What a formula cell computes where that is constant; None if it is not."""
+        """Return what a formula cell computes where that is constant; None if it is not."""
         return self.lookup_constant(self._computed[cell])
 
     def filled(self, cell: Cell, anchor: Cell) -> Value | None:
-        """What the array formula of another cell puts into a cell, where that is constant; None if it is not."""
+        """Return what the array formula of another cell puts into a cell, where that is constant; None if it is not."""
         return self.lookup_constant(self._filled_cell(cell, anchor))
 
     def last_step(self, cell: Cell) -> tuple[str, list[Value]] | None:
-        """The function that a formula cell ends with, and its arguments, where all is constant; None otherwise."""
+        """Return the function that a formula cell ends with, and its arguments, where all is constant;
+        otherwise None.
+        """
         node_id = self._computed[cell]
         node = self.dag.origins.get(node_id, self.dag.nodes[node_id])
         if not isinstance(node, Apply):
@@ -242,7 +244,7 @@ class Lowering(TreeLowering):
         return self._fill_down.lower(stencil, leaves, lambda: self.lower_cell(cell, stencil.at(cell)))
 
     def lower_cell(self, cell: Cell, tree: ir.Expression) -> int:
-        """The node of a formula cell; its saved value where xlmc cannot compute it."""
+        """Lower a formula cell; where xlmc cannot compute it, its saved value."""
         formula = self.graph.workbook.content(host_of(cell)).formula
         self._led, self._unknown = set(), {}
         try:
@@ -294,7 +296,7 @@ class Lowering(TreeLowering):
                 raise unless_saved
 
     def _lower_formula(self, tree: ir.Expression, scope: Scope) -> int:
-        """The node of a cell's formula; a LAMBDA that nothing calls is `#CALC!` there."""
+        """Lower a cell's formula; a LAMBDA that nothing calls is `#CALC!` there."""
         try:
             return self.lower(tree, scope)
         except lambdas.NothingCallsError:
@@ -303,13 +305,13 @@ class Lowering(TreeLowering):
             return self.error(ErrorCode.CALC)
 
     def _show(self, node: int) -> int:
-        """What a formula's cell shows: 0 for an empty one, in each trial."""
+        """Return what a formula's cell shows: 0 for an empty one, in each trial."""
         if self.dag.types[node] is Kind.ANY and not isinstance(self.dag.nodes[node], Constant | Input):
             return self.dag.add(Apply(_SHOWN, (node,)))
         return self.zero_if_blank(node)
 
     def _filled_cell(self, cell: Cell, anchor: ir.Expression) -> int:
-        """A cell that the array formula of another fills."""
+        """Return the node of a cell that the array formula of another fills."""
         assert isinstance(anchor, Cell)
         if anchor in self.saved:
             return self._use_saved(cell, self.faults[anchor])
@@ -321,7 +323,7 @@ class Lowering(TreeLowering):
         return self._blank if node is None else node if self.dag.sizes[self.array(anchor)] == MANY else self._show(node)
 
     def cell(self, cell: Cell) -> int:
-        """The node of a cell's value."""
+        """Return the node of a cell's value."""
         if cell not in self._cells:
             if cell in self.circle:
                 return self.dag.circle()
@@ -331,11 +333,11 @@ class Lowering(TreeLowering):
         return self._cells[cell]
 
     def array(self, cell: Cell) -> int:
-        """The node of all that an array formula in a cell gives."""
+        """Return the node of all that an array formula in a cell gives."""
         return self._arrays.get(cell, self.cell(cell))
 
     def spill(self, cell: Cell) -> int:
-        """The node of the cells that an array formula fills; a cell shows 0 for an empty value."""
+        """Return the node of the cells that an array formula fills; a cell shows 0 for an empty value."""
         node = self.array(cell)
         constant_ = isinstance(self.dag.nodes[node], Constant)
         return self.zero_if_blank(node) if constant_ else self.apply(_SHOWN, (node,))
@@ -355,7 +357,7 @@ class Lowering(TreeLowering):
         return self.graph.workbook.content(cell).formula is not None or self._spills.anchor(cell) is not None
 
     def awaited(self, area: Area) -> Sequence[Cell]:
-        """The cells of an area that must still be lowered before a formula can refer to it.
+        """Return the cells of an area that must still be lowered before a formula can refer to it.
 
         An area that awaits none is not looked through again: thousands of lookups may refer to the same columns.
         """
@@ -400,7 +402,7 @@ class Lowering(TreeLowering):
         return self.dag.constant(constant(None))
 
     def lower(self, tree: ir.Expression, scope: Scope) -> int:
-        """The node of a tree."""
+        """Lower a tree."""
         match tree:
             case ir.Number(value):
                 return self.number(value)
@@ -451,7 +453,7 @@ class Lowering(TreeLowering):
         return self.apply(SNAP_TO_ZERO, (node, before))
 
     def _join(self, tree: ir.Binary, scope: Scope) -> int:
-        """The node of references joined by an operator, where one value is wanted."""
+        """Lower references joined by an operator, where one value is wanted."""
         try:
             areas = areas_of(self, tree, scope)
         except NoReference as found:
@@ -461,7 +463,7 @@ class Lowering(TreeLowering):
         return self.lower(areas[0], scope)
 
     def _intersect(self, area: Area, host: Cell) -> int:
-        """The cell of a one-column (one-row) area in the host's row (column), as a plain formula takes it."""
+        """Return the cell of a one-column (one-row) area in the host's row (column), as a plain formula takes it."""
         area = area.whole
         if area.rows == area.columns == 1:
             return self.cell(Cell(area.sheet, area.top, area.left))
@@ -489,13 +491,13 @@ class Lowering(TreeLowering):
         return self.call_by_name(name, arguments, scope)
 
     def _name_error(self, name: str, unless_saved: FormulaError | None) -> int:
-        """The node of a name or function that Excel does not know; `unless_saved` is raised if it saved no #NAME?."""
+        """Lower a name or function that Excel does not know; `unless_saved` is raised if it saved no #NAME?."""
         if self._unknown is not None:
             self._unknown[name] = unless_saved
         return self.error(ErrorCode.NAME)
 
     def call_by_name(self, name: str, arguments: tuple[ir.Expression, ...], scope: Scope) -> int:
-        """The node of a function of values."""
+        """Lower a function of values."""
         function = function_named(name)
         if function is None:
             raise not_computed(name)
@@ -520,7 +522,7 @@ class Lowering(TreeLowering):
         scope: Scope,
         first: Mapping[int, Function],
     ) -> int:
-        """A call of a function of the registry; some of its arguments go through another function first."""
+        """Call a function of the registry; some of its arguments go through another function first."""
         book = self.graph.workbook
         function_here = with_settings(function, book.date1904, book.macintosh)
         picked = PICKING.get(function.name) if self.graph.circles else None
@@ -539,7 +541,7 @@ class Lowering(TreeLowering):
     def _as_read(
         self, function: Function, picked: int, tree: ir.Expression, scope: Scope, given: Mapping[int, list[int]]
     ) -> int | None:
-        """The node of a range of which a function reads a few cells; None if it is to be read whole."""
+        """Lower a range of which a function reads a few cells; None if it is to be read whole."""
         try:
             areas = areas_of(self, tree, scope.of(function.parameter(picked).ranges).pointed_at())
         except NoReference:
@@ -556,7 +558,9 @@ class Lowering(TreeLowering):
         scope: Scope,
         first: Mapping[int, Function],
     ) -> list[int]:
-        """The nodes of an argument of a call: several of joined areas, where the function takes any number of them."""
+        """Lower an argument of a call: to several nodes for joined areas, where the function takes any number
+        of them.
+        """
         parameter = function.parameter(position)
         beside = scope.of(parameter.ranges)
         if parameter.ranges is Ranges.ONE_CELL:
@@ -568,7 +572,7 @@ class Lowering(TreeLowering):
         return nodes if parameter.repeat else [self._stack(nodes)]
 
     def _special(self, name: str, arguments: tuple[ir.Expression, ...], scope: Scope) -> int | None:
-        """The node of a function that takes more than values; None of one that takes values alone."""
+        """Lower a function that takes more than values; None of a function that takes values alone."""
         for special in (CHOICES, REFERENCE_FUNCTIONS, lambdas.LAMBDAS, WRITTEN_OUT):
             if name in special:
                 try:
@@ -578,7 +582,7 @@ class Lowering(TreeLowering):
         return None
 
     def _stack(self, parts: list[int]) -> int:
-        """Joined areas as one, for a function that takes a single range: their cells in one column."""
+        """Stack joined areas, for a function that takes a single range: their cells in one column."""
         if len(parts) == 1:
             return parts[0]
         cells = []
@@ -588,7 +592,9 @@ class Lowering(TreeLowering):
         return grid(self.dag, len(cells), 1, lambda r, _: cells[r])
 
     def whole(self, tree: ir.Expression, scope: Scope) -> list[int]:
-        """An argument that may be a range: ranges whole, joined areas one by one, anything else as it computes."""
+        """Lower an argument that may be a range: ranges whole, joined areas one by one, anything else as it
+        computes.
+        """
         try:
             areas = areas_of(self, tree, scope)
         except NoReference as found:
@@ -599,7 +605,7 @@ class Lowering(TreeLowering):
         return [self.range(area) for area in areas]
 
     def range(self, area: Area) -> int:
-        """The node of all cells of an area, which are looked up once.
+        """Return the node of all cells of an area, which are looked up once.
 
         Raises:
             TooLargeError: they are too many.
@@ -639,7 +645,7 @@ class Lowering(TreeLowering):
             known.pop(cell, None)
 
     def node_of(self, cell: Cell) -> int:
-        """The node of a formula cell that is lowered."""
+        """Return the node of a formula cell that is lowered."""
         return self._computed[cell]
 
     def refuse(self, cells: Sequence[Cell], error: FormulaError) -> None:
@@ -675,7 +681,7 @@ class Lowering(TreeLowering):
         self.notices.append(found.notice(self._iteration))
 
     def _lower_iterated(self, parameters: Mapping[Cell, int]) -> list[int]:
-        """The nodes of the formulas of cells, read as what stands for them."""
+        """Lower the formulas of cells, read as what stands for them."""
         known = dict(self._ranges)
         self._cells |= parameters
         results = []
@@ -689,7 +695,7 @@ class Lowering(TreeLowering):
         return results
 
     def not_there(self, area: Area) -> Collection[Cell]:
-        """The cells of an area that are in a circle and have no value yet."""
+        """Return the cells of an area that are in a circle and have no value yet."""
         known, missing = self._cells, self.dag.missing
         return {c for c in self._circles if c in area and (c not in known or known[c] in missing)}
 

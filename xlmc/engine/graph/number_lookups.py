@@ -38,7 +38,7 @@ class NumberLookups:
         self._columns: dict[tuple[int, int, bool], int | None] = {}
 
     def apply(self, function: Function, arguments: Sequence[int]) -> int | None:
-        """The node of a lookup of a number that varies in constant numbers; None of any other call."""
+        """Make the node of a lookup of a number that varies in constant numbers; None of any other call."""
         form = _FORMS.get(function.name)
         return None if form is None or len(arguments) < 2 else form(self, arguments)
 
@@ -87,14 +87,14 @@ class NumberLookups:
         return self._cell_at(self._column(arguments[0], int(column) - 1), arguments[1])
 
     def _look_up(self, key: int, column: int | None, results: int | None, order: float) -> int | None:
-        """The result at the position of a key in a column."""
+        """Return the result at the position of a key in a column."""
         if column is None or results is None or self._size(results) < self._size(column):
             return None
         position = self._position(key, column, order)
         return None if position is None else self._dag.add(Apply(CELL_AT, (results, position)))
 
     def _position(self, key: int, column: int, order: float) -> int | None:
-        """The position of a key in a column; None if the key is no number, or the column not in order."""
+        """Return the position of a key in a column; None if the key is no number, or the column not in order."""
         dag = self._dag
         varies = dag.types[key] is Kind.NUMBER and dag.sizes[key] is None and not isinstance(dag.nodes[key], Constant)
         cells = _constant_cells(dag, column)
@@ -103,7 +103,7 @@ class NumberLookups:
         return dag.add(Apply(POSITION, (key, column, dag.constant(constant(order)))))
 
     def _cell_at(self, column: int | None, position: int) -> int | None:
-        """The number of a column at the position of a lookup in no more numbers.
+        """Return the number of a column at the position of a lookup in no more numbers.
 
         That the position's node decides, and not its type alone, is safe: an INDEX is lowered in each cell anew.
         """
@@ -115,12 +115,14 @@ class NumberLookups:
         return self._dag.add(Apply(CELL_AT, (column, position)))
 
     def _vector(self, table: int) -> int | None:
-        """A row or a column of numbers, as a column."""
+        """Turn a row or a column of numbers into a column."""
         rows, columns = self._size(table)
         return self._column(table, 0, across=rows == 1) if 1 in (rows, columns) else None
 
     def _column(self, table: int, at: int, *, across: bool = False) -> int | None:
-        """A column of a constant table, or its row if `across`, as a column; None if not all cells are numbers."""
+        """Return a column of a constant table, or its row if `across`, as a column; None if not all cells are
+        numbers.
+        """
         if (table, at, across) not in self._columns:
             self._columns[table, at, across] = self._make_column(table, at, across=across)
         return self._columns[table, at, across]
@@ -152,7 +154,7 @@ _FORMS: Final[Mapping[str, Callable[[NumberLookups, Sequence[int]], int | None]]
 
 
 def lookup_of(dag: Dag, node: Apply) -> Search | Pick | None:
-    """What computes a search or a pick of plain numbers; None of any other node."""
+    """Return what computes a search or a pick of plain numbers; None of any other node."""
     if node.function.name == CELL_AT.name:
         cells = _constant_cells(dag, node.arguments[0])
         return None if cells is None else _pick(cells)
@@ -163,7 +165,7 @@ def lookup_of(dag: Dag, node: Apply) -> Search | Pick | None:
 
 
 def key_of(node: Apply) -> int:
-    """The key of a search, or the position of a pick: the argument that varies."""
+    """Return the key of a search, or the position of a pick: the argument that varies."""
     return node.arguments[0 if node.function.name == POSITION.name else 1]
 
 
@@ -180,7 +182,7 @@ def _search(cells: Value, order: float) -> Search | None:
 
 
 def _constant_cells(dag: Dag, node_id: int) -> Value | None:
-    """The cells of a range that does not vary."""
+    """Return the cells of a range that does not vary."""
     node = dag.nodes[node_id]
     return node.value if isinstance(node, Constant) and node.value.numbers.ndim == 3 else None
 

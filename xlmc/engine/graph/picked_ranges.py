@@ -34,22 +34,22 @@ class Reads(Protocol):
     dag: Dag
 
     def not_there(self, area: Area) -> Collection[Cell]:
-        """The cells of an area that are in a circle and have no value yet."""
+        """Return the cells of an area that are in a circle and have no value yet."""
 
     def read_first(self, cells: Collection[Cell]) -> None:
         """Ask for all cells that must be lowered first."""
 
     def range(self, area: Area) -> int:
-        """The node of all cells of an area."""
+        """Return the node of all cells of an area."""
 
     def cell(self, cell: Cell) -> int:
-        """The node of a cell's value."""
+        """Return the node of a cell's value."""
 
 
 def range_as_read(
     lowering: Reads, function: Function, picked: int, area: Area, given: Mapping[int, Sequence[int]]
 ) -> int | None:
-    """The node of a range with the cells that a function reads, and those that are there; the others are empty.
+    """Return the node of a range with the cells that a function reads, and those that are there; the others are empty.
 
     Args:
         lowering: of the workbook.
@@ -78,7 +78,7 @@ def range_as_read(
 
 
 def _known(dag: Dag, nodes: Sequence[int]) -> Value | None:
-    """The value of an argument that does not vary."""
+    """Return the value of an argument that does not vary."""
     node = dag.nodes[nodes[0]]
     return node.value if len(nodes) == 1 and isinstance(node, Constant) and nodes[0] not in dag.missing else None
 

@@ -29,7 +29,7 @@ _AT_ONCE: Final = 200
 
 
 def lower_pivot_data(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
-    """The node of GETPIVOTDATA(data field, cell of the pivot table, field, item, …).
+    """Lower GETPIVOTDATA(data field, cell of the pivot table, field, item, …).
 
     Raises:
         FormulaError: the pivot table, the data field or a field varies, or is not as it must be.
@@ -113,7 +113,7 @@ class _Choice:
         self._made = 0
 
     def tree(self, pairs: Sequence[tuple[int, ir.Expression]], chosen: _Chosen) -> ir.Expression:
-        """The tree of the value, once the other items are chosen, too."""
+        """Return the tree of the value, once the other items are chosen, too."""
         if not pairs:
             return self._cell(chosen)
         (field, tree), *rest = pairs
@@ -147,7 +147,7 @@ class _Choice:
         return found
 
     def _cell(self, chosen: _Chosen) -> ir.Expression:
-        """The cell that shows these items, or, alone, these and others; otherwise `#REF!`.
+        """Return the cell that shows these items, or, alone, these and others; otherwise `#REF!`.
 
         Raises:
             FormulaError: it is empty; what Excel makes of that is not known.

@@ -27,7 +27,7 @@ Reads = Mapping[int, Sequence[int]]
 def order_by_need(
     nodes: Sequence[int], reads: Reads, keep: Collection[int], enough: int, few: int = FEW
 ) -> Sequence[int]:
-    """The nodes in the better order.
+    """Put the nodes in the better order.
 
     Args:
         nodes: in the order in which they were made.
@@ -67,7 +67,7 @@ def _as_early_as_possible(nodes: Sequence[int], reads: Reads, few: int) -> list[
 
 
 def _missing(node: int, needs: Reads, done: Container[int], few: int) -> Iterable[int]:
-    """The nodes to compute for a node, itself the last; none where they are more than a few."""
+    """Return the nodes to compute for a node, itself the last; none where they are more than a few."""
     found: dict[int, None] = {}
     open_ = [node]
     while open_:
@@ -85,7 +85,7 @@ def _missing(node: int, needs: Reads, done: Container[int], few: int) -> Iterabl
 
 
 def most_waiting(order: Sequence[int], reads: Reads, keep: Iterable[int]) -> int:
-    """The most values of these nodes that wait at a time to be read."""
+    """Return the most values of these nodes that wait at a time to be read."""
     own = set(order)
     waiting, most = own.intersection(keep), 0
     for node in reversed(order):  # what waits before a node is what waits after it, and what it reads

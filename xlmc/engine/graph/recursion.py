@@ -52,7 +52,7 @@ class _Given:
 
 
 def call_recursive(lowering: TreeLowering, function: Closure, arguments: Arguments, scope: Scope) -> int:
-    """The node of a call that is not written out.
+    """Make the node of a call that is not written out.
 
     Raises:
         FormulaError: it gives an array, or hands on what no body can take.
@@ -129,7 +129,7 @@ def _values(lowering: TreeLowering, node: int) -> _Given:
 
 
 def _bind_parameters(dag: Dag, given: Sequence[_Given], parameters: Sequence[int]) -> list[int | Thunk | Closure]:
-    """What the parameters stand for in the body."""
+    """Return what the parameters stand for in the body."""
     bound: list[int | Thunk | Closure] = []
     left = iter(parameters)
     for each in given:
@@ -150,7 +150,7 @@ def placeholder(dag: Dag) -> int:
 
 
 def _marker(name: str) -> Function:
-    """A function that stands for what has no value while it is lowered; `volatile`, so that it is no constant."""
+    """Make a function that stands for what has no value while it is lowered; `volatile`, so that it is no constant."""
     return Function(name, (Cells(repeat=True),), _never, Kind.ANY, volatile=True)
 
 
@@ -159,7 +159,7 @@ def _never(*_: Value) -> Value:
 
 
 def _body(dag: Dag, definition: RecursiveLambda, result: int, deepest: int) -> tuple[Body, tuple[int, ...]]:
-    """The body, and the nodes that it takes from outside."""
+    """Lower the body, and find the nodes that it takes from outside."""
     steps = _find_dependent(dag, definition, result)
     parameters = definition.parameters
     read = dict.fromkeys(used for node_id in [*steps, result] for used in (node_id, *uses(dag.nodes[node_id])))
@@ -174,7 +174,7 @@ def _body(dag: Dag, definition: RecursiveLambda, result: int, deepest: int) -> t
 
 
 def _find_last_calls(steps: Mapping[int, Step], result: int) -> frozenset[int]:
-    """The calls of itself that end the calculation, and the `IF`s on the way to them."""
+    """Find the calls of itself that end the calculation, and the `IF`s on the way to them."""
     used = Counter(slot for step in steps.values() for slot in _uses(step))
     path, waiting = list[int](), [result]
     while waiting:
@@ -199,7 +199,7 @@ def _uses(step: Step) -> tuple[int, ...]:
 
 
 def _find_dependent(dag: Dag, definition: RecursiveLambda, result: int) -> list[int]:
-    """The nodes that the result needs and that depend on the parameters or call the LAMBDA itself, in order."""
+    """Return the nodes that the result needs and that depend on the parameters or call the LAMBDA itself, in order."""
     needed = dag.upstream([result])
     found = set(definition.parameters)
     for node_id in needed:
@@ -211,6 +211,6 @@ def _find_dependent(dag: Dag, definition: RecursiveLambda, result: int) -> list[
 
 
 def _step(node: Node, itself: Function, slots: dict[int, int]) -> Step:
-    """A node whose parts are slots."""
+    """Return a node whose parts are slots."""
     step = in_slots(node, slots)
     return SelfCall(step.arguments) if isinstance(step, Apply) and step.function is itself else step

@@ -92,7 +92,7 @@ class _Frame:
     bytes: int = 0
 
     def find(self, slot: int) -> Value | None:
-        """A value that was computed here, or for more trials further out."""
+        """Return a value that was computed here, or for more trials further out."""
         found = self.values.get(slot)
         if found is None and self.parent is not None and self.index is not None:
             found = self.parent.find(slot)
@@ -101,7 +101,7 @@ class _Frame:
         return found
 
     def of(self, index: Trials) -> _Frame:
-        """The call for some of the trials, those of one branch."""
+        """Restrict the call to some of the trials, those of one branch."""
         if index.size == self.trials.size:
             return self
         return _Frame({}, self.trials[index], self.own_trials[index], self.depth, self, index)
@@ -120,7 +120,7 @@ Asking = Generator[tuple[_Frame, int], Value, Any]
 
 
 def call_lambda(body: Body, *values: Value) -> Value:
-    """What a call gives, (n,), of its arguments and of what it takes from outside.
+    """Return what a call gives, (n,), of its arguments and of what it takes from outside.
 
     Raises:
         FormulaError: it gives an array, or its calls take too many steps; calls too deep are `#NUM!`.
@@ -180,7 +180,7 @@ class _Run:
     _waiting: list[Asking] = field(default_factory=list)
 
     def value(self, values: Sequence[Value], trials: Trials) -> Value:
-        """The result of the outermost call."""
+        """Return the result of the outermost call."""
         self._waiting = [self._call(dict(enumerate(values)), trials, 1)]
         answer: Any = None
         while self._waiting:
@@ -197,7 +197,7 @@ class _Run:
         return found
 
     def _call(self, values: dict[int, Value], trials: Trials, depth: int) -> Asking:
-        """A call and the rounds that follow it."""
+        """Run a call and the rounds that follow it."""
         body = self.body
         taken = {slot: values[slot] for slot in range(body.parameters, body.parameters + body.taken)}
         frame = _Frame(values, trials, np.arange(trials.size), depth)
@@ -234,7 +234,7 @@ class _Run:
             found.results.append((frame.own_trials, zero_if_blank(value) if chosen else value))
 
     def _next(self, frame: _Frame, next_calls: list[tuple[_Frame, list[Value]]], taken: dict[int, Value]) -> _Frame:
-        """The next round of a call."""
+        """Start the next round of a call."""
         frames = [each for each, _ in next_calls]
         arguments = next_calls[0][1]
         if len(next_calls) > 1:
@@ -310,7 +310,7 @@ class _Run:
 
 
 def _ask(frame: _Frame, slots: Sequence[int]) -> Asking:
-    """The values of several slots."""
+    """Return the values of several slots."""
     found = []
     for slot in slots:
         value = yield frame, slot
@@ -319,7 +319,7 @@ def _ask(frame: _Frame, slots: Sequence[int]) -> Asking:
 
 
 def _decide(condition: Value) -> tuple[NDArray[np.bool_], Codes]:
-    """The trials in which a condition is true, and its errors."""
+    """Return the trials in which a condition is true, and its errors."""
     if condition.numbers.ndim == 3:
         raise FormulaError("an array decides whether a LAMBDA calls itself", hint="use a single condition")
     truth, errors = condition.to_logicals()
@@ -327,12 +327,12 @@ def _decide(condition: Value) -> tuple[NDArray[np.bool_], Codes]:
 
 
 def _find_marked(taken: NDArray[np.bool_], frame: _Frame) -> Trials:
-    """The trials that are marked, counted in a frame."""
+    """Return the trials that are marked, counted in a frame."""
     return np.flatnonzero(np.broadcast_to(taken, frame.trials.shape))
 
 
 def _one_after_another(frames: Sequence[_Frame], values: Sequence[Value]) -> Value:
-    """The values of several frames as those of one."""
+    """Join the values of several frames into one."""
     return join_values(
         [spread_trials(value, frame.trials.size) for frame, value in zip(frames, values, strict=True)], axis=0
     )

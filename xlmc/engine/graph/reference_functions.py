@@ -94,7 +94,7 @@ def _row_or_column(name: str) -> Callable[[TreeLowering, Arguments, Scope], int 
 
 
 def _find_area(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> Area:
-    """The first argument's area; the formula's own cell where there is none."""
+    """Return the first argument's area; the formula's own cell where there is none."""
     if not arguments or isinstance(arguments[0], ir.Missing):
         cell = host_of(scope.cell)
         return Area(cell.sheet, cell.row, cell.column, cell.row, cell.column)
@@ -153,7 +153,7 @@ def _of_first_cell(name: str) -> Callable[[TreeLowering, Arguments, Scope], int 
 
 
 def _of_formula(lowering: TreeLowering, arguments: Arguments, scope: Scope, of: Callable[[str | None], object]) -> int:
-    """What `of` makes of the formula of the first cell, as Excel shows it."""
+    """Apply `of` to the formula of the first cell, as Excel shows it."""
     area = _find_area(lowering, arguments, scope)
     cell = Cell(area.sheet, area.top, area.left)
     formula = lowering.graph.workbook.content(cell).formula
@@ -224,7 +224,7 @@ def _absolute(cell: Cell, lowering: TreeLowering, host: Cell) -> str:
 
 
 def _file_name(cell: Cell, lowering: TreeLowering, host: Cell) -> str:
-    """The file name without a folder, so that a run does not depend on where it is made."""
+    """Return the file name without a folder, so that a run does not depend on where it is made."""
     return f"[{lowering.graph.workbook.name}]{cell.sheet}"
 
 
@@ -294,7 +294,7 @@ def _count_if(name: str) -> Callable[[TreeLowering, Arguments, Scope], int | Non
 def _call_with_areas(
     lowering: TreeLowering, name: str, arguments: Arguments, areas: Mapping[int, Area], scope: Scope
 ) -> int:
-    """The call with other areas in some of its arguments."""
+    """Return the call with other areas in some of its arguments."""
     parts = [require(lowering, areas[i]) if i in areas else argument for i, argument in enumerate(arguments)]
     return lowering.lower(ir.Call(name, tuple(parts)), scope)
 

@@ -71,7 +71,7 @@ class RunningTotals:
         self._ranges = _RunningRanges(trees, FOLDS)
 
     def of_area(self, name: str, area: Area, alone: Callable[[], int]) -> int:
-        """The fold of an area.
+        """Fold an area.
 
         Args:
             name: of the function, one of `FOLDS`.
@@ -84,7 +84,7 @@ class RunningTotals:
         return self._made[name, area]
 
     def _chain(self, name: str, area: Area) -> int:
-        """The fold of an area of a chain."""
+        """Fold an area of a chain."""
         if name == "AVERAGE":
             return self._dag.add(Apply(REGISTRY["/"], (self._state("SUM", area), self._state(_NUMBERS, area))))
         state = self._state(name, area)
@@ -93,7 +93,7 @@ class RunningTotals:
         return self._dag.add(Apply(REGISTRY[name], (self._dag.add(Range(((state,),))),)))
 
     def _state(self, name: str, area: Area) -> int:
-        """The fold of an area before its last step; the folds of all shorter areas of its chain are noted as well."""
+        """Fold an area up to its last step; the folds of all shorter areas of its chain are noted as well."""
         chain = self._ranges.chain(area, by_rows=name in ("SUM", "PRODUCT"))
         assert chain is not None
         known = self._states
@@ -108,13 +108,13 @@ class RunningTotals:
         return state
 
     def _cells(self, chain: _Chain, at: int) -> list[int]:
-        """The cells that an area of a chain has beyond the one before."""
+        """Return the cells that an area of a chain has beyond the one before."""
         area = chain.areas[at]
         more = _new_cells(chain.areas[at - 1], area, upwards=chain.upwards) if at else area
         return [self._cell(cell) for cell in more.cells()]
 
     def _join(self, name: str, before: int | None, cells: list[int], upwards: bool) -> int:
-        """The fold with more cells, which stand behind those of `before`, or in front of them if `upwards`."""
+        """Continue the fold with more cells, which stand behind those of `before`, or in front of them if `upwards`."""
         if name == _NUMBERS:
             return self._add_to(before, self._how_many(cells))
         if name in ("COUNT", "COUNTA"):
@@ -131,7 +131,9 @@ class RunningTotals:
         return self._apply_to_row(self._function(name, both), both)
 
     def _function(self, name: str, cells: Sequence[int]) -> Function:
-        """The function that folds cells: the one of that name where a cell is surely a number, else its `SO_FAR`."""
+        """Return the function that folds cells: the one of that name where a cell is surely a number, else its
+        `SO_FAR`.
+        """
         surely = name == "SUM" or any(self._dag.types[cell] is Kind.NUMBER for cell in cells)
         return RUNNING.get(name, REGISTRY[name]) if surely else SO_FAR[name]
 
@@ -156,7 +158,7 @@ class RunningTotals:
         return isinstance(node, Constant) and NUMBER < int(node.value.kinds.flat[0]) < ERROR
 
     def apply(self, function: Function, arguments: tuple[int, ...]) -> int:
-        """The node of a function whose arguments are one set, or of one of `PAIRED_OR_COUNTED`."""
+        """Make the node of a function whose arguments are one set, or of one of `PAIRED_OR_COUNTED`."""
         node = Apply(function, arguments)
         cells = self._column(function, arguments)
         before = None if cells is None else self._known.get(cells[:-1])
@@ -172,7 +174,7 @@ class RunningTotals:
         return node_id
 
     def _stand_in(self, function: Function, arguments: Sequence[int]) -> int | None:
-        """The node that stands for the function on the fast path; otherwise None."""
+        """Return the node that stands for the function on the fast path; otherwise None."""
         match function.name:
             case "SUMPRODUCT":
                 return self._fold_products(arguments)
@@ -197,7 +199,7 @@ class RunningTotals:
         return self._dag.constant(constant(float(len(numbers))))
 
     def _fold_products(self, arguments: Sequence[int]) -> int | None:
-        """The sum of products of short ranges of numbers, product by product; None of other arguments.
+        """Sum the products of short ranges of numbers, product by product; None of other arguments.
 
         The careful path does not take it: an error in a later cell of the first range counts before one in the second.
         """
@@ -214,7 +216,8 @@ class RunningTotals:
         return total
 
     def _numbers_of(self, argument: int) -> list[int]:
-        """The cells of a range, each of which is a number unless it is an error; none where another may be there.
+        """Return the cells of a range, each of which is a number unless it is an error; none where another may be
+        there.
 
         None of a long constant either: each of its numbers would become a node.
         """
@@ -227,7 +230,7 @@ class RunningTotals:
         return [self._dag.constant(constant(number)) for number in node.value.numbers.ravel().tolist()]
 
     def _column(self, function: Function, arguments: tuple[int, ...]) -> tuple[int, ...] | None:
-        """The cells of the only argument where it is one long column."""
+        """Return the cells of the only argument where it is one long column."""
         if function.name != "SUM" or len(arguments) != 1:
             return None
         node = self._dag.nodes[arguments[0]]
@@ -236,7 +239,7 @@ class RunningTotals:
         return tuple([cell for (cell,) in node.rows])
 
     def _fold(self, function: Function, arguments: Sequence[int]) -> int | None:
-        """A fold of a long set that goes on as soon as the next cell is there: cells need not wait for the last one.
+        """Fold a long set so that it goes on as soon as the next cell is there: cells need not wait for the last one.
 
         The careful path does not take it: an overflow on the way would hide the error of a later cell.
         """
@@ -311,7 +314,7 @@ class _RunningRanges:
         self._down, self._up = _group(areas, _start, 2), _group(areas, _end, _MANY_UPWARDS)
 
     def chain(self, area: Area, *, by_rows: bool) -> _Chain | None:
-        """The chain that an area is part of; None if it is to be taken by itself.
+        """Return the chain that an area is part of; None if it is to be taken by itself.
 
         Args:
             area: which may be in no group.
@@ -330,7 +333,7 @@ class _RunningRanges:
 
 
 def _new_cells(before: Area, after: Area, *, upwards: bool) -> Area:
-    """The cells of the later of two areas of a chain that the earlier has not."""
+    """Return the cells of the later of two areas of a chain that the earlier has not."""
     if after.rows == 1:
         return replace(after, right=before.left - 1) if upwards else replace(after, left=before.right + 1)
     return replace(after, bottom=before.top - 1) if upwards else replace(after, top=before.bottom + 1)
@@ -360,7 +363,7 @@ def _group(areas: Iterable[Area], key: Callable[[Area], _Key], fewest: int) -> d
 
 
 def _find_folded(tree: ir.Expression, names: Collection[str]) -> Iterator[Area]:
-    """The areas that are the only argument of one of the functions."""
+    """Return the areas that are the only argument of one of the functions."""
     match tree:
         case ir.Unary(_, operand):
             yield from _find_folded(operand, names)

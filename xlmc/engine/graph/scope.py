@@ -64,19 +64,21 @@ class TreeLowering(NodeBuilder, ABC):
 
     @abstractmethod
     def lower(self, tree: ir.Expression, scope: Scope) -> int:
-        """The node of a tree."""
+        """Lower a tree."""
 
     @abstractmethod
     def call_by_name(self, name: str, arguments: tuple[ir.Expression, ...], scope: Scope) -> int:
-        """The node of a function of values."""
+        """Lower a function of values."""
 
     @abstractmethod
     def whole(self, tree: ir.Expression, scope: Scope) -> list[int]:
-        """An argument that may be a range: ranges whole, joined areas one by one, anything else as it computes."""
+        """Lower an argument that may be a range: ranges whole, joined areas one by one, anything else as it
+        computes.
+        """
 
     @abstractmethod
     def range(self, area: Area) -> int:
-        """The node of all cells of an area, which are looked up once.
+        """Return the node of all cells of an area, which are looked up once.
 
         Raises:
             TooLargeError: they are too many.
@@ -84,15 +86,15 @@ class TreeLowering(NodeBuilder, ABC):
 
     @abstractmethod
     def cell(self, cell: Cell) -> int:
-        """The node of a cell's value."""
+        """Return the node of a cell's value."""
 
     @abstractmethod
     def array(self, cell: Cell) -> int:
-        """The node of all that an array formula in a cell gives."""
+        """Return the node of all that an array formula in a cell gives."""
 
     @abstractmethod
     def spill(self, cell: Cell) -> int:
-        """The node of the cells that an array formula fills; a cell shows 0 for an empty value."""
+        """Return the node of the cells that an array formula fills; a cell shows 0 for an empty value."""
 
     @abstractmethod
     def is_saved(self, cell: Cell) -> bool:
@@ -104,7 +106,7 @@ class TreeLowering(NodeBuilder, ABC):
 
     @abstractmethod
     def awaited(self, area: Area) -> Sequence[Cell]:
-        """The cells of an area that must still be lowered before a formula can refer to it."""
+        """Return the cells of an area that must still be lowered before a formula can refer to it."""
 
     @property
     @abstractmethod
@@ -137,7 +139,7 @@ class Closure:
         return most - self.function.optional <= count <= most
 
     def inside(self, arguments: Sequence[int | Thunk | Closure], caller: Scope) -> Scope:
-        """The scope of its calculation in a call."""
+        """Return the scope of its calculation in a call."""
         left_out = [Thunk(ir.Missing(), self.scope)] * (len(self.function.parameters) - len(arguments))
         given = dict(zip(self.function.parameters, (*arguments, *left_out), strict=True))
         return replace(self.scope.bound(given).seen_from(caller), depth=caller.depth + 1)
@@ -197,46 +199,52 @@ class Scope:
         return self.of_array, self.around, self.whole
 
     def over_arrays(self) -> Scope:
-        """The same scope, but with ranges taken cell by cell."""
+        """Return the same scope, but with ranges taken cell by cell."""
         return self if self.array else replace(self, around=True, whole=False)
 
     def plainly(self) -> Scope:
-        """The same scope, but with ranges taken as in the formula, whatever the function around the tree wants."""
+        """Return the same scope, but with ranges taken as in the formula, whatever the function around the
+        tree wants.
+        """
         changes = self.around or self.whole or self.pointing
         return replace(self, around=False, whole=False, pointing=False) if changes else self
 
     def pointed_at(self) -> Scope:
-        """The same scope, asking only where the tree leads."""
+        """Return the same scope, asking only where the tree leads."""
         return self if self.pointing else replace(self, pointing=True)
 
     def inside(self) -> Scope:
-        """The scope of a part of the tree."""
+        """Return the scope of a part of the tree."""
         return replace(self, whole=False, pointing=False) if self.whole or self.pointing else self
 
     def wanted_whole(self) -> Scope:
-        """The same scope, but with a range that is all of the tree wanted whole."""
+        """Return the same scope, but with a range that is all of the tree wanted whole."""
         return self if self.whole else replace(self, whole=True)
 
     def branch(self) -> Scope:
-        """The scope of a choice's branch: a range there is whole where the choice is wanted whole or cell by cell."""
+        """Return the scope of a choice's branch: a range there is whole where the choice is wanted whole or cell by
+        cell.
+        """
         return replace(self, around=False, whole=self.whole or self.around) if self.around else self
 
     def of(self, ranges: Ranges) -> Scope:
-        """The scope of an argument that takes ranges so."""
+        """Return the scope of an argument that takes ranges so."""
         if ranges is Ranges.CELLS:
             return self.over_arrays()
         return self if ranges in (Ranges.AROUND, Ranges.ONE_CELL) else self.plainly()
 
     def seen_from(self, user: Scope) -> Scope:
-        """The same scope, but with ranges taken, and as deep, as in the scope `user` that uses a variable of it."""
+        """Return the same scope, but with ranges taken, and as deep, as in the scope `user` that uses a
+        variable of it.
+        """
         return replace(self, of_array=user.of_array, around=user.around, whole=user.whole, depth=user.depth)
 
     def bound(self, variables: Mapping[str, int | Thunk | Closure]) -> Scope:
-        """The same scope with more variables."""
+        """Return the same scope with more variables."""
         return replace(self, variables={**self.variables, **variables})
 
     def defining(self, name: str, tree: ir.Expression) -> Scope:
-        """The same scope with a variable whose tree may name the variable itself."""
+        """Return the same scope with a variable whose tree may name the variable itself."""
         variables = dict(self.variables)
         inner = replace(self, variables=variables)
         variables[name] = Thunk(tree, inner)
@@ -340,19 +348,19 @@ def check_depth(scope: Scope) -> None:
 
 
 def bind(value: ir.Expression, scope: Scope) -> Thunk | Closure:
-    """What a variable bound to a tree stands for."""
+    """Return what a variable bound to a tree stands for."""
     return Closure(value, scope) if isinstance(value, ir.Lambda) else Thunk(value, scope)
 
 
 def let_scope(tree: ir.Let, scope: Scope) -> Scope:
-    """The scope in which a LET calculates its result."""
+    """Return the scope in which a LET calculates its result."""
     for name, value in tree.bindings:
         scope = scope.defining(name, value) if tree.recursive else scope.bound({name: bind(value, scope)})
     return scope
 
 
 def find_callee(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> Callee:
-    """The function that a tree gives.
+    """Return the function that a tree gives.
 
     Raises:
         FormulaError: it gives none.
@@ -395,7 +403,7 @@ def _of_thunk(lowering: TreeLowering, thunk: Thunk) -> Callee:
 
 
 def _find_result(lowering: TreeLowering, called: Closure, arguments: Arguments, scope: Scope) -> Callee:
-    """The function that a call gives, which is called in turn."""
+    """Return the function that a call gives, which is called in turn."""
     if not called.takes(len(arguments)):
         raise FormulaError("a LAMBDA that gives a LAMBDA is given another number of arguments than it has parameters")
     check_depth(scope)
@@ -411,7 +419,7 @@ def _of_if(lowering: TreeLowering, condition: int, yes: ir.Expression, no: ir.Ex
 
 
 def find_function(lowering: TreeLowering, argument: int | Thunk | Closure) -> Callee | None:
-    """The function that an argument is; None if it is a value, or where its tree does not show it."""
+    """Return the function that an argument is; None if it is a value, or where its tree does not show it."""
     while isinstance(argument, Thunk):
         match argument.tree:
             case ir.Variable(name):

@@ -26,7 +26,9 @@ __all__ = ["refuse_cells_beyond", "spilled_cell", "unneeded_arrays"]
 
 
 def spilled_cell(dag: Dag, node: int, row: int, column: int) -> int | None:
-    """The node of what a dynamic array gives one cell, counted from 0 from its own; None if it never fills it."""
+    """Return the node of what a dynamic array gives one cell, counted from 0 from its own; None if it never
+    fills it.
+    """
     size = dag.sizes[node] or (1, 1)
     if size == MANY:
         return dag.add(Apply(_picker(row, column), (node,)))
@@ -82,7 +84,8 @@ def refuse_cells_beyond(graph: Graph, dag: Dag, arrays: Mapping[Cell, int], rang
 
 
 def unneeded_arrays(graph: Graph, sheets: Iterable[str], ranges: Iterable[Area]) -> list[Cell]:
-    """The dynamic arrays that no formula needs, but which formulas would see if they filled more than in the file.
+    """Return the dynamic arrays that no formula needs, but which formulas would see if they filled more than in the
+    file.
 
     Args:
         graph: the needed cells.
@@ -105,7 +108,7 @@ def _unneeded_on(graph: Graph, sheet: str) -> Iterator[Cell]:
 
 
 def _growing(graph: Graph, cell: Cell, rows: int, columns: int) -> tuple[Cell, Area, Area] | None:
-    """The cell of a dynamic array that may fill more than the file says, what it filled, and what it may fill.
+    """Return the cell of a dynamic array that may fill more than the file says, what it filled, and what it may fill.
 
     Where its size varies, it may fill the blank cells below, or right of a single row of several cells.
     """

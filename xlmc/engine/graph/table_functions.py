@@ -82,7 +82,9 @@ def _chain(dag: Dag, cell: int, node: Apply, column: Pick, links: list[int]) -> 
 
 
 def _varying_argument(dag: Dag, at: int, node: Apply) -> int | None:
-    """What varies of the arguments of a function of plain numbers; None of other nodes, or where there are several."""
+    """Return what varies of the arguments of a function of plain numbers; None of other nodes, or where there are
+    several.
+    """
     function, arguments = node
     if function.fast_arity != len(arguments) or function.name == SNAP_TO_ZERO.name or at in dag.folded:
         return None
@@ -93,7 +95,7 @@ def _varying_argument(dag: Dag, at: int, node: Apply) -> int | None:
 
 
 def _form(dag: Dag, link: int) -> object:
-    """What is the same for functions that differ in their varying argument alone."""
+    """Return what is the same for functions that differ in their varying argument alone."""
     node = dag.nodes[link]
     assert type(node) is Apply
     return node.function, tuple(a if type(dag.nodes[a]) is Constant else None for a in node.arguments)

@@ -80,7 +80,7 @@ def _apply_to_ranks(lowering: TreeLowering, function: Function, found: Sequence[
 
 @cache
 def _mark_spilling(function: Function) -> Function:
-    """The function, marked as one that may give many cells."""
+    """Mark the function as one that may give many cells."""
     return replace(function, facts=replace(function.facts, spills=True))
 
 
@@ -97,7 +97,7 @@ def _find_skips(lowering: TreeLowering, name: str, options: list[int]) -> Skips 
 
 
 def _hidden_rows(lowering: TreeLowering, area: Area, skips: Skips | None) -> frozenset[int]:
-    """The rows of an area that a total leaves out because they are hidden.
+    """Return the rows of an area that a total leaves out because they are hidden.
 
     Raises:
         FormulaError: some are hidden, and whether they are left out varies.
@@ -114,7 +114,7 @@ def _hidden_rows(lowering: TreeLowering, area: Area, skips: Skips | None) -> fro
 
 
 def _range_that_counts(lowering: TreeLowering, area: Area, skips: Skips | None, nested: bool | None) -> int:
-    """The cells of an area that count; `nested` is whether totals are left out, None if that varies.
+    """Return the cells of an area that count; `nested` is whether totals are left out, None if that varies.
 
     Raises:
         FormulaError: a cell is hidden, or such a total, and whether it is left out varies.

@@ -27,11 +27,11 @@ class TrialSet(NamedTuple):
     depth: int = 0
 
     def taking(self, select: int, branch: int) -> TrialSet:
-        """The trials of this set that take a branch of an `IF`."""
+        """Return the trials of this set that take a branch of an `IF`."""
         return TrialSet(self, select, branch, self.depth + 1)
 
     def outwards(self) -> Iterator[TrialSet]:
-        """The set and those it lies in, from the innermost out."""
+        """Return the set and those it lies in, from the innermost out."""
         trials: TrialSet | None = self
         while trials is not None:
             yield trials
@@ -42,7 +42,7 @@ ALL_TRIALS: Final = TrialSet(None)
 
 
 def common_set(a: TrialSet | None, b: TrialSet) -> TrialSet:
-    """The narrowest set that holds the trials of both; `b` where there is no `a` yet."""
+    """Return the narrowest set that holds the trials of both; `b` where there is no `a` yet."""
     if a is None:
         return b
     while a is not b and a != b:

@@ -68,14 +68,14 @@ class _Call:
         return refusal(self.name)
 
     def with_areas(self, areas: Mapping[int, Sequence[Area]]) -> Arguments:
-        """The arguments with other areas, which are lowered by then."""
+        """Return the arguments with other areas, which are lowered by then."""
         return tuple(
             join_areas([require(self.lowering, area.filled) for area in areas[i]]) if i in areas else argument
             for i, argument in enumerate(self.arguments)
         )
 
     def change_all(self, change: Change) -> Arguments:
-        """The arguments with every range that is cut changed."""
+        """Return the arguments with every range that is cut changed."""
         direct = {i: [change(area) if area.is_cut else area for area in areas] for i, areas in self.direct.items()}
         made = self.with_areas(direct)
 
@@ -103,7 +103,7 @@ class _Call:
 def lower_call(
     lowering: TreeLowering, name: str, function: Function, arguments: Arguments, scope: Scope, make: Make
 ) -> int:
-    """The node of a call, whichever whole columns it is given.
+    """Lower a call, whichever whole columns it is given.
 
     Args:
         lowering: of the workbook.
@@ -134,7 +134,7 @@ def _is_index(tree: ir.Expression) -> bool:
 
 
 def _of_areas(call: _Call) -> int:
-    """A call that is given whole columns as they are."""
+    """Lower a call that is given whole columns as they are."""
     name, facts = call.name, call.function.facts
     if facts.mode_argument is not None:
         return _look_up(call, facts.mode_argument)
@@ -153,7 +153,7 @@ def _of_areas(call: _Call) -> int:
 
 
 def _of_expressions(call: _Call) -> int:
-    """A call that is given something computed of whole columns, cell by cell."""
+    """Lower a call that is given something computed of whole columns, cell by cell."""
     facts = call.function.facts
     if facts.mode_argument is not None:
         return _look_up(call, facts.mode_argument)
@@ -170,7 +170,7 @@ def _of_expressions(call: _Call) -> int:
 
 
 def _split_at_filled(call: _Call) -> tuple[Arguments, Arguments, int]:
-    """The arguments up to the last filled row; the arguments of one further row; and the number of further rows.
+    """Split the arguments: up to the last filled row; those of one further row; and the number of further rows.
 
     Empty cells of arguments that are ranges add nothing to a function that adds up.
     """
@@ -199,7 +199,9 @@ def _check(call: _Call, tree: ir.Expression, length: int, across: bool) -> None:
 
 
 def _ends(call: _Call, further: Arguments) -> list[Arguments]:
-    """The arguments of the first further row, and of the last where the two differ; all others lie between them."""
+    """Return the arguments of the first further row, and of the last where the two differ; all others lie
+    between them.
+    """
     degrees = [_degree(call, i) for i in call.mixed]
     if not any(degrees):
         return [further]
@@ -284,7 +286,7 @@ def _is_not_found(call: _Call) -> bool:
 
 
 def _reach(area: Area, name: str, exact: bool) -> Area:
-    """The area as far as a lookup comes in it; across the direction of the search, one further column or row."""
+    """Return the area as far as a lookup comes in it; across the direction of the search, one further column or row."""
     further = one_further(area)
     if exact:
         return further
@@ -296,7 +298,7 @@ def _reach(area: Area, name: str, exact: bool) -> Area:
 
 
 def _search_computed(call: _Call, exact: bool) -> int:
-    """A lookup in something computed of whole columns."""
+    """Look up in something computed of whole columns."""
     _, further, _ = _split_at_filled(call)
     passed = 1 in call.mixed and _is_passed_over(call, further[1])
     if _degree(call, 1) and not passed:
@@ -326,7 +328,9 @@ def _at_the_end(call: _Call, further: Arguments, otherwise: int) -> int:
 
 
 def _within_read(call: _Call) -> dict[int, Function]:
-    """The function that keeps VLOOKUP's column number, or HLOOKUP's row number, within the cells that are read."""
+    """Return the function that keeps VLOOKUP's column number, or HLOOKUP's row number, within the cells that
+    are read.
+    """
     for area in call.direct.get(1, ()):
         if call.name == "VLOOKUP" and area.further_columns:
             return {2: keep_within(area.columns + 1, area.whole.columns, False)}
@@ -354,7 +358,7 @@ def _pick(call: _Call) -> int:
 
 
 def _with_one_further(call: _Call) -> Arguments:
-    """The arguments of XLOOKUP and XMATCH with one further cell; different sizes must stay different."""
+    """Return the arguments of XLOOKUP and XMATCH with one further cell; different sizes must stay different."""
     if call.mixed:
         _split_at_filled(call)
         sizes = {(area.whole.rows, area.further_columns > 0) for area in call.cut()}

@@ -37,7 +37,7 @@ def jit_program(
     forecasts: Sequence[Target],
     may_err: frozenset[str],
 ) -> Program:
-    """The filters and forecasts as compiled loops, or as the engine `numpy` has them where that is quicker.
+    """Make a program of compiled loops, or that of the engine `numpy` where it is quicker.
 
     Args:
         lowering: the graph of nodes.

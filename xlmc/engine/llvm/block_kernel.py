@@ -198,7 +198,7 @@ def _advance_jump(builder: ir.IRBuilder, halves: Any, chunk: int) -> None:
 
 
 def _gather(module: ir.Module, chunk: int) -> ir.Function:
-    """A function that copies the doubles of the survivors, one after another."""
+    """Make a function that copies the doubles of the survivors, one after another."""
     types = [_DOUBLE.as_pointer(), _DOUBLE.as_pointer(), _LONG.as_pointer(), _LONG]
     function = ir.Function(module, ir.FunctionType(ir.VoidType(), types), "gather")
     function.linkage = "internal"
@@ -220,7 +220,7 @@ def _gather(module: ir.Module, chunk: int) -> ir.Function:
 
 
 def _sieve(module: ir.Module, filters: int, chunk: int) -> ir.Function:
-    """A function that counts what the filters reject of a chunk, and lists and counts the trials that they keep."""
+    """Make a function that counts what the filters reject of a chunk, and lists and counts the trials that survive."""
     types = [*[_BYTE.as_pointer()] * filters, _LONG.as_pointer(), _LONG.as_pointer()]
     function = ir.Function(module, ir.FunctionType(_LONG, types), "sieve")
     function.linkage = "internal"
@@ -250,7 +250,7 @@ def _sieve(module: ir.Module, filters: int, chunk: int) -> ir.Function:
 
 
 def _rejected_bits(builder: ir.IRBuilder, answers: Any, first: Any) -> Any:
-    """A bit for each of the next trials, the first the lowest: set where the filter is FALSE."""
+    """Load a bit for each of the next trials, the first the lowest: set where the filter is FALSE."""
     vector = ir.VectorType(_BYTE, WORD)
     bytes_ = builder.load(builder.bitcast(builder.gep(answers, [first]), vector.as_pointer()), align=1)
     false = builder.icmp_unsigned("==", bytes_, ir.Constant(vector, [0] * WORD))

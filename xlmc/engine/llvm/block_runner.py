@@ -79,7 +79,7 @@ class BlockParts:
 def block_parts(
     dag: Dag, first: Phase, late: Phase, filters: Sequence[int], forecasts: Sequence[int], block: int
 ) -> BlockParts | None:
-    """The parts of a model that can be run in whole blocks; None if it cannot."""
+    """Return the parts of a model that can be run in whole blocks; None if it cannot."""
     early_loops, late_loops = first.loops, late.loops
     if early_loops is None or late_loops is None:
         return None
@@ -96,7 +96,7 @@ def block_parts(
 
 
 def _trials_in_chunk(arrays: int) -> int:
-    """A power of two."""
+    """Round to a power of two."""
     trials = _CHUNK
     while trials > _FEWEST_IN_CHUNK and 8 * trials * arrays > _MOST_BYTES:
         trials //= 2
@@ -104,7 +104,7 @@ def _trials_in_chunk(arrays: int) -> int:
 
 
 def _find_literal(dag: Dag, node: int, kind: Kind) -> Literal | None:
-    """The constant that a node is, if it is one of that kind."""
+    """Return the constant that a node is, if it is one of that kind."""
     return literal(dag, Operand(node, kind)) if dag.types[node] is kind else None
 
 
@@ -341,7 +341,7 @@ class _TableWriter:
 
 
 def _address_of(array: Any) -> int:
-    """The address of an array, NumPy's or of ctypes."""
+    """Return the address of an array, NumPy's or of ctypes."""
     if isinstance(array, ctypes.Array):
         return ctypes.addressof(array)
     if array.size and array.flags.writeable:  # NumPy's own way takes five times as long

@@ -73,29 +73,29 @@ class Body:
         self._context = ALL_TRIALS
 
     def number(self, value: float) -> Any:
-        """A constant."""
+        """Make a constant."""
         return ir.Constant(self.real, value)
 
     def truth(self, value: bool) -> Any:
-        """A constant truth value."""
+        """Make a constant truth value."""
         return ir.Constant(_BIT, int(value))
 
     def intrinsic(self, name: str, *arguments: Any) -> Any:
-        """A call of one of LLVM's own functions of numbers."""
+        """Call one of LLVM's own functions of numbers."""
         return intrinsic(self.builder, self.real, name, *arguments)
 
     def of_doubles(self, function: Callable[..., Any], *arguments: Any) -> Any:
-        """A function that is made of arithmetic."""
+        """Emit a function that is made of arithmetic."""
         return function(Arithmetic(self.builder, self._fused), *arguments)
 
     def sine_and_cosine(self, angle: Any) -> tuple[Any, Any]:
-        """The sine and the cosine of an angle, computed once for each angle."""
+        """Emit the sine and the cosine of an angle, once for each angle."""
         if id(angle) not in self._sines_and_cosines:
             self._sines_and_cosines[id(angle)] = angle, sine_and_cosine(self.builder, angle, self._fused)
         return self._sines_and_cosines[id(angle)][1]
 
     def flag(self, wrong: Any) -> None:
-        """The trial must be computed again where `wrong` holds, if it needs the node at hand."""
+        """Have the trial computed again where `wrong` holds, if it needs the node at hand."""
         so_far = self._flags.get(self._context)
         self._flags[self._context] = wrong if so_far is None else self.builder.or_(so_far, wrong)
 
@@ -127,7 +127,7 @@ class Body:
         return self.builder.select(tiny, self.number(0.0), value)
 
     def result(self, node: int) -> Any:
-        """A node's value as it leaves the loop."""
+        """Return a node's value as it leaves the loop."""
         self._context = ALL_TRIALS
         own = Operand(node, self._dag.types[node])
         self._check(own)
@@ -142,7 +142,7 @@ class Body:
         return lost if flag is None else self.builder.or_(lost, flag)
 
     def _source(self, part: Operand) -> tuple[Operand, Loaded]:
-        """The place of the operand's value, and the kind that it has there."""
+        """Return the place of the operand's value, and the kind that it has there."""
         if part not in self._known:
             part = Operand(part.node, self._dag.types[part.node])
         return part, self._known[part]
@@ -191,12 +191,12 @@ class Body:
 
 
 def _branch(trials: TrialSet, select: int, branch: int) -> TrialSet:
-    """The trials that take a branch; where sets would lie too deep, all of those that are given."""
+    """Return the trials that take a branch; where sets would lie too deep, all of those that are given."""
     return trials if trials.depth == DEEPEST_BRANCHES else trials.taking(select, branch)
 
 
 def contexts(dag: Dag, rules: Mapping[int, LoopRule], results: Sequence[int]) -> dict[int, TrialSet]:
-    """The context of every node that `rules` computes, `results` being needed in all trials."""
+    """Find the context of every node that `rules` computes, `results` being needed in all trials."""
     found: dict[int, TrialSet] = {node: ALL_TRIALS for node in results if node in rules}
     for node in sorted(rules, reverse=True):
         for used, context in _edges(dag, node, rules[node], found.get(node, ALL_TRIALS)):

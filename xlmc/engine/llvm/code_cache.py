@@ -44,7 +44,7 @@ _WRITABLE_BY_OTHERS: Final = 0o022
 
 
 def code_key(*about: str) -> str:
-    """A name for the code that is made of these texts."""
+    """Name the code that is made of these texts."""
     digest = hashlib.sha256()
     for text in about:
         encoded = text.encode()
@@ -103,7 +103,7 @@ def _folder() -> Path | None:
 
 
 def _caches() -> Path:
-    """The folder in which programs keep files that they can make again."""
+    """Return the folder in which programs keep files that they can make again."""
     if sys.platform == "win32":
         return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
     if sys.platform == "darwin":

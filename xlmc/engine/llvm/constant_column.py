@@ -28,5 +28,5 @@ class ConstantColumn:
         self._column = known[name]
 
     def at(self, index: Any) -> Any:
-        """The double at an index."""
+        """Load the double at an index."""
         return self._builder.load(self._builder.gep(self._column, [index.type(0), index]))

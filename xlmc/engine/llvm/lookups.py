@@ -30,7 +30,7 @@ _INDEX: Final = ir.IntType(32)
 
 
 def lookup_rule(dag: Dag, node: Apply) -> LoopRule | None:
-    """The rule of a lookup in constant numbers; None of any other node."""
+    """Return the rule of a lookup in constant numbers; None of any other node."""
     lookup = lookup_of(dag, node)
     if lookup is None:
         return None
@@ -41,7 +41,7 @@ def lookup_rule(dag: Dag, node: Apply) -> LoopRule | None:
 
 
 def rule_of_lookup(key: int, emit: Emit) -> LoopRule:
-    """The rule of a search for the value of a node, or of a pick at the position that it gives."""
+    """Return the rule of a search for the value of a node, or of a pick at the position that it gives."""
     return LoopRule((Operand(key, Kind.NUMBER),), emit, absorbs=(0,), makes=False)
 
 
@@ -58,7 +58,7 @@ def emit_lookup(lookup: Search | Pick) -> Emit:
 
 
 def _search(body: Emitter, search: Search, key: Any) -> Any:
-    """The position of a key, counted from 1; the trial is computed again where it has none."""
+    """Emit the position of a key, counted from 1; the trial is computed again where it has none."""
     builder = body.builder
     key = key if search.sign > 0 else builder.fneg(key)
     if search.step:

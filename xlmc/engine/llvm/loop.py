@@ -49,7 +49,7 @@ def compile_loop(
     numbers: Mapping[tuple[int, int], int],
     side_by_side: int = SIDE_BY_SIDE,
 ) -> NativeLoop:
-    """The loop that computes the nodes of `rules`, as native code.
+    """Compile the loop that computes the nodes of `rules` to native code.
 
     It takes the addresses of: the loads, the stores, the survivors (int64; not read where no load is picked), one byte
     a trial, which it sets to 1 where the trial must be computed again, and the constants that are not part of the code:
@@ -77,7 +77,7 @@ def _inner(
     numbers: Mapping[tuple[int, int], int],
     side_by_side: int,
 ) -> ir.Function:
-    """The loop itself; its arrays do not overlap, so that it can run several trials at once."""
+    """Write the loop itself; its arrays do not overlap, so that it can run several trials at once."""
     arrays = [*(load.stored for load in loads), *(dag.types[node] for node in stores)]
     types = [*map(_pointer_type, arrays), _LONG.as_pointer(), _BYTE.as_pointer(), _DOUBLE.as_pointer(), _LONG]
     function = ir.Function(module, ir.FunctionType(_LONG, types), "loop")
@@ -128,7 +128,7 @@ def _inner(
 
 
 def _interleaved(module: ir.Module, side_by_side: int) -> Any:
-    """What asks LLVM to compute so many vectors of trials side by side; with 0, one trial after another."""
+    """Ask LLVM to compute so many vectors of trials side by side; with 0, one trial after another."""
     name, asked = ("interleave.count", ir.IntType(32)(side_by_side)) if side_by_side else ("vectorize.enable", _BIT(0))
     found = module.add_metadata([module.add_metadata([ir.MetaDataString(module, f"llvm.loop.{name}"), asked])])
     found.operands = (found, *found.operands)  # LLVM wants the first to be itself, so that no two loops share one
@@ -141,7 +141,7 @@ def _load(builder: ir.IRBuilder, pointer: Any, i: Any) -> Any:
 
 
 def _entry(module: ir.Module, inner: ir.Function, machine: Machine) -> None:
-    """The function to call: it takes the arrays' addresses as one array."""
+    """Write the function to call: it takes the arrays' addresses as one array."""
     function = ir.Function(module, ir.FunctionType(_LONG, [_BYTE.as_pointer().as_pointer(), _LONG]), _NAME)
     builder = ir.IRBuilder(function.append_basic_block("entry"))
     addresses, n = function.args

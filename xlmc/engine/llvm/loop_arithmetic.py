@@ -39,7 +39,7 @@ _DOUBLE, _INTEGER = ir.DoubleType(), ir.IntType(64)
 
 
 def intrinsic(builder: Any, real: ir.Type, name: str, *arguments: Any) -> Any:
-    """A call of one of LLVM's own functions of numbers."""
+    """Call one of LLVM's own functions of numbers."""
     of = ir.FunctionType(real, [real] * len(arguments))
     return builder.call(builder.module.declare_intrinsic(name, [real], of), arguments)
 
@@ -69,19 +69,19 @@ class Arithmetic:
         return self._intrinsic("llvm.sqrt", x)
 
     def with_sign_of(self, x: Any, size: Any) -> Any:
-        """A size with the sign of `x`."""
+        """Emit a size with the sign of `x`."""
         return self._intrinsic("llvm.copysign", size, x)
 
     def plus(self, z: Any, x: Any, y: Any) -> Any:
-        """The sum z + x·y, rounded once or twice."""
+        """Emit the sum z + x·y, rounded once or twice."""
         return self._intrinsic("llvm.fma", x, y, z) if self._fused else self.add(z, self.mul(x, y))
 
     def minus(self, z: Any, x: Any, y: Any) -> Any:
-        """The difference z - x·y, rounded once or twice."""
+        """Emit the difference z - x·y, rounded once or twice."""
         return self.plus(z, self.negative(x), y)
 
     def polynomial(self, x: Any, coefficients: Sequence[float]) -> Any:
-        """A polynomial of x; the coefficients from the lowest power up."""
+        """Emit a polynomial of x; the coefficients from the lowest power up."""
         result = self.number(coefficients[-1])
         for coefficient in reversed(coefficients[:-1]):
             result = self.plus(self.number(coefficient), result, x)
@@ -96,7 +96,7 @@ class Arithmetic:
         return self.add(rest, self.mul(k, self.number(constant - high)))
 
     def less_multiple(self, angle: Any, k: Any, constant: float) -> Any:
-        """The angle less k·constant, exactly: the two nearly cancel."""
+        """Emit the angle less k·constant, exactly: the two nearly cancel."""
         if self._fused:
             return self.minus(angle, k, self.number(constant))
         product = self.mul(k, self.number(constant))
@@ -111,14 +111,14 @@ class Arithmetic:
         return self.add(self.add(rest, self.mul(low, more)), self.mul(low, less))
 
     def less_product(self, z: Any, x: Any, y: Any) -> Any:
-        """The difference z - x·y, exactly: the two nearly cancel."""
+        """Emit the difference z - x·y, exactly: the two nearly cancel."""
         if self._fused:
             return self.minus(z, x, y)
         product = self.mul(x, y)
         return self.sub(self.sub(z, product), self.rest_of_product(x, y, product))
 
     def _halves(self, x: Any) -> tuple[Any, Any]:
-        """A number as the sum of two with half of the bits each."""
+        """Split a number into the sum of two with half of the bits each."""
         scaled = self.mul(self.number(_SPLIT), x)
         high = self.sub(scaled, self.sub(scaled, x))
         return high, self.sub(x, high)
@@ -127,11 +127,11 @@ class Arithmetic:
         return self._builder.bitcast(x, self._integer)
 
     def from_bits(self, bits: Any) -> Any:
-        """The number that has these bits."""
+        """Return the number that has these bits."""
         return self._builder.bitcast(bits, self._real)
 
     def whole(self, value: int) -> Any:
-        """A constant of the size of a number's bits."""
+        """Make a constant of the size of a number's bits."""
         return ir.Constant(self._integer, value)
 
     def add_bits(self, x: Any, y: Any) -> Any:
@@ -148,7 +148,7 @@ class Arithmetic:
         return self._builder.lshr(bits, self.whole(places))
 
     def of_whole(self, bits: Any) -> Any:
-        """A whole number, below 2^51 in size, as a double."""
+        """Convert a whole number, below 2^51 in size, to a double."""
         offset = self.add_bits(bits, self.whole(int.from_bytes(struct.pack(">d", TO_WHOLE))))
         return self.sub(self.from_bits(offset), self.number(TO_WHOLE))
 
@@ -185,7 +185,7 @@ TO_WHOLE: Final = 1.5 * 2.0**52
 
 
 def sine_and_cosine(builder: Any, angle: Any, fused: bool) -> tuple[Any, Any]:
-    """The instructions for both; the compiler drops those that are not used."""
+    """Emit the instructions for both; the compiler drops those that are not used."""
     do = Arithmetic(builder, fused)
     x, rest, quadrant = _reduce_angle(do, angle)
     square = do.mul(x, x)
@@ -199,7 +199,9 @@ def sine_and_cosine(builder: Any, angle: Any, fused: bool) -> tuple[Any, Any]:
 
 
 def _reduce_angle(do: Arithmetic, angle: Any) -> tuple[Any, Any, Any]:
-    """The angle less the nearest multiple k of π/2, as a sum of two doubles, and k modulo 4 in its last two bits."""
+    """Emit the angle less the nearest multiple k of π/2, as a sum of two doubles, and k modulo 4 in its last
+    two bits.
+    """
     first, second, third = HALF_PI
     shifted = do.plus(do.number(TO_WHOLE), angle, do.number(1 / first))
     k = do.sub(shifted, do.number(TO_WHOLE))
@@ -213,13 +215,13 @@ def _reduce_angle(do: Arithmetic, angle: Any) -> tuple[Any, Any, Any]:
 
 
 def _sine(do: Arithmetic, x: Any, rest: Any, square: Any, first: Any) -> Any:
-    """The sum x + (x³·p + rest·(1 - x²/2))."""
+    """Emit the sum x + (x³·p + rest·(1 - x²/2))."""
     cubic = do.mul(do.mul(square, x), do.polynomial(square, _SINE))
     return do.add(x, do.plus(cubic, rest, first))
 
 
 def _cosine(do: Arithmetic, x: Any, rest: Any, square: Any, first: Any) -> Any:
-    """The sum 1 - x²/2 + (x⁴·p - x·rest), and what rounding the first difference loses."""
+    """Emit the sum 1 - x²/2 + (x⁴·p - x·rest), and what rounding the first difference loses."""
     lost = do.minus(do.sub(do.number(1.0), first), do.number(0.5), square)
     fourth = do.minus(do.mul(do.mul(square, square), do.polynomial(square, _COSINE)), x, rest)
     return do.add(first, do.add(lost, fourth))
@@ -247,12 +249,12 @@ _ARCTANGENT: Final = (
 
 
 def arctangent(do: Arithmetic, x: Any) -> Any:
-    """The arctangent of any number."""
+    """Emit the arctangent of any number."""
     return do.with_sign_of(x, _arctangent_of_size(do, do.size(x)))
 
 
 def arctangent_of_two(do: Arithmetic, x: Any, y: Any) -> Any:
-    """The angle from the first axis to the point (x, y), above -π and up to π; NaN of (0, 0)."""
+    """Emit the angle from the first axis to the point (x, y), above -π and up to π; NaN of (0, 0)."""
     across, along = do.size(y), do.size(x)
     steep = do.above(across, along)
     low, high = do.select(steep, along, across), do.select(steep, across, along)
@@ -263,7 +265,7 @@ def arctangent_of_two(do: Arithmetic, x: Any, y: Any) -> Any:
 
 
 def _arctangent_of_size(do: Arithmetic, x: Any) -> Any:
-    """The arctangent of a number, 0 or more."""
+    """Emit the arctangent of a number, 0 or more."""
     above, below = x, do.number(1.0)
     whole, rest = do.number(0.0), do.number(0.0)
     for (limit, first, second), (over, under) in zip(_ARCTANGENT_STEPS, _arctangent_steps(do, x), strict=True):
@@ -289,7 +291,7 @@ def _arctangent_steps(do: Arithmetic, x: Any) -> tuple[tuple[Any, Any], ...]:
 
 
 def _less_angle(do: Arithmetic, whole: tuple[float, float], angle: Any) -> Any:
-    """The number `whole`, a sum of two doubles, less an angle."""
+    """Emit the number `whole`, a sum of two doubles, less an angle."""
     return do.sub(do.number(whole[0]), do.sub(angle, do.number(whole[1])))
 
 
@@ -304,7 +306,7 @@ _ARCSINE_BELOW: Final = (
 
 
 def arcsine(do: Arithmetic, x: Any) -> Any:
-    """The arcsine of a number from -1 to 1; NaN of others."""
+    """Emit the arcsine of a number from -1 to 1; NaN of others."""
     near, root, ratio = _reduce_ratio(do, x)
     half, rest = (do.number(part) for part in HALF_PI[:2])
     double = do.add(root, root)
@@ -315,7 +317,7 @@ def arcsine(do: Arithmetic, x: Any) -> Any:
 
 
 def arccosine(do: Arithmetic, x: Any) -> Any:
-    """The arccosine of a number from -1 to 1; NaN of others."""
+    """Emit the arccosine of a number from -1 to 1; NaN of others."""
     near, root, ratio = _reduce_ratio(do, x)
     half, rest = (do.number(part) for part in HALF_PI[:2])
     middle = do.sub(half, do.sub(x, do.minus(rest, x, ratio)))

@@ -79,7 +79,7 @@ def _exponential(do: Arithmetic, x: Any, more: Any) -> Any:
 
 
 def logarithm(do: Arithmetic, x: Any) -> Any:
-    """The natural logarithm. Of finite numbers above 0."""
+    """Emit the natural logarithm of finite numbers above 0."""
     k, f = _split(do, x)
     s = do.div(f, do.add(do.number(2.0), f))
     z = do.mul(s, s)
@@ -90,7 +90,7 @@ def logarithm(do: Arithmetic, x: Any) -> Any:
 
 
 def common_logarithm(do: Arithmetic, x: Any) -> Any:
-    """The logarithm to base 10. Of finite numbers above 0."""
+    """Emit the logarithm to base 10 of finite numbers above 0."""
     fine = _fine_logarithm(do, x)
     high, low = _product(do, fine.high, do.number(_LOG10_E[0]))
     low = do.plus(do.plus(low, fine.low, do.number(_LOG10_E[0])), fine.high, do.number(_LOG10_E[1]))
@@ -105,7 +105,7 @@ def power(do: Arithmetic, x: Any, y: Any) -> Any:
 
 
 def _split(do: Arithmetic, x: Any) -> tuple[Any, Any]:
-    """The power of two, k, and m - 1, both exact."""
+    """Split a number into the power of two, k, and m - 1, both exact."""
     bits = do.bits(x)
     biased = do.shift_right(do.add_bits(bits, do.whole(_ONE - _ROOT_OF_HALF)), _MANTISSA)
     k = do.add_bits(biased, do.whole(-_BIAS))
@@ -114,7 +114,7 @@ def _split(do: Arithmetic, x: Any) -> tuple[Any, Any]:
 
 
 def _fine_logarithm(do: Arithmetic, x: Any) -> _Sum:
-    """The natural logarithm as a sum."""
+    """Emit the natural logarithm as a sum."""
     k, f = _split(do, x)
     s = _atanh_argument(do, f)
     z = _product(do, s.high, s.high)
@@ -139,7 +139,9 @@ def _atanh_argument(do: Arithmetic, f: Any) -> _Sum:
 
 
 def _polynomial(do: Arithmetic, x: Any, coefficients: Sequence[float]) -> Any:
-    """A polynomial of x, the coefficients from the lowest power up, in few steps that wait for each other (Estrin)."""
+    """Emit a polynomial of x, the coefficients from the lowest power up, in few steps that wait for each other
+    (Estrin).
+    """
     terms = [do.number(coefficient) for coefficient in coefficients]
     while len(terms) > 1:
         pairs = [do.plus(low, x, high) for low, high in zip(terms[::2], terms[1::2], strict=False)]
@@ -149,18 +151,18 @@ def _polynomial(do: Arithmetic, x: Any, coefficients: Sequence[float]) -> Any:
 
 
 def _ordered_sum(do: Arithmetic, large: Any, small: Any) -> _Sum:
-    """The sum, exactly, where the first is 0 or the larger."""
+    """Add exactly, where the first is 0 or the larger."""
     high = do.add(large, small)
     return _Sum(high, do.add(do.sub(large, high), small))
 
 
 def _product(do: Arithmetic, x: Any, y: Any) -> _Sum:
-    """The product, exactly."""
+    """Multiply exactly."""
     high = do.mul(x, y)
     return _Sum(high, do.rest_of_product(x, y, high))
 
 
 def _times(do: Arithmetic, x: _Sum, y: _Sum) -> _Sum:
-    """The product of sums, nearly."""
+    """Multiply sums, nearly exactly."""
     high, low = _product(do, x.high, y.high)
     return _Sum(high, do.plus(do.plus(low, x.high, y.low), x.low, y.high))

@@ -74,7 +74,7 @@ class _Grid:
         return builder.select(builder.fcmp_ordered("<", self._size, limit), below, above)
 
     def multiple(self, n: Any) -> Any:
-        """The n-th multiple."""
+        """Return the n-th multiple."""
         builder, number = self._body.builder, self._body.number
         n = builder.fdiv(n, number(self._up)) if self._up > 1.0 else n
         return builder.fmul(n, number(self._down)) if self._down > 1.0 else n

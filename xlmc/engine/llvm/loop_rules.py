@@ -38,25 +38,25 @@ class Emitter(Protocol):
     real: Any
 
     def number(self, value: float) -> Any:
-        """A constant."""
+        """Make a constant."""
 
     def truth(self, value: bool) -> Any:
-        """A constant truth value."""
+        """Make a constant truth value."""
 
     def intrinsic(self, name: str, *arguments: Any) -> Any:
-        """A call of one of LLVM's own functions of numbers."""
+        """Call one of LLVM's own functions of numbers."""
 
     def of_doubles(self, function: Callable[..., Any], *arguments: Any) -> Any:
-        """A function that is made of arithmetic."""
+        """Emit a function that is made of arithmetic."""
 
     def sine_and_cosine(self, angle: Any) -> tuple[Any, Any]:
-        """The sine and the cosine of an angle, computed once for each angle."""
+        """Emit the sine and the cosine of an angle, once for each angle."""
 
     def flush(self, value: Any) -> Any:
         """0 instead of a number too small for Excel."""
 
     def flag(self, wrong: Any) -> None:
-        """The trial must be computed again where `wrong` holds, if it needs the node at hand."""
+        """Have the trial computed again where `wrong` holds, if it needs the node at hand."""
 
 
 Emit = Callable[[Emitter, Sequence[Any]], Any]
@@ -98,7 +98,7 @@ def is_number(part: Operand | Literal) -> bool:
 
 
 def first_operand(_: Emitter, parts: Sequence[Any]) -> Any:
-    """Emits nothing: the value is that of the first operand."""
+    """Emit nothing: the value is that of the first operand."""
     return parts[0]
 
 
@@ -110,7 +110,7 @@ def part_of(dag: Dag, node: int, kind: Kind) -> Operand | Literal | None:
 
 
 def literal(dag: Dag, operand: Operand) -> Literal | None:
-    """The constant that a node is; None if it varies, is an error, many cells, or a text that is no number."""
+    """Return the constant that a node is; None if it varies, is an error, many cells, or a text that is no number."""
     node = dag.nodes[operand.node]
     if not isinstance(node, Constant) or dag.sizes[operand.node] is not None:
         return None
@@ -123,7 +123,7 @@ def literal(dag: Dag, operand: Operand) -> Literal | None:
 
 
 def reads(dag: Dag, node: int, rule: LoopRule | None) -> tuple[int, ...]:
-    """The nodes that a node's computation needs: by its rule, or all that it uses where it has no rule."""
+    """Return the nodes that a node's computation needs: by its rule, or all that it uses where it has no rule."""
     if rule is None:
         return uses(dag.nodes[node])
     return tuple([part.node for part in (*rule.operands, *rule.beside) if type(part) is Operand])

@@ -73,12 +73,12 @@ class Machine:
         self.flushes = flushes(triple)
 
     def _target(self) -> Any:
-        """A new target machine each time, for the compiled code takes it over."""
+        """Make a new target machine each time, for the compiled code takes it over."""
         found = binding.Target.from_default_triple()
         return found.create_target_machine(cpu=self._cpu, features=self._features, opt=_SPEED_LEVEL)
 
     def native(self, module: ir.Module, name: str) -> NativeLoop:
-        """The function `name` of a module, as native code that runs without holding Python's lock.
+        """Compile the function `name` of a module to native code that runs without holding Python's lock.
 
         The last modules are kept: a model that is run again is not compiled again. See `code_cache` for other programs.
         Its own type is `i64 (i8**, i64)`.
@@ -112,7 +112,7 @@ class Machine:
 
 
 def this_machine() -> Machine:
-    """The processor that runs this, with its widest vectors: by default LLVM uses half of AVX-512's.
+    """Describe the processor that runs this, with its widest vectors: by default LLVM uses half of AVX-512's.
 
     With AVX2, LLVM would read tables number by number, and so compute the indices one by one, too, divisions and all.
     """

@@ -76,7 +76,7 @@ class Memory:
         self.failures: Counter[int] = Counter()
 
     def of(self, node: int, n: int) -> NDArray[Any]:
-        """The first `n` elements of a node's array."""
+        """Return the first `n` elements of a node's array."""
         array = self._arrays[node]
         return array if n == array.size else array[:n]
 
@@ -91,7 +91,7 @@ class _Addresses:
         self._seen: dict[Hashable, tuple[NDArray[Any], int]] = {}
 
     def of(self, key: Hashable, array: NDArray[Any]) -> int:
-        """The address of the first element."""
+        """Return the address of the first element."""
         seen = self._seen.get(key)
         if seen is not None and seen[0] is array:
             return seen[1]

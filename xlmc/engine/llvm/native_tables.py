@@ -36,7 +36,7 @@ rows that each had one of their own would no longer share their code."""
 def rules_of_looked_up(
     dag: Dag, nodes: Iterable[int], rules: Mapping[int, LoopRule], machine: Machine
 ) -> dict[int, LoopRule]:
-    """The nodes that are to be looked up, each with its new rule.
+    """Find the nodes that are to be looked up, each with its new rule.
 
     Args:
         dag: of the nodes.
@@ -76,7 +76,7 @@ def _at_every_row(
     forms: Forms,
     compiled: dict[object, NativeLoop],
 ) -> Floats | None:
-    """The last of the functions at every row of the table, `(rows,)`; None if a row is marked.
+    """Compute the last of the functions at every row of the table, `(rows,)`; None if a row is marked.
 
     Loops that were compiled before are used again where they differ in constants alone.
     """

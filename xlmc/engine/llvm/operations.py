@@ -105,7 +105,7 @@ class _Row:
 
 
 def _of_single_values(dag: Dag, taken: Iterable[tuple[int, Kind]], row: _Row) -> LoopRule | None:
-    """The rule of a function of nodes that are taken as these kinds; None if one cannot be."""
+    """Return the rule of a function of nodes that are taken as these kinds; None if one cannot be."""
     operands = []
     for node, kind in taken:
         if kind is Kind.ANY:
@@ -120,7 +120,7 @@ def _of_single_values(dag: Dag, taken: Iterable[tuple[int, Kind]], row: _Row) ->
 
 
 def _operation(dag: Dag, node: Apply) -> LoopRule | None:
-    """The rule of a function of single values; otherwise None."""
+    """Return the rule of a function of single values; otherwise None."""
     function, arguments = node
     if isinstance(function.ufunc, Comparison):
         return _compare(dag, node, function.ufunc.symbol)
@@ -135,7 +135,7 @@ def _operation(dag: Dag, node: Apply) -> LoopRule | None:
 
 @cache
 def _kinds(function: Function) -> tuple[Kind, ...]:
-    """The kinds of the parameters of a function that has a row."""
+    """Return the kinds of the parameters of a function that has a row."""
     return tuple([parameter.kind for parameter in function.parameters])
 
 
@@ -154,7 +154,7 @@ def _comparison(relation: str) -> _Row:
 
 
 def _fixed_answer(answer: bool) -> _Row:
-    """A question about a value's kind, which has one answer: a trial with an error is computed again."""
+    """Answer a question about a value's kind, which has one answer: a trial with an error is computed again."""
     return _Row(lambda body, parts: body.truth(answer), _ALL, kinds=PLAIN)
 
 
@@ -193,7 +193,7 @@ def _cosecant(body: Emitter, parts: Sequence[Any]) -> Any:
 
 
 def _remainder(body: Emitter, parts: Sequence[Any]) -> Any:
-    """The exact remainder with the sign of the divisor, also of a zero; NaN by zero.
+    """Emit the exact remainder with the sign of the divisor, also of a zero; NaN by zero.
 
     Rounded, the quotient is never below a whole number that it reaches, and at most one step above those that it does
     not. So the rest by its whole part is exact, and has the other sign where that is one too large. Quotients that hold
@@ -309,7 +309,7 @@ def _power(dag: Dag, node: Apply) -> _Row:
 
 
 def _power_of_any(body: Emitter, parts: Sequence[Any]) -> Any:
-    """A power of any base; where the base is 0 or less, it is left to the careful path."""
+    """Emit a power of any base; where the base is 0 or less, it is left to the careful path."""
     body.flag(body.builder.fcmp_ordered("<=", parts[0], body.number(0.0)))
     return body.of_doubles(power, *parts)
 
@@ -334,7 +334,7 @@ def _power_of_constant(positive: bool, whole: bool, odd: bool) -> Emit:
 
 
 def _logarithm(dag: Dag, node: Apply) -> LoopRule | None:
-    """The rule of a logarithm to base 10; other bases are left to NumPy."""
+    """Return the rule of a logarithm to base 10; other bases are left to NumPy."""
     number, *base = node.arguments
     if base and literal(dag, Operand(base[0], Kind.NUMBER)) != Literal(10.0):
         return None
@@ -342,7 +342,7 @@ def _logarithm(dag: Dag, node: Apply) -> LoopRule | None:
 
 
 def _rounding(dag: Dag, node: Apply) -> LoopRule | None:
-    """The rule of a rounding to digits that are known; others are left to NumPy."""
+    """Return the rule of a rounding to digits that are known; others are left to NumPy."""
     number, *given = node.arguments
     known = literal(dag, Operand(given[0], Kind.NUMBER)) if given else Literal(0.0)
     digits = None if known is None else float(known.value)
@@ -353,7 +353,7 @@ def _rounding(dag: Dag, node: Apply) -> LoopRule | None:
 
 
 def _above_zero(function: Callable[..., Any]) -> _Row:
-    """A function of numbers above 0; Excel refuses others: the trial is computed again."""
+    """Make a function of numbers above 0; Excel refuses others: the trial is computed again."""
 
     def emit(body: Emitter, parts: Sequence[Any]) -> Any:
         body.flag(body.builder.fcmp_ordered("<=", parts[0], body.number(0.0)))

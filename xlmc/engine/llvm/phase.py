@@ -74,7 +74,7 @@ class Trials:
         self._converted: dict[Operand, Floats] = {}
 
     def array(self, operand: Operand) -> NDArray[Any]:
-        """What a loop reads of these trials: contiguous, `(n,)`; a `Value` as doubles, with NaN for errors."""
+        """Return what a loop reads of these trials: contiguous, `(n,)`; a `Value` as doubles, with NaN for errors."""
         if operand.node in self.arrays:
             return self.arrays[operand.node]
         if operand not in self._converted:
@@ -88,7 +88,7 @@ class Trials:
         return np.ascontiguousarray(np.broadcast_to(doubles, (self.n,)), np.float64)
 
     def value(self, node_id: int) -> Value:
-        """A node's value, whatever it is. In a trial that must be computed again it may be another error."""
+        """Return a node's value, whatever it is. In a trial that must be computed again it may be another error."""
         node = self._dag.nodes[node_id]
         if isinstance(node, Constant):
             return node.value
@@ -104,7 +104,9 @@ class Trials:
         return self.wider.value(node).take(self.survivors)
 
     def plain(self, node_id: int) -> NDArray[Any] | float | bool | None:
-        """A node's numbers or truth values, `(n,)`, or the one that it always is; None if only a `Value` tells."""
+        """Return a node's numbers or truth values, `(n,)`, or the one that it always is; None if only a
+        `Value` tells.
+        """
         node = self._dag.nodes[node_id]
         if isinstance(node, Constant):
             known = plain_constant(node.value)
@@ -122,7 +124,9 @@ class Trials:
                 self._converted.pop(Operand(node, kind), None)
 
     def column(self, node: int, fallible: bool) -> Column:
-        """A node as a result: numbers alone for draws without errors, or from a loop, whose errors `wrong` marks."""
+        """Return a node as a result: numbers alone for draws without errors, or from a loop, whose errors `wrong`
+        marks.
+        """
         if not fallible and node in self.arrays:
             return Column(self.arrays[node])
         known = self._dag.nodes[node]
@@ -206,7 +210,7 @@ class Phase:
     def _compile(
         self, plan: LoopPlan, numbers: Mapping[tuple[int, int], int], side_by_side: int = SIDE_BY_SIDE
     ) -> NativeLoop:
-        """The code of a loop."""
+        """Write the code of a loop."""
         return compile_loop(self._dag, self._machine, plan.rules, plan.loads, plan.stores, numbers, side_by_side)
 
     @property

@@ -48,7 +48,7 @@ _MOST_IN_COLUMNS: Final = 1 << 26
 def fastest_program(
     lowering: Lowering, filters: Sequence[Target], forecasts: Sequence[Target], may_err: frozenset[str]
 ) -> Program:
-    """The program of loops, or that of the engine `numpy` where loops do not pay."""
+    """Make the program of loops, or that of the engine `numpy` where loops do not pay."""
     dag = lowering.dag
     targets = [*map(lowering.target, filters), *(_as_number(dag, lowering.target(target)) for target in forecasts)]
     needed = _Needed.of(dag, targets)
@@ -86,7 +86,9 @@ class _Needed(NamedTuple):
         return cls(dag.upstream(targets, read), rules, found)
 
     def looking_up(self, dag: Dag) -> _Needed:
-        """The same where functions of numbers of tables are looked up; some of the nodes may not be needed any more."""
+        """Return a lowering where functions of numbers of tables are looked up; some of its nodes may not be needed any
+        more.
+        """
         looked_up = rules_of_looked_up(dag, self.nodes, self.rules, machine())
         changed = {node: reads(dag, node, rule) for node, rule in looked_up.items()}
         return _Needed(self.nodes, self.rules | looked_up, self.reads | changed)
@@ -132,7 +134,9 @@ class _Division:
         self.largest_block = self._largest_block(len(self.inputs) + len(forecasts))
 
     def _largest_block(self, columns: int) -> int:
-        """The largest block whose arrays fit into the memory, draws and forecasts among them: so many columns."""
+        """Return the largest block whose arrays fit into the memory, draws and forecasts among them: so many
+        columns.
+        """
         arrays = self.first.waiting + self.late.waiting
         memory = _MOST_MEMORY if self.first.only_loops and self.late.only_loops else _MOST_IN_CACHES
         block = _LARGEST_BLOCK
@@ -181,14 +185,14 @@ class JitProgram:
 
 
 def _as_number(dag: Dag, node: int) -> int:
-    """A forecast's node, or one that gives 1 and 0 instead of truth values: loops write forecasts as numbers."""
+    """Return a forecast's node, or one that gives 1 and 0 instead of truth values: loops write forecasts as numbers."""
     if dag.types[node] is not Kind.LOGICAL or dag.sizes[node] is not None:
         return node
     return dag.add(Select(node, dag.constant(constant(1.0)), dag.constant(constant(0.0))))
 
 
 def _inputs(dag: Dag, nodes: Sequence[int]) -> dict[int, str]:
-    """The names of the inputs among the nodes."""
+    """Return the names of the inputs among the nodes."""
     return {node_id: node.name for node_id in nodes if isinstance(node := dag.nodes[node_id], Input)}
 
 
@@ -255,7 +259,7 @@ class _JitEvaluator:
         return columns
 
     def _columns(self, trials: Trials, nodes: Sequence[int]) -> list[Column]:
-        """The results; of draws that may be errors the `Value`, for no loop has looked at them."""
+        """Return the results; of draws that may be errors the `Value`, for no loop has looked at them."""
         columns = []
         for node_id in nodes:
             node = self._program.dag.nodes[node_id]
@@ -268,7 +272,7 @@ class _JitEvaluator:
 
 
 def _correct(columns: Sequence[Column], again: NDArray[np.intp], careful: Sequence[Column]) -> list[Column]:
-    """The columns (n,) with the trials `again` (k,) as the careful path has them (k,)."""
+    """Return the columns (n,) with the trials `again` (k,) as the careful path has them (k,)."""
     corrected = []
     for column, found in zip(columns, careful, strict=True):
         values = column.values.copy()

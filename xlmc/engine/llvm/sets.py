@@ -38,7 +38,7 @@ class _Members:
 
 
 def over_cells(dag: Dag, node: Apply) -> LoopRule | None:
-    """The rule of a function of ranges; otherwise None."""
+    """Return the rule of a function of ranges; otherwise None."""
     try:
         if node.function.name == "SUMPRODUCT":
             return _sum_of_products(dag, node)
@@ -76,7 +76,7 @@ def _members(dag: Dag, node: Apply) -> _Members:
 
 
 def _cells(dag: Dag, node_id: int) -> list[int | Value] | None:
-    """The cells of a range: their nodes, and the values of those that are constant. None for a single value."""
+    """Return the cells of a range: their nodes, and the values of those that are constant. None for a single value."""
     node = dag.nodes[node_id]
     if isinstance(node, Range):
         return [_value_or_node(dag, cell) for row in node.rows for cell in row]
@@ -93,7 +93,7 @@ def _value_or_node(dag: Dag, cell: int) -> int | Value:
 
 
 def _cells_of_constant(value: Value) -> Iterator[Value]:
-    """The cells of a constant range, `(1,)` each."""
+    """Return the cells of a constant range, `(1,)` each."""
     _, rows, columns = value.shape
     spread = [None if a is None else np.broadcast_to(a, value.shape) for a in value.arrays()]
     for row in range(rows):
@@ -103,7 +103,7 @@ def _cells_of_constant(value: Value) -> Iterator[Value]:
 
 
 def _counted(dag: Dag, cell: int | Value, kind: Kind) -> Part | None:
-    """A cell of a range where it counts; None if it does not."""
+    """Return a cell of a range where it counts; None if it does not."""
     if isinstance(cell, Value):
         return _counted_constant(cell, kind)
     if dag.sizes[cell] is not None or dag.types[cell] not in (Kind.NUMBER, Kind.LOGICAL):
@@ -121,7 +121,7 @@ def _counted_constant(cell: Value, kind: Kind) -> Literal | None:
 
 
 def _count(dag: Dag, node: Apply) -> LoopRule | None:
-    """The rule of `COUNT`, for ranges: a number, unless a cell is an error."""
+    """Return the rule of `COUNT`, for ranges: a number, unless a cell is an error."""
     columns = [_cells(dag, node_id) for node_id in node.arguments]
     cells = [cell for column in columns for cell in column or ()]
     if None in columns:
@@ -134,7 +134,7 @@ def _count(dag: Dag, node: Apply) -> LoopRule | None:
 
 
 def _sum_of_products(dag: Dag, node: Apply) -> LoopRule | None:
-    """The rule of `SUMPRODUCT`, for ranges of one size: a cell that is no number is 0."""
+    """Return the rule of `SUMPRODUCT`, for ranges of one size: a cell that is no number is 0."""
     columns, shapes = [], set()
     beside: list[Operand] = []
     for node_id in node.arguments:

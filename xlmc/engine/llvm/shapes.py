@@ -47,7 +47,7 @@ class Forms:
         self._known: dict[object, int] = {}
 
     def of(self, nodes: Sequence[int]) -> tuple[int, ...]:
-        """The numbers of nodes that are computed in this order."""
+        """Give the nodes that are computed in this order their numbers."""
         at: dict[int, int] = {}
         found: list[int] = []
         for position, node in enumerate(nodes):
@@ -82,8 +82,8 @@ def _portions(first: int, stop: int) -> list[slice]:
 
 
 def _repetition(forms: NDArray[np.intp]) -> tuple[int, int, int]:
-    """The longest repetition of forms: its first node, the length of a period, and the node after its last. The period
-    is 0 where they do not repeat themselves, or not often.
+    """Find the longest repetition of forms: its first node, the length of a period, and the node after its last. The
+    period is 0 where they do not repeat themselves, or not often.
     """
     last: dict[int, int] = {}
     gaps: Counter[int] = Counter()

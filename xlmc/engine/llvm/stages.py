@@ -118,12 +118,12 @@ class Stages:
         return all(stage.stores is not None for stage in self.in_order)
 
     def slots(self, written: Sequence[Sequence[int]]) -> dict[int, Slot]:
-        """The memory of the nodes that each stage writes."""
+        """Return the memory of the nodes that each stage writes."""
         stages = [(stage.read, nodes) for stage, nodes in zip(self.in_order, written, strict=True)]
         return assign_slots(self.dag, stages, self.outputs, late=self._early is not None)
 
     def last_reads(self) -> dict[int, list[int]]:
-        """The stage after which nothing reads them -> nodes that are computed outside of loops."""
+        """Return the stage after which nothing reads them -> nodes that are computed outside of loops."""
         outside = {node for stage in self.in_order if stage.stores is None for node in stage.nodes} - self.outputs
         last = {node: at for at, stage in enumerate(self.in_order) for node in outside.intersection(stage.read)}
         found: dict[int, list[int]] = {}
@@ -135,7 +135,7 @@ class Stages:
         return frozenset(chain.from_iterable(map(self.reads.__getitem__, group))).difference(group)
 
     def loop_plans(self) -> Iterator[LoopPlan]:
-        """The loops of the stages that are loops."""
+        """Return the loops of the stages that are loops."""
         for stage in self.in_order:
             if stage.stores is not None:
                 rules = {node: self._rules[node] for node in stage.nodes}
@@ -164,7 +164,7 @@ class Stages:
 def _groups(
     nodes: Sequence[int], rules: Mapping[int, LoopRule], reads: Mapping[int, Sequence[int]], forms: Forms
 ) -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
-    """The nodes, in order, in groups in order, each with their forms; those without a rule stand alone, without one."""
+    """Group the nodes, in order, each with their forms; those without a rule stand alone, without one."""
     if nodes and all(node in rules for node in nodes):
         yield from _cut(nodes, forms)
         return
@@ -185,7 +185,7 @@ def _groups(
 
 
 def _cut(nodes: Sequence[int], forms: Forms) -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
-    """The nodes of loops, with their forms."""
+    """Return the nodes of loops, with their forms."""
     found = forms.of(nodes)
     for part in cut(found):
         yield tuple(nodes[part]), found[part]
@@ -200,7 +200,7 @@ class _Group(NamedTuple):
 
 
 def _in_order(groups: Sequence[_Group]) -> list[_Group]:
-    """The groups so that few wait at a time to be read; one may need as many others as it has nodes."""
+    """Order the groups so that few wait at a time to be read; one may need as many others as it has nodes."""
     made = {node: at for at, group in enumerate(groups) for node in group.nodes}
     needs = {at: sorted({made[node] for node in group.read if node in made}) for at, group in enumerate(groups)}
     return [groups[at] for at in order_by_need(range(len(groups)), needs, (), _ENOUGH, few=2 * LONGEST)]

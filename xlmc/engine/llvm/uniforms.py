@@ -39,7 +39,7 @@ _LOW_HALF: Final = (1 << 64) - 1
 
 
 def filler(streams: Sequence[UniformStream], maps: Sequence[tuple[float, float]], rows: NDArray[np.float64]) -> Fill:
-    """A `Fill` that fills `rows` (k, block) with offset + factor·uniform, from a trial on.
+    """Make a `Fill` that fills `rows` (k, block) with offset + factor·uniform, from a trial on.
 
     Args:
         streams: k of them; `beginning` gives the state before trial 0 and the increment.
@@ -92,7 +92,7 @@ def halves(number: int) -> tuple[int, int]:
 
 
 def jump(steps: int) -> tuple[int, int]:
-    """The state so many steps on is the first of these times the state plus the second times the increment.
+    """Return two factors: the state so many steps on is the first times the state plus the second times the increment.
 
     Brown (1994), "Random number generation with arbitrary strides".
     """
@@ -106,7 +106,7 @@ def jump(steps: int) -> tuple[int, int]:
 
 @cache
 def _double(times: int) -> tuple[int, int]:
-    """The jump of 2^times steps."""
+    """Return the jump of 2^times steps."""
     if times == 0:
         return _MULTIPLIER, 1
     factor, summand = _double(times - 1)
@@ -115,7 +115,9 @@ def _double(times: int) -> tuple[int, int]:
 
 @cache
 def _loop(k: int) -> NativeLoop:
-    """The loop over the trials of k streams; it takes the addresses of k rows, of k streams' words and of the jump."""
+    """Write the loop over the trials of k streams; it takes the addresses of k rows, of k streams' words and of the
+    jump.
+    """
     module = ir.Module()
     finished = _finish(module)
     function = ir.Function(module, ir.FunctionType(_LONG, [_BYTE.as_pointer().as_pointer(), _LONG]), _NAME)
@@ -153,7 +155,7 @@ def _loop(k: int) -> NativeLoop:
 def _advance(
     builder: ir.IRBuilder, states: Sequence[Any], increments: Sequence[Any], buffers: Sequence[Any], n: Any
 ) -> list[Any]:
-    """The states `n` steps on; the states on the way are stored in `buffers`, as upper and lower halves."""
+    """Emit the states `n` steps on; the states on the way are stored in `buffers`, as upper and lower halves."""
     before, body, after = builder.block, *(builder.append_basic_block(name) for name in ("steps", "stepped"))
     builder.branch(body)
     builder.position_at_end(body)
@@ -175,7 +177,9 @@ def _advance(
 
 
 def _finish(module: ir.Module) -> ir.Function:
-    """A function from halves of states to offset + factor·uniform; it does several at a time, as none needs another."""
+    """Write a function from halves of states to offset + factor·uniform; it does several at a time, as none needs
+    another.
+    """
     words, doubles = _LONG.as_pointer(), _DOUBLE.as_pointer()
     types = [words, words, doubles, _DOUBLE, _DOUBLE, _LONG]
     function = ir.Function(module, ir.FunctionType(ir.VoidType(), types), "finished")
@@ -219,7 +223,7 @@ def _load_stream(builder: ir.IRBuilder, words: Any, jump: tuple[Any, Any]) -> tu
 
 
 def _uniform(builder: ir.IRBuilder, high: Any, low: Any) -> Any:
-    """The number of a state: the output function "DXSM", its upper 53 bits as a fraction of 1."""
+    """Emit the number of a state: the output function "DXSM", its upper 53 bits as a fraction of 1."""
     odd = builder.or_(low, _LONG(1))
     high = builder.xor(high, builder.lshr(high, _LONG(32)))
     high = builder.mul(high, _LONG(_MULTIPLIER))

@@ -53,7 +53,9 @@ class Placement:
         self.branched = frozenset(self._branches)
 
     def reading_less(self, reads: Mapping[int, tuple[int, ...]], results: Iterable[int]) -> Placement:
-        """The same where nodes read others than they did, without those that no node and no result needs then."""
+        """Return the same sets where nodes read others than they did, without those that no node and no result needs
+        then.
+        """
         less = copy(self)
         less.reads, needed = {**self.reads, **reads}, set(results)
         for node in sorted(less.reads, reverse=True):
@@ -65,15 +67,15 @@ class Placement:
         return less
 
     def members(self, trials: TrialSet) -> list[int]:
-        """The nodes of a set itself, in order."""
+        """Return the nodes of a set itself, in order."""
         return self._members.get(trials, [])
 
     def branches(self, node: int) -> list[TrialSet]:
-        """The branches of an `IF` that hold nodes of their own."""
+        """Return the branches of an `IF` that hold nodes of their own."""
         return self._branches.get(node, [])
 
     def externals(self, trials: TrialSet | None, results: Iterable[int]) -> list[int]:
-        """The varying nodes that a set, its inner sets included, takes from outside it; None has no nodes."""
+        """Return the varying nodes that a set, its inner sets included, takes from outside it; None has no nodes."""
         inside = set() if trials is None else set(self._inside(trials))
         read = {used for node in inside for used in self.reads[node]} | set(results)
         return sorted(node for node in read - inside if not isinstance(self._dag.nodes[node], Constant))
@@ -84,7 +86,7 @@ class Placement:
             yield from self._inside(inner)
 
     def _sets(self, first: Sequence[int], late: Sequence[int]) -> dict[int, TrialSet]:
-        """The set of each needed node, from the last node to the first."""
+        """Find the set of each needed node, from the last node to the first."""
         nodes, types = self._dag.nodes, self._dag.types
         wanted: list[TrialSet | None] = [None] * len(nodes)
         for node_ids, trials in ((first, ALL_TRIALS), (late, SURVIVORS)):
@@ -117,7 +119,7 @@ def _divides(result: Kind, condition: Kind) -> bool:
 
 
 def _find_safe_branches(dag: Dag, sets: dict[int, TrialSet]) -> dict[TrialSet, TrialSet]:
-    """The branches in which nothing can err -> the nearest set around each that is kept."""
+    """Return the branches in which nothing can err -> the nearest set around each that is kept."""
     used_sets = {ALL_TRIALS, SURVIVORS}
     for node, trials in sets.items():
         if trials not in used_sets and not _is_safe(dag, node):
@@ -136,7 +138,7 @@ def _is_safe(dag: Dag, node_id: int) -> bool:
 
 
 def branch_step(dag: Dag, placement: Placement, node: int) -> Step:
-    """The step of an `IF` with at least one branch in a set of its own."""
+    """Make the step of an `IF` with at least one branch in a set of its own."""
     select = dag.nodes[node]
     assert isinstance(select, Select)
     sets = {trials.branch: trials for trials in placement.branches(node)}
@@ -170,7 +172,9 @@ class _Branch:
         self._steps = [_member_step(dag, placement, node) for node in members]
 
     def run(self, frame: Frame, index: NDArray[np.intp]) -> Any:
-        """The branch's value on the trials of `index`; while it runs, values from outside are cut to these trials."""
+        """Compute the branch's value on the trials of `index`; while it runs, values from outside are cut to these
+        trials.
+        """
         values = frame.values
         whole = [values[node] for node in self._outside]
         for node, found in zip(self._outside, whole, strict=True):

@@ -35,7 +35,7 @@ class LookedUp(NamedTuple):
 
 
 def find_looked_up(dag: Dag, sets: Sequence[Sequence[int]]) -> dict[int, LookedUp]:
-    """The nodes that are to be looked up.
+    """Return the nodes that are to be looked up.
 
     Args:
         dag: of the nodes.
@@ -58,7 +58,7 @@ def find_looked_up(dag: Dag, sets: Sequence[Sequence[int]]) -> dict[int, LookedU
 
 
 def _table(dag: Dag, chain: TableFunction, *, paired: bool) -> Pick | None:
-    """The last of the functions at every row of the table; None if a row gives no number."""
+    """Compute the last of the functions at every row of the table; None if a row gives no number."""
     values: dict[int, Any] = {chain.cell: _filled(chain.numbers)}
     last = chain.links[-1]
     try:
@@ -91,14 +91,14 @@ def _number(dag: Dag, node_id: int) -> Any:
 
 
 def _filled(numbers: Floats) -> Floats:
-    """The numbers again and again, as many as are computed together."""
+    """Repeat the numbers as often as makes a block that is computed together."""
     filled = aligned_array(-(-numbers.size // _TOGETHER) * _TOGETHER, np.dtype(np.float64))
     filled[:] = np.resize(numbers, filled.size)
     return filled
 
 
 def _fill_pair(name: str, angle: Floats, out: Floats) -> None:
-    """The sine or the cosine of an angle of which both are wanted."""
+    """Compute the sine or the cosine of an angle of which both are wanted."""
     other, work = np.empty_like(out), np.empty_like(out)
     sine, cosine = (out, other) if name == SINE else (other, out)
     sine_and_cosine(angle, sine, cosine, work)

@@ -103,7 +103,7 @@ class NumpyProgram:
         may_err: frozenset[str],
         bounds: NodeBounds | None = None,
     ) -> NumpyProgram:
-        """The program of targets."""
+        """Make the program of targets."""
         first, late = ([lowering.target(target) for target in targets] for targets in (filters, forecasts))
         known = bounds or NodeBounds(lowering.dag, {})
         computed = lowering.dag.upstream([*first, *late], partial(reads, lowering.dag))
@@ -118,7 +118,7 @@ class NumpyProgram:
         return _NumpyEvaluator(self, block, TrackingEvaluator(dag, filters, forecasts))
 
     def allocate(self, block: int) -> list[NDArray[Any]]:
-        """The arrays that the steps write to, for blocks of up to `block` trials."""
+        """Make the arrays that the steps write to, for blocks of up to `block` trials."""
         return self._buffers.allocate(block)
 
     def run_filters(self, space: _Space, inputs: Mapping[str, Floats], n: int) -> list[Column]:
@@ -155,7 +155,7 @@ class NumpyProgram:
         return [(node, input_.name) for node, input_ in found if isinstance(input_, Input)]
 
     def _steps(self, trials: TrialSet, keep: set[int], free_at_end: Sequence[int]) -> list[Step]:
-        """The steps of one set of trials; the values of `keep` are read after them."""
+        """Make the steps of one set of trials; the values of `keep` are read after them."""
         branched = self._placement.branched
         computed, read = self._in_order(trials, keep)
         last = {needed: node for node in computed for needed in read[node]} | dict.fromkeys(keep, -1)
@@ -171,7 +171,7 @@ class NumpyProgram:
         return steps.finish()
 
     def _in_order(self, trials: TrialSet, keep: set[int]) -> tuple[Sequence[int], dict[int, tuple[int, ...]]]:
-        """The nodes of a set that are computed, in order, and what each node reads."""
+        """List the nodes of a set that are computed, in order, and what each node reads."""
         nodes, branched = self._dag.nodes, self._placement.branched
         members = [node for node in self._placement.members(trials) if type(nodes[node]) is not Input]
         read = self._placement.reads | {node: self._reads(node) for node in members if node in branched}
@@ -203,13 +203,13 @@ class NumpyProgram:
         return waiting
 
     def _reads(self, node: int) -> tuple[int, ...]:
-        """What an `IF` needs, its branches included."""
+        """Return the nodes that an `IF` needs, its branches included."""
         branches = self._placement.branches(node)
         inner = (read for branch in branches for read in self._placement.externals(branch, ()))
         return (*self._placement.reads[node], *inner)
 
     def _carry(self, node: int) -> int | None:
-        """A buffer for the survivors' values of a node that the first steps computed."""
+        """Return a buffer for the survivors' values of a node that the first steps computed."""
         kind = self._dag.types[node]
         return self._buffers.take_for(kind) if kind in (Kind.NUMBER, Kind.LOGICAL) else None
 
@@ -263,7 +263,7 @@ class _Space:
         self._frame = Frame([], [], 0, self.underflow)
 
     def frame(self, template: list[Any], n: int) -> Frame:
-        """A fresh frame for `n` trials."""
+        """Make a fresh frame for `n` trials."""
         self._frame = Frame(template.copy(), [buffer[:n] for buffer in self._buffers], n, self.underflow)
         return self._frame
 
@@ -273,7 +273,7 @@ class _Space:
         return self._frame.n
 
     def survivors(self, m: int) -> Frame:
-        """The same values, for `m` of the trials."""
+        """Return a frame with the same values, for `m` of the trials."""
         self._frame = Frame(self._frame.values, [buffer[:m] for buffer in self._buffers], m, self.underflow)
         return self._frame
 

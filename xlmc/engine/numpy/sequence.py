@@ -45,7 +45,7 @@ class Buffers:
         self._in_use: dict[int, int] = {}
 
     def take(self, node_id: int) -> int | None:
-        """A buffer for the node's value; None if it makes its own array."""
+        """Return a buffer for the node's value; None if it makes its own array."""
         node, kind = self._dag.nodes[node_id], self._dag.types[node_id]
         if isinstance(node, IfErrorNode):
             self._in_use.pop(node.value, None)  # this node has the same array: its buffer is never given back
@@ -56,7 +56,7 @@ class Buffers:
         return buffer
 
     def take_for(self, kind: Kind) -> int:
-        """A buffer of that kind, until `give_back`."""
+        """Take a buffer of that kind, until `give_back`."""
         if self._idle[kind]:
             return self._idle[kind].pop()
         self._types.append(kind)
@@ -97,7 +97,7 @@ class Buffers:
         return sum(1 if kind is Kind.LOGICAL else 8 for kind in self._types)
 
     def allocate(self, block: int) -> list[NDArray[Any]]:
-        """The arrays, `(block,)` each, on cache lines of their own."""
+        """Make the arrays, `(block,)` each, on cache lines of their own."""
         return [
             aligned_array(block, np.dtype(np.bool_ if kind is Kind.LOGICAL else np.float64)) for kind in self._types
         ]
@@ -110,7 +110,7 @@ def find_indices(
     keep: Collection[int],
     looked_up: Mapping[int, LookedUp],
 ) -> set[int]:
-    """The positions of lookups that nothing but picks reads: they need not be numbers of their own.
+    """Find the positions of lookups that nothing but picks reads: they need not be numbers of their own.
 
     Args:
         dag: of the nodes.
@@ -285,7 +285,7 @@ class Steps:
         return None if known is not None and guard.surely(*known) else guard
 
     def _function(self, node: Apply) -> Elementwise | Callable[..., object] | None:
-        """What computes a function of plain numbers, where their bounds are known as fast as these allow."""
+        """Return what computes a function of plain numbers, as fast as their bounds allow where they are known."""
         function = node.function
         if function.name == SNAP_TO_ZERO.name:
             return self._last_sum(node)
@@ -294,7 +294,7 @@ class Steps:
         return function.ufunc
 
     def _last_sum(self, node: Apply) -> Callable[..., object]:
-        """The function for the last sum of a formula; one that keeps every sum where bounds show that none is dust."""
+        """Return the function for the last sum of a formula; it keeps every sum where bounds show that none is dust."""
         total, first = node.arguments
         added, of = self._dag.nodes[total], self._bounds.of
         operator = added.function.name if type(added) is Apply else ""

@@ -15,7 +15,7 @@ COSINE: Final = "COS"
 
 
 def sines_with_cosines(dag: Dag, nodes: Sequence[int]) -> dict[int, tuple[int, int]]:
-    """The sines and cosines of angles of which both are wanted: node_id -> (sine, cosine)."""
+    """Find the sines and cosines of angles of which both are wanted: node_id -> (sine, cosine)."""
     found: dict[str, dict[int, int]] = {SINE: {}, COSINE: {}}
     for node_id in nodes:
         node = dag.nodes[node_id]

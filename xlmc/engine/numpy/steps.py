@@ -65,7 +65,7 @@ Step = Callable[[Frame], None]
 
 
 def plain_constant(value: Value) -> Any:
-    """A constant as steps take it: float, bool, or the `Value` itself."""
+    """Return a constant as steps take it: float, bool, or the `Value` itself."""
     if value.numbers.ndim == 1 and value.kinds.size == 1:
         kind = int(value.kinds[0])
         if kind == NUMBER:
@@ -76,7 +76,7 @@ def plain_constant(value: Value) -> Any:
 
 
 def reads(dag: Dag, node_id: int) -> tuple[int, ...]:
-    """The nodes whose values the step of a node needs.
+    """Return the nodes whose values the step of a node needs.
 
     For a range that is folded these are its cells, or the node that stands for it. For an IFERROR it is the value
     alone: where that turns out to be an error, the block leaves the fast path, so that the other value is never needed
@@ -97,7 +97,7 @@ def reads(dag: Dag, node_id: int) -> tuple[int, ...]:
 
 
 def make_step(dag: Dag, node_id: int, buffer: int | None) -> Step:
-    """The step of a node; it writes to that buffer where it is given one, else to new memory.
+    """Make the step of a node; it writes to that buffer where it is given one, else to new memory.
 
     A node without a fast form runs as `Function` does; if it gives an error or a text, the block leaves the fast path.
     """
@@ -157,7 +157,7 @@ def _fast_ufunc(dag: Dag, node: Apply) -> bool:
 
 
 def _wanted_kind(dag: Dag, function: Function, position: int) -> Kind:
-    """The kind that an argument is read as; comparisons take numbers here, as their ufunc does."""
+    """Return the kind that an argument is read as; comparisons take numbers here, as their ufunc does."""
     kind = function.parameter(position).kind
     return Kind.NUMBER if kind is Kind.ANY and function.ufunc is not None else kind
 
@@ -209,7 +209,7 @@ def _ufunc(
 
 
 def _copy(node: int, read: Reader, buffer: int | None) -> Step:
-    """The step of a node for which another one stands, perhaps a constant: a number for each trial."""
+    """Make the step of a node for which another one stands, perhaps a constant: a number for each trial."""
 
     def step(frame: Frame) -> None:
         out = np.empty(frame.n) if buffer is None else frame.buffers[buffer]
@@ -236,7 +236,7 @@ def _body(function: Function, node: int, readers: list[Reader]) -> Step:
 
 
 def _find_folded(dag: Dag, node: Apply) -> list[int] | None:
-    """The cells that a set function folds, without those that do not count; None if the careful path must do it."""
+    """Return the cells that a set function folds, without those that do not count; None for the careful path."""
     function = node.function
     if not function.takes_sets or function.ufunc is None:
         return None
@@ -246,7 +246,7 @@ def _find_folded(dag: Dag, node: Apply) -> list[int] | None:
 
 
 def _cells_of(dag: Dag, node: Apply) -> Iterator[tuple[int, bool]]:
-    """The arguments, ranges cell by cell, and whether each is a cell of a range."""
+    """Return the arguments, ranges cell by cell, and whether each is a cell of a range."""
     for argument in node.arguments:
         part = dag.nodes[argument]
         if isinstance(part, Range):
@@ -368,7 +368,7 @@ def _plain_array(value: Value, kind: Kind) -> NDArray[Any]:
 
 
 def as_value(found: Any, kind: Kind) -> Value:
-    """A step's plain array or constant as a `Value`."""
+    """Turn a step's plain array or constant into a `Value`."""
     if isinstance(found, Value):
         return found
     array = np.atleast_1d(np.asarray(found))

@@ -32,7 +32,7 @@ class NodeBounds:
         self._found: list[Bounds] = []
 
     def of(self, node: int) -> Bounds | None:
-        """The bounds of a node; None if they are not known."""
+        """Return the bounds of a node; None if they are not known."""
         if not self._inputs:
             return _of_constant(self._dag, node)
         while len(self._found) <= node:
@@ -41,7 +41,7 @@ class NodeBounds:
         return None if self._found[node] == _ANY else self._found[node]
 
     def _next(self) -> Bounds:
-        """The bounds of the first node that has none yet, from those of the nodes before it."""
+        """Bound the first node that has no bounds yet, from the bounds of the nodes before it."""
         node_id, found = len(self._found), self._found
         match self._dag.nodes[node_id]:
             case Input(name):
@@ -77,7 +77,7 @@ _OF_SETS: Final[Mapping[str, Callable[[Iterable[float]], float]]] = {"MAX": max,
 
 
 def _of_constant(dag: Dag, node_id: int) -> Bounds | None:
-    """The least and the largest of constant numbers, those of a cell or of a range; None of any other node."""
+    """Return the least and the largest of constant numbers, those of a cell or of a range; None of any other node."""
     node = dag.nodes[node_id]
     if not isinstance(node, Constant):
         return None
@@ -99,11 +99,11 @@ def _combine(operator: str, left: Bounds, right: Bounds) -> Bounds:
 
 
 def _multiply(a: float, b: float) -> float:
-    """The product of two bounds: that of 0 and any number is 0."""
+    """Multiply two bounds: the product of 0 and any number is 0."""
     return 0.0 if a == 0.0 or b == 0.0 else a * b
 
 
 def _around(numbers: Iterable[float]) -> Bounds:
-    """The smallest bounds that hold all the numbers; where one is NaN, nothing is known."""
+    """Return the smallest bounds that hold all the numbers; where one is NaN, nothing is known."""
     numbers = tuple(numbers)
     return _ANY if any(math.isnan(number) for number in numbers) else (min(numbers), max(numbers))

@@ -79,7 +79,7 @@ class Exact:
 
 
 def as_double(value: Item) -> float:
-    """The value as a double; NaN if it is not a number."""
+    """Return the value as a double; NaN if it is not a number."""
     value = _single(value)
     if isinstance(value, bool):
         return float(value)
@@ -140,7 +140,7 @@ class _FoundError(Exception):
 
 
 def _number(item: Item) -> mpf:
-    """A single value as arithmetic reads it."""
+    """Return a single value as arithmetic reads it."""
     item = _single(item)
     if isinstance(item, ErrorCode):
         raise _FoundError(item)
@@ -177,7 +177,7 @@ def _power(x: mpf, y: mpf) -> mpf:
 
 
 def _real(function: Callable[[mpf], Any], low: float = -np.inf, high: float = np.inf) -> Callable[..., Item]:
-    """A function of a number between limits; the limits themselves are allowed."""
+    """Limit the domain of a function of a number; the limits themselves are allowed."""
 
     def bounded(x: mpf) -> mpf:
         if not low <= x <= high:
@@ -200,7 +200,7 @@ def _atan2(x: mpf, y: mpf) -> mpf:
 
 
 def _cells(items: Sequence[Item]) -> list[mpf]:
-    """The numbers that count in a sum: those in ranges, and all that is given directly, as numbers."""
+    """Return the numbers that count in a sum: those in ranges, and all that is given directly, as numbers."""
     found: list[mpf] = []
     for item in items:
         if not isinstance(item, list):
@@ -356,7 +356,7 @@ EXACT: Final[Mapping[str, Callable[..., Item]]] = {
 
 
 def _as_in_the_run(function: Any, items: Sequence[Item]) -> Item:
-    """The run's own body, on doubles."""
+    """Call the run's own body, on doubles."""
     arguments = [_to_value(item) for item in items]
     try:
         with np.errstate(all="ignore"):
@@ -383,7 +383,7 @@ def _result_items(value: Value) -> Item:
 
 
 def _decimal(item: Item) -> Item:
-    """What a rounding gives, as the decimal that it means."""
+    """Round as the run does, to the decimal that a rounding means."""
     return mpf(repr(float(item))) if isinstance(item, mpf) else item
 
 

@@ -92,7 +92,7 @@ class RandomRounding:
 
 
 def closure(dag: Dag, targets: Collection[int]) -> list[int]:
-    """The nodes that the targets need, constants that were computed and their parts among them, parts first."""
+    """Return the nodes that the targets need, constants that were computed and their parts among them, parts first."""
     order: list[int] = []
     seen: set[int] = set()
     open_: list[tuple[int, bool]] = [(node, False) for node in targets]
@@ -108,7 +108,7 @@ def closure(dag: Dag, targets: Collection[int]) -> list[int]:
 
 
 def formula_of(dag: Dag, node_id: int) -> Node:
-    """The node; for a computed constant, the node that it was computed from."""
+    """Return the node; for a computed constant, the node that it was computed from."""
     node = dag.nodes[node_id]
     return dag.origins.get(node_id, node) if isinstance(node, Constant) else node
 
@@ -120,7 +120,7 @@ def evaluate(
     rounding: RandomRounding | None = None,
     of_inputs: RandomRounding | None = None,
 ) -> dict[int, Value]:
-    """The values of nodes.
+    """Return the values of nodes.
 
     Args:
         dag: the nodes.
@@ -159,7 +159,7 @@ def evaluate(
 def evaluate_changes(
     dag: Dag, nodes: Sequence[int], values: Mapping[int, Value], given: Mapping[int, Value]
 ) -> dict[int, Value]:
-    """The nodes that change when some are given other values: these, and all that depend on them.
+    """Return the nodes that change when some are given other values: these, and all that depend on them.
 
     Args:
         dag: the nodes.
@@ -190,7 +190,7 @@ def _find_typed(dag: Dag, nodes: Sequence[int]) -> set[int]:
 
 
 def _measured_arguments(node: Node) -> tuple[int, ...]:
-    """The arguments that are calculated with; of a power only the base, as an exponent is exact."""
+    """Return the arguments that are calculated with; of a power only the base, as an exponent is exact."""
     if not isinstance(node, Apply) or not node.function.facts.measures:
         return ()
     return node.arguments[:1] if node.function.name == "^" else node.arguments
@@ -229,7 +229,9 @@ def _rounds(node: Apply) -> bool:
 
 
 def numbers_of(value: Value, n: int) -> Floats:
-    """The numbers of a value, `(n,)`, logicals as 1 and 0, an array's first cell; NaN where there is no number."""
+    """Return the numbers of a value, `(n,)`, logicals as 1 and 0, an array's first cell; NaN where there is
+    no number.
+    """
     if not value.numbers.size:
         return np.full(n, np.nan)
     found = np.where(value.kinds <= LOGICAL, value.numbers, np.nan)

@@ -111,13 +111,15 @@ class _Compiled:
             raise self._naming_cell(error) from None
 
     def _name(self, reference: Cell | Area) -> str:
-        """The address that stands for a reference; one that the formula only looks at (`ROW(D5)`) has none."""
+        """Return the address that stands for a reference; a reference that the formula only looks at (`ROW(D5)`) has
+        none.
+        """
         if reference not in self._names:
             raise FormulaError("the engine `formulas` cannot tell where a cell stands", hint=_OTHER_ENGINE)
         return self._names[reference]
 
     def _naming_cell(self, error: FormulaError) -> FormulaError:
-        """The error, naming the cell and showing the formula with its own references."""
+        """Return the error, naming the cell and showing the formula with its own references."""
         return FormulaError(error.message, where=self._cell, hint=error.hint, text=formula_text(self._tree))
 
 

@@ -35,7 +35,7 @@ _Position = tuple[int | None, int | None]
 def seen_from(
     tree: ir.Reference, sheet: str, host: Cell, origin: tuple[int, int], *, wraps: bool
 ) -> Cell | Area | ir.ErrorLiteral:
-    """What a reference means in one cell; `#REF!` off the sheet.
+    """Return what a reference means in one cell; `#REF!` off the sheet.
 
     Args:
         tree: the reference.
@@ -82,7 +82,7 @@ def _sorted(first: int | None, last: int | None) -> tuple[int, int] | None:
 
 
 def cells_of(sheet: str, top: int, left: int, bottom: int, right: int) -> Cell | Area:
-    """The area between two corners; one cell is a `Cell`."""
+    """Return the area between two corners; one cell is a `Cell`."""
     if top == bottom and left == right:
         return Cell(sheet, top, left)
     return Area(sheet, top, left, bottom, right)
@@ -100,7 +100,7 @@ def is_far(end: int, used: int, most: int) -> bool:
 
 
 def combine(operator: str, left: ir.Expression, right: ir.Expression) -> ir.Expression:
-    """An operation of two resolved trees, of which `:` and the blank give an area.
+    """Join two resolved trees by an operation, of which `:` and the blank give an area.
 
     Raises:
         FormulaError: `:` or the blank stands between what gives no references.
@@ -126,7 +126,7 @@ def combine(operator: str, left: ir.Expression, right: ir.Expression) -> ir.Expr
 
 
 def as_area(reference: Cell | Area) -> Area:
-    """The reference as an area, of one cell if it is one."""
+    """Turn the reference into an area, of one cell if it is one."""
     if isinstance(reference, Area):
         return reference
     return Area(reference.sheet, reference.row, reference.column, reference.row, reference.column)
@@ -163,7 +163,7 @@ _THIS: Final = "[0]"
 
 
 def meant_book(workbook: Workbook, book: str | None, around: str | None) -> str | None:
-    """The linked workbook that a prefix means; None of this one.
+    """Return the linked workbook that a prefix means; None of this one.
 
     Args:
         workbook: whose formula it is.
@@ -183,7 +183,7 @@ def meant_book(workbook: Workbook, book: str | None, around: str | None) -> str 
 
 
 def linked_sheet(workbook: Workbook, book: str, name: str | None, host: Cell) -> str:
-    """A sheet of a linked workbook, or the host's own.
+    """Return a sheet of a linked workbook, or the host's own.
 
     Raises:
         FormulaError: nothing of it is stored.
@@ -197,7 +197,7 @@ def linked_sheet(workbook: Workbook, book: str, name: str | None, host: Cell) ->
 
 
 def linked_name(workbook: Workbook, book: str, name: ir.Name) -> DefinedName:
-    """A name of a linked workbook: the sheet's own first, then the workbook's, then the only one.
+    """Return a name of a linked workbook: the sheet's own first, then the workbook's, then the only one.
 
     Raises:
         FormulaError: what it stands for is not stored.

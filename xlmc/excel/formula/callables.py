@@ -20,7 +20,7 @@ _Bound = Mapping[str, ir.Expression]
 
 
 def function_named_by(name: str) -> str | None:
-    """The function that a file gives as a value: `_xleta.SUM` is SUM; None of any other name."""
+    """Return the function that a file gives as a value: `_xleta.SUM` is SUM; None of any other name."""
     found = _FUNCTION.fullmatch(name)
     return None if found is None else found["name"].upper()
 
@@ -55,7 +55,7 @@ _DEEPEST: Final = 60
 
 
 def _last(tree: ir.Expression, bound: _Bound, depth: int) -> ir.Lambda | ir.FunctionName | None:
-    """The function that a resolved tree gives; None if it gives none, or that cannot be seen."""
+    """Return the function that a resolved tree gives; None if it gives none, or that cannot be seen."""
     if depth > _DEEPEST:
         return None
     match tree:
@@ -78,7 +78,7 @@ def _last(tree: ir.Expression, bound: _Bound, depth: int) -> ir.Lambda | ir.Func
 
 
 def _defined(workbook: Workbook, name: str, sheet: str | None, seen: frozenset[str]) -> ir.Expression | None:
-    """The LAMBDA, as written, that a defined name stands for."""
+    """Return the LAMBDA, as written, that a defined name stands for."""
     found = workbook.defined_name(name, sheet)
     if found is None or name.casefold() in seen:
         return None
@@ -93,7 +93,7 @@ def _defined(workbook: Workbook, name: str, sheet: str | None, seen: frozenset[s
 def _written(
     workbook: Workbook, tree: ir.Expression, sheet: str | None, bound: _Bound, seen: frozenset[str]
 ) -> ir.Expression | None:
-    """The LAMBDA that a tree as written gives; a function that is named stands for itself."""
+    """Return the LAMBDA that a tree as written gives; a function that is named stands for itself."""
 
     def of(part: ir.Expression, more: _Bound = bound) -> ir.Expression | None:
         return _written(workbook, part, sheet, more, seen)
@@ -123,5 +123,5 @@ def _written(
 def _result(
     function: ir.Expression | None, of: Callable[[ir.Expression], ir.Expression | None]
 ) -> ir.Expression | None:
-    """The LAMBDA that a call of a LAMBDA gives, as `LAMBDA(a, LAMBDA(b, a+b))(1)` does."""
+    """Return the LAMBDA that a call of a LAMBDA gives, as `LAMBDA(a, LAMBDA(b, a+b))(1)` does."""
     return of(function.arguments[-1]) if isinstance(function, ir.Call) and function.arguments else None

@@ -239,7 +239,7 @@ class _Parenthesis(Parenthesis):  # type: ignore[misc]  # formulas has no types
 
 
 def _refuse_open_operator(tokens: list[Any]) -> None:
-    """What ends an operand must not follow an operator that still waits for one."""
+    """Refuse what ends an operand behind an operator that still waits for one."""
     if tokens and isinstance(tokens[-1], _Operator | _Intersect) and not _ends_an_operand(tokens[-1]):
         raise ForeignFormulaError
 

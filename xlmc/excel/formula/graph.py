@@ -79,7 +79,7 @@ class Graph:
     circles: Mapping[Cell, FormulaError]
 
     def text(self, cell: Cell) -> str:
-        """The formula of a cell as the file holds it."""
+        """Return the formula of a cell as the file holds it."""
         formula = self.workbook.content(host_of(cell)).formula
         return "" if formula is None else formula.text
 
@@ -169,7 +169,7 @@ class _Walk:
             self._trail[cell] = self._waiting(parts)
 
     def _waiting(self, parts: tuple[Part, ...]) -> Iterator[Cell]:
-        """The cells of the parts, but for most of those that are in order."""
+        """Return the cells of the parts, but for most of those that are in order."""
         if len(parts) == 1 and type(parts[0]) is tuple and id(parts[0]) not in self._walked:
             return iter(parts[0])
         left = (part.waiting() if isinstance(part, Stretch) else part for part in parts if id(part) not in self._walked)
@@ -189,7 +189,7 @@ class _Walk:
             return ir.Missing()
 
     def _precedents(self, cell: Cell, found: ir.Expression | Filled) -> tuple[Part, ...]:
-        """The cells that one needs and that hold a formula or are given."""
+        """Return the cells that one needs and that hold a formula or are given."""
         parts: list[Part]
         if isinstance(found, Filled):
             known = self._computed
@@ -203,7 +203,7 @@ class _Walk:
         return tuple(parts)
 
     def _rewritten(self, cell: Cell) -> ir.Expression | None:
-        """What replaces a cell's own formula, if anything does."""
+        """Return what replaces a cell's own formula, if anything does."""
         found = self._resolver.rewritten.get(cell)
         if not isinstance(found, FormulaError):
             return found
@@ -222,7 +222,7 @@ class _Walk:
 
 
 def _filled_cells(workbook: Workbook, area: Area, inputs: frozenset[Cell]) -> Iterator[Cell]:
-    """The area's cells that hold something, row by row."""
+    """Return the area's cells that hold something, row by row."""
     sheet = workbook.sheet_of(area)
     if sheet is None:
         return
@@ -300,7 +300,7 @@ def circle_error(cells: Sequence[Cell]) -> FormulaError:
 
 
 def _groups(needs: Needs) -> dict[Cell, dict[Cell, None]]:
-    """The strongly connected component of every cell, in the order of the cells."""
+    """Find the strongly connected component of every cell, in the order of the cells."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -343,7 +343,7 @@ class Spills:
         self._sheets: dict[str, tuple[dict[Cell, Cell], list[tuple[Area, Cell]]]] = {}
 
     def anchor(self, cell: Cell) -> Cell | None:
-        """The cell whose array formula fills this other one; otherwise None."""
+        """Return the cell whose array formula fills this other one; otherwise None."""
         if cell.sheet not in self._sheets:
             sheet = self._workbook.sheets.get(cell.sheet)
             self._sheets[cell.sheet] = ({}, []) if sheet is None else _filled(sheet.arrays)
@@ -354,7 +354,7 @@ class Spills:
 
 
 def _filled(arrays: Mapping[Cell, Area]) -> tuple[dict[Cell, Cell], list[tuple[Area, Cell]]]:
-    """The anchors of the cells that array formulas fill, and large areas with theirs."""
+    """Return the anchors of the cells that array formulas fill, and large areas with theirs."""
     listed: dict[Cell, Cell] = {}
     large = []
     for anchor, area in arrays.items():

@@ -232,7 +232,7 @@ Expression = (
 
 
 def chain(tree: Expression) -> tuple[Expression, list[tuple[str, Expression]]]:
-    """`a + b - c` as `a` and `[("+", b), ("-", c)]`; anything but a binary operation as itself and nothing.
+    """Split `a + b - c` into `a` and `[("+", b), ("-", c)]`; anything but a binary operation is itself and nothing.
 
     Long sums lean to the left, one level a term: passes walk them in a loop, and recurse only into brackets. Operators
     that make references (`:`, blank, `,`) are never in one chain with others.
@@ -246,7 +246,7 @@ def chain(tree: Expression) -> tuple[Expression, list[tuple[str, Expression]]]:
 
 
 def marked_as(built: Expression, tree: Binary) -> Expression:
-    """What was built of the parts of a binary operation, with the marks of that operation itself."""
+    """Rebuild a binary operation from its parts, with the marks of that operation itself."""
     if not isinstance(built, Binary) or not (tree.last or tree.all_bits):
         return built
     return replace(built, last=tree.last, all_bits=tree.all_bits)
@@ -261,7 +261,7 @@ _FUNCTION: Final = "_xleta."
 
 
 def formula_text(tree: Expression, name: Callable[[Cell | Area], str] = str) -> str:
-    """The text of a resolved tree without its leading `=`, every operation in brackets of its own."""
+    """Write a resolved tree without its leading `=`, every operation in brackets of its own."""
     match tree:
         case Cell() | Area():
             return name(tree)

@@ -145,7 +145,7 @@ class _Filters:
 
 @lru_cache(maxsize=65_536)
 def parse(text: str) -> ir.Expression:
-    """The tree of a formula, given without its leading `=`.
+    """Return the tree of a formula, given without its leading `=`.
 
     Raises:
         FormulaError: the text is not a formula; the error says where the faulty part is.
@@ -180,8 +180,8 @@ def _unread(text: str, start: int) -> FormulaError:
 
 
 def _closes_too_early(text: str) -> int | None:
-    """The position of a closing bracket without an opening one: `formulas` reads `A1)-(B1` as if brackets stood around
-    it.
+    """Return the position of a closing bracket without an opening one: `formulas` reads `A1)-(B1` as if brackets stood
+    around it.
     """
     depths = _depths(QUOTED.sub(lambda quoted: " " * len(quoted[0]), text))
     return next((index for index, depth in enumerate(depths) if depth < 0), None)
@@ -193,7 +193,8 @@ def _depths(signs: str) -> Iterator[int]:
 
 
 def parse_cell(text: str) -> ir.Expression:
-    """The tree of a cell's whole formula: its last operation is marked where that is a `+` or `-` outside of brackets.
+    """Return the tree of a cell's whole formula: its last operation is marked where that is a `+` or `-` outside of
+    brackets.
 
     Raises:
         FormulaError: as `parse`.
@@ -213,7 +214,7 @@ def _is_bracketed(text: str) -> bool:
 
 
 def compile_with_formulas(text: str) -> Callable[[Mapping[str, Any]], object]:
-    """What `formulas` itself compiles from a formula, for one trial: the slow reference.
+    """Return what `formulas` itself compiles from a formula, for one trial: the slow reference.
 
     Args:
         text: a formula without its leading `=`, whose references name no sheet.

@@ -23,13 +23,13 @@ def position_of(names: Sequence[Sequence[str]], wanted: str) -> int | None:
 
 
 def items_named(field: PivotField, asked: CellValue) -> Sequence[int]:
-    """The items of a field that a value names, counted from 0."""
+    """Return the items of a field that a value names, counted from 0."""
     return _items_by_name(field).get(_key(asked), ())
 
 
 @lru_cache(maxsize=1024)
 def _items_by_name(field: PivotField) -> Mapping[object, Sequence[int]]:
-    """What an item may be called -> the items that are."""
+    """Return what an item may be called -> the items that are."""
     found: dict[object, list[int]] = {}
     for item in range(len(field.items)):
         for name in names_of(field, item):
@@ -47,7 +47,7 @@ def _key(name: CellValue) -> object:
 
 
 def names_of(field: PivotField, item: int) -> Iterator[ir.Text | ir.Number | ir.Logical]:
-    """What an item may be called."""
+    """Return what an item may be called."""
     number, value = field.items[item]
     if isinstance(value, bool):
         yield ir.Logical(value=value)

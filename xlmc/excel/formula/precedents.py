@@ -80,7 +80,8 @@ _WORD: Final = re.compile(r"(?<![\w.\\])[^\W\d][\w.\\]*")
 
 
 def mentioned(formula: Formula, cell: Cell, workbook: Workbook) -> Iterator[Area]:
-    """The areas of the workbook that a cell's formula mentions, also by names and tables; rather too many than too few.
+    """Return the areas of the workbook that a cell's formula mentions, also by names and tables; rather too many than
+    too few.
 
     Args:
         formula: of the cell.

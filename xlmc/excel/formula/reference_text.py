@@ -54,7 +54,7 @@ def prefix(groups: dict[str, str]) -> tuple[str | None, str | None, str | None]:
 
 
 def corner(text: str) -> ir.Corner:
-    """The cell `$A$1`, column `A` or row `1` of a matched `REFERENCE`, as one of its ends."""
+    """Return the cell `$A$1`, column `A` or row `1` of a matched `REFERENCE`, as one of its ends."""
     found = _CORNER.fullmatch(text)
     assert found is not None  # `REFERENCE` matches nothing else
     row, column = found["r"], found["c"]
@@ -69,7 +69,7 @@ def is_on_the_sheet(end: ir.Corner) -> bool:
 
 
 def parse_table_reference(table: str | None, inner: str) -> ir.TableReference:
-    """The node for `table[inner]`.
+    """Make the node for `table[inner]`.
 
     Raises:
         ValueError: `inner` is no structured reference.

@@ -78,7 +78,7 @@ class Resolver:
         self._depth = self._parts = 0
 
     def formula(self, cell: Cell, formula: Formula) -> ir.Expression:
-        """The tree of a cell's formula.
+        """Resolve a cell's formula.
 
         Raises:
             FormulaError: names the cell; the formula cannot be read, or names something that is not there.
@@ -87,7 +87,7 @@ class Resolver:
         return found.at(cell) if isinstance(found, Stencil) else found
 
     def tree_or_stencil(self, cell: Cell, formula: Formula) -> ir.Expression | Stencil:
-        """The tree of a cell's formula; or, if it was filled into many cells, the stencil that these have in common.
+        """Resolve a cell's formula; if it was filled into many cells, return the stencil that these have in common.
 
         Raises:
             FormulaError: as `formula`.
@@ -108,7 +108,7 @@ class Resolver:
             raise complete.at(cell) from None
 
     def tree(self, tree: ir.Expression, host: Cell) -> ir.Expression:
-        """A tree as read, resolved as if it stood in a cell.
+        """Resolve a tree as if it stood in a cell.
 
         Raises:
             FormulaError: it names something that is not there.
@@ -183,7 +183,9 @@ class Resolver:
         return ir.Lambda(tuple(_bare(name) for name, _ in parameters), body, _optional(parameters))
 
     def _called(self, name: str, host: Cell) -> ir.Expression | None:
-        """What a call calls that is no function of Excel: a variable, or a defined name that stands for a LAMBDA."""
+        """Return what a call calls that is no function of Excel: a variable, or a defined name that stands for a
+        LAMBDA.
+        """
         if name.casefold() in self._variables:
             return ir.Variable(_bare(name))
         if not calls_function(self.workbook, name, self._seen_by(host)):
@@ -224,7 +226,7 @@ class Resolver:
         return joined
 
     def _linked_name(self, book: str, name: ir.Name) -> ir.Expression:
-        """A name of another workbook, by what it stood for when Excel last read that."""
+        """Resolve a name of another workbook, by what it stood for when Excel last read that."""
         found = linked_name(self.workbook, book, name)
         if self._linked is not None:
             raise FormulaError(f"refers to {name.name!r} of another workbook, which stands for another name", hint=COPY)
@@ -243,14 +245,14 @@ class Resolver:
         return found.name
 
     def to_the_last_cell(self, area: Area) -> Area:
-        """The area, ended with the cells that are filled where it goes on far beyond them; the rest is counted."""
+        """End the area with the cells that are filled where it goes on far beyond them; the rest is counted."""
         used = self.last_cell(area.sheet)
         bottom = max(area.top, used[0]) if is_far(area.bottom, used[0], MAX_ROW) else area.bottom
         right = max(area.left, used[1]) if is_far(area.right, used[1], MAX_COLUMN) else area.right
         return Area(area.sheet, area.top, area.left, bottom, right, area.bottom - bottom, area.right - right)
 
     def last_cell(self, sheet: str) -> tuple[int, int]:
-        """The last row and the last column of a sheet that are filled."""
+        """Return the last row and the last column of a sheet that are filled."""
         return self._used_range(sheet)
 
     def _cut(self, area: Area) -> Cell | Area:
@@ -298,7 +300,8 @@ class Resolver:
         return ir.Let(((key, resolved),), ir.Variable(key), recursive=True) if calls_itself else resolved
 
     def _seen_by(self, host: Cell) -> str | None:
-        """The sheet whose own names go first: none in a name of the whole workbook, which names other such names.
+        """Return the sheet whose own names go first: none in a name of the whole workbook, which names other such
+        names.
 
         Excel binds the names in a name when it is written, and files qualify those that belong to a sheet.
         """
@@ -309,7 +312,7 @@ class Resolver:
         return not self._open_names and self.workbook.content(host).value is ErrorCode.NAME
 
     def _again(self, name: str, key: str, scope: str) -> ir.Expression:
-        """A name within its own definition: a LAMBDA may call itself, by whatever way round."""
+        """Resolve a name within its own definition: a LAMBDA may call itself, by whatever way round."""
         if not stands_for_function(self.workbook, name, scope):
             raise FormulaError(f"the name {name!r} is defined by itself")
         self._recursive.add(key)
@@ -344,7 +347,9 @@ def _variable(name: ir.Expression, of: str) -> str:
 
 
 def _parameter(name: ir.Expression) -> tuple[str, bool]:
-    """The folded name of a parameter, and whether it may be left out: `[b]`, as Excel shows one, reads as a column."""
+    """Return the folded name of a parameter, and whether it may be left out: `[b]`, as Excel shows one, reads as a
+    column.
+    """
     if isinstance(name, ir.TableReference) and name.first and name == ir.TableReference(None, (), name.first):
         return name.first.casefold(), True
     found = _variable(name, "LAMBDA")
@@ -362,7 +367,7 @@ def _optional(parameters: list[tuple[str, bool]]) -> int:
 
 
 def _bare(name: str) -> str:
-    """A variable's name without the prefix that files give it, and by which they tell `max` from `MAX(`."""
+    """Return a variable's name without the prefix that files give it, and by which they tell `max` from `MAX(`."""
     return _PARAMETER.sub("", name).casefold()
 
 

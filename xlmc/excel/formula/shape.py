@@ -31,7 +31,7 @@ _TOKEN = re.compile(
 
 
 def shape_of(text: str, row: int, column: int) -> str:
-    """The shape of a formula written for a cell; two formulas of one shape differ only by a shift.
+    """Return the shape of a formula written for a cell; two formulas of one shape differ only by a shift.
 
     >>> shape_of("A1+$B$2", 1, 3) == shape_of("A5+$B$2", 5, 3) != shape_of("A5+$B$2", 6, 3)
     True
@@ -62,7 +62,7 @@ def _step(fixed: str, number: int, base: int) -> str | int:
 
 
 def text_at(text: str, down: int, right: int) -> str:
-    """A formula as it reads when it is filled so many rows down and columns to the right.
+    """Write a formula as it reads when it is filled so many rows down and columns to the right.
 
     >>> text_at("A1*$B$2+SUM(C:C)", 2, 1)
     'B3*$B$2+SUM(D:D)'
@@ -154,7 +154,7 @@ class Shapes:
         self._columns: dict[int, tuple[_Filling, _Shape]] = {}
 
     def parse(self, text: str, row: int, column: int) -> _Shape:
-        """The shape of a formula written for a cell.
+        """Return the shape of a formula written for a cell.
 
         Raises:
             FormulaError: the text is not a formula.
@@ -166,7 +166,7 @@ class Shapes:
         return found
 
     def _filled(self, text: str, row: int, column: int) -> _Shape | None:
-        """The shape of the formula met last in the column, if filling that down gives this one."""
+        """Return the shape of the formula met last in the column, if filling that down gives this one."""
         if column not in self._columns:
             return None
         filling, shape = self._columns[column]
@@ -198,7 +198,7 @@ _NEEDED: Final = re.compile(r"_xlpm\.", re.IGNORECASE)
 
 
 def shown_formula(formula: Formula, cell: Cell) -> str:
-    """A cell's formula with its `=`; in braces where it was entered with Ctrl-Shift-Enter.
+    """Return a cell's formula with its `=`; in braces where it was entered with Ctrl-Shift-Enter.
 
     Args:
         formula: as the file holds it; a shared formula's text is that of another cell.

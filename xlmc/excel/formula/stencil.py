@@ -56,7 +56,7 @@ class Stencil:
         return self._rows[0] <= down <= self._rows[1] and self._columns[0] <= right <= self._columns[1]
 
     def cells(self, host: Cell) -> list[Cell]:
-        """The cells that the formula reads when it stands in `host`, areas cell by cell.
+        """Return the cells that the formula reads when it stands in `host`, areas cell by cell.
 
         Each comes once, unless some move and others stay, and they meet.
         """
@@ -67,7 +67,7 @@ class Stencil:
         ]
 
     def at(self, host: Cell) -> ir.Expression:
-        """The tree when the formula stands in `host`."""
+        """Return the tree when the formula stands in `host`."""
         if host == self.home:
             return self.tree
         down, right = host.row - self.home.row, host.column - self.home.column
@@ -96,7 +96,9 @@ def _shift(target: Cell | Area, down: int, right: int) -> Cell | Area:
 
 
 def stencil(written: ir.Expression, resolved: ir.Expression, home: Cell) -> Stencil | None:
-    """The stencil of a formula as written and as resolved at `home`; None if it holds what does not simply move."""
+    """Make the stencil of a formula as written and as resolved at `home`; None if it holds what does not
+    simply move.
+    """
     before, after = _leaves(written), _leaves(resolved)
     if before is None or after is None or len(before) != len(after):
         return None
@@ -119,7 +121,9 @@ _Leaf = ir.Reference | Cell | Area
 
 
 def _leaves(tree: ir.Expression) -> list[_Leaf] | None:
-    """The references from left to right; None if the tree holds names, binds variables or asks where cells are."""
+    """Return the references from left to right; None if the tree holds names, binds variables or asks where
+    cells are.
+    """
     match tree:
         case ir.Reference() | Cell() | Area():
             return [tree]

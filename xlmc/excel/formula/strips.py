@@ -31,7 +31,7 @@ class _Span:
     stop: int = 0
 
     def outside(self, start: int, stop: int) -> tuple[range, range]:
-        """The indices from `start` to before `stop` that are not known to have it."""
+        """Return the indices from `start` to before `stop` that are not known to have it."""
         if self.stop <= start or stop <= self.start:
             return range(start, stop), range(0)
         return range(start, self.start), range(max(start, self.stop), stop)
@@ -77,7 +77,7 @@ class Stretch:
         return id(self.strip), self.start, self.stop
 
     def waiting(self) -> Iterator[Cell]:
-        """The cells that are not in order yet, and perhaps some that are."""
+        """Return the cells that are not in order yet, and perhaps some that are."""
         indices = chain(*self.strip.ordered.outside(self.start, self.stop))
         return map(self.strip.cells.__getitem__, indices)
 
@@ -119,7 +119,7 @@ class Strips:
         self._tables: dict[Area, tuple[Cell, ...]] = {}
 
     def of(self, area: Area) -> Iterator[Part]:
-        """The cells of an area that count; of a narrow one column by column, or row by row."""
+        """Return the cells of an area that count; of a narrow one column by column, or row by row."""
         if area.rows * area.columns >= _SHORTEST and area.columns <= _NARROW:
             for column in range(area.left, area.right + 1):
                 yield self._stretch(self._column(area.sheet, column), area.top, area.bottom)
@@ -169,7 +169,7 @@ class Needs(Mapping[Cell, tuple[Cell, ...]]):
         return len(self.parts)
 
     def of(self, cell: Cell) -> Iterator[Cell]:
-        """The cells that a formula cell needs, one by one."""
+        """Return the cells that a formula cell needs, one by one."""
         return chain.from_iterable(self.parts[cell])
 
     def names(self, cell: Cell, need: Cell) -> bool:
@@ -177,7 +177,9 @@ class Needs(Mapping[Cell, tuple[Cell, ...]]):
         return any(need in part for part in self.parts[cell])
 
     def linked(self) -> tuple[list[Part], dict[Cell, list[int]]]:
-        """The different parts, and the indices of those of each cell: formulas that read one range share a part."""
+        """Return the different parts, and the indices of those of each cell: formulas that read one range
+        share a part.
+        """
         found: list[Part] = []
         numbers: dict[tuple[int, ...], int] = {}
         links: dict[Cell, list[int]] = {}

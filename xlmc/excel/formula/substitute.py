@@ -12,7 +12,7 @@ __all__ = ["is_bound", "substitute", "unfold"]
 
 
 def substitute(tree: ir.Expression, change: Callable[[ir.Expression], ir.Expression | None]) -> ir.Expression:
-    """The tree with every part replaced for which `change` gives another; outer parts are asked first, then left ones.
+    """Replace every part of the tree for which `change` gives another; outer parts are asked first, then left ones.
 
     Args:
         tree: resolved.
@@ -66,7 +66,7 @@ _MOST: Final = 2000
 
 
 def unfold(tree: ir.Expression) -> ir.Expression:
-    """A resolved formula without LET: every variable as the formula that it stands for.
+    """Write a resolved formula without LET: every variable as the formula that it stands for.
 
     A formula with a LAMBDA in it, or one that would become very long, is left as it is.
     """

@@ -125,7 +125,7 @@ class Comparison:
     nin: ClassVar[int] = 2
 
     def within(self, first: Bounds | None, second: Bounds | None) -> Comparison:
-        """The same of numbers that have these bounds; otherwise None."""
+        """Return the same comparison for numbers that have these bounds; None are unknown bounds."""
         return replace(self, largest=_least_size(first, second))
 
     def __call__(self, x: Any, y: Any, out: Bools | None = None) -> Bools:
@@ -230,7 +230,7 @@ class SnapToZero:
 
     @classmethod
     def within(cls, first: Bounds | None, second: Bounds | None) -> SnapToZero:
-        """The one for sums of numbers, or differences, that have these bounds; otherwise None.
+        """Return the snap for sums of numbers, or differences, that have these bounds; None are unknown bounds.
 
         Where all but the last bits cancel, the first number is less than twice the second.
         """
@@ -259,7 +259,7 @@ def _size(x: Floats) -> float:
 
 
 def _least_size(*bounds: Bounds | None) -> float | None:
-    """The least size that one of some numbers never exceeds, by the bounds that are known."""
+    """Return the least size that one of some numbers never exceeds, by the bounds that are known."""
     least = min((max(map(abs, ends)) for ends in bounds if ends is not None), default=math.inf)
     return least if least < math.inf else None
 

@@ -18,26 +18,26 @@ _ERROR_TYPE: Final = 16.0
 
 @excel("NA")
 def not_available() -> Floats:
-    """The error `#N/A`."""
+    """Return the error `#N/A`."""
     return np.full(1, NA)
 
 
 @excel("ERROR.TYPE", Anything)
 def error_type(value: Value) -> Value:
-    """The number of an error: 1 `#NULL!`, 2 `#DIV/0!`, … 7 `#N/A`; `#N/A` for any other value."""
+    """Return the number of an error: 1 `#NULL!`, 2 `#DIV/0!`, … 7 `#N/A`; `#N/A` for any other value."""
     return Value.of_numbers(np.where(value.errors > 0, value.errors.astype(np.float64), NA))
 
 
 @excel("N", Anything, returns=Kind.ANY)
 def number(value: Value) -> Value:
-    """A number as it is, TRUE as 1, anything else as 0; errors stay."""
+    """Return a number as it is, TRUE as 1, anything else as 0; errors stay."""
     counts = (value.kinds == NUMBER) | (value.kinds == LOGICAL)
     return Value.of_numbers(np.where(counts, value.numbers, 0.0), value.errors)
 
 
 @excel("T", Anything, returns=Kind.ANY)
 def text(value: Value) -> Value:
-    """A text as it is, an empty one for anything else; errors stay."""
+    """Return a text as it is, an empty one for anything else; errors stay."""
     texts = np.full(value.shape, "", object)
     if value.texts is not None:
         texts = np.where(value.kinds == TEXT, value.texts, "")

@@ -51,7 +51,7 @@ def _texts(value: Value) -> Objects:
 
 @excel("IF", Anything, Anything, Anything(default=None), returns=Kind.ANY)
 def if_(condition: Value, yes: Value, no: Value | None = None) -> Value:
-    """The second argument where the first is TRUE, else the third; a blank branch is 0."""
+    """Return the second argument where the first is TRUE, else the third; a blank branch is 0."""
     truth, errors = condition.to_logicals()
     return choose(truth, zero_if_blank(yes), constant(False) if no is None else zero_if_blank(no), errors)
 
@@ -63,19 +63,19 @@ def zero_if_blank(value: Value) -> Value:
 
 @excel("IFERROR", Anything, Anything, returns=Kind.ANY)
 def if_error(value: Value, instead: Value) -> Value:
-    """The first argument, or the second where the first is an error."""
+    """Return the first argument, or the second where the first is an error."""
     return choose(value.kinds >= ERROR, zero_if_blank(instead), zero_if_blank(value))
 
 
 @excel("IFNA", Anything, Anything, returns=Kind.ANY)
 def if_na(value: Value, instead: Value) -> Value:
-    """The first argument, or the second where the first is `#N/A`."""
+    """Return the first argument, or the second where the first is `#N/A`."""
     return choose(value.kinds == _NA, zero_if_blank(instead), zero_if_blank(value))
 
 
 @excel("NOT", Logical, returns=Kind.LOGICAL, ufunc=np.logical_not, facts=Facts(never_errs=True, condition=True))
 def not_(x: Bools) -> Bools:
-    """TRUE for FALSE, and FALSE for TRUE."""
+    """Return TRUE for FALSE, and FALSE for TRUE."""
     return np.logical_not(x)
 
 
@@ -127,13 +127,13 @@ def _logical(x: Floats) -> Value:
 
 @excel("TRUE", returns=Kind.LOGICAL)
 def true() -> Bools:
-    """TRUE."""
+    """Return TRUE."""
     return np.ones(1, bool)
 
 
 @excel("FALSE", returns=Kind.LOGICAL)
 def false() -> Bools:
-    """FALSE."""
+    """Return FALSE."""
     return np.zeros(1, bool)
 
 

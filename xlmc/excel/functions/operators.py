@@ -37,7 +37,7 @@ def divide(x: Floats, y: Floats) -> Floats:
 
 @excel("%", Number, facts=Facts(never_errs=True))
 def percent(x: Floats) -> Floats:
-    """A hundredth of the number."""
+    """Return a hundredth of the number."""
     return x / 100
 
 

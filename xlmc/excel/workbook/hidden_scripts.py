@@ -47,7 +47,7 @@ class DamagedDrawing:
 
 
 def hidden_scripts(parts: Mapping[str, bytes], structure: Structure) -> Iterator[HiddenScript | DamagedDrawing]:
-    """The script texts of all worksheets, in tab order; shapes in the order of the file.
+    """Return the script texts of all worksheets, in tab order; shapes in the order of the file.
 
     Args:
         parts: of the package.
@@ -66,7 +66,7 @@ def hidden_scripts(parts: Mapping[str, bytes], structure: Structure) -> Iterator
 
 
 def _root(xml: bytes, part: str) -> Element:
-    """The drawing's root. Excel itself may leave a line break in a comment open, as HTML does.
+    """Return the drawing's root. Excel itself may leave a line break in a comment open, as HTML does.
 
     Raises:
         WorkbookError: it is no XML even so.

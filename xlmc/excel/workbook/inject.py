@@ -57,7 +57,7 @@ _TYPES_OF_OUR_OWN = {
 def inject(
     host: Mapping[str, bytes], sheets: Mapping[str, bytes], *, replace: bool = True, marked: bool = True
 ) -> dict[str, bytes]:
-    """The parts of the user's workbook with result sheets behind its own.
+    """Return the parts of the user's workbook with result sheets behind its own.
 
     The same host and sheets always give the same parts, in the same order. Where the user has a sheet called
     `Results`, ours is called `Results (2)`, and everything that refers to it says so.
@@ -122,7 +122,7 @@ class _User:
         )
 
     def styles_from(self, least: int) -> set[int]:
-        """The numbers of cell styles, from this one on, that the user's sheets name."""
+        """Return the numbers of cell styles, from this one on, that the user's sheets name."""
         pointers = relationships(self.parts, self.role.workbook).values()
         sheets = {each.target for each in pointers if each.kind.endswith("sheet") and each.target in self.parts}
         return set().union(*(styles_from(as_utf8(self.parts[sheet], sheet), least) for sheet in sheets))
@@ -166,7 +166,7 @@ def _carrier(
 
 
 def _targets(user: _User, carrier: Carrier, styles: _Styles) -> list[tuple[str, str]]:
-    """What the workbook part has to point to, as (type, target): each sheet, then the styles if they are new."""
+    """Return what the workbook part has to point to, as (type, target): each sheet, then the styles if they are new."""
     workbook = user.role.workbook
     found = [(sheet.type, relative_target(workbook, carrier.names[sheet.part])) for sheet in carrier.built.sheets]
     found += [(_STYLES_POINTER, relative_target(workbook, styles.part))] if styles.new else []
@@ -215,7 +215,7 @@ def refuse_unwritable(parts: Mapping[str, bytes]) -> None:
 
 
 def remove_result_sheets(parts: Mapping[str, bytes]) -> dict[str, bytes]:
-    """The user's own parts: the package without its result sheets and whatever only they lead to.
+    """Return the user's own parts: the package without its result sheets and whatever only they lead to.
 
     Of what is left, only content types, the workbook part with its pointers, and the list of sheets in
     docProps/app.xml change. Styles stay, and the next run uses them again. A calculation chain that names cells of
@@ -250,7 +250,7 @@ def remove_result_sheets(parts: Mapping[str, bytes]) -> dict[str, bytes]:
 
 
 def result_sheets(parts: Mapping[str, bytes]) -> list[str]:
-    """The parts of the result sheets, in their order.
+    """Return the parts of the result sheets, in their order.
 
     Raises:
         WorkbookError: the package is damaged.
@@ -283,7 +283,7 @@ def original_hash(parts: Mapping[str, bytes]) -> str:
 
 
 def _workbook_content(root: Element) -> list[object]:
-    """What the workbook part says, but for its windows; no names and an empty list of names are one and the same."""
+    """Return what the workbook part says, but for its windows; no names and an empty list of names are the same."""
     children = [child for child in root.children if child.local != "bookViews"]
     return [child.canonical() for child in children if child.local != "definedNames" or child.children]
 
@@ -295,14 +295,14 @@ def _canonical(identity: object) -> bytes:
 def _stale_chains(
     parts: Mapping[str, bytes], pointers: Mapping[str, Relationship], sheets: Iterable[Element]
 ) -> set[str]:
-    """The ids of calculation chains that name cells of these sheets."""
+    """Return the ids of calculation chains that name cells of these sheets."""
     numbers = {sheet.attributes.get("sheetId") for sheet in sheets}
     chains = [(i, r.target) for i, r in pointers.items() if r.kind == "calcChain" and r.target in parts]
     return {i for i, part in chains if any(cell.get("i") in numbers for cell in tree(parts[part], part))}
 
 
 def _only_reached_from(starts: Collection[str], before: Mapping[str, bytes], after: Mapping[str, bytes]) -> set[str]:
-    """The parts, and their rels parts, that nothing leads to any more now that nothing leads to `starts`."""
+    """Return the parts, and their rels parts, that nothing leads to any more now that nothing leads to `starts`."""
     lost = set(reached(before, *starts)) - set(reached(after, ""))
     pointers = {rels_part(part).casefold() for part in lost}
     return lost | {name for name in before if name.casefold() in pointers}

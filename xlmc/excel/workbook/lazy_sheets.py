@@ -64,7 +64,7 @@ class LazySheets(Mapping[str, Sheet]):
         return f"<sheets {', '.join(self._entries)}>"
 
     def with_sheets(self, changed: Mapping[str, Sheet]) -> LazySheets:
-        """The same worksheets, but for those of these names."""
+        """Return the same worksheets, but for those of these names."""
         found = copy(self)
         found._parsed = {**self._parsed, **changed}
         return found
@@ -79,7 +79,9 @@ class LazySheets(Mapping[str, Sheet]):
         return [table for name in suspects for table in self[name].data_tables]
 
     def mentioning(self, words: Iterable[bytes]) -> Iterator[str]:
-        """The names of the sheets whose part holds one of these words, in small letters, whatever its case there."""
+        """Return the names of the sheets whose part holds one of these words, in small letters, whatever its case
+        there.
+        """
         for entry in self._entries.values():
             xml = self._parts[entry.part].lower()
             if b"\0" in xml[:4] or any(word in xml for word in words):  # zero bytes: an encoding of its own
@@ -122,7 +124,7 @@ _DYNAMIC = "XLDAPR"
 
 
 def dynamic_array_marks(xml: bytes, part: str) -> frozenset[str]:
-    """The values of `cm` that mark a dynamic-array formula.
+    """Return the values of `cm` that mark a dynamic-array formula.
 
     `cm` counts cell metadata from 1; each names records (`rc`) of a type `t`, counted from 1, with a value `v`,
     counted from 0, among that type's own.

@@ -112,7 +112,8 @@ def read_parts(data: bytes, limits: Limits = LIMITS) -> dict[str, bytes]:
 
 
 def relationships(parts: Mapping[str, bytes], part: str = "") -> dict[str, Relationship]:
-    """The relationships of one part by their id; those of the package itself for `""`. None if it has no rels part.
+    """Return the relationships of one part by their id; those of the package itself for `""`. None if it has no rels
+    part.
 
     Targets are names as in `parts`, also where the file writes them in another case; a target that does not exist
     is given as the file means it.
@@ -132,7 +133,7 @@ def relationships(parts: Mapping[str, bytes], part: str = "") -> dict[str, Relat
 
 
 def content_type(parts: Mapping[str, bytes], part: str) -> str:
-    """The content type that the package gives to one part by its name; empty where it gives none.
+    """Return the content type that the package gives to one part by its name; empty where it gives none.
 
     Raises:
         WorkbookError: the part that holds the content types is not XML.
@@ -153,7 +154,7 @@ def rels_part(part: str) -> str:
 
 
 def stored_part(parts: Mapping[str, bytes], name: str) -> str | None:
-    """The name of a part as the package writes it: part names match whatever their case."""
+    """Return the name of a part as the package writes it: part names match whatever their case."""
     if name in parts:
         return name
     folded = name.casefold()
@@ -200,7 +201,7 @@ def _check_entries(entries: list[zipfile.ZipInfo], limits: Limits) -> None:
 
 
 def _with_slashes(name: str) -> str:
-    """The name of a part: some programs on Windows write backslashes, which Excel reads as slashes."""
+    """Return the name of a part: some programs on Windows write backslashes, which Excel reads as slashes."""
     return name.replace("\\", "/")
 
 
@@ -238,7 +239,8 @@ def _unpack(package: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
 
 @lru_cache(maxsize=128)
 def _pointers(xml: bytes, rels: str, folder: str) -> tuple[tuple[str, Relationship], ...]:
-    """The pointers of a rels part by their id, with targets as it means them; one injection asks some times for each.
+    """Return the pointers of a rels part by their id, with targets as it means them; one injection asks some times for
+    each.
 
     Raises:
         WorkbookError: the part is not XML.
@@ -254,7 +256,7 @@ def _meant(folder: str, attributes: Mapping[str, str]) -> Relationship:
 
 
 def _in_package(stored: Mapping[str, str], meant: Relationship) -> Relationship:
-    """The pointer with its target by the name that the part has, which may be percent-encoded in the pointer.
+    """Return the pointer with its target by the name that the part has, which may be percent-encoded in the pointer.
 
     Args:
         stored: the names of all parts, by what they are in lower case.

@@ -50,7 +50,7 @@ def checked_bytes(parts: Mapping[str, bytes], before: Mapping[str, bytes]) -> by
 
 
 def faults(parts: Mapping[str, bytes], looked_at: Iterable[str]) -> list[str]:
-    """What is wrong with a package, a sentence each, the same for the same fault.
+    """Yield what is wrong with a package, a sentence each, the same for the same fault.
 
     Args:
         parts: of the package.
@@ -148,7 +148,7 @@ def _xml_faults(name: str, xml: bytes) -> Iterator[str]:
 
 
 def _pointer_faults(parts: Mapping[str, bytes], source: str) -> Iterator[str]:
-    """The pointers of one part have ids of their own and lead to parts that are there."""
+    """Check that the pointers of one part have ids of their own and lead to parts that are there."""
     rels = rels_part(source)
     raw = [(each.get("Id", ""), each.get("Target", "")) for each in tree(parts[rels], rels).findall("{*}Relationship")]
     yield from (f"{rels} has the id {name!r} twice" for name in _repeated([name for name, _ in raw]))

@@ -26,7 +26,7 @@ _VALUES: Final = -2
 
 
 def pivot_tables(parts: Mapping[str, bytes], sheets: Sequence[SheetEntry], date1904: bool) -> tuple[PivotTable, ...]:
-    """The pivot tables of a workbook that are whole, if a formula asks for one."""
+    """Return the pivot tables of a workbook that are whole, if a formula asks for one."""
     if not any(b"GETPIVOTDATA" in parts.get(part, b"") for part in (*(s.part for s in sheets), "xl/workbook.xml")):
         return ()
     found = (
@@ -39,7 +39,7 @@ def pivot_tables(parts: Mapping[str, bytes], sheets: Sequence[SheetEntry], date1
 
 
 def _whole(parts: Mapping[str, bytes], part: str, sheet: str, date1904: bool) -> PivotTable | None:
-    """The pivot table; None if its definition is damaged, which is of concern to GETPIVOTDATA alone."""
+    """Return the pivot table; None if its definition is damaged, which is of concern to GETPIVOTDATA alone."""
     try:
         return _Reading(parts, part, sheet, date1904).table()
     except (WorkbookError, IndexError, ValueError):
@@ -61,7 +61,7 @@ class _Reading:
         return tree(parts[part], part)
 
     def table(self) -> PivotTable:
-        """What it says.
+        """Read what it says.
 
         Raises:
             WorkbookError, IndexError, ValueError: it is damaged.
@@ -115,7 +115,7 @@ class _Reading:
                 return decode(text)
 
     def _serial(self, text: str) -> float:
-        """The number of a date."""
+        """Turn a date into a number."""
         first = datetime(1904, 1, 1) if self._date1904 else datetime(1899, 12, 30)
         return (datetime.fromisoformat(text).replace(tzinfo=None) - first).total_seconds() / 86_400
 
@@ -149,12 +149,12 @@ class _Reading:
 
 
 def _number(element: Element, key: str) -> int:
-    """An attribute that is a whole number; 0 where it is left out."""
+    """Return an attribute that is a whole number; 0 where it is left out."""
     return int(element.get(key, "0"))
 
 
 def _items(field: Element, values: Sequence[CellValue]) -> Iterator[tuple[int, CellValue]]:
-    """Number of an item among the cache's, and what it is; a caption that a person typed instead of that."""
+    """Return number of an item among the cache's, and what it is; a caption that a person typed instead of that."""
     for item in field.findall("{*}items/{*}item"):
         if item.get("t", "data") != "data":
             continue

@@ -28,7 +28,7 @@ _BYTES: Final = re.compile("[\udc80-\udcff]+")
 
 
 def printable(text: str) -> str:
-    r"""The text with such characters written as Python writes them; line feeds and tabs stay.
+    r"""Write such characters of the text as Python writes them; line feeds and tabs stay.
 
     Names of files are read as UTF-8, whatever encoding the system's settings speak of.
 
@@ -41,7 +41,7 @@ def printable(text: str) -> str:
 
 
 def label(text: str) -> str:
-    r"""A text from a workbook as everything shows it: `printable`, with the line breaks of Windows as line feeds.
+    r"""Write a text from a workbook as everything shows it: `printable`, with the line breaks of Windows as line feeds.
 
     >>> label("Initial\r\nspeed")
     'Initial\nspeed'

@@ -180,7 +180,7 @@ def _on_links(parts: Mapping[str, bytes], structure: Structure) -> Iterator[str]
 
 
 def _age(parts: Mapping[str, bytes]) -> str:
-    """The file does not say when its links were updated last: it was before it was saved."""
+    """Say how old the links are: no newer than the file, which does not say when they were updated."""
     found = _SAVED_AT.search(parts.get("docProps/core.xml", b""))
     return f", of {found[1].decode()} or older" if found else ", at a time that the file does not tell"
 
@@ -223,13 +223,13 @@ class Links(Mapping[str, LinkedBook]):
 
 
 def linked_files(parts: Mapping[str, bytes], structure: Structure) -> list[str]:
-    """The names of the files that a workbook links to, each once."""
+    """Return the names of the files that a workbook links to, each once."""
     files = (_file(parts, part) for part in structure.links)
     return list(dict.fromkeys(file for file in files if file))
 
 
 def _file(parts: Mapping[str, bytes], part: str) -> str:
-    """The name of the file, without its folder; empty where the part names none."""
+    """Return the name of the file, without its folder; empty where the part names none."""
     found = (link.target for link in relationships(parts, part).values() if link.external)
     return posixpath.basename(next(found, "").replace("\\", "/"))
 
@@ -247,7 +247,7 @@ def _linked_book(book: str, file: str, root: Element, part: str) -> LinkedBook:
 
 
 def _names(book: str, root: Element, titles: list[str]) -> Iterator[DefinedName]:
-    """The names that Excel stored with what they stand for; those of a sheet see that first."""
+    """Return the names that Excel stored with what they stand for; those of a sheet see that first."""
     for name in root.findall("{*}externalBook/{*}definedNames/{*}definedName"):
         text = decode(name.get("refersTo", "")).removeprefix("=")
         title = _of_id(titles, name.get("sheetId"))

@@ -39,7 +39,7 @@ _NOT_XML = (expat.ExpatError, ElementTree.ParseError, ValueError, LookupError)
 
 
 def tree(xml: bytes, part: str) -> ElementTree.Element:
-    """The part's root element; names are `{namespace}local`, and `{*}local` finds them in any namespace.
+    """Parse the part; names are `{namespace}local`, and `{*}local` finds them in any namespace.
 
     Raises:
         WorkbookError: the part is not XML, or declares a document type.
@@ -53,7 +53,7 @@ def tree(xml: bytes, part: str) -> ElementTree.Element:
 
 
 def expat_parser() -> expat.XMLParserType:
-    """A parser for one pass over a large part; names arrive as `namespace local`."""
+    """Make a parser for one pass over a large part; names arrive as `namespace local`."""
     parser = expat.ParserCreate(namespace_separator=" ")
     parser.buffer_size = _PIECE
     parser.buffer_text = True
@@ -75,17 +75,17 @@ def feed(parser: expat.XMLParserType, xml: bytes, part: str) -> None:
 
 
 def attribute(element: ElementTree.Element, local: str) -> str | None:
-    """The element's attribute of that local name in any namespace but none, such as `id` for `r:id`."""
+    """Return the element's attribute of that local name in any namespace but none, such as `id` for `r:id`."""
     return next((value for key, value in element.items() if key.endswith("}" + local)), None)
 
 
 def is_true(text: str | None) -> bool:
-    """An XML boolean; absent is false."""
+    """Read an XML boolean; absent is false."""
     return text in ("1", "true", "on")
 
 
 def whole_number(text: str | None) -> int | None:
-    """A count or position as XML writes it; None if it is absent, none, or longer than any in a workbook."""
+    """Read a count or position as XML writes it; None if it is absent, no number, or longer than any in a workbook."""
     return int(text) if text is not None and _DIGITS.fullmatch(text) else None
 
 
@@ -124,12 +124,12 @@ def decode(text: str) -> str:
 
 
 def run_text(text: str, keep_space: bool) -> str:
-    """The text of one run. Excel drops white space at its ends unless `xml:space` says to keep it."""
+    """Return the text of one run. Excel drops white space at its ends unless `xml:space` says to keep it."""
     return decode(text if keep_space else text.strip(" \t\r\n"))
 
 
 def shared_strings(xml: bytes, part: str) -> list[str]:
-    """The shared string table, rich texts as plain ones, without phonetic guides.
+    """Return the shared string table, rich texts as plain ones, without phonetic guides.
 
     An element that no table has, around a text or a part of it, makes no difference: were it left out with what it
     holds, every later text would stand under another number.

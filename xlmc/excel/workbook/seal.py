@@ -58,7 +58,7 @@ class Seal:
 
 
 def read_seal(path: Path) -> Seal | None:
-    """The seal of a file; None if it has none: xlmc did not write it, or another program has saved it since.
+    """Return the seal of a file; None if it has none: xlmc did not write it, or another program has saved it since.
 
     Raises:
         OSError: the file cannot be read.
@@ -70,7 +70,7 @@ def read_seal(path: Path) -> Seal | None:
 
 
 def sealed_parts(parts: Mapping[str, bytes], sheet: str, book: str) -> dict[str, bytes]:
-    """The package with its seal.
+    """Add its seal to the package.
 
     Args:
         parts: the package.
@@ -93,7 +93,7 @@ def sealed_parts(parts: Mapping[str, bytes], sheet: str, book: str) -> dict[str,
 
 
 def sealed_text(content: bytes, ending: str, book: str) -> bytes:
-    """A text with its seal.
+    """Add its seal to a text.
 
     Args:
         content: the text; of JSON what stands before the end of the outermost object.
@@ -120,7 +120,7 @@ def seal_file(file: BinaryIO, book: str) -> None:
 
 
 def blank_seal(book: str) -> bytes:
-    """A placeholder with as many bytes as the seal will have."""
+    """Make a placeholder with as many bytes as the seal will have."""
     return _seal(book, hashlib.sha256())
 
 
@@ -145,7 +145,7 @@ def _seal_at_end(path: Path, ending: str) -> Seal | None:
 
 
 def _digest(file: BinaryIO, size: int) -> hashlib._Hash:
-    """The SHA-256 of the first bytes of a file."""
+    """Compute the SHA-256 of the first bytes of a file."""
     digest = hashlib.sha256()
     file.seek(0)
     while size > 0 and (chunk := file.read(min(size, _CHUNK))):

@@ -218,7 +218,7 @@ class _Pass:
         self._row = int(found[2])
 
     def _shared(self, text: str) -> Formula:
-        """A master brings text and the area it is shared over; a child's own text, if any, does not count."""
+        """Note a master's text and the area it is shared over; a child's own text, if any, does not count."""
         index = self._attributes.get("si")
         if text and ("ref" in self._attributes or index not in self._masters):
             self._masters[index] = Formula(text, self._row, self._column)
@@ -275,7 +275,7 @@ _ENDS = _in_each_namespace(
 
 
 def convert(kind: str, raw: str, context: CellContext) -> CellValue:
-    """The value that `raw` stands for in a cell of type `kind` (the attribute `t`).
+    """Return the value that `raw` stands for in a cell of type `kind` (the attribute `t`).
 
     Raises:
         ValueError: `raw` is no value of that type, or there is no such type.

@@ -62,7 +62,7 @@ class Structure:
         return tuple(sheet for sheet in self.sheets if sheet.kind == "worksheet")
 
     def target(self, kind: str) -> str | None:
-        """The part that the workbook's first relationship of that kind points to."""
+        """Return the part that the workbook's first relationship of that kind points to."""
         return next((found.target for found in self.relationships.values() if found.kind == kind), None)
 
 
@@ -153,7 +153,7 @@ def _check_distinct(sheets: tuple[SheetEntry, ...]) -> None:
 
 
 def _defined_name(element: Element, sheets: tuple[SheetEntry, ...]) -> DefinedName | Notice:
-    """A name, or a notice where it belongs to a tab that does not exist. `localSheetId` counts all tabs from 0."""
+    """Read a name, or report a name of a tab that does not exist. `localSheetId` counts all tabs from 0."""
     name, text = decode(element.get("name", "")), decode(element.text or "")
     if "localSheetId" not in element.attrib:
         return DefinedName(name, text)
@@ -164,7 +164,7 @@ def _defined_name(element: Element, sheets: tuple[SheetEntry, ...]) -> DefinedNa
 
 
 def area_of(reference: str | None, sheet: str, what: str) -> Area:
-    """The area `reference` names on `sheet`; a single cell is an area of one.
+    """Return the area `reference` names on `sheet`; a single cell is an area of one.
 
     Raises:
         WorkbookError: there is no reference, or it is none; `what` says whose it is.
@@ -179,7 +179,7 @@ def area_of(reference: str | None, sheet: str, what: str) -> Area:
 
 
 def tables_of(parts: Mapping[str, bytes], sheet_part: str, sheet: str) -> Iterator[Table]:
-    """The tables on one worksheet.
+    """Return the tables on one worksheet.
 
     Raises:
         WorkbookError: a table part is missing or damaged.
@@ -208,7 +208,7 @@ def read_table(xml: bytes, part: str, sheet: str) -> Table:
 
 
 def _filtered(root: Element, sheet: str, name: str) -> Area | None:
-    """The range of its filter; None if no column of it has a condition."""
+    """Return the range of its filter; None if no column of it has a condition."""
     element = root.find("{*}autoFilter")
     if element is None or not any(len(column) for column in element.findall("{*}filterColumn")):
         return None

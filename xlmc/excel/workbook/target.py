@@ -89,7 +89,7 @@ class Target:
 
 
 def free_target(path: Path, book: str, *, after: Path | None = None) -> tuple[Path, str | None]:
-    """The path, or the first of `…-2`, `…-3`, … that is free or ours, and why not the path itself.
+    """Choose the path, or the first of `…-2`, `…-3`, … that is free or ours, and say why not the path itself.
 
     Args:
         path: the name that is wanted.
@@ -113,7 +113,7 @@ def free_target(path: Path, book: str, *, after: Path | None = None) -> tuple[Pa
 
 
 def unused_path(path: Path) -> Path:
-    """The path, or the first of `…-2`, `…-3`, … where nothing is."""
+    """Choose the path, or the first of `…-2`, `…-3`, … where nothing is."""
     return next(each for each in _numbered(path) if not (each.exists() or each.is_symlink()))
 
 
@@ -138,7 +138,7 @@ def refuse_existing(path: Path) -> None:
 
 
 def copy_ending(source: Path) -> str:
-    """The ending of what is written of a workbook: its own, and `.xlsx` of an `.xls`."""
+    """Return the ending of what is written of a workbook: its own, and `.xlsx` of an `.xls`."""
     return ".xlsx" if source.suffix.casefold() == ".xls" else source.suffix
 
 

@@ -153,7 +153,7 @@ class DataTable:
     two_inputs: bool = False
 
     def margins(self) -> Iterator[Cell]:
-        """The cells above it and on its left: the formulas it computes, and the values that it puts in."""
+        """Yield the cells above it and on its left: the formulas it computes, and the values that it puts in."""
         above, left = self.area.top - 1, self.area.left - 1
         if self.two_inputs and above and left:
             yield Cell(self.area.sheet, above, left)
@@ -230,7 +230,7 @@ class PivotTable:
         return found
 
     def cells_with(self, data: int, items: frozenset[tuple[int, int]]) -> Iterator[tuple[Cell, ...]]:
-        """The cells that show these items of a data field, and items of other fields."""
+        """Return the cells that show these items of a data field, and items of other fields."""
         among = min((self._by_item.get(pair, []) for pair in items), key=len, default=list(self.cells))
         yield from (self.cells[key] for key in among if key[0] == data and items < key[1])
 
@@ -312,12 +312,12 @@ class Workbook:
         return {(n.sheet and n.sheet.casefold(), n.name.casefold()): n for n in self.names}
 
     def sheet_named(self, name: str) -> Sheet | None:
-        """The sheet of that name, whatever its case."""
+        """Return the sheet of that name, whatever its case."""
         found = self._folded.get(name.casefold())
         return None if found is None else self.sheets[found]
 
     def filtered_rows(self, sheet: Sheet) -> frozenset[int]:
-        """The hidden rows of a sheet where a filter of it, or of a table on it, leaves rows out; else none.
+        """Return the hidden rows of a sheet where a filter of it, or of a table on it, leaves rows out; else none.
 
         Excel takes all of them for filtered then, also those outside the filter's range.
         """
@@ -325,11 +325,11 @@ class Workbook:
         return sheet.hidden_rows if sheet.filtered or of_tables else frozenset()
 
     def table_named(self, name: str) -> Table | None:
-        """The table of that name, whatever its case."""
+        """Return the table of that name, whatever its case."""
         return self._tables.get(name.casefold())
 
     def defined_name(self, name: str, sheet: str | None = None) -> DefinedName | None:
-        """The name as `sheet` sees it: its own first, then the workbook's."""
+        """Return the name as `sheet` sees it: its own first, then the workbook's."""
         if sheet is not None:
             local = self._names.get((sheet.casefold(), name.casefold()))
             if local is not None:
@@ -337,7 +337,7 @@ class Workbook:
         return self._names.get((None, name.casefold()))
 
     def sheet_of(self, cell: Cell | Area) -> Sheet | None:
-        """The sheet that a resolved cell or area stands on, one of a linked workbook among them."""
+        """Return the sheet that a resolved cell or area stands on, one of a linked workbook among them."""
         found = self.sheets.get(cell.sheet)
         if found is None and cell.sheet.startswith("["):
             book = cell.sheet[: cell.sheet.find("]") + 1]
@@ -345,7 +345,7 @@ class Workbook:
         return found
 
     def content(self, cell: Cell) -> CellContent:
-        """What the cell holds; blank where the file holds nothing or has no such sheet."""
+        """Return what the cell holds; blank where the file holds nothing or has no such sheet."""
         cells = self._cells.get(cell.sheet)
         if cells is None:
             sheet = self.sheet_of(cell)

@@ -52,7 +52,7 @@ class TakenError(WorkbookError):
 
 
 def package_bytes(parts: Mapping[str, bytes]) -> bytes:
-    """The zip package that holds the parts, content types first, then in their order; no clock and no machine in it."""
+    """Pack the parts into a zip, content types first, then in their order; no clock and no machine in it."""
     packed = io.BytesIO()
     names = [*(name for name in _FIRST if name in parts), *(name for name in parts if name not in _FIRST)]
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as package:
@@ -81,7 +81,7 @@ def write_workbook(path: str | os.PathLike[str], data: bytes, check: Callable[[]
 
 @contextmanager
 def whole_file(path: str | os.PathLike[str], check: Callable[[], None] | None = None) -> Iterator[BinaryIO]:
-    """A file to write piece by piece, which gets its name when all is written, and not at all after an exception.
+    """Open a file to write piece by piece, which gets its name when all is written, and not at all after an exception.
 
     An existing file keeps its permissions; a link keeps pointing at the file it names.
 
@@ -96,7 +96,7 @@ def whole_file(path: str | os.PathLike[str], check: Callable[[], None] | None = 
 
 @contextmanager
 def _write_whole(path: str | os.PathLike[str], check: Callable[[], None] | None) -> Iterator[Path]:
-    """A file beside the target, to be written and synced; then it is renamed."""
+    """Open a file beside the target, to be written and synced; then it is renamed."""
     with _naming_file(path):
         target = _meant(path)
         _refuse_protected(target)
@@ -148,7 +148,7 @@ def _entry(name: str) -> zipfile.ZipInfo:
 
 
 def _meant(path: str | os.PathLike[str]) -> Path:
-    """The file that a path names: what a link points to.
+    """Return the file that a path names: what a link points to.
 
     Only links are followed: on Windows following a whole path turns a drive's letter into the server it stands for.
     What `..` means is left to the system, which says too whether the file is the workbook itself: behind a link to a
@@ -187,7 +187,7 @@ def _refuse_protected(target: Path) -> None:
 
 @contextmanager
 def _new_file_beside(target: Path) -> Iterator[Path]:
-    """An empty file in the target's folder, removed again unless it was renamed."""
+    """Make an empty file in the target's folder, removed again unless it was renamed."""
     path = target.with_name(new_file_name())
     with owned(path.name):
         try:
@@ -317,12 +317,13 @@ _TEMPORARY = 48
 
 
 def openable(path: str | os.PathLike[str]) -> str:
-    """The path; on Windows a long one in its extended form, which must be absolute."""
+    """Return the path; on Windows a long one in its extended form, which must be absolute."""
     return extended(os.fspath(path)) if os.name == "nt" else os.fspath(path)
 
 
 def extended(path: str) -> str:
-    r"""A Windows path, `\\?\C:\…` or `\\?\UNC\server\share\…` where it, or a temporary file beside it, is long.
+    r"""Extend a Windows path to `\\?\C:\…` or `\\?\UNC\server\share\…` where it, or a temporary file beside it, is
+    long.
 
     The extended form takes no `..` and no `/`: the path is made absolute and plain first.
     """

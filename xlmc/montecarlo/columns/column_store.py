@@ -43,7 +43,7 @@ class _Mapping(mmap.mmap):
 
 
 def mapped(path: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
-    """The `(n,)` numbers of a file, read-only; the file may be deleted meanwhile where the system allows it."""
+    """Return the `(n,)` numbers of a file, read-only; the file may be deleted meanwhile where the system allows it."""
     if path.stat().st_size == 0:
         return np.empty(0, dtype)
     with path.open("rb") as file:
@@ -105,7 +105,7 @@ class Folder:
                 file.write(array.data)
 
     def array(self, name: str, dtype: np.dtype[Any]) -> NDArray[Any]:
-        """The numbers of a file, `(n,)`, read-only; see `release`.
+        """Return the numbers of a file, `(n,)`, read-only; see `release`.
 
         Raises:
             SimulationError: the file cannot be read.
@@ -129,7 +129,7 @@ def _remove(path: Path, owner: int, resources: ExitStack) -> None:
 
 
 def free_disk() -> tuple[Path, int]:
-    """The temporary folder and the bytes that are free there.
+    """Return the temporary folder and the bytes that are free there.
 
     Raises:
         SimulationError: there is no folder to write to.
@@ -193,7 +193,7 @@ class Columns(Mapping[str, Array]):
 
 
 def _address(array: Array) -> int:
-    """The address of an array that can be written to; NumPy's own way takes five times as long."""
+    """Return the address of an array that can be written to; NumPy's own way takes five times as long."""
     return ctypes.addressof(ctypes.c_char.from_buffer(array))  # type: ignore[arg-type]  # it has a buffer
 
 
@@ -240,7 +240,7 @@ class ColumnStore:
         self._bytes += values.nbytes
 
     def reserve(self, key: Hashable, n: int) -> Array:
-        """The memory of a column's next `n` numbers."""
+        """Reserve the memory of a column's next `n` numbers."""
         begin = self._sizes[key]
         if begin + n > self._arrays[key].size:
             self._grow(key, begin + n)
@@ -276,7 +276,7 @@ class ColumnStore:
         return expected if self._together <= reserved else int(expected * reserved / self._together)
 
     def _added(self, key: Hashable) -> Array:
-        """The numbers of a column that are in memory, `(m,)`."""
+        """Return the numbers of a column that are in memory, `(m,)`."""
         return self._arrays[key][: self._sizes[key]]
 
     def write_if_full(self) -> None:
@@ -305,7 +305,8 @@ class ColumnStore:
         self._bytes = 0
 
     def columns(self, keys: Mapping[str, Hashable], rows: int | None = None) -> Mapping[str, Array]:
-        """The columns so far, each under a name of its own, or their first `rows`; in memory if none was written yet.
+        """Return the columns so far, each under a name of its own, or their first `rows`; in memory if none was written
+        yet.
 
         Raises:
             SimulationError: there is no space on the disk.
@@ -316,7 +317,7 @@ class ColumnStore:
         return Columns(self._folder, {name: (self._files[key], self._types[key]) for name, key in keys.items()}, rows)
 
     def _compact(self, key: Hashable) -> Array:
-        """A column in no more than twice the memory that it needs."""
+        """Copy a column into no more than twice the memory that it needs."""
         if 2 * self._sizes[key] < self._arrays[key].size:
             self._arrays[key] = self._added(key).copy()
         return self._added(key)

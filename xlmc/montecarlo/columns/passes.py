@@ -25,14 +25,14 @@ _PICKED = 512
 
 
 def parts(values: NDArray[Any], size: int = PART) -> Iterator[NDArray[Any]]:
-    """The column in order, `size` values at a time; take what you keep before the next part."""
+    """Yield the column in order, `size` values at a time; take what you keep before the next part."""
     for start in range(0, values.size, size):
         yield values[start : start + size]
         release(values)
 
 
 def pairwise_sum(term: Callable[[slice], NDArray[np.float64]], n: int) -> float:
-    """The sum of n terms, which are made for a slice of them at a time.
+    """Sum n terms, which are made for a slice of them at a time.
 
     To the bit what `np.sum` gives for all of them in one array: it halves at the same terms.
     """
@@ -50,7 +50,7 @@ def _between(term: Callable[[slice], NDArray[np.float64]], start: int, stop: int
 
 
 def picked(values: NDArray[Any], indices: NDArray[np.intp]) -> NDArray[Any]:
-    """The values at `(m,)` indices, in memory of their own."""
+    """Return the values at `(m,)` indices, in memory of their own."""
     if not on_disk(values):
         return np.asarray(values[indices])
     found = np.empty(indices.size, values.dtype)

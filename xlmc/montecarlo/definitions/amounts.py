@@ -25,7 +25,7 @@ _UNITS: Final = {"k": 3, "m": 6}
 
 
 def as_tolerance(given: str | float) -> tuple[float, bool]:
-    """A half width, and whether it is a share of the number itself: `1%` is, `0.1` is not.
+    """Read a half width, and whether it is a share of the number itself: `1%` is, `0.1` is not.
 
     Raises:
         SimulationError: it is neither.
@@ -64,7 +64,7 @@ def as_numbers(given: str | Sequence[str]) -> tuple[str, ...]:
 
 
 def as_confidence(given: str | float) -> float:
-    """A share, from a percentage: `95%`, `95` or 0.95.
+    """Read a share from a percentage: `95%`, `95` or 0.95.
 
     Raises:
         SimulationError: it is not between 0 and 100 %.
@@ -82,7 +82,7 @@ def as_confidence(given: str | float) -> float:
 
 
 def as_seconds(given: str | float) -> float:
-    """A duration: `60s`, `5m`, `1h30m`, or a number of seconds.
+    """Read a duration: `60s`, `5m`, `1h30m`, or a number of seconds.
 
     Raises:
         SimulationError: it is none.
@@ -108,7 +108,7 @@ def _number(text: str) -> float | None:
 
 
 def typed_whole_number(text: str) -> int | None:
-    """The number; None if the text is none, or could mean two (`200.000`).
+    """Read a number; None if the text holds none, or could mean two (`200.000`).
 
     >>> [typed_whole_number(text) for text in ("200000", "200,000", "2e5", "1.5e6", "200k", "1.5M", "200.000", "2,5")]
     [200000, 200000, 200000, 1500000, 200000, 1500000, None, None]

@@ -38,7 +38,7 @@ _ONE_RANGE = "Write one range, such as Inputs!Q2:Q9, a defined name, or a column
 
 
 def formula_at(formula: Formula, cell: Cell) -> str:
-    """The text of a formula that is a reference, as the cell means it; the plus of `=+B7` is dropped.
+    """Return the text of a formula that is a reference, as the cell means it; the plus of `=+B7` is dropped.
 
     Cells filled down share their master's text; the references that `$` does not hold move with them.
     """
@@ -58,7 +58,7 @@ def formula_at(formula: Formula, cell: Cell) -> str:
 
 
 def cell_of_reference(workbook: Workbook, text: str, sheet: str, where: Cell) -> Cell:
-    """The cell that one reference stands for.
+    """Return the cell that one reference stands for.
 
     Args:
         workbook: where sheets and names are looked up.
@@ -86,7 +86,7 @@ def cell_of_reference(workbook: Workbook, text: str, sheet: str, where: Cell) ->
 
 
 def cell_of_name(workbook: Workbook, name: DefinedName, where: Cell) -> Cell:
-    """The cell that a defined name stands for.
+    """Return the cell that a defined name stands for.
 
     Args:
         workbook: where its sheet is looked up.
@@ -139,7 +139,7 @@ def split_sheet(text: str) -> tuple[str | None, str]:
 
 
 def _sheet_named(workbook: Workbook, head: str, text: str, where: object) -> str:
-    """The sheet that a reference names, as the workbook spells it.
+    """Return the sheet that a reference names, as the workbook spells it.
 
     Args:
         workbook: where it is looked up.
@@ -176,7 +176,7 @@ def _not_one_reference(text: str, where: object) -> NoReturn:
 
 
 def area_of_reference(workbook: Workbook, text: str, sheet: str | None, where: object) -> Area:
-    """The cells that one reference stands for.
+    """Return the cells that one reference stands for.
 
     Args:
         workbook: where sheets, names and tables are looked up.

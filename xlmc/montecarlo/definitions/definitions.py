@@ -133,7 +133,7 @@ class Assumption:
         return {key: value for key, value in self.given.items() if isinstance(value, Cell)}
 
     def with_numbers(self, numbers: Mapping[str, Parameter | None]) -> Assumption:
-        """The assumption with these parameters and cutoffs instead of its own; None takes a cutoff away."""
+        """Return the assumption with these parameters and cutoffs instead of its own; None takes a cutoff away."""
         given = {key: value for key, value in {**self.given, **numbers}.items() if value is not None}
         return replace(self, given=given)
 

@@ -203,7 +203,7 @@ def _remark_on_calls(calls: InCells, settings: Settings, findings: Findings) -> 
 
 
 def _take_pairs(taken: Sequence[Correlation], more: Iterable[Correlation], findings: Findings) -> Iterator[Correlation]:
-    """The correlations of dialogs that no row of a table is about."""
+    """Return the correlations of dialogs that no row of a table is about."""
     rows = {frozenset((row.first, row.second)): row for row in taken}
     for each in more:
         row = rows.get(frozenset((each.first, each.second)))
@@ -217,7 +217,7 @@ def _take_pairs(taken: Sequence[Correlation], more: Iterable[Correlation], findi
 def _by_reach(
     filters: Iterable[Filter], of_dialogs: Iterable[Filter], forecasts: Sequence[Forecast], findings: Findings
 ) -> tuple[tuple[Filter, ...], tuple[Filter, ...]]:
-    """The filters of all forecasts, and those of some only, with these forecasts as they are called."""
+    """Return the filters of all forecasts, and those of some only, with these forecasts as they are called."""
     names = {name_key(each.name): each.name for each in forecasts}
     everywhere: list[Filter] = []
     own: list[Filter] = []
@@ -237,7 +237,9 @@ def _by_reach(
 def _parted(
     own: Iterable[Filter], every: Iterable[Forecast], left: Sequence[Forecast]
 ) -> tuple[tuple[Filter, ...], tuple[Forecast | Filter, ...]]:
-    """The filters of some forecasts only, of those that can be run; the other forecasts, and filters of theirs."""
+    """Return the filters of some forecasts only, of those that can be run; the other forecasts, and filters
+    of theirs.
+    """
     names = {each.name for each in left}
     wanted_filters: list[Filter] = []
     out: list[Forecast | Filter] = [each for each in every if each.name not in names]

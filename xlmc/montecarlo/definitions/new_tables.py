@@ -82,7 +82,7 @@ class NewTable:
 
 
 def new_tables(workbook: Workbook, definitions: Definitions) -> list[NewTable]:
-    """The tables for all that stands in none yet; those without rows left out.
+    """Make the tables for all that stands in none yet; those without rows are left out.
 
     Args:
         workbook: that was read.
@@ -113,7 +113,9 @@ def new_tables(workbook: Workbook, definitions: Definitions) -> list[NewTable]:
 
 
 def _settings(workbook: Workbook, definitions: Definitions) -> Iterator[NewRow]:
-    """What a run of dialogs takes that no workbook of Crystal Ball holds, and the precision that dialogs ask for."""
+    """Return what a run of dialogs takes that no workbook of Crystal Ball holds, and the precision that dialogs ask
+    for.
+    """
     drawn = any(each.source == DIALOG for each in definitions.assumptions)
     if not drawn or any(table.name.casefold().startswith("xlmc_settings") for table in workbook.tables):
         return
@@ -137,12 +139,12 @@ def _can_be_rows(goal: Precision, names: Iterable[str]) -> bool:
 
 
 def _percent(goal: Precision) -> float:
-    """A share in percent, as people write it."""
+    """Write a share in percent, as people do."""
     return float(f"{100.0 * goal.tolerance:.12g}")
 
 
 def _new_pairs(definitions: Definitions, is_new: Callable[[Cell], bool]) -> Iterator[Correlation]:
-    """The correlations of dialogs and of matrices; the row of one in a table lies in the table."""
+    """Return the correlations of dialogs and of matrices; the row of one in a table lies in the table."""
     return (each for each in definitions.correlations if is_new(each.row))
 
 
@@ -190,12 +192,12 @@ class _Written:
         self._workbook, self._rewritten = workbook, definitions.rewritten
 
     def dialog(self, each: Assumption) -> NewRow:
-        """An assumption of a dialog."""
+        """Write the row of an assumption of a dialog."""
         cells: dict[str, Entry] = {"Name": each.name, "Cell": self._reference(each.cell), **self._distribution(each)}
         return NewRow(cells, "assumption", each.name, each.cell, _was(each.notes))
 
     def call(self, each: Assumption) -> NewRow:
-        """A call that draws."""
+        """Write the row of a call that draws."""
         assert isinstance(each.cell, InFormula)
         cells: dict[str, Entry] = {"Name": each.name}
         cells |= {"Value": "" if each.base is None else each.base, "Call in": self._reference(each.cell.host)}
@@ -203,7 +205,7 @@ class _Written:
         return NewRow(cells, "assumption", each.name, each.cell, _was(each.notes), each.cell)
 
     def forecast(self, each: Forecast) -> NewRow:
-        """A forecast."""
+        """Write the row of a forecast."""
         cells: dict[str, Entry] = {"Name": each.name, "Cell": self._reference(each.cell), "Units": each.units}
         cells |= {} if each.threshold is None else {"Threshold": each.threshold}
         ends = zip(("Certainty from", "Certainty to"), each.asked or (), strict=False)
@@ -214,7 +216,7 @@ class _Written:
         return NewRow(cells, "forecast", each.name, each.cell, _was(each.notes) or "an answer of the formula")
 
     def filter(self, each: Filter) -> NewRow:
-        """A filter of a forecast; one whose cell is a test of its own has it under Value."""
+        """Write the row of a filter of a forecast; a filter whose cell is a test of its own has it under Value."""
         cells: dict[str, Entry] = {"Name": each.name}
         test = self._rewritten.get(each.cell) if isinstance(each.cell, InFormula) else None
         if isinstance(test, FormulaError) or test is None:
@@ -227,7 +229,7 @@ class _Written:
         return NewRow(cells, "filter", each.name, each.row, "the filter of a forecast")
 
     def correlation(self, each: Correlation) -> NewRow:
-        """A rank correlation. Its number may be the one that another program computed."""
+        """Write the row of a rank correlation. Its number may come from another program's computation."""
         cells: dict[str, Entry] = {
             "First": each.first,
             "Second": each.second,
@@ -261,7 +263,7 @@ class _Written:
         return Formula(cell, self._workbook.content(cell).value)
 
     def _formula(self, cell: Cell) -> Formula:
-        """What a parameter is computed from; expressions in calls are written out."""
+        """Return what a parameter is computed from; expressions in calls are written out."""
         value = None if isinstance(cell, InFormula) else self._workbook.content(cell).value
         return Formula(self._written_out(cell), value)
 
@@ -285,7 +287,7 @@ def _label(site: InFormula) -> str:
 
 
 def text_of(formula: Formula, calls: Mapping[Cell, str]) -> str:
-    """The formula with its `=`; calls are the cells of their rows, by their addresses on the new sheet.
+    """Write the formula with its `=`; calls are the cells of their rows, by their addresses on the new sheet.
 
     Args:
         formula: to write.

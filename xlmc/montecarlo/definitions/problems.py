@@ -46,7 +46,7 @@ class Findings:
             self.problems.append(error)
 
     def attempt(self, read: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T | None:
-        """What `read` returns; None, and a problem, where it raises a `DefinitionError`."""
+        """Return what `read` returns; None, and a problem, where it raises a `DefinitionError`."""
         with self.recording():
             return read(*args, **kwargs)
         return None

@@ -94,7 +94,7 @@ class Goal(ABC):
     @classmethod
     @abstractmethod
     def of(cls, given: Mapping[str, Any]) -> Self:
-        """The goal, from what was said: name of an option -> what was typed or given.
+        """Make the goal from options: name of an option -> what was typed or given.
 
         Raises:
             SimulationError: it cannot be meant.
@@ -241,7 +241,7 @@ class StableDigits(WholeGoal):
 
 
 def only_one(goals: Sequence[Goal]) -> Goal | None:
-    """The goal that was asked for, if any.
+    """Return the goal that was asked for, if any.
 
     Raises:
         SimulationError: there are several.
@@ -303,7 +303,7 @@ def stopping(
     rare: str | None = None,
     **goals: Any,
 ) -> Stopping:
-    """What was asked for, as typed or as given in Python.
+    """Read the goals that were asked for, as typed or as given in Python.
 
     Args:
         forecasts: names of those that the goal looks at.

@@ -39,7 +39,7 @@ _ANYWHERE: Final = re.compile(r"\b(?:OFFSET|INDIRECT)\s*\(", re.IGNORECASE)
 
 
 def faults_of(workbook: Workbook, tables: Iterable[DataTable]) -> dict[Cell, FormulaError]:
-    """The cells of these data tables, each with why nothing can be computed from it."""
+    """Return the cells of these data tables, each with why nothing can be computed from it."""
     hint = "Let no forecast and no filter depend on it"
     cells = (cell for table in tables for cell in _cells_of(workbook, table))
     return {cell: FormulaError(TABLE_REASON, where=cell, hint=hint) for cell in cells}
@@ -102,7 +102,7 @@ def tables_of_run(
     results: Collection[Cell],
     rewritten: Mapping[Cell, ir.Expression | FormulaError],
 ) -> TablesOfRun:
-    """The data tables of a workbook that depend on the run.
+    """Return the data tables of a workbook that depend on the run.
 
     A formula that cannot be read, or that looks for its cells while it is computed, may depend on anything.
 
@@ -122,7 +122,7 @@ def tables_of_run(
 
 
 def _cells_of(workbook: Workbook, table: DataTable) -> Iterator[Cell]:
-    """The cells of a table that the file holds."""
+    """Return the cells of a table that the file holds."""
     for row, column in workbook.sheets[table.area.sheet].cells:
         cell = Cell(table.area.sheet, row, column)
         if cell in table.area:
@@ -160,7 +160,7 @@ class _Upstream:
 
 
 def _closed(upstream: _Upstream, inputs: frozenset[Cell], aims: frozenset[Cell]) -> list[DataTable]:
-    """The tables that put values into one of the inputs, compute from one of the aims, or from such a table."""
+    """Return the tables that put values into one of the inputs, compute from one of the aims, or from such a table."""
     tables = upstream.workbook.data_tables
     hosts = {host_of(cell) for cell in inputs}
     found = [table for table in tables if not hosts.isdisjoint(table.inputs)]

@@ -64,7 +64,7 @@ class XLRiskSheet:
     outputs: dict[Cell, tuple[str, tuple[Cell, ...]]] = field(default_factory=dict)
 
     def settings(self, own: Settings, stated: Collection[str], findings: Findings) -> Settings:
-        """The settings with those of the sheet for all that the table `xlmc_settings` does not say.
+        """Return the settings with those of the sheet for all that the table `xlmc_settings` does not say.
 
         Args:
             own: of the table.
@@ -83,7 +83,7 @@ class XLRiskSheet:
         return replace(own, **taken, lognorm=own.lognorm or "XLRisk")  # type: ignore[arg-type]  # by key
 
     def forecasts(self, computed: Computed, central: float, claims: Claims, findings: Findings) -> Iterator[Forecast]:
-        """The outputs that nothing else marks as answers.
+        """Return the outputs that nothing else marks as answers.
 
         Args:
             computed: which cells something gives a value.
@@ -108,7 +108,7 @@ class XLRiskSheet:
 
 
 def read_xlrisk(workbook: Workbook, findings: Findings) -> XLRiskSheet | None:
-    """What the workbook's sheet `XLRisk` says; None if it has none that XLRisk made.
+    """Read what the workbook's sheet `XLRisk` says; None if it has none that XLRisk made.
 
     Args:
         workbook: that was read.
@@ -132,7 +132,7 @@ def read_xlrisk(workbook: Workbook, findings: Findings) -> XLRiskSheet | None:
 
 
 def _values(sheet: Sheet, texts: Mapping[tuple[int, int], str]) -> dict[str, list[tuple[Cell, CellContent]]]:
-    """Setting -> the cells right of its labels that hold something."""
+    """List setting -> the cells right of its labels that hold something."""
     found: dict[str, list[tuple[Cell, CellContent]]] = {}
     for (row, column), text in sorted(texts.items()):
         content = sheet.cells.get((row, column + 1))
@@ -194,7 +194,7 @@ def _anchor(workbook: Workbook, sheet: Sheet, texts: Mapping[tuple[int, int], st
 
 
 def _rows(sheet: Sheet, anchor: tuple[int, int]) -> Iterator[tuple[Cell, CellContent, CellContent]]:
-    """The rows of the list: its cell, and what address and name hold.
+    """Return the rows of the list: its cell, and what address and name hold.
 
     The list is what stands together around its anchor, as Excel's current region; of headings, only addresses count.
     """
@@ -213,7 +213,7 @@ def _rows(sheet: Sheet, anchor: tuple[int, int]) -> Iterator[tuple[Cell, CellCon
 
 
 def _cells_of(workbook: Workbook, row: Cell, content: CellContent) -> Iterator[Cell]:
-    """The cells that a row is about.
+    """Return the cells that a row is about.
 
     Raises:
         DefinitionError: it names none, or one of a sheet that is not there.
@@ -234,7 +234,7 @@ _CURE: Final = "Write its address, such as Model!$B$3, or delete the row"
 
 
 def _parts(workbook: Workbook, row: Cell, content: CellContent) -> Iterator[Cell | Area]:
-    """The cells and areas of a row, by its formula where it has one: that moves with the cells."""
+    """Return the cells and areas of a row, by its formula where it has one: that moves with the cells."""
     if content.formula is not None and _CELL_CALL.casefold() in content.formula.text.casefold():
         yield from _of_formula(workbook, row, content.formula)
         return

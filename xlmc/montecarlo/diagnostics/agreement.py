@@ -322,7 +322,9 @@ def _effective(weights: Floats) -> float:
 
 
 def _mean(values: Floats, weights: Floats | None = None) -> Estimate:
-    """The weighted mean of shares `(n,)`, its standard error, never 0, and interval; nan where nothing has a weight."""
+    """Return the weighted mean of shares `(n,)`, its standard error, never 0, and interval; nan where nothing has a
+    weight.
+    """
     weights = np.ones(values.size) if weights is None else weights
     total = float(weights.sum())
     if not total:
@@ -334,7 +336,7 @@ def _mean(values: Floats, weights: Floats | None = None) -> Estimate:
 
 
 def _ratio(chances: Floats, others: Floats) -> Estimate:
-    """What an item keeps given the others by what it keeps alone."""
+    """Divide what an item keeps given the others by what it keeps alone."""
     alone, given = _mean(chances), _mean(chances, others)
     if not (alone.value > 0.0 and given.value >= 0.0):
         return Estimate(math.nan, n=chances.size)
@@ -348,7 +350,7 @@ def _ratio(chances: Floats, others: Floats) -> Estimate:
 
 
 def _joint_ratio(chances: Floats) -> Estimate:
-    """What all items keep together by the product of what each keeps alone; `(k, n)`."""
+    """Divide what all items keep together by the product of what each keeps alone; `(k, n)`."""
     k, n = chances.shape
     alone, together = chances.mean(axis=1) if n else np.zeros(k), chances.prod(axis=0)
     if not alone.all():
@@ -366,7 +368,8 @@ def _with_error(ratio: float, error: float, n: int) -> Estimate:
 
 
 def _tail(law: Law, m: Floats, others: Floats, given: Estimate) -> float:
-    """The chance of a reading as far out as this one, on its nearer side; of one-sided evidence, half of what it keeps.
+    """Return the chance of a reading as far out as this one, on its nearer side; of one-sided evidence, half of what it
+    keeps.
 
     Nan where the other items keep no trial.
     """
@@ -382,7 +385,7 @@ def _tail(law: Law, m: Floats, others: Floats, given: Estimate) -> float:
 
 
 def _verdict(law: Law, m: Floats, tail: float, effective: float, *, certain: bool) -> Verdict:
-    """The verdict by the chance of such a reading; `INDEPENDENT` where the reading is no surprise.
+    """Return the verdict by the chance of such a reading; `INDEPENDENT` where the reading is no surprise.
 
     Args:
         law: of the reading's error.
@@ -422,7 +425,7 @@ def _beyond_all(law: Law, m: Floats) -> bool:
 
 
 def _by_ratio(ratio: Estimate) -> Verdict:
-    """What a ratio of shares says, beyond its error."""
+    """Say what a ratio of shares means, beyond its error."""
     apart, error = ratio.value - 1.0, ratio.error or 0.0
     if math.isnan(apart):
         return Verdict.TOO_FEW
@@ -453,7 +456,7 @@ def _answer(
 
 
 def _sentence(found: Agreement) -> str:
-    """The verdict in one sentence, without a full stop; reasons after it where there is a conflict."""
+    """Return the verdict in one sentence, without a full stop; reasons after it where there is a conflict."""
     by = {verdict: [repr(each.name) for each in found.items if each.verdict is verdict] for verdict in Verdict}
     match found.verdict:
         case Verdict.INCONSISTENT:

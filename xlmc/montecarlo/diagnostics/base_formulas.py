@@ -18,7 +18,7 @@ __all__ = ["base_formulas"]
 
 
 def base_formulas(definitions: Definitions, draws: Mapping[str, Draw]) -> dict[Cell, ir.Expression | FormulaError]:
-    """The formulas of the workbook's own cells that hold calls, computable without drawing, or why one is not.
+    """Return the formulas of the workbook's own cells that hold calls, computable without drawing, or why one is not.
 
     Args:
         definitions: of the workbook.
@@ -33,7 +33,7 @@ def base_formulas(definitions: Definitions, draws: Mapping[str, Draw]) -> dict[C
 
 
 def _base(assumption: Assumption, draw: Draw | None) -> float | None:
-    """What stands for the draw in the base case: its own, or the mean, where there is one."""
+    """Return what stands for the draw in the base case: its own value, or the mean, if there is one."""
     if assumption.base is not None or draw is None or not draw.fixed:
         return assumption.base
     mean = Distribution(draw.distribution).mean()

@@ -63,7 +63,7 @@ def errors_at_base(model: CompiledModel) -> BaseErrors:
 
 
 def error_roots(model: CompiledModel, cells: Sequence[Cell], drawn: Sequence[Mapping[str, Floats]]) -> dict[Cell, Root]:
-    """The origin of errors in trials: cell -> the first cell upstream that is an error by itself, and its error.
+    """Find the origin of errors in trials: cell -> the first cell upstream that is an error by itself, and its error.
 
     One trial is looked at for each cell, the first that shows the error. A cell whose error no trial shows is left out.
 
@@ -84,7 +84,7 @@ def error_roots(model: CompiledModel, cells: Sequence[Cell], drawn: Sequence[Map
 
 
 def _first_error(model: CompiledModel, cell: Cell, drawn: Mapping[str, Floats]) -> dict[str, float] | None:
-    """The draws of the first trial in which a cell is an error."""
+    """Return the draws of the first trial in which a cell is an error."""
     trials = min((values.size for values in drawn.values()), default=0)
     evaluator = model.evaluator([Target(cell, cell)], _BLOCK)
     for part, block in portions(drawn, trials, _BLOCK):
@@ -110,7 +110,7 @@ def _root(lowering: Lowering, cell: Cell) -> Root | None:
 
 
 def _frozen_at(model: CompiledModel, trial: Mapping[str, float]) -> Lowering:
-    """The nodes of all that is asked for, every assumption held: at its draw in a trial, or at its base value."""
+    """Lower all that is asked for, every assumption frozen: at its draw in a trial, or at its base value."""
     return lower_needed(model.workbook, _without_draws(model.definitions, trial), one_trial=True)[1]
 
 

@@ -130,7 +130,7 @@ class CheckResult:
 
 
 def meaning(check: Check) -> str:
-    """What failing means, after a colon; empty where the workbook does not say."""
+    """Say what failing means, after a colon; empty where the workbook does not say."""
     text = check.because.strip().rstrip(".")
     if text.upper().startswith("FALSE:"):
         text = text[len("FALSE:") :].strip()
@@ -138,7 +138,7 @@ def meaning(check: Check) -> str:
 
 
 def base_checks(model: CompiledModel) -> tuple[BaseCheck, ...]:
-    """The checks at the base case, computed, not read: a file may hold no cached values, or stale ones."""
+    """Compute the checks at the base case; they are not read, as a file may hold no cached values, or stale ones."""
     if not model.checks:
         return ()
     known = base_point({a.name: a.base for a in model.checked})
@@ -149,7 +149,7 @@ def base_checks(model: CompiledModel) -> tuple[BaseCheck, ...]:
 
 
 def check_results(model: CompiledModel, inputs: Mapping[str, Floats], accepted: int) -> tuple[CheckResult, ...]:
-    """The checks of a run, in the order of the workbook.
+    """Judge the checks of a run, in the order of the workbook.
 
     Args:
         model: the workbook.
@@ -207,7 +207,9 @@ def _fails(column: Column) -> NDArray[np.bool_]:
 
 
 def _value_text(column: Column, trial: int) -> str:
-    """What the cell holds in a trial: `TRUE`, `FALSE`, `0.35, neither TRUE nor FALSE`, `#DIV/0!`, `blank` and so on."""
+    """Write what the cell holds in a trial: `TRUE`, `FALSE`, `0.35, neither TRUE nor FALSE`, `#DIV/0!`, `blank` and so
+    on.
+    """
     code = 0 if column.codes is None else int(column.codes[trial])
     if code:
         return {TEXT_RESULT: "a text, not the logical TRUE", BLANK_RESULT: "blank"}.get(code) or ErrorCode(code).text

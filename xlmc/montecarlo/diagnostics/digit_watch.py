@@ -82,7 +82,7 @@ def _cells(size: tuple[int, ...] | None) -> int:
 def _lost(
     model: CompiledModel, draws: Mapping[str, Floats], n: int, nodes: Mapping[str, int], needed: Sequence[int]
 ) -> list[str]:
-    """The sentences of `lost_digits` on forecasts at these nodes, which need those at `needed`."""
+    """Return the sentences of `lost_digits` on forecasts at these nodes, which need those at `needed`."""
     plain = evaluate(model.lowering.dag, needed, draws)
     lost = {name: np.zeros(n, bool) for name in nodes}
     blurred: dict[str, int] = {}
@@ -131,7 +131,7 @@ def _stands_still(model: CompiledModel, node: int, plain: Floats) -> bool:
 def _absorbed(
     model: CompiledModel, node: int, draws: Mapping[str, Floats], plain: Floats, dust: float
 ) -> list[tuple[float, float]]:
-    """What a number that stands still shows, and what it is; nothing where 50 digits give the same.
+    """Return what a number that stands still shows, and what it is; nothing where 50 digits give the same.
 
     Random rounding does not show it: 1-COS(x) of a tiny x is 0, and 1 and 0 are exact.
     """
@@ -187,7 +187,7 @@ def _is_confirmed(
 
 
 def _off(plain: Floats, moved: Floats) -> NDArray[np.bool_]:
-    """The trials in which a number visibly differs, or is a number in one evaluation only, `(n,)`."""
+    """Return the trials in which a number visibly differs, or is a number in one evaluation only, `(n,)`."""
     known = np.isfinite(plain)
     if not known.any():
         return np.zeros(plain.size, bool)

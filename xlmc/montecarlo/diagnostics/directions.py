@@ -88,7 +88,7 @@ def _spread(x: np.ndarray[tuple[int], np.dtype[np.float64]], seen: Sample) -> tu
 
 
 def direction_notices(results: Iterable[ForecastResult]) -> list[Notice]:
-    """What a person should hear of forecasts that are directions with a jump among their trials."""
+    """Return a caution about forecasts that are directions with a jump among their trials."""
     return [
         Notice(_sentence(result, torn, written, step))
         for result in results

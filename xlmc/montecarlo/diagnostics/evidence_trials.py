@@ -161,7 +161,7 @@ class _Outer:
         self.log_weights.append(log_weights[here])
 
     def share(self, largest: float, total: float) -> float:
-        """The share of the weight here, where it piles up at the limit; else 0.
+        """Return the share of the weight here, where it piles up at the limit; else 0.
 
         It does where, of the trials between the limit and the weighted median, the nearest quarter carries about a
         quarter of the weight, or more. A reading that is sharp beside the range leaves hardly a weight there.

@@ -56,7 +56,7 @@ class Answers:
     run: RunFacts
 
     def answer(self, asked: ResultCall, numbers: _Numbers) -> ir.Expression:
-        """What a call shows: a number or a text, or an error where there is none.
+        """Return what a call shows: a number or a text, or an error where there is none.
 
         Args:
             asked: the call.
@@ -94,7 +94,7 @@ class Answers:
         return self.simulations[int(number)]
 
     def _of_assumption(self, asked: ResultCall, number: float | None) -> ir.Expression:
-        """A percentile of an assumption's distribution; its name (1), or its cutoffs (6 and 7)."""
+        """Return a percentile of an assumption's distribution; its name (1), or its cutoffs (6 and 7)."""
         found = [
             a
             for a in self.run.assumptions
@@ -125,7 +125,7 @@ def _result(results: Sequence[ForecastResult], of: Cell | str) -> ForecastResult
 
 
 def _between(result: ForecastResult, limits: Limits, numbers: _Numbers) -> ForecastResult | None:
-    """The part of the values that a call asks about; None if its limits are no numbers."""
+    """Return the part of the values that a call asks about; None if its limits are no numbers."""
     ends = [None if end is None else numbers(end) for end in (limits.lower, limits.upper)]
     if any(end is None for end, tree in zip(ends, (limits.lower, limits.upper), strict=True) if tree is not None):
         return None

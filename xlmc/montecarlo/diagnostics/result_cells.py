@@ -65,7 +65,7 @@ class ShownResults:
 
 
 def filled_sheets(workbook: Workbook, shown: ShownResults) -> dict[str, bytes]:
-    """The parts of the sheets that hold these cells, with their values: name -> bytes."""
+    """Return the parts of the sheets that hold these cells, with their values: name -> bytes."""
     by_sheet: dict[str, dict[tuple[int, int], CellValue]] = {}
     for cell, value in shown.cells.items():
         by_sheet.setdefault(cell.sheet, {})[cell.row, cell.column] = value
@@ -80,7 +80,7 @@ def shown_results(
     answers: Answers,
     at_base: Mapping[Cell, ir.Expression | FormulaError],
 ) -> ShownResults:
-    """The values of the cells that show results, and of those that depend on them.
+    """Return the values of the cells that show results, and of those that depend on them.
 
     Args:
         workbook: of the run.
@@ -95,7 +95,7 @@ def shown_results(
 
 
 def recalculated(workbook: Workbook, cells: Iterable[Cell]) -> ShownResults:
-    """The values of the formulas that depend on cells which hold something else than when Excel saved the workbook.
+    """Compute the formulas that depend on cells which hold something else than when Excel saved the workbook.
 
     Args:
         workbook: with the new contents.
@@ -153,11 +153,11 @@ class _Showing:
         self._missing |= dict.fromkeys(waiting, "asks for a result by a number that depends on itself")
 
     def _known(self, tree: ir.Expression, blocked: frozenset[Cell]) -> list[ir.Call]:
-        """The calls in a formula whose arguments do not wait for other results."""
+        """Return the calls in a formula whose arguments do not wait for other results."""
         return [call for call in _innermost(tree) if blocked.isdisjoint(self._cells_of(result_call(call).arguments))]
 
     def _cells_of(self, trees: Iterable[ir.Expression]) -> Iterator[Cell]:
-        """The formula cells that arguments read."""
+        """Return the formula cells that arguments read."""
         for part in (part for tree in trees for part in references(tree)):
             if isinstance(part, Cell):
                 yield part
@@ -167,7 +167,7 @@ class _Showing:
     def _numbers(
         self, asked: Iterable[tuple[Cell, ir.Call]], blocked: frozenset[Cell]
     ) -> dict[tuple[Cell, ir.Expression], float | None]:
-        """What the arguments of calls are; None if one is no number."""
+        """Return what the arguments of calls are; None if one is no number."""
         trees = [(cell, tree) for cell, call in asked for tree in result_call(call).arguments]
         found = {each: number_of(each[1]) for each in trees}
         open_ = [each for each, number in found.items() if number is None]
@@ -195,7 +195,7 @@ class _Showing:
         answers: Answers,
         numbers: Mapping[tuple[Cell, ir.Expression], float | None],
     ) -> ir.Expression:
-        """A formula with the results that these calls ask for."""
+        """Write a formula with the results that these calls ask for."""
 
         def change(part: ir.Expression) -> ir.Expression | None:
             if not isinstance(part, ir.Call) or part not in calls:
@@ -231,7 +231,7 @@ class _Showing:
         return "" if formula is None else formula.text
 
     def _mentioned(self, cell: Cell) -> Iterator[Cell]:
-        """The cells that a formula mentions that cannot be read."""
+        """Return those cells that a formula mentions and that cannot be read."""
         formula = self._workbook.content(cell).formula
         for area in () if formula is None else mentioned(formula, cell, self._workbook):
             if area.rows * area.columns <= len(self._formulas):
@@ -240,7 +240,7 @@ class _Showing:
                 yield from (each for each in self._formulas | self._missing.keys() if each in area)
 
     def _looked_at(self, cells: frozenset[Cell]) -> dict[Cell, set[Cell]]:
-        """The cells that OFFSET and INDIRECT lead to in these formulas, by the values that Excel saved."""
+        """Return the cells that OFFSET and INDIRECT lead to in these formulas, by the values that Excel saved."""
         if not cells:
             return {}
         resolver = Resolver(self._workbook, strict=False)
@@ -252,11 +252,13 @@ class _Showing:
         return lower_until_complete(lower).looked_at
 
     def _saved(self, graph: Graph) -> dict[Cell, float]:
-        """What Excel saved in the formula cells that a graph takes as given; any value, whatever the type says."""
+        """Return what Excel saved in the formula cells that a graph takes as given; any value, whatever the
+        type says.
+        """
         return {cell: self._workbook.content(cell).value for cell in graph.reached}  # type: ignore[misc]
 
     def _downstream(self, start: Iterable[Cell]) -> frozenset[Cell]:
-        """These cells, what array formulas in them fill, and all that depends on either."""
+        """Return these cells, what array formulas in them fill, and all that depends on either."""
         users: dict[Cell, list[Cell]] = {}
         for cell, needs in self._needs.items():
             for need in needs:
@@ -276,7 +278,7 @@ class _Showing:
         return () if formula is None or formula.array is None else formula.array.cells()
 
     def _lowered(self, targets: frozenset[Cell]) -> tuple[Lowering, dict[Cell, str]]:
-        """The cells, computed from the results and from what Excel saved in all others; and why some cannot be."""
+        """Compute the cells from the results and from what Excel saved in all others; and say why some cannot be."""
         stuck: dict[Cell, str] = {}
         resolver = Resolver(self._workbook, strict=False, rewritten=self._trees)
 
@@ -297,7 +299,7 @@ class _Showing:
                 return lowering, stuck | _faults(lowering)
 
     def _given(self, targets: frozenset[Cell]) -> frozenset[Cell]:
-        """The other formulas that were calculated, whose values are those that Excel saved."""
+        """Return the other formulas that were calculated, whose values are those that Excel saved."""
         return frozenset(cell for cell in self._formulas - targets if not self._is_uncalculated(cell))
 
     def _is_uncalculated(self, cell: Cell) -> bool:
@@ -306,7 +308,7 @@ class _Showing:
 
 
 def _innermost(tree: ir.Expression) -> list[ir.Call]:
-    """The calls for results in a formula, those left out that hold others."""
+    """Return the calls for results in a formula, those left out that hold others."""
     found: list[ir.Call] = []
 
     def look(part: ir.Expression) -> None:
@@ -335,7 +337,7 @@ class _Watching(Lowering):
 
 
 def _faults(lowering: Lowering) -> dict[Cell, str]:
-    """The cells that have no value of their own, each with the reason."""
+    """Return the cells that have no value of their own, each with the reason."""
     found = {cell: error.message for cell, error in lowering.faults.items()}
     for cell in lowering.graph.formulas:
         formula = lowering.graph.workbook.content(cell).formula

@@ -103,7 +103,7 @@ def choose_method(model: CompiledModel, settings: Settings) -> str:
 
 
 def weighing(model: CompiledModel) -> CompiledModel:
-    """The same model, whose evidence rejects nothing that has a weight above 0."""
+    """Return the same model, whose evidence rejects nothing that has a weight above 0."""
     filters = tuple(_weighed(each) for each in model.filters)
     return type(model)(model.workbook, replace(model.definitions, filters=filters), model.path)
 
@@ -116,7 +116,7 @@ def _weighed(filter_: Filter) -> Filter:
 
 
 def weighting_of(model: CompiledModel, inputs: Mapping[str, Floats]) -> Weighting | None:
-    """The weights of accepted trials; None if they are all equal.
+    """Return the weights of accepted trials; None if they are all equal.
 
     Args:
         model: the workbook.

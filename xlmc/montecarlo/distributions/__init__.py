@@ -149,7 +149,7 @@ def _spellings() -> dict[str, Family]:
 
 
 def family_named(name: str, where: object = None) -> Family:
-    """The family a person means; case, blanks, underscores and hyphens do not count.
+    """Return the family a person means; case, blanks, underscores and hyphens do not count.
 
     Args:
         name: as typed.

@@ -88,7 +88,7 @@ class Family(ABC):
         return tuple(spec.key for spec in self.parameters)
 
     def built(self, data: Array, **options: Any) -> Family:
-        """The family of this name that belongs to these data; its parameters, if any, are still to be given.
+        """Return the family of this name that belongs to these data; its parameters, if any, are still to be given.
 
         Args:
             data: `(rows, columns)`, NaN where a cell is blank.
@@ -100,11 +100,11 @@ class Family(ABC):
         raise TypeError(f"{self.name} is not built from data")
 
     def fault(self, *params: float, **named: float) -> Fault | None:
-        """The first rule that these numbers break, if any, or that draws would be too large for a number."""
+        """Return the first rule that these numbers break, if any, or that draws would be too large for a number."""
         return Member(self, self.bind(params, named)).fault()
 
     def overflow_fault(self, values: tuple[Any, ...], hint: str) -> Fault:
-        """What to say where draws would not be finite; it blames the parameter that bends the distribution most."""
+        """Say that draws would not be finite; it blames the parameter that bends the distribution most."""
         blame = {"shape": 0, "rate": 1, "log scale": 2, "scale": 3, "ordered": 4, "location": 5}
         roles = self.roles or ("location",) * len(values)
         spec, value, _ = min(zip(self.parameters, values, roles, strict=True), key=lambda each: blame[each[2]])
@@ -112,7 +112,7 @@ class Family(ABC):
         return Fault(spec.key, message, hint)
 
     def broken_rule(self, *values: float) -> Fault | None:
-        """The first rule that these numbers, one for each parameter, break, if any."""
+        """Return the first rule that these numbers, one for each parameter, break, if any."""
         for spec, value in zip(self.parameters, values, strict=True):
             if not -LARGEST <= value <= LARGEST:
                 message = f"{spec.heading} ({show(value)}) must be a number between -1E150 and 1E150"
@@ -126,7 +126,7 @@ class Family(ABC):
         return None
 
     def check(self, *params: float, **named: float) -> str | None:
-        """What is wrong with these numbers, in words; None when nothing is."""
+        """Say what is wrong with these numbers, in words; None when nothing is."""
         fault = self.fault(*params, **named)
         return None if fault is None else fault.message
 
@@ -142,7 +142,9 @@ class Family(ABC):
         return valid_here if points is None else valid_here | np.isfinite(points)  # type: ignore[no-any-return]  # as the values are
 
     def checked(self, *params: Values, **named: Values) -> Member:
-        """The member of the family that has these parameters: they are checked here, and by none of its functions."""
+        """Make the member of the family that has these parameters: they are checked here, and by none of its
+        functions.
+        """
         values = self.bind(params, named)
         valid = self.valid(*values)
         if valid is True or np.all(valid):
@@ -163,7 +165,7 @@ class Family(ABC):
         return self.checked(*params, **named).ppf(u, out)
 
     def isf(self, q: Values, *params: Values, **named: Values) -> Array:
-        """The values exceeded with probability q: `ppf(1 - q)` without the loss of digits for small q."""
+        """Return the values exceeded with probability q: `ppf(1 - q)` without the loss of digits for small q."""
         return self.checked(*params, **named).isf(q)
 
     def cdf(self, x: Values, *params: Values, **named: Values) -> Array:
@@ -175,15 +177,15 @@ class Family(ABC):
         return self.checked(*params, **named).sf(x)
 
     def mean(self, *params: Values, **named: Values) -> Array:
-        """The mean, `()` or `(n,)`."""
+        """Return the mean, `()` or `(n,)`."""
         return self.checked(*params, **named).mean()
 
     def variance(self, *params: Values, **named: Values) -> Array:
-        """The variance, `()` or `(n,)`."""
+        """Return the variance, `()` or `(n,)`."""
         return self.checked(*params, **named).variance()
 
     def support(self, *params: Values, **named: Values) -> tuple[Array, Array]:
-        """The lowest and the highest possible value, each `()` or `(n,)`; may be infinite."""
+        """Return the lowest and the highest possible value, each `()` or `(n,)`; may be infinite."""
         return self.checked(*params, **named).support()
 
     def point(self, *values: Values) -> Values | None:
@@ -209,7 +211,7 @@ class Family(ABC):
         return point_where(degenerate, values[0])
 
     def cutoffs(self, lower: Values, upper: Values) -> tuple[tuple[Values, Values], tuple[Values, Values]]:
-        """What cutoffs, which are kept themselves, mean to the family.
+        """Return what cutoffs, which are kept themselves, mean to the family.
 
         Returns:
             The lowest value kept and the highest below it; the highest value kept and the lowest above it. Where no
@@ -218,16 +220,20 @@ class Family(ABC):
         return (lower, lower), (upper, upper)
 
     def order(self, u: Array, *values: Values) -> Array:
-        """What ranks the draws that are made of uniforms, which rises with them; most often the draws themselves."""
+        """Return what ranks the draws that are made of uniforms, which rises with them; most often the draws
+        themselves.
+        """
         return self._ppf(u, *values)
 
     def percentile(self, p: Array, *values: Values) -> Array:
-        """The values that are not exceeded with these probabilities, `(q,)`; most often what these uniforms draw."""
+        """Return the values that are not exceeded with these probabilities, `(q,)`; most often what these uniforms
+        draw.
+        """
         return self._ppf(p, *values)
 
     @abstractmethod
     def _ppf(self, u: Array, *args: Any, **kwargs: Any) -> Array:
-        """The quantile function. `u` belongs to the hook, which may overwrite it and return it."""
+        """Compute the quantiles of `u`, which belongs to the hook: it may overwrite it and return it."""
 
     @abstractmethod
     def _cdf(self, x: Values, *args: Any, **kwargs: Any) -> Values: ...
@@ -242,7 +248,9 @@ class Family(ABC):
     def _support(self, *args: Any, **kwargs: Any) -> tuple[Values, Values]: ...
 
     def _mirrored(self, *args: Any, **kwargs: Any) -> tuple[Values, ...]:
-        """The parameters of -X in the same family; one without mirror images overrides `_sf` and `_isf` instead."""
+        """Return the parameters of -X in the same family; a family without mirror images overrides `_sf` and `_isf`
+        instead.
+        """
         raise NotImplementedError(f"{self.name} has no mirror image")
 
     def _sf(self, x: Values, *args: Any, **kwargs: Any) -> Values:
@@ -252,7 +260,7 @@ class Family(ABC):
         return -self._ppf(q, *self._mirrored(*args, **kwargs))
 
     def bind(self, params: Sequence[Any], named: Mapping[str, Any]) -> tuple[Any, ...]:
-        """The parameters in order, defaults for those that are left out.
+        """Return the parameters in order, defaults for those that are left out.
 
         Raises:
             TypeError: one without default is missing, or one is unknown or given twice.
@@ -357,7 +365,7 @@ def point_where(degenerate: Any, value: Values) -> Values | None:
 
 
 def _open(family: Family, u: Array) -> Array:
-    """The same, changed in place where the quantile of 0 is infinite."""
+    """Return the same, changed in place where the quantile of 0 is infinite."""
     if family.open_below:
         np.copyto(u, SMALLEST_U, where=u == 0.0)
     return u

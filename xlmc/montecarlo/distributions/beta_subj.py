@@ -69,7 +69,7 @@ class BetaSubj(Family):
 
 
 def _of_beta(low: Values, likeliest: Values, mean: Values, high: Values) -> tuple[Values, Values, Values, Values]:
-    """The parameters of `Beta`."""
+    """Return the parameters of `Beta`."""
     width = np.subtract(high, low)
     offset = (np.subtract(low, likeliest) + np.subtract(high, likeliest)) / np.subtract(mean, likeliest)
     alpha = np.subtract(mean, low) * offset / width

@@ -35,7 +35,7 @@ _MET = 1e-9  # of the spread of the percentiles: they are met when the member's 
 
 
 def by_percentiles(family: Family, given: Collection[str], percents: Sequence[float]) -> ByPercentiles:
-    """The family with percentiles instead of the parameters that are not given.
+    """Return the family with percentiles instead of the parameters that are not given.
 
     Args:
         family: one whose parameters have roles.
@@ -83,11 +83,11 @@ class ByPercentiles(Family):
         self._member = lru_cache(maxsize=64)(self._find)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """The members that it has found are looked for again."""
+        """Look again for the members that it has found."""
         return ByPercentiles, (self.family, tuple(spec.key for spec in self._given), self.percents)
 
     def broken_rule(self, *values: float) -> Fault | None:
-        """The first thing wrong with these numbers, if any."""
+        """Return the first thing wrong with these numbers, if any."""
         if fault := super().broken_rule(*values):
             return fault
         percentiles = list(zip(self.parameters, values, strict=True))[len(self._given) :]
@@ -107,7 +107,7 @@ class ByPercentiles(Family):
         return self.broken_rule(*self._numbers(self.bind(params, named))) is None
 
     def member(self, *params: float, **named: float) -> tuple[float, ...]:
-        """The family's own parameters, in its order.
+        """Return the family's own parameters, in its order.
 
         Raises:
             ValueError: no member of the family has these percentiles.
@@ -125,7 +125,7 @@ class ByPercentiles(Family):
         return match_percentiles(self.family, given, points)
 
     def _numbers(self, values: tuple[Any, ...]) -> tuple[float, ...]:
-        """The parameters as numbers.
+        """Return the parameters as numbers.
 
         Raises:
             TypeError: one of them varies by trial.
@@ -135,7 +135,7 @@ class ByPercentiles(Family):
         return tuple(float(value) for value in values)
 
     def _own(self, values: tuple[Any, ...]) -> Member:
-        """The family with its own parameters; NaN, where no member has these percentiles."""
+        """Return the family with its own parameters; NaN, where no member has these percentiles."""
         found = self._member(*self._numbers(values)) or (np.nan,) * len(self.family.parameters)
         return Member(self.family, found)
 
@@ -162,7 +162,7 @@ class ByPercentiles(Family):
 
 
 def match_percentiles(family: Family, given: Mapping[str, float], points: Points) -> Solution:
-    """The parameters of the member, in the family's order; None if none fits, or where any shape does.
+    """Return the parameters of the member, in the family's order; None if none fits, or where any shape does.
 
     Where several members fit, the one whose shape is nearest to 1 is taken, or else the narrowest.
 
@@ -187,7 +187,7 @@ def match_percentiles(family: Family, given: Mapping[str, float], points: Points
 
 
 def _spread(given: Mapping[str, float], points: Points) -> float:
-    """A length to measure by: from the least to the greatest of what is known; from 0 where that is a single number."""
+    """Choose a length to measure by: from the least to the greatest of what is known; from 0 for a single number."""
     lengths = [x for _, x in points] + [given[key] for key in ("low", "likeliest", "high", "location") if key in given]
     return max(lengths) - min(lengths) or abs(lengths[0]) or 1.0
 
@@ -216,7 +216,7 @@ class _Moved:
         self.p, self.x = (np.array(each) for each in zip(*points, strict=True))
 
     def parameters(self, shape: float) -> Solution:
-        """The family's parameters with this shape; None if they would be none."""
+        """Return the family's parameters with this shape; None if they would be none."""
         location, scale = (float(each) for each in self.fit(self.quantiles(shape)))
         if not (scale > 0 and math.isfinite(location)):
             return None
@@ -268,7 +268,7 @@ def _scale(role: Role, value: float | None) -> float | None:
 
 
 def _roots(function: Callable[[Array], Array], grid: Array) -> Iterator[float]:
-    """The numbers at which the function changes its sign, from the lowest on; none if it is 0 everywhere."""
+    """Return the numbers at which the function changes its sign, from the lowest on; none if it is 0 everywhere."""
     from scipy.optimize import brentq
 
     values = function(grid)
@@ -294,7 +294,7 @@ def _ordered(family: Family, given: Mapping[str, float], points: Points) -> Iter
 
 
 def _least(misfit: Callable[[Array], Array], starts: Iterable[Array]) -> Iterator[Array]:
-    """The parameters with which all percentiles are met, searched from each start."""
+    """Return the parameters with which all percentiles are met, searched from each start."""
     from scipy.optimize import least_squares
 
     for start in starts:
@@ -320,12 +320,12 @@ class _Chart:
         self.after = range(self.ends[0] + 1 if self.ends else 1, len(ordered))
 
     def starts(self) -> Iterator[Array]:
-        """The points from which the search begins."""
+        """Return the points from which the search begins."""
         for start in product((-1.0, 0.5, 2.0), repeat=len(self.missing)):
             yield np.array(start)
 
     def parameters(self, coordinates: Array) -> tuple[float, ...]:
-        """The parameters at these coordinates, `(missing,)`."""
+        """Return the parameters at these coordinates, `(missing,)`."""
         values, move = list(self.known), dict(zip(self.missing, coordinates.tolist(), strict=True))
         if not self.ends and self.roles[0] == "ordered":
             values[0] = self.lowest - self._step(move[0])

@@ -74,7 +74,7 @@ class Part:
         return ParameterSpec(f"{self.name} {key}".strip(), (heading,))
 
     def _split(self, values: Sequence[Any]) -> tuple[Sequence[Any], Any, Any, Any]:
-        """The family's own parameters, both cutoffs, the shift."""
+        """List the family's own parameters, both cutoffs, the shift."""
         assert self.family is not None
         rest = iter(values[len(self.family.parameters) :])
         lower = next(rest) if self.lower else -np.inf
@@ -82,7 +82,7 @@ class Part:
         return values[: len(self.family.parameters)], lower, upper, next(rest) if self.shifted else 0.0
 
     def fault(self, values: Sequence[float]) -> Fault | None:
-        """What is wrong with numbers for its parameters."""
+        """Say what is wrong with numbers for its parameters."""
         if self.family is None:
             return None
         own, lower, upper, _ = self._split(values)
@@ -140,7 +140,7 @@ class Part:
 
 
 def _kinks(deductible: float, limit: float) -> Iterator[float]:
-    """The amounts at which what is left of them bends."""
+    """Return the amounts at which what is left of them bends."""
     if np.isfinite(deductible):
         yield deductible
     if np.isfinite(limit):
@@ -148,7 +148,7 @@ def _kinks(deductible: float, limit: float) -> Iterator[float]:
 
 
 def _left(amounts: Array, deductible: Any, limit: Any) -> Array:
-    """What is left of amounts; -inf for no deductible, inf for no limit."""
+    """Return what is left of amounts; -inf for no deductible, inf for no limit."""
     with np.errstate(invalid="ignore"):
         rest = np.where(np.isfinite(deductible), np.maximum(amounts - deductible, 0.0), amounts)
     return np.asarray(np.minimum(rest, limit))
@@ -206,7 +206,7 @@ class Compound(Family):
         return values[:first], values[first:second], deductible, next(rest) if self._limits else np.inf
 
     def broken_rule(self, *values: float) -> Fault | None:
-        """The first rule that these numbers break, if any."""
+        """Return the first rule that these numbers break, if any."""
         if fault := super().broken_rule(*values):
             return fault
         counts, amounts, _, limit = self._split(values)
@@ -250,11 +250,11 @@ class Compound(Family):
         return sums.reshape(u.shape)
 
     def order(self, u: Array, *values: Values) -> Array:
-        """The number of amounts: it is what ranks and correlations are about."""
+        """Return the number of amounts: it is what ranks and correlations are about."""
         return _counts(self.count.ppf(u, self._split(values)[0])).astype(float)
 
     def percentile(self, p: Array, *values: Values) -> Array:
-        """The percentile of many draws, which are always the same."""
+        """Return the percentile of many draws, which are always the same."""
         own = [np.asarray(value).ravel()[0] for value in values]
         drawn = self._ppf((np.arange(_SAMPLE) + 0.5) / _SAMPLE, *own)
         return np.asarray(np.quantile(drawn, p) if np.isfinite(drawn).all() else np.full(np.shape(p), np.nan))

@@ -97,7 +97,7 @@ def weighted_pieces(rows: Sequence[Row], *, cumulative: bool = False) -> list[Pi
 
 
 def custom_pieces(rows: Sequence[Row], *, cumulative: bool = False) -> list[Piece]:
-    """The pieces of a custom distribution, from left to right.
+    """Return the pieces of a custom distribution, from left to right.
 
     Args:
         rows: of equal length; rows of blanks are left out.
@@ -140,7 +140,7 @@ def _filled(rows: Sequence[Row]) -> list[tuple[int, Row]]:
 
 
 def _weights(rows: Sequence[Row], column: int, cumulative: bool) -> list[float]:
-    """The weight of each row that is not blank."""
+    """Return the weight of each row that is not blank."""
     _refuse_extreme(rows)
     filled = _filled(rows)
     if not filled:
@@ -162,7 +162,7 @@ def _weights(rows: Sequence[Row], column: int, cumulative: bool) -> list[float]:
 
 
 def _refuse_fall(given: float | None, reached: float, position: Position, last: Position) -> None:
-    """A cumulative weight is there, and no less than the one before it."""
+    """Check that a cumulative weight is there, and no less than the one before it."""
     if given is None:
         raise DataError("A cumulative weight is blank", "Type the sum of the weights up to this row", *position)
     if given < reached:

@@ -39,7 +39,7 @@ _LEAST_BANDWIDTH: Final = 1e-300
 
 
 def silverman(values: ArrayLike) -> float:
-    """The bandwidth by Silverman's rule; 0 where the values do not vary.
+    """Return the bandwidth by Silverman's rule; 0 where the values do not vary.
 
     >>> round(silverman([1, 2, 3, 4, 5]), 4)
     0.9736
@@ -136,7 +136,7 @@ class EmpiricalSmoothed(Family):
         return at_edge, series
 
     def _near(self, points: Array) -> tuple[Array, int]:
-        """The values within reach of rising points, and how many lie before these."""
+        """Return the values within reach of rising points, and how many lie before these."""
         margin = (REACH + 1) * self.bandwidth
         low, high = np.searchsorted(self.values, [points[0] - margin, points[-1] + margin])
         return self.values[low:high], int(low)
@@ -192,7 +192,7 @@ class EmpiricalSmoothed(Family):
 
 
 def _normal_derivatives(z: Array) -> list[Array]:
-    """The sums over the last axis of φ⁽ⁿ⁾(z)/n!, n from 0 to the degree: φ⁽ⁿ⁺¹⁾ = -z·φ⁽ⁿ⁾ - n·φ⁽ⁿ⁻¹⁾."""
+    """Return the sums over the last axis of φ⁽ⁿ⁾(z)/n!, n from 0 to the degree: φ⁽ⁿ⁺¹⁾ = -z·φ⁽ⁿ⁾ - n·φ⁽ⁿ⁻¹⁾."""
     before, now = np.zeros_like(z), np.exp(-z * z / 2) / np.sqrt(2 * np.pi)
     sums = [now.sum(axis=-1)]
     for n in range(_DEGREE):
@@ -202,7 +202,9 @@ def _normal_derivatives(z: Array) -> list[Array]:
 
 
 def _polynomial(coefficients: Array, t: Array) -> Array:
-    """The values of polynomials, given as rows of coefficients from the lowest power up; each column has its own t."""
+    """Return the values of polynomials, given as rows of coefficients from the lowest power up; each column has its own
+    t.
+    """
     value = np.zeros(t.shape)
     for row in coefficients[::-1]:
         value = value * t + row

@@ -60,5 +60,5 @@ class F(Family):
 
 
 def _of_ratio(first: Values, second: Values) -> tuple[Values, ...]:
-    """The parameters of `Pearson6`."""
+    """Return the parameters of `Pearson6`."""
     return 0.0, np.divide(second, first), np.divide(first, 2), np.divide(second, 2)

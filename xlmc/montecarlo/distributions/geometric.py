@@ -38,7 +38,9 @@ class Geometric(WholeNumbers):
         return np.exp(self._log_none(k, probability))
 
     def _log_none(self, k: Array, probability: Values) -> Array:
-        """The logarithm of the probability that everything before k failed; far below 0 where it is certain to end."""
+        """Compute the logarithm of the probability that everything before k failed; far below 0 where it is certain to
+        end.
+        """
         with np.errstate(divide="ignore"):
             each = np.maximum(np.log1p(-np.asarray(probability)), -1e300)
         return np.asarray(np.maximum(k - self.first, 0.0) * each)

@@ -39,7 +39,7 @@ class Histogrm(Family):
         self.bars = bars
 
     def built(self, data: Array, **_: Any) -> Histogrm:
-        """The family of these weights, `(intervals, 1)`."""
+        """Make the family of these weights, `(intervals, 1)`."""
         weights = data_column(data, 0, "weight")
         for row in np.flatnonzero(weights < 0):
             raise DataError(f"The weight {show(weights[row])} is below 0", "Type 0 or more", int(row), 0)

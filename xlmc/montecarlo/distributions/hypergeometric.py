@@ -95,7 +95,7 @@ class Hypergeometric(WholeNumbers):
 
 
 def _alike(columns: Sequence[Array]) -> Iterator[tuple[tuple[float, ...], Any]]:
-    """The parameters that occur, and the trials that have them; trials without any are left out."""
+    """Return the parameters that occur, and the trials that have them; trials without any are left out."""
     if columns[0].size == 0:
         return
     if all((column == column.flat[0]).all() for column in columns):
@@ -111,7 +111,8 @@ def _alike(columns: Sequence[Array]) -> Iterator[tuple[tuple[float, ...], Any]]:
 
 @lru_cache(maxsize=64)
 def _tails(success: float, trials: float, population: float) -> tuple[float, Array, Array]:
-    """The first number with a probability that counts, and P(X <= k), P(X >= k) from the number before it to beyond.
+    """Return the first number with a probability that counts, and P(X <= k), P(X >= k) from the number before it to
+    beyond.
 
     Masses in units of that of the mode follow from one another by simple ratios; their sum makes them probabilities.
     """

@@ -76,7 +76,7 @@ class InverseGaussian(Family):
 
 
 def _parts(y: Array, dispersion: Values) -> tuple[Array, Array]:
-    """The logarithms of the two terms of the distribution function, at mean 1; the first is that above."""
+    """Return the logarithms of the two terms of the distribution function, at mean 1; the first is that above."""
     from scipy.special import log_ndtr
 
     root = np.sqrt(dispersion * y)
@@ -101,7 +101,7 @@ def _log_above(y: Array, dispersion: Values) -> Array:
 
 
 def _at_score(z: Array, dispersion: Values) -> Array:
-    """The value, at mean 1, below which the probability is Φ(z).
+    """Return the value, at mean 1, below which the probability is Φ(z).
 
     By Newton's method on the normal score of the probability as a function of ln y, which is nearly a straight line; a
     step that leaves what is known to hold the answer is replaced by halving.

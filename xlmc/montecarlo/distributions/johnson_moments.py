@@ -61,7 +61,7 @@ class JohnsonMoments(Family):
     elsewhere = ("@RISK JohnsonMoments(mu, sigma, skewness, kurtosis)",)
 
     def broken_rule(self, *values: float) -> Fault | None:
-        """The first rule that these numbers break, or that no member was found."""
+        """Return the first rule that these numbers break, or that no member was found."""
         fault = super().broken_rule(*values)
         if fault is None and _member(*map(float, values[2:])) is None:
             message = (
@@ -105,7 +105,7 @@ class JohnsonMoments(Family):
 
 
 def _by_member(hook: Callable[[Member, Array], Any], at: Values, skewness: Values, kurtosis: Values) -> Array:
-    """A function of the standardised member; otherwise NaN."""
+    """Evaluate a function of the standardised member; NaN without one."""
     at, skewness, kurtosis = np.broadcast_arrays(*(np.asarray(each, dtype=float) for each in (at, skewness, kurtosis)))
     found = np.full(at.shape, np.nan)
     flat = found.reshape(-1)
@@ -120,7 +120,7 @@ def _by_member(hook: Callable[[Member, Array], Any], at: Values, skewness: Value
 
 @lru_cache(maxsize=256)
 def _member(skewness: float, kurtosis: float) -> Member | None:
-    """The member with mean 0, variance 1 and these moments; None if none is found."""
+    """Find the member with mean 0, variance 1 and these moments; None if none is found."""
     if not (math.isfinite(skewness) and math.isfinite(kurtosis) and abs(skewness) < 1e6 and kurtosis < 1e12):
         return None
     if skewness < 0:
@@ -138,7 +138,7 @@ def _member(skewness: float, kurtosis: float) -> Member | None:
 
 
 def _mirror(member: Member) -> Member:
-    """The member of -X."""
+    """Return the member of -X."""
     return Member(_Mirrored(member.family), member.values)
 
 
@@ -217,7 +217,7 @@ def _unbounded(square: float, kurtosis: float) -> Member | None:
 
 
 def _quartic_root(kurtosis: float) -> float:
-    """The ω of the lognormal with this kurtosis, 3 or more."""
+    """Return the ω of the lognormal with this kurtosis, 3 or more."""
     from scipy.optimize import brentq
 
     def excess(omega: float) -> float:

@@ -85,7 +85,7 @@ def share_moments(first: Values, second: Values, orders: int = 2) -> list[Values
 
 
 def _moments_of(first: Array, second: Array, orders: int) -> list[Array]:
-    """The same for parameters `(n,)`."""
+    """Do the same for parameters `(n,)`."""
     from scipy.special import expit, ndtr
 
     first, second = first[:, None], second[:, None]
@@ -102,7 +102,7 @@ def _moments_of(first: Array, second: Array, orders: int) -> list[Array]:
 
 
 def _central(raw: list[Array], order: int) -> Array:
-    """A central moment from those about 0, the first of which is the mean."""
+    """Return a central moment from those about 0, the first of which is the mean."""
     about = [np.ones_like(raw[0]), *raw]
     terms = [comb(order, k) * about[k] * (-raw[0]) ** (order - k) for k in range(order + 1)]
     return np.asarray(np.sum(terms, axis=0))

@@ -62,7 +62,7 @@ class Kumaraswamy(Family):
 
 
 def _between(log_rest: Array, low: Values, high: Values, first: Values) -> Array:
-    """The value where 1 - z^first has this logarithm; counted from the nearer end."""
+    """Return the value where 1 - z^first has this logarithm; counted from the nearer end."""
     log_share = np.log(-np.expm1(log_rest)) / first
     width = np.subtract(high, low)
     near = log_share < -0.7
@@ -70,7 +70,7 @@ def _between(log_rest: Array, low: Values, high: Values, first: Values) -> Array
 
 
 def _log_rest(x: Values, low: Values, high: Values, first: Values) -> Array:
-    """The logarithm of 1 - z^first."""
+    """Return the logarithm of 1 - z^first."""
     inside, width = np.clip(x, low, high), np.subtract(high, low)
     z = (inside - low) / width
     log_z = np.where(z < 0.5, np.log(z), np.log1p(-(high - inside) / width))

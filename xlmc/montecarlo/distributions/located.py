@@ -34,11 +34,11 @@ class Located(Family):
 
     @abstractmethod
     def _quantile(self, u: Array, *shapes: Any) -> Array:
-        """The value that is not exceeded with probability u."""
+        """Return the value that is not exceeded with probability u."""
 
     @abstractmethod
     def _quantile_above(self, q: Array, *shapes: Any) -> Array:
-        """The value that is exceeded with probability q."""
+        """Return the value that is exceeded with probability q."""
 
     @abstractmethod
     def _below(self, z: Array, *shapes: Any) -> Values:
@@ -79,7 +79,7 @@ class Located(Family):
 
 
 def when_above(value: Values, limit: float, moment: Any, otherwise: float = np.inf) -> Values:
-    """A moment where `value` is above the limit below which there is none.
+    """Return a moment where `value` is above the limit below which there is none.
 
     Args:
         value: of a shape.

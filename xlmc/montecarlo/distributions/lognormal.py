@@ -89,7 +89,7 @@ class Lognorm2(Family):
 
 
 def _standard(x: Values, location: Values, mu: Values, sigma: Values) -> Values:
-    """The normal score of x: minus infinity up to the location."""
+    """Return the normal score of x: minus infinity up to the location."""
     with np.errstate(divide="ignore", over="ignore"):
         return (np.log(np.maximum(x - location, 0.0)) - mu) / sigma
 

@@ -77,20 +77,20 @@ class Constraint:
 
 
 def above_zero(parameters: Sequence[ParameterSpec], key: str, hint: str = "Give a positive number") -> Constraint:
-    """The parameter with this key must be positive."""
+    """Require the parameter with this key to be positive."""
     index, heading = _index_of(parameters, key)
     return Constraint(key, lambda *values: values[index] > 0, f"{heading} ({{{key}}}) must be above 0", hint)
 
 
 def at_most(parameters: Sequence[ParameterSpec], key: str, limit: float, hint: str) -> Constraint:
-    """The parameter with this key has a largest value."""
+    """Require the parameter with this key to be no larger than a value."""
     index, heading = _index_of(parameters, key)
     message = f"{heading} ({{{key}}}) must be at most {show(limit)}"
     return Constraint(key, lambda *values: values[index] <= limit, message, hint)
 
 
 def rising(parameters: Sequence[ParameterSpec], lower: str, upper: str) -> Constraint:
-    """The parameter `lower` must not be above the parameter `upper`."""
+    """Require the parameter `lower` not to be above the parameter `upper`."""
     (left, below), (right, above) = _index_of(parameters, lower), _index_of(parameters, upper)
     message = f"{below} ({{{lower}}}) is above {above} ({{{upper}}})"
     hint = "Exchange the two, or correct the wrong one"
@@ -111,12 +111,12 @@ class Fault:
 
 
 def show(value: float) -> str:
-    """A number as a person would write it."""
+    """Write a number as a person would."""
     return format(value, ".12g")
 
 
 def range_text(low: float, high: float) -> str:
-    """A range as a person would say it; an end that is infinite is none.
+    """Write a range as a person would say it; an infinite end is left out.
 
     >>> range_text(20, 80.5), range_text(-math.inf, 10), range_text(20, math.inf)
     ('from 20 to 80.5', 'at most 10', 'at least 20')

@@ -62,7 +62,7 @@ class Pareto(Family):
 
 
 def _raised(log_above: Array, location: Values, shape: Values) -> Array:
-    """The value above which a share lies, of which the logarithm is given."""
+    """Return the value above which a share lies, of which the logarithm is given."""
     with np.errstate(over="ignore"):
         log_above /= np.negative(shape)
         np.exp(log_above, out=log_above)

@@ -149,6 +149,6 @@ class Pieces(Family):
 
 
 def _distance(area: Array, start: Array) -> Array:
-    """The t at which start·t + (1 - start)·t² is the area, from 0 to 1: the root without cancellation."""
+    """Return the t at which start·t + (1 - start)·t² is the area, from 0 to 1: the root without cancellation."""
     bottom = start + np.sqrt(np.maximum(start * start + 4 * (1 - start) * area, 0.0))
     return np.minimum(2 * area / np.where(bottom > 0, bottom, 1.0), 1.0)

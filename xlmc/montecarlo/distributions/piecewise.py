@@ -59,20 +59,20 @@ class Piecewise(Family):
 
     @classmethod
     def of_density(cls, values: ArrayLike, heights: ArrayLike) -> Piecewise:
-        """The density through these points, up to a common factor."""
+        """Make the density through these points, up to a common factor."""
         heights = np.asarray(heights, dtype=float)
         return cls(values, heights[:-1], heights[1:])
 
     @classmethod
     def of_distribution(cls, values: ArrayLike, probabilities: ArrayLike) -> Piecewise:
-        """The distribution function through these points; the first probability is taken for 0, the last for 1."""
+        """Make the distribution function through these points; the first probability is taken for 0, the last for 1."""
         with np.errstate(all="ignore"):  # what is too large is refused
             heights = np.diff(np.asarray(probabilities, dtype=float)) / np.diff(np.asarray(values, dtype=float))
         return cls(values, heights, heights)
 
     @classmethod
     def of_weights(cls, low: float, high: float, weights: Sequence[float] | Array) -> Piecewise:
-        """A histogram: intervals of one width, each with its weight."""
+        """Make a histogram: intervals of one width, each with its weight."""
         return cls(np.linspace(low, high, len(weights) + 1), weights, weights)
 
     @cached_property
@@ -90,7 +90,9 @@ class Piecewise(Family):
         return -self._mirror._ppf(q)
 
     def _from_below(self, u: Array) -> Array:
-        """The quantile of u, up to 0.5: from the start of its interval so far that the area between is what is left."""
+        """Find the quantile of u, up to 0.5: from the start of its interval so far that the area between is what is
+        left.
+        """
         k = np.clip(np.searchsorted(self.below, u, side="left") - 1, 0, self.areas.size - 1)
         start, slope = self.left[k], (self.right[k] - self.left[k]) / self.widths[k]
         area = np.maximum(u - self.below[k], 0.0)
@@ -116,7 +118,7 @@ class Piecewise(Family):
         return self._moment(2) - self._moment(1) ** 2
 
     def _moment(self, order: int) -> float:
-        """The first or second moment about the lowest edge."""
+        """Return the first or second moment about the lowest edge."""
         start, width = self.edges[:-1] - self.edges[0], self.widths
         # The area over an interval is two triangles: one falling from its left height, one rising to its right height.
         falling, rising = self.left * width / 2, self.right * width / 2
@@ -170,7 +172,7 @@ class Between(Family):
         return type(self), ((self.values, self.heights) if hasattr(self, "values") else ())
 
     def built(self, data: Array, **_options: Any) -> Self:
-        """The family of these points: `(points, 2)`, values and probabilities or heights."""
+        """Make the family of these points: `(points, 2)`, values and probabilities or heights."""
         values, heights = data_column(data, 0, "value"), self._heights(data)
         for row in np.flatnonzero(np.diff(values) <= 0):
             message = f"The value {show(values[row + 1])} is not above the one before it, {show(values[row])}"
@@ -186,7 +188,7 @@ class Between(Family):
 
     @abstractmethod
     def _heights(self, data: Array) -> Array:
-        """The second column of the data.
+        """Return the second column of the data.
 
         Raises:
             DataError: it breaks a rule of its own.
@@ -198,7 +200,7 @@ class Between(Family):
 
     @abstractmethod
     def _weights(self, low: Values, high: Values) -> tuple[Values, Values, Values]:
-        """The probabilities below the first point, between, and above the last."""
+        """Return the probabilities below the first point, between, and above the last."""
 
     @cached_property
     @abstractmethod
@@ -260,7 +262,7 @@ class Between(Family):
 
 
 def data_column(data: Array, column: int, what: str) -> Array:
-    """A column of the data without blanks.
+    """Return a column of the data without blanks.
 
     Raises:
         DataError: a cell is blank or no number up to 1E150, or there is no row.

@@ -62,6 +62,6 @@ class Reciprocal(Family):
 
 
 def _log_ratio(low: Values, high: Values) -> Values:
-    """The logarithm of high/low, to its last digits where they are near to each other."""
+    """Return the logarithm of high/low, to its last digits where they are near to each other."""
     share = np.subtract(high, low) / low
     return np.where(share < 1, np.log1p(np.minimum(share, 1.0)), np.log(high) - np.log(low))

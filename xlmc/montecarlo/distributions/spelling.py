@@ -13,7 +13,7 @@ _SEPARATORS = re.compile(r"[\s_\-]+")
 
 
 def name_key(name: str) -> str:
-    """The spelling that two names share where they are one: case and outer blanks do not count.
+    """Return the spelling that two names share where they are one: case and outer blanks do not count.
 
     Within a workbook, everything goes by the names as defined. This is for names that people type, and for the names
     of two workbooks.
@@ -26,7 +26,7 @@ def name_key(name: str) -> str:
 
 @lru_cache(maxsize=2048)
 def plain(text: str) -> str:
-    """The spelling two names share when they differ only in case, blanks, underscores or hyphens.
+    """Return the spelling two names share when they differ only in case, blanks, underscores or hyphens.
 
     >>> plain(" Std-Dev ") == plain("std dev") == plain("STD_DEV")
     True
@@ -35,7 +35,7 @@ def plain(text: str) -> str:
 
 
 def nearest(text: str, known: Iterable[str], closeness: float = 0.6) -> str | None:
-    """The known name most like `text`, or None if none is alike.
+    """Return the known name most like `text`, or None if none is alike.
 
     >>> nearest("Unifrom", ["Normal", "Uniform"])
     'Uniform'
@@ -46,7 +46,7 @@ def nearest(text: str, known: Iterable[str], closeness: float = 0.6) -> str | No
 
 
 def did_you_mean(text: str, known: Iterable[str]) -> str:
-    """A hint: the nearest known name, or all of them where none is alike.
+    """Make a hint: the nearest known name, or all of them where none is alike.
 
     >>> did_you_mean("xyz", ["Normal", "Uniform"])
     'Use one of Normal, Uniform'

@@ -17,7 +17,7 @@ GOLDEN: Final = np.uint64(0x9E3779B97F4A7C15)
 
 
 def mixed(bits: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """The bits, mixed so that each of them changes half of the others, `(n,)`."""
+    """Mix the bits so that each of them changes half of the others, `(n,)`."""
     bits = (bits ^ (bits >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     bits = (bits ^ (bits >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
     return np.asarray(bits ^ (bits >> np.uint64(31)))

@@ -69,7 +69,7 @@ class StudentsT(Family):
 
 
 def _distance(tail: Array, degrees: Values) -> Array:
-    """The t that is exceeded with probability `tail`, at most 0.5.
+    """Return the t that is exceeded with probability `tail`, at most 0.5.
 
     df/(df + t²) is beta distributed; near the middle its complement is, so that neither is a difference from 1.
     """
@@ -84,7 +84,7 @@ def _distance(tail: Array, degrees: Values) -> Array:
 
 
 def _tail(t: Values, degrees: Values) -> Values:
-    """The probability to exceed t, 0 or more."""
+    """Return the probability to exceed t, 0 or more."""
     from scipy.special import betainc
 
     half, ratio = np.divide(degrees, 2), t / np.sqrt(degrees)

@@ -107,7 +107,7 @@ class Trapezoid(Family):
 
 
 def _area(rise: Values, flat: Values, fall: Values) -> Values:
-    """The area under the outline drawn at height 1, as wide as the flat part and half of each slope."""
+    """Return the area under the outline drawn at height 1, as wide as the flat part and half of each slope."""
     return rise / 2 + flat + fall / 2
 
 

@@ -33,7 +33,7 @@ class Truncated:
     family: Family
 
     def fault(self, lower: float, upper: float, *params: float, **named: float) -> Fault | None:
-        """The first rule that these numbers break, if any; the keys add `lower_cutoff` and `upper_cutoff`."""
+        """Return the first rule that these numbers break, if any; the keys add `lower_cutoff` and `upper_cutoff`."""
         values = self.family.bind(params, named)
         if fault := self.family.broken_rule(*values):
             return fault
@@ -56,12 +56,12 @@ class Truncated:
         return self.family.overflow_fault(values, "Correct the number, or give cutoffs at both ends")
 
     def check(self, lower: float, upper: float, *params: float, **named: float) -> str | None:
-        """What is wrong with these numbers, in words; None when nothing is."""
+        """Say what is wrong with these numbers, in words; None when nothing is."""
         fault = self.fault(lower, upper, *params, **named)
         return None if fault is None else fault.message
 
     def checked(self, lower: Values, upper: Values, *params: Values, **named: Values) -> Slice:
-        """What lies between the cutoffs, of parameters that are checked here, and by none of its functions."""
+        """Make the distribution between the cutoffs; parameters are checked here, and by none of its functions."""
         return Slice(self.family.checked(*params, **named), lower, upper)
 
     def ppf(
@@ -75,7 +75,7 @@ class Truncated:
         return self.checked(lower, upper, *params, **named).cdf(x)
 
     def support(self, lower: Values, upper: Values, *params: Values, **named: Values) -> tuple[Array, Array]:
-        """The lowest and the highest possible value."""
+        """Return the lowest and the highest possible value."""
         return self.checked(lower, upper, *params, **named).support()
 
     def _empty(self, lower: float, upper: float, *values: float) -> Fault:

@@ -74,7 +74,7 @@ class Weibull(Family):
 
 
 def _stretched(exponential: Array, location: Values, scale: Values, shape: Values) -> Array:
-    """A standard exponential quantile as one of Weibull."""
+    """Turn a standard exponential quantile into one of Weibull."""
     with np.errstate(over="ignore"):
         exponential **= np.divide(1.0, shape)
         exponential *= scale

@@ -76,7 +76,7 @@ class WholeNumbers(Family):
 
     @abstractmethod
     def _skewness(self, *args: Any) -> Values:
-        """The third standardised moment, or about that: it only guides the search. Not asked for constants."""
+        """Return the third standardised moment, or nearly that: it only guides the search. Not asked for constants."""
 
     def cutoffs(self, lower: Values, upper: Values) -> tuple[tuple[Values, Values], tuple[Values, Values]]:
         """Both cutoffs are kept: the first whole number that is kept and the last one that is not, at either end."""
@@ -109,7 +109,7 @@ class WholeNumbers(Family):
     def _searched(
         self, asked: Array, u: Array, q: Array, params: Sequence[Values], reached: Callable[..., Any]
     ) -> Array:
-        """The smallest k with `reached(k, asked, *params)`; u and q are the probabilities below and above it."""
+        """Find the smallest k with `reached(k, asked, *params)`; u and q are the probabilities below and above it."""
         shape = np.shape(asked)
         columns = [np.broadcast_to(value, shape).ravel() for value in (asked, *params)]
         low, high = (np.array(np.broadcast_to(end, shape), dtype=float).ravel() for end in self._support(*params))
@@ -132,7 +132,7 @@ class WholeNumbers(Family):
 
 
 def standard_normal(u: Array, q: Array) -> Array:
-    """The normal quantile of the probabilities u below and q above it, from the smaller one; finite."""
+    """Return the normal quantile of the probabilities u below and q above it, from the smaller one; finite."""
     from scipy.special import ndtri
 
     z = np.where(u < q, ndtri(np.clip(u, 1e-300, 0.5)), -ndtri(np.clip(q, 1e-300, 0.5)))
@@ -141,7 +141,7 @@ def standard_normal(u: Array, q: Array) -> Array:
 
 @lru_cache(maxsize=64)
 def _table(family: WholeNumbers, params: tuple[float, ...]) -> tuple[float, Array] | None:
-    """The first whole number that a draw may be, and F from there to the last; None if that is too long."""
+    """Return the first whole number that a draw may be, and F from there to the last; None if that is too long."""
     ends = np.array([SMALLEST_U, LARGEST_U])
     first, last = family._searched(ends, ends, 1 - ends, params, lambda k, u, *of: family._cdf(k, *of) >= u)
     if not last - first < LONGEST:
@@ -151,7 +151,7 @@ def _table(family: WholeNumbers, params: tuple[float, ...]) -> tuple[float, Arra
 
 
 def probability(parameters: Sequence[ParameterSpec], *, positive: bool = False) -> Constraint:
-    """The rule that Probability lies between 0 and 1; 1 is allowed, and so is 0 unless it must be `positive`."""
+    """Require Probability to lie between 0 and 1; 1 is allowed, and so is 0 unless it must be `positive`."""
     index = parameters.index(PROBABILITY)
     return Constraint(
         "probability",
@@ -162,7 +162,7 @@ def probability(parameters: Sequence[ParameterSpec], *, positive: bool = False) 
 
 
 def within_reach(successes: Callable[..., Any]) -> Constraint:
-    """The rule that waiting for so many successes, of the parameters, does not pass what counts can reach."""
+    """Require that waiting for so many successes, of the parameters, does not pass what counts can reach."""
     return Constraint(
         "probability",
         lambda *values: successes(*values) <= 1e13 * values[0],
@@ -172,7 +172,7 @@ def within_reach(successes: Callable[..., Any]) -> Constraint:
 
 
 def whole(parameters: Sequence[ParameterSpec], spec: ParameterSpec, least: float) -> Constraint:
-    """The rule that a parameter is a whole number from `least` to `MOST`."""
+    """Require a parameter to be a whole number from `least` to `MOST`."""
     index = parameters.index(spec)
     return Constraint(
         spec.key,
@@ -183,7 +183,7 @@ def whole(parameters: Sequence[ParameterSpec], spec: ParameterSpec, least: float
 
 
 def smallest(holds: Holds, guess: Array, low: Array, high: Array) -> Array:
-    """The smallest whole number in [low, high] for which `holds`; `high` where it holds nowhere below.
+    """Find the smallest whole number in [low, high] for which `holds`; `high` where it holds nowhere below.
 
     Steps that double lead from the guess to a bracket, halving narrows it: a right guess costs two questions.
 

@@ -65,7 +65,7 @@ class FilterTally:
 
     @classmethod
     def empty(cls, filters: int) -> FilterTally:
-        """A tally in which nothing is counted yet."""
+        """Make a tally in which nothing is counted yet."""
         zeros = np.zeros(filters, np.int64)
         square = np.zeros((filters, filters), np.int64)
         return cls(zeros, zeros.copy(), square, [Counter() for _ in range(filters)], 0)
@@ -100,7 +100,7 @@ class Block:
     discards: Sequence[Counter[int]] = ()
 
     def owned(self) -> Block:
-        """The same with its columns in memory of their own."""
+        """Return the same block with its columns in memory of their own."""
         draws, prior = _copied(self.draws), self.prior
         if prior is not None:
             prior = draws if prior is self.draws else _copied(prior)
@@ -130,7 +130,7 @@ class Runner(Protocol):
     """Whatever runs blocks, one after another."""
 
     def run(self, task: Task) -> Block:
-        """The trials from the task's first on, a whole block of them, cut to those that count."""
+        """Run the trials from the task's first on, a whole block of them, cut to those that count."""
 
 
 class Portable(Protocol):
@@ -186,7 +186,7 @@ class ModelRunner:
         return self.borrow(task).owned()
 
     def borrow(self, task: Task, block_memory: Callable[[], BlockMemory] | None = None) -> Block:
-        """The same as `run` gives, in memory that the next block overwrites: copy what you keep.
+        """Run a block in memory that the next block overwrites, else as `run`: copy what you keep.
 
         Where all trials are kept, the columns may be written to what `block_memory` gives.
         """
@@ -229,7 +229,8 @@ class ModelRunner:
     def _prior(
         self, drawn: Mapping[str, Floats] | None, accepted_block: dict[str, Floats], accepted: int, task: Task
     ) -> dict[str, Floats] | None:
-        """The draws of all trials of a block, if they are asked for: those that were kept, where these are all.
+        """Return the draws of all trials of a block, if they are asked for: those of accepted trials, where these are
+        all.
 
         Args:
             drawn: the block's draws; where it is None they are drawn once more.
@@ -245,14 +246,14 @@ class ModelRunner:
         return {name: values[: task.trials] for name, values in drawn.items()}
 
     def _forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
-        """The bodies of functions need not know what to make of no trials at all."""
+        """Return an empty block, for the bodies of functions need not know what to make of no trials at all."""
         if survivors.size:
             return self._evaluator.forecasts(survivors)
         return [Column(np.empty(0)) for _ in range(self._width)]
 
 
 def _block_of(accepted_block: AcceptedBlock, prior: dict[str, Floats] | None, trials: int) -> Block:
-    """A block of so many trials without errors; `prior` are the draws of all, if they are asked for."""
+    """Make a block of so many trials without errors; `prior` are the draws of all, if they are asked for."""
     faults: list[Counter[str]] = [Counter() for _ in accepted_block.forecasts]
     errors: list[Counter[str]] = [Counter() for _ in accepted_block.only]
     tally = FilterTally(
@@ -277,7 +278,7 @@ def _any(masks: Sequence[Bools], n: int) -> Bools:
 
 
 def _tally(columns: Sequence[Column], fails: Sequence[Bools], undecided: Bools) -> FilterTally:
-    """What the filters reject of a block's first trials: `fails`, a mask (n,) each, and `undecided` (n,)."""
+    """Return what the filters reject of a block's first trials: `fails`, a mask (n,) each, and `undecided` (n,)."""
     trials = undecided.size
     tally = FilterTally.empty(len(columns))
     if fails:
@@ -301,12 +302,12 @@ def _bits(masks: Sequence[Bools], n: int) -> NDArray[np.uint64]:
 
 
 def _count(bits: NDArray[np.uint64]) -> NDArray[np.int64]:
-    """The set bits of every row."""
+    """Count the set bits of every row."""
     return np.asarray(np.bitwise_count(bits).sum(axis=1, dtype=np.int64))
 
 
 def _exactly_one(bits: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """A row of the bits that are set in one row only."""
+    """Return a row of the bits that are set in one row only."""
     once, more = np.zeros_like(bits[0]), np.zeros_like(bits[0])
     for row in bits:
         more |= once & row
@@ -320,7 +321,7 @@ def _fails(column: Column) -> Bools:
 
 
 def _undecided(columns: Sequence[Column], trials: int) -> Bools:
-    """The trials that no filter finds FALSE but some filter cannot decide."""
+    """Return the trials that no filter finds FALSE but some filter cannot decide."""
     errors = [column.codes[:trials] > 0 for column in columns if column.codes is not None]
     if not errors:
         return np.zeros(trials, bool)
@@ -340,7 +341,9 @@ def _spoiled(
     forecasts: Sequence[Column],
     n: int,
 ) -> Bools:
-    """The trials of a block, `(n,)`, in which a draw is none, and a filter or a survivor's forecast has no number."""
+    """Return the trials of a block, `(n,)`, in which a draw is none, and a filter or a survivor's forecast has no
+    number.
+    """
     found = _any(invalid, n)
     if found.any():
         errors = _any_error(filters, n)
@@ -350,7 +353,9 @@ def _spoiled(
 
 
 def _any_error(columns: Sequence[Column], n: int) -> Bools:
-    """The first n trials in which one of the columns has no number, and is not discarded by a forecast's own filter."""
+    """Return the first n trials in which one of the columns has no number, and is not discarded by a forecast's own
+    filter.
+    """
     codes = (column.codes[:n] for column in columns if column.codes is not None)
     return _any([(each > 0) & (each < DISCARDED_FIRST) for each in codes], n)
 
@@ -368,7 +373,7 @@ def _discards(column: Column, trials: int) -> Counter[int]:
 
 
 def _codes(column: Column, trials: int) -> Iterator[tuple[int, int]]:
-    """The codes of a column's first trials, and in how many each stands."""
+    """Count the trials of each code among a column's first trials."""
     if column.codes is not None:
         counts = np.bincount(column.codes[:trials])
         codes = np.flatnonzero(counts)
@@ -376,7 +381,7 @@ def _codes(column: Column, trials: int) -> Iterator[tuple[int, int]]:
 
 
 def fault_text(code: int) -> str:
-    """What a column's code stands for: an Excel error, `text` or `blank`."""
+    """Say what a column's code stands for: an Excel error, `text` or `blank`."""
     if code == TEXT_RESULT:
         return "text"
     if code == UNDECIDED_RESULT:
@@ -385,7 +390,9 @@ def fault_text(code: int) -> str:
 
 
 def portions(draws: Mapping[str, Floats], n: int, size: int) -> Iterator[tuple[slice, dict[str, Floats]]]:
-    """The first n trials of draws that are known, up to `size` at a time: which they are, and name -> their draws."""
+    """Yield the first n trials of draws that are known, up to `size` at a time: which they are, and name -> their
+    draws.
+    """
     for start in range(0, n, size):
         checkpoint()
         trials = slice(start, min(start + size, n))

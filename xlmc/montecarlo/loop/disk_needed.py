@@ -51,7 +51,7 @@ class DiskNeeded:
         return NUMBER * (self.stored + self.sorted)
 
     def sentence(self) -> str:
-        """What a person reads before the run starts."""
+        """Say what a person should know before the run starts."""
         return (
             f"This run keeps about {self.stored / 1e6:,.0f} million numbers "
             f"and sorts {self.sorted / 1e6:,.0f} million: "
@@ -80,7 +80,7 @@ def disk_needed(
     most_inputs: int,
     runner: Callable[[], ModelRunner],
 ) -> DiskNeeded | None:
-    """What a run will write, from the acceptance of its first trials; None if it stays in memory, or nobody can say.
+    """Predict what a run will write from its first trials' acceptance; None if it stays in memory, or nobody can say.
 
     Args:
         model: of which it is a run.

@@ -105,7 +105,7 @@ class ForecastResult:
         return self._column()
 
     def between(self, low: float, high: float) -> ForecastResult:
-        """The part of the values from one number to another, both included."""
+        """Return the part of the values from one number to another, both included."""
 
         def part() -> Floats:
             column = self._column()
@@ -138,7 +138,7 @@ class ForecastResult:
         )
 
     def _if_known(self, found: Estimate, share: float) -> Estimate:
-        """A quantile; nan where trials are weighted and too few lie beyond it in effect."""
+        """Return a quantile; nan where trials are weighted and too few lie beyond it in effect."""
         few = self.sample.w is not None and self.sample.effective * min(share, 1.0 - share) < LEAST_BEYOND
         return Estimate(math.nan, n=found.n) if few else found
 
@@ -225,7 +225,7 @@ def _number(given: object, what: str, most: float = math.inf) -> float:
 
 
 def tail_notices(samples: Mapping[str, Sample], method: str) -> list[Notice]:
-    """What a person should hear of forecasts with long tails.
+    """Return cautions about forecasts with long tails.
 
     Args:
         samples: forecast -> its accepted trials.
@@ -268,13 +268,13 @@ def _only_from_trials(sample: Sample) -> list[str]:
 
 
 def _named(samples: Mapping[str, Sample], concerned: Callable[[Sample], list[str]]) -> str:
-    """The numbers in words, such as "the mean of 'x' and the standard deviation of 'y'"; otherwise empty."""
+    """Return the numbers in words, such as "the mean of 'x' and the standard deviation of 'y'"; otherwise empty."""
     numbers = [f"the {number} of {name!r}" for name, sample in samples.items() for number in concerned(sample)]
     more = [f"{len(numbers) - _MOST_NAMED} more"] if len(numbers) > _MOST_NAMED else []
     return list_of([*numbers[:_MOST_NAMED], *more]) if numbers else ""
 
 
 def _farthest(sample: Sample) -> str:
-    """The part of the farthest trial, in words; empty where no trial has too large a part."""
+    """Say what part the farthest trial has; empty where no trial has too large a part."""
     part = 0.0 if sample.yes_no else statistics.farthest_part(sample)  # the interval of a share holds
     return f"which makes up {part:.0%} of the variance of {sample.n:,}" if part > FARTHEST_PART else ""

@@ -75,7 +75,7 @@ class KeptRunner:
         return model.lowering is self._lowering and [_targets(each) for each in model.filters] == self._questions
 
     def runner(self, model: CompiledModel, block: int) -> ModelRunner:
-        """What runs blocks of so many trials of a model that it holds for, until it is asked for another one."""
+        """Return what runs blocks of so many trials of a model that it holds for, until it is asked for another one."""
         if block not in self._runners:
             draws = _Draws(self._seed, block, self._trials)
             self._runners[block] = draws, _MovedEvaluator(self._program.evaluator(block), draws)
@@ -85,7 +85,7 @@ class KeptRunner:
         return ModelRunner(draws, model.filtered(evaluator), block, len(model.forecasts), model.fallible)
 
     def base(self, model: CompiledModel) -> dict[str, float | None] | None:
-        """The forecasts of a model that it holds for where each assumption has its base value, by name.
+        """Return the forecasts of a model that it holds for where each assumption has its base value, by name.
 
         None for a forecast that is no number; None for all where an assumption has no base value.
         """
@@ -102,7 +102,9 @@ class KeptRunner:
 
 
 def _targets(filter_: Filter) -> tuple[Target, ...]:
-    """What must be computed for a filter: its quantity and the cells of its limits; without limits, the condition."""
+    """Return what must be computed for a filter: its quantity and the cells of its limits; without limits, the
+    condition.
+    """
     limits = filter_limits(filter_)
     if filter_.evidence is not None or not limits:
         return (Target(filter_condition(filter_), filter_.cell),)
@@ -187,7 +189,7 @@ class _MovedEvaluator:
         self._columns: dict[int, tuple[Known, list[Column]]] = {}
 
     def take(self, filters: Sequence[Filter], questions: Sequence[Sequence[Target]]) -> None:
-        """The filters with their limits."""
+        """Return the filters with their limits."""
         self._filters, self._sizes = filters, [len(each) for each in questions]
 
     def filters(self, inputs: Mapping[str, Floats], n: int) -> list[Column]:

@@ -39,13 +39,13 @@ Floats = NDArray[np.float64]
 
 
 def plan_sampling(model: CompiledModel, settings: Settings) -> SamplingPlan:
-    """The plan of a run, with the order of its dimensions where the method has any."""
+    """Plan a run, with the order of its dimensions where the method has any."""
     plan = SamplingPlan.of(settings.sampling, settings.trials)
     return replace(plan, order=_order_by_importance(model, settings.seed)) if METHODS[plan.method].ordered else plan
 
 
 def _order_by_importance(model: CompiledModel, seed: int) -> tuple[str, ...]:
-    """The names of the drawn assumptions; those that matter alike stay in the order of the workbook."""
+    """Order the names of the drawn assumptions; those that matter alike stay in the order of the workbook."""
     chances = {a.name for a in model.chances}  # last, so that evidence moves no other draw
     program = model.program("numpy")  # whatever runs the trials, so that every engine has the same order
     block = min(PILOT_TRIALS, program.largest_block)

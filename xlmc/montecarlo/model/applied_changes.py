@@ -62,7 +62,7 @@ _OF_ALL: Final = ("xlmc_settings", "xlmc_scenarios", "xlmc_case")
 
 
 def applied(model: CompiledModel, changes: Iterable[Change]) -> CompiledModel:
-    """The model with these changes; several of one assumption are made one after another.
+    """Make the model with these changes; several of one assumption are made one after another.
 
     Raises:
         DefinitionError: there is no such assumption or filter, or a change is not possible: numbers that are no
@@ -87,7 +87,7 @@ def applied(model: CompiledModel, changes: Iterable[Change]) -> CompiledModel:
 
 
 def edits(model: CompiledModel, changes: Iterable[Change]) -> tuple[dict[Cell, CellValue], dict[str, list[str]]]:
-    """What to type into the workbook, so that it says what the changes say.
+    """Say what to type into the workbook, so that it says what the changes say.
 
     Returns:
         Cell -> what to type, None for nothing; and name of a row -> the columns that its table lacks for it.
@@ -147,7 +147,7 @@ def _filters_of(model: CompiledModel) -> tuple[Filter, ...]:
 
 
 def changed_cells(model: CompiledModel, definitions: Definitions) -> tuple[dict[Cell, CellValue], dict[str, list[str]]]:
-    """The cells that would hold something else in a workbook with these definitions.
+    """Return the cells that would hold something else in a workbook with these definitions.
 
     Args:
         model: of the workbook as it is.
@@ -197,7 +197,7 @@ def _refuse_switch(model: CompiledModel, change: Switched) -> None:
 
 
 def _changed(model: CompiledModel, changes: Iterable[Change]) -> Definitions:
-    """The definitions with the changes of assumptions and filters."""
+    """Return the definitions with the changes of assumptions and filters."""
     assumptions = {name_key(each.name): each for each in model.assumptions}
     filters = {name_key(each.name): each for each in (*model.filters, *model.forecast_filters)}
     unused = {name_key(each.name) for each in model.definitions.unused}
@@ -245,7 +245,7 @@ def _with_difference(again: Assumption, old: Assumption, new: Assumption) -> Ass
 
 
 def _known(name: str, those: Mapping[str, Assumption] | Mapping[str, Filter], what: str, change: Change) -> str:
-    """The key of a name.
+    """Return the key of a name.
 
     Raises:
         DefinitionError: nothing is called so.
@@ -267,7 +267,7 @@ def _refuse_contradiction(filter_: Filter, change: Limits) -> None:
 
 
 def _other(assumption: Assumption, change: Change, lowering: Lowering) -> Assumption:
-    """The assumption with a change."""
+    """Return the assumption with a change."""
     match change:
         case Held(_, value):
             base = assumption.base if value is None else value
@@ -309,7 +309,7 @@ def _redrawn(assumption: Assumption, to: Distribution) -> Assumption:
 
 
 def _cutoffs(assumption: Assumption, band: Band, lowering: Lowering) -> dict[str, float]:
-    """The cutoffs that leave the band of a distribution; an end at 0 or 100 percent stays as it is."""
+    """Return the cutoffs that leave the band of a distribution; an end at 0 or 100 percent stays as it is."""
     draw = draw_of(assumption, lowering)
     if not draw.fixed:
         message = f"the distribution of {assumption.name!r} depends on other assumptions, and so would its percentiles"

@@ -33,7 +33,7 @@ CHANGED = 5e-4
 
 
 def correlated_groups(correlations: Sequence[Correlation], draws: Mapping[str, Draw]) -> list[CorrelatedGroup]:
-    """The correlations among drawn assumptions, gathered in groups that have none between them.
+    """Gather the correlations among drawn assumptions in groups that have none between them.
 
     A pair of a group that no row names counts as uncorrelated, and a correlation of 0 is none: the draws are those of a
     workbook without its row, to the last bit. Correlations that contradict each other give way to the
@@ -59,7 +59,7 @@ def correlated_groups(correlations: Sequence[Correlation], draws: Mapping[str, D
 
 
 def copula_groups(copulas: Sequence[Copula], drawn: Collection[str]) -> list[CorrelatedGroup]:
-    """The assumptions that copulas join, those left out that are not drawn.
+    """Return the assumptions that copulas join, those left out that are not drawn.
 
     Args:
         copulas: as defined.
@@ -90,7 +90,7 @@ def _joining(copula: Copula, drawn_indices: Sequence[int]) -> Joining:
 
 
 def copula_notices(groups: Sequence[CorrelatedGroup], copulas: Sequence[Copula]) -> Iterator[Notice]:
-    """What is drawn with the copulas of a workbook; that a matrix contradicts itself, where one does."""
+    """Return what is drawn with the copulas of a workbook, and a notice if a matrix contradicts itself."""
     for copula in copulas:
         group = next((each for each in groups if each.where == copula.row), None)
         if group is None:
@@ -109,7 +109,7 @@ def copula_notices(groups: Sequence[CorrelatedGroup], copulas: Sequence[Copula])
 
 
 def drawn_correlation(groups: Sequence[CorrelatedGroup], first: str, second: str) -> float | None:
-    """The rank correlation that two assumptions, by name, are drawn with; None if one of them is not drawn."""
+    """Return the rank correlation that two assumptions, by name, are drawn with; None if one of them is not drawn."""
     for group in groups:
         if first in group.names and second in group.names:
             return float(group.copula.spearman[group.names.index(first), group.names.index(second)])
@@ -121,7 +121,7 @@ def tie_notices(
     correlations: Sequence[Correlation],
     draws: Mapping[str, Draw],
 ) -> Iterator[Notice]:
-    """The correlations that assumptions with few values cannot have, and those that are not known beforehand.
+    """Find the correlations that assumptions with few values cannot have, and those that are not known beforehand.
 
     Args:
         groups: of correlated assumptions.
@@ -162,7 +162,7 @@ def _out_of_reach(row: Correlation, wanted: float, drawn: float) -> Notice:
 
 
 def repair_notices(groups: Sequence[CorrelatedGroup], correlations: Sequence[Correlation]) -> Iterator[Notice]:
-    """What was changed, group by group, the largest change first.
+    """Say what was changed, group by group, the largest change first.
 
     Args:
         groups: of correlated assumptions.
@@ -199,7 +199,7 @@ def _repair(group: CorrelatedGroup, asked: dict[frozenset[str], Correlation]) ->
 
 
 def _connected(order: Sequence[str], pairs: Sequence[tuple[str, str]]) -> list[tuple[str, ...]]:
-    """The names that pairs join, directly or through others, in groups of two or more."""
+    """Return the names that pairs join, directly or through others, in groups of two or more."""
     group = {name: {name} for name in order}
     for first, second in pairs:
         joined = group[first] | group[second]

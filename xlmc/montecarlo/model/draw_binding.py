@@ -37,7 +37,7 @@ class VaryingError(DefinitionError):
 
 
 def parameter_target(cell: Cell) -> Target:
-    """A parameter's cell, taken as a number."""
+    """Take a parameter's cell as a number."""
     return Target(ir.Binary("+", cell, ir.Number(0.0)), cell)
 
 
@@ -70,7 +70,7 @@ def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
 
 
 def _from_data(family: Family, data: DataRange, name: str, lowering: Lowering) -> Family:
-    """The family of the data that the cells compute to."""
+    """Return the family of the data that the cells compute to."""
     drawn = next((cell for cell in lowering.inputs if cell in data.area), None)
     if drawn is not None:
         raise _varying_data(name, drawn)
@@ -93,7 +93,7 @@ def _varying_data(name: str, cell: Cell) -> VaryingError:
 
 
 def _fold_cell(cell: Cell, lowering: Lowering) -> Parameter:
-    """The number of a parameter's cell; the cell where an assumption reaches it.
+    """Return the number of a parameter's cell; the cell where an assumption reaches it.
 
     Raises:
         DefinitionError: the cell is an error or a text.
@@ -119,7 +119,7 @@ class _Varying:
 
 
 def dynamic_parameters(draws: Sequence[Draw], lowering: Lowering, block: int) -> DynamicParameters:
-    """What computes the varying parameters of a stage from the draws of the stages before it; for one thread."""
+    """Make what computes the varying parameters of a stage from the draws of the stages before it; for one thread."""
     cells = tuple(dict.fromkeys(p for draw in draws for p in draw.varying))
     targets = [parameter_target(cell) for cell in cells]
     program = NumpyProgram.of(lowering, targets, [], frozenset(lowering.inputs.values()))
@@ -127,7 +127,7 @@ def dynamic_parameters(draws: Sequence[Draw], lowering: Lowering, block: int) ->
 
 
 def with_numbers(workbook: Workbook, definitions: Definitions) -> Definitions:
-    """The definitions with a number for what formulas compute and no assumption may vary.
+    """Return the definitions with a number for what formulas compute and no assumption may vary.
 
     These are parameters that depend on their assumption's own cell, readings and errors of evidence, and rank
     correlations.
@@ -159,7 +159,7 @@ def _lower_fixed(workbook: Workbook, definitions: Definitions, cells: Collection
 
 
 def _with_evidence_numbers(filter_: Filter, lowering: Lowering) -> Filter:
-    """The filter with a number for each reading and each size of an error that a formula computes."""
+    """Return the filter with a number for each reading and each size of an error that a formula computes."""
     evidence = filter_.evidence
     if evidence is None or not any(evidence.cells):
         return filter_
@@ -183,7 +183,7 @@ def _number(evidence: Evidence, value: Parameter | None, lowering: Lowering) -> 
 
 
 def _with_coefficient(row: Correlation, lowering: Lowering) -> Correlation:
-    """The row with a number for the rank correlation, which a formula may compute."""
+    """Return the row with a number for the rank correlation, which a formula may compute."""
     value = _fold_cell(row.value, lowering) if isinstance(row.value, Cell) else row.value
     if isinstance(value, Cell):
         message = f"The rank correlation of {row.first!r} and {row.second!r} varies with an assumption"
@@ -195,7 +195,7 @@ def _with_coefficient(row: Correlation, lowering: Lowering) -> Correlation:
 
 
 def _with_base_parameters(workbook: Workbook, definitions: Definitions) -> Definitions:
-    """The definitions with a number for every parameter and cutoff that depends on its assumption's own cell.
+    """Return the definitions with a number for every parameter and cutoff that depends on its assumption's own cell.
 
     Raises:
         DefinitionError: such a parameter depends on another assumption, too, or the cell is blank.
@@ -233,7 +233,9 @@ class _Own:
         return {key: number for key, number in numbers.items() if number is not None}
 
     def _number(self, key: str, cell: Cell, upstream: Set[Cell]) -> float | None:
-        """The number; None if another assumption reaches it, and this one is held, so that nothing asks for it."""
+        """Return the number; None if another assumption reaches it and this one is frozen, so that nothing
+        asks for it.
+        """
         own = self._assumption
         if own.base is None:
             message = f"{own.headings[key]} of {own.name!r} depends on the assumption's own cell, which is blank"
@@ -251,7 +253,9 @@ class _Own:
         return value
 
     def _computed(self, cell: Cell) -> Parameter:
-        """What the cell is with the assumption at its base value; the cell where another assumption reaches it."""
+        """Return what the cell is with the assumption at its base value; the cell where another assumption
+        reaches it.
+        """
         assumptions, own = self._definitions.assumptions, self._assumption.cell
         drawn = {a.cell: a.name for a in assumptions if not a.frozen and a.cell != own}
         frozen = {a.cell: a.base for a in assumptions if a.cell not in drawn and a.base is not None}

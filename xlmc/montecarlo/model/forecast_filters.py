@@ -39,14 +39,14 @@ Floats = NDArray[np.float64]
 
 
 def filters_by_forecast(forecasts: Sequence[Forecast], filters: Sequence[Filter]) -> tuple[tuple[int, ...], ...]:
-    """The indices of each forecast's own filters, in the order of both."""
+    """Return the indices of each forecast's own filters, in the order of both."""
     return tuple(
         tuple(index for index, each in enumerate(filters) if forecast.name in each.only_for) for forecast in forecasts
     )
 
 
 def conditions_of(filters: Sequence[Filter]) -> list[Target]:
-    """What they ask, 1 where it holds."""
+    """Return what they ask, 1 where it holds."""
     return [Target(filter_condition(each), each.cell) for each in filters]
 
 
@@ -126,7 +126,7 @@ class _FilteringRunner:
 
 
 def _discarding(column: Column, conditions: Sequence[Column]) -> Column:
-    """The column with a code where a condition is false, that of the first such condition, or is an error.
+    """Return the column with a code where a condition is false, that of the first such condition, or is an error.
 
     Where the forecast is an error itself, the code that takes the place of the error's goes with NaN: what is discarded
     is still shown at the base case.
@@ -146,7 +146,9 @@ def _discarding(column: Column, conditions: Sequence[Column]) -> Column:
 
 
 def _discard(column: Floats, fails: Sequence[Bools]) -> tuple[Floats, Counter[int]]:
-    """The column with NaN where a condition is false; number of a condition -> trials in which it is the first such."""
+    """Return the column with NaN where a condition is false; number of a condition -> trials in which it is the first
+    such.
+    """
     counts: Counter[int] = Counter()
     if not fails:
         return column, counts

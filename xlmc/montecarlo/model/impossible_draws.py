@@ -28,7 +28,7 @@ __all__ = ["possible_draws", "with_errors"]
 def possible_draws(
     needed: Needed, lowering: Lowering, definitions: Definitions
 ) -> tuple[dict[str, Draw], dict[str, DefinitionError]]:
-    """The draws in cells that a run needs, by name, and why the others among them are no distribution.
+    """Return the draws in cells that a run needs, by name, and why the others among them are no distribution.
 
     Raises:
         DefinitionError: one of the latter would make every trial an error.
@@ -53,7 +53,7 @@ def possible_draws(
 
 
 def with_errors(definitions: Definitions, faults: Mapping[str, DefinitionError], lowering: Lowering) -> Definitions:
-    """The definitions with `#VALUE!` instead of these draws, with a notice if a trial may use one."""
+    """Return the definitions with `#VALUE!` instead of these draws, with a notice if a trial may use one."""
     gone = [a for a in definitions.assumptions if a.name in faults]
     usable = _reached(lowering, definitions, uses)
     reported = [a for a in gone if a.name in usable]
@@ -73,7 +73,7 @@ def _notice(reported: list[Assumption], error: DefinitionError) -> Notice:
 
 
 def _reached(lowering: Lowering, definitions: Definitions, parts: Callable[[Node], Iterable[int]]) -> set[str]:
-    """The names of the draws that the forecasts and filters lead to, from each node to these parts of it."""
+    """Return the names of the draws that the forecasts and filters lead to, from each node to these parts of it."""
     formulas = {a.name: a.formulas.values() for a in definitions.assumptions}
     targets = targets_of(definitions.forecasts, (*definitions.filters, *definitions.forecast_filters))
     waiting = [lowering.cell(cell) for cell in targets]
@@ -93,7 +93,7 @@ def _reached(lowering: Lowering, definitions: Definitions, parts: Callable[[Node
 
 
 def _spreading(node: Node) -> Iterable[int]:
-    """The parts of a node whose error is always its own."""
+    """Return the parts of a node whose error is always its own."""
     match node:
         case Select(condition):
             return (condition,)

@@ -28,7 +28,8 @@ _OF_VALUES = ("xlmc_settings", "xlmc_case")
 
 
 def calculate_labels(workbook: Workbook) -> Workbook:
-    """The workbook with the texts of its tables `xlmc_…` calculated where the file has none; itself if it has all.
+    """Return the workbook with the texts of its tables `xlmc_…` calculated where the file has none; itself if it has
+    all.
 
     Where saved values may be older than the formulas, those of these tables are calculated again, whatever they are.
     A notice names what differs from the saved value.
@@ -52,7 +53,9 @@ def calculate_labels(workbook: Workbook) -> Workbook:
 
 
 def _stale_values(workbook: Workbook, tables: Iterable[Table]) -> dict[Cell, CellValue]:
-    """What formulas of the tables give that is not what the file says, but for those that are forecasts or filters."""
+    """Say what formulas of the tables give that is not what the file says, but for those that are forecasts
+    or filters.
+    """
     cells: list[Cell] = []
     for table in tables:
         skipped = _POINTS if table.name.casefold().startswith(_OF_VALUES) else (*_POINTS, "value")
@@ -77,12 +80,12 @@ def _notice(cell: Cell, saved: CellValue, found: CellValue) -> Notice:
 
 
 def calculated_texts(workbook: Workbook, cells: Collection[Cell]) -> dict[Cell, str]:
-    """What the formulas of cells give where that is a text; a cell that cannot be calculated is left out."""
+    """Calculate the formulas of cells that give a text; a cell that cannot be calculated is left out."""
     return {cell: value for cell, value in _calculated(workbook, cells).items() if isinstance(value, str)}
 
 
 def _calculated(workbook: Workbook, cells: Collection[Cell]) -> dict[Cell, CellValue]:
-    """What the formulas of cells give; a cell that gives an error or cannot be calculated is left out."""
+    """Calculate the formulas of cells; a cell that gives an error or cannot be calculated is left out."""
     try:
         lowering = lower_cells(Resolver(workbook), [*cells], {}, {})
     except FormulaError:
@@ -95,7 +98,7 @@ def _calculated(workbook: Workbook, cells: Collection[Cell]) -> dict[Cell, CellV
 
 
 def _body(table: Table, skipped: Collection[str]) -> Iterator[Cell]:
-    """The cells of a table but for those of some columns."""
+    """Return the cells of a table but for those of some columns."""
     area = table.body
     for column, heading in enumerate(table.columns, area.left):
         if heading.strip().casefold() not in skipped:

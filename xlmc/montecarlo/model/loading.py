@@ -159,7 +159,7 @@ def _joined(problems: Sequence[DefinitionError]) -> DefinitionError:
 
 
 def filter_faults(model: CompiledModel) -> list[DefinitionError]:
-    """The filters whose cells are no tests, each with its cell: a quantity without a limit, a text.
+    """Return the filters whose cells are no tests, each with its cell: a quantity without a limit, a text.
 
     The base case is looked at, where there is one; then, for quantities, some trials.
     """
@@ -194,7 +194,7 @@ def _length(filter_: Filter) -> Target:
 def _faults(
     filters: Sequence[Filter], columns: Sequence[Column], when: str, *, texts: bool
 ) -> Iterator[tuple[Cell, DefinitionError]]:
-    """The cell of each filter that is no test, and the message.
+    """Return the cell of each filter that is no test, and the message.
 
     Args:
         filters: those that are looked at.

@@ -59,7 +59,8 @@ _MOST_GROWN: Final = 4
 
 
 def lower_needed(workbook: Workbook, definitions: Definitions, *, one_trial: bool = False) -> tuple[Needed, Lowering]:
-    """What the forecasts and filters need, and its nodes; of `one_trial`, all assumptions being held, see `Lowering`.
+    """Find what the forecasts and filters need, and its nodes; of `one_trial`, with all assumptions frozen, see
+    `Lowering`.
 
     Raises:
         FormulaError, DefinitionError: as for `load`.
@@ -92,7 +93,9 @@ class _Compiled:
 
 
 def _hull(first: Mapping[str, Bounds], second: Mapping[str, Bounds]) -> dict[str, Bounds]:
-    """The ends that hold the draws of two models, and more where a range was moved; none where one of them has none."""
+    """Return the ends that hold the draws of two models, and more where a range was moved; none where either
+    has none.
+    """
     return {name: _wider(ends, second[name]) for name, ends in first.items() if name in second}
 
 
@@ -129,13 +132,13 @@ def _asks_for_the_same(old: Definitions, new: Definitions, live: Collection[str]
 
 
 def _cells_of(assumption: Assumption, live: Collection[str]) -> tuple[object, ...]:
-    """What of an assumption the nodes depend on; the base value of one that is drawn is not among it."""
+    """Return what the nodes depend on of an assumption; the base value of a drawn assumption is not among it."""
     frozen = None if assumption.name in live else assumption.base
     return assumption.name, assumption.cell, assumption.frozen, assumption.formulas, assumption.data, frozen
 
 
 def _lower_checks(workbook: Workbook, definitions: Definitions, live: Collection[str]) -> Lowering:
-    """The nodes of the checks, apart from those of the run, which they must not change.
+    """Return the nodes of the checks, apart from those of the run, which they must not change.
 
     Raises:
         FormulaError, DefinitionError: a check cannot be computed.
@@ -232,7 +235,7 @@ class CompiledModel:
         )
 
     def changed(self, workbook: Workbook, definitions: Definitions) -> Self:
-        """The model with other definitions. What they leave as it was is not computed again.
+        """Return the model with other definitions. What they leave as it was is not computed again.
 
         Where only numbers are others (parameters and cutoffs of drawn assumptions, correlations, limits of filters), no
         formula is looked at: the new model shares the nodes with this one, and the programs that hold for both. As
@@ -268,14 +271,14 @@ class CompiledModel:
         self._compile(self.workbook, self.definitions, self.path)
 
     def _sources(self) -> list[tuple[str, Cell, str]]:
-        """What is needed of assumptions and filters, the row of each, and its source or reason."""
+        """Return what is needed of assumptions and filters, the row of each, and its source or reason."""
         idle = {a.name for a in self.needed.idle}
         found = [(f"{a.name!r}", a.row, a.source) for a in self.assumptions if a.name not in idle]
         filters = (*self.filters, *self.forecast_filters)
         return found + [(f"{each.name!r} (a filter)", each.row, each.because) for each in filters]
 
     def _moving(self) -> set[Cell]:
-        """The cells of the live assumptions whose range has more than one value, as far as it is known."""
+        """Return the cells of the live assumptions whose range has more than one value, as far as it is known."""
         still = {name for name, (low, high) in self._ends.items() if low >= high}
         return {a.cell for a in self.live if a.name not in still}
 
@@ -320,7 +323,8 @@ class CompiledModel:
         return frozenset(name for stage in self.needed.stages[1:] for name in stage)
 
     def function(self, inputs: Mapping[str, ArrayLike]) -> dict[str, NDArray[np.float64]]:
-        """The workbook as a function: values of every live assumption in, every forecast out. Filters are not asked.
+        """Return the workbook as a function: values of every live assumption in, every forecast out. Filters are not
+        asked.
 
         Args:
             inputs: name of the assumption -> `(n,)` or a number.
@@ -377,7 +381,7 @@ class CompiledModel:
         return found
 
     def program(self, engine: str) -> Program:
-        """The filters and forecasts, compiled for an engine once.
+        """Compile the filters and forecasts for an engine once.
 
         Raises:
             SimulationError: there is no such engine, or a library that it needs is missing.
@@ -395,7 +399,7 @@ class CompiledModel:
         return known.program
 
     def evaluator(self, targets: Sequence[Target], block: int) -> Evaluator:
-        """What computes such targets too, all of them in every trial, for blocks of up to `block` trials."""
+        """Make what computes such targets too, all of them in every trial, for blocks of up to `block` trials."""
         return NumpyProgram.of(self.lowering, targets, [], self.fallible).evaluator(block)
 
     def sampler(
@@ -406,7 +410,7 @@ class CompiledModel:
         plan: SamplingPlan | None = None,
         filler: Filler | None = None,
     ) -> Sampler:
-        """The draws, block by block; for one thread. They are the same for every engine; by default independent.
+        """Make the draws, block by block; for one thread. They are the same for every engine; by default independent.
 
         With a filler, its uniforms are taken instead of the seed's.
         """
@@ -418,7 +422,7 @@ class CompiledModel:
     def quantiles(
         self, probabilities: ArrayLike, names: Collection[str] | None = None
     ) -> dict[str, NDArray[np.float64]]:
-        """The quantiles of every live assumption, before filtering and whatever it is correlated with.
+        """Return the quantiles of every live assumption, before filtering and whatever it is correlated with.
 
         Where parameters vary, they are those with all other assumptions at their base values, or at their medians where
         they have none.
@@ -452,19 +456,21 @@ class CompiledModel:
         return self._filtering(NumpyProgram.of(self.lowering, filters, self.answer_targets, self.fallible))
 
     def _filtering(self, program: Program) -> Program:
-        """The program that discards trials of forecasts with filters of their own, where there are any."""
+        """Return the program that discards trials of forecasts with filters of their own, where there are any."""
         if not self.forecast_filters:
             return program
         return FilteringProgram(program, filters_by_forecast(self.forecasts, self.forecast_filters))
 
     def filtered(self, evaluator: Evaluator) -> Evaluator:
-        """An evaluator of the targets of answers that discards trials of forecasts with filters of their own."""
+        """Make an evaluator of the targets of answers that discards trials of forecasts with filters of their own."""
         if not self.forecast_filters:
             return evaluator
         return FilteringEvaluator(evaluator, filters_by_forecast(self.forecasts, self.forecast_filters))
 
     def check_program(self) -> Program:
-        """The cells of the checks as filters, a function of the live assumptions; others stand at their base values."""
+        """Make the cells of the checks filters, a function of the live assumptions; others stand at their
+        base values.
+        """
         assert self._checks is not None, "the workbook has no checks"
         targets = [Target(check.cell, check.cell) for check in self.checks]
         return NumpyProgram.of(self._checks, targets, [], self.fallible)

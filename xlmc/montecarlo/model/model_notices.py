@@ -21,7 +21,7 @@ _MOST_NAMED: Final = 4
 
 
 def example_notices(sources: Iterable[tuple[str, Cell, str]]) -> list[Notice]:
-    """The sources and reasons that still begin with the word "Example", as those of a template do.
+    """Return the sources and reasons that still begin with the word "Example", as those of a template do.
 
     Args:
         sources: what each is the source of, the row where it stands, and what it says.
@@ -37,7 +37,7 @@ def example_notices(sources: Iterable[tuple[str, Cell, str]]) -> list[Notice]:
 
 
 def heavy_notices(heavy: Iterable[Assumption]) -> Iterator[Notice]:
-    """The assumptions whose mean is infinite or does not exist."""
+    """Return the assumptions whose mean is infinite or does not exist."""
     for assumption in heavy:
         message = (
             f"{assumption.name!r} ({assumption.distribution}) has no finite mean: means and standard deviations of "
@@ -79,7 +79,7 @@ def still_notices(needed: Needed, moving: Set[Cell], forecasts: Sequence[Forecas
 
 
 def _reached(graph: Graph, moving: Set[Cell]) -> set[Cell]:
-    """The cells that depend on a moving one."""
+    """Return the cells that depend on a moving one."""
     if graph.circles:
         return set(downstream(graph.needs, moving))
     found = set(moving)

@@ -52,7 +52,7 @@ class Needed:
         return tuple(name for stage in self.stages for name in stage)
 
     def notices(self, checked: Container[Cell] = ()) -> tuple[Notice, ...]:
-        """What was left out; draws in cells, which may be very many, together.
+        """Say what was left out; draws in cells, which may be very many, together.
 
         Args:
             checked: the cells that checks need.
@@ -103,7 +103,7 @@ def find_needed(
 def drawing_order(
     graph: Graph, assumptions: Sequence[Assumption], led_to: Mapping[Cell, Iterable[Cell]]
 ) -> tuple[tuple[str, ...], ...]:
-    """The names of the assumptions to draw, in stages: the parameters of a stage depend on earlier stages only.
+    """Return the names of the assumptions to draw, in stages: the parameters of a stage depend on earlier stages only.
 
     Args:
         graph: of the needed cells.
@@ -127,7 +127,7 @@ def drawing_order(
 
 
 def definitions_of_checks(definitions: Definitions, live: Collection[str]) -> Definitions:
-    """The checks as what is asked for, over the assumptions that a run draws; all others are held at their base values.
+    """Return the checks as what is asked for, over the assumptions that a run draws; all others have their base values.
 
     Args:
         definitions: the workbook's.
@@ -165,7 +165,7 @@ def refuse_without_base(checks: Sequence[Check], needed: Needed, definitions: De
 
 
 def _refuse_too_many(calls: Sequence[Assumption]) -> None:
-    """A sheet that repeats a model in thousands of rows draws more than a run, or its report, can take."""
+    """Refuse a sheet that repeats a model in thousands of rows and draws more than a run, or its report, can take."""
     if len(calls) > MOST_CALLS:
         message = f"the forecasts and filters need {len(calls):,} draws in cells; a run takes at most {MOST_CALLS:,}"
         hint = "where rows repeat one model, mark the answer of a single row, and let the run repeat it"
@@ -173,7 +173,7 @@ def _refuse_too_many(calls: Sequence[Assumption]) -> None:
 
 
 def targets_of(forecasts: Iterable[Forecast], filters: Iterable[Filter]) -> list[Cell]:
-    """The cells of the forecasts and filters, and those that hold the filters' limits."""
+    """Return the cells of the forecasts and filters, and those that hold the filters' limits."""
     targets = [forecast.cell for forecast in forecasts]
     for filter_ in filters:
         targets += [filter_.cell, *(bound for _, bound in filter_limits(filter_) if isinstance(bound, Cell))]
@@ -183,13 +183,13 @@ def targets_of(forecasts: Iterable[Forecast], filters: Iterable[Filter]) -> list
 
 
 def filter_limits(filter_: Filter) -> list[tuple[str, float | Cell]]:
-    """The limits of a filter as (relation, bound)."""
+    """Return the limits of a filter as (relation, bound)."""
     limits = [(">=", filter_.at_least), ("<=", filter_.at_most), (">", filter_.above), ("<", filter_.below)]
     return [(relation, bound) for relation, bound in limits if bound is not None]
 
 
 def filter_condition(filter_: Filter, *, certain: bool = False) -> ir.Expression:
-    """What a filter asks, as a formula. Its cell is taken as a number, so that a text is `#VALUE!`, not "large".
+    """Write what a filter asks as a formula. Its cell is taken as a number, so that a text is `#VALUE!`, not "large".
 
     Limits are compared to the last bit, not at the 15 digits of comparisons in formulas.
 
@@ -232,7 +232,7 @@ def accepted_by_chance(bell: Bell, cell: Cell, chance: Cell | None) -> ir.Expres
 
 
 def chances_of(filters: Iterable[Filter]) -> tuple[Assumption, ...]:
-    """The uniform numbers of the filters whose error is no limit; their base value, 0, keeps every trial."""
+    """Return the uniform numbers of the filters whose error is no limit; their base value, 0, keeps every trial."""
     items = [each.evidence for each in filters if each.evidence is not None]
     return tuple(
         Assumption(each.stream, each.chance, "Uniform", {"low": 0.0, "high": 1.0}, each.row, base=0.0)
@@ -246,7 +246,7 @@ def _bound(bound: float | Cell) -> ir.Expression:
 
 
 def upstream(graph: Graph, cells: Iterable[Cell], led_to: Mapping[Cell, Iterable[Cell]]) -> set[Cell]:
-    """The cells and all that they depend on; assumptions among them, but not what these depend on."""
+    """Return the cells and all that they depend on; assumptions among them, but not what these depend on."""
     found: set[Cell] = set()
     open_ = list(cells)
     while open_:

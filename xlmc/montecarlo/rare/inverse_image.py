@@ -38,42 +38,42 @@ TURNS: Final = 2.0 * math.pi
 
 
 def term(value: Spans, o: Floats) -> Spans:
-    """The inverse of s + o."""
+    """Invert s + o."""
     return Spans(value.low - o, value.high - o)
 
 
 def negated(value: Spans) -> Spans:
-    """The inverse of −s."""
+    """Invert −s."""
     return union_of_pairs([(-value.high, -value.low)])
 
 
 def factor(value: Spans, o: Floats) -> Spans:
-    """The inverse of s · o."""
+    """Invert s · o."""
     with np.errstate(all="ignore"):
         found = union_of_pairs([_ordered(value.low / o, value.high / o, (value.low <= value.high) & (o != 0.0))])
     return choose(o == 0.0, _anything(value), found)
 
 
 def numerator(value: Spans, o: Floats) -> Spans:
-    """The inverse of s / o; nothing is divided by 0."""
+    """Invert s / o; nothing is divided by 0."""
     with np.errstate(all="ignore"):
         return union_of_pairs([_ordered(value.low * o, value.high * o, (value.low <= value.high) & (o != 0.0))])
 
 
 def divisor(value: Spans, o: Floats) -> Spans:
-    """The inverse of o / s."""
+    """Invert o / s."""
     above = _reciprocal(value.low, value.high, o)
     below = _reciprocal(-value.high, -value.low, o)
     return choose(o == 0.0, _anything(value), union_of_pairs([above, (-below[1], -below[0])]))
 
 
 def line(value: Spans, start: Floats, slope: Floats) -> Spans:
-    """The inverse of start + slope·s."""
+    """Invert start + slope·s."""
     return factor(term(value, start), slope)
 
 
 def ratio(value: Spans, a: Floats, b: Floats, c: Floats, d: Floats) -> Spans:
-    """The inverse of (a + b·s) / (c + d·s)."""
+    """Invert (a + b·s) / (c + d·s)."""
     above, below = _not_negative(c, d), _not_negative(-c, -d)
     found = []
     for low, high in zip(value.low, value.high, strict=True):
@@ -86,19 +86,19 @@ def ratio(value: Spans, a: Floats, b: Floats, c: Floats, d: Floats) -> Spans:
 
 
 def _beyond(a: Floats, b: Floats, c: Floats, d: Floats, end: Floats) -> Spans:
-    """The values of s with a + b·s ≥ end·(c + d·s); all values if the end is infinite."""
+    """Return the values of s with a + b·s ≥ end·(c + d·s); all values if the end is infinite."""
     finite = np.isfinite(end)
     finite_end = np.where(finite, end, 0.0)
     return choose(finite, _not_negative(a - finite_end * c, b - finite_end * d), Spans.whole(end.size))
 
 
 def _not_negative(start: Floats, slope: Floats) -> Spans:
-    """The values of s with which start + slope·s is not negative."""
+    """Return the values of s with which start + slope·s is not negative."""
     return factor(Spans.between(-start, np.full(start.size, np.inf)), slope)
 
 
 def _reciprocal(low: Floats, high: Floats, o: Floats) -> tuple[Floats, Floats]:
-    """The inverse of o / s, as far as the value is above 0."""
+    """Invert o / s, as far as the value is above 0."""
     low = np.maximum(low, 0.0)
     with np.errstate(all="ignore"):
         far = np.where(low > 0.0, o / low, np.copysign(np.inf, o))
@@ -115,7 +115,7 @@ def _ordered(first: Floats, second: Floats, full: NDArray[np.bool_]) -> tuple[Fl
 
 
 def powered(value: Spans, power: float) -> Spans:
-    """The inverse of s ^ power, with a constant power other than 0."""
+    """Invert s ^ power, with a constant power other than 0."""
     if power < 0.0:
         return powered(divisor(value, np.ones(value.low.shape[1])), -power)
     whole = power == int(power)
@@ -131,19 +131,19 @@ def _root(values: Floats, power: float) -> Floats:
 
 
 def exponent(value: Spans, o: Floats) -> Spans:
-    """The inverse of o ^ s for o above 0."""
+    """Invert o ^ s for o above 0."""
     with np.errstate(all="ignore"):
         return factor(_exponential(value), np.log(np.where(o > 0.0, o, np.nan)))
 
 
 def largest(value: Spans, o: Floats) -> Spans:
-    """The inverse of MAX(s, o)."""
+    """Invert MAX(s, o)."""
     reached = np.where((value.low <= o) & (o <= value.high), -np.inf, value.low)
     return union_of_pairs([(np.where(o <= value.high, reached, np.inf), value.high)])
 
 
 def smallest(value: Spans, o: Floats) -> Spans:
-    """The inverse of MIN(s, o)."""
+    """Invert MIN(s, o)."""
     return negated(largest(negated(value), -o))
 
 
@@ -185,7 +185,7 @@ def _tangent(value: Spans) -> Spans:
 
 
 def _arc(value: Spans, function: Callable[[Floats], Floats], least: float, most: float) -> tuple[Floats, Floats]:
-    """A monotone function of what lies within its domain."""
+    """Apply a monotone function to what lies within its domain."""
     low, high = np.maximum(value.low, least), np.minimum(value.high, most)
     full = low <= high
     ends = [function(np.where(full, end, 0.5 * (least + most))) for end in (low, high)]

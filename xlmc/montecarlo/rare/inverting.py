@@ -50,7 +50,7 @@ _MOST_CELLS: Final = 200
 
 
 def conjuncts(filters: Sequence[LimitState]) -> Iterator[LimitState]:
-    """What must hold, all of it, in the smallest parts."""
+    """Yield what must hold, all of it, in the smallest parts."""
     for each in filters:
         if isinstance(each, Together) and each.every:
             yield from conjuncts(each.parts)
@@ -86,7 +86,7 @@ class Inverting:
         self.turned: list[int] = []
 
     def region(self, of: LimitState) -> Region | None:
-        """The values with which a condition can hold; None if they are not known."""
+        """Return the values with which a condition can hold; None if they are not known."""
         if isinstance(of, Leaf):
             return self._comparison(of.holds)
         if not isinstance(of, Together):
@@ -126,7 +126,7 @@ class Inverting:
         return found
 
     def _known(self, tree: ir.Expression, cell: Cell) -> int:
-        """The place in which the number that a tree gives will be known."""
+        """Return the place in which the number that a tree gives will be known."""
         self.targets.append(Target(ir.Binary("+", tree, ir.Number(0.0)), cell))
         return len(self.targets) - 1
 
@@ -256,7 +256,7 @@ class Inverting:
         return lambda value, given: undo(step(value, *(given[index] for index in indices)), given)
 
     def _line(self, tree: ir.Expression, x: Cell) -> _Pair | None:
-        """The formulas a and b of a + b·x; None if the tree is no such line, or a long one."""
+        """Return the formulas a and b of a + b·x; None if the tree is no such line, or a long one."""
         steps = count()
         found = self._line_of(tree, x, steps)
         return found if next(steps) <= _MOST_STEPS else None
@@ -293,7 +293,7 @@ class Inverting:
 
 
 def _minus(value: Spans, o: Floats) -> Spans:
-    """The inverse of s − o."""
+    """Invert s − o."""
     return inverse_image.term(value, -o)
 
 

@@ -87,16 +87,16 @@ class Layer:
         return [column.as_floats() for column in self.evaluator.filters(draws, n)]
 
     def spans(self, known: Sequence[Floats]) -> Spans:
-        """The values that are left to it."""
+        """Return the values that are left to it."""
         return intersection([region(known) for region in self.regions])
 
     def rearranged(self, draws: dict[str, Floats], n: int) -> Rearranged:
-        """The assumption's uniform number, reordered so that the intervals left to it come first."""
+        """Return the assumption's uniform number, reordered so that the intervals left to it come first."""
         return _rearranged(self.draw, self.spans(self.known(draws, n)))
 
 
 def layers_of(model: CompiledModel, filters: Sequence[LimitState], drawing: Drawing, uniforms: Floats) -> list[Layer]:
-    """The thin layers, in the order in which they can be solved: none asks about an assumption of a later one.
+    """Return the thin layers, in the order in which they can be solved: none asks about an assumption of a later one.
 
     Args:
         model: with filters.
@@ -138,7 +138,9 @@ class _Looking:
         return self._model.lowering.led_to
 
     def best(self, taken: set[Cell]) -> Layer | None:
-        """The layer whose intervals have the most even chances, of those that ask nothing about what is taken."""
+        """Return the layer whose intervals have the most even chances, of those that ask nothing about what
+        is taken.
+        """
         moved = set[Cell]().union(*(self._moved[cell] for cell in taken))
         free = [part for part in self._parts if not any(_meets(tree, moved) for tree in _trees(part))]
         found = [
@@ -150,7 +152,7 @@ class _Looking:
         return max(found, key=lambda each: each[0], default=(0.0, None))[1]
 
     def _layers(self, assumption: Assumption, parts: Sequence[LimitState]) -> Iterator[tuple[float, Layer]]:
-        """The layers that some of the parts leave an assumption, and how even their chances are."""
+        """Yield the layers that some of the parts leave an assumption, and how even their chances are."""
         moved = self._moved[assumption.cell]
         formulas, gates = self._model.needed.graph.formulas, self._gates(assumption.cell)
         undoing = Inverting(assumption.cell, formulas, lambda tree: _meets(tree, moved), gates)
@@ -201,7 +203,7 @@ class _Looking:
         return found[1:]
 
     def _read(self, cell: Cell) -> set[Cell]:
-        """What a formula cell reads of formula cells and inputs."""
+        """Return what a formula cell reads of formula cells and inputs."""
         return {*self._model.needed.graph.needs.get(cell, ()), *self._led_to.get(cell, ())}
 
     def _is_smooth(self, assumption: Assumption) -> bool:
@@ -216,7 +218,7 @@ class _Looking:
             return bool(np.all(np.diff(values) > 0.0) and np.all(np.abs(draw.reached(values) - uniforms) < _EXACT))
 
     def _downstream(self, cell: Cell) -> set[Cell]:
-        """What varies with an assumption, it and other assumptions among them."""
+        """Return what varies with an assumption, it and other assumptions among them."""
         found, size = {cell}, 0
         while len(found) > size:
             size = len(found)

@@ -59,7 +59,7 @@ Say = Callable[[int], None]
 
 
 def count_on(before: int, say: Say) -> Say:
-    """A `say` for evaluations that come after so many others."""
+    """Make a `say` for evaluations that come after so many others."""
     return lambda count: say(before + count)
 
 
@@ -116,7 +116,7 @@ class Learned:
         return min(usable, key=self.unevenness, default=None)
 
     def unevenness(self, drawn: Round) -> float:
-        """The unevenness of the weights of a round's proposal, at the points of the populations: see
+        """Return the unevenness of the weights of a round's proposal, at the points of the populations: see
         `Proposal.unevenness`.
         """
         points, weights, _ = _of_descents(self.descents)
@@ -142,7 +142,7 @@ class Learned:
         return sum(math.exp(each.log_probability) for each in taken) / _DESCENTS
 
     def unexplained(self, proposal: Proposal, known: Sequence[Evidence]) -> Evidence:
-        """Accepted trials among those of other origin that a proposal hardly ever comes to; see `unexplained`."""
+        """Return the accepted trials of other origin that a proposal hardly ever draws; see `unexplained`."""
         points, weights, _ = _of_descents(self.descents)
         return find_unexplained(proposal, known, points, weights)
 
@@ -200,7 +200,7 @@ def search_on(
 
 
 def _described(learned: Learned, random: np.random.Generator) -> Proposal:
-    """A first proposal, from the populations alone."""
+    """Fit a first proposal, from the populations alone."""
     points, weights, halves = _of_descents(learned.descents)
     order = _dealt(halves, random)
     return fit_proposal(points[order], weights[order], random)
@@ -209,7 +209,9 @@ def _described(learned: Learned, random: np.random.Generator) -> Proposal:
 def _with_unexplained(
     distance: Distance, learned: Learned, random: np.random.Generator, most: float
 ) -> tuple[Learned, Proposal]:
-    """What was learned, with populations around accepted trials that the others did not reach, and a first proposal."""
+    """Return what was learned, with populations around accepted trials that the others did not reach, and a first
+    proposal.
+    """
     proposal = _described(learned, random)
     for _ in range(_EXPLORED):
         found = learned.unexplained(proposal, learned.known)
@@ -258,7 +260,9 @@ def _improved(learned: Learned, random: np.random.Generator) -> Proposal:
 
 
 def _of_descents(descents: Sequence[Descent]) -> tuple[Floats, Floats, NDArray[np.int64]]:
-    """The points of those populations that reached the region, their weights, which sum to 1, and which population."""
+    """Return the points of those populations that reached the region, their weights, which sum to 1, and which
+    population.
+    """
     reached = [each for each in descents if each.reached]
     heaviest = max(each.log_probability for each in reached)
     shares = [math.exp(each.log_probability - heaviest) / len(each.points) for each in reached]
@@ -270,7 +274,7 @@ def _of_descents(descents: Sequence[Descent]) -> tuple[Floats, Floats, NDArray[n
 
 
 def _dealt(halves: NDArray[np.int64], random: np.random.Generator) -> NDArray[np.intp]:
-    """Some of the points, taken from both halves in turn: points of one population are alike, and what is fitted to one
+    """Take some of the points, from both halves in turn: points of one population are alike, and what is fitted to one
     must prove itself on the other.
     """
     first, second = (random.permutation(np.flatnonzero(halves == half)) for half in (0, 1))
@@ -279,7 +283,7 @@ def _dealt(halves: NDArray[np.int64], random: np.random.Generator) -> NDArray[np
 
 
 def _drawn(distance: Distance, proposal: Proposal, random: np.random.Generator, say: Say, most: float) -> Round:
-    """A round; where few are accepted, a longer one."""
+    """Run a round; where few are accepted, a longer one."""
     found, trials = list[Floats](), 0
     while trials < _TRIALS or (sum(map(len, found)) < _ENOUGH and trials < min(_MOST_TRIALS, most)):
         points = proposal.draw(_TRIALS, random)

@@ -58,7 +58,7 @@ LimitState = Leaf | Together | Fails
 
 
 def limit_state(tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expression]) -> LimitState:
-    """What a condition asks.
+    """Return what a condition asks.
 
     Args:
         tree: the condition, as `needed.filter_condition` makes it.
@@ -74,7 +74,7 @@ def limit_state(tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expr
 def comparisons_of(
     tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expression], *, wanted: bool
 ) -> LimitState:
-    """The comparisons that decide whether a tree, in a cell, is TRUE, or FALSE where that is wanted.
+    """Return the comparisons that decide whether a tree, in a cell, is TRUE, or FALSE where that is wanted.
 
     Args:
         tree: a condition.
@@ -109,7 +109,7 @@ def _either(
     *,
     wanted: bool,
 ) -> LimitState:
-    """The condition and the one part, or neither."""
+    """Return the condition and the one part, or neither."""
     sides = (comparisons_of(condition, cell, formulas, wanted=side) for side in (True, False))
     values = (comparisons_of(part, cell, formulas, wanted=wanted) for part in (yes, no))
     return Together(tuple(Together(both, every=True) for both in zip(sides, values, strict=True)), every=False)
@@ -127,7 +127,7 @@ def _gap(relation: str, left: ir.Expression, right: ir.Expression) -> ir.Express
 
 
 def leaves(of: LimitState) -> list[Leaf]:
-    """The leaves, in order."""
+    """Return the leaves, in order."""
     if isinstance(of, Leaf):
         return [of]
     return [leaf for part in (of.parts if isinstance(of, Together) else (of.part,)) for leaf in leaves(part)]

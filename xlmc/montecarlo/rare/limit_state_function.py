@@ -38,14 +38,14 @@ _LEAST: Final = 2.0**-54
 
 
 def uniforms_of(points: Floats) -> Floats:
-    """The uniforms, in [0, 1), of standard normals."""
+    """Return the uniforms, in [0, 1), of standard normals."""
     from scipy.special import ndtr
 
     return np.asarray(np.minimum(ndtr(points), _LARGEST))
 
 
 def points_of(uniforms: Floats) -> Floats:
-    """The standard normals of uniforms."""
+    """Return the standard normals of uniforms."""
     from scipy.special import ndtri
 
     return np.asarray(ndtri(np.maximum(uniforms, _LEAST)))
@@ -90,7 +90,7 @@ class Drawing:
         self.row_of = self._sampler.row_of
 
     def draw_at(self, uniforms: Floats) -> tuple[dict[str, Floats], int]:
-        """The draws at (n, d) uniforms, up to a block of them, and how many they are."""
+        """Draw at (n, d) uniforms, up to a block of them; returns the draws and how many they are."""
         self._given.uniforms = uniforms
         n = len(uniforms)
         return {name: values[:n] for name, values in self._sampler.draw(0).items()}, n
@@ -145,7 +145,7 @@ class LimitStateFunction:
         return self.distance_at(uniforms_of(points))
 
     def distance_at(self, uniforms: Floats) -> Floats:
-        """The same of (n, d) uniforms."""
+        """Do the same for (n, d) uniforms."""
         parts = [np.maximum.reduce(list(each)) for each in self._of_filters(uniforms)]
         return np.concatenate([*parts, np.empty(0)])
 
@@ -154,7 +154,7 @@ class LimitStateFunction:
         return self.accepts_at(uniforms_of(points))
 
     def accepts_at(self, uniforms: Floats) -> NDArray[np.bool_]:
-        """The same of (n, d) uniforms."""
+        """Do the same for (n, d) uniforms."""
         parts = [np.empty(0, bool)]
         for start in range(0, len(uniforms), self._block):
             draws, n = self._drawing.draw_at(uniforms[start : start + self._block])
@@ -173,7 +173,7 @@ class LimitStateFunction:
         return self.by_filter_at(uniforms_of(points))
 
     def by_filter_at(self, uniforms: Floats) -> list[Floats]:
-        """The same of (n, d) uniforms."""
+        """Do the same for (n, d) uniforms."""
         return [np.concatenate(parts) for parts in zip(*self._of_filters(uniforms), strict=True)]
 
     def _of_filters(self, uniforms: Floats) -> Iterator[list[Floats]]:
@@ -233,7 +233,7 @@ class LimitStateFunction:
         }
 
     def _usual(self, uniforms: Floats) -> dict[Leaf, float]:
-        """The median length of every comparison where it fails."""
+        """Return the median length of every comparison where it fails."""
         parts = [list(self._lengths(columns).values()) for columns in self._columns(uniforms)]
         found = [_median(np.concatenate(each)) for each in zip(*parts, strict=True)]
         return dict(zip(self._leaves, found, strict=True))
@@ -249,7 +249,7 @@ def _median(found: Floats) -> float:
 
 
 def _exact(found: Floats, column: Column) -> Floats:
-    """What the filter itself says has the last word."""
+    """Give what the filter itself says the last word."""
     holds = column.values != 0
     found = np.where(holds, 0.0, np.maximum(found, np.finfo(np.float64).tiny))
     if column.codes is not None:

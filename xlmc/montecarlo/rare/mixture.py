@@ -85,7 +85,7 @@ def standard_log_density(points: Floats) -> Floats:
 
 
 def fit_mixture(points: Floats, weights: Floats, random: np.random.Generator) -> Mixture:
-    """The mixture that describes (n, r) points with (n,) weights best, of 1 to 16 components.
+    """Fit the mixture that describes (n, r) points with (n,) weights best, of 1 to 16 components.
 
     Every second point is left out of the choice of the number of components, and judges it. They are
     fitted in coordinates in which their mean is 0 and their covariance 1, so that a thin layer is not thin there.
@@ -148,7 +148,7 @@ def _nearest(points: Floats, seeds: Floats) -> Floats:
 
 
 def _maximised(points: Floats, parts: Floats, size: float) -> Mixture:
-    """The components that have these parts (K, n) of the points.
+    """Return the components that have these parts (K, n) of the points.
 
     Each is given r + 2 points more, with the spread of all narrowed as far as K components fill the space: a component
     of few points does not shrink to them.

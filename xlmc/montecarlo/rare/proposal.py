@@ -110,7 +110,7 @@ class Proposal:
         return np.asarray(-np.logaddexp(math.log1p(-_PRIOR) + mixture - prior, math.log(_PRIOR)))
 
     def unevenness(self, points: Floats, weights: Floats) -> float:
-        """The logarithm of the mean weight that (n, d) accepted points with (n,) weights have as proposals.
+        """Return the logarithm of the mean weight that (n, d) accepted points with (n,) weights have as proposals.
 
         Over accepted trials, this mean is to the probability of acceptance as the mean square of proposals' weights is
         to the square of their mean: the least is the best, and points that proposals seldom reach count in full.
@@ -129,7 +129,7 @@ def fit_proposal(points: Floats, weights: Floats, random: np.random.Generator) -
 
 
 def refit(proposal: Proposal, points: Floats, weights: Floats, random: np.random.Generator) -> Proposal:
-    """The same coordinates with a mixture fitted to other points."""
+    """Return the same coordinates with a mixture fitted to other points."""
     along = np.einsum("nd,dr->nr", points, proposal.basis)
     thin, matter = proposal.shear.thin, proposal.directions
     along[:, :thin] -= proposal.shear.shift(along[:, thin:])
@@ -185,7 +185,7 @@ def _inflated(mixture: Mixture, wanted: Sequence[tuple[float, float, float]], th
 
 
 def _widened(root: Floats) -> Floats:
-    """The root of a covariance in whose principal directions no spread is below 1."""
+    """Return the root of a covariance in whose principal directions no spread is below 1."""
     spreads, directions = np.linalg.eigh(root @ root.T)
     return np.asarray(np.linalg.cholesky((directions * np.maximum(spreads, 1.0)) @ directions.T))
 
@@ -218,7 +218,7 @@ class Shear:
 
 
 def fit_shear(thin: Floats, others: Floats, weights: Floats) -> Shear:
-    """The shear that leaves least of (n, t) thin coordinates, by least squares with (n,) weights.
+    """Fit the shear that leaves least of (n, t) thin coordinates, by least squares with (n,) weights.
 
     With few points for so many products of coordinates, squares alone are taken; with fewer still, nothing is moved.
     """
@@ -238,7 +238,7 @@ def fit_shear(thin: Floats, others: Floats, weights: Floats) -> Shear:
 
 
 def height(logs: Floats, count: float | None = None, least: float = -math.inf) -> float:
-    """The logarithm of the lowest envelope, from `least` on, that costs no more than that.
+    """Return the logarithm of the lowest envelope, from `least` on, that costs no more than that.
 
     Args:
         logs: (m,) logarithms of the weights; those below `least` may be missing.

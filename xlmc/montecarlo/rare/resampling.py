@@ -183,7 +183,7 @@ class _Drawing:
         return logs
 
     def trials(self) -> Floats:
-        """The last `wanted` points of equal weight, or what there is of them."""
+        """Return the last `wanted` points of equal weight, or what there is of them."""
         repeated = np.repeat(np.arange(len(self._accepted.points)), self._accepted.copies(self._envelope))
         return self._accepted.points[repeated[-self._wanted :]]
 
@@ -204,7 +204,7 @@ class _Accepted:
         return copies(self.logs, self.luck, envelope)
 
     def under(self, envelope: float) -> _Accepted:
-        """The trials that are left under an envelope, and under any higher one among them."""
+        """Return the trials that are left under an envelope, and under any higher one among them."""
         inside = self.luck < np.exp(self.logs - envelope)
         return _Accepted(self.points[inside], self.logs[inside], self.luck[inside])
 
@@ -223,7 +223,7 @@ class _Sums:
         self._first = self._second = 0.0
 
     def add(self, logs: Floats) -> None:
-        """The accepted ones of another batch."""
+        """Return the accepted ones of another batch."""
         weights = np.exp(logs - self._unit)
         self.proposals += BATCH
         self.accepted += weights.size
@@ -231,7 +231,9 @@ class _Sums:
         self._second += float(np.square(weights).sum())
 
     def for_accepted(self, fewest: int) -> int:
-        """The number of further proposals: as many again, or so many that `fewest` can be expected to be accepted."""
+        """Return the number of further proposals: as many again, or so many that `fewest` can be expected to be
+        accepted.
+        """
         return max(self.proposals, -(-self.proposals * fewest // max(self.accepted, 1)))
 
     @property

@@ -220,7 +220,7 @@ def search(
 def _plain(
     model: CompiledModel, settings: Settings, trials: int, accepted: NDArray[np.int64], function: SearchSpace
 ) -> Evidence:
-    """The plain trials, or the first of them where many were accepted."""
+    """Return the plain trials, or the first of them where many were accepted."""
     few = accepted[:_MOST_PLAIN]
     counted = int(few[-1]) + 1 if few.size < accepted.size else trials
     points = function.points(plain_uniforms(model, settings.seed, few))
@@ -228,7 +228,9 @@ def _plain(
 
 
 def _acceptance(drawn: Resampled, unexplained: Evidence | None) -> Estimate:
-    """The probability of acceptance, with the mass of what the proposal hardly ever comes to as a further error."""
+    """Return the probability of acceptance, with the mass of what the proposal hardly ever comes to as a
+    further error.
+    """
     found = drawn.acceptance
     if unexplained is None or not len(unexplained.points) or found.error is None or found.n is None:
         return found
@@ -268,7 +270,7 @@ def _failure(model: CompiledModel, function: SearchSpace, found: Found, wanted: 
 def accepted_blocks(
     model: CompiledModel, uniforms: Floats, block: int, wants_inputs: Callable[[], bool]
 ) -> Iterator[Block]:
-    """The trials at accepted uniforms, evaluated and filtered like any others: no filter is taken for granted."""
+    """Yield the trials at accepted uniforms, evaluated and filtered like any others: no filter is taken for granted."""
     given = GivenUniforms()
     given.uniforms = uniforms
     sampler = model.sampler(0, block, filler=given.filler)

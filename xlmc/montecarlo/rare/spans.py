@@ -61,7 +61,7 @@ class Spans:
 
 
 def union_of_pairs(parts: list[tuple[Floats, Floats]]) -> Spans:
-    """The union of intervals: pairs of ends, (n,) or (p, n)."""
+    """Unite intervals: pairs of ends, (n,) or (p, n)."""
     low = np.concatenate([np.atleast_2d(low) for low, _ in parts])
     high = np.concatenate([np.atleast_2d(high) for _, high in parts])
     full = low <= high
@@ -86,12 +86,12 @@ def _emptied(low: Floats, high: Floats, here: NDArray[np.bool_]) -> tuple[Floats
 
 
 def union(parts: list[Spans]) -> Spans:
-    """What any of them holds."""
+    """Unite sets: return what any of them holds."""
     return union_of_pairs([(each.low, each.high) for each in parts])
 
 
 def intersection(parts: list[Spans]) -> Spans:
-    """What all of them hold."""
+    """Intersect sets: return what all of them hold."""
     found = parts[0]
     for each in parts[1:]:
         low = np.maximum(found.low[:, None], each.low[None])
@@ -101,7 +101,7 @@ def intersection(parts: list[Spans]) -> Spans:
 
 
 def choose(holds: NDArray[np.bool_], yes: Spans, no: Spans) -> Spans:
-    """The one set where something holds, (n,), and the other elsewhere."""
+    """Choose the one set where something holds, (n,), and the other elsewhere."""
     return union_of_pairs([_emptied(yes.low, yes.high, ~holds), _emptied(no.low, no.high, holds)])
 
 
@@ -123,7 +123,7 @@ class Rearranged:
 
     @classmethod
     def of(cls, low: Floats, high: Floats) -> Rearranged:
-        """The rearrangement for intervals (p, n) of the uniform; empty ones have no length."""
+        """Rearrange by intervals (p, n) of the uniform; empty ones have no length."""
         with np.errstate(invalid="ignore"):
             margin = _MARGIN * (high - low) + _BITS * np.spacing(np.where(low < high, high, 1.0))
         found = union_of_pairs([_within(low, high, margin)])

@@ -135,7 +135,7 @@ def explore(
 
 
 def _next_level(found: Floats, wanted: int, before: float) -> float | None:
-    """The next lower level; None if hardly a point lies below the last one.
+    """Return the next lower level; None if hardly a point lies below the last one.
 
     Where most points stand level, as where a filter says no more than no, the few below them are taken.
     """
@@ -167,7 +167,9 @@ def _moved(
     *,
     alone: bool = False,
 ) -> tuple[Floats, Floats, int]:
-    """The population, its distances, and how many were asked for; `alone` without steps by all points' covariance."""
+    """Return the population, its distances, and how many were asked for; `alone` without steps by all points'
+    covariance.
+    """
     count, dimensions = points.shape
     common = None
     asked = 0

@@ -61,7 +61,7 @@ def strata_of(model: CompiledModel, filters: Sequence[LimitState]) -> list[tuple
 
 
 def _discrete_switch(model: CompiledModel, assumption: Assumption) -> Switch | None:
-    """The values of an assumption that has few; None of any other."""
+    """Return the values of an assumption that has few; None of any other."""
     draw = model.draws[assumption.name]
     if not draw.fixed:
         return None
@@ -74,7 +74,7 @@ def _discrete_switch(model: CompiledModel, assumption: Assumption) -> Switch | N
 
 
 def cells_of(tree: ir.Expression) -> Iterator[Cell]:
-    """The cells that a tree names, those of its areas among them."""
+    """Return the cells that a tree names, those of its areas among them."""
     match tree:
         case Cell():
             yield tree
@@ -130,8 +130,8 @@ def _value_switch(cell: Cell, values: Sequence[float]) -> Switch:
 def _formula_switches(
     filters: Sequence[LimitState], formulas: Mapping[Cell, ir.Expression]
 ) -> list[tuple[ir.Expression | None, Switch]]:
-    """The switches in the filters' formulas, the nearest to the filters first; each with the value that decides it, if
-    any.
+    """Return the switches in the filters' formulas, the nearest to the filters first; each with the value that decides
+    it, if any.
 
     Args:
         filters: what they ask.
@@ -175,7 +175,7 @@ def _is_single(tree: ir.Expression) -> bool:
 
 
 def _any_of(limit_state: LimitState) -> Iterator[Switch]:
-    """The ORs among what a filter asks: the first part that holds decides the stratum."""
+    """Yield the ORs among what a filter asks: the first part that holds decides the stratum."""
     if isinstance(limit_state, Together):
         if not limit_state.every:
             parts = limit_state.parts
@@ -187,7 +187,7 @@ def _any_of(limit_state: LimitState) -> Iterator[Switch]:
 def _alternatives(
     tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expression], rising: int
 ) -> tuple[ir.Expression | None, Switch] | None:
-    """The alternatives of a function that takes one of several values; None for anything else."""
+    """Return the alternatives of a function that takes one of several values; None for anything else."""
     match tree:
         case ir.Call("IF", (condition, *_)):
             return condition, tuple(
@@ -220,13 +220,13 @@ def _first_of(conditions: Sequence[LimitState]) -> Switch:
 
 
 def _extreme(relation: str, number: int, values: Sequence[ir.Expression], cell: Cell) -> LimitState:
-    """The condition that this one of several values is the largest, or the smallest."""
+    """Make the condition that this one of several values is the largest, or the smallest."""
     others = [value for i, value in enumerate(values) if i != number]
     return Together(tuple(_comparison(relation, values[number], other, cell) for other in others), every=True)
 
 
 def _scalars(arguments: Sequence[ir.Expression]) -> list[ir.Expression]:
-    """The values that arguments are; none where an area is large, or an argument left out."""
+    """Return the values that arguments are; none where an area is large, or an argument left out."""
     found = list[ir.Expression]()
     for each in arguments:
         if isinstance(each, ir.Missing):
@@ -246,7 +246,8 @@ def _at_least(index: ir.Expression, least: int, cell: Cell) -> Leaf:
 
 
 def _parts(tree: ir.Expression, rising: int) -> Iterator[tuple[ir.Expression, int]]:
-    """What a value is made of, and whether acceptance is nearer the larger it is (1), the smaller (-1), or neither (0).
+    """Yield what a value is made of, and whether acceptance is nearer the larger it is (1), the smaller (-1), or
+    neither (0).
 
     Conditions are left out: they say which part is taken, and are none themselves.
     """

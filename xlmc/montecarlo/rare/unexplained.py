@@ -91,7 +91,7 @@ class Evidence:
 
     @classmethod
     def of(cls, proposal: Source, trials: int, points: Floats) -> Evidence:
-        """The trials with weights by the proposal."""
+        """Weigh the trials by the proposal."""
         return cls(proposal, trials, points, proposal.log_weights(points))
 
     @property
@@ -130,7 +130,7 @@ def join_evidence(known: Sequence[Evidence]) -> Evidence:
 
 
 def find_unexplained(proposal: Source, known: Sequence[Evidence], points: Floats, weights: Floats) -> Evidence:
-    """The known accepted trials that a proposal hardly ever reaches; there may be none.
+    """Find the known accepted trials that a proposal hardly ever draws; there may be none.
 
     Args:
         proposal: that was learned.
@@ -181,7 +181,7 @@ def plain_assumptions(dimensions: int) -> Tempered:
 
 
 def wide_assumptions(dimensions: int) -> Tempered:
-    """A third of the trials with one assumption spread wider, a half with all of them, the rest as they are."""
+    """Spread assumptions wider: one in a third of the trials, all in a half; the rest stays as it is."""
     together = [spread for spread in _ALL if spread**dimensions <= _LARGEST] or [_LARGEST ** (1.0 / dimensions)]
     alone = np.where(np.eye(dimensions, dtype=bool), _ONE, 1.0)
     spreads = [np.ones((1, dimensions)), np.outer(together, np.ones(dimensions)), alone]

@@ -85,7 +85,7 @@ class _Joined(ABC):
 
     @abstractmethod
     def pair(self, i: int, j: int) -> float:
-        """The rank correlation of the variables i and j."""
+        """Return the rank correlation of the variables i and j."""
 
     @property
     def wanted(self) -> Floats:
@@ -121,7 +121,7 @@ class StudentTCopula(_Joined):
             u[i] = np.clip(stdtr(self.degrees, self._mix[i, : i + 1] @ z[: i + 1]), _LEAST, _MOST)
 
     def pair(self, i: int, j: int) -> float:
-        """The rank correlation 12·E[UV] − 3, over a grid of the uniforms that are joined."""
+        """Compute the rank correlation 12·E[UV] − 3, over a grid of the uniforms that are joined."""
         middle = (np.arange(_T_SIDE) + 0.5) / _T_SIDE
         u = np.stack([np.repeat(middle, _T_SIDE), np.tile(middle, _T_SIDE)])
         StudentTCopula(self.matrix[np.ix_([i, j], [i, j])], self.degrees).join(u)
@@ -149,7 +149,7 @@ class SameTrials(_Joined):
         self._ranks = np.argsort(np.argsort(rising, axis=1, kind="stable"), axis=1, kind="stable")
 
     def join(self, u: Floats) -> None:
-        """The first says which trial is taken."""
+        """Join the uniforms; the first of them says which trial is taken."""
         m = self._ranks.shape[1]
         taken = np.minimum((u[0] * m).astype(np.intp), m - 1)
         u[:] = (self._ranks[:, taken] + 0.5) / m
@@ -176,7 +176,7 @@ class Archimedean(_Joined):
             np.clip(self.generator(-np.log(u) / frailty), _LEAST, _MOST, out=u)
 
     def pair(self, i: int, j: int) -> float:
-        """The rank correlation 12·∫∫C − 3, over a grid."""
+        """Compute the rank correlation 12·∫∫C − 3, over a grid."""
         middle = self.inverse((np.arange(_SIDE) + 0.5) / _SIDE)
         with np.errstate(all="ignore"):
             return 12 * float(np.mean(self.generator(middle[:, None] + middle))) - 3

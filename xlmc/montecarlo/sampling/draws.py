@@ -58,7 +58,7 @@ class Draw:
 
     @classmethod
     def of(cls, name: str, family: Family, given: Mapping[str, float | Cell]) -> Draw:
-        """A draw from parameters by key, `lower_cutoff` and `upper_cutoff` among them where the draw is cut off."""
+        """Make a draw from parameters by key, with `lower_cutoff` and `upper_cutoff` if the draw is cut off."""
         parameters = dict(given)
         for key, each in given.items():
             if isinstance(each, Real):
@@ -67,7 +67,7 @@ class Draw:
         return cls(name, family, family.bind((), parameters), cutoffs if len(parameters) < len(given) else None)
 
     def fault(self) -> Fault | None:
-        """What keeps its numbers from being a distribution; None if some vary, for each trial has its own then."""
+        """Say what keeps its numbers from being a distribution; None if some vary, for each trial has its own then."""
         if not self.fixed:
             return None
         if self.cutoffs is None:
@@ -89,12 +89,12 @@ class Draw:
         return whole if self.cutoffs is None else Slice(whole, *self.cutoffs)  # type: ignore[arg-type]  # numbers
 
     def _of_trials(self, dynamic: Mapping[Cell, Floats]) -> Member | Slice:
-        """What the parameters of each trial make of it."""
+        """Return the numbers that the parameters of each trial make of it."""
         values = [p if isinstance(p, float) else dynamic[p] for p in (*(self.cutoffs or ()), *self.parameters)]
         return self.family.checked(*values) if self.cutoffs is None else Truncated(self.family).checked(*values)
 
     def reached(self, x: Floats) -> Floats:
-        """The uniforms, `(n,)`, of draws that are at most x, `(n,)`: the other way round than `fill`, where `fixed`."""
+        """Return the uniforms, `(n,)`, of draws that are at most x, `(n,)`: the inverse of `fill`, where `fixed`."""
         return self.distribution.cdf(x)
 
     @property
@@ -129,14 +129,14 @@ class Draw:
             raise SimulationError(message, hint="its parameters are too extreme: correct them in the workbook")
 
     def ties(self) -> Ties | None:
-        """The values that it takes; None if hardly any two draws are equal, or all, or where parameters vary."""
+        """Return the values that it takes; None if hardly any two draws are equal, or all, or where parameters vary."""
         return ties_of(self._quantiles) if self.fixed else None
 
     def _quantiles(self, u: Floats) -> Floats:
         return _flush(self.distribution.order(u))
 
     def percentiles(self, p: Floats, dynamic: Mapping[Cell, Floats]) -> Floats:
-        """The values that are not exceeded with these probabilities, `(q,)`, where the parameters are these."""
+        """Return the values that are not exceeded with these probabilities, `(q,)`, where the parameters are these."""
         return _flush((self.distribution if self.fixed else self._of_trials(dynamic)).percentile(p))
 
     @cached_property
@@ -160,7 +160,7 @@ class Draw:
 
 
 def _flush(draws: Floats) -> Floats:
-    """The same, changed in place: a number that is too small for a cell is 0."""
+    """Replace numbers that are too small for a cell by 0, in place."""
     if not draws.min(initial=np.inf) >= TINIEST:
         flush(draws)
     return draws
@@ -270,7 +270,7 @@ class Sampler:
         return Linear(streams, tuple(found for found in maps if found is not None))
 
     def draw(self, start: int) -> dict[str, Floats]:
-        """The draws of trials `start` to `start + block - 1`, `(block,)` each; NaN for an error."""
+        """Draw the trials `start` to `start + block - 1`, `(block,)` each; NaN for an error."""
         self._fill(start)
         for group in self._groups:
             first = self._row_of[group.names[0]]

@@ -83,7 +83,7 @@ def _latin_hypercube(seed: int, dimensions: Mapping[str, int], size: int) -> lis
 
 
 def _scrambled_sobol(seed: int, dimensions: Mapping[str, int], size: int) -> list[Margin]:
-    """The margins.
+    """Return the margins.
 
     Raises:
         SimulationError: there are more assumptions than Sobol points have dimensions, or these are not to be had.

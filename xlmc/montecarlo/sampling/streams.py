@@ -46,7 +46,7 @@ class Stream:
         self._generator.random(out=out)
 
     def raw(self, start: int, count: int) -> NDArray[np.uint64]:
-        """The 64 random bits at each position from `start` on, `(count,)`."""
+        """Return the 64 random bits at each position from `start` on, `(count,)`."""
         self._go_to(start, count)
         return np.asarray(self._bits.random_raw(count), dtype=np.uint64)
 

@@ -189,7 +189,7 @@ def _searched(
     interruption: Interruption,
     progress: OnProgress | None,
 ) -> Search | Stopped:
-    """Accepted trials from a search, or what ended it before it had any."""
+    """Search for accepted trials; returns them, or what ended the search before it had any."""
 
     def say(evaluations: int) -> None:
         if progress is not None:
@@ -208,7 +208,7 @@ def _searched(
 
 
 def _with_search(plain: RunResult, found: Search, most_inputs: int) -> RunResult:
-    """The run with the trials that were found, instead of those few that plain trials had left."""
+    """Return the run with the trials that were found, instead of those few that plain trials had left."""
     from xlmc.montecarlo.rare.search import accepted_blocks
 
     assert found.account is not None
@@ -308,7 +308,7 @@ class _Gathered:
         return self._keeper.columns({"trial": ("trial", 0)})["trial"]
 
     def forecast(self, number: int) -> NDArray[np.float64]:
-        """A forecast's accepted trials so far, `(m,)`, NaN where it has no number."""
+        """Return a forecast's accepted trials so far, `(m,)`, NaN where it has no number."""
         return self._keeper.columns({"": ("forecast", number)})[""]
 
     def simulation(self, settings: Settings, plan: SamplingPlan, stopped: Stopped) -> RunResult:

@@ -162,7 +162,7 @@ class RunResult:
     tabulated: dict[int, RunResult] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> ForecastResult:
-        """The result of a forecast, by name whatever its case.
+        """Return the result of a forecast, by name whatever its case.
 
         Raises:
             KeyError: there is no such forecast.
@@ -366,7 +366,7 @@ class RunResult:
         return next((int(values.size) for values in self.inputs.values()), self.accepted)
 
     def frame(self, *, inputs: bool = True) -> pandas.DataFrame:
-        """Accepted trials, one a row, indexed by trial: assumptions, then forecasts.
+        """Return accepted trials, one a row, indexed by trial: assumptions, then forecasts.
 
         An assumption with the name of a forecast is called `name (assumption)`; what is called `Trial`, as the
         index is, `Trial (assumption)` or `Trial (forecast)`.
@@ -394,12 +394,12 @@ class RunResult:
 
 
 def forecast_heading(name: str) -> str:
-    """What a forecast is called in a table of trials, in which no two columns may have one name."""
+    """Name a forecast in a table of trials, in which no two columns may have one name."""
     return f"{name} (forecast)" if name == TRIAL else name
 
 
 def assumption_heading(name: str, forecasts: Collection[str]) -> str:
-    """What an assumption is called there.
+    """Name an assumption in such a table.
 
     Args:
         name: of the assumption.
@@ -409,5 +409,5 @@ def assumption_heading(name: str, forecasts: Collection[str]) -> str:
 
 
 def weight_heading(others: Collection[str]) -> str:
-    """What the weights of trials are called there, beside columns with these names."""
+    """Name the weights of trials in such a table, beside columns with these names."""
     return "Weight" if "Weight" not in others else "Weight of the trial"

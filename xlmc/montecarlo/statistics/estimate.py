@@ -171,7 +171,7 @@ def format_estimate(value: float, error: float | None) -> str:
 
 
 def _exact_text(value: float) -> str:
-    """The fewest digits, six or more, that say what the value is, up to rounding in formulas."""
+    """Return the fewest digits, six or more, that say what the value is, up to rounding in formulas."""
     texts = [f"{value:.{digits}g}" for digits in _EXACT_DIGITS]
     return next((text for text in texts if abs(float(text) - value) <= _NOISE * abs(value)), texts[-1])
 

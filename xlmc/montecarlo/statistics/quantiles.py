@@ -92,7 +92,7 @@ def percentile(
 def median(
     values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None, *, confidence: float = 0.95
 ) -> Estimate:
-    """The 50th percentile."""
+    """Return the 50th percentile."""
     return percentile(values, 50.0, weights, replicate, confidence=confidence)
 
 
@@ -118,13 +118,13 @@ def central_interval(
 
 
 def minimum(values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None) -> Estimate:
-    """The smallest of (n,) values that carries weight."""
+    """Return the smallest of (n,) values that carries weight."""
     sample = Sample.of(values, weights, replicate)
     return Estimate(float(sample.x[0]) if sample.n else np.nan, n=sample.n)
 
 
 def maximum(values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None) -> Estimate:
-    """The largest of (n,) values that carries weight."""
+    """Return the largest of (n,) values that carries weight."""
     sample = Sample.of(values, weights, replicate)
     return Estimate(float(sample.x[-1]) if sample.n else np.nan, n=sample.n)
 

@@ -206,6 +206,6 @@ def _sort(
 
 
 def _number_replicates(ids: NDArray[np.generic]) -> tuple[Groups, int]:
-    """Number the replicates from 0; the 65th joins the first, and so on."""
+    """Give the replicates numbers from 0; the 65th joins the first, and so on."""
     names, group = np.unique(ids, return_inverse=True)
     return (group % MOST_GROUPS).astype(np.intp), min(names.size, MOST_GROUPS)

@@ -119,7 +119,7 @@ def standard_deviation(
 def coefficient_of_variation(
     values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None, *, confidence: float = 0.95
 ) -> Estimate:
-    """Standard deviation over mean, with the sign of the mean; nan where the mean is 0."""
+    """Divide the standard deviation by the mean, with the sign of the mean; nan where the mean is 0."""
     sample = Sample.of(values, weights, replicate)
     m = sample.moments
     if m.mean == 0.0:
@@ -159,7 +159,7 @@ def kurtosis(
 def mean_standard_error(
     values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None, *, confidence: float = 0.95
 ) -> Estimate:
-    """The standard error of the mean as a statistic of its own, s/√n for independent trials, with its own error."""
+    """Return the standard error of the mean as a statistic, s/√n for independent trials, with its own error."""
     sample = Sample.of(values, weights, replicate)
     if sample.dof < LEAST_DOF:
         return Estimate(np.nan, n=sample.n)

@@ -31,27 +31,27 @@ def are_yes_no(x: NDArray[np.float64]) -> bool:
 
 
 def share_of_ones(sample: Sample, confidence: float = 0.95) -> Estimate | None:
-    """The mean of a sample of zeros and ones; None of any other."""
+    """Return the mean of a sample of zeros and ones; None of any other."""
     return probability_above(sample, 0.5, confidence=confidence) if sample.yes_no else None
 
 
 def variance_of_share(share: Estimate, value: float, confidence: float = 0.95) -> Estimate:
-    """The variance, of the given value, of zeros and ones of which ones have this share."""
+    """Return the variance, of the given value, of zeros and ones of which ones have this share."""
     return _through(share, value, lambda p: p * (1.0 - p), confidence)
 
 
 def deviation_of_share(share: Estimate, value: float, confidence: float = 0.95) -> Estimate:
-    """The standard deviation, likewise."""
+    """Return the standard deviation, likewise."""
     return _through(share, value, lambda p: math.sqrt(p * (1.0 - p)), confidence)
 
 
 def coefficient_of_share(share: Estimate, value: float, confidence: float = 0.95) -> Estimate:
-    """The coefficient of variation, √((1 − p)/p), likewise; its upper end is infinite where p may be 0."""
+    """Return the coefficient of variation, √((1 − p)/p), likewise; its upper end is infinite where p may be 0."""
     return _through(share, value, lambda p: math.sqrt((1.0 - p) / p) if p > 0.0 else math.inf, confidence)
 
 
 def _through(share: Estimate, value: float, function: Callable[[float], float], confidence: float) -> Estimate:
-    """A function of the share that is monotonic, or greatest at ½."""
+    """Estimate a function of the share that is monotonic, or greatest at ½."""
     if share.interval is None or not math.isfinite(value):
         return Estimate(value, n=share.n)
     low, high = share.interval

@@ -86,13 +86,13 @@ def convert(model: CompiledModel, path: Path, *, overwrite: bool = False) -> Con
 
 
 def _free_name(workbook: Workbook) -> str:
-    """A name that no sheet has, so that formulas on the new sheet mean the workbook's own sheets."""
+    """Choose a name that no sheet has, so that formulas on the new sheet mean the workbook's own sheets."""
     taken = {entry.name.casefold() for entry in read_structure(workbook.parts).sheets}
     return next(name for name in chain([SHEET], (f"{SHEET} {n}" for n in count(2))) if name not in taken)
 
 
 def _left(workbook: Workbook, definitions: Definitions, tables: tuple[NewTable, ...]) -> Iterator[Left]:
-    """What stays where it is, and is read from there or refused."""
+    """Say what stays where it is, and is read from there or refused."""
     done = {row.call for table in tables for row in table.rows if row.call is not None}
     for each in definitions.assumptions:
         if isinstance(each.cell, InFormula) and each.cell not in done:
@@ -123,7 +123,7 @@ def _compare(old: CompiledModel, new: CompiledModel) -> None:
 
 
 def _difference(one: RunResult, other: RunResult) -> str:
-    """The first thing that differs between two runs; empty where they are the same to the last bit."""
+    """Return the first thing that differs between two runs; empty where they are the same to the last bit."""
     if not np.array_equal(one.trial_index, other.trial_index):
         return "the accepted trials"
     for columns, others in ((one.inputs, other.inputs), (one.forecasts, other.forecasts)):

@@ -57,7 +57,7 @@ class Left(NamedTuple):
 
 
 def built_sheet(tables: Sequence[NewTable], left: Sequence[Left], name: str = SHEET) -> dict[str, bytes]:
-    """The sheet as the parts of a workbook that holds it alone.
+    """Return the sheet as the parts of a workbook that holds it alone.
 
     Args:
         tables: to write.
@@ -199,7 +199,7 @@ _TITLES: Final[Mapping[str, str]] = {
 
 
 def _saved(value: object) -> Any:
-    """The value of a formula as the workbook has it; nothing where it is not known."""
+    """Return the value of a formula as the workbook has it; nothing where it is not known."""
     if isinstance(value, ErrorCode):
         return value.text
     return "" if value is None else value

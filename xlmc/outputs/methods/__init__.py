@@ -65,7 +65,7 @@ def save_methods(study: Study, path: Path, *, overwrite: bool = False) -> Path:
 
 
 def _content_with_seal(study: Study, ending: str) -> bytes:
-    """The content with its seal; a picture and a document have none."""
+    """Seal the content; a picture and a document have no seal."""
     name = study.model.path.name
     if ending == ".xlsx":
         from xlmc.outputs.methods.methods_workbook import book

@@ -132,7 +132,7 @@ def _main(made: Workbook, data: _Data, picture: Picture) -> ChartScatter:
 
 
 def _ring(x: float, y: float, across: float, upwards: float) -> list[tuple[float, float]]:
-    """The points of a ring about a point; a hollow marker would be filled by some programs."""
+    """Return the points of a ring about a point; a hollow marker would be filled by some programs."""
     turns = [2.0 * math.pi * each / 24.0 for each in range(25)]
     return [(x * 10.0 ** (across * math.cos(turn)), y * 10.0 ** (upwards * math.sin(turn))) for turn in turns]
 
@@ -216,7 +216,9 @@ def _words(
 def _small(
     made: Workbook, study: Study, title: str, column: int, curve_rows: Sequence[tuple[Curve, int, int]]
 ) -> ChartScatter | None:
-    """The error of one number against the trials; other engines are left out: their errors are those of Monte Carlo."""
+    """Draw the error of one number against the trials; other engines are left out: their errors are those of Monte
+    Carlo.
+    """
     chart = straight(made.add_chart({"type": "scatter", "subtype": "straight_with_markers"}))
     drawn = 0
     for curve, first, last in curve_rows:

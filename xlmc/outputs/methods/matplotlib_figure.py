@@ -53,7 +53,9 @@ _APART: Final = 0.047
 
 
 def draw(study: Study, against: Work = "seconds", *, words: bool = True) -> Figure:
-    """The figure: against time, or against evaluations of the workbook; with the words that tell how to read it."""
+    """Draw the figure: against time, or against evaluations of the workbook; with the words that tell how to
+    read it.
+    """
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
@@ -188,7 +190,7 @@ def _numbers(study: Study) -> dict[str, Callable[[Runs], tuple[float, float, flo
 
 
 def _with_interval(value: float, errors: list[Rms]) -> tuple[float, float, float]:
-    """The interval that as many replicates give; forecasts of the same runs are no further replicates."""
+    """Return the interval that as many replicates give; forecasts of the same runs are no further replicates."""
     known = [each for each in errors if each.value > 0.0]
     if not known or not value > 0.0:
         return value, value, value
@@ -245,7 +247,7 @@ def _small_line(axis: Axes, study: Study, curve: Curve, get: Callable[[Runs], tu
 
 
 def _half(axis: Axes) -> None:
-    """A line of slope −1/2 below the others."""
+    """Draw a line of slope −1/2 below the others."""
     left, right = axis.get_xlim()
     bottom, top = axis.get_ylim()
     axis.set_ylim(bottom / 3.0, top)

@@ -21,7 +21,7 @@ _FIGURES: Final[tuple[tuple[Work, str], ...]] = (("seconds", "time"), ("evaluati
 
 
 def document(study: Study) -> parts.Document:
-    """The document; it has no date, for what a study finds depends on no clock but the machine's speed."""
+    """Make the document; it has no date, for what a study finds depends on no clock but the machine's speed."""
     title, name = "Methods of uncertainty analysis", study.model.workbook.name
     blocks: list[parts.Block] = [parts.Paragraph(name)]
     blocks += [parts.Paragraph(each.replace("`", "")) for each in recommendation(study)]

@@ -46,7 +46,7 @@ _WORKS: Final[tuple[tuple[Work, str], ...]] = (("seconds", "time"), ("evaluation
 
 
 def page(study: Study) -> str:
-    """The page."""
+    """Write the page."""
     name = escape(study.model.workbook.name)
     words = "".join(f'<p class="said">{_text(each)}</p>\n' for each in recommendation(study))
     shown = (
@@ -74,7 +74,7 @@ def page(study: Study) -> str:
 
 
 def _lines(lines: Sequence[tuple[str, str]]) -> str:
-    """A table of two columns, the second of which is wrapped."""
+    """Write a table of two columns, the second of which is wrapped."""
     rows = "".join(
         f'<tr><td class="left">{escape(name)}</td><td class="long">{escape(sentence)}</td></tr>\n'
         for name, sentence in lines
@@ -106,7 +106,7 @@ def _row(row: tuple[str, ...], right: int) -> str:
 
 @lru_cache(maxsize=len(_WORKS))  # drawing takes a second, and page and document show the same
 def svg(study: Study, against: Work) -> str:
-    """The figure of a study as SVG, its letters as shapes; the same study gives the same bytes."""
+    """Draw the figure of a study as SVG, its letters as shapes; the same study gives the same bytes."""
     import matplotlib as mpl
 
     drawn = io.StringIO()

@@ -44,7 +44,7 @@ class Table:
 
 
 def floor_of(study: Study, statistic: str) -> float:
-    """The reference's own error of a statistic, over the forecasts' 5–95 % ranges."""
+    """Return the reference's own error of a statistic, over the forecasts' 5–95 % ranges."""
     reference = study.reference
     parts = [
         float(getattr(reference.errors[name], statistic)) / width
@@ -56,7 +56,7 @@ def floor_of(study: Study, statistic: str) -> float:
 
 
 def reference_table(study: Study) -> Table:
-    """The reference, with its standard errors."""
+    """Return the reference, with its standard errors."""
     found = study.reference
     rows = []
     for forecast in study.model.forecasts:
@@ -102,7 +102,7 @@ def _cells(study: Study, curve: Curve) -> Iterator[str]:
 
 
 def _accepted_share(study: Study, runs: Runs) -> str:
-    """The error of the share of accepted trials, in % of it; a dash without filters."""
+    """Return the error of the share of accepted trials, in % of it; a dash without filters."""
     if runs.acceptance is None or not study.model.filters:
         return _NONE
     return percent_text(runs.acceptance.value / study.reference.acceptance.value)
@@ -170,7 +170,7 @@ def forecast_table(study: Study) -> Table:
 
 
 def bounds_table(study: Study) -> Table:
-    """What the bounds methods give, beside the central range of the reference."""
+    """Return what the bounds methods give, beside the central range of the reference."""
     curves = [curve for curve in study.once if curve.ranges]
     rows: list[tuple[str, ...]] = []
     for forecast in study.model.forecasts:
@@ -198,7 +198,7 @@ def ends_lines(study: Study) -> list[tuple[str, str]]:
 
 
 def cannot_lines(study: Study) -> list[tuple[str, str]]:
-    """Method -> what it cannot do, and what its run had to say; methods that could not be used, and why."""
+    """List method -> what it cannot do, and what its run had to say; methods that could not be used, and why."""
     found = []
     for curve in study.every:
         parts = [each for each in (cannot(study, curve.method), *curve.remarks) if each]
@@ -211,7 +211,7 @@ def cannot_lines(study: Study) -> list[tuple[str, str]]:
 
 
 def cannot(study: Study, method: Method) -> str:
-    """What a method cannot do on this workbook: without filters, nothing that only filters would show."""
+    """Say what a method cannot do on this workbook: without filters, nothing that only filters would show."""
     if study.model.filters:
         return method.cannot
     return "; ".join(
@@ -225,12 +225,12 @@ _OF_FILTERS: Final = ("does not see filters", "filters take", "sees one assumpti
 
 
 def accepted_text(study: Study) -> str:
-    """`accepted 1.7566 ± 0.0023 %`, or that there is no filter."""
+    """Write the acceptance, `accepted 1.7566 ± 0.0023 %`, or that there is no filter."""
     return f"accepted {share_text(study.reference.acceptance)}" if study.model.filters else "no filters"
 
 
 def format_of(value: float, error: float) -> str:
-    """A number with its error, and no more digits than that supports; a dash where there is none."""
+    """Write a number with its error, and no more digits than that supports; a dash where there is none."""
     if not np.isfinite(value):
         return _NONE
     return format_estimate(float(value), float(error)) if np.isfinite(error) and error > 0.0 else _number(value)

@@ -36,7 +36,7 @@ _HEADINGS: Final = (
 
 
 def book(study: Study) -> dict[str, bytes]:
-    """The parts of the workbook: Methods, Charts, Runs, Forecasts, Chart data."""
+    """Make the parts of the workbook: Methods, Charts, Runs, Forecasts, Chart data."""
     from xlmc.outputs.sheets.exact_book import ExactBook
 
     with ExactBook() as made:

@@ -136,7 +136,7 @@ class Label:
 
 
 def column_of(picture: Picture) -> list[Label]:
-    """The labels from the top: those of one height from the left, so that what leads to them does not cross."""
+    """Order the labels from the top: those of one height from the left, so that what leads to them does not cross."""
     found = [
         Label(f"{line.name}: {line.needs}", f"{line.name}: {line.brief}", *_end(line, picture.frame[1]), line)
         for line in picture.lines
@@ -148,15 +148,15 @@ def column_of(picture: Picture) -> list[Label]:
 
 
 def _end(line: Line, right: float) -> tuple[float, float]:
-    """The point that a line's label belongs to: the end of its dotted part, or else its last measured point."""
+    """Return the point that a line's label belongs to: the end of its dotted part, or else its last measured point."""
     if line.once:
         return right, line.points[-1].y
     return line.ahead[-1] if line.ahead else (line.points[-1].x, line.points[-1].y)
 
 
 def guides_of(picture: Picture, bottom: float) -> tuple[float, float]:
-    """The start of the lines of slope −1/2 and −1, and the decades over which they fall, in the larger gap between
-    words.
+    """Return the start of the lines of slope −1/2 and −1, and the decades over which they fall, in the larger gap
+    between words.
 
     Args:
         picture: the chart.
@@ -173,7 +173,7 @@ def guides_of(picture: Picture, bottom: float) -> tuple[float, float]:
 
 
 def picture_of(study: Study, work: Work) -> Picture | None:
-    """The chart of a study; None if no forecast varies."""
+    """Make the chart of a study; None if no forecast varies."""
     if not study.varying:
         return None
     found, finer = choice(study), choice(study, _finer(study))
@@ -210,7 +210,7 @@ def _finer(study: Study) -> tuple[str, float, bool]:
 
 
 def _scale(study: Study) -> float:
-    """The accuracy asked for, as the chart counts."""
+    """Return the accuracy asked for, as the chart counts."""
     _, value, relative = study.accuracy
     return 100.0 * value if relative else 1.0
 
@@ -241,7 +241,7 @@ def _line(study: Study, curve: Curve, work: Work, scale: float, found: Choice, f
 
 
 def _kind(study: Study, curve: Curve, found: Choice) -> tuple[str, str]:
-    """The number that a method has most trouble with."""
+    """Return the number that a method has most trouble with."""
     worst = shortfall(study, curve) if curve in study.once else found.needs[curve]
     return worst.forecast, worst.statistic
 
@@ -249,8 +249,8 @@ def _kind(study: Study, curve: Curve, found: Choice) -> tuple[str, str]:
 def _ahead(
     study: Study, curve: Curve, work: Work, scale: float, kind: tuple[str, str], wanted: Need
 ) -> tuple[tuple[float, float], ...]:
-    """The dotted part of a line, from the longest runs to the finer accuracy; nothing where the method never reaches
-    it.
+    """Return the dotted part of a line, from the longest runs to the finer accuracy; nothing where the method never
+    reaches it.
     """
     tolerance = study.tolerance(kind[0])
     rule = law(study, curve, kind)
@@ -308,7 +308,7 @@ def _when(found: Need) -> str:
 
 
 def _mark(study: Study, height: float, accuracy: tuple[str, float, bool], found: Choice, more: str) -> tuple[str, ...]:
-    """The accuracy, the cheapest method there, and those that tie with it.
+    """Return the accuracy, the cheapest method there, and those that tie with it.
 
     A method that draws nothing states no error. Only the reference shows whether it is near enough: it is named apart.
     """
@@ -374,7 +374,7 @@ def spread(heights: Sequence[float], apart: float, bottom: float, top: float) ->
 
 
 def _inside(heights: list[float], step: float, bottom: float, top: float) -> list[float]:
-    """The heights, pushed back from both ends."""
+    """Push the heights back from both ends."""
     found = []
     limit = top
     for height in heights:

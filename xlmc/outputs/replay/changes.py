@@ -97,7 +97,9 @@ class Closeness:
 
 
 def _with_fewer_digits(number: float) -> set[float]:
-    """The number as programs write it: 15 or 16 digits of its shortest or its exact decimal, rounded or cut off."""
+    """Yield the number as programs write it: 15 or 16 digits of its shortest or its exact decimal, rounded or
+    cut off.
+    """
     shortest, exact = Decimal(repr(float(number))), Decimal(float(number))
     rules = [(15, ROUND_DOWN), *((digits, rule) for digits in (15, 16) for rule in (ROUND_HALF_UP, ROUND_HALF_EVEN))]
     return {
@@ -142,7 +144,7 @@ class NumberChange:
 
 
 def contents_now(workbook: Workbook, recorded: Mapping[Cell, str]) -> dict[Cell, str]:
-    """The recorded cells as they are now, needed or not, and those of the reserved tables."""
+    """Return the recorded cells as they are now, needed or not, and those of the reserved tables."""
     saved = {cell for cell, text in recorded.items() if SAVED in text}
     cells = [*recorded, *sorted(definition_cells(workbook) - recorded.keys())]
     found = {cell: content_text(workbook, cell, saved) for cell in cells if workbook.sheet_of(cell) is not None}
@@ -150,7 +152,7 @@ def contents_now(workbook: Workbook, recorded: Mapping[Cell, str]) -> dict[Cell,
 
 
 def cell_changes(recorded: Mapping[Cell, str], found: Mapping[Cell, str]) -> list[Change]:
-    """The cells that hold something else than they did."""
+    """Return the cells that hold something else than they did."""
     return list(_differing("cell", recorded, found))
 
 
@@ -164,7 +166,7 @@ def is_rewritten_number(change: Change) -> bool:
 
 
 def structure_changes(recorded: Record, found: Record) -> list[Change]:
-    """The names and tables that mean something else than they did."""
+    """Return the names and tables that mean something else than they did."""
     old, new = (
         {(str(row["what"]), str(row["name"])): str(row["means"]) for row in record.rows("structure")}
         for record in (recorded, found)
@@ -177,7 +179,7 @@ def structure_changes(recorded: Record, found: Record) -> list[Change]:
 
 
 def definition_changes(recorded: Record, found: Record) -> list[Change]:
-    """The definitions that are not as they were."""
+    """Return the definitions that are not as they were."""
     changes: list[Change] = []
     for section, kind, naming, keys in _DEFINITIONS:
         old, new = (_rows(record, section, naming) for record in (recorded, found))
@@ -192,7 +194,7 @@ def definition_changes(recorded: Record, found: Record) -> list[Change]:
 
 
 def environment_changes(recorded: Record, found: Record) -> list[Change]:
-    """The versions and the processor that are not as they were."""
+    """Return the versions and the processor that are not as they were."""
     changes: list[Change] = []
     for section in ("software", "processor"):
         old, new = (
@@ -203,7 +205,7 @@ def environment_changes(recorded: Record, found: Record) -> list[Change]:
 
 
 def number_changes(recorded: Record, found: Record) -> list[NumberChange]:
-    """The recorded numbers that the repeat did not give to the last bit."""
+    """Return the recorded numbers that the repeat did not give to the last bit."""
     changes = [
         _number(f"trials: {key.replace('_', ' ')}", recorded[f"counts.{key}"], found[f"counts.{key}"], 0.0)
         for key in _COUNTS
@@ -256,7 +258,7 @@ def _presence(there: bool) -> str | None:
 
 
 def _text(value: Value) -> str:
-    """A value as the record shows it; a text and a number that look alike are one."""
+    """Write a value as the record shows it; a text and a number that look alike are the same."""
     if isinstance(value, float) and value.is_integer():
         return str(int(value))
     return "" if value is None else str(value)

@@ -155,7 +155,7 @@ def _fed_by(record: Record, path: Path, books: Iterable[str | Path]) -> tuple[Fe
 
 
 def recorded_run(path: str | Path, *, progress: OnProgress | None = None) -> RunResult:
-    """The run that a result workbook records, repeated: under the name and with the SHA-256 of its workbook.
+    """Repeat the run that a result workbook records: under the name and with the SHA-256 of its workbook.
 
     Args:
         path: a result workbook.
@@ -234,7 +234,7 @@ def _is_untouched(path: Path) -> bool:
 
 
 def _read_recorded(record: Record, path: Path | None) -> tuple[dict[Cell, str], Settings]:
-    """The cells and the settings of the record.
+    """Return the cells and the settings of the record.
 
     Raises:
         WorkbookError: an older xlmc wrote it, which recorded neither, or it was edited.
@@ -283,7 +283,7 @@ def _repeat_command(record: Record) -> str:
 def _repeat(
     model: CompiledModel, record: Record, settings: Settings, jobs: int, progress: OnProgress | None
 ) -> RunResult:
-    """The run again: up to the trial that ended it, whatever did."""
+    """Run again: up to the trial that ended the recorded run, whatever did."""
     trials, accepted, stored = (_count(record, key) for key in ("trials", "accepted", "inputs_kept"))
     by = str(record["end.by"])
     options = RunOptions.repeating(settings, trials=trials, by=by, weighable=bool(model.chances))

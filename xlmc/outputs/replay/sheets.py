@@ -119,7 +119,7 @@ def _build(run: RunResult, command: str | None, rows: int) -> Workbook:
 
 
 def _trial_rows(trials: Sheet) -> int:
-    """The most trials that were to be written, as the sheet says, or else as its rows show."""
+    """Return the most trials that were to be written, as the sheet says, or else as its rows show."""
     sentence = _ONLY_FIRST.fullmatch(str(trials.cells.get((HEADER, 1), _BLANK).value))
     if sentence is not None:
         return int(sentence[1].replace(",", ""))
@@ -138,7 +138,7 @@ class _Pair:
     closeness: Closeness
 
     def differences(self) -> Iterator[CellDifference]:
-        """The cells that show something else, from the top down."""
+        """Return the cells that show something else, from the top down."""
         last, lower = self._machine
         below = {(row - lower, column) for row, column in self.sheet.cells if row > last + lower}
         above = {at for at in self.sheet.cells if at[0] <= min(last, last + lower)}
@@ -150,7 +150,7 @@ class _Pair:
                 yield from self._shown_otherwise(at, where)
 
     def _shown_otherwise(self, at: _RowColumn, where: Cell) -> Iterator[CellDifference]:
-        """The difference where a number is there, and is shown with other decimals than the run's."""
+        """Return the difference where a number is there, and is shown with other decimals than the run's."""
         says, gives = self._formats[1].get(self._in_file(at)), self._formats[0].get(at)
         if says is not None and gives is not None and says != gives:
             yield CellDifference(where, f"shown {says}", f"shown {gives}")
@@ -163,7 +163,7 @@ class _Pair:
         return first, second
 
     def left_out(self) -> Iterator[str]:
-        """The rows in which a person has typed a range of their own."""
+        """Return the rows in which a person has typed a range of their own."""
         for row in sorted(self._own_rows):
             where = Cell(self.sheet.name, row, min(column for line, column in self._fillable if line == row))
             yield f"{where} holds a range that a person typed, as people may; formulas count its certainty"
@@ -271,12 +271,12 @@ class _Pair:
 
 
 def _bare(formula: str) -> str:
-    """A formula without what each program writes in its own way: spaces, quotes, the names of sheets."""
+    """Write a formula without what each program writes in its own way: spaces, quotes, the names of sheets."""
     return re.sub(r"(?:'[^']*'|[\w.]+)!|\s+", "", formula).upper()
 
 
 def _match_sheets(workbook: Workbook, built: Workbook) -> dict[str, Sheet]:
-    """The sheets of a file that are those the run writes, by the names that the run gives them.
+    """Return the sheets of a file that are those the run writes, by the names that the run gives them.
 
     Args:
         workbook: the file.
@@ -293,14 +293,16 @@ def _match_sheets(workbook: Workbook, built: Workbook) -> dict[str, Sheet]:
 
 
 def _by_mark(workbook: Workbook, built: Workbook) -> dict[str, Sheet]:
-    """The sheets with a mark; `Results (2)` is Results in a workbook that had a sheet of that name already."""
+    """Return the sheets with a mark; `Results (2)` is Results in a workbook that had a sheet of that name already."""
     marked = [name for name in marked_names(workbook.names) if name in workbook.sheets]
     names = {name if name in built.sheets else _NUMBERED.sub("", name): name for name in marked}
     return {name: workbook.sheets[names[name]] for name in built.sheets if name in names}
 
 
 def _likest(expected: Sheet, workbook: Workbook, taken: Collection[str]) -> Sheet | None:
-    """The sheet that shares most cells with the expected one; a sheet of the same name may share fewer than half."""
+    """Return the sheet that shares most cells with the expected one; a sheet of the same name may share fewer than
+    half.
+    """
     shares = {name: _share(expected, workbook.sheets[name]) for name in workbook.sheets if name not in taken}
     best = max(shares, key=lambda name: (shares[name], name == expected.name), default=None)
     if best is not None and shares[best] > _ENOUGH:
@@ -309,7 +311,9 @@ def _likest(expected: Sheet, workbook: Workbook, taken: Collection[str]) -> Shee
 
 
 def _share(expected: Sheet, sheet: Sheet) -> float:
-    """The share of the expected sheet's cells, some hundreds of them, that another sheet holds where they stand."""
+    """Return the share of the expected sheet's cells, some hundreds of them, that another sheet holds where
+    they stand.
+    """
     filled = [at for at, content in expected.cells.items() if content.value is not None]
     filled = filled[:: max(1, len(filled) // _SAMPLE)]
     same = sum(at in sheet.cells and _REWRITTEN.equal(sheet.cells[at].value, expected.cells[at].value) for at in filled)
@@ -319,7 +323,7 @@ def _share(expected: Sheet, sheet: Sheet) -> float:
 def _count_formulas(
     built: Workbook, sheet: Sheet, typed: Mapping[_RowColumn, CellContent], rows: Collection[int]
 ) -> dict[_RowColumn, CellContent]:
-    """The formulas of these rows, with their values computed anew.
+    """Compute the formulas of these rows anew.
 
     Args:
         built: the result sheets of the run.

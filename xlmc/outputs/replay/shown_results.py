@@ -58,7 +58,9 @@ def compare_shown(
 
 
 def _of_version(found: SheetComparison, version: str) -> SheetComparison:
-    """The comparison without the sheets that another version of xlmc laid out differently: these cannot be compared."""
+    """Return the comparison without the sheets that another version of xlmc laid out differently: these cannot be
+    compared.
+    """
     if found.same or version == __version__:
         return found
     laid_out = {each.where.sheet for each in found.differences if not (is_number(each.says) and is_number(each.gives))}
@@ -110,7 +112,7 @@ def _left_out_text(count: int, empty: list[Cell]) -> tuple[str, ...]:
 
 
 def as_recorded(run: RunResult, record: Record, settings: Settings) -> RunResult:
-    """The run under the name of the recorded one's workbook, with its settings, ended by what ended that.
+    """Return the run under the name of the recorded one's workbook, with its settings, ended by what ended that.
 
     Args:
         run: the repeated run, which ended because it came to the number of trials.
@@ -127,7 +129,7 @@ def as_recorded(run: RunResult, record: Record, settings: Settings) -> RunResult
 
 
 def _entry(record: Record, key: str) -> Value:
-    """An entry of the record; None if it has no such entry."""
+    """Return an entry of the record; None if it has no such entry."""
     try:
         return record[key]
     except KeyError:

@@ -33,7 +33,7 @@ class Rule:
 
 
 def _calls(*names: str) -> re.Pattern[str]:
-    """Calls of these functions, with or without the marks that a file gives to those of a newer Excel."""
+    """Make a pattern for calls of these functions, with or without the marks of a newer Excel's functions in files."""
     return re.compile(rf"(?<![\w.])(?:_xl\w+\.)*(?:{'|'.join(map(re.escape, names))})\(", re.IGNORECASE)
 
 
@@ -243,7 +243,7 @@ RULES: Final = (
 
 
 def recorded_version(record: Record) -> str:
-    """The xlmc that made a run; of records that do not name it, nothing."""
+    """Return the xlmc that made a run; of records that do not name it, nothing."""
     try:
         return str(record["software.xlmc"])
     except KeyError:
@@ -251,7 +251,7 @@ def recorded_version(record: Record) -> str:
 
 
 def rules_since(version: str, contents: Iterable[str]) -> tuple[Rule, ...]:
-    """The rules that changed after a version and that may concern a workbook.
+    """Return the rules that changed after a version and that may concern a workbook.
 
     Args:
         version: the one that made a run, such as `0.1.0`.
@@ -267,7 +267,7 @@ def rules_since(version: str, contents: Iterable[str]) -> tuple[Rule, ...]:
 
 
 def install(version: str) -> str:
-    """What to type, in a clone of xlmc's repository, to have a version beside this one."""
+    """Say what to type, in a clone of xlmc's repository, to have a version beside this one."""
     folder = f"../xlmc-{version}"
     return (
         f"git worktree add {folder} v{version} && python3 -m venv {folder}/.venv && "
@@ -276,5 +276,5 @@ def install(version: str) -> str:
 
 
 def _parts(version: str) -> tuple[int, ...]:
-    """A version as numbers that can be compared; what is no number ends it."""
+    """Read a version as numbers that can be compared; what is no number ends it."""
     return tuple(int(part) for part in re.match(r"\d*(?:\.\d+)*", version)[0].split(".") if part)  # type: ignore[index]

@@ -246,7 +246,7 @@ def assumption_section(simulation: RunResult) -> Section:
 
 
 def correlation_section(simulation: RunResult) -> Section:
-    """The rank correlations asked for, those drawn with, and those of the accepted trials."""
+    """Return the rank correlations asked for, those drawn with, and those of the accepted trials."""
     rows = tuple(
         (
             met.first,
@@ -283,7 +283,7 @@ class CorrelationMet:
 
 
 def correlations_met(simulation: RunResult) -> list[CorrelationMet]:
-    """The pairs in the order of the rows, then those that a repair changed without a row."""
+    """Return the pairs in the order of the rows, then those that a repair changed without a row."""
     model = simulation.model
     pairs = [(c.first, c.second, c.number, c.row) for c in model.definitions.correlations]
     return [_met(simulation, *pair) for pair in (*pairs, *_unnamed(simulation))]

@@ -73,7 +73,8 @@ def _of(kind: str, name: str, cell: Cell, errors: Counter[str], roots: Mapping[C
 
 
 def lost_sentences(simulation: RunResult) -> list[str]:
-    """The cells in which trials were lost, most trials first, and how many trials are left; nothing without losses.
+    """Return the cells in which trials were lost, most trials first, and how many trials are left; nothing without
+    losses.
 
     Sentences have no full stop.
     """

@@ -67,12 +67,14 @@ def versions(engine: str = "numpy") -> dict[str, str]:
 
 @cache
 def _installed(library: str) -> str:
-    """The version of a library, which is read from files only once in a process."""
+    """Return the version of a library, which is read from files only once in a process."""
     return version(library)
 
 
 def processor() -> dict[str, str]:
-    """The kind of machine and the vector instructions NumPy found: its sine may differ between them in the last bit."""
+    """Return the kind of machine and the vector instructions NumPy found: its sine may differ between them in the last
+    bit.
+    """
     import numpy
 
     found: dict[str, list[str]] = numpy.show_config(mode="dicts")["SIMD Extensions"]  # type: ignore[assignment]
@@ -131,7 +133,7 @@ _SAFE_IN_DOUBLE_QUOTES = re.compile(r'[^"\\$`!%\n]+')
 
 
 def make_record(simulation: RunResult, command: str | None = None) -> Record:
-    """The record of a run; the same run on the same machine has the same record.
+    """Make the record of a run; the same run on the same machine has the same record.
 
     Args:
         simulation: the finished run.
@@ -170,7 +172,7 @@ def make_record(simulation: RunResult, command: str | None = None) -> Record:
 
 
 def _environment(simulation: RunResult) -> tuple[Mapping[str, str], Mapping[str, str]]:
-    """The software and the processor of the run: those it was saved with, or those here."""
+    """Return the software and the processor of the run: those it was saved with, or those here."""
     origin = simulation.origin
     if origin is not None:
         return origin.software, origin.processor
@@ -204,7 +206,7 @@ def _file(simulation: RunResult) -> Section:
 
 
 def _changed_from(found: ChangedFrom) -> Section:
-    """What the workbook of the run differs in from the one that it was made of."""
+    """Say what the workbook of the run differs in from the one that it was made of."""
     entries = (
         Entry("name", "Workbook that was changed", found.name),
         Entry("sha256", "SHA-256 of its file", found.sha256),
@@ -214,7 +216,7 @@ def _changed_from(found: ChangedFrom) -> Section:
 
 
 def changed_from_of(record: Record) -> ChangedFrom | None:
-    """What the run of a record says of the workbook that its own was made of; None if it says nothing."""
+    """Return what the run of a record says of the workbook that its own was made of; None if it says nothing."""
     if CHANGED_FROM not in record:
         return None
     changes = tuple(str(row["change"]) for row in record.rows(CHANGED_FROM))
@@ -267,7 +269,7 @@ def _counts(simulation: RunResult) -> Section:
 
 
 def _weight_entries(simulation: RunResult) -> tuple[Entry, ...]:
-    """The weights that evidence gives the accepted trials, where they do not count alike."""
+    """Return the weights that evidence gives the accepted trials, where they do not count alike."""
     found = simulation.weighting
     if found is None:
         return ()
@@ -404,7 +406,8 @@ def _update(digest: hashlib._Hash, values: NDArray[np.float64]) -> None:
 
 
 def repeat_command(simulation: RunResult) -> str:
-    """What to type, in the workbook's folder, to get the same numbers: `xlmc simulate book.xlsx --trials … --seed …`.
+    """Return what to type, in the workbook's folder, to get the same numbers: `xlmc simulate book.xlsx --trials …
+    --seed …`.
 
     See `RunOptions.repeating` and `RunOptions.arguments`. Of a changed copy, which may stand in no file, it is said how
     to make one.
@@ -431,13 +434,15 @@ def _python_call(arguments: Sequence[str]) -> str:
 
 
 def simulate_command(book: str, arguments: Sequence[str]) -> str:
-    """What to type in a workbook's folder to run it with these arguments."""
+    """Return what to type in a workbook's folder to run it with these arguments."""
     named = f"./{book}" if book.startswith("-") else book
     return " ".join(["xlmc simulate", *map(quoted_argument, [named, *arguments])])
 
 
 def quoted_argument(text: str) -> str:
-    """The text as one argument of a command: in double quotes, which every shell knows, or else as POSIX quotes."""
+    """Quote the text as one argument of a command: in double quotes, which every shell knows, or else as
+    POSIX quotes.
+    """
     if _PLAIN.fullmatch(text):
         return text
     return f'"{text}"' if _SAFE_IN_DOUBLE_QUOTES.fullmatch(text) else shlex.quote(text)

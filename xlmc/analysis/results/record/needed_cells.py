@@ -65,7 +65,7 @@ _STRUCTURE_COLUMNS: Final = (("name", "Name"), ("what", "Is a"), ("means", "Mean
 
 
 def needed_contents(model: CompiledModel) -> dict[Cell, str]:
-    """The cells that a run of the model is a function of, with their contents, by sheets, rows and columns.
+    """Return the cells that a run of the model is a function of, with their contents, by sheets, rows and columns.
 
     These are the cells that forecasts and filters read, those of assumptions and of their data, and the reserved
     tables. Blank cells are left out.
@@ -87,13 +87,13 @@ def needed_contents(model: CompiledModel) -> dict[Cell, str]:
 
 
 def definition_cells(workbook: Workbook) -> set[Cell]:
-    """The cells of the reserved tables that hold something, headings among them."""
+    """Return the cells of the reserved tables that hold something, headings among them."""
     areas = (table.area for table in workbook.tables if table.name.casefold().startswith(KINDS))
     return {cell for area in areas for cell in _filled_cells(workbook, area)}
 
 
 def content_text(workbook: Workbook, cell: Cell, saved: Container[Cell] = ()) -> str:
-    """What a cell holds, as a formula would write it: `=A1*2`, `6661`, `"text"`, `TRUE`, `#N/A`; empty if it is blank.
+    """Write what a cell holds as a formula would: `=A1*2`, `6661`, `"text"`, `TRUE`, `#N/A`; empty if it is blank.
 
     Args:
         workbook: that it stands in.
@@ -108,7 +108,7 @@ def content_text(workbook: Workbook, cell: Cell, saved: Container[Cell] = ()) ->
 
 
 def value_text(value: CellValue) -> str:
-    """A value as a formula writes it."""
+    """Write a value as a formula does."""
     match value:
         case None:
             return ""
@@ -130,7 +130,7 @@ def _formula_text(formula: Formula, cell: Cell) -> str:
 
 
 def _filled_cells(workbook: Workbook, area: Area) -> list[Cell]:
-    """The cells of an area that hold something."""
+    """Return the cells of an area that hold something."""
     sheet = workbook.sheet_of(area)
     if sheet is None:
         return []
@@ -162,7 +162,7 @@ def cell_section(needed: Mapping[Cell, str], *, rows: int = MOST_ROWS) -> Sectio
 
 
 def recorded_cells(record: Record) -> dict[Cell, str]:
-    """The cells of a record with their contents.
+    """Return the cells of a record with their contents.
 
     Raises:
         KeyError: the record does not hold them.
@@ -212,7 +212,7 @@ def _cell(address: str) -> Cell:
 
 
 def structure_section(model: CompiledModel, contents: Collection[str]) -> Section:
-    """The names and tables that the needed cells mention, and the hidden rows where a function asks for them.
+    """Return the names and tables that the needed cells mention, and the hidden rows where a function asks for them.
 
     Args:
         model: that was run.
@@ -240,12 +240,12 @@ def _order(name: DefinedName) -> tuple[str, str]:
 
 
 def _words(texts: Collection[str]) -> set[str]:
-    """The words of cells in small letters; those of texts too, which may name a cell or be read by INDIRECT."""
+    """Return the words of cells in small letters; those of texts too, which may name a cell or be read by INDIRECT."""
     return set(_WORD.findall("\n".join(texts).casefold()))
 
 
 def _find_mentioned(names: Collection[DefinedName], words: set[str]) -> Iterator[DefinedName]:
-    """The names among the words, and those that these mention in turn."""
+    """Return the names among the words, and those that these mention in turn."""
     waiting = {name for name in names if not name.name.casefold().startswith(("_xlnm.", "_xlmc_"))}
     while found := {name for name in waiting if name.name.casefold() in words}:
         yield from found
@@ -254,7 +254,7 @@ def _find_mentioned(names: Collection[DefinedName], words: set[str]) -> Iterator
 
 
 def _sheets_read(model: CompiledModel) -> list[str]:
-    """The sheets with hidden rows that a needed cell stands on."""
+    """Return the sheets with hidden rows that a needed cell stands on."""
     read = {cell.sheet for cell in model.read}
     sheets = model.workbook.sheets  # parsed when looked up: those not read are left alone
     return [name for name in sheets if name in read and sheets[name].hidden_rows]

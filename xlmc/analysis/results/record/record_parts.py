@@ -37,7 +37,7 @@ class RecordTable:
     rows: tuple[tuple[Value, ...], ...]
 
     def as_dicts(self) -> list[dict[str, Value]]:
-        """The rows by column key."""
+        """Return the rows by column key."""
         keys = [key for key, _ in self.columns]
         return [dict(zip(keys, row, strict=True)) for row in self.rows]
 
@@ -63,7 +63,7 @@ class Record:
         return any(section.key == key for section in self.sections)
 
     def section(self, key: str) -> Section:
-        """The section of that key.
+        """Return the section of that key.
 
         Raises:
             KeyError: there is none.
@@ -74,7 +74,7 @@ class Record:
         raise KeyError(key)
 
     def __getitem__(self, key: str) -> Value:
-        """The value of an entry, as `record["file.sha256"]`.
+        """Return the value of an entry, as `record["file.sha256"]`.
 
         Raises:
             KeyError: there is no such entry.
@@ -86,7 +86,7 @@ class Record:
         raise KeyError(key)
 
     def rows(self, key: str) -> list[dict[str, Value]]:
-        """The rows of a section's table by column key; none where it has no table.
+        """Return the rows of a section's table by column key; none where it has no table.
 
         Raises:
             KeyError: there is no such section.
@@ -117,7 +117,7 @@ _Cells = Mapping[tuple[int, int], CellContent]
 
 
 def read_record(workbook: Workbook) -> Record:
-    """The record of the run whose results the workbook holds.
+    """Return the record of the run whose results the workbook holds.
 
     A text that was too long for its cell is cut, and what had no value is None.
 
@@ -160,7 +160,7 @@ def _sections(cells: _Cells) -> Iterator[Section]:
 
 
 def _rows_with_keys(cells: _Cells) -> Iterator[tuple[int, re.Match[str]]]:
-    """The rows that have a key, in their order."""
+    """Return the rows that have a key, in their order."""
     for row in sorted(row for row, column in cells if column == _KEYS):
         found = _KEY.fullmatch(str(cells[row, _KEYS].value))
         if found is not None:

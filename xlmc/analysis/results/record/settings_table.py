@@ -18,7 +18,7 @@ __all__ = ["recorded_settings", "settings_section"]
 
 
 def settings_section(simulation: RunResult) -> Section:
-    """What the run was asked to do, each setting so that it reads back as the same one."""
+    """Yield what the run was asked to do, each setting so that it reads back as the same one."""
     settings = simulation.settings
     of_run, of_end = ([row for row in SETTINGS.values() if bool(row.field) is ends] for ends in (False, True))
     entries = (
@@ -30,7 +30,7 @@ def settings_section(simulation: RunResult) -> Section:
 
 
 def _setting_entries(rows: Iterable[Setting], settings: Settings) -> Iterator[Entry]:
-    """An entry for every setting: empty, or none at all, where nothing is said of it."""
+    """Yield an entry for every setting: empty, or none at all, where nothing is said of it."""
     for row in rows:
         value = row.of(settings)
         stated = bool(value) or not row.blank
@@ -39,14 +39,14 @@ def _setting_entries(rows: Iterable[Setting], settings: Settings) -> Iterator[En
 
 
 def _goal_entries(kind: type[Goal], asked: Goal | None) -> Iterator[Entry]:
-    """An entry for every field of a goal, empty where another was asked for."""
+    """Yield an entry for every field of a goal, empty where another was asked for."""
     values = astuple(asked) if isinstance(asked, kind) else [None] * len(kind.labels)
     for (key, label), value in zip(kind.labels, values, strict=True):
         yield Entry(key, label, ",".join(value) if isinstance(value, tuple) else value)
 
 
 def recorded_settings(record: Record) -> Settings:
-    """The settings of a recorded run.
+    """Return the settings of a recorded run.
 
     Raises:
         KeyError: the record does not hold them.
@@ -64,7 +64,7 @@ def recorded_settings(record: Record) -> Settings:
 
 
 def _recorded(section: dict[str, Value]) -> Iterator[tuple[Setting, Any]]:
-    """The settings that the entries say."""
+    """Return the settings that the entries say."""
     for row in SETTINGS.values():
         value = section.get(row.entry_key) if row.sparse else section[row.entry_key]
         if value is not None or not row.blank:

@@ -85,7 +85,7 @@ class Package:
         return name in self._sizes
 
     def size(self, name: str) -> int:
-        """The size of an entry, in bytes.
+        """Return the size of an entry, in bytes.
 
         Raises:
             WorkbookError: there is no such entry.
@@ -96,7 +96,7 @@ class Package:
 
     @contextmanager
     def reading(self, name: str) -> Iterator[IO[bytes]]:
-        """An entry, to be read front to back; what lies in it is checked at its end.
+        """Open an entry, to be read front to back; what lies in it is checked at its end.
 
         Raises:
             WorkbookError: there is no such entry, or it is damaged.
@@ -108,7 +108,7 @@ class Package:
 
 @contextmanager
 def open_package(path: Path) -> Iterator[Package]:
-    """The package of a saved run.
+    """Open the package of a saved run.
 
     Raises:
         WorkbookError: the file cannot be opened, is no saved run, or is damaged.
@@ -165,14 +165,14 @@ def _naming_damage(path: Path) -> Iterator[None]:
 
 
 def column_header(count: int, kind: str) -> bytes:
-    """What stands before the numbers of a column: `count` of them, of the type `<f8` or `<i8`."""
+    """Return what stands before the numbers of a column: `count` of them, of the type `<f8` or `<i8`."""
     header = io.BytesIO()
     npy.write_array_header_1_0(header, {"descr": kind, "fortran_order": False, "shape": (count,)})
     return header.getvalue()
 
 
 def column_parts(values: NDArray[Any], kind: str, digest: hashlib._Hash) -> Iterator[bytes]:
-    """A column's header and numbers, a part at a time; all of it goes into the digest too."""
+    """Yield a column's header and numbers, a part at a time; all of it goes into the digest too."""
     header = column_header(values.size, kind)
     digest.update(header)
     yield header
@@ -183,7 +183,7 @@ def column_parts(values: NDArray[Any], kind: str, digest: hashlib._Hash) -> Iter
 
 
 def read_column(entry: IO[bytes], kind: str, count: int, name: str, digest: hashlib._Hash) -> Iterator[NDArray[Any]]:
-    """The numbers of a column, a part at a time, each in memory of its own.
+    """Yield the numbers of a column, a part at a time, each in memory of its own.
 
     Args:
         entry: where it lies, from its start.

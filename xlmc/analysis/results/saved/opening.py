@@ -66,7 +66,8 @@ def is_saved_run(path: Path) -> bool:
 
 
 def open_run(path: str | Path) -> RunResult:
-    """The run that was saved in a file, with the model of its workbook: every statistic is the same to the last bit.
+    """Open the run that was saved in a file, with the model of its workbook: every statistic is the same to the last
+    bit.
 
     Columns go into memory, or, where they are large together, into temporary files.
 
@@ -206,7 +207,7 @@ class _Columns:
         )
 
     def of(self, kind: str) -> Mapping[str, Column]:
-        """The columns of a kind by name, in their order."""
+        """Return the columns of a kind by name, in their order."""
         return self._keeper.columns({name: (kind, name) for name in self._names[kind]})
 
 
@@ -250,7 +251,7 @@ def _simulation(found: Document, model: CompiledModel, columns: _Columns) -> Run
 
 
 def _discards(found: object, model: CompiledModel) -> dict[str, Counter[str]]:
-    """The counts of filters of some forecasts only; runs saved before there were any have none."""
+    """Return the counts of filters of some forecasts only; runs saved before there were any have none."""
     given = mapping(found, "its discarded trials")
     own = filters_by_forecast(model.forecasts, model.forecast_filters)
     names = {

@@ -46,7 +46,7 @@ T = TypeVar("T")
 
 
 def settings_document(settings: Settings) -> dict[str, Any]:
-    """The settings, with an entry for every goal: a number, or the fields of one that has several."""
+    """Return the settings, with an entry for every goal: a number, or the fields of one that has several."""
     asked = settings.stopping
     goals = {kind.saved_as or kind.key: _goal_document(asked.goal, kind) for kind in GOALS.values()}
     more = {name: value for name, value in asdict(asked).items() if name != "goal"}
@@ -60,7 +60,7 @@ def _goal_document(goal: Goal | None, kind: type[Goal]) -> object:
 
 
 def settings_of(found: object) -> Settings:
-    """The settings again.
+    """Read the settings again.
 
     Raises:
         ValueError, SimulationError: they are none.
@@ -74,7 +74,7 @@ def settings_of(found: object) -> Settings:
 
 
 def _stopping_of(found: object) -> Stopping:
-    """What was to end the run; anything that no run can be asked for is refused."""
+    """Read what was to end the run; anything that no run can be asked for is refused."""
     given = dict(mapping(found, "its end"))
     require("goal" not in given, "its end has the unknown field goal")  # each goal has a field of its own
     goals = [_goal_of(kind, given.pop(kind.saved_as or kind.key, None)) for kind in GOALS.values()]
@@ -90,7 +90,7 @@ def _goal_of(kind: type[Goal], found: object) -> Goal | None:
 
 
 def tally_document(tally: FilterTally) -> dict[str, Any]:
-    """The counts of the filters as lists."""
+    """Return the counts of the filters as lists."""
     return {
         "rejected": tally.rejected.tolist(),
         "only": tally.only.tolist(),
@@ -101,7 +101,7 @@ def tally_document(tally: FilterTally) -> dict[str, Any]:
 
 
 def tally_of(found: object, filters: int, trials: int) -> FilterTally:
-    """The counts of so many filters over so many trials again.
+    """Read the counts of so many filters over so many trials again.
 
     Raises:
         ValueError: they are none.
@@ -131,7 +131,7 @@ class _Counts:
 
 
 def stopped_of(found: object) -> Stopped:
-    """What ended the run.
+    """Return what ended the run.
 
     Raises:
         ValueError: it is something else.
@@ -157,7 +157,7 @@ def rare_of(found: object) -> RareAccount | None:
 
 
 def origin_of(found: object) -> Origin:
-    """The software and the processor of the run.
+    """Return the software and the processor of the run.
 
     Raises:
         ValueError: it is something else.
@@ -166,7 +166,7 @@ def origin_of(found: object) -> Origin:
 
 
 def changed_from_of(found: object) -> ChangedFrom | None:
-    """The workbook that the run's own was made of, if it is such a run.
+    """Return the workbook that the run's own was made of, if it is such a run.
 
     Raises:
         ValueError: it is something else.
@@ -185,7 +185,7 @@ def require(holds: bool, what: str) -> None:
 
 
 def build(kind: type[T], found: object, what: str) -> T:
-    """An instance of a dataclass from its fields; those with a default may be missing. Lists become tuples.
+    """Make an instance of a dataclass from its fields; those with a default may be missing. Lists become tuples.
 
     Raises:
         ValueError: a field is missing or unknown, or has another type than it must.
@@ -205,7 +205,7 @@ def build(kind: type[T], found: object, what: str) -> T:
 
 
 def mapping(found: object, what: str) -> dict[str, Any]:
-    """A JSON object.
+    """Require a JSON object.
 
     Raises:
         ValueError: it is none.
@@ -225,7 +225,7 @@ def counts(found: object, what: str) -> Counter[str]:
 
 
 def texts(found: object, what: str) -> tuple[str, ...]:
-    """A list of texts.
+    """Require a list of texts.
 
     Raises:
         ValueError: it is something else.
@@ -236,7 +236,7 @@ def texts(found: object, what: str) -> tuple[str, ...]:
 
 
 def whole(found: object, what: str) -> int:
-    """A count, 0 or more.
+    """Require a count, 0 or more.
 
     Raises:
         ValueError: it is none.
@@ -247,7 +247,7 @@ def whole(found: object, what: str) -> int:
 
 
 def _read_typed(hint: Any, value: object, what: str) -> Any:
-    """The value, where it has the type of an annotation."""
+    """Return the value, if it has the type of an annotation."""
     origin, arguments = get_origin(hint), get_args(hint)
     if NoneType in arguments:
         other = next(each for each in arguments if each is not NoneType)

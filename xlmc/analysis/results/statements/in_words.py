@@ -68,7 +68,7 @@ REJECTED_SENTENCE: Final = (
 
 
 def number_text(value: Parameter) -> str:
-    """The shortest text that reads back as the same number: `0.95`, `6661`; or the cell that holds it."""
+    """Return the shortest text that reads back as the same number: `0.95`, `6661`; or the cell that holds it."""
     return str(value) if isinstance(value, Cell) else repr(float(value)).removesuffix(".0")
 
 
@@ -96,7 +96,7 @@ def cutoffs_text(cutoffs: Mapping[str, Parameter]) -> str:
 
 
 def distribution_text(assumption: Assumption) -> str:
-    """`Normal: Mean 0.77, Std dev 0.05; cut off below 0.6`."""
+    """Write a distribution: `Normal: Mean 0.77, Std dev 0.05; cut off below 0.6`."""
     cutoffs = cutoffs_text(assumption.cutoffs)
     ending = f"; cut off {cutoffs}" if cutoffs else ""
     return f"{assumption.distribution}: {parameters_text(assumption)}{ending}"
@@ -128,7 +128,7 @@ class Discarded:
 
 
 def discards_of(simulation: RunResult) -> list[Discarded]:
-    """What such filters discard, filter by filter, forecast by forecast."""
+    """Say what such filters discard, filter by filter, forecast by forecast."""
     found = []
     for filter_ in simulation.model.forecast_filters:
         for name in filter_.only_for:
@@ -138,7 +138,9 @@ def discards_of(simulation: RunResult) -> list[Discarded]:
 
 
 def evidence_text(evidence: Evidence) -> str:
-    """`reads 12, normal (Std dev 0.6)`; `reads 12, instrument (Percent 10): from 10.9091 to 13.3333`."""
+    """Write evidence: `reads 12, normal (Std dev 0.6)`; `reads 12, instrument (Percent 10): from 10.9091 to
+    13.3333`.
+    """
     if not evidence.used or evidence.reading is None:
         return f"not used: {evidence.unused}"
     known = None if any(evidence.cells) else evidence.law
@@ -152,7 +154,7 @@ def evidence_text(evidence: Evidence) -> str:
 
 
 def changes_text(scenario: Scenario) -> str:
-    """What a scenario changes: `Friction from 0.6 to 0.8; Restitution at most 0.5; Inputs!D28 = -20`."""
+    """Say what a scenario changes: `Friction from 0.6 to 0.8; Restitution at most 0.5; Inputs!D28 = -20`."""
     return "; ".join(map(_change_text, scenario.changes)) or "nothing"
 
 
@@ -191,12 +193,12 @@ def _plain_number(value: float | None) -> str:
 
 
 def notes_text(notes: Mapping[str, str]) -> str:
-    """The table's other columns: `Symbol: w1; Cell name: w_1`."""
+    """Write the table's other columns: `Symbol: w1; Cell name: w_1`."""
     return "; ".join(f"{heading}: {text}" for heading, text in notes.items())
 
 
 def status(model: CompiledModel, name: str, frozen: bool) -> str:
-    """What a run does with the assumption: `drawn`, `frozen`, or `not needed` by any forecast or filter."""
+    """Say what a run does with the assumption: `drawn`, `frozen`, or `not needed` by any forecast or filter."""
     if frozen:
         return "frozen"
     return "drawn" if name in model.draws else "not needed"
@@ -215,7 +217,7 @@ def method_text(simulation: RunResult) -> str:
 
 
 def errors_text(simulation: RunResult) -> str:
-    """What the standard errors and intervals are made from."""
+    """Say what the standard errors and intervals are made from."""
     plan = simulation.plan
     if not plan.size:
         return "from the spread of the trials"
@@ -235,7 +237,7 @@ def sampling_sentence(simulation: RunResult) -> str:
 
 
 def generator_text(simulation: RunResult) -> str:
-    """The source of the random numbers, in words."""
+    """Name the source of the random numbers, in words."""
     if simulation.rare is not None:
         return f"{GENERATOR}, seeded by (seed, purpose): a stream to learn with, and one to draw the trials with"
     return METHODS[simulation.plan.method].generator

@@ -66,7 +66,7 @@ class Pair:
 
 
 def pairs_of(simulation: RunResult, most: int = PAIRS) -> list[Pair]:
-    """The first `most` pairs of forecasts that vary and have trials in common, in the order of the workbook."""
+    """Return the first `most` pairs of forecasts that vary and have trials in common, in the order of the workbook."""
     results = simulation.results
     forecasts = [each for each in simulation.model.forecasts if results[each.name].statistics.range_width.value > 0.0]
     found = (_pair(simulation, *two) for two in combinations(forecasts, 2))

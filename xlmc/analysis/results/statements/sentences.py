@@ -88,7 +88,7 @@ def _of(result: ForecastResult) -> list[Statement]:
 
 
 def _main(result: ForecastResult, part: str) -> Statement | None:
-    """The sentence that answers the question; None if there are too few trials for one."""
+    """Return the sentence that answers the question; None if there are too few trials for one."""
     definition, trials = result.definition, result.statistics.trials
     name, units = definition.name, f" {definition.units}" if definition.units else ""
     if result.yes is not None:
@@ -124,7 +124,7 @@ _OF_ROLE: Final = {Role.LOWER: "a probability of at least", Role.UPPER: "a proba
 
 
 def _probabilities(result: ForecastResult) -> Iterator[Statement]:
-    """What was asked of a forecast beside its range."""
+    """Return what was asked of a forecast beside its range."""
     definition, above = result.definition, result.statistics.probability_above
     name, units = definition.name, f" {definition.units}" if definition.units else ""
     if definition.threshold is not None and above is not None:
@@ -219,8 +219,8 @@ class Certainty:
 
 
 def certainties(result: ForecastResult) -> list[Certainty]:
-    """The certainties below, in and above the range that is stated, as it is printed; those of the threshold, if any,
-    and of the range that was asked for, if any.
+    """Return the certainties below, in and above the range that is stated, as it is printed; those of the threshold, if
+    any, and of the range that was asked for, if any.
     """
     definition, sample = result.definition, result.sample
     units = f" {definition.units}" if definition.units else ""
@@ -238,7 +238,7 @@ def certainties(result: ForecastResult) -> list[Certainty]:
 
 
 def _around(spoken: RoundedRange, sample: Sample, units: str) -> list[Certainty]:
-    """The certainties below, in and above a range; below or above alone beside one that has no other end."""
+    """Return the certainties below, in and above a range; below or above alone beside one that has no other end."""
     low, high = spoken.low, spoken.high
     found = [Certainty("between", low, high, spoken.words(units), spoken.share)]
     if spoken.low_text:

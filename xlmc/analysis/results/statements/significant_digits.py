@@ -96,12 +96,12 @@ class _Rounding:
     unit: Decimal | None
 
     def single(self, value: float) -> RoundedRange:
-        """The range of one value, which its text alone rounds."""
+        """Return the range of one value, which its text alone rounds."""
         text = _text(_round(value, self.unit, ROUND_HALF_EVEN, _SINGLE_DIGITS))
         return RoundedRange(value, value, text, text, probability_between(self.sample, value, value))
 
     def range(self, steps: Steps) -> RoundedRange:
-        """The range with its ends so many steps out."""
+        """Return the range with its ends so many steps out."""
         low, high = self._end(0, steps[0]), self._end(1, steps[1])
         first, last = -math.inf if low is None else float(low), math.inf if high is None else float(high)
         share = probability_between(self.sample, first, max(first, last))
@@ -125,7 +125,7 @@ class _Rounding:
 
 
 def _least(rounding: _Rounding, steps: Iterable[Steps], nominal: float, *, claimed: bool = True) -> RoundedRange | None:
-    """The range with the least share of those that hold what is said of them; of equal ones the first."""
+    """Return the range with the least share of those that hold what is said of them; of equal ones the first."""
     every = dict.fromkeys(rounding.range(each) for each in steps)
     found = [each for each in every if not claimed or _holds(each.share, nominal)]
     return min(found, key=lambda each: each.share.value, default=None)
@@ -142,7 +142,8 @@ def surely_above(share: Estimate, bound: float) -> bool:
 
 
 def _widened(rounding: _Rounding, nominal: float) -> RoundedRange | None:
-    """The narrowest range, with ends as many steps out on both sides or one step less, that holds; None if none is.
+    """Return the narrowest range, with ends as many steps out on both sides or one step less, that holds; None if none
+    is.
 
     The number of steps is doubled until a range holds, and then the least is sought.
     """
@@ -158,7 +159,7 @@ def _widened(rounding: _Rounding, nominal: float) -> RoundedRange | None:
 
 
 def rounded_value(found: Estimate, resolution: float | None = None) -> tuple[float, str]:
-    """A number in the digits that its error and the resolution support, and the same in words; not for nan.
+    """Write a number in the digits that its error and the resolution support, and the same in words; not for nan.
 
     >>> rounded_value(Estimate(11.8435, 0.019))
     (11.84, '11.84')
@@ -170,7 +171,7 @@ def rounded_value(found: Estimate, resolution: float | None = None) -> tuple[flo
 
 
 def percent_text(share: Estimate) -> str:
-    """A share in percent with its error to one digit, to two where that is a 1; a bound for none or all of the trials.
+    """Write a share in percent with its error to one digit, to two for a 1; as a bound for none or all of the trials.
 
     >>> percent_text(Estimate(0.14213, 0.0042, n=7000))
     '14.2 % ± 0.4 %'
@@ -214,7 +215,7 @@ def reach_text(share: Estimate) -> str:
 
 
 def _unit(ends: Sequence[Estimate], resolution: float | None) -> Decimal | None:
-    """The finest power of ten that is at least half the largest error, or the resolution if that is not finer.
+    """Return the finest power of ten that is at least half the largest error, or the resolution if that is not finer.
 
     None if there is neither.
     """
@@ -233,7 +234,7 @@ def _is_multiple(value: float, resolution: float) -> bool:
 
 
 def _size(value: float) -> int:
-    """The power of ten of a number: 0.02 -> -2."""
+    """Return the power of ten of a number: 0.02 -> -2."""
     return Decimal(repr(value)).adjusted() if value else 0
 
 

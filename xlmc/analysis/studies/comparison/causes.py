@@ -153,7 +153,9 @@ class Step:
 
 
 def steps_between(inputs: Inputs, first: RunResult, second: RunResult) -> tuple[Step, ...]:
-    """The steps that can be taken: filters that reject a trial, assumptions with a base value, plain distributions."""
+    """Return the steps that can be taken: filters that reject a trial, assumptions with a base value, plain
+    distributions.
+    """
     found = []
     for side, run in enumerate((first, second)):
         rejected = {f.name: int(n) for f, n in zip(run.model.filters, run.tally.rejected, strict=True)}
@@ -193,7 +195,7 @@ class Variations:
         }
 
     def pair(self, steps: Iterable[Step]) -> tuple[RunResult, RunResult]:
-        """The runs of both books after these steps."""
+        """Return the runs of both books after these steps."""
         taken = frozenset(steps)
         first, second = (self._side(side, frozenset(s for s in taken if s.side == side)) for side in (0, 1))
         return first, second
@@ -210,7 +212,7 @@ class Variations:
 
 
 def cause_of(steps: Sequence[Step], left: Callable[[Iterable[Step]], float]) -> tuple[Step, ...]:
-    """The steps that bring a difference within its tolerance; empty where none do.
+    """Return the steps that bring a difference within its tolerance; empty where none do.
 
     Args:
         steps: what can be taken out.

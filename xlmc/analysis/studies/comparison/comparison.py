@@ -134,7 +134,7 @@ class Comparison:
     source: RunResult | None = None
 
     def of(self, verdict: Verdict) -> tuple[ForecastComparison, ...]:
-        """The forecasts of which this is the verdict, but for those of which the books are rival models."""
+        """Return the forecasts of which this is the verdict, but for those of which the books are rival models."""
         return tuple(each for each in self.forecasts if each.judgement.verdict is verdict and not each.apart)
 
     @property
@@ -295,7 +295,7 @@ def _accepted_trials(run: RunResult, forecast: Forecast, factor: float) -> Accep
 def _match_forecasts(
     first: CompiledModel, second: CompiledModel, pairs: Mapping[str, str]
 ) -> list[tuple[Forecast, Forecast]]:
-    """The forecasts of the first book with their counterparts, in its order.
+    """Return the forecasts of the first book with their counterparts, in its order.
 
     Raises:
         SimulationError: a pair names a forecast that is not there, or there are no pairs at all.
@@ -316,7 +316,7 @@ def _match_forecasts(
 
 
 def _factor(mine: Forecast, theirs: Forecast) -> float:
-    """The factor that converts the second book's numbers.
+    """Return the factor that converts the second book's numbers.
 
     Raises:
         SimulationError: the units are not of one kind.

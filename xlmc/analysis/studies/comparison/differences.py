@@ -91,7 +91,7 @@ class Difference:
             yield f"P(> {self.threshold:.15g})", self.above
 
     def tolerances(self, tolerance: float, chance: float | None) -> Mapping[str, float]:
-        """Number -> its tolerance.
+        """Return number -> its tolerance.
 
         Args:
             tolerance: of mean, SD and central range, in the forecast's unit.
@@ -175,7 +175,8 @@ def difference(first: Accepted, second: Accepted, share: float, threshold: float
 
 
 def _of_deviations(change: Change) -> Estimate:
-    """The difference of the standard deviations of yes/no forecasts, known no better than either is after one more yes.
+    """Return the difference of the standard deviations of yes/no forecasts, known no better than either is after one
+    more yes.
 
     The deviation of shares p is √(p(1 − p)); a share is never known better than `least_error`.
     """
@@ -199,7 +200,7 @@ def _distance_of_shares(apart: Estimate) -> Estimate:
 
 
 def _kolmogorov(pair: Pair) -> Estimate:
-    """The largest difference of the distribution functions, 0 to 1."""
+    """Return the largest difference of the distribution functions, 0 to 1."""
     first, second, n = pair.first, pair.second, _fewest(pair)
     if n == 0:
         return Estimate(np.nan)
@@ -213,7 +214,7 @@ def _kolmogorov(pair: Pair) -> Estimate:
 
 
 def _wasserstein(pair: Pair) -> Estimate:
-    """The area between the distribution functions, in the unit of the values."""
+    """Return the area between the distribution functions, in the unit of the values."""
     first, second, n = pair.first, pair.second, _fewest(pair)
     if n == 0:
         return Estimate(np.nan)
@@ -231,5 +232,5 @@ def _fewest(pair: Pair) -> int:
 
 
 def _share_below(ascending: Floats, points: Floats) -> Floats:
-    """The share of the values that are not above each point."""
+    """Return the share of the values that are not above each point."""
     return np.asarray(np.searchsorted(ascending, points, side="right") / ascending.size)

@@ -37,7 +37,7 @@ _FEWEST: Final = 100
 
 
 def fed_model(model: CompiledModel, source: RunResult, feeds: Mapping[str, str]) -> CompiledModel:
-    """The model with assumptions drawn from the accepted trials of another book.
+    """Return the model with assumptions drawn from the accepted trials of another book.
 
     Args:
         model: stays as it is.
@@ -86,7 +86,7 @@ def _found(name: str, known: Mapping[str, Named], kind: str, model: CompiledMode
 
 
 def _factor(assumption: Assumption, forecast: Forecast) -> float:
-    """What the forecast is multiplied by for the unit of the assumption.
+    """Return what the forecast is multiplied by for the unit of the assumption.
 
     Raises:
         SimulationError: their units are of two kinds.
@@ -115,7 +115,8 @@ def _drawn_from(assumption: Assumption, values: Floats, source: RunResult) -> As
 def _together(
     definitions: Definitions, fed: Mapping[str, Assumption], trials: Floats, source: RunResult, live: Set[str]
 ) -> Definitions:
-    """The definitions with assumptions that are drawn from the same trial, in place of rank correlations among them.
+    """Return the definitions with assumptions that are drawn from the same trial, in place of rank correlations among
+    them.
 
     Args:
         definitions: of the first book.

@@ -104,7 +104,7 @@ class Statistic:
 
 
 def mean_of(run: Accepted) -> Statistic:
-    """The mean; a trial pulls it by (x − mean)/m."""
+    """Estimate the mean; a trial pulls it by (x − mean)/m."""
     found = statistics.mean(run.sample)
     if found.error is None:
         return Statistic(found, None)
@@ -113,7 +113,7 @@ def mean_of(run: Accepted) -> Statistic:
 
 
 def standard_deviation_of(run: Accepted) -> Statistic:
-    """The standard deviation; a trial pulls it by ((x − mean)² − s²)/(2 s m)."""
+    """Estimate the standard deviation; a trial pulls it by ((x − mean)² − s²)/(2 s m)."""
     found = statistics.standard_deviation(run.sample)
     if found.error is None:
         return Statistic(found, None)
@@ -124,7 +124,7 @@ def standard_deviation_of(run: Accepted) -> Statistic:
 
 
 def share_above(run: Accepted, threshold: float) -> Statistic:
-    """The share p of trials above a threshold; a trial pulls it by ([x > threshold] − p)/m."""
+    """Estimate the share p of trials above a threshold; a trial pulls it by ([x > threshold] − p)/m."""
     above = run.values > threshold
     if run.m < 2:
         return Statistic(Estimate(float(above.mean()) if run.m else np.nan), None)
@@ -133,7 +133,7 @@ def share_above(run: Accepted, threshold: float) -> Statistic:
 
 
 def quantile_of(run: Accepted, p: float) -> Statistic:
-    """The quantile q at p; a trial pulls it by (p − [x ≤ q])/(m f(q)), in steps of 1/(m f(q)).
+    """Estimate the quantile q at p; a trial pulls it by (p − [x ≤ q])/(m f(q)), in steps of 1/(m f(q)).
 
     The density f(q) is the one that gives the quantile's own standard error, which comes from order statistics.
     """
@@ -149,7 +149,9 @@ def quantile_of(run: Accepted, p: float) -> Statistic:
 
 
 def range_of(run: Accepted, share: float) -> Statistic:
-    """The width of the central range that holds a share of the trials: its ends pull in opposite directions."""
+    """Estimate the width of the central range that holds a share of the trials: its ends pull in opposite
+    directions.
+    """
     low, high = (quantile_of(run, (1.0 + side * share) / 2.0) for side in (-1.0, 1.0))
     width = high.estimate.value - low.estimate.value
     if low.influence is None or high.influence is None:
@@ -186,7 +188,7 @@ class Pair:
         return np.asarray(self.second.values[theirs] - self.first.values[mine])
 
     def difference(self, first: Statistic, second: Statistic) -> Estimate:
-        """The second's statistic less the first's, with the error of the difference.
+        """Subtract the first's statistic from the second's, with the error of the difference.
 
         A quantile moves in steps. Where hardly a trial crosses it, the influences say nothing, and the error is taken
         to be one step, or the spread of the paired differences where that is smaller.
@@ -211,7 +213,9 @@ class Pair:
         return not (one_sided or np.any(self.apart) or self.first.sample.yes_no)
 
     def _of_shares(self, found: Estimate, first: Bools, second: Bools) -> Estimate:
-        """The difference of two shares, never 0 ± 0; its interval is that of two counts where nothing else differs."""
+        """Return the difference of two shares, never 0 ± 0; its interval is that of two counts where nothing else
+        differs.
+        """
         if found.error is None or found.interval is None:
             return found
         (mine, theirs), n = self.both, found.n
@@ -227,7 +231,7 @@ class Pair:
         return replace(found, error=max(found.error, least_error(n)), interval=_interval_of_counts(went, came, n))
 
     def error(self, first: Floats, second: Floats) -> float:
-        """The standard error of a difference, from the pulls `(m,)` on either side."""
+        """Return the standard error of a difference, from the pulls `(m,)` on either side."""
         if self._size:
             sums = self._by_replicate(self.second.trials, second) - self._by_replicate(self.first.trials, first)
             return float((np.sum(sums * sums) * sums.size / max(sums.size - 1, 1)) ** 0.5)

@@ -98,7 +98,7 @@ class Rivalry:
 
 
 def _own_inputs(run: RunResult, forecast: Forecast) -> Mapping[str, str]:
-    """The drawn assumptions that a forecast is computed from: key -> name. Filters are not asked."""
+    """Return the drawn assumptions that a forecast is computed from: key -> name. Filters are not asked."""
     model = run.model
     reached = upstream(model.needed.graph, [forecast.cell], model.lowering.led_to)
     return {name_key(a.name): a.name for a in model.live if a.cell in reached}
@@ -143,7 +143,7 @@ def _change(pair: Pair, first: Statistic, second: Statistic) -> Change:
 
 
 def _smaller(spread: Change) -> int | None:
-    """The book with the smaller spread; None if the difference does not clear its error, or has none."""
+    """Return the book with the smaller spread; None if the difference does not clear its error, or has none."""
     value, error = spread.difference.value, spread.difference.error
     if error is None or not abs(value) > _CERTAINTY * error:
         return None

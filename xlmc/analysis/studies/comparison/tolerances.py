@@ -105,7 +105,7 @@ def _is_blind(difference: Estimate) -> bool:
 
 
 def in_tolerances(difference: Estimate, tolerance: float) -> float:
-    """The size of a difference, measured in its tolerance."""
+    """Return the size of a difference, measured in its tolerance."""
     size = abs(difference.value)
     if math.isnan(size):
         return math.inf
@@ -113,7 +113,7 @@ def in_tolerances(difference: Estimate, tolerance: float) -> float:
 
 
 def chance_tolerance(share: float) -> float:
-    """The tolerance of a probability for which none is stated.
+    """Return the tolerance of a probability for which none is stated.
 
     >>> chance_tolerance(0.7), chance_tolerance(0.002)
     (0.03, 0.001)
@@ -122,7 +122,7 @@ def chance_tolerance(share: float) -> float:
 
 
 def chance_of(points: float | None) -> float | None:
-    """A tolerance stated in percentage points as a share; None if none is.
+    """Return a tolerance stated in percentage points as a share; None if none is.
 
     Raises:
         SimulationError: it is out of its range.
@@ -144,7 +144,7 @@ class _Stated:
     unit: str
 
     def of(self, forecast: Forecast, deviation: float) -> float | None:
-        """The tolerance in the forecast's unit; None if the units are of different kinds."""
+        """Return the tolerance in the forecast's unit; None if the units are of different kinds."""
         if self.unit == "%":
             return self.value / 100.0 * deviation
         factor = 1.0 if not self.unit else factor_between(self.unit, forecast.units)
@@ -159,7 +159,7 @@ class Tolerances:
     single: Mapping[str, _Stated]
 
     def of(self, forecast: Forecast, deviation: float) -> tuple[float, bool]:
-        """A forecast's tolerance in its unit, and whether it was stated; else it is a tenth of its SD.
+        """Return a forecast's tolerance in its unit, and whether it was stated; else it is a tenth of its SD.
 
         Raises:
             SimulationError: the tolerance stated for it is in a unit of another kind.

@@ -25,7 +25,7 @@ def with_changes(
     drawn_as: Mapping[str, Assumption] | None = None,
     frozen_at: Mapping[str, float] | None = None,
 ) -> CompiledModel:
-    """A model with changed definitions, and without the book's checks: these move no number of a run.
+    """Make a model with changed definitions, and without the book's checks: these move no number of a run.
 
     Args:
         model: stays as it is.
@@ -47,7 +47,7 @@ def with_changes(
 
 
 def with_plain_sampling(model: CompiledModel) -> CompiledModel:
-    """The model with plain Monte Carlo for its sampling, and runs of a given length.
+    """Return the model with plain Monte Carlo for its sampling, and runs of a given length.
 
     Differences are judged from trials that are independent, the same trials of each model.
     """

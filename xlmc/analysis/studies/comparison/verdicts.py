@@ -19,13 +19,13 @@ __all__ = ["amount", "book_names", "inputs_text", "is_chance", "points", "undeci
 
 
 def book_names(comparison: Comparison) -> tuple[str, str]:
-    """What to call the two books: their file names, or their paths where the names are the same."""
+    """Name the two books: by their file names, or their paths where the names are the same."""
     first, second = comparison.first.model.path, comparison.second.model.path
     return (str(first), str(second)) if first.name == second.name else (first.name, second.name)
 
 
 def verdict_text(comparison: Comparison) -> list[str]:
-    """The verdict, a sentence or two for each kind of it."""
+    """Yield the verdict, a sentence or two for each kind of it."""
     books = book_names(comparison)
     return [
         *_enough(comparison, books),
@@ -52,7 +52,9 @@ def _enough(comparison: Comparison, books: tuple[str, str]) -> Iterator[str]:
 
 
 def _apart_in_trials(comparison: Comparison) -> Iterator[str]:
-    """The answers that agree as a whole only; of books that draw other inputs, trials say nothing of each other."""
+    """Return the answers that agree as a whole only; of books that draw other inputs, trials say nothing of
+    each other.
+    """
     if not any(comparison.inputs.drawn):
         yield from (_only_as_a_whole(each) for each in comparison.of(Verdict.WITHIN) if each.only_distributions_agree)
 
@@ -213,7 +215,7 @@ def _more(judgement: Judgement, comparison: Comparison) -> str:
 
 
 def _two_digits(trials: float) -> str:
-    """Rounded up, for the number is a guess: 10,423,263 -> 11,000,000."""
+    """Round up, for the number is a guess: 10,423,263 -> 11,000,000."""
     step = math.pow(10.0, max(0, math.floor(math.log10(trials)) - 1))
     return f"{math.ceil(trials / step) * step:,.0f}"
 
@@ -234,7 +236,7 @@ def inputs_text(comparison: Comparison) -> list[str]:
 
 
 def undecided_text(cost: Cost, trials: int) -> str:
-    """A change that is undecided, and what would decide it: `Weight (about 260,000 trials would decide)`."""
+    """Name a change that is undecided, and what would decide it: `Weight (about 260,000 trials would decide)`."""
     names = ", ".join(cost.names)
     if cost.lost:
         return f"{names} ({_join_names([repr(name) for name in cost.lost])} is then hardly ever a number)"
@@ -265,12 +267,12 @@ def is_chance(number: str) -> bool:
 
 
 def points(share: float) -> str:
-    """A difference of probabilities: `1.2 points`."""
+    """Write a difference of probabilities: `1.2 points`."""
     return f"{100 * share:.3g} point{'s' * (share != 0.01)}"
 
 
 def amount(number: str, estimate: Estimate, units: str) -> str:
-    """A number, or a difference of it, with its error: of a probability in percentage points."""
+    """Write a number, or a difference of it, with its error: of a probability in percentage points."""
     if math.isnan(estimate.value):
         return "no number"
     if is_chance(number):

@@ -67,7 +67,7 @@ class Candidate:
         return len(self.headings) - len(self.fixed)
 
     def log_likelihood(self, x: Floats, params: Params) -> float:
-        """The logarithm of the likelihood; minus infinity where a value is impossible."""
+        """Return the logarithm of the likelihood; minus infinity where a value is impossible."""
         with np.errstate(all="ignore"):
             total = float(np.sum(self.log_density(x, *np.asarray(params))))  # NumPy's numbers overflow to infinity
         return total if total == total else -np.inf
@@ -84,7 +84,7 @@ def refuse(impossible: bool, reason: str) -> None:
 
 
 def standard_errors(log_likelihood: Callable[[Params], float], params: Params, free: Sequence[int]) -> Errors:
-    """The roots of the diagonal of the inverse of the negative second derivatives; otherwise None.
+    """Return the roots of the diagonal of the inverse of the negative second derivatives; otherwise None.
 
     Args:
         log_likelihood: of all parameters.
@@ -127,7 +127,7 @@ def _bends_everywhere(bend: NDArray[np.float64]) -> bool:
 
 
 def _step(drop: Callable[[float], float], value: float) -> float:
-    """A step over which the log-likelihood falls by about `_DROP`."""
+    """Return a step over which the log-likelihood falls by about `_DROP`."""
     h = 1e-3 * max(abs(value), 1e-6)
     for _ in range(40):
         fall = drop(h)

@@ -40,7 +40,9 @@ def _uniform_cdf(x: Floats, low: float, high: float) -> Floats:
 
 
 def _uniform_errors(x: Floats, params: Params) -> Errors:
-    """The smallest and the largest of n uniforms have the variance n/((n + 1)²(n + 2)) of the width squared."""
+    """Fit a Uniform: the smallest and the largest of n uniforms have the variance n/((n + 1)²(n + 2)) of the width
+    squared.
+    """
     n, (low, high) = x.size, params
     error = (high - low) * float(np.sqrt(n / (n + 2))) / (n + 1)
     return error, error
@@ -95,7 +97,7 @@ def _pareto_cdf(x: Floats, location: float, shape: float) -> Floats:
 
 
 def _pareto_errors(x: Floats, params: Params) -> Errors:
-    """The smallest of n has the shape n times as large; n/shape times the estimate's reciprocal is a gamma number."""
+    """Fit a Pareto: the smallest of n has the shape n times as large; n/shape over the estimate is a gamma number."""
     n, (location, shape) = x.size, params
     both = n * shape
     of_location = location * np.sqrt(both / (both - 2)) / (both - 1) if both > 2 else None

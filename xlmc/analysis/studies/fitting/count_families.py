@@ -25,7 +25,7 @@ _TOO_LARGE = "the values are too large to be counted one by one"
 
 
 def _best_whole(score: Callable[[float], float], least: float, most: float) -> float:
-    """The whole number with the highest score, which rises and then falls."""
+    """Return the whole number with the highest score, which rises and then falls."""
     low, high = least, most
     while high - low > 2:
         third = np.floor((high - low) / 3)

@@ -141,7 +141,7 @@ def fit(values: ArrayLike, *, kind: str | None = None, by: str = "aic", errors: 
 
 
 def _judged(kind: str, x: Floats, found: Sequence[tuple[Candidate, Params, float]], *, errors: bool) -> list[Fitted]:
-    """The families found with their errors and their distances from the values."""
+    """Return the families found with their errors and their distances from the values."""
     best = min((_aic(candidate, top) for candidate, _, top in found), default=0.0)
     fits = []
     for candidate, params, top in found:
@@ -169,7 +169,7 @@ def _refuse_hopeless(x: Floats) -> None:
 
 
 def _estimates(kind: str, x: Floats) -> tuple[list[tuple[Candidate, Params, float]], dict[str, str]]:
-    """The families with their parameters and the height of the likelihood; and why others have none."""
+    """Return the families with their parameters and the height of the likelihood; and why others have none."""
     found: list[tuple[Candidate, Params, float]] = []
     unfit: dict[str, str] = {}
     for candidate in KINDS[kind]:
@@ -239,21 +239,23 @@ def anderson_darling(at: Floats) -> float:
 
 
 def kolmogorov_smirnov(at: Floats) -> float:
-    """The largest distance between the distribution function, `(n,)` rising at the values, and the steps of these."""
+    """Return the largest distance between the distribution function, `(n,)` rising at the values, and the steps of
+    these.
+    """
     n = at.size
     steps = np.arange(n + 1) / n
     return float(max(np.max(steps[1:] - at), np.max(at - steps[:-1])))
 
 
 def kolmogorov_smirnov_of_counts(x: Floats, cdf: Callable[[Floats], Floats]) -> float:
-    """The same for whole numbers `(n,)`, rising: both functions are steps, compared on every whole number."""
+    """Return the same for whole numbers `(n,)`, rising: both functions are steps, compared on every whole number."""
     k = np.unique(np.concatenate([x - 1, x]))
     steps = np.searchsorted(x, k, side="right") / x.size
     return float(np.max(np.abs(steps - cdf(k))))
 
 
 def cautions(n: int, rivals: list[str]) -> tuple[str, ...]:
-    """What a person should know before using a fit.
+    """Return what a person should know before using a fit.
 
     Args:
         n: how many values there are.
@@ -282,7 +284,9 @@ def _join_names(names: list[str]) -> str:
 
 
 def share_at_most(fitted: Fitted, x: ArrayLike) -> Floats:
-    """The share that a fitted family has at most at each of `(n,)` numbers, those outside its support included."""
+    """Return the share that a fitted family has at most at each of `(n,)` numbers, those outside its support
+    included.
+    """
     return FAMILIES[fitted.name].cdf(np.asarray(x, dtype=float), **_by_key(fitted))
 
 
@@ -317,7 +321,9 @@ def parameter_texts(fitted: Fitted, least: int = _LEAST_DIGITS, same: float = _S
 
 
 def rounded_value(fitted: Fitted, value: float) -> float:
-    """A number among the values, to as many digits as tell it from its neighbours; see `parameter_texts`."""
+    """Write a number among the values, to as many digits as distinguish it from its neighbours; see
+    `parameter_texts`.
+    """
     own = share_at_most(fitted, value)
     rounded = (float(f"{value:.{digits}g}") for digits in range(_LEAST_DIGITS, _MOST_DIGITS))
     return next((each for each in rounded if abs(share_at_most(fitted, each) - own) <= _SAME), value)

@@ -19,7 +19,7 @@ _AT_ZERO = frozenset({"Location"})
 
 
 def _laplace(x: Floats) -> Params:
-    """The median, and √2 times the mean distance from it."""
+    """Return the median, and √2 times the mean distance from it."""
     middle = float(np.median(x))
     return middle, float(np.sqrt(2) * np.mean(np.abs(x - middle)))
 
@@ -29,7 +29,7 @@ def _laplace_log(x: Floats, mean: float, std_dev: float) -> Floats:
 
 
 def _laplace_errors(x: Floats, params: Params) -> tuple[float, float]:
-    """The likelihood has a corner at the median; both errors are σ/√(2n) and σ/√n."""
+    """Return the errors, both σ/√(2n) and σ/√n: the likelihood has a corner at the median."""
     return params[1] / float(np.sqrt(2 * x.size)), params[1] / float(np.sqrt(x.size))
 
 
@@ -58,7 +58,7 @@ def _inverse_gaussian_log(x: Floats, location: float, mean: float, shape: float)
 
 
 def _log_logistic(x: Floats) -> Params:
-    """The log-logistic distribution, whose logarithm is logistic."""
+    """Fit the log-logistic distribution, whose logarithm is logistic."""
     refuse(x[0] <= 0, "it takes values above 0 only")
     logs = np.log(x)
     mean, spread = float(logs.mean()), float(logs.std())
@@ -96,7 +96,7 @@ def _frechet_log(x: Floats, location: float, scale: float, shape: float) -> Floa
 
 
 def _fatigue_life(x: Floats) -> Params:
-    """The shape follows from the scale, which one equation gives (Birnbaum and Saunders 1969)."""
+    """Fit the scale, from which the shape follows, by one equation (Birnbaum and Saunders 1969)."""
     refuse(x[0] <= 0, "it takes values above 0 only")
     mean, harmonic = float(x.mean()), 1 / float(np.mean(1 / x))
 
@@ -137,7 +137,7 @@ def _pearson5_log(x: Floats, location: float, scale: float, shape: float) -> Flo
 
 
 def _cdf(name: str) -> Callable[..., Floats]:
-    """The distribution function of a family, for parameters in its order."""
+    """Return the distribution function of a family, for parameters in its order."""
 
     def below(x: Floats, *params: float) -> Floats:
         from xlmc.montecarlo.distributions import FAMILIES

@@ -122,7 +122,7 @@ def _logistic_cdf(x: Floats, mean: float, scale: float) -> Floats:
 
 
 def _student(x: Floats) -> Params:
-    """The fit of Student's t, on values measured from their median in interquartile ranges, from three degrees of
+    """Fit Student's t, on values measured from their median in interquartile ranges, from three degrees of
     freedom up.
     """
     quarter, middle, three_quarters = (float(value) for value in np.percentile(x, [25, 50, 75]))
@@ -184,7 +184,7 @@ SOLVED_FORMS = (
 
 
 def _triangular_likeliest(x: Floats, low: float, high: float) -> tuple[float, float]:
-    """The best of the values as the corner, and the log-likelihood there."""
+    """Return the best of the values as the corner, and the log-likelihood there."""
     n, width = x.size, high - low
     rise, fall = np.log((x - low) / width), np.log((high - x) / width)
     before, after, rank = np.zeros(n), np.zeros(n), np.arange(n)
@@ -267,7 +267,7 @@ TRIANGULAR = Candidate(
 def maximise(
     log_likelihood: Callable[[Floats], float], start: list[float], *, tolerance: float = 1e-10, most: int = 4000
 ) -> Floats:
-    """The highest point, by the simplex method, begun twice so that a simplex that collapsed early is noticed.
+    """Find the highest point, by the simplex method, begun twice so that a simplex that collapsed early is noticed.
 
     Args:
         log_likelihood: of parameters that may be any numbers.
@@ -295,7 +295,7 @@ def maximise(
 
 
 def root(rising: Callable[[float], float], low: float, high: float) -> float:
-    """The zero of a rising function of a positive number; the bracket is widened as needed.
+    """Find the zero of a rising function of a positive number; the bracket is widened as needed.
 
     Raises:
         Unfit: it does not, within 1e-6 to 1e6.

@@ -84,7 +84,9 @@ class Extreme:
 def extremes_of(
     forecasts: Mapping[str, Floats], trials: NDArray[np.int64], seed: int, plan: SamplingPlan
 ) -> tuple[Extreme, ...]:
-    """The extremes of every forecast `(m,)` over accepted trials `(m,)`; none of one that is nowhere a number."""
+    """Return the extremes of every forecast `(m,)` over accepted trials `(m,)`; none of a forecast that is nowhere a
+    number.
+    """
     found = []
     for name, values in forecasts.items():
         if np.isnan(values).all():
@@ -154,7 +156,7 @@ class Method(Protocol):
 
 
 def answer_of(values: Floats, weights: Floats | None, central: float) -> Answer:
-    """The answer that `(m,)` accepted trials give, NaNs left out; all NaN where too few are numbers."""
+    """Return the answer that `(m,)` accepted trials give, NaNs left out; all NaN where too few are numbers."""
     known = ~np.isnan(values)
     if np.count_nonzero(known) < 2:
         return Answer()
@@ -165,7 +167,7 @@ def answer_of(values: Floats, weights: Floats | None, central: float) -> Answer:
 
 
 def statistic_words(statistic: str) -> str:
-    """The statistic as it is written in a sentence: `lower end`, `SD`."""
+    """Return the statistic as it is written in a sentence: `lower end`, `SD`."""
     name = STATISTICS[statistic]
     return name if name.isupper() else name.lower()
 

@@ -85,7 +85,7 @@ class Reference:
     ordered: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
 
     def quantile_need(self, forecast: Forecast, statistic: str, tolerance: float) -> QuantileNeed | None:
-        """What an end of a forecast's central range needs, as far as the reference knows; else None."""
+        """Return what an end of a forecast's central range needs, as far as the reference knows; else None."""
         own, single = (getattr(each[forecast.name], statistic) for each in (self.errors, self.single))
         ordered = self.ordered.get(forecast.name)
         if ordered is None or ordered.size < 2 or not (own > 0.0 and single > 0.0 and tolerance > 0.0):
@@ -95,7 +95,7 @@ class Reference:
         return quantile_need(ordered, p, tolerance, self.accepted, own * self.accepted**0.5 / single)
 
     def theory(self, forecast: str, statistic: str, trials: int) -> float:
-        """The standard error of one number of a forecast in a run of so many independent trials."""
+        """Return the standard error of one number of a forecast in a run of so many independent trials."""
         return float(getattr(self.single[forecast], statistic)) / float(np.sqrt(trials * self.acceptance.value))
 
 
@@ -160,7 +160,7 @@ def reference_of(model: CompiledModel, trials: int, sampling: str, engine: str, 
 
 
 def unfiltered_of(model: CompiledModel, reference: Reference) -> Reference | None:
-    """The forecasts without the filters, by a run of up to 1,048,576 trials.
+    """Return the forecasts without the filters, by a run of up to 1,048,576 trials.
 
     None if no filter rejects anything, or where forecasts are no numbers in trials that the filters reject: then
     there is no such answer.
@@ -184,7 +184,7 @@ def _thinned(ordered: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _width(sample: Sample, answer: Answer) -> float:
-    """The width from the 5 % to the 95 % quantile; 0 where a forecast does not vary."""
+    """Return the width from the 5 % to the 95 % quantile; 0 where a forecast does not vary."""
     if sample.n < 2 or not answer.sd > _ROUNDING * abs(answer.mean):
         return 0.0
     low, high = sample.quantile(np.array([0.05, 0.95]))
@@ -192,7 +192,7 @@ def _width(sample: Sample, answer: Answer) -> float:
 
 
 def _lost(x: NDArray[np.float64]) -> tuple[str, ...]:
-    """The statistics of a forecast that do not converge."""
+    """Return the statistics of a forecast that do not converge."""
     found = heavy_tail(x)
     if found is None:
         return ()

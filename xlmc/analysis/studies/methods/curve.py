@@ -69,7 +69,7 @@ class Rms:
 
 
 def rms_of(errors: ArrayLike, reference: float = 0.0) -> Rms:
-    """The root mean square of errors, NaNs left out.
+    """Return the root mean square of errors, NaNs left out.
 
     Args:
         errors: the differences from a reference.
@@ -177,8 +177,8 @@ class Curve:
         return tuple(runs for runs in self.lengths if runs.converged) or self.lengths[-1:]
 
     def slope(self, statistic: str, against: str = "seconds") -> float:
-        """The slope of the error, in logarithms, against `seconds`, `evaluations` or `budget`; NaN where these hardly
-        differ.
+        """Return the slope of the error, in logarithms, against `seconds`, `evaluations` or `budget`; NaN where these
+        hardly differ.
         """
         across = [float(getattr(runs, against)) for runs in self.converged]
         weights = [max(max(error.n for error in runs.errors.values()) - 1.0, 1.0) for runs in self.converged]
@@ -186,7 +186,7 @@ class Curve:
 
 
 def in_order(lengths: Sequence[Runs]) -> tuple[Runs, ...]:
-    """The runs with times that never fall as they grow longer.
+    """Return the runs with times that never fall as they grow longer.
 
     A longer run does all that a shorter one does. Where its fastest took less time, every shorter run was held up by
     something else that the machine did, and would take no longer than it.
@@ -200,7 +200,7 @@ def in_order(lengths: Sequence[Runs]) -> tuple[Runs, ...]:
 
 
 def runs_of(budget: int, results: Sequence[MethodResult], reference: Reference) -> Runs:
-    """What runs of one length are off by."""
+    """Return what runs of one length are off by."""
     errors = {
         (name, statistic): rms_of(
             [float(getattr(result.answers[name], statistic)) - float(getattr(truth, statistic)) for result in results],

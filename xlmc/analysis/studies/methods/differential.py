@@ -105,7 +105,7 @@ class SecondOrder:
 
 
 def _polynomial(found: Derivative, away: Floats) -> Floats:
-    """The quadratic polynomial at points `(n, k)` counted from the means, `(n,)`."""
+    """Return the quadratic polynomial at points `(n, k)` counted from the means, `(n,)`."""
     bent = 0.5 * np.einsum("nk,nk->n", away @ _bend(found), away)
     return np.asarray(float(found.value[0]) + away @ found.gradient[0] + bent)
 

@@ -81,7 +81,7 @@ class Moments:
 
 
 def _moments_of(model: CompiledModel, seed: int) -> Moments:
-    """The moments of a model's assumptions.
+    """Return the moments of a model's assumptions.
 
     Raises:
         SimulationError: a mean or a standard deviation is infinite.

@@ -87,7 +87,7 @@ def _learned(model: CompiledModel, trials: int, seed: int) -> dict[str, Floats]:
 
 
 def _density(counts: Floats) -> Floats:
-    """The density that counts in bins speak for, shrunk towards the flat one."""
+    """Return the density that counts in bins speak for, shrunk towards the flat one."""
     expected = counts.sum() / counts.size
     distance = float(np.sum((counts - expected) ** 2)) / expected
     trusted = max(0.0, 1.0 - (counts.size - 1) / distance) if distance > 0.0 else 0.0
@@ -97,7 +97,7 @@ def _density(counts: Floats) -> Floats:
 def _weighted(
     model: CompiledModel, grids: dict[str, Floats], trials: int, seed: int
 ) -> tuple[Floats, list[Floats], tuple[Extreme, ...]]:
-    """The weights of the accepted trials `(m,)`, the forecasts, `(m,)` each, and their extremes."""
+    """Return the weights of the accepted trials `(m,)`, the forecasts, `(m,)` each, and their extremes."""
     program = model.program("numpy")
     block = min(_BLOCK, program.largest_block)
     plan = _GridPlan("mc", trials, grids=grids, weights=np.empty(block))

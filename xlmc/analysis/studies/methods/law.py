@@ -68,7 +68,7 @@ class Law:
     error: float = 0.0
 
     def reach(self, trials: float) -> float:
-        """What 95 of 100 runs of so many trials keep within."""
+        """Return what 95 of 100 runs of so many trials keep within."""
         return float(np.hypot(NORMAL_95 * self.constant * trials**self.slope, self.floor))
 
     def trials(self, tolerance: float) -> float:
@@ -87,7 +87,7 @@ def _comparisons(study: Study) -> int:
 
 
 def law(study: Study, curve: Curve, kind: Kind) -> Law:
-    """The law of one number of a method that draws."""
+    """Return the law of one number of a method that draws."""
     theory, tolerance = study.reference.theory(*kind, 1), study.tolerance(kind[0])
     lengths = curve.converged
     match curve.method.errors:
@@ -102,7 +102,9 @@ def law(study: Study, curve: Curve, kind: Kind) -> Law:
 
 
 def _law_of_quantile(study: Study, lengths: Sequence[Runs], kind: Kind) -> Law | None:
-    """The law that meets what a percentile needs; None for other numbers, and where the reference does not know it."""
+    """Return the law that meets what a percentile needs; None for other numbers, and where the reference does not know
+    it.
+    """
     if kind[1] not in _ENDS:
         return None
     tolerance = study.tolerance(kind[0])
@@ -114,12 +116,12 @@ def _law_of_quantile(study: Study, lengths: Sequence[Runs], kind: Kind) -> Law |
 
 
 def _law_that_meets(trials: float, tolerance: float, least: float, error: float) -> Law:
-    """The law by which so many trials keep the tolerance."""
+    """Return the law by which so many trials keep the tolerance."""
     return Law(tolerance / NORMAL_95 * trials**0.5, _HALF, least, error=error)
 
 
 def _law_of_independent(lengths: Sequence[Runs], kind: Kind, theory: float, tolerance: float) -> Law:
-    """The law of theory, unless the runs contradict it: a quantile may lie where there is hardly any density."""
+    """Return the law of theory, unless the runs contradict it: a quantile may lie where there is hardly any density."""
     from scipy.special import chdtr, chdtrc
 
     if not theory > 0.0:
@@ -207,13 +209,13 @@ def _law_with_floor(study: Study, lengths: Sequence[Runs], kind: Kind, theory: f
 
 
 def _likely_floor(last: Rms, own: float, variance: float, noise: float) -> float:
-    """The floor itself, as far as it is more than what chance would give."""
+    """Return the floor itself, as far as it is more than what chance would give."""
     bias = max(last.bias**2 - last.spread**2 / last.n - own**2, 0.0)
     return float(np.sqrt(bias + NORMAL_95**2 * max(variance - noise, 0.0)))
 
 
 def _known_errors(lengths: Sequence[Runs], kind: Kind) -> list[tuple[Runs, Rms]]:
-    """The run lengths with two numbers or more."""
+    """Return the run lengths with two numbers or more."""
     return [(runs, each) for runs in lengths if (each := runs.errors[kind]).n >= 2]
 
 

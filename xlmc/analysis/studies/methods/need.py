@@ -99,12 +99,14 @@ class Shortfall:
 
 
 def _asked_kinds(study: Study) -> list[tuple[str, str]]:
-    """The statistics that converge: forecast and attribute of `Answer`."""
+    """Return the statistics that converge: forecast and attribute of `Answer`."""
     return [(name, each) for name in study.varying for each in STATISTICS if study.converges(name, each)]
 
 
 def need(study: Study, curve: Curve) -> Need:
-    """What a method that draws needs, for 95 of 100 runs to keep the accuracy in every number of every forecast."""
+    """Return what a method that draws needs, for 95 of 100 runs to keep the accuracy in every number of every
+    forecast.
+    """
     longest = float(curve.lengths[-1].budget)
     worst = Need(0.0, 0.0, "", "mean", 0.0)
     for kind in _asked_kinds(study):
@@ -122,7 +124,7 @@ def need(study: Study, curve: Curve) -> Need:
 
 
 def _agreeing(study: Study, curve: Curve, found: Need) -> Need:
-    """The need of an engine, which is off in every run by what its arithmetic rounds differently."""
+    """Return the need of an engine, which is off in every run by what its arithmetic rounds differently."""
     for name in study.varying:
         off = curve.apart * study.reference.answers[name].sd
         tolerance = study.tolerance(name)
@@ -137,7 +139,7 @@ def _verdict(low: float, high: float, tolerance: float) -> Verdict:
 
 
 def shortfall(study: Study, curve: Curve) -> Shortfall:
-    """The worst number of an answer that was given once; one that is surely not good enough comes first."""
+    """Return the worst number of an answer that was given once; a number that is surely not good enough comes first."""
     order = ("yes", "unknown", "no")
     return max(_shortfalls(study, curve), key=lambda each: (order.index(each.reaches), each.times))
 
@@ -161,7 +163,8 @@ def _shortfalls(study: Study, curve: Curve) -> Iterator[Shortfall]:
 
 
 def reach_of(study: Study, curve: Curve, runs: Runs, kind: tuple[str, str]) -> tuple[float, float, float]:
-    """What 95 of 100 runs of one length keep within in one number, and the 95 % bounds of that, over the tolerance.
+    """Return what 95 of 100 runs of one length keep within in one number, and the 95 % bounds of that, over the
+    tolerance.
 
     Of an answer that was given once: its error, and the bounds that the reference's error leaves.
     """
@@ -172,7 +175,8 @@ def reach_of(study: Study, curve: Curve, runs: Runs, kind: tuple[str, str]) -> t
 
 
 def seconds_of(curve: Curve, trials: float) -> float:
-    """A run of so many trials: between measured run lengths in proportion, and beyond them at the longest one's rate.
+    """Return a run of so many trials: between measured run lengths in proportion, and beyond them at the longest one's
+    rate.
 
     Beyond them a trial costs what it cost on average in the longest run: the difference between two clocked runs is
     noise where they are short, and would be carried on to billions of trials.
@@ -229,7 +233,7 @@ def choice(study: Study, accuracy: tuple[str, float, bool] | None = None) -> Cho
 
 
 def chosen_of(costs: Mapping[Each, float], plain: Each) -> Each:
-    """The usual one, unless another costs less by a factor of one and a half and by a tenth of a second.
+    """Return the usual choice, unless another costs less by a factor of one and a half and by a tenth of a second.
 
     >>> chosen_of({"mc": 2.0, "lhs": 1.3}, "mc"), chosen_of({"mc": 0.2, "lhs": 0.11}, "mc")
     ('lhs', 'mc')

@@ -207,7 +207,7 @@ def widen_bounds(
 
 
 def _outside(bounds: Mapping[str, tuple[float, float]], extremes: Iterable[Extreme]) -> dict[End, Extreme]:
-    """The outermost trial beyond each end."""
+    """Return the outermost trial beyond each end."""
     found: dict[End, Extreme] = {}
     for each in extremes:
         if each.forecast not in bounds:
@@ -256,7 +256,7 @@ class _Search:
         return np.array([2 * np.unique(column).size < column.size > 8 for column in self._accepted.T], bool)
 
     def answers(self, forecasts: Mapping[str, Floats]) -> tuple[dict[str, Answer], dict[End, Point]]:
-        """The bounds of every forecast, given its values in the accepted trials, and where they are reached."""
+        """Return the bounds of every forecast, given its values in the accepted trials, and where they are reached."""
         ends = [
             (name, sign, trial)
             for name, values in forecasts.items()
@@ -281,7 +281,7 @@ class _Search:
     def _search(
         self, name: str, sign: float, start: Floats, ask: Callable[[Floats], _Point]
     ) -> tuple[float, Floats] | None:
-        """The end found from one accepted trial, in the forecast's units, and its point; otherwise None."""
+        """Return the end found from one accepted trial, in the forecast's units, and its point; otherwise None."""
         at, known = (start - self._low) / self._width, _Known(ask)
         value, _ = known(at).forecasts[name]
         factor = sign / max(abs(value), 1e-300)
@@ -313,7 +313,7 @@ class _Search:
         return np.where(free, np.clip(np.nan_to_num(ended.x, nan=0.5), 0.0, 1.0), start)
 
     def _if_accepted(self, name: str, point: Floats) -> tuple[float, Floats] | None:
-        """The forecast at a point, and the point in the assumptions' units, if the workbook accepts it."""
+        """Return the forecast at a point, and the point in the assumptions' units, if the workbook accepts it."""
         at = self._low + point * self._width
         with self._one_at_a_time:
             found = self._evaluate(at[None, :])
@@ -382,7 +382,7 @@ def _distance(end: Floats, z: Floats) -> tuple[float, Floats]:
 
 
 def _number(model: CompiledModel, limit: float | Cell) -> float | None:
-    """A limit that does not vary; None for one that does, or that is no number."""
+    """Return a limit that does not vary; None if it does, or is no number."""
     if not isinstance(limit, Cell):
         return limit
     value = model.lowering.known(parameter_target(limit))

@@ -54,7 +54,7 @@ class Box:
 
 
 def box_of(model: CompiledModel, seed: int) -> Box:
-    """The box of a model; the seed is that of the draws which are looked at where parameters vary."""
+    """Make the box of a model; the seed is that of the draws which are looked at where parameters vary."""
     cut, varying = [], []
     ends = np.empty((len(model.live), 2))
     for index, assumption in enumerate(model.live):
@@ -76,7 +76,7 @@ def box_of(model: CompiledModel, seed: int) -> Box:
 
 
 def _cut(draw: Draw) -> tuple[float, float]:
-    """The ends, infinite ones replaced by quantiles."""
+    """Return the ends, infinite ones replaced by quantiles."""
     at = np.array([0.0, _CUT, 1.0 - _CUT, 1.0])
     with np.errstate(all="ignore"):
         draw.fill(at, {})
@@ -137,7 +137,7 @@ class Evaluation:
         self.count = 0
 
     def __call__(self, points: Floats) -> Outcomes:
-        """The outcomes at `(n, k)` points, columns in the order of the live assumptions."""
+        """Return the outcomes at `(n, k)` points, columns in the order of the live assumptions."""
         parts = [*self._parts(points)]
         columns = np.concatenate(parts) if parts else np.empty((0, self._filters + self._forecasts + self._cells))
         self.count += len(points)
@@ -154,7 +154,7 @@ class Evaluation:
 
 
 def assumptions_of(model: CompiledModel, cells: Iterable[Cell]) -> list[int]:
-    """The indices of the live assumptions that reach any of these cells, ascending.
+    """Return the indices of the live assumptions that reach any of these cells, ascending.
 
     An assumption that only moves another's parameters does not count.
     """

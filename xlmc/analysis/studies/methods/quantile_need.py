@@ -36,7 +36,7 @@ class QuantileNeed:
 def quantile_need(
     ordered: NDArray[np.float64], p: float, tolerance: float, accepted: int, gain: float = 1.0
 ) -> QuantileNeed | None:
-    """The need of the percentile at p; None if the reference does not know it.
+    """Return the need of the percentile at p; None if the reference does not know it.
 
     Args:
         ordered: `(m,)` accepted values of the reference, ascending, evenly thinned.

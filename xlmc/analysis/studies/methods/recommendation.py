@@ -89,7 +89,7 @@ def _range(study: Study, name: str) -> str:
 
 
 def _heavy_text(study: Study) -> list[str]:
-    """The statistics that no method can find."""
+    """Return the statistics that no method can find."""
     return [
         f"The {' and '.join(map(statistic_words, lost))} of {name} {'do' if len(lost) > 1 else 'does'} not converge, "
         "as far as these trials show, because its tail is too heavy: more trials help no method. All else "
@@ -128,7 +128,7 @@ def _drawing_text(study: Study, found: Choice) -> list[str]:
 
 
 def _saving(found: Choice) -> str:
-    """What the clock alone would choose."""
+    """Return what the clock alone would choose."""
     assert found.chosen is not None
     least = found.cheapest[0]
     if found.chosen in found.cheapest:
@@ -145,7 +145,7 @@ def _saving(found: Choice) -> str:
 
 
 def _price(cheap: Curve, chosen: Curve) -> str:
-    """What a method that is cheaper by the clock costs otherwise."""
+    """Return what a method that is cheaper by the clock costs otherwise."""
     if isinstance(cheap.method, Sampled) and cheap.method.engine != MONTE_CARLO.engine:
         return f" of the run, and takes about {seconds_text(ENGINE_READY)} to compile"
     lost = chosen.method.errors == "independent" and cheap.method.errors != "independent"
@@ -268,7 +268,7 @@ class Parts:
 
 
 def parts_of(study: Study, found: Shortfall) -> Parts | None:
-    """The parts of an error; None if there are no filters that reject anything, or no answer without them."""
+    """Return the parts of an error; None if there are no filters that reject anything, or no answer without them."""
     if study.unfiltered is None:
         return None
     free, own = study.unfiltered.answers[found.forecast], study.unfiltered.errors[found.forecast]
@@ -279,7 +279,7 @@ def parts_of(study: Study, found: Shortfall) -> Parts | None:
 
 
 def _missed_text(study: Study, curve: Curve, found: Shortfall) -> str:
-    """What a method misses by the most, and why, in a sentence or two."""
+    """Return what a method misses by the most, and why, in a sentence or two."""
     if not np.isfinite(found.times):
         return f"{curve.method.name} has no number for {found.forecast}."
     units = next((f" {f.units}" for f in study.model.forecasts if f.name == found.forecast and f.units), "")

@@ -116,7 +116,7 @@ class Study:
         return forecast in self.varying and statistic not in self.reference.heavy.get(forecast, ())
 
     def tolerance(self, forecast: str) -> float:
-        """The error asked for, in the forecast's units."""
+        """Return the error asked for, in the forecast's units."""
         _, value, relative = self.accuracy
         return value * self.reference.widths[forecast] if relative else value
 
@@ -179,7 +179,7 @@ def study(
 
 
 def quick_settings(given: Mapping[str, Any]) -> dict[str, Any]:
-    """The arguments that `--quick` gives to `study` beside the given ones: few and short runs."""
+    """Return the arguments that `--quick` gives to `study` beside the given ones: few and short runs."""
     usual = {"reference_trials": 1 << 20, "trials": 1 << 17, **given}
     return usual if "replicates" in given else {**usual, "replicates": 8, "patience": 0.5}
 
@@ -316,7 +316,7 @@ class _Measuring:
             return MethodResult(np.nan, budget, nothing, remarks=(str(error),))
 
     def _remember(self, each: Extreme) -> None:
-        """The outermost trial of all runs, for each end of each forecast."""
+        """Return the outermost trial of all runs, for each end of each forecast."""
         ends = self._extremes.setdefault(each.forecast, {})
         sign = 1.0 if each.end == "least" else -1.0
         if each.end not in ends or sign * each.value < sign * ends[each.end].value:
@@ -336,7 +336,7 @@ class _Measuring:
         results: Mapping[tuple[str, int], list[MethodResult]],
         plain: Curve,
     ) -> Curve:
-        """The errors of the trials, which are those of `plain`, with the seconds of an engine."""
+        """Return the errors of the trials, which are those of `plain`, with the seconds of an engine."""
         lengths = []
         for runs in plain.lengths:
             timed = [result.seconds for result in results[engine.key, runs.budget]]
@@ -349,7 +349,7 @@ class _Measuring:
         return Curve(engine, ordered, _setup(first, ordered[0]), (remark,), {}, apart)
 
     def time_slow(self, engine: Sampled, numpy: Curve) -> tuple[Curve, ...]:
-        """An engine that is too slow for runs of any length: its time is worked out from a few trials."""
+        """Time an engine that is too slow for runs of any length: its time is worked out from a few trials."""
         self._tell(engine.name)
         first = self._try(engine, _FEW)
         if first is None:
@@ -363,7 +363,7 @@ class _Measuring:
         return (Curve(engine, lengths, max(0.0, first.seconds - again), (remark,), {}),)
 
     def _try(self, method: Method, budget: int) -> MethodResult | None:
-        """A method's first run; None, and why, where it cannot be used."""
+        """Run a method for the first time; None, and why, where it cannot be used."""
         try:
             return method.run(self._model, budget, self._seed)
         except (SimulationError, FormulaError) as error:

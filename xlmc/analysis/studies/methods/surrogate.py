@@ -118,7 +118,7 @@ def _errors(points: Floats, values: Floats) -> Floats:
 
 
 def _cut(model: CompiledModel, errors: dict[Cell, float]) -> list[Cell]:
-    """The cells at which following the formulas upwards ends: smooth ones, and the assumptions themselves."""
+    """Return the cells at which following the formulas upwards ends: smooth ones, and the assumptions themselves."""
     needs, found = model.needed.graph.needs, dict[Cell, None]()
     seen: set[Cell] = set()
     open_ = targets_of(model.forecasts, model.filters)[::-1]
@@ -177,7 +177,7 @@ class Quadratic:
         return 1 + 2 * k + (k * (k - 1) // 2 if k <= _MOST_WITH_PRODUCTS else 0)
 
     def __call__(self, points: Floats) -> Floats:
-        """The values at `(n, k)` points, `(n, q)`."""
+        """Return the values at `(n, k)` points, `(n, q)`."""
         parts = [points[start : start + _AT_ONCE] for start in range(0, len(points), _AT_ONCE)]
         # Not a matrix product: these are small, and its threads would wait for each other.
         found = [np.einsum("qt,tn->qn", self.weights, _terms((part - self.centre) / self.scale)) for part in parts]
@@ -185,7 +185,7 @@ class Quadratic:
 
 
 def fit_quadratic(points: Floats, values: Floats) -> Quadratic:
-    """The polynomials of least squares through `(n, k)` points and their values `(n, q)`."""
+    """Fit the polynomials of least squares through `(n, k)` points and their values `(n, q)`."""
     centre, spread = points.mean(axis=0), points.std(axis=0)
     scale = np.where(spread > 0.0, spread, 1.0)
     terms = _terms((points - centre) / scale)

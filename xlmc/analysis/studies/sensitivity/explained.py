@@ -93,7 +93,9 @@ class _Fit:
 
 
 def explained(x: Ranked, y: Floats, units: Units) -> Explained:
-    """The share of the variance of `(n,)` y that x explains; nan where y does not vary or the trials are too few."""
+    """Return the share of the variance of `(n,)` y that x explains; nan where y does not vary or the trials are too
+    few.
+    """
     z = standardise(y)
     if z is None or x.n <= x.classes.freedom:
         return Explained(Estimate(math.nan, n=x.n), at_least=False, coarse_enough=True)
@@ -111,7 +113,7 @@ def explained(x: Ranked, y: Floats, units: Units) -> Explained:
 
 
 def _beside_neighbours(z: Floats) -> float:
-    """The share explained by the neighbours in rank."""
+    """Return the share explained by the neighbours in rank."""
     if z.size < 3:
         return -math.inf
     apart = z[1:-1] - 0.5 * (z[:-2] + z[2:])
@@ -129,7 +131,7 @@ def _is_enough(fit: _Fit, finer: list[_Fit], beside: float) -> bool:
 
 
 def _allowance(fits: list[_Fit], chosen: int, beside: float) -> float:
-    """What the classes may miss."""
+    """Return what the classes may miss."""
     fit, finer = fits[chosen], fits[chosen + 1 :]
     more = max(finer[0].value - fit.value, 0.0) if finer else 0.0
     more = max(more, min(max([beside, *(each.value for each in finer)]) - fit.value, _SMALL))
@@ -137,7 +139,7 @@ def _allowance(fits: list[_Fit], chosen: int, beside: float) -> float:
 
 
 def _estimate(x: Ranked, z: Floats, fit: _Fit, units: Units) -> tuple[Estimate, bool]:
-    """The share with its error, and whether a few trials decide that."""
+    """Return the share with its error, and whether a few trials decide that."""
     n, k = fit.n, fit.classes.freedom
     pulls = np.empty(n)
     residual = z - fit_lines(fit.classes, z)

@@ -80,7 +80,9 @@ _WEIGHT = 2.5
 
 
 def explained_share(x: Ranked, y: Floats, units: Units) -> Estimate:
-    """The share of the variance of `(n,)` y that x explains; nan where y does not vary or the trials are too few."""
+    """Return the share of the variance of `(n,)` y that x explains; nan where y does not vary or the trials are too
+    few.
+    """
     classes, n = x.classes, x.n
     z = standardise(y)
     if z is None or n <= classes.freedom:
@@ -95,7 +97,9 @@ def explained_share(x: Ranked, y: Floats, units: Units) -> Estimate:
 
 
 def explained_floor(x: Ranked, assumptions: int) -> float:
-    """What the largest of so many assumptions' shares stays below with 95 % probability where none has influence."""
+    """Return what the largest of so many assumptions' shares stays below with 95 % probability where none has
+    influence.
+    """
     from scipy.special import fdtri
 
     n, k = x.n, x.classes.freedom
@@ -133,7 +137,7 @@ def standardise(y: Floats) -> Floats | None:
 
 
 def dependence(x: Ranked, y: Ranked, units: Units) -> Estimate:
-    """The index of y on x, columns `(n,)`; nan where y does not vary or the trials are too few."""
+    """Return the index of y on x, columns `(n,)`; nan where y does not vary or the trials are too few."""
     classes, n = x.classes, x.n
     if not y.varies or n <= classes.freedom:
         return Estimate(math.nan, n=n)
@@ -151,7 +155,9 @@ def dependence(x: Ranked, y: Ranked, units: Units) -> Estimate:
 
 
 def dependence_floor(x: Ranked, assumptions: int) -> float:
-    """What the largest of so many assumptions' indices stays below with 95 % probability where none has influence."""
+    """Return what the largest of so many assumptions' indices stays below with 95 % probability where none has
+    influence.
+    """
     from scipy.special import chdtri
 
     n, q = x.n, x.classes.freedom - 1.0
@@ -172,7 +178,7 @@ def _tables(classes: Classes, step: Indices, steps: int) -> tuple[Floats, Floats
 
 
 def _squares_alone(below: Floats) -> Floats:
-    """`(steps,)` Σ_t ([step ≤ t] − F(t))² of every step, from `(steps − 1,)` F(t)."""
+    """Return `(steps,)` Σ_t ([step ≤ t] − F(t))² of every step, from `(steps − 1,)` F(t)."""
     step = np.arange(below.size + 1)
     return np.asarray(np.sum(((step[:, None] <= step[None, :-1]) - below) ** 2, axis=1))
 

@@ -149,7 +149,7 @@ def influences(
 def _with_finer_shares(
     simulation: RunResult, forecasts: Sequence[Forecast], found: Sequence[Influences], most: int
 ) -> list[Influences]:
-    """The same with the shares that ask for it from up to `most` trials."""
+    """Return the same with the shares that ask for it from up to `most` trials."""
     rows, replicate = _examined_rows(simulation, most)
     tables: dict[bytes, tuple[Units, dict[str, Ranked]]] = {}
     finer = []
@@ -254,7 +254,7 @@ def _trials_for(pairs: int) -> int:
 
 
 def _examined_rows(simulation: RunResult, most: int) -> tuple[NDArray[np.intp], NDArray[np.int64] | None]:
-    """The rows of at most `most` accepted trials with known draws, ascending, and their replicates, if any."""
+    """Return the rows of at most `most` accepted trials with known draws, ascending, and their replicates, if any."""
     stored = simulation.kept_inputs if simulation.model.live else 0
     if not simulation.plan.size:
         return np.arange(min(stored, most)), None

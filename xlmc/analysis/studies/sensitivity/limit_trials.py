@@ -104,7 +104,7 @@ class _LimitCells:
 
 
 def _asked_of(filter_: Filter) -> Target:
-    """The filter's cell; or, for evidence whose error is not a limit, whether it keeps the trial."""
+    """Return the filter's cell; or, for evidence whose error is not a limit, whether it keeps the trial."""
     if filter_.evidence is not None and filter_.evidence.bell is not None:
         return Target(filter_condition(filter_), filter_.cell)
     return parameter_target(filter_.cell)
@@ -188,7 +188,7 @@ def limit_trials(simulation: RunResult, most: int, forecasts: Sequence[int]) -> 
 
 
 def _look_at_accepted(simulation: RunResult, cells: _LimitCells, m: int) -> _CellValues:
-    """What decides the limits in the first m accepted trials."""
+    """Return what decides the limits in the first m accepted trials."""
     block = min(m, cells.program.largest_block)
     evaluator, parts = cells.program.evaluator(block), []
     for part, draws in portions(simulation.inputs, m, block):

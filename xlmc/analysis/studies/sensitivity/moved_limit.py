@@ -89,7 +89,7 @@ def grid(relation: str, limit: float, values: Floats) -> tuple[float, ...]:
 
 
 def _round_below(size: float) -> float:
-    """The largest of 1, 2, 2.5 and 5 times a power of ten that is no larger."""
+    """Round down to the largest of 1, 2, 2.5 and 5 times a power of ten that is no larger."""
     mantissa, _, exponent = f"{size:.6e}".partition("e")
     return float(f"{max(each for each in _ROUND if each <= float(mantissa))}e{exponent}")
 
@@ -97,7 +97,8 @@ def _round_below(size: float) -> float:
 def moved_limit(
     found: LimitTrials, limits: Sequence[float], names: Sequence[str], central: Sequence[float]
 ) -> tuple[tuple[LimitPoint, ...], tuple[Slope, ...]]:
-    """The answers at every one of these limits, ascending, the limit as it is among them; and their slopes there.
+    """Return the answers at every one of these limits, ascending, the limit as it is among them; and their slopes
+    there.
 
     Args:
         found: the trials.
@@ -122,7 +123,7 @@ def moved_limit(
 
 
 def _acceptance(found: LimitTrials, inside: Bools) -> Estimate:
-    """The share of all trials; the two parts have errors of their own."""
+    """Return the share of all trials; the two parts have errors of their own."""
     more = int(np.count_nonzero(inside & ~found.accepted))
     known = proportion(int(np.count_nonzero(inside & found.accepted)), found.trials)
     if not more:
@@ -163,7 +164,9 @@ class _Moved(NamedTuple):
 def _move(
     y: Floats, weights: Floats, accepted_now: Bools, units: Units, now: tuple[float, Floats], central: float
 ) -> _Moved:
-    """The result of a moved limit, from the trials held, in ascending order; `now` is the mean of the accepted ones."""
+    """Return the result of a moved limit, from the trials held, in ascending order; `now` is the mean of the accepted
+    ones.
+    """
     mean, pulls = _mean(y, weights, accepted_now, units)
     change = _estimate(mean - now[0], pulls - now[1], units, accepted_now)
     low, high = central_interval(_sample(y, weights, accepted_now, units), central)
@@ -177,7 +180,7 @@ def _slope(
     units: Units,
     accepted_now: Bools,
 ) -> Estimate:
-    """The slope of the mean, over one step on either side."""
+    """Return the slope of the mean, over one step on either side."""
     index = list(limits).index(found.limit)
     (before, pulls), (after, more) = means[index - 1], means[index + 1]
     width = limits[index + 1] - limits[index - 1]
@@ -185,7 +188,7 @@ def _slope(
 
 
 def _mean(y: Floats, weights: Floats, accepted_now: Bools, units: Units) -> tuple[float, Floats]:
-    """The weighted mean, nan of no trial, and how each of the `(n,)` trials pulls it, times n."""
+    """Return the weighted mean, nan of no trial, and how each of the `(n,)` trials pulls it, times n."""
     w = np.where(accepted_now, weights, 0.0)
     total = float(w.sum())
     if total == 0.0:
@@ -202,7 +205,7 @@ def _estimate(value: float, pulls: Floats, units: Units, accepted_now: Bools) ->
 
 
 def _sample(y: Floats, weights: Floats, accepted_now: Bools, units: Units) -> Sample:
-    """A sample of ascending values; it is made directly, because they are in order."""
+    """Make a sample of ascending values; it is made directly, because they are in order."""
     w = weights[accepted_now]
     even = bool(np.all(w == w[0])) if w.size else True
     group, groups = None, 0

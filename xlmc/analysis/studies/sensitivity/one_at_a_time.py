@@ -88,7 +88,9 @@ def one_at_a_time(
 
 
 def _evaluate(model: CompiledModel, base: dict[str, float], moved: dict[str, Floats]) -> tuple[list[Floats], Floats]:
-    """The base case and every move, one after another: one `(cases,)` a forecast, and whether the filters reject."""
+    """Evaluate the base case and every move, one after another: one `(cases,)` a forecast, and whether the filters
+    reject.
+    """
     cases = 1 + len(moved) * len(PERCENTS)
     starts = {name: 1 + index * len(PERCENTS) for index, name in enumerate(moved)}
     program = model.program("numpy")

@@ -79,7 +79,8 @@ def pick_and_freeze(
     seed: int,
     told: Callable[[float], None] = lambda share: None,
 ) -> SobolRun:
-    """The indices of a model without correlations, whatever its filters; of very many assumptions, of the first ones.
+    """Return the indices of a model without correlations, whatever its filters; of very many assumptions, of the first
+    ones.
 
     Args:
         model: to evaluate.

@@ -34,7 +34,7 @@ class Units:
 
     @classmethod
     def of(cls, n: int, ids: NDArray[np.int64] | None = None) -> Units:
-        """The errors by the replicate ids of the trials, `(n,)`, if there are any."""
+        """Make the errors by the replicate ids of the trials, `(n,)`, if there are any."""
         if ids is None:
             return cls(n)
         return cls(n, np.unique(ids, return_inverse=True)[1].astype(np.intp))
@@ -49,7 +49,7 @@ class Units:
         return self.count - 1.0
 
     def error(self, pulls: Floats) -> float:
-        """The standard error of a mean of `(n,)` pulls, which sum to about 0; nan of fewer than two units."""
+        """Return the standard error of a mean of `(n,)` pulls, which sum to about 0; nan of fewer than two units."""
         checkpoint()
         if self.dof < LEAST_DOF:
             return float("nan")
@@ -59,7 +59,7 @@ class Units:
         return float(largest / self.n * np.sqrt(np.sum(scaled * scaled) * (self.count / self.dof)))
 
     def error_of_fit(self, pulls: Floats, fitting: float) -> float:
-        """The same for a share that a fit explains, where the fit alone has noise of the size `fitting`.
+        """Return the same for a share that a fit explains, where the fit alone has noise of the size `fitting`.
 
         The fitted line follows the trials, so the pulls hold twice that noise's variance in excess of what they should.
         """
@@ -67,5 +67,5 @@ class Units:
         return found if np.isnan(found) else float(np.sqrt(max(found**2 - fitting**2, fitting**2)))
 
     def estimate(self, value: float, error: float) -> Estimate:
-        """A value with its 95 % interval; without an error where there is none."""
+        """Return a value with its 95 % interval; without an error where there is none."""
         return with_error(value, error, self.dof, 0.95, self.n)

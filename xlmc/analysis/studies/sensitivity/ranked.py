@@ -171,6 +171,8 @@ class Ladder:
 
 
 def _squarable(x: Floats) -> Floats:
-    """The values; very large ones in units of the largest: their squares are numbers, and lines fit them as well."""
+    """Return the values; very large ones in units of the largest: their squares are numbers, and lines fit them as
+    well.
+    """
     largest = float(np.abs(x).max(initial=0.0))
     return x / largest if largest > _LARGE else x

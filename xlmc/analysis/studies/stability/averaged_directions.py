@@ -42,7 +42,7 @@ class _Mean:
 
 
 def averaged_directions(case: Case) -> Iterator[Finding]:
-    """The cells that average directions which lie more than half a turn apart as numbers in some trials.
+    """Return the cells that average directions which lie more than half a turn apart as numbers in some trials.
 
     A direction is what MOD by a whole turn, ATAN2 or an arctangent in degrees gives: there its numbers jump by a turn.
     """
@@ -58,7 +58,7 @@ def averaged_directions(case: Case) -> Iterator[Finding]:
 
 
 def _means(case: Case, cell: Cell) -> Iterator[_Mean]:
-    """The means in a formula: calls of AVERAGE and its kin, and sums divided by the number of their terms."""
+    """Return the means in a formula: calls of AVERAGE and its kin, and sums divided by the number of their terms."""
     for part in case.trees.parts(cell):
         match part:
             case ir.Call(name, arguments) if name in _MEANS:
@@ -88,7 +88,7 @@ def _mean(tree: ir.Expression, given: Sequence[ir.Expression]) -> Iterator[_Mean
 
 
 def _turn(case: Case, tree: ir.Expression, cell: Cell) -> float | None:
-    """A full turn in the units of a direction; None of what is none."""
+    """Return a full turn in the units of a direction; otherwise None."""
     host = cell
     while isinstance(tree, Cell) and tree not in case.lowering.inputs and tree in case.lowering.graph.formulas:
         host, tree = tree, case.trees.formula(tree)
@@ -138,7 +138,7 @@ def _finding(
 
 
 def _of_vectors(given: Sequence[ir.Expression], turn: float) -> ir.Expression:
-    """The direction of the sum of unit vectors, from 0 to a full turn."""
+    """Return the direction of the sum of unit vectors, from 0 to a full turn."""
     in_degrees = turn == _DEGREES
     sums = []
     for function in ("COS", "SIN"):

@@ -97,7 +97,7 @@ class Case:
         return trials if share >= 1 else max(_FEWEST_OF_EITHER, int(share * trials))
 
     def _special(self) -> Floats:
-        """The base case, and each assumption at either end of its range with the others at their base."""
+        """Return the base case, and each assumption at either end of its range with the others at their base."""
         prior = [self.run.prior[a.name] for a in self.model.live]
         base = np.array([_base(a.base, draws) for a, draws in zip(self.model.live, prior, strict=True)])
         rows = [base]
@@ -136,7 +136,7 @@ class Case:
         return self._spread(lambda replica: {"rounding": RandomRounding((self._seed, replica))})
 
     def _spread(self, how: Callable[[int], dict[str, RandomRounding]]) -> dict[int, Floats]:
-        """The root mean square of what differs in evaluations that move something."""
+        """Return the root mean square of what differs in evaluations that move something."""
         squares: dict[int, Floats] = {}
         for replica in range(_REPLICAS):
             found = evaluate(self.dag, self.nodes, self.draws, **how(replica))
@@ -147,7 +147,7 @@ class Case:
         return {node: np.sqrt(square / _REPLICAS) for node, square in squares.items()}
 
     def number(self, node: int) -> Floats:
-        """A node's numbers, `(n,)`; NaN where it has none."""
+        """Return a node's numbers, `(n,)`; NaN where it has none."""
         return numbers_of(self.values[node], self.n)
 
     @cached_property
@@ -166,7 +166,7 @@ class Case:
         return [node for node, formula in formulas if isinstance(formula, Apply) and formula.function.name in RELATIONS]
 
     def after(self, *nodes: int) -> list[int]:
-        """The nodes that follow from some, each after those that it needs."""
+        """Return the nodes that follow from some, each after those that it needs."""
         found: set[int] = set()
         open_ = list(nodes)
         while open_:
@@ -196,7 +196,9 @@ class Case:
         return term_sizes(self.dag, self.nodes, self.values)
 
     def inherent(self, cell: Cell) -> Floats:
-        """The error that rounding the assumptions, and the result, would bring alone, `(n,)`; NaN where unknown."""
+        """Return the error that rounding the assumptions, and the result, would bring alone, `(n,)`; NaN
+        where unknown.
+        """
         if cell not in self._inherent:
             gradient = self.derivatives.cells[cell].gradient
             with np.errstate(over="ignore"):
@@ -206,7 +208,7 @@ class Case:
         return self._inherent[cell]
 
     def scale(self, cell: Cell) -> float:
-        """The width of a cell's central range, or its size where it hardly varies; 1 for 0."""
+        """Return the width of a cell's central range, or its size where it hardly varies; 1 for 0."""
         found = self.number(self.node[cell])[self.special :]
         found = found[np.isfinite(found)]
         if not found.size:
@@ -218,13 +220,13 @@ class Case:
         return size or 1.0
 
     def exact(self, node: int, trial: int) -> Any:
-        """A node's value in a trial with 50 digits."""
+        """Return a node's value in a trial with 50 digits."""
         if trial not in self._known:
             self._known[trial] = self._exact.trial({key: float(draws[trial]) for key, draws in self.draws.items()})
         return self._known[trial][node]
 
     def exact_number(self, node: int, trial: int) -> float:
-        """The same as a double; NaN where it is no number."""
+        """Return the same as a double; NaN where it is no number."""
         return as_double(self.exact(node, trial))
 
     @property
@@ -237,7 +239,7 @@ class Case:
         return self._exact.unchecked
 
     def where(self, trials: Bools, node: int, most: int = 2) -> tuple[Where, ...]:
-        """The assumptions whose ranges tell the trials from others: those that they take up least of.
+        """Return the assumptions whose ranges tell the trials from others: those that they take up least of.
 
         An assumption is named only where the node depends on it, and where so many trials, drawn by chance, would
         hardly ever lie so close together in its range.
@@ -269,12 +271,12 @@ class Case:
         )
 
     def inputs_of(self, node: int) -> set[str]:
-        """The names of the assumptions that a node depends on."""
+        """Return the names of the assumptions that a node depends on."""
         formulas = (formula_of(self.dag, part) for part in closure(self.dag, [node]))
         return {formula.name for formula in formulas if isinstance(formula, Input)}
 
     def upstream(self, cell: Cell) -> set[Cell]:
-        """The cells that a cell needs, itself among them."""
+        """Return the cells that a cell needs, itself among them."""
         needs = self.lowering.graph.needs
         found: set[Cell] = set()
         open_ = [cell]
@@ -286,7 +288,7 @@ class Case:
         return found
 
     def forecasts_of(self, cells: Iterable[Cell]) -> list[str]:
-        """The forecasts and filters that a cell reaches."""
+        """Return the forecasts and filters that a cell reaches."""
         wanted = set(cells)
         found = []
         rows = [(row.cell, row.name) for row in self.model.forecasts]
@@ -311,7 +313,9 @@ _RARELY: Final = 1e-3
 
 
 def _by_chance(share: float, count: int) -> float:
-    """The probability that so many trials lie within a share of the range by chance (David and Nagaraja 2003, §2.3)."""
+    """Return the probability that so many trials lie within a share of the range by chance (David and Nagaraja 2003,
+    §2.3).
+    """
     return count * share ** (count - 1) - (count - 1) * share**count
 
 

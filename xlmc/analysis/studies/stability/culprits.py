@@ -69,7 +69,7 @@ class Cancellation:
 
 
 def divisions(case: Case, cell: Cell) -> list[Division]:
-    """The divisions of a cell's formula by what varies, the smallest divisor first."""
+    """Return the divisions of a cell's formula by what varies, the smallest divisor first."""
     found = []
     for tree in case.trees.parts(cell):
         if isinstance(tree, ir.Binary) and tree.operator == "/":
@@ -100,7 +100,7 @@ def _is_bounded(tree: ir.Expression) -> bool:
 
 
 def cancellation(case: Case, cell: Cell, trial: int) -> Cancellation | None:
-    """The sum of a cell's formula of which least is left in a trial."""
+    """Return the sum of a cell's formula of which least is left in a trial."""
     found = [
         Cancellation(tree, left_of(case, cell, tree, trial))
         for tree in case.trees.parts(cell)
@@ -116,7 +116,7 @@ def _is_given(case: Case, tree: ir.Expression) -> bool:
 
 
 def left_of(case: Case, cell: Cell, tree: ir.Expression, trial: int) -> float:
-    """What is left of a sum in a trial, as a share of its terms; 1 where it has none."""
+    """Return what is left of a sum in a trial, as a share of its terms; 1 where it has none."""
     size = sum(_size(case, cell, term, trial) for _, term in terms(tree))
     return _size(case, cell, tree, trial) / size if size > 0 else 1.0
 
@@ -130,7 +130,7 @@ def _size(case: Case, cell: Cell, tree: ir.Expression, trial: int) -> float:
 
 
 def culprit(case: Case, cell: Cell, trials: Sequence[int]) -> ir.Expression | None:
-    """The innermost part of a cell's formula that is to blame for its error; otherwise None.
+    """Return the innermost part of a cell's formula that is to blame for its error; otherwise None.
 
     Args:
         case: the evidence.
@@ -163,7 +163,7 @@ def _exact(case: Case, node: int, trials: Sequence[int]) -> Floats:
 
 
 def _with(case: Case, whole: int, node: int, cured: Floats, trials: Sequence[int]) -> Floats:
-    """A cell's numbers where a part of it has its exact value, `(m,)` of m trials."""
+    """Return a cell's numbers where a part of it has its exact value, `(m,)` of m trials."""
     rows = np.asarray(trials, np.intp)
     after = set(case.after(node))
     order = [one for one in closure(case.dag, [whole]) if one in after]
@@ -174,7 +174,7 @@ def _with(case: Case, whole: int, node: int, cured: Floats, trials: Sequence[int
 
 
 def only_assumption(case: Case, node: int) -> str | None:
-    """The name of the only assumption that a node depends on; None if it depends on none or several."""
+    """Return the name of the only assumption that a node depends on; None if it depends on none or several."""
     found = {
         formula.name
         for part in closure(case.dag, [node])
@@ -184,7 +184,7 @@ def only_assumption(case: Case, node: int) -> str | None:
 
 
 def zeros(case: Case, node: int, key: str) -> list[float]:
-    """The values of its only assumption at which a node is 0, within the range and as far again to either side.
+    """Return the values of its only assumption at which a node is 0, within the range and as far again to either side.
 
     Rounded to 12 digits where that is as near, so that 270° is 270.
     """

@@ -69,7 +69,7 @@ def _statistic(index: float, error: float) -> str:
 
 
 def _quotient_of(case: Case, cell: Cell) -> ir.Expression | None:
-    """The formula behind a cell that may only refer to it."""
+    """Return the formula behind a cell that may only refer to it."""
     formulas = case.lowering.graph.formulas
     tree: ir.Expression | None = case.trees.formula(cell) if cell in formulas else None
     while isinstance(tree, Cell):
@@ -96,7 +96,7 @@ def _finding(
 
 
 def amplifying_forecasts(case: Case) -> Iterator[Finding]:
-    """The forecasts that amplify a thousand times and more in half of the trials."""
+    """Return the forecasts that amplify a thousand times and more in half of the trials."""
     for forecast in case.model.forecasts:
         one = case.derivatives.forecasts[forecast.name]
         with np.errstate(all="ignore"):
@@ -146,7 +146,7 @@ def narrow_filters(case: Case) -> Iterator[Finding]:
 
 
 def rounded_angles(case: Case) -> Iterator[Finding]:
-    """The cells that subtract angles so, and in which little is left of them in some trials."""
+    """Return the cells that subtract angles so, and in which little is left of them in some trials."""
     for cell in case.cells:
         left = min((_left(case, cell, part) for part in case.trees.parts(cell)), default=1.0)
         better = angles_in_degrees(case.trees.formula(cell)) if left < _LEFT else None
@@ -166,7 +166,7 @@ def rounded_angles(case: Case) -> Iterator[Finding]:
 
 
 def _left(case: Case, cell: Cell, part: ir.Expression) -> float:
-    """The smallest difference as a share of the larger angle; 1 where the part is none."""
+    """Return the smallest difference as a share of the larger angle; 1 where the part is none."""
     if angles_in_degrees(part) is None or not isinstance(part, ir.Binary) or part.operator != "-":
         return 1.0
     nodes = [case.trees.node_of(tree, cell) for tree in (part, part.left, part.right)]
@@ -199,7 +199,7 @@ def jumps(case: Case) -> Iterator[Finding]:
 
 
 def _mending(case: Case) -> set[int]:
-    """The choices that put the quadrant of an arctangent right: they jump so that the angle does not."""
+    """Return the choices that put the quadrant of an arctangent right: they jump so that the angle does not."""
     found: set[int] = set()
     for cell in case.cells:
         for one in arctangents(case, cell):

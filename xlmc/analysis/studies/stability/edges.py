@@ -55,7 +55,7 @@ class _Edge:
 
 
 def domain_edges(case: Case) -> Iterator[Finding]:
-    """The functions whose argument leaves their domain in some trials, or comes close to its edge."""
+    """Return the functions whose argument leaves their domain in some trials, or comes close to its edge."""
     for cell in case.cells:
         for part in case.trees.parts(cell):
             edge = _edge(case, cell, part)
@@ -65,7 +65,7 @@ def domain_edges(case: Case) -> Iterator[Finding]:
 
 
 def _edge(case: Case, cell: Cell, part: ir.Expression) -> _Edge | None:
-    """The domain of a part of a formula; None if it takes any number."""
+    """Return the domain of a part of a formula; None if it takes any number."""
     every = np.ones(case.n, bool)
     match part:
         case ir.Binary("^", base, exponent):
@@ -82,7 +82,7 @@ def _edge(case: Case, cell: Cell, part: ir.Expression) -> _Edge | None:
 
 
 def _of_power(case: Case, cell: Cell, name: str, base: ir.Expression, exponent: ir.Expression) -> _Edge | None:
-    """The domain of the base of a power: 0 and above in the trials whose exponent is no whole number."""
+    """Return the domain of the base of a power: 0 and above in the trials whose exponent is no whole number."""
     node, powers = case.trees.node_of(base, cell), _numbers(case, cell, exponent)
     if node is None or node not in case.values or powers is None or _is_of_squares(base):
         return None
@@ -91,7 +91,7 @@ def _of_power(case: Case, cell: Cell, name: str, base: ir.Expression, exponent: 
 
 
 def _numbers(case: Case, cell: Cell, tree: ir.Expression) -> Floats | None:
-    """The numbers of a part of a formula, `(n,)`; None if it has none."""
+    """Return the numbers of a part of a formula, `(n,)`; None if it has none."""
     node = case.trees.node_of(tree, cell)
     if node is None:
         return None

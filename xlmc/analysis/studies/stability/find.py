@@ -93,7 +93,7 @@ _OF_NUMBERS: Final = frozenset({"tail", "amplification"})
 
 
 def _first_causes(case: Case, findings: Iterable[Finding]) -> list[Finding]:
-    """The findings without those on numbers whose digits are wrong anyway."""
+    """Return the findings without those on numbers whose digits are wrong anyway."""
     found = list(findings)
     lost = [one.cell for one in found if one.level is Level.WRONG and one.kind in _OF_DIGITS]
     reached = {cell for cell in (one.cell for one in found) if any(part in case.upstream(cell) for part in lost)}
@@ -101,7 +101,7 @@ def _first_causes(case: Case, findings: Iterable[Finding]) -> list[Finding]:
 
 
 def _unchecked_functions(case: Case) -> tuple[tuple[Cell, tuple[str, ...]], ...]:
-    """The cells that hold functions which were not computed with 50 digits."""
+    """Return the cells that hold functions which were not computed with 50 digits."""
     whose = owners(case.lowering)
     found: dict[Cell, list[str]] = {}
     for node in sorted(case.unchecked):

@@ -55,7 +55,7 @@ class _Naming:
                 self._names.setdefault(found, []).append(defined)
 
     def of(self, cell: Cell, sheet: str) -> str | None:
-        """The name that a formula on a sheet may use for a cell; otherwise None.
+        """Return the name that a formula on a sheet may use for a cell; otherwise None.
 
         A name of another sheet is not known there, and one of the whole workbook is hidden by one of the sheet.
         """
@@ -67,7 +67,7 @@ class _Naming:
         return None
 
     def anywhere(self, cell: Cell) -> str:
-        """A name of a cell, whatever sheet it is for; empty where it has none."""
+        """Return a name of a cell, whatever sheet it is for; empty where it has none."""
         return next((defined.name for defined in self._names.get(cell, ())), "")
 
 
@@ -81,25 +81,25 @@ class Trees:
         self._naming = _Naming(self._graph.workbook)
 
     def formula(self, cell: Cell) -> ir.Expression:
-        """The formula of a cell, the same object whenever it is asked for; variables of LET are written out."""
+        """Return the formula of a cell, the same object whenever it is asked for; variables of LET are written out."""
         if cell not in self._formulas:
             self._formulas[cell] = unfold(self._graph.formulas[cell])
         return self._formulas[cell]
 
     def title(self, cell: Cell) -> str:
-        """What people call a cell: a forecast, a filter, an assumption, or its defined name."""
+        """Return what people call a cell: a forecast, a filter, an assumption, or its defined name."""
         rows = [(row.cell, row.name) for row in self._model.forecasts]
         rows += [(row.cell, row.name) for row in self._model.filters]
         rows += [(row.cell, row.name) for row in self._model.assumptions]
         return next((name for named, name in rows if named == cell), self._naming.anywhere(cell))
 
     def written_formula(self, cell: Cell) -> str:
-        """The formula of a cell as in the file, with `=`; empty where it has none."""
+        """Return the formula of a cell as in the file, with `=`; empty where it has none."""
         text = self._graph.text(cell)
         return text and f"={text}"
 
     def node_of(self, tree: ir.Expression, cell: Cell) -> int | None:
-        """The node of a part of a cell's formula; None if it has none of its own."""
+        """Return the node of a part of a cell's formula; None if it has none of its own."""
         formula = self._graph.workbook.content(host_of(cell)).formula
         array = formula is not None and (formula.array is not None or formula.dynamic)
         try:
@@ -108,11 +108,11 @@ class Trees:
             return None
 
     def parts(self, cell: Cell) -> Iterator[ir.Expression]:
-        """The parts of a cell's formula, outer ones first, but for those inside LAMBDA."""
+        """Return the parts of a cell's formula, outer ones first, but for those inside LAMBDA."""
         return (part for part in parts_of(self.formula(cell)) if not isinstance(part, Cell | Area))
 
     def open_references(self, tree: ir.Expression) -> ir.Expression:
-        """A part of a formula with the formulas of cells instead of references to them, one step back."""
+        """Put the formulas of cells into a part of a formula instead of references to them, one step back."""
         graph = self._graph
 
         def change(part: ir.Expression) -> ir.Expression | None:
@@ -124,11 +124,11 @@ class Trees:
         return substitute(tree, change)
 
     def text(self, tree: ir.Expression, host: Cell) -> str:
-        """A formula, without `=`, with defined names, and brackets only where they are needed."""
+        """Write a formula, without `=`, with defined names, and brackets only where they are needed."""
         return self._text(tree, host)[0]
 
     def read_back(self, tree: ir.Expression, cell: Cell) -> ir.Expression | None:
-        """What a formula is once its text is typed into a cell; None if it cannot be typed."""
+        """Return what a formula is once its text is typed into a cell; None if it cannot be typed."""
         resolver = Resolver(self._graph.workbook, self.lowering.inputs)
         try:
             return resolver.formula(cell, Formula(self.text(tree, cell), cell.row, cell.column))
@@ -136,7 +136,7 @@ class Trees:
             return None
 
     def offer_formula(self, tree: ir.Expression | None, cell: Cell) -> str | None:
-        """A formula with `=` that may be typed into a cell.
+        """Return a formula with `=` that may be typed into a cell.
 
         None if its text does not say it: a number has more digits than Excel reads, or what it names has no address,
         as the draw of `RAND()`.
@@ -156,7 +156,7 @@ class Trees:
         return corners if area.sheet == host.sheet else f"{sheet}{mark}{corners}"
 
     def _text(self, tree: ir.Expression, host: Cell) -> tuple[str, int]:
-        """The text, and how tightly it holds together."""
+        """Return the text, and how tightly it holds together."""
         match tree:
             case ir.Number(value) if value >= 0:
                 return f"{value:.15g}", _WHOLE
@@ -178,7 +178,7 @@ class Trees:
 
 
 def _as_typed(text: str) -> dict[str, str]:
-    """References of a formula as they would be without `$` -> as they stand there."""
+    """Map references of a formula as they would be without `$` -> as they stand there."""
     found: dict[str, str] = {}
     for typed in _CORNERS.findall(text):
         if "$" in typed:
@@ -187,7 +187,9 @@ def _as_typed(text: str) -> dict[str, str]:
 
 
 def parts_of(tree: ir.Expression) -> Iterator[ir.Expression]:
-    """The parts of a formula, itself first, in the order in which they are written; not those inside LAMBDA and LET."""
+    """Return the parts of a formula, itself first, in the order in which they are written; not those inside LAMBDA and
+    LET.
+    """
     open_ = [tree]
     while open_:
         one = open_.pop()
@@ -204,7 +206,7 @@ def parts_of(tree: ir.Expression) -> Iterator[ir.Expression]:
 
 
 def replace_part(tree: ir.Expression, part: ir.Expression, other: ir.Expression) -> ir.Expression:
-    """A formula with one part of it, the very object, replaced."""
+    """Replace one part of a formula, the very object."""
     if tree is part:
         return other
     match tree:
@@ -219,7 +221,7 @@ def replace_part(tree: ir.Expression, part: ir.Expression, other: ir.Expression)
 
 
 def factors(tree: ir.Expression, *, below: bool = False) -> tuple[list[ir.Expression], list[ir.Expression]]:
-    """A product of quotients as the factors above and below the line; signs are a factor of -1.
+    """Split a product of quotients into the factors above and below the line; signs are a factor of -1.
 
     Args:
         tree: any.
@@ -240,7 +242,7 @@ def factors(tree: ir.Expression, *, below: bool = False) -> tuple[list[ir.Expres
 
 
 def terms(tree: ir.Expression) -> list[tuple[int, ir.Expression]]:
-    """A sum as its terms with their signs."""
+    """Split a sum into its terms with their signs."""
     match tree:
         case ir.Binary("+", left, right):
             return terms(left) + terms(right)

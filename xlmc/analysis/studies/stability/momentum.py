@@ -27,7 +27,7 @@ Tree = ir.Expression
 
 
 def times(*parts: Tree) -> Tree:
-    """A product."""
+    """Write a product."""
     built = parts[0]
     for part in parts[1:]:
         built = ir.Binary("*", built, part)
@@ -35,12 +35,12 @@ def times(*parts: Tree) -> Tree:
 
 
 def angle_of(tree: Tree, function: str) -> Tree | None:
-    """The angle of `COS(angle)`, RADIANS included; None if the tree is another function."""
+    """Return the angle of `COS(angle)`, RADIANS included; None if the tree is another function."""
     return tree.arguments[0] if isinstance(tree, ir.Call) and tree.name == function else None
 
 
 def _bare(angle: Tree) -> tuple[Tree, bool]:
-    """An angle without RADIANS, and whether it stood in that."""
+    """Return an angle without RADIANS, and whether it stood in that."""
     match angle:
         case ir.Call("RADIANS", (inner,)):
             return inner, True
@@ -53,7 +53,7 @@ def _in_radians(angle: Tree, in_degrees: bool) -> Tree:
 
 
 def sine(left: Tree, right: Tree) -> Tree:
-    """The sine of a difference of two angles, subtracted in degrees where they are in degrees."""
+    """Write the sine of a difference of two angles, subtracted in degrees where they are in degrees."""
     (a, degrees), (b, also) = _bare(left), _bare(right)
     if degrees and also:
         return ir.Call("SIN", (_in_radians(ir.Binary("-", a, b), True),))
@@ -105,7 +105,7 @@ def _momentum(tree: Tree) -> Momentum | None:
 
 
 def _difference(angle: Tree | None) -> tuple[Tree, Tree, bool] | None:
-    """The two angles of a difference, and whether in degrees."""
+    """Return the two angles of a difference, and whether in degrees."""
     if angle is None:
         return None
     bare, degrees = _bare(angle)
@@ -116,7 +116,7 @@ def _difference(angle: Tree | None) -> tuple[Tree, Tree, bool] | None:
 
 
 def _sine_term(tree: Tree) -> tuple[list[Tree], tuple[Tree, Tree, bool]] | None:
-    """A term `m·V·SIN(β-α)`: what stands before the sine, and its angles."""
+    """Split a term `m·V·SIN(β-α)`: what stands before the sine, and its angles."""
     above, below = factors(tree)
     sines = [part for part in above if angle_of(part, "SIN") is not None]
     if below or len(sines) != 1:
@@ -225,7 +225,7 @@ def _arm(tree: Tree) -> _Arm | None:
 
 
 def _with(pair: Sequence[tuple[int, Tree]], function: str) -> tuple[int, Tree, Tree] | None:
-    """The term with the function in it: its sign, the angle, and what else it is."""
+    """Return the term with the function in it: its sign, the angle, and what else it is."""
     for sign, term in pair:
         above, below = factors(term)
         angles = [angle for part in above if (angle := angle_of(part, function)) is not None]

@@ -39,7 +39,7 @@ class Polynomials:
         self.atoms: dict[str, Tree] = {}
 
     def of(self, tree: Tree) -> Polynomial:
-        """A formula as a polynomial.
+        """Read a formula as a polynomial.
 
         Raises:
             OverflowError: it has too many terms.
@@ -73,7 +73,7 @@ class Polynomials:
                 return self.atom(tree)
 
     def atom(self, tree: Tree, power: int = 1) -> Polynomial:
-        """A part of a formula that is one thing."""
+        """Read a part of a formula that is one thing."""
         key = self._text(tree)
         self.atoms.setdefault(key, tree)
         return {((key, power),): Fraction(1)}
@@ -96,7 +96,7 @@ class Polynomials:
         return _clean({monomial: coefficient * by for monomial, coefficient in polynomial.items()})
 
     def product(self, left: Polynomial, right: Polynomial) -> Polynomial:
-        """Raises OverflowError where it has too many terms."""
+        """Multiply; raises OverflowError where the product has too many terms."""
         if len(left) * len(right) > _MOST_TERMS**2:
             raise OverflowError
         found: dict[Monomial, Fraction] = {}
@@ -128,7 +128,7 @@ class Polynomials:
         return (of, rest) if of else None
 
     def without_roots(self, polynomial: Polynomial) -> Polynomial:
-        """The polynomial with `SQRT(a)^2` replaced by `a`."""
+        """Replace `SQRT(a)^2` by `a` in the polynomial."""
         found: Polynomial = {}
         for monomial, coefficient in polynomial.items():
             term: Polynomial = {ONE: coefficient}
@@ -142,7 +142,7 @@ class Polynomials:
         return found
 
     def tree(self, polynomial: Polynomial) -> Tree:
-        """The polynomial as a formula, with what is added before what is subtracted."""
+        """Write the polynomial as a formula, with what is added before what is subtracted."""
         terms = sorted(polynomial.items(), key=lambda each: each[1] < 0)
         built: Tree | None = None
         for monomial, coefficient in terms:
@@ -170,7 +170,7 @@ class Polynomials:
         return atom if power == 1 else ir.Binary("^", atom, ir.Number(float(power)))
 
     def square_root(self, polynomial: Polynomial) -> Polynomial | None:
-        """`a ± b` of `a² ± 2ab + b²`, or the root of a single square; None if it is neither."""
+        """Return `a ± b` of `a² ± 2ab + b²`, or the root of a single square; None if it is neither."""
         squares = [(m, c) for m, c in polynomial.items() if c > 0 and all(power % 2 == 0 for _, power in m)]
         roots = [(m, r) for m, c in squares if (r := _root(c)) is not None]
         halves = [(tuple((key, power // 2) for key, power in m), r) for m, r in roots]
@@ -195,13 +195,13 @@ def _join(monomials: Iterable[Monomial]) -> Monomial:
 
 
 def _root(x: Fraction) -> Fraction | None:
-    """The root of a square of a fraction; otherwise None."""
+    """Return the root of a square of a fraction; otherwise None."""
     root = Fraction(float(x) ** 0.5).limit_denominator(10**9)
     return root if root * root == x else None
 
 
 def _as_numbers(x: Fraction) -> tuple[float, float]:
-    """A number and a divisor: 1/3 is 1 and 3, .25 is .25 and 1."""
+    """Split a quotient into a number and a divisor: 1/3 is 1 and 3, .25 is .25 and 1."""
     decimal = float(f"{float(x):.15g}")
     if Fraction(repr(decimal)) == x:
         return decimal, 1.0

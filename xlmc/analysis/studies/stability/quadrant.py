@@ -60,7 +60,9 @@ class Arctangent:
 
 
 def arctangents(case: Case, cell: Cell) -> Iterator[Arctangent]:
-    """The arctangents of quotients in a cell's formula, each once; the quotient may stand in a cell of its own."""
+    """Return the arctangents of quotients in a cell's formula, each once; the quotient may stand in a cell of
+    its own.
+    """
     seen: set[int] = set()
     for part in case.trees.parts(cell):
         if isinstance(part, ir.Call) and part.name == "ATAN" and len(part.arguments) == 1:
@@ -75,7 +77,7 @@ def arctangents(case: Case, cell: Cell) -> Iterator[Arctangent]:
 
 
 def _quotient(case: Case, tree: ir.Expression) -> tuple[ir.Expression, ir.Expression] | None:
-    """What stands above and below the line, if there is one below it; None for anything else."""
+    """Return what stands above and below the line, if there is one below it; None for anything else."""
     while isinstance(tree, Cell) and tree not in case.lowering.inputs:
         if tree not in case.lowering.graph.formulas:
             return None
@@ -87,7 +89,7 @@ def _quotient(case: Case, tree: ir.Expression) -> tuple[ir.Expression, ir.Expres
 
 
 def lost_quadrants(case: Case) -> Iterator[Finding]:
-    """The cells that take the arctangent of a quotient whose divisor is negative in some trials.
+    """Return the cells that take the arctangent of a quotient whose divisor is negative in some trials.
 
     Formulas that put it right where the divisor is negative are not reported; see `guards`. Nor are those that
     take only its tangent. A formula in which the angle is meant to be of another size cannot be told from others.
@@ -138,7 +140,7 @@ class Guards:
 
 
 def guards(case: Case, angle: int, divisor: int) -> Guards:
-    """What the formulas make of `ATAN(y/divisor)`.
+    """Return what the formulas make of `ATAN(y/divisor)`.
 
     Args:
         case: the evidence.
@@ -153,7 +155,7 @@ def guards(case: Case, angle: int, divisor: int) -> Guards:
 
 
 def _signs(case: Case, divisor: int, values: Mapping[int, Value], negative: Bools) -> Iterator[tuple[int, Value]]:
-    """The comparisons that tell the sign of the divisor, with what they would give for the other sign."""
+    """Return the comparisons that tell the sign of the divisor, with what they would give for the other sign."""
     turned = Value(-values[divisor].numbers, values[divisor].kinds)
     for node in case.users.get(divisor, ()):
         formula = formula_of(case.dag, node)
@@ -226,7 +228,7 @@ class _Taken(Mapping[int, Value]):
 
 
 def _turn(plain: Value, slight: Value) -> float:
-    """A whole turn in the units of a node that follows the angle evenly; 0 where it does not."""
+    """Return a whole turn in the units of a node that follows the angle evenly; 0 where it does not."""
     slopes: Floats = np.abs(slight.numbers - plain.numbers).ravel() / _SLIGHT
     if isinstance(plain, Ragged) or not slopes.size or np.ptp(slopes) > 1e-6 * slopes.max():
         return 0.0
@@ -249,6 +251,6 @@ def _same(one: Value, other: Value, turn: float) -> bool:
 
 
 def _usual(found: Floats) -> float:
-    """The size of most of a node's numbers: beside it, what is left of a 0 by rounding is nothing."""
+    """Return the size of most of a node's numbers: beside it, what is left of a 0 by rounding is nothing."""
     sizes = np.abs(found[np.isfinite(found)])
     return float(np.median(sizes)) if sizes.size else 0.0

@@ -62,7 +62,7 @@ class Form:
 
 
 def calls(found: Polynomial, algebra: Polynomials, name: str) -> list[tuple[str, Tree]]:
-    """The atoms of a polynomial that call a function: their keys and arguments."""
+    """Return the atoms of a polynomial that call a function: their keys and arguments."""
     keys = {key: algebra.atoms[key] for monomial in found for key, _ in monomial}
     return [
         (key, atom.arguments[0])
@@ -80,7 +80,7 @@ def half(angle: Tree) -> Tree:
 
 
 def combined(first: Tree, second: Tree, sign: int, algebra: Polynomials) -> Tree:
-    """A sum or difference of angles, without what cancels; in degrees where both are."""
+    """Return a sum or difference of angles, without what cancels; in degrees where both are."""
     match first, second:
         case ir.Call("RADIANS", (a,)), ir.Call("RADIANS", (b,)):
             return ir.Call("RADIANS", (combined(a, b, sign, algebra),))
@@ -90,7 +90,7 @@ def combined(first: Tree, second: Tree, sign: int, algebra: Polynomials) -> Tree
 
 
 def scaled(algebra: Polynomials, factor: Polynomial, tree: Tree, by: int = 1) -> Tree:
-    """A polynomial times a number times a formula."""
+    """Write a polynomial times a number times a formula."""
     grown = algebra.scaled(factor, Fraction(by))
     if grown == {ONE: Fraction(1)}:
         return tree
@@ -109,14 +109,14 @@ def less_one(x: Tree, *, negative: bool = False) -> Tree:
 
 
 def of_one_and(name: str, u: Tree, x: Tree) -> Tree:
-    """The logarithm of `u`, which is `1+x`."""
+    """Write the logarithm of `u`, which is `1+x`."""
     near = ir.Binary("/", times(x, ir.Call(name, (u,))), ir.Binary("-", u, UNIT))
     at_one = x if name == "LN" else ir.Binary("/", x, ir.Call("LN", (ir.Number(10.0),)))
     return ir.Call("IF", (ir.Binary("=", u, UNIT), at_one, near))
 
 
 def of_small_angle(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
-    """A steady form of `x-SIN(x)`."""
+    """Write a steady form of `x-SIN(x)`."""
     for key, x in calls(found, algebra, "SIN"):
         split = algebra.split(found, key, 1)
         if split is None:
@@ -141,7 +141,7 @@ def _series(x: Tree) -> Tree:
 
 
 def of_growth(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
-    """A steady form of `(1+x)^n-1`."""
+    """Write a steady form of `(1+x)^n-1`."""
     for key in dict.fromkeys(key for monomial in found for key, _ in monomial):
         atom = algebra.atoms[key]
         split = algebra.split(found, key, 1)
@@ -157,7 +157,7 @@ def of_growth(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form
 
 
 def of_hyperbolic_cosine(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
-    """A steady form of `COSH(x)-1`."""
+    """Write a steady form of `COSH(x)-1`."""
     for key, x in calls(found, algebra, "COSH"):
         split = algebra.split(found, key, 1)
         if split is not None and not algebra.sum(*split):
@@ -167,7 +167,7 @@ def of_hyperbolic_cosine(_: Tree, found: Polynomial, algebra: Polynomials) -> It
 def of_arccosine(
     part: ir.Call, algebra: Polynomials, of_sum: Callable[[Tree, Polynomials], Iterator[Form]]
 ) -> Iterator[Form]:
-    """A steady form of `ACOS(u)` where u is near 1, kept at 1 by MIN or not.
+    """Write a steady form of `ACOS(u)` where u is near 1, kept at 1 by MIN or not.
 
     Args:
         part: the call.
@@ -193,12 +193,12 @@ def of_arccosine(
 
 
 def _of_haversine(h: Tree) -> Tree:
-    """The angle whose haversine, `(1-COS)/2`, is h: rounding may bring it above 1 at half a turn."""
+    """Write the angle whose haversine, `(1-COS)/2`, is h: rounding may bring it above 1 at half a turn."""
     return times(TWO, ir.Call("ASIN", (ir.Call("MIN", (UNIT, ir.Call("SQRT", (h,)))),)))
 
 
 def _without_bounds(u: Tree) -> Tree:
-    """The argument without `MIN(1,…)` and `MAX(-1,…)`."""
+    """Return the argument without `MIN(1,…)` and `MAX(-1,…)`."""
     bounds = (UNIT, ir.Number(-1.0), ir.Unary("-", UNIT))
     while isinstance(u, ir.Call) and u.name in ("MIN", "MAX") and len(u.arguments) == 2:
         inner = [one for one in u.arguments if one not in bounds]
@@ -209,7 +209,7 @@ def _without_bounds(u: Tree) -> Tree:
 
 
 def _great_circle(found: Polynomial, algebra: Polynomials) -> Tree | None:
-    """The haversine of `SIN(a)·SIN(b)+COS(a)·COS(b)·COS(c)`, or with SIN and COS of a and b the other way round.
+    """Write the haversine of `SIN(a)·SIN(b)+COS(a)·COS(b)·COS(c)`, or with SIN and COS of a and b the other way round.
 
     None if it is something else.
     """
@@ -235,7 +235,7 @@ def _degree(monomial: Monomial) -> int:
 
 
 def _arguments(monomial: Monomial, name: str, algebra: Polynomials) -> list[Tree]:
-    """The arguments of the calls of a function that a monomial has for factors."""
+    """Return the arguments of the calls of a function that a monomial has for factors."""
     found: list[Tree] = []
     for key, power in monomial:
         atom = algebra.atoms[key]

@@ -47,7 +47,7 @@ def _continues(case: Case, chain: list[Finding], finding: Finding) -> bool:
 
 
 def _step(case: Case, cell: Cell) -> tuple[str, ...]:
-    """The operators and functions of a formula, in order."""
+    """Return the operators and functions of a formula, in order."""
     return tuple(_name(part) for part in parts_of(case.trees.formula(cell)))
 
 

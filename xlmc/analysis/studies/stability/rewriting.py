@@ -133,7 +133,7 @@ def with_quadrant(
 
 
 def without_quotient(case: Case, filter_: Filter, tree: ir.Expression) -> ir.Expression | None:
-    """A filter of a quotient, its limits numbers or cells, as a test without division."""
+    """Write a filter of a quotient, its limits numbers or cells, as a test without division."""
     limits = filter_limits(filter_)
     if not (isinstance(tree, ir.Binary) and tree.operator == "/" and limits):
         return None

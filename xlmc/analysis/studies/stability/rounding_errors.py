@@ -96,12 +96,12 @@ def _losses(case: Case) -> dict[Cell, _Loss]:
 
 
 def _size(case: Case, cell: Cell) -> Floats:
-    """What an error is measured against, `(n,)`: the central range, or the value where that is larger."""
+    """Return what an error is measured against, `(n,)`: the central range, or the value where that is larger."""
     return np.fmax(np.abs(case.number(case.node[cell])), case.scale(cell))
 
 
 def lost_digits(case: Case) -> Iterator[Finding]:
-    """The cells that lose digits themselves."""
+    """Return the cells that lose digits themselves."""
     losses = _losses(case)
     named: set[Cell] = set()
     for cell, loss in losses.items():
@@ -121,7 +121,7 @@ def lost_digits(case: Case) -> Iterator[Finding]:
 
 
 def _answers(case: Case) -> list[Cell]:
-    """The cells of forecasts and filters that vary with an assumption."""
+    """Return the cells of forecasts and filters that vary with an assumption."""
     rows = [*(each.cell for each in case.model.forecasts), *(each.cell for each in case.model.filters)]
     return [
         cell for cell in dict.fromkeys(rows) if cell in case.lowering.graph.formulas and case.inputs_of(case.node[cell])
@@ -129,7 +129,7 @@ def _answers(case: Case) -> list[Cell]:
 
 
 def _absorbed(case: Case, answer: Cell) -> Cell | None:
-    """The first cell on the way to an answer that is visibly off in most trials; None if the answer is not.
+    """Return the first cell on the way to an answer that is visibly off in most trials; None if the answer is not.
 
     What is absorbed whole shows no error by random rounding: 1-COS(x) of a tiny x is 0, and 1 and 0 are exact.
     """
@@ -155,7 +155,7 @@ def _off(case: Case, cell: Cell) -> tuple[float, float, float]:
 
 
 def _of_absorbed(case: Case, cell: Cell, answer: Cell) -> Finding:
-    """The finding on a cell that absorbs what an answer needs."""
+    """Return the finding on a cell that absorbs what an answer needs."""
     share, shown, exact = _off(case, answer)
     what, instead, ranges = _explain(case, cell, _some_trials(case, _WORST))
     title = case.trees.title(answer) or str(answer)
@@ -174,7 +174,7 @@ def _of_absorbed(case: Case, cell: Cell, answer: Cell) -> Finding:
 
 
 def _finding(case: Case, loss: _Loss, by_form: bool) -> Finding | None:
-    """The finding, where 50 digits confirm it."""
+    """Return the finding, where 50 digits confirm it."""
     cell, node = loss.cell, case.node[loss.cell]
     measure = loss.excess if by_form and loss.worst < _VISIBLE else loss.error
     worst = [int(trial) for trial in np.argsort(np.nan_to_num(measure))[::-1][:_WORST]]
@@ -216,7 +216,7 @@ def _finding(case: Case, loss: _Loss, by_form: bool) -> Finding | None:
 
 
 def _where(case: Case, loss: _Loss, by_form: bool) -> Bools:
-    """The trials that show it: those near the worst, but not too few of those drawn at random."""
+    """Return the trials that show it: those near the worst, but not too few of those drawn at random."""
     measure, least, near = (loss.excess, _EXCESS, 0.3) if by_form else (loss.error, _VISIBLE, 0.1)
     found = np.asarray(measure >= max(least, near * float(np.nanmax(measure))))
     drawn = np.nan_to_num(measure[case.special :])
@@ -329,7 +329,7 @@ def _distance(low: float, high: float, x: float) -> float:
 
 
 def cell_digits(case: Case) -> Iterator[CellDigits]:
-    """What every needed cell that holds numbers amplifies and loses."""
+    """Measure what every needed cell that holds numbers amplifies and loses."""
     losses = _losses(case)
     unchecked = case.unchecked
     for cell in case.cells:
@@ -399,6 +399,6 @@ def _spread(case: Case, cell: Cell) -> _Spread:
 
 
 def _some_trials(case: Case, count: int) -> list[int]:
-    """Some accepted trials, or drawn ones where too few are accepted, evenly spaced."""
+    """Choose some accepted trials, or drawn ones where too few are accepted, evenly spaced."""
     first = case.first_accepted if case.n - case.first_accepted >= count else case.special
     return sorted({int(trial) for trial in np.linspace(first, case.n - 1, count)}) if case.n > first else []

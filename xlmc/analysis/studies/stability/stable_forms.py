@@ -51,7 +51,7 @@ LOGARITHMS: Final = frozenset({"LN", "LOG10", "LOG"})
 
 
 def forms(part: Tree, algebra: Polynomials) -> Iterator[Form]:
-    """The other forms of a part of a formula."""
+    """Return the other forms of a part of a formula."""
     if isinstance(part, ir.Call) and part.name in LOGARITHMS:
         yield from _of_logarithm(part, algebra)
         return
@@ -103,7 +103,7 @@ def _of_sine(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]
 
 
 def _short_of(angle: Tree, degrees: float) -> Tree:
-    """What an angle lacks of a number of degrees, in radians."""
+    """Return what an angle lacks of a number of degrees, in radians."""
     match angle:
         case ir.Call("RADIANS", (inner,)):
             return ir.Call("RADIANS", (ir.Binary("-", ir.Number(degrees), inner),))
@@ -170,7 +170,7 @@ def _of_logarithm(part: ir.Call, algebra: Polynomials) -> Iterator[Form]:
 
 
 def _to_base(name: str, base: Sequence[Tree], made: Callable[[str], Tree]) -> tuple[Tree, Tree | None]:
-    """A logarithm, and what it is divided by where it has a base of its own."""
+    """Return a logarithm, and what it is divided by where it has a base of its own."""
     if name != "LOG":
         return made(name), None
     return (made("LN"), ir.Call("LN", (base[0],))) if base else (made("LOG10"), None)
@@ -218,7 +218,7 @@ def _of_root(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]
 
 
 def _areas(tree: Tree) -> list[Area]:
-    """The ranges in a formula, each once."""
+    """Return the ranges in a formula, each once."""
     return list(dict.fromkeys(part for part in parts_of(tree) if isinstance(part, Area)))
 
 
@@ -265,7 +265,7 @@ def _of_fractions(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[
 
 
 def _as_polynomial(algebra: Polynomials, key: str) -> Polynomial:
-    """An atom as the polynomial that it is, where it was one below the line."""
+    """Return an atom as the polynomial that it is, where it was one below the line."""
     return algebra.of(algebra.atoms[key])
 
 

@@ -24,7 +24,8 @@ _WRONG: Final = 0.1
 
 
 def dependence_on_starts(case: Case) -> Iterator[Finding]:
-    """The circles from which a forecast comes out differently where they start from other values than the saved ones.
+    """Return the circles from which a forecast comes out differently where they start from other values than the saved
+    ones.
 
     They are started from 0, from 1, and from twice the saved values.
     """

@@ -45,7 +45,7 @@ _LONGEST: Final = 1000
 
 
 def steady_form(case: Case, cell: Cell, part: ir.Expression, worst: Sequence[int]) -> ir.Expression | None:
-    """A cell's formula with another form of one part of it; None if none is known to be better.
+    """Write a cell's formula with another form of one part of it; None if none is known to be better.
 
     Args:
         case: the evidence.
@@ -74,7 +74,7 @@ def _candidates(case: Case, cell: Cell, part: ir.Expression) -> Iterator[ir.Expr
 
 
 def _insert_form(tree: ir.Expression, part: ir.Expression, form: Form, algebra: Polynomials) -> Iterator[ir.Expression]:
-    """The whole formula with a form in it, the factors beside it drawn in where that is possible."""
+    """Write the whole formula with a form in it, the factors beside it drawn in where that is possible."""
     if isinstance(form.above, Mapping):
         whole = _product(tree, part)
         if whole is not None:
@@ -94,7 +94,7 @@ def _choose(form: Form, above: ir.Expression, old: ir.Expression) -> ir.Expressi
 
 
 def _product(tree: ir.Expression, part: ir.Expression) -> ir.Expression | None:
-    """The outermost product in a formula of which a part is a factor."""
+    """Return the outermost product in a formula of which a part is a factor."""
     for one in parts_of(tree):
         above, below = factors(one)
         if len(above) + len(below) > 1 and any(each is part for each in above):
@@ -103,7 +103,7 @@ def _product(tree: ir.Expression, part: ir.Expression) -> ir.Expression | None:
 
 
 def _draw_in(whole: ir.Expression, part: ir.Expression, above: Polynomial, algebra: Polynomials) -> Polynomial | None:
-    """What stands above the line, times the other factors; None if these are sums."""
+    """Return what stands above the line, times the other factors; None if these are sums."""
     found = above
     others, below = factors(whole)
     for one in others:
@@ -161,7 +161,7 @@ def _zero(case: Case, key: str) -> tuple[float, ...]:
 
 
 def _unlike(case: Case, cell: Cell, node: int) -> list[int]:
-    """The trials in which another form differs most from the old one, by more than rounding does to that."""
+    """Return the trials in which another form differs most from the old one, by more than rounding does to that."""
     old = case.node[cell]
     with np.errstate(all="ignore"):
         rounding = np.fmax(case.errors[old], np.nan_to_num(case.inherent(cell)))
@@ -176,7 +176,7 @@ def _some(case: Case, count: int) -> list[int]:
 
 
 def _evaluate(case: Case, node: int, draws: Mapping[str, Floats], replicas: int = _REPLICAS) -> Floats:
-    """A node's numbers for some draws, plain and with roundings made at random, `(1 + replicas, m)`."""
+    """Return a node's numbers for some draws, plain and with roundings made at random, `(1 + replicas, m)`."""
     order = closure(case.dag, [node])
     count = next((draw.size for draw in draws.values()), 1)
     roundings = [None, *(RandomRounding((_OTHERS, replica)) for replica in range(replicas))]

@@ -43,7 +43,7 @@ def labels(function: Function, result: Value, operands: Sequence[Operand]) -> Ou
 
 
 def _condition(result: Value, jets: Sequence[Jet], edge: Bools) -> Jet:
-    """The derivatives of a condition: 0, but none where an operand has none, or where it is about to change.
+    """Return the derivatives of a condition: 0, but none where an operand has none, or where it is about to change.
 
     Args:
         result: the condition's value.
@@ -111,7 +111,7 @@ def _either(truth: Bools, yes: Jet, no: Jet) -> Jet:
 
 
 def _like(live: Jet, still: Jet) -> Jet:
-    """A still jet of the order of another."""
+    """Make a still jet of the order of another."""
     return still if live.order > 1 else replace(still, second=None)
 
 
@@ -120,7 +120,7 @@ def _or_0(part: Any) -> Any:
 
 
 def _find_nudged(function: Function, result: Value, operands: Sequence[Operand], index: int = 0) -> Bools:
-    """The trials in which the result changes with the 15th digit of an operand, in the result's shape."""
+    """Find the trials in which the result changes with the 15th digit of an operand, in the result's shape."""
     changed = np.zeros(1, bool)
     for nudge in (1 - _NEAR, 1 + _NEAR):
         values = [operand.value for operand in operands]
@@ -160,7 +160,7 @@ def multiples(function: Function, result: Value, operands: Sequence[Operand]) ->
 
 
 def constant_jet(result: Value, jets: Sequence[Jet], where: Bools) -> Jet:
-    """A value that is constant between steps; no derivatives at a step, and where an operand has none."""
+    """Make a jet that is constant between steps; it has no derivatives at a step, and where an operand has none."""
     if not where.any() and all(np.isfinite(jet.first).all() for jet in jets):
         return Jet.still(result.numbers)
     total = jets[0].times(0.0, result.numbers)

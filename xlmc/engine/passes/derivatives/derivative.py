@@ -162,7 +162,7 @@ class Notes:
         self.errors[node] = worst if np.isnan(known) else max(known, worst) if worst == worst else known
 
     def kinks(self, owners: Mapping[int, Cell]) -> tuple[Kink, ...]:
-        """The functions that took more than one way, the most evenly divided first."""
+        """List the functions that took more than one branch, the most evenly divided first."""
         found = []
         for node, branches in self.branches.items():
             if len(branches) > 1:
@@ -171,7 +171,7 @@ class Notes:
         return tuple(sorted(found, key=lambda kink: -kink.share))
 
     def undefined(self, owners: Mapping[int, Cell], concerned: Iterable[int]) -> tuple[Undefined, ...]:
-        """The places without a derivative, in trials that concern a cell that was asked for; most trials first."""
+        """List the places without a derivative, in trials that concern a cell that was asked for; most trials first."""
         those = np.fromiter(concerned, np.intp)
         found = []
         for node, reasons in self.lost.items():
@@ -182,6 +182,6 @@ class Notes:
         return tuple(sorted(found, key=lambda each: -each.trials))
 
     def numerical(self, owners: Mapping[int, Cell]) -> tuple[Numerical, ...]:
-        """The functions without a rule, the least certain first."""
+        """List the functions without a rule, the least certain first."""
         found = [Numerical(owners[node], self.names[node], error) for node, error in self.errors.items()]
         return tuple(sorted(found, key=lambda each: -np.nan_to_num(each.error)))

@@ -87,7 +87,9 @@ elementwise(
 
 
 def _turn(y: Floats, x: Floats, v: Floats) -> Floats:
-    """The side of the negative x axis, at which the angle jumps by a whole turn; 0 to the right of the y axis."""
+    """Return the side of the negative x axis, at which the angle jumps by a whole turn; 0 to the right of the
+    y axis.
+    """
     return np.where(x < 0, np.where(v < 0, -1, 1), 0)
 
 

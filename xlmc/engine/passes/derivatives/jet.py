@@ -42,13 +42,13 @@ class Jet:
 
     @classmethod
     def still(cls, x: Floats) -> Jet:
-        """A value that no assumption changes."""
+        """Make a jet that no assumption changes."""
         none = (1,) * np.ndim(x)
         return cls(x, (), np.zeros((0, *none)), np.zeros((0, 0, *none)))
 
     @classmethod
     def of_input(cls, x: Floats, number: int, order: int) -> Jet:
-        """The draws of an assumption."""
+        """Make the jet of the draws of an assumption."""
         return cls(x, (number,), np.ones((1, 1)), np.zeros((1, 1, 1)) if order > 1 else None)
 
     @property
@@ -63,7 +63,7 @@ class Jet:
         return Jet(value, self.active, changed[0], *changed[1:])  # type: ignore[arg-type]  # `first` is never None
 
     def spread(self) -> Jet:
-        """The same, but all derivatives have the value's full shape."""
+        """Return the jet with all derivatives in the value's full shape."""
         return self.each(lambda part, axes: np.broadcast_to(part, (*part.shape[:axes], *self.x.shape)))
 
     def as_range(self) -> Jet:
@@ -85,7 +85,7 @@ class Jet:
         )
 
     def lost(self, where: NDArray[np.bool_]) -> Jet:
-        """The same without derivatives where `where` says so, `s`."""
+        """Return the jet without derivatives where `where` says so, `s`."""
         if not where.any():
             return self
 
@@ -95,7 +95,7 @@ class Jet:
         return self.each(change, self.x)
 
     def function(self, x: Floats, first: Any, second: Callable[[], Any]) -> Jet:
-        """A function of the number, given its value, its derivative and its second derivative there."""
+        """Apply a function of the number, given its value, its derivative and its second derivative there."""
         return chain(x, [self], [first], lambda: {(0, 0): second()})
 
     def __add__(self, other: Jet) -> Jet:
@@ -133,7 +133,7 @@ class Jet:
 
 
 def align(jets: Sequence[Jet]) -> list[Jet]:
-    """The jets, all with the same active assumptions."""
+    """Return the jets, all with the same active assumptions."""
     active = tuple(sorted({number for jet in jets for number in jet.active}))
     return [_widen(jet, active) for jet in jets]
 
@@ -154,7 +154,7 @@ def _widen(jet: Jet, active: tuple[int, ...]) -> Jet:
 
 
 def chain(x: Floats, jets: Sequence[Jet], firsts: Sequence[Any], seconds: Seconds | None = None) -> Jet:
-    """A function of several numbers.
+    """Apply a function of several numbers.
 
     Args:
         x: its value.
@@ -178,7 +178,7 @@ def chain(x: Floats, jets: Sequence[Jet], firsts: Sequence[Any], seconds: Second
 
 
 def _curves(wide: Mapping[int, Jet], seconds: Mapping[tuple[int, int], Any]) -> list[tuple[Floats, Floats | None]]:
-    """The terms of the function's own second derivatives, and the errors of these terms."""
+    """Return the terms of the function's own second derivatives, and the errors of these terms."""
     found = []
     for (i, j), second in seconds.items():
         nothing = isinstance(second, float) and second == 0.0
@@ -214,7 +214,7 @@ def _sum_of_errors(parts: Sequence[Floats | None]) -> Floats | None:
 
 
 def flat(jet: Jet, value: Value) -> Jet:
-    """The cells of a value side by side, `(n, m)`."""
+    """Return the cells of a value side by side, `(n, m)`."""
     n, size = value.shape[0], int(np.prod(value.shape[1:]))
 
     def change(part: NDArray[Any], axes: int) -> NDArray[Any]:
@@ -243,7 +243,7 @@ def concatenate(jets: Sequence[Jet], n: int) -> Jet:
 
 
 def by_value(cells: Jet, counts: Bools, wanted: NDArray[np.float64]) -> tuple[Jet, NDArray[np.intp]]:
-    """The first cell of each trial that has the wanted value, and its index.
+    """Return the first cell of each trial that has the wanted value, and its index.
 
     Args:
         cells: `(n, m)`.

@@ -42,7 +42,7 @@ class Drawer(NamedTuple):
 
     @classmethod
     def of(cls, operands: Sequence[Operand]) -> Drawer:
-        """The cells of these operands."""
+        """Return the cells of these operands."""
         jets = align([flat(operand.jet, operand.value) for operand in operands])
         n = max(jet.x.shape[0] for jet in jets)
         tags, count = [], 0
@@ -55,7 +55,7 @@ class Drawer(NamedTuple):
         return cls(concatenate(jets, n), tags)
 
     def draw(self, found: Value, result: Value) -> Jet:
-        """The cells that a function found among the tags, as its result."""
+        """Return the cells that a function found among the tags, as its result."""
         cells = np.where(found.kinds == NUMBER, found.numbers, 0.0)
         cells = np.broadcast_to(cells, found.shape).astype(np.intp)
         n = max(cells.shape[0], self.cells.x.shape[0])
@@ -70,7 +70,9 @@ class Drawer(NamedTuple):
 
 
 def _tag(value: Value, numbers: NDArray[np.float64]) -> Value:
-    """The value with other numbers; texts and errors stay, logicals become numbers, for a logical holds no tag."""
+    """Return the value with other numbers; texts and errors stay, logicals become numbers, for a logical
+    holds no tag.
+    """
     kinds = np.where(value.kinds == LOGICAL, np.uint8(NUMBER), value.kinds)
     shape = np.broadcast_shapes(kinds.shape, numbers.shape)
     return Value(np.broadcast_to(numbers, shape), np.broadcast_to(kinds.astype(np.uint8), shape), value.texts)
@@ -78,14 +80,14 @@ def _tag(value: Value, numbers: NDArray[np.float64]) -> Value:
 
 @rule("MATCH", "XMATCH", POSITION.name, why=_AT_A_STEP, jumps=True)
 def match(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """A position, whose derivative is 0 except where it steps."""
+    """Derive a position: 0 except where it steps."""
     step = _steps(function, result, [operand.value for operand in operands])
     return Outcome(constant_jet(result, level_jets([operands[0]]), step), result.numbers)
 
 
 def _steps(call: Callable[[Values], Value], found: Value, values: Values) -> Bools:
-    """The trials in which a key that differs in the 15th digit finds another cell; where it finds none, the key is a
-    label.
+    """Find the trials in which a key that differs in the 15th digit finds another cell; where it finds none, the key is
+    a label.
     """
     step = np.zeros(1, bool)
     for nudge in (1 - _NEAR, 1 + _NEAR):
@@ -96,7 +98,7 @@ def _steps(call: Callable[[Values], Value], found: Value, values: Values) -> Boo
 
 
 def _look_up(call: Callable[[Values], Value], result: Value, operands: Sequence[Operand], drawer: Drawer) -> Outcome:
-    """The cell that a call finds among tags, by the first operand as a key."""
+    """Return the cell that a call finds among tags, by the first operand as a key."""
     values = [operand.value for operand in operands]
     found = call(values)
     jet = drawer.draw(found, result)
@@ -108,7 +110,7 @@ def _look_up(call: Callable[[Values], Value], result: Value, operands: Sequence[
 
 
 def _without(jet: Jet, operands: Sequence[Operand]) -> Jet:
-    """The jet without derivatives where an operand that decides on the cell has none."""
+    """Return the jet without derivatives where an operand that decides on the cell has none."""
     for operand in operands:
         first = operand.jet.first
         if not np.isfinite(first).all():
@@ -120,7 +122,7 @@ def _without(jet: Jet, operands: Sequence[Operand]) -> Jet:
 
 @rule("VLOOKUP", "HLOOKUP", why=_AT_A_STEP, jumps=True)
 def table_lookup(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """The table gets its tags as further columns (rows), and the number of the column (row) is moved on to these."""
+    """Give the table its tags as further columns (rows), and move the number of the column (row) on to these."""
     drawer = Drawer.of([operands[1]])
     axis = 2 if function.name == "VLOOKUP" else 1
     width = operands[1].value.as_range().shape[axis]
@@ -142,7 +144,7 @@ def _beside(table: Value, tags: Value, axis: int) -> Value:
 
 @rule("LOOKUP", why=_AT_A_STEP, jumps=True)
 def lookup(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """The results are tagged; without them, the last row or column of the array."""
+    """Tag the results; without them, the last row or column of the array."""
     if len(operands) > 2:
         drawer = Drawer.of([operands[2]])
         return _look_up(lambda values: function([*values[:2], *drawer.tags]), result, operands, drawer)
@@ -160,7 +162,7 @@ def lookup(function: Function, result: Value, operands: Sequence[Operand]) -> Ou
 
 @rule("XLOOKUP", why=_AT_A_STEP, jumps=True)
 def xlookup(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """The results, and the value for a key that is not found, are tagged."""
+    """Tag the results, and the value for a key that is not found."""
     drawer = Drawer.of(operands[2:4])
 
     def call(values: Values) -> Value:
@@ -196,5 +198,5 @@ register_moving(range, "VSTACK", "HSTACK")
 
 @rule(CELL_AT.name)
 def cell_at(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """A constant number: its derivative is that of the position, 0 where it does not step."""
+    """Return a constant number: its derivative is that of the position, 0 where it does not step."""
     return Outcome(constant_jet(result, level_jets([operands[1]]), np.zeros(1, bool)))

@@ -38,7 +38,7 @@ Moved = Callable[[Sequence[Floats | None]], Floats]
 
 
 def by_differences(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """The derivatives of any function of numbers; none where it depends on texts that change."""
+    """Compute the derivatives of any function of numbers; none where it depends on texts that change."""
     jets = [operand.jet for operand in operands]
     live = [index for index, jet in enumerate(jets) if jet.active]
     if any((value.kinds == TEXT).any() for value in (result, *(operands[index].value for index in live))):
@@ -67,7 +67,9 @@ def _moved(operand: Operand, step: Floats | None) -> Value:
 
 
 def _through_text(result: Value, jets: Sequence[Jet]) -> Jet:
-    """Derivatives of 0 where no assumption changes a text; none where one does, for a text has rounded digits."""
+    """Return derivatives of 0 where no assumption changes a text; none where one does, for a text has rounded
+    digits.
+    """
     total = Jet.still(np.zeros(1))
     for jet in jets:
         cells = jet.spread().each(lambda part, axes: np.abs(part).reshape(*part.shape[: axes + 1], -1).sum(axis=-1))
@@ -133,7 +135,7 @@ def _with_errors(
     live: Sequence[int],
     second_errors: dict[tuple[int, int], Floats],
 ) -> Jet:
-    """The jet with the errors of the partial derivatives added to those of its operands."""
+    """Return the jet with the errors of the partial derivatives added to those of its operands."""
     wide = align(jets)
     own = sum((np.abs(part.first) * error for part, error in zip(wide, errors, strict=True)), np.zeros(1))
     second_error = jet.second_error
@@ -196,7 +198,7 @@ def _by_assumptions(moved: Moved, result: Value, operands: Sequence[Operand]) ->
 def _inherit(
     jets: dict[int, Jet], singles: Sequence[_Along], error: Floats, second_error: Floats | None
 ) -> tuple[Floats, Floats | None]:
-    """The errors, with the relative errors of the operands' derivatives added."""
+    """Return the errors, with the relative errors of the operands' derivatives added."""
     share = 0.0
     for jet in jets.values():
         if jet.error is not None:
@@ -210,7 +212,7 @@ def _inherit(
 
 
 def _scale(x: Floats) -> Floats:
-    """The size of an argument; 1 where it is 0 or nearly so."""
+    """Return the size of an argument; 1 where it is 0 or nearly so."""
     return np.where(np.abs(x) < _SMALLEST, 1.0, np.abs(x))
 
 
@@ -237,7 +239,7 @@ class _Along:
     fine: Floats
 
     def or_better(self, other: _Along) -> _Along:
-        """The derivatives of this one or of the other, whichever has the smaller estimate."""
+        """Return the derivatives of this one or of the other, whichever has the smaller estimate."""
         first = other.first_error < self.first_error
         second = other.second_error < self.second_error
         return _Along(
@@ -250,7 +252,7 @@ class _Along:
 
 
 def _along(moved: Moved, result: Value, path: _Path) -> _Along:
-    """The better result of steps that suit the arguments' size, and of steps that suit a size of 1."""
+    """Return the better result of steps that suit the arguments' size, and of steps that suit a size of 1."""
     n = result.shape[0]
     most = np.zeros(n)
     for step in path.first:
@@ -266,7 +268,7 @@ def _along(moved: Moved, result: Value, path: _Path) -> _Along:
 
 
 def _mixed(both: _Along, one: _Along, other: _Along, size: Floats) -> tuple[Floats, Floats]:
-    """The mixed second derivative of two ways, from those along each and along their sum, and its error."""
+    """Return the mixed second derivative along two paths, from those along each and along their sum, and its error."""
     second = both.second - one.second - other.second
     error = both.second_error + one.second_error + other.second_error
     tolerance = np.maximum(10 * _TOLERANCE * np.abs(second), 1e-6 * (np.abs(one.second) + np.abs(other.second)))
@@ -307,7 +309,7 @@ def _extrapolate(moved: Moved, result: Value, path: _Path, scale: Floats) -> _Al
 
 
 def _best(rows: Sequence[Floats], noise: Sequence[Floats]) -> tuple[Floats, Floats]:
-    """The entry of the extrapolation table that differs least from those it was made of, and by how much."""
+    """Return the entry of the extrapolation table that differs least from those it was made of, and by how much."""
     best = np.full(rows[0].shape, np.nan)
     least = np.full(rows[0].shape, np.inf)
     before: list[Floats] = []

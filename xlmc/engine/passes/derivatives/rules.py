@@ -77,7 +77,7 @@ def rule(*names: str, why: str = "", jumps: bool = False) -> Callable[[Apply], A
 
 
 def level_jets(operands: Sequence[Operand]) -> list[Jet]:
-    """The jets, all as ranges where one of them is one."""
+    """Return the jets, all as ranges where one of them is one."""
     jets = [operand.jet for operand in operands]
     return [jet.as_range() for jet in jets] if any(jet.x.ndim == 3 for jet in jets) else jets
 

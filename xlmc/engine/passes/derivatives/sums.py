@@ -18,7 +18,9 @@ __all__: list[str] = []
 
 
 def _counted(operands: Sequence[Operand]) -> tuple[list[Jet], list[Bools]]:
-    """The cells of each operand, `(n, m)`, and which count: all that is given directly, and the numbers of ranges."""
+    """Return the cells of each operand, `(n, m)`, and which count: all that is given directly, and the numbers of
+    ranges.
+    """
     jets, counts = [], []
     for value, jet in operands:
         in_range = value.numbers.ndim == 3
@@ -29,7 +31,7 @@ def _counted(operands: Sequence[Operand]) -> tuple[list[Jet], list[Bools]]:
 
 
 def _only(jet: Jet, counts: Bools) -> Jet:
-    """The cells that count, 0 instead of the others."""
+    """Return the cells that count, 0 instead of the others."""
     return jet.each(lambda part, _: np.where(counts, part, 0.0))
 
 
@@ -91,7 +93,7 @@ def variance(function: Function, result: Value, operands: Sequence[Operand]) -> 
 
 @rule("STDEV.S", "STDEV.P", why="all the numbers are equal there")
 def deviation(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """Standard deviation."""
+    """Differentiate the standard deviation."""
     count = _count(operands)
     return Outcome(_squares(operands).times(1 / (count - 1 if function.name == "STDEV.S" else count)).sqrt())
 
@@ -112,14 +114,14 @@ def product(function: Function, result: Value, operands: Sequence[Operand]) -> O
 
 @rule("MIN", "MAX", "MIN so far", "MAX so far", why="two of the numbers are equal there, and do not change alike")
 def extreme(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """The derivatives of the cell that is the largest or smallest."""
+    """Return the derivatives of the cell that is the largest or smallest."""
     jet, counts = _side_by_side(*_counted(operands))
     return Outcome(*by_value(jet, counts, np.broadcast_to(result.numbers, jet.x.shape[:1])))
 
 
 @rule("LARGE", "SMALL", why="two of the numbers are equal there, and do not change alike")
 def ranked(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """The derivatives of the cell of that rank, if it is a single rank that no assumption changes."""
+    """Return the derivatives of the cell of that rank, if it is a single rank that no assumption changes."""
     if operands[1].jet.active or result.numbers.ndim != 1:
         return by_differences(function, result, operands)
     jet, counts = _side_by_side(*_counted(operands[:1]))
@@ -128,7 +130,7 @@ def ranked(function: Function, result: Value, operands: Sequence[Operand]) -> Ou
 
 @rule("MEDIAN", why="two of the numbers are equal there, and do not change alike")
 def median(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """The derivatives of the middle number, or the mean of those of the two in the middle."""
+    """Return the derivatives of the middle number, or the mean of those of the two in the middle."""
     jet, counts = _side_by_side(*_counted(operands))
     ordered = np.sort(np.where(counts, jet.x, np.inf), axis=1)
     k = counts.sum(axis=1)
@@ -158,7 +160,7 @@ def sum_product(function: Function, result: Value, operands: Sequence[Operand]) 
 
 @rule("MMULT")
 def matrix_product(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """Sums of products of rows and columns."""
+    """Differentiate sums of products of rows and columns."""
     left, right = (jet.as_range().spread() for _, jet in operands)
     rows = left.each(lambda part, _: part[..., :, :, None])
     columns = right.each(lambda part, _: part[..., None, :, :])
@@ -168,7 +170,9 @@ def matrix_product(function: Function, result: Value, operands: Sequence[Operand
 
 @rule("SUMIF", "SUMIFS", "AVERAGEIF", "AVERAGEIFS", why="what decides which cells count has no derivative there")
 def conditional(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """Sums and means are linear in their cells: the function itself is called with the cells' derivatives."""
+    """Differentiate sums and means, linear in their cells: the function itself is called with the cells'
+    derivatives.
+    """
     alone = function.name in ("SUMIF", "AVERAGEIF")
     slot = (2 if len(operands) > 2 else 0) if alone else 0
     cells = operands[slot]
@@ -187,7 +191,7 @@ def conditional(function: Function, result: Value, operands: Sequence[Operand]) 
 
 
 def _sum_of(function: Function, values: Sequence[Value], slot: int, row: Floats, cells: Operand) -> Floats:
-    """The function with other numbers in its cells; errors, which infinite numbers cause, become NaN."""
+    """Call the function with other numbers in its cells; errors, which infinite numbers cause, become NaN."""
     own = Value(row, cells.value.kinds, cells.value.texts)
     given = [*values[:slot], own, *values[slot + 1 :]]
     found = function(given)

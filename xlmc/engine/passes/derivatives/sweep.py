@@ -49,7 +49,7 @@ class UnequalSizes(Exception):  # noqa: N818 - it asks for another way
 def sweep_forward(
     dag: Dag, wanted: Collection[int], draws: Mapping[str, Floats], order: int, notes: Notes, start: int = 0
 ) -> Iterator[tuple[int, Value, Jet]]:
-    """The value and the derivatives of the nodes wanted, in their order.
+    """Return the value and the derivatives of the nodes wanted, in their order.
 
     Args:
         dag: the nodes.
@@ -96,7 +96,7 @@ def sweep_forward(
 
 
 def _read_as_values(dag: Dag, nodes: Sequence[int]) -> set[int]:
-    """The nodes that a function reads as values; conditions are mostly read by choices and other conditions."""
+    """Return the nodes that a function reads as values; conditions are mostly read by choices and other conditions."""
     found: set[int] = set()
     for node_id in nodes:
         node = dag.nodes[node_id]
@@ -117,7 +117,7 @@ def _operand(dag: Dag, node_id: int, values: Mapping[int, Value], jets: Mapping[
 def _differentiate(
     dag: Dag, node: int, result: Value, operands: Sequence[Operand], notes: Notes, start: int, valued: bool
 ) -> Jet:
-    """The derivatives of a node, with notes taken."""
+    """Return the derivatives of a node, with notes taken."""
     name, why, jumps = _describe(dag, node)
     with np.errstate(all="ignore"):
         try:
@@ -138,7 +138,7 @@ def _is_condition(node: Node) -> bool:
 
 
 def _describe(dag: Dag, node_id: int) -> tuple[str, str, bool]:
-    """What the node is called, why it may have no derivative, and whether it jumps between its ways."""
+    """Say what the node is called, why it may have no derivative, and whether it jumps between its branches."""
     node = dag.nodes[node_id]
     if isinstance(node, Apply):
         rule = RULES.get(node.function.name)
@@ -194,7 +194,7 @@ def _stack(node: Range, result: Value, operands: Sequence[Operand]) -> Jet:
 
 
 def _mask_undefined(jet: Jet, result: Value) -> Jet:
-    """Derivatives that are not finite, and those of errors and texts, are NaN."""
+    """Make derivatives that are not finite, and those of errors and texts, NaN."""
     errors = np.asarray(result.kinds >= ERROR)
     first = np.where(errors | ~np.isfinite(jet.first), np.nan, jet.first)
     lost = np.isnan(first)

@@ -38,7 +38,7 @@ __all__: list[str] = []
 
 @array_function("FILTER", Arrays, Arrays, Anything(default=None))
 def filter_(array: Value, include: Value, if_empty: Value | None = None) -> Value:
-    """The rows, or columns, where `include` holds; `if_empty`, or `#CALC!`, if it holds nowhere."""
+    """Return the rows, or columns, where `include` holds; `if_empty`, or `#CALC!`, if it holds nowhere."""
     grid, test = grid_of(array), grid_of(include)
     if test.shape[2] == 1 and test.shape[1] == grid.shape[1]:
         return _filter_rows(grid, test, if_empty)
@@ -68,7 +68,9 @@ def _pick_rows(grid: Value, rows: Indices) -> Value:
 
 @array_function("SORT", Arrays, Arrays(default=None), Arrays(default=None), Logical(default=False))
 def sort(array: Value, index: Value | None = None, order: Value | None = None, by_column: Value | None = None) -> Value:
-    """The rows in the order of one column or several, rising (1) or falling (-1); or the columns, in that of rows."""
+    """Return the rows in the order of one column or several, rising (1) or falling (-1); or the columns, in that of
+    rows.
+    """
     grid = grid_of(array)
     if read_size(by_column, 0):
         return transpose_cells(_sort_rows(transpose_cells(grid), index, order))
@@ -97,7 +99,9 @@ def _read_numbers(value: Value | None) -> tuple[Floats, Codes]:
 
 @array_function("SORTBY", Arrays, Arrays(repeat=True), Number(default=1.0, repeat=True))
 def sort_by(array: Value, *pairs: Value) -> Value:
-    """The rows, or columns, in the order of a column, or row, beside the array; where that is equal, of the next."""
+    """Return the rows, or columns, in the order of a column, or row, beside the array; where that is equal, of the
+    next.
+    """
     grid, keys = grid_of(array), [grid_of(key) for key in pairs[::2]]
     orders = [*pairs[1::2], constant(1)][: len(keys)]
     wholes = [whole_numbers(fill_blanks(order.as_range(), 1.0)) for order in orders]

@@ -138,7 +138,7 @@ def _read_number(value: Value | None) -> Floats:
 
 @array_function("TAKE", Arrays, Number, Number(default=None), sized_by_numbers=True)
 def take(array: Value, rows: Value, columns: Value | None = None) -> Value:
-    """The first rows and columns, or with negative numbers the last."""
+    """Return the first rows and columns, or with negative numbers the last."""
     grid = grid_of(array)
     r, c = (_first_slice(read_size(number)) for number in (rows, columns))
     return map_parts(grid, lambda part: part[:, r, c])
@@ -200,7 +200,7 @@ def _read_indices(numbers: tuple[Value, ...], size: int) -> Indices:
 
 @array_function("EXPAND", Arrays, Number, Number(default=None), Anything(default=None), sized_by_numbers=True)
 def expand(array: Value, rows: Value, columns: Value | None = None, pad: Value | None = None) -> Value:
-    """The array, filled up with `pad` to so many rows and columns; `#VALUE!` for fewer than it has."""
+    """Return the array, filled up with `pad` to so many rows and columns; `#VALUE!` for fewer than it has."""
     grid = grid_of(array)
     r, c = (read_size(number, size) for number, size in zip((rows, columns), grid.shape[1:], strict=True))
     assert r is not None and c is not None  # noqa: PT018 - they have defaults
@@ -212,13 +212,13 @@ def expand(array: Value, rows: Value, columns: Value | None = None, pad: Value |
 
 @array_function("VSTACK", Arrays(repeat=True))
 def vstack(*arrays: Value) -> Value:
-    """The arrays one below the other, narrow ones filled up with `#N/A`."""
+    """Return the arrays one below the other, narrow ones filled up with `#N/A`."""
     return _stack([value.as_range() for value in arrays])
 
 
 @array_function("HSTACK", Arrays(repeat=True))
 def hstack(*arrays: Value) -> Value:
-    """The arrays side by side, short ones filled up with `#N/A`."""
+    """Return the arrays side by side, short ones filled up with `#N/A`."""
     return transpose_cells(_stack([transpose_cells(value.as_range()) for value in arrays]))
 
 
@@ -252,7 +252,7 @@ def to_row(array: Value, ignore: Value | None = None, by_column: Value | None = 
 
 @array_function("WRAPROWS", Arrays, Number, Anything(default=None), sized_by_numbers=True)
 def wrap_rows(vector: Value, count: Value, pad: Value | None = None) -> Value:
-    """The cells of a row or column, rearranged in rows of so many cells, the last filled up with `pad`."""
+    """Return the cells of a row or column, rearranged in rows of so many cells, the last filled up with `pad`."""
     grid, size = grid_of(vector), read_size(count, 0)
     if 1 not in grid.shape[1:]:
         raise Refusal(ErrorCode.VALUE)
@@ -266,7 +266,7 @@ def wrap_rows(vector: Value, count: Value, pad: Value | None = None) -> Value:
 
 @array_function("WRAPCOLS", Arrays, Number, Anything(default=None), sized_by_numbers=True)
 def wrap_columns(vector: Value, count: Value, pad: Value | None = None) -> Value:
-    """The cells of a row or column, rearranged in columns of so many cells, the last filled up with `pad`."""
+    """Return the cells of a row or column, rearranged in columns of so many cells, the last filled up with `pad`."""
     return transpose_cells(wrap_rows(vector, count, pad))
 
 

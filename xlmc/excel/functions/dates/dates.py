@@ -35,7 +35,7 @@ def _part_of_date(serial: Any, date1904: bool, part: Callable[[Floats], Any]) ->
 
 @excel("DATE", Number, Number, Number, dated=True)
 def date(year: Any, month: Any, day: Any, *, date1904: bool = False) -> Floats:
-    """Serial of a date; years up to 1899 count from 1900, months and days may run over."""
+    """Return the serial of a date; years up to 1899 count from 1900, months and days may run over."""
     years = np.trunc(year)
     full = np.where(years < _FIRST_FULL_YEAR, years + _FIRST_FULL_YEAR, years)
     serial = serial_of(full, np.trunc(month), np.trunc(day), date1904)
@@ -45,7 +45,7 @@ def date(year: Any, month: Any, day: Any, *, date1904: bool = False) -> Floats:
 
 @excel("DATEVALUE", Text, dated=True)
 def date_value(text: Objects, *, date1904: bool = False) -> Value:
-    """Serial of the date in a text; 0 if it holds a time only, `#VALUE!` if neither."""
+    """Return the serial of the date in a text; 0 if it holds a time only, `#VALUE!` if neither."""
 
     def read(written: str) -> float | ErrorCode:
         moment = parse_moment(written.strip(SPACES), date1904)
@@ -97,19 +97,19 @@ def days_360(start: Any, end: Any, european: Any, *, date1904: bool = False) -> 
 
 @toolpak("EDATE", Date, Number, gives_date=True)
 def date_months_later(start: Any, months: Any) -> Floats:
-    """The same day so many months later, or the last day of that month if it has no such day."""
+    """Return the same day so many months later, or the last day of that month if it has no such day."""
     return months_later(start, np.trunc(months))
 
 
 @toolpak("EOMONTH", Date, Number, gives_date=True)
 def month_end_months_later(start: Any, months: Any) -> Floats:
-    """The last day of the month so many months later."""
+    """Return the last day of the month so many months later."""
     return months_later(start, np.trunc(months), to_end=True)
 
 
 @excel("TODAY", volatile=True, dated=True)
 def today(*, date1904: bool = False) -> Floats:
-    """The day on which it is computed."""
+    """Return the day on which it is computed."""
     return np.asarray(np.floor(now(date1904=date1904)))
 
 

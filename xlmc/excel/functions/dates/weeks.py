@@ -37,7 +37,7 @@ def _week_start(kind: Any) -> Floats:
 
 @excel("WEEKDAY", Number, Number(default=1.0), dated=True)
 def weekday(serial: Any, kind: Any, *, date1904: bool = False) -> Floats:
-    """Number of the day in its week, from 1; with kind 3 from 0 for Monday."""
+    """Return the number of the day in its week, from 1; with kind 3 from 0 for Monday."""
     from_monday = np.floor(kind) == 3
     start = np.where(from_monday, 1.0, _week_start(kind))
     inside = in_calendar(np.asarray(serial), date1904)
@@ -47,7 +47,7 @@ def weekday(serial: Any, kind: Any, *, date1904: bool = False) -> Floats:
 
 @toolpak("WEEKNUM", Date, Number(default=1.0))
 def week_number(serial: Any, kind: Any) -> Floats:
-    """Number of the week in the year, 1 for that of 1 January; kind 21 counts as ISO 8601 does."""
+    """Return the number of the week in the year, 1 for that of 1 January; kind 21 counts as ISO 8601 does."""
     year = parts_of(serial)[0]
     new_year = serial_of(year, 1, 1)
     shift = (weekday_of(new_year) - _week_start(kind)) % 7
@@ -63,7 +63,7 @@ def _iso_week(serial: Any) -> Floats:
 
 @excel("ISOWEEKNUM", Number, dated=True)
 def iso_week_number(serial: Any, *, date1904: bool = False) -> Floats:
-    """Number of the week in the year by ISO 8601."""
+    """Return the number of the week in the year by ISO 8601."""
     inside = in_calendar(np.asarray(serial), date1904)
     return np.where(inside, _iso_week(np.where(inside, serial, 1.0) + (DAYS_TO_1904 if date1904 else 0)), NUM)
 
@@ -278,7 +278,7 @@ def network_days_international(
 
 @excel("WORKDAY", OneCell, OneCell, Cells(default=None), dated=True, facts=Facts(empty_cells=EmptyCells.IGNORED))
 def work_day(start: Value, days: Value, holidays: Value | None = None, *, date1904: bool = False) -> Value:
-    """The work day so many work days after a date, or before it if negative; the date itself for 0."""
+    """Return the work day so many work days after a date, or before it if negative; the date itself for 0."""
     return _work_day(start, days, _SATURDAY_AND_SUNDAY, holidays, date1904)
 
 

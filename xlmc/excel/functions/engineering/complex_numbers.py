@@ -100,7 +100,7 @@ def _write_part(x: float) -> str:
 @excel("COMPLEX", OneCell, OneCell, OneCell(default=None), returns=Kind.TEXT)
 @per_object
 def complex_(real: object, imaginary: object, suffix: object = None) -> str | ErrorCode:
-    """The text of a complex number from its coefficients; `#VALUE!` for another suffix than i or j."""
+    """Write a complex number from its coefficients; `#VALUE!` for another suffix than i or j."""
     x, y = strict_number(real), strict_number(imaginary)
     if isinstance(x, ErrorCode) or isinstance(y, ErrorCode):
         return x if isinstance(x, ErrorCode) else ErrorCode(int(y))
@@ -192,7 +192,7 @@ def _raise_to(z: complex, power: float) -> complex:
 @excel("IMPOWER", OneCell, OneCell, returns=Kind.TEXT)
 @per_object
 def power(item: object, exponent: object) -> str | ErrorCode:
-    """The number to a real power."""
+    """Raise the number to a real power."""
     number, found = read(item), strict_number(exponent)
     if isinstance(found, ErrorCode) and not isinstance(number, ErrorCode):
         return found

@@ -66,7 +66,7 @@ def bessel_j(x: Floats, order: Floats) -> Floats:
 @excel("BESSELI", OneCell, OneCell)
 @numbers_only
 def bessel_i(x: Floats, order: Floats) -> Floats:
-    """Modified Bessel function of the first kind."""
+    """Return the modified Bessel function of the first kind."""
     from scipy.special import iv
 
     return _compute_bessel(iv, x, order)
@@ -84,7 +84,7 @@ def bessel_y(x: Floats, order: Floats) -> Floats:
 @excel("BESSELK", OneCell, OneCell)
 @numbers_only
 def bessel_k(x: Floats, order: Floats) -> Floats:
-    """Modified Bessel function of the second kind; `#NUM!` unless `x` is above 0."""
+    """Return the modified Bessel function of the second kind; `#NUM!` unless `x` is above 0."""
     from scipy.special import kv
 
     return np.where(x <= 0, NUM, _compute_bessel(kv, np.where(x <= 0, 1.0, x), order))

@@ -160,7 +160,7 @@ def _groups(units: NDArray[Any]) -> NDArray[Any]:
 
 @excel("CONVERT", OneCell, OneCell, OneCell)
 def convert(number: Value, source: Value, target: Value) -> Value:
-    """A measurement in another unit; `#N/A` for units that are unknown or measure different things."""
+    """Convert a measurement to another unit; `#N/A` for units that are unknown or measure different things."""
     number, source, target = align_ranges(number, source, target)
     x, errors = strict_numbers(number)
     old, new = _units(source), _units(target)

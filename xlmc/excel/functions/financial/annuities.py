@@ -28,12 +28,12 @@ _SMALL_RATE: Final = 1e-4
 
 
 def growth(rate: Any, periods: Any) -> Floats:
-    """What one unit grows to, (1 + rate)^periods; NaN for rates below -1 unless the periods are whole."""
+    """Return what one unit grows to, (1 + rate)^periods; NaN for rates below -1 unless the periods are whole."""
     return raise_to_power(1.0 + np.asarray(rate), periods)
 
 
 def _accumulation(rate: Any, periods: Any) -> Floats:
-    """What one unit paid at the end of every period comes to, ((1 + rate)^periods - 1)/rate.
+    """Return what one unit paid at the end of every period comes to, ((1 + rate)^periods - 1)/rate.
 
     At small rates the difference would lose its digits.
     """
@@ -44,17 +44,19 @@ def _accumulation(rate: Any, periods: Any) -> Floats:
 
 
 def _timing_factor(rate: Any, when: Any) -> Floats:
-    """What one unit paid is worth at the end of its period; any `when` but 0 means that it is paid at the start."""
+    """Return what one unit paid is worth at the end of its period; any `when` but 0 means that it is paid at
+    the start.
+    """
     return np.where(np.asarray(when) != 0, 1.0 + np.asarray(rate), 1.0)
 
 
 def _nan_if_zero(x: Any) -> Floats:
-    """The divisor, NaN where it is 0: the quotient is then `#NUM!`, and no floating-point flag is raised."""
+    """Return the divisor, NaN where it is 0: the quotient is then `#NUM!`, and no floating-point flag is raised."""
     return np.where(np.asarray(x) == 0, np.nan, x)
 
 
 def _nan_unless_valid(rate: Any) -> Floats:
-    """The rate, NaN where it leaves nothing of a unit: at -1 and below."""
+    """Return the rate, NaN where it leaves nothing of a unit: at -1 and below."""
     return np.where(np.asarray(rate) > -1, rate, np.nan)
 
 
@@ -71,7 +73,7 @@ def _future_value(rate: Any, nper: Any, pmt: Any, pv: Any, when: Any) -> Floats:
 
 @excel("PV", Number, Number, Number, Number(default=0.0), Number(default=0.0))
 def present_value(rate: Any, nper: Any, pmt: Any, fv: Any, when: Any) -> Floats:
-    """What all payments are worth now; `#NUM!` at rates of -100 % and below."""
+    """Return what all payments are worth now; `#NUM!` at rates of -100 % and below."""
     rate = _nan_unless_valid(rate)
     later = fv + pmt * _timing_factor(rate, when) * _accumulation(rate, nper)
     return np.asarray(-later / _nan_if_zero(growth(rate, nper)) + 0.0)
@@ -87,7 +89,7 @@ def payment(rate: Any, nper: Any, pv: Any, fv: Any, when: Any) -> Floats:
 
 @excel("NPER", Number, Number, Number, Number(default=0.0), Number(default=0.0))
 def periods_needed(rate: Any, pmt: Any, pv: Any, fv: Any, when: Any) -> Floats:
-    """Number of periods; `#NUM!` where the payments never suffice."""
+    """Return the number of periods; `#NUM!` where the payments never suffice."""
     zero = np.asarray(rate) == 0
     paid = pmt * _timing_factor(rate, when)
     ratio = (paid - np.multiply(fv, rate)) / _nan_if_zero(paid + np.multiply(pv, rate))
@@ -109,7 +111,9 @@ def rate_of_annuity(nper: Any, pmt: Any, pv: Any, fv: Any, when: Any, guess: Any
     periods = np.where(possible, nper, 1.0)
 
     def balance(x: Floats) -> Floats:
-        """The balance, at present for positive rates and at the end for negative ones, so that nothing overflows."""
+        """Return the balance, at present for positive rates and at the end for negative ones, so that nothing
+        overflows.
+        """
         rate, shrunk = np.expm1(x), np.exp(-periods * np.abs(x))
         zero = rate == 0
         paid = np.where(zero, periods, np.expm1(-periods * np.abs(x)) * -np.sign(x) / np.where(zero, 1.0, rate))
@@ -164,7 +168,9 @@ def _totals(rate: Any, nper: Any, pv: Any, first: Any, last: Any, when: Any) -> 
 
 
 def _find_owed(rate: Any, paid: Any, pmt: Any, pv: Any, when: Any) -> Floats:
-    """What is owed just after `paid` payments; of those due at the start, the first falls on the day of the loan."""
+    """Return what is owed just after `paid` payments; of those due at the start, the first falls on the day of the
+    loan.
+    """
     interest_periods = np.where((np.asarray(when) != 0) & (paid > 0), paid - 1, paid)
     return np.asarray(pv * growth(rate, interest_periods) + pmt * _accumulation(rate, paid))
 
@@ -217,7 +223,7 @@ def growth_periods(rate: Any, pv: Any, fv: Any) -> Floats:
 
 @excel("FVSCHEDULE", OneCell, Cells, facts=Facts(empty_cells=EmptyCells.IGNORED))
 def scheduled_growth(principal: Value, schedule: Value) -> Value:
-    """What a principal grows to at one rate after the other; blank rates are 0, texts and logicals `#VALUE!`."""
+    """Return what a principal grows to at one rate after the other; blank rates are 0, texts and logicals `#VALUE!`."""
     result, errors = strict_numbers(principal)
     rates = schedule.as_range()
     wrong = error_where((rates.kinds == TEXT) | (rates.kinds == LOGICAL), ErrorCode.VALUE)
@@ -231,19 +237,19 @@ def scheduled_growth(principal: Value, schedule: Value) -> Value:
 
 
 def _denominator_and_scale(fraction: Any) -> tuple[Floats, Floats]:
-    """The denominator, whole, and the power of ten that holds its digits."""
+    """Return the denominator, whole, and the power of ten that holds its digits."""
     whole = np.where(np.asarray(fraction) < 1, 1.0, np.floor(fraction))
     return whole, TENS[np.minimum(np.searchsorted(TENS, whole), TENS.size - 1)]
 
 
 def _with_errors_of_fraction(fraction: Any, result: Floats) -> Floats:
-    """The result; `#NUM!` for a fraction below 0, `#DIV/0!` below 1."""
+    """Return the result; `#NUM!` for a fraction below 0, `#DIV/0!` below 1."""
     return np.where(np.asarray(fraction) < 0, NUM, np.where(np.asarray(fraction) < 1, DIV0, result))
 
 
 @toolpak("DOLLARDE", Number, Number)
 def decimal_dollars(price: Any, fraction: Any) -> Floats:
-    """A price whose digits behind the point are a numerator, such as 1.02 for 1 + 2/16, as a decimal number."""
+    """Turn a price whose digits behind the point are a numerator, such as 1.02 for 1 + 2/16, into a decimal number."""
     whole, digits = _denominator_and_scale(fraction)
     dollars = np.trunc(price)
     return _with_errors_of_fraction(fraction, dollars + (price - dollars) * digits / whole)
@@ -251,7 +257,7 @@ def decimal_dollars(price: Any, fraction: Any) -> Floats:
 
 @toolpak("DOLLARFR", Number, Number)
 def fractional_dollars(price: Any, fraction: Any) -> Floats:
-    """A decimal price with a numerator for the digits behind its point: 1.125 in 16ths is 1.02."""
+    """Write a decimal price with a numerator for the digits behind its point: 1.125 in 16ths is 1.02."""
     whole, digits = _denominator_and_scale(fraction)
     dollars = np.trunc(price)
     return _with_errors_of_fraction(fraction, dollars + (price - dollars) * whole / digits)

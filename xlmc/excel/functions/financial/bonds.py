@@ -28,7 +28,9 @@ _FIRST_GUESS: Final = 0.05
 
 
 def annuity(log_growth: Floats, n: Any) -> Floats:
-    """What n payments of one, the first of them now, are worth, when a unit grows by exp(log_growth) a period."""
+    """Return what n payments of one, the first of them now, are worth, when a unit grows by exp(log_growth) a
+    period.
+    """
     zero = log_growth == 0
     per_period = np.expm1(-np.where(zero, 1.0, log_growth))
     return np.asarray(np.where(zero, n, np.expm1(-n * log_growth) / per_period))
@@ -164,7 +166,7 @@ class _OddFirst:
 
 
 def _quasi_periods(to_first: Coupons, issue: Any) -> tuple[Floats, Floats]:
-    """The length of a long first period in normal periods, and how much of it has gone at settlement."""
+    """Return the length of a long first period in normal periods, and how much of it has gone at settlement."""
     basis, length = to_first.basis, to_first.days
     count = Coupons(issue, to_first.maturity, to_first.frequency, basis).count
     whole = gone = np.zeros(1)
@@ -221,7 +223,9 @@ def odd_first_yield(
 def _odd_last(
     settlement: Any, maturity: Any, last: Any, rate: Any, redemption: Any, frequency: Any, basis: Any
 ) -> tuple[Floats, Floats, Floats, Bools]:
-    """What is paid at maturity, accrued interest, years from settlement to it, and where Excel refuses the bond."""
+    """Return what is paid at maturity, accrued interest, years from settlement to it, and where Excel refuses
+    the bond.
+    """
     in_order = np.less(last, settlement) & np.less(settlement, maturity)
     wrong = ~in_order | ~is_frequency(frequency) | ~is_basis(basis)
     wrong = wrong | (np.asarray(rate) < 0) | (np.asarray(redemption) < 0)

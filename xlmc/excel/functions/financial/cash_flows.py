@@ -25,13 +25,13 @@ __all__: list[str] = []
 
 
 def _single(value: Value) -> tuple[Floats, Codes]:
-    """A number per trial, and its error: (n,) each."""
+    """Return a number per trial, and its error: (n,) each."""
     x, errors = value.to_numbers()
     return flatten_cells(x, value)[:, 0], flatten_cells(errors, value)[:, 0]
 
 
 def _read_payments(values: Sequence[Value]) -> tuple[Floats, Bools, Codes]:
-    """The payments, which of them count, and the first error: (n, k), (n, k), (n,)."""
+    """Return the payments, which of them count, and the first error: (n, k), (n, k), (n,)."""
     sample = join_samples([sample_of(value) for value in values])
     return sample.x, sample.counts, sample.errors
 
@@ -88,7 +88,9 @@ def internal_rate(values: Value, guess: Value | None = None) -> Value:
     k = packed.shape[1]
 
     def worth(x: Floats) -> Floats:
-        """The value at the first payment for positive rates, at the last for negative ones: no factor exceeds 1."""
+        """Return the value at the first payment for positive rates, at the last for negative ones: no factor
+        exceeds 1.
+        """
         step = np.exp(-np.abs(x))
         at_first = at_last = np.zeros(1)
         for column in range(k):
@@ -102,7 +104,7 @@ def internal_rate(values: Value, guess: Value | None = None) -> Value:
 
 
 def _read_guess(guess: Value | None) -> tuple[Floats, Codes]:
-    """The guess of a rate, 10 % if it is left out, and its errors: (n,) each."""
+    """Return the guess of a rate, 10 % if it is left out, and its errors: (n,) each."""
     return (np.full(1, 0.1), np.zeros(1, np.uint8)) if guess is None else _single(guess)
 
 
@@ -126,7 +128,7 @@ def modified_rate(values: Value, finance: Value, reinvest: Value) -> Value:
 
 
 def _date_payments(values: Value, dates: Value, date1904: bool) -> tuple[Floats, Floats, Codes]:
-    """The payments, the years from the first date to each, (n, k) each, and the errors, (n,).
+    """Return the payments, the years from the first date to each, (n, k) each, and the errors, (n,).
 
     `#NUM!` for a date before the first, for dates and payments of unequal number, and where there are none.
     """
@@ -141,7 +143,9 @@ def _date_payments(values: Value, dates: Value, date1904: bool) -> tuple[Floats,
 
 
 def _pack_numbers(value: Value) -> tuple[Floats, Indices, Codes]:
-    """The numbers of the cells that are not blank, moved to the left; how many there are; and the first error."""
+    """Return the numbers of the cells that are not blank, moved to the left; how many there are; and the
+    first error.
+    """
     x, errors = strict_numbers(value)
     filled = flatten_cells(value.kinds != BLANK, value)
     order = np.argsort(~filled, axis=1, kind="stable")
@@ -176,7 +180,7 @@ def dated_rate(values: Value, dates: Value, guess: Value | None = None, *, date1
     last = np.where(alive, years, -np.inf).max(axis=1, keepdims=True)
 
     def worth(x: Floats) -> Floats:
-        """The value on the first day for positive rates, on the last for negative ones: no factor exceeds 1."""
+        """Return the value on the first day for positive rates, on the last for negative ones: no factor exceeds 1."""
         total = np.zeros(1)
         for column in range(flows.shape[1]):
             since, until = years[:, column] - first[:, 0], last[:, 0] - years[:, column]

@@ -174,7 +174,7 @@ class _Schedule:
         return months_later(self._first, number * self._step, self._to_end)
 
     def last_up_to(self, serial: Any) -> Floats:
-        """The number of the last coupon up to a day."""
+        """Return the number of the last coupon up to a day."""
         (year, month, _), (first_year, first_month, _) = parts_of(serial), parts_of(self._first)
         number = np.floor(((year - first_year) * 12 + month - first_month) / self._step)
         return np.asarray(number - (self.date(number) > serial))
@@ -192,7 +192,9 @@ class _Schedule:
         )
 
     def counted_length(self, number: Any) -> Floats:
-        """The same length as Excel counts it for the period of the issue: by the dates, with months of 30 days."""
+        """Return the same length as Excel counts it for the period of the issue: by the dates, with months of
+        30 days.
+        """
         start, end = self.date(number), self.date(number + 1)
         return by_basis(
             self._basis,

@@ -28,14 +28,14 @@ _MOST_PERIODS: Final = 2.0**53
 
 @excel("SLN", Number, Number, Number)
 def straight_line(cost: Any, salvage: Any, life: Any) -> Floats:
-    """The same loss in every period; `#DIV/0!` without a life."""
+    """Return the same loss in every period; `#DIV/0!` without a life."""
     none = np.asarray(life) == 0
     return np.where(none, DIV0, np.subtract(cost, salvage) / np.where(none, 1.0, life))
 
 
 @excel("SYD", Number, Number, Number, Number)
 def sum_of_years(cost: Any, salvage: Any, life: Any, per: Any) -> Floats:
-    """A loss that falls by the same step every period; `#NUM!` for a period outside 1 to the life."""
+    """Return a loss that falls by the same step every period; `#NUM!` for a period outside 1 to the life."""
     wrong = (np.asarray(life) <= 0) | (np.asarray(per) <= 0) | np.greater(per, life) | (np.asarray(salvage) < 0)
     years = np.where(wrong, 1.0, life)
     return np.where(wrong, NUM, np.subtract(cost, salvage) * (life - np.asarray(per) + 1) * 2 / (years * (years + 1)))
@@ -104,17 +104,17 @@ class _Declining:
         self._after_part = self._cost - self._part * self._loss(self._cost)
 
     def _loss(self, value: Floats) -> Floats:
-        """What a whole period takes from a value."""
+        """Return what a whole period takes from a value."""
         return np.maximum(np.minimum(value * self._rate, value - self._salvage), 0.0)
 
     def _after(self, periods: Floats) -> Floats:
-        """The value at the end of the shortened period and so many whole ones."""
+        """Return the value at the end of the shortened period and so many whole ones."""
         remaining = np.maximum(1 - self._rate, 0.0)
         grown = self._after_part * raise_to_power(remaining, periods)
         return np.where(self._after_part > self._salvage, np.maximum(grown, self._salvage), self._after_part)
 
     def left(self, time: Floats) -> Floats:
-        """The value at a time."""
+        """Return the value at a time."""
         since = time - self._part
         whole = np.floor(np.maximum(since, 0.0))
         value = self._after(whole)
@@ -122,7 +122,7 @@ class _Declining:
         return np.where(since < 0, self._cost - time * self._loss(self._cost), later)
 
     def left_switching(self, time: Floats) -> Floats:
-        """The value at a time, if the asset changes to equal losses as soon as these are more."""
+        """Return the value at a time, if the asset changes to equal losses as soon as these are more."""
         switch = self._switch()
         value = self.left(switch)
         ahead = np.maximum(self._life - switch, np.finfo(float).tiny)
@@ -130,7 +130,8 @@ class _Declining:
         return np.where((time <= switch) | (value <= self._salvage), self.left(time), even)
 
     def _switch(self) -> Floats:
-        """The end of the first period after which equal losses are more than declining ones; the end of life if none.
+        """Return the end of the first period after which equal losses are more than declining ones; the end of life if
+        none.
 
         With V(t) the declining value, equal losses are more where factor·(1 - t/L) + S/V(t) < 1. The left side is
         convex in t, so that up to its lowest point it falls, and halving finds that period.
@@ -178,7 +179,7 @@ def _first_loss(cost: Any, bought: Any, first: Any, rate: Any, basis: Any) -> Fl
 
 
 def _leap_day_as_28th(serial: Any, basis: Any) -> Floats:
-    """The date, but 29 February as the 28th where the basis counts true days."""
+    """Return the date, but 29 February as the 28th where the basis counts true days."""
     _, month, day = parts_of(serial)
     true_days = (np.floor(basis) == 1) | (np.floor(basis) == 3)
     return np.where(true_days & (month == 2) & (day == 29), np.asarray(serial) - 1, serial)
@@ -186,7 +187,7 @@ def _leap_day_as_28th(serial: Any, basis: Any) -> Floats:
 
 @toolpak("AMORLINC", Number, Date, Date, Number, Number, Number, Number(default=0.0))
 def linear(cost: Any, bought: Any, first: Any, salvage: Any, period: Any, rate: Any, basis: Any) -> Floats:
-    """The same loss in each period, down to the salvage value."""
+    """Return the same loss in each period, down to the salvage value."""
     wrong = _is_refused_french(cost, salvage, bought, first, period, rate, basis)
     yearly = np.multiply(cost, np.where(wrong, 1.0, rate))
     to_lose = np.subtract(cost, salvage)
@@ -199,7 +200,7 @@ def linear(cost: Any, bought: Any, first: Any, salvage: Any, period: Any, rate: 
 
 
 def _rate_factor(life: Floats) -> Floats:
-    """The factor on the rate: 1.5 for assets of 3 or 4 years, 2 for 5 or 6, 2.5 beyond."""
+    """Return the factor on the rate: 1.5 for assets of 3 or 4 years, 2 for 5 or 6, 2.5 beyond."""
     return np.select([life > 6, life >= 5, life >= 3], [2.5, 2.0, 1.5], 1.0)
 
 
@@ -210,8 +211,8 @@ def _to_whole(x: Floats) -> Floats:
 
 @toolpak("AMORDEGRC", Number, Date, Date, Number, Number, Number, Number(default=0.0))
 def degressive(cost: Any, bought: Any, first: Any, salvage: Any, period: Any, rate: Any, basis: Any) -> Floats:
-    """A loss at a raised rate of what is left, in whole numbers; the last period but one takes half of what is left,
-    and the last takes all. `#NUM!` for assets of less than 3 years, or of 4 to 5.
+    """Return a loss at a raised rate of what is left, in whole numbers; the last period but one takes half of what is
+    left, and the last takes all. `#NUM!` for assets of less than 3 years, or of 4 to 5.
     """
     wrong = _is_refused_french(cost, salvage, bought, first, period, rate, basis)
     years = 1 / np.where(wrong, 1.0, rate)

@@ -26,7 +26,7 @@ def _years(start: Any, end: Any, basis: Any) -> tuple[Floats, Bools]:
 
 
 def _all_positive(*amounts: Any) -> Bools:
-    """The trials in which all numbers are above 0."""
+    """Return the trials in which all numbers are above 0."""
     result = np.ones(1, bool)
     for amount in amounts:
         result = result & (np.asarray(amount) > 0)
@@ -58,7 +58,7 @@ def discounted_price(settlement: Any, maturity: Any, discount: Any, redemption: 
 
 @toolpak("RECEIVED", Date, Date, Number, Number, Number(default=0.0))
 def amount_received(settlement: Any, maturity: Any, investment: Any, discount: Any, basis: Any) -> Floats:
-    """What is paid back at maturity; `#NUM!` where the discount takes all."""
+    """Return what is paid back at maturity; `#NUM!` where the discount takes all."""
     years, wrong = _years(settlement, maturity, basis)
     left = 1 - discount * years
     return np.where(

@@ -40,7 +40,7 @@ _NUMBER = Number(ranges=Ranges.SINGLE)
     facts=Facts(spills=True, jumps=True),
 )
 def index(cells: Value, row: Value, column: Value | None = None, area: Value | None = None) -> Value:
-    """The cell in a row and a column; row 0 stands for a whole column, column 0 for a whole row.
+    """Return the cell in a row and a column; row 0 stands for a whole column, column 0 for a whole row.
 
     With one number, it is the column of a single row, and else the row. The only area here is area 1: references of
     several areas, and one number for a reference of several rows and columns, are handled where formulas are lowered.
@@ -107,7 +107,7 @@ def _size(cells: Value, axis: int) -> Value:
 
 @excel("HYPERLINK", Text, Anything(default=None), returns=Kind.ANY)
 def hyperlink(link: Value, shown: Value | None = None) -> Value:
-    """The text that the cell of a link shows: its second argument, or else the link."""
+    """Return the text that the cell of a link shows: its second argument, or else the link."""
     if shown is not None:
         link, shown = align_ranges(link, shown)
         return with_errors(shown, np.broadcast_to(link.errors, link.shape))
@@ -119,7 +119,8 @@ def hyperlink(link: Value, shown: Value | None = None) -> Value:
 def address(
     row: Value, column: Value, fixed: Value | None = None, a1: Value | None = None, sheet: Value | None = None
 ) -> Value:
-    """The address of a cell as text. `fixed` says where a `$` stands: 1 both, 2 the row, 3 the column, 4 neither.
+    """Return the address of a cell as text. `fixed` says where a `$` stands: 1 both, 2 the row, 3 the column, 4
+    neither.
 
     If `a1` is FALSE, the style is R1C1. Arguments left empty take their defaults, but an empty `sheet` leaves its `!`.
     """

@@ -94,13 +94,17 @@ def _counted_from_1(indices: Indices, errors: Codes) -> Value:
 
 @excel("VLOOKUP", *_IN_A_TABLE, returns=Kind.ANY, facts=Facts(mode_argument=3, jumps=True))
 def vlookup(key: Value, table: Value, column: Value, near: Value | None = None) -> Value:
-    """The cell in a column of the table and the row that begins with the key or, if `near`, the last value up to it."""
+    """Return the cell in a column of the table and the row that begins with the key or, if `near`, the last value up to
+    it.
+    """
     return by_portions(_vlookup, [key, table, column, constant(True) if near is None else near], width_of(table))
 
 
 @excel("HLOOKUP", *_IN_A_TABLE, returns=Kind.ANY, facts=Facts(mode_argument=3, jumps=True))
 def hlookup(key: Value, table: Value, row: Value, near: Value | None = None) -> Value:
-    """The cell in a row of the table and the column that begins with the key or, if `near`, the last value up to it."""
+    """Return the cell in a row of the table and the column that begins with the key or, if `near`, the last value up to
+    it.
+    """
     turned = transpose_cells(table) if table.numbers.ndim == 3 else table
     return by_portions(_vlookup, [key, turned, row, constant(True) if near is None else near], width_of(table))
 
@@ -123,7 +127,7 @@ def _vlookup(key: Value, table: Value, column: Value, near: Value) -> Value:
 
 @excel("LOOKUP", Anything, Arrays, Arrays(default=None), returns=Kind.ANY, facts=Facts(mode_argument=3, jumps=True))
 def lookup(key: Value, cells: Value, results: Value | None = None) -> Value:
-    """The cell beside the last value up to the key.
+    """Return the cell beside the last value up to the key.
 
     The key is searched in the first column of the range; without `results`, the result is in its last column. In a
     range that is wider than high, these are rows.
@@ -149,7 +153,7 @@ def _lookup_in_vector(key: Value, cells: Value, results: Value) -> Value:
 
 
 def _upright(grid: Value) -> Value:
-    """The range, turned where it is wider than high: LOOKUP searches its first row then."""
+    """Return the range, turned where it is wider than high: LOOKUP searches its first row then."""
     return transpose_cells(grid) if grid.shape[2] > grid.shape[1] else grid
 
 
@@ -252,7 +256,7 @@ def xlookup(
     mode: Value | None = None,
     direction: Value | None = None,
 ) -> Value:
-    """The cell, row or column of `results` at the position of the key in `cells`; `instead` if it is not found.
+    """Return the cell, row or column of `results` at the position of the key in `cells`; `instead` if it is not found.
 
     Raises:
         ShapeVaries: the result is a row or column, and some trials do not find the key.

@@ -34,7 +34,7 @@ CELL_AT: Final = Function(
 
 
 def numbers_of(value: Value) -> Floats | None:
-    """The numbers of a constant row or column, `(k,)`; None of another value, or where not all are numbers."""
+    """Return the numbers of a constant row or column, `(k,)`; None of another value, or where not all are numbers."""
     if value.numbers.ndim != 3 or value.shape[0] != 1 or 1 not in value.shape[1:]:
         return None
     if not (value.kinds == NUMBER).all():
@@ -71,7 +71,7 @@ class Search:
 
     @classmethod
     def of(cls, numbers: Floats, order: float) -> Search | None:
-        """The search that MATCH makes with this order: 1, 0 or -1; None in numbers that are not in it."""
+        """Return the search that MATCH makes with this order: 1, 0 or -1; None in numbers that are not in it."""
         if order == 0:
             by_size = np.argsort(numbers, kind="stable")
             return cls(np.append(numbers[by_size], np.inf), 1.0, np.append(by_size + 1, 0), 0.0)
@@ -95,11 +95,13 @@ class Search:
         return bool(least >= self.rising[0])
 
     def __call__(self, keys: Floats, out: Floats | None = None) -> Floats:
-        """The positions, `(n,)`, of keys that all have one."""
+        """Return the positions, `(n,)`, of keys that all have one."""
         return np.add(self.indices(keys), 1.0, out=out)
 
     def indices(self, keys: Floats, out: Floats | None = None) -> NDArray[np.int64]:
-        """The same counted from 0, as whole numbers for `Pick.at`, `(n,)`, in the memory of `out` where it is given."""
+        """Return the positions counted from 0, as whole numbers for `Pick.at`, `(n,)`, in the memory of `out` where it
+        is given.
+        """
         found = np.empty(keys.shape, np.int64) if out is None else out.view(np.int64)
         if self.divides:
             np.copyto(found, self._steps(keys), casting="unsafe")
@@ -159,11 +161,11 @@ class Pick:
 
     @classmethod
     def of(cls, numbers: Floats) -> Pick:
-        """The pick from a row or a column."""
+        """Return the pick from a row or a column."""
         return cls(np.insert(numbers, 0, np.nan))
 
     def __call__(self, positions: Floats, out: Floats | None = None) -> Floats:
-        """The numbers at positions, `(n,)`."""
+        """Return the numbers at positions, `(n,)`."""
         (work,) = work_arrays(positions.size, 1)
         indices = work.view(np.int64).reshape(positions.shape)
         np.copyto(indices, positions, casting="unsafe")
@@ -171,6 +173,6 @@ class Pick:
         return found
 
     def at(self, indices: NDArray[np.int64], out: Floats | None = None) -> Floats:
-        """The numbers at `Search.indices`, `(n,)`; `out` must not be the memory of these."""
+        """Return the numbers at `Search.indices`, `(n,)`; `out` must not be the memory of these."""
         found: Floats = self.numbers[1:].take(indices, out=out, mode="clip")
         return found

@@ -98,12 +98,14 @@ def median(x: Floats, counts: Bools) -> Floats:
 
 
 def _ordered(x: Floats, counts: Bools) -> tuple[Floats, Indices]:
-    """The numbers of each trial in rising order, what does not count behind them, and how many do: (n, k), (n,)."""
+    """Return the numbers of each trial in rising order, what does not count behind them, and how many do: (n,
+    k), (n,).
+    """
     return np.sort(np.where(counts, x, np.inf), axis=1), counts.sum(axis=1)
 
 
 def _picked(ordered: Floats, indices: Indices) -> Floats:
-    """The numbers at `indices` (n, m) of each trial; any number where there is none."""
+    """Return the numbers at `indices` (n, m) of each trial; any number where there is none."""
     return np.asarray(np.take_along_axis(ordered, np.clip(indices, 0, ordered.shape[1] - 1), axis=1))
 
 
@@ -145,7 +147,7 @@ def population_variance(x: Floats, counts: Bools) -> Floats:
     facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT, measures=True),
 )
 def sample_deviation(x: Floats, counts: Bools) -> Floats:
-    """Standard deviation, estimated from a sample; `#DIV/0!` of fewer than two."""
+    """Return the standard deviation, estimated from a sample; `#DIV/0!` of fewer than two."""
     variance, enough = _variance(x, counts, 1)
     return np.where(enough, np.sqrt(variance), DIV0)
 
@@ -157,13 +159,13 @@ def sample_deviation(x: Floats, counts: Bools) -> Floats:
     facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT, measures=True),
 )
 def population_deviation(x: Floats, counts: Bools) -> Floats:
-    """Standard deviation of the numbers themselves; `#DIV/0!` of nothing."""
+    """Return the standard deviation of the numbers themselves; `#DIV/0!` of nothing."""
     variance, enough = _variance(x, counts, 0)
     return np.where(enough, np.sqrt(variance), DIV0)
 
 
 def _how_many(parts: Iterable[Bools]) -> Floats:
-    """The number of cells that count, in each trial: (n, k), (n, k'), … -> (n,)."""
+    """Return the number of cells that count, in each trial: (n, k), (n, k'), … -> (n,)."""
     total = np.zeros(1)
     for counts in parts:
         total = total + counts.sum(axis=1)
@@ -225,7 +227,9 @@ def sum_product(*values: Value) -> Value:
 
 
 def _ranked(values: Value, rank: Value, index_of: Callable[[Floats, Indices], Floats]) -> Value:
-    """The numbers at `index_of(rank, k)` in rising order, in the shape of `rank`; otherwise `#NUM!`."""
+    """Return the numbers at `index_of(rank, k)` in rising order, in the shape of `rank`; `#NUM!` where there
+    is none.
+    """
     sample = sample_of(values)
     ordered, k = _ordered(sample.x, sample.counts)
     ranks, errors = (flatten_cells(array, rank) for array in rank.to_numbers())
@@ -241,7 +245,7 @@ def _ranked(values: Value, rank: Value, index_of: Callable[[Floats, Indices], Fl
     "LARGE", Cells, Number, facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT, unrounded=True)
 )
 def large(values: Value, rank: Value) -> Value:
-    """The number of a rank, the largest being 1; a fraction of a rank rounds up."""
+    """Return the number of a rank, the largest being 1; a fraction of a rank rounds up."""
     return _ranked(values, rank, lambda ranks, k: -np.ceil(ranks) + k)
 
 
@@ -249,7 +253,7 @@ def large(values: Value, rank: Value) -> Value:
     "SMALL", Cells, Number, facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT, unrounded=True)
 )
 def small(values: Value, rank: Value) -> Value:
-    """The number of a rank, the smallest being 1; a fraction of a rank rounds down."""
+    """Return the number of a rank, the smallest being 1; a fraction of a rank rounds down."""
     return _ranked(values, rank, lambda ranks, k: np.floor(ranks) - 1)
 
 
@@ -265,12 +269,12 @@ class _Overflowed(Value):
         object.__setattr__(self, "overflows", overflows)
 
     def take(self, index: Indices) -> Value:
-        """The trials of `index`."""
+        """Return the trials of `index`."""
         taken = super().take(index)
         return self if taken is self else _Overflowed(taken, self.overflows[index])
 
     def opened(self) -> Value:
-        """The value with infinite numbers for the overflows."""
+        """Return the value with infinite numbers for the overflows."""
         return Value(
             np.where(self.overflows, np.inf, self.numbers), np.where(self.overflows, np.uint8(NUMBER), self.kinds)
         )
@@ -301,7 +305,7 @@ def _running(name: str) -> Function:
 
 
 def _so_far(cells: Value, of: str) -> Value:
-    """What the function gives of a range, (n, r, c) -> (n,); blank where no cell is a number."""
+    """Return what the function gives of a range, (n, r, c) -> (n,); blank where no cell is a number."""
     result = REGISTRY[of]((cells,))
     none = ~(cells.kinds == NUMBER).any(axis=(1, 2)) & (result.kinds < ERROR)
     return Value(np.where(none, 0.0, result.numbers), np.where(none, np.uint8(BLANK), result.kinds))

@@ -71,7 +71,7 @@ def sum_of_squares(x: Floats, counts: Bools) -> Floats:
 
 
 def raise_to_power(base: Any, exponent: Any) -> Floats:
-    """`base` to the power of `exponent`, both of at least one axis; NaN for a negative base and a fraction.
+    """Raise `base` to the power of `exponent`, both of at least one axis; NaN for a negative base and a fraction.
 
     Where the exponent is one number for all trials, NumPy squares, inverts and takes square roots by other means than
     `pow`, which may differ in the last bit. So each trial gets an exponent of its own.

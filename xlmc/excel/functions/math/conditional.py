@@ -85,7 +85,7 @@ def _reduce_beside(values: Value | None, cells: Value, criterion: Value, reduce:
 
 
 def _resized(values: Value, rows: int, columns: int) -> Value:
-    """The range that has the same top left cell and another size.
+    """Return the range that has the same top left cell and another size.
 
     Cells that it lacks count as empty. Excel goes on to the cells below and to the right, so the caller gives the range
     in its full size, as far as the used part of the sheet goes.
@@ -104,7 +104,7 @@ def count_if(cells: Value, criterion: Value, *, date1904: bool = False) -> Value
 
 @excel("COUNTIFS", Cells(repeat=True), Anything(repeat=True), dated=True, facts=Facts(exact_steps=True))
 def count_ifs(*pairs: Value, date1904: bool = False) -> Value:
-    """The number of positions at which all ranges meet the criteria that follow them."""
+    """Count the positions at which all ranges meet the criteria that follow them."""
     return _conditional(pairs[0], pairs, _count, date1904)
 
 

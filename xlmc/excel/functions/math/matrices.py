@@ -36,7 +36,7 @@ _WIDEST: Final = 16384
 
 
 def _matrix(value: Value) -> tuple[Floats, Codes]:
-    """The numbers, and the first error of each trial, which broadcasts over the matrix: (n, r, c), (n, 1, 1)."""
+    """Return the numbers, and the first error of each trial, which broadcasts over the matrix: (n, r, c), (n, 1, 1)."""
     cells = value.as_range()
     other = np.where(cells.kinds >= ERROR, cells.kinds - np.uint8(ERROR), np.uint8(ErrorCode.VALUE))
     codes = np.where(cells.kinds == NUMBER, np.uint8(0), other).astype(np.uint8)
@@ -65,7 +65,7 @@ def product(left: Value, right: Value) -> Value:
 
 @excel("MDETERM", Arrays)
 def determinant(matrix: Value) -> Value:
-    """Determinant; `#VALUE!` unless the matrix is square."""
+    """Return the determinant; `#VALUE!` unless the matrix is square."""
     a, errors = _matrix(matrix)
     if a.shape[1] != a.shape[2]:
         return constant(ErrorCode.VALUE)
@@ -110,7 +110,7 @@ def _eliminate(matrix: Floats) -> tuple[Floats, Floats]:
 
 @excel("MUNIT", Anything, returns=Kind.ANY, facts=Facts(spills=True))
 def unit_matrix(dimension: Value) -> Value:
-    """Unit matrix; `#VALUE!` of no rows, or of more than a sheet has columns.
+    """Return the unit matrix; `#VALUE!` of no rows, or of more than a sheet has columns.
 
     Raises:
         ShapeVaries: the size is not the same in every trial.
@@ -132,7 +132,7 @@ def transpose(cells: Value) -> Value:
 
 
 def _cells(value: Value) -> tuple[Floats, Codes]:
-    """The numbers and kinds of a range, or of one value, cell by cell: (n, k), (n, k)."""
+    """Return the numbers and kinds of a range, or of one value, cell by cell: (n, k), (n, k)."""
     return flatten_cells(value.numbers, value), flatten_cells(value.kinds, value)
 
 

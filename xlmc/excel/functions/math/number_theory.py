@@ -35,7 +35,7 @@ _DOUBLE_FACTORIALS: Final = np.array([_double_factorial(n) for n in range(-1, 30
 
 
 def _first_error(x: Floats, errors: Codes, bad: Bools) -> Codes:
-    """The first error of each trial, `#NUM!` where a number is bad: (n, k) -> (n,)."""
+    """Return the first error of each trial, `#NUM!` where a number is bad: (n, k) -> (n,)."""
     found = np.where((errors == 0) & bad, np.uint8(ErrorCode.NUM), errors).astype(np.uint8)
     return first_error_in_row(found)
 
@@ -50,7 +50,7 @@ def gcd(*values: Value) -> Value:
 
 
 def _without_blanks(values: Sequence[Value], x: Floats) -> Floats:
-    """The numbers, but 1 for each empty cell, which changes no multiple; unless all cells are empty: (n, k)."""
+    """Return the numbers, but 1 for each empty cell, which changes no multiple; unless all cells are empty: (n, k)."""
     empty = [
         flatten_cells((value.kinds == BLANK) & (value.numbers.ndim == 3), value)  # what is left out of a call is 0
         for value in values

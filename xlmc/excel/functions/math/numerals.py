@@ -42,7 +42,7 @@ def _numeral(value: int, form: int) -> str:
 
 
 def _next_letters(value: int, form: int) -> tuple[str, int]:
-    """What comes first in the numeral, a letter or a pair such as IV, and what it counts.
+    """Yield what comes first in the numeral, a letter or a pair such as IV, and what it counts.
 
     In the classic form, the letter that is subtracted is the next power of ten below. Each further form allows one
     letter smaller; of those allowed, the smallest is taken that still brings the large letter down to the value.
@@ -64,7 +64,7 @@ def _next_letters(value: int, form: int) -> tuple[str, int]:
 @excel("ARABIC", Anything)
 @per_object
 def arabic(numeral: object) -> float | ErrorCode:
-    """Number of a Roman numeral in any form: a letter left of a larger one is subtracted; "" is 0."""
+    """Return the number of a Roman numeral in any form: a letter left of a larger one is subtracted; "" is 0."""
     if numeral is None:
         return 0.0
     if not isinstance(numeral, str) or len(numeral) > _LONGEST:
@@ -88,7 +88,7 @@ def _add_letters(letters: str) -> float:
 
 
 def digits_of(number: int, base: int) -> str:
-    """A whole number, 0 or more, in a base from 2 to 36; 0 has no digits."""
+    """Write a whole number, 0 or more, in a base from 2 to 36; 0 has no digits."""
     text = ""
     while number:
         number, digit = divmod(number, base)
@@ -97,7 +97,7 @@ def digits_of(number: int, base: int) -> str:
 
 
 def read_digits(text: str, base: int) -> int | None:
-    """The whole number that digits in a base stand for, 0 for none; None when a character is no such digit."""
+    """Return the whole number that digits in a base stand for, 0 for none; None when a character is no such digit."""
     if any(digit not in _DIGITS[:base] for digit in text.upper()):
         return None
     return int(text or "0", base)
@@ -115,7 +115,7 @@ def base(number: float, radix: float, length: float) -> str | ErrorCode:
 @excel("DECIMAL", Text, Number)
 @per_element
 def decimal(text: str, radix: float) -> float | ErrorCode:
-    """Number that digits in a base stand for; `#NUM!` for others than digits of that base."""
+    """Return the number that digits in a base stand for; `#NUM!` for others than digits of that base."""
     if len(text) > _LONGEST:
         return ErrorCode.VALUE
     if not 2 <= radix < 37:

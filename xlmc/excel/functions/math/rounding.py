@@ -64,7 +64,7 @@ class _Grid:
         self.n = np.where(self.reaches(self.n + 1), self.n + 1, self.n)
 
     def multiple(self, n: Floats) -> Floats:
-        """The n-th multiple."""
+        """Return the n-th multiple."""
         return np.asarray(n / self._up * self._down)
 
     def reaches(self, n: Floats) -> Bools:

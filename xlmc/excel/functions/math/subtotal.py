@@ -62,12 +62,12 @@ class Skips:
 
 
 def subtotal_skips(number: int) -> Skips:
-    """What `SUBTOTAL(number, …)` leaves out: with 101 to 111 also what is hidden by hand."""
+    """Return what `SUBTOTAL(number, …)` leaves out: with 101 to 111 also what is hidden by hand."""
     return Skips(nested=True, filtered=True, hidden=number > 100)
 
 
 def aggregate_skips(options: int) -> Skips:
-    """What `AGGREGATE(…, options, …)` leaves out."""
+    """Return what `AGGREGATE(…, options, …)` leaves out."""
     hidden = options in (1, 3, 5, 7)
     return Skips(nested=options < 4, filtered=hidden, hidden=hidden)
 
@@ -92,7 +92,9 @@ def aggregate(number: int, options: int, values: Sequence[Value]) -> Value:
 
 
 def _rank(value: Value) -> Value:
-    """The rank that is asked for: a range of one cell becomes a single value, so that the result is single, too."""
+    """Return the rank that is asked for: a range of one cell becomes a single value, so that the result is
+    single, too.
+    """
     return map_parts(value, lambda part: part[:, 0, 0]) if value.shape[1:] == (1, 1) else value
 
 
@@ -132,13 +134,15 @@ def _by_number(number: Value, compute: Callable[[int], Value]) -> Value:
 
 @excel("SUBTOTAL", Number, Cells(repeat=True))
 def _subtotal(number: Value, *values: Value) -> Value:
-    """The function of that number of the ranges: 1 AVERAGE, 2 COUNT, 3 COUNTA, 4 MAX, 5 MIN, 6 PRODUCT, …, 9 SUM, …."""
+    """Return the function of that number of the ranges: 1 AVERAGE, 2 COUNT, 3 COUNTA, 4 MAX, 5 MIN, 6 PRODUCT, …, 9
+    SUM, ….
+    """
     return _by_number(number, lambda chosen: subtotal(chosen, values))
 
 
 @excel("AGGREGATE", Number, Number, Arrays(repeat=True))
 def _aggregate(number: Value, options: Value, *values: Value) -> Value:
-    """The function of that number of the ranges: as SUBTOTAL, and 12 MEDIAN to 19 QUARTILE.EXC.
+    """Return the function of that number of the ranges: as SUBTOTAL, and 12 MEDIAN to 19 QUARTILE.EXC.
 
     With options 2, 3, 6 and 7 errors are left out.
     """

@@ -98,7 +98,7 @@ class _Tangents:
         self._plain, self._by_tangents = plain, by_tangents
 
     def __call__(self, *x: Floats, out: Floats | None = None) -> Floats:
-        """The function of one array of radians, of any shape."""
+        """Return the function of one array of radians, of any shape."""
         if not BY_TANGENTS:
             return np.asarray(self._plain(*x, out=out))
         angles = np.ascontiguousarray(x[0], dtype=np.float64)

@@ -73,7 +73,7 @@ def _is_system(token: Token) -> bool:
 
 
 def moment_layout(tokens: Sequence[Token]) -> MomentLayout:
-    """The layout of a section with parts of dates or times.
+    """Return the layout of a section with parts of dates or times.
 
     Raises:
         FormatError: it has digit placeholders as well.
@@ -160,7 +160,7 @@ class _Clock:
         self._date1904, self._twelve_hours = date1904, half_days
 
     def write_token(self, token: Token) -> str:
-        """What a token writes."""
+        """Return what a token writes."""
         match token.mark:
             case Mark.PART:
                 return self._part(token.text[0], len(token.text))
@@ -213,7 +213,7 @@ def _pad(number: int, count: int) -> str:
 
 
 def _number_or_name(number: int, count: int, name: str) -> str:
-    """A number (1 or 2 letters), or its name: short (3), in full (4), or the first letter (5, months only)."""
+    """Write a number (1 or 2 letters), or its name: short (3), in full (4), or the first letter (5, months only)."""
     if count < 3:
         return _pad(number, count)
     return name[:3] if count == 3 else name[0] if count == 5 and name in MONTHS else name

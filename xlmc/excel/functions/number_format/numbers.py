@@ -49,7 +49,7 @@ class _DecimalLayout:
         return self.fill(whole.lstrip("0"), decimals), not number
 
     def fill(self, whole: str, decimals: str) -> str:
-        """The digits in their placeholders; whole digits stand before the point even if no placeholder does."""
+        """Put the digits into their placeholders; whole digits stand before the point even if no placeholder does."""
         text = fill_whole(self.before, whole, self.grouped)
         if self.after is None:
             return text
@@ -57,7 +57,7 @@ class _DecimalLayout:
 
 
 def decimal_layout(tokens: Sequence[Token]) -> _DecimalLayout:
-    """The layout of a section with digit placeholders."""
+    """Return the layout of a section with digit placeholders."""
     places, grouped, thousands = read_commas(tokens)
     percents = sum(token.mark is Mark.PERCENT for token in tokens)
     points = [index for index, token in enumerate(places) if token.mark is Mark.POINT]
@@ -107,7 +107,7 @@ class _ExponentLayout:
 
 
 def exponent_layout(tokens: Sequence[Token]) -> _ExponentLayout:
-    """The layout of a section with an exponent.
+    """Return the layout of a section with an exponent.
 
     Raises:
         FormatError: there is no digit placeholder before or behind the `E`.
@@ -176,7 +176,9 @@ class _FractionLayout:
         return f"{fill_whole(self.numerator, str(n))}{self.stroke}{self._denominator(d)}"
 
     def _denominator(self, d: int) -> str:
-        """The digits, then what unused placeholders write; or zeros before the digits if the format begins with 0."""
+        """Write the digits, then what unused placeholders write; or zeros before the digits if the format begins with
+        0.
+        """
         placeholders = _placeholders(self.denominator)
         digits = str(d)
         if placeholders[:1] == "0":
@@ -184,13 +186,13 @@ class _FractionLayout:
         return digits + placeholders[len(digits) :].replace("?", " ").replace("#", "")
 
     def _zero_fraction(self, whole: tuple[Token, ...]) -> str:
-        """What stands for a fraction of 0: spaces where any `?` aligns the number, else nothing."""
+        """Return what stands for a fraction of 0: spaces where any `?` aligns the number, else nothing."""
         width = len(self.gap) + len(self.numerator) + len(self.stroke) + len(self.denominator)
         aligned = "?" in _placeholders(whole) + _placeholders(self.numerator) + _placeholders(self.denominator)
         return " " * width if aligned else ""
 
     def _gap_without_whole(self, whole: tuple[Token, ...]) -> str:
-        """What stands for the gap behind a whole number that is left out."""
+        """Return what stands for the gap behind a whole number that is left out."""
         return " " * len(self.gap) if "?" in _placeholders(whole) + _placeholders(self.numerator) else ""
 
     def _rest(self) -> str:
@@ -219,7 +221,7 @@ def approximate(x: float, largest: int) -> tuple[int, int]:
 
 
 def fraction_layout(tokens: Sequence[Token]) -> _FractionLayout:
-    """The layout of a section with digit placeholders and a stroke.
+    """Return the layout of a section with digit placeholders and a stroke.
 
     Raises:
         FormatError: the numerator or the denominator is missing.
@@ -246,12 +248,12 @@ def fraction_layout(tokens: Sequence[Token]) -> _FractionLayout:
 
 
 def _end_of_digits(tokens: Sequence[Token]) -> int:
-    """The position at which the last digit placeholder ends; 0 without one."""
+    """Return the position at which the last digit placeholder ends; 0 without one."""
     return max((index + 1 for index, token in enumerate(tokens) if token.mark is Mark.DIGIT), default=0)
 
 
 def _start_of_run(tokens: Sequence[Token]) -> int:
-    """The position at which the digit placeholders at the end start."""
+    """Return the position at which the digit placeholders at the end start."""
     start = len(tokens)
     while start and tokens[start - 1].mark is Mark.DIGIT:
         start -= 1
@@ -259,7 +261,7 @@ def _start_of_run(tokens: Sequence[Token]) -> int:
 
 
 def _denominator(tokens: Sequence[Token]) -> tuple[list[Token], list[Token]]:
-    """The first run of digit placeholders, or the first number, and what stands behind it."""
+    """Return the first run of digit placeholders, or the first number, and what stands behind it."""
     start = next((index for index, token in enumerate(tokens) if _is_placeholder(token)), len(tokens))
     fixed = start < len(tokens) and tokens[start].mark is Mark.NUMERAL
     end = start

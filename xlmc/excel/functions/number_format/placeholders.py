@@ -70,12 +70,12 @@ class TextLayout:
     tokens: tuple[Token, ...]
 
     def write_text(self, text: str) -> str:
-        """The text in its placeholder or placeholders."""
+        """Put the text into its placeholder or placeholders."""
         return "".join(text if t.mark in (Mark.AT, Mark.GENERAL) else t.text for t in self.tokens)
 
 
 def text_layout(tokens: Sequence[Token]) -> TextLayout:
-    """The layout of the section for texts.
+    """Return the layout of the section for texts.
 
     Raises:
         FormatError: it has a digit placeholder, or a part of a date.
@@ -93,7 +93,9 @@ _SIX: Final = Context(prec=6, rounding=ROUND_HALF_UP)
 
 
 def general_in_cell(size: float) -> str:
-    """A number, 0 or more, in General format as a cell shows it: in 11 characters, with an exponent if need be."""
+    """Write a number, 0 or more, in General format as a cell shows it: in 11 characters, with an exponent if
+    need be.
+    """
     number = round_to_15_digits(size)
     exponent = number.adjusted() if number else 0
     if -10 < exponent < _WIDTH:
@@ -137,7 +139,9 @@ def fill_whole(tokens: Sequence[Token], digits: str, grouped: bool = False) -> s
 
 
 def _separator(glyph: str, index: int) -> str:
-    """What stands to the right of every third placeholder: a comma, or a space if the placeholder writes a space."""
+    """Return what stands to the right of every third placeholder: a comma, or a space if the placeholder writes a
+    space.
+    """
     if index == 0 or index % 3 or not glyph:
         return ""
     return " " if glyph == " " else ","

@@ -45,7 +45,7 @@ class NumberFormat:
     for_texts: TextLayout | None
 
     def number(self, x: float, date1904: bool = False) -> str:
-        """A number as the format writes it.
+        """Write a number as the format does.
 
         Raises:
             FormatError: it cannot be shown, as a date before 1900.
@@ -62,7 +62,7 @@ class NumberFormat:
         return f"-{text}" if x < 0 and not (without_minus or zero) else text
 
     def text(self, text: str) -> str:
-        """A text as the format writes it: as it is, unless a section is for texts."""
+        """Write a text as the format does: as it is, unless a section is for texts."""
         return text if self.for_texts is None else self.for_texts.write_text(text)
 
     def _choose(self, x: float) -> tuple[Layout, bool] | None:
@@ -95,7 +95,7 @@ class NumberFormat:
 
 @lru_cache(maxsize=1024)
 def parse_format(text: str) -> NumberFormat:
-    """The number format of a text.
+    """Read the number format of a text.
 
     Raises:
         FormatError: Excel does not take it as one.
@@ -154,7 +154,7 @@ class _Section:
 
 
 def _section_of(tokens: Sequence[Token]) -> _Section:
-    """The section for numbers that the tokens make.
+    """Return the section for numbers that the tokens make.
 
     Raises:
         FormatError: they do not go together.

@@ -58,7 +58,7 @@ class Token:
 
 
 def literal(text: str) -> Token:
-    """A text that stands for itself."""
+    """Make a text that stands for itself."""
     return Token(Mark.LITERAL, text)
 
 
@@ -93,7 +93,7 @@ _CONDITION: Final = re.compile(r"(<=|>=|<>|<|>|=) *[+-]?[0-9.]+(E[+-]?[0-9]+)?",
 
 
 def tokenise(text: str) -> list[list[Token]]:
-    """The tokens of every section, at least one section.
+    """Return the tokens of every section, at least one section.
 
     Raises:
         FormatError: a quote or bracket is not closed, or what stands in a bracket is nothing.

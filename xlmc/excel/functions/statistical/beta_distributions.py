@@ -61,7 +61,9 @@ def beta_inv(p: Floats, a: Floats, b: Floats, low: Floats, high: Floats) -> Floa
 
 
 def _to_beta(x: Floats, m: Floats, n: Floats) -> tuple[Floats, Floats]:
-    """The beta-distributed number that belongs to an F number, and 1 less it: m·x and n as shares of their sum."""
+    """Return the beta-distributed number that belongs to an F number, and 1 less it: m·x and n as shares of
+    their sum.
+    """
     ratio = np.minimum(np.divide(m, n) * x, _HUGE)
     return ratio / (1 + ratio), 1 / (1 + ratio)
 
@@ -144,7 +146,7 @@ def t_outside(t: Floats, freedom: Floats) -> Floats:
 
 
 def _t_quantile(p: Floats, freedom: Floats) -> Floats:
-    """The t, 0 or more, that the size of a t number exceeds with probability p; arrays that broadcast."""
+    """Return the t, 0 or more, that the size of a t number exceeds with probability p; arrays that broadcast."""
     rest, share = inverse_beta(freedom / 2, _HALF, p)
     far = rest < 1 / _FAR
     near = np.sqrt(freedom * (share / np.where(far, 1.0, rest)))
@@ -205,7 +207,7 @@ def t_inv(p: Floats, freedom: Floats) -> Floats:
 
 @excel("T.INV.2T", Number, Number, aliases=("TINV",))
 def t_inv_2t(p: Floats, freedom: Floats) -> Floats:
-    """The t, 0 or more, that the size of a t number exceeds with probability p."""
+    """Return the t, 0 or more, that the size of a t number exceeds with probability p."""
     valid, k = degrees_of_freedom(freedom)
     inside = valid & (p > 0) & (p <= 1)
     return np.where(inside, _t_quantile(np.where(inside, p, 0.5), k), NUM)

@@ -17,7 +17,9 @@ __all__: list[str] = []
 
 
 def _joint(x: Floats, y: Floats, counts: Bools) -> tuple[Floats, Floats, Floats, Floats]:
-    """The sums of the squared distances of x and of y and of their products, and the number of pairs: (n,) each."""
+    """Return the sums of the squared distances of x and of y and of their products, and the number of pairs:
+    (n,) each.
+    """
     (_, dx, k), (_, dy, _) = mean_of(x, counts), mean_of(y, counts)
     return row_sums(dx * dx), row_sums(dy * dy), row_sums(dx * dy), k
 
@@ -69,7 +71,7 @@ def slope(y: Floats, x: Floats, counts: Bools) -> Floats:
 
 
 def _line(y: Floats, x: Floats, counts: Bools) -> tuple[Floats, Floats, Floats, Bools]:
-    """The means of x and y, the slope, and whether x varies: (n,) each."""
+    """Return the means of x and y, the slope, and whether x varies: (n,) each."""
     (mean_x, dx, _), (mean_y, dy, _) = mean_of(x, counts), mean_of(y, counts)
     xx = row_sums(dx * dx)
     return mean_x, mean_y, row_sums(dx * dy) / np.where(xx > 0, xx, 1.0), xx > 0
@@ -78,7 +80,7 @@ def _line(y: Floats, x: Floats, counts: Bools) -> tuple[Floats, Floats, Floats, 
 @excel("INTERCEPT", Arrays, Arrays, facts=Facts(empty_cells=EmptyCells.PAIRED))
 @of_pairs
 def intercept(y: Floats, x: Floats, counts: Bools) -> Floats:
-    """The value of the line of least squares at x = 0; `#DIV/0!` where x does not vary."""
+    """Return the value of the line of least squares at x = 0; `#DIV/0!` where x does not vary."""
     mean_x, mean_y, steepness, varies = _line(y, x, counts)
     return np.where(varies, mean_y - steepness * mean_x, DIV0)
 
@@ -86,7 +88,7 @@ def intercept(y: Floats, x: Floats, counts: Bools) -> Floats:
 @excel("STEYX", Arrays, Arrays, facts=Facts(empty_cells=EmptyCells.PAIRED))
 @of_pairs
 def standard_error(y: Floats, x: Floats, counts: Bools) -> Floats:
-    """Standard error of y about the line; `#DIV/0!` of fewer than three pairs, or where x does not vary."""
+    """Return the standard error of y about the line; `#DIV/0!` of fewer than three pairs, or where x does not vary."""
     (_, dx, k), (_, dy, _) = mean_of(x, counts), mean_of(y, counts)
     _, _, steepness, varies = _line(y, x, counts)
     off = dy - steepness[:, None] * dx
@@ -95,7 +97,9 @@ def standard_error(y: Floats, x: Floats, counts: Bools) -> Floats:
 
 @excel("FORECAST.LINEAR", Number, Arrays, Arrays, aliases=("FORECAST",), facts=Facts(empty_cells=EmptyCells.PAIRED))
 def forecast(at: Value, ys: Value, xs: Value) -> Value:
-    """The line of least squares at a point; `#DIV/0!` where x does not vary, `#N/A` for ranges of unequal size."""
+    """Return the line of least squares at a point; `#DIV/0!` where x does not vary, `#N/A` for ranges of
+    unequal size.
+    """
     (points,), codes, shape = points_of(at)
     pairs = pairs_of(ys, xs)
     if pairs is None:

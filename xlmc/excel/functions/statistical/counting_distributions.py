@@ -79,7 +79,7 @@ def binom_dist_range(trials: Floats, p: Floats, least: Floats, most: Floats | No
 
 @excel("BINOM.INV", Number, Number, Number, aliases=("CRITBINOM",))
 def binom_inv(trials: Floats, p: Floats, alpha: Floats) -> Floats:
-    """The least number of successes whose cumulative probability reaches alpha; for less than 2³¹ trials."""
+    """Return the least number of successes whose cumulative probability reaches alpha; for less than 2³¹ trials."""
     n = np.floor(trials)
     inside = (n >= 0) & (n < _LARGEST) & _is_open(p) & _is_open(alpha)
     n, p, alpha = np.where(inside, n, 0.0), np.where(inside, p, 0.5), np.where(inside, alpha, 0.5)
@@ -149,7 +149,7 @@ def _probability_up_to(x: Floats, n: Floats, m: Floats, total: Floats) -> Floats
 
 
 def _relative_tail(k: Floats, n: Floats, m: Floats, total: Floats) -> Floats:
-    """The sum of the probabilities of k, k - 1, … in units of that of k; k is at most about the mean."""
+    """Return the sum of the probabilities of k, k - 1, … in units of that of k; k is at most about the mean."""
     term = np.ones(np.shape(k))
     tail, k = term, np.maximum(k, 0.0)
     while np.any(term > tail * 1e-17):

@@ -162,7 +162,8 @@ _register("STDEVPA", "Standard deviation of the values themselves; `#DIV/0!` of 
 
 @cache
 def array_values(count_texts: bool, spills: bool = False) -> Function:
-    """The function that leaves of an array what `AVERAGEA` and its like count: numbers, and texts if `count_texts`.
+    """Return the function that leaves of an array what `AVERAGEA` and its like count: numbers, and texts if
+    `count_texts`.
 
     Excel does not count logicals there, and texts only in AVERAGEA, as the authors of ClosedXML measured.
     """

@@ -45,7 +45,7 @@ def _modes_of(values: tuple[Value, ...]) -> _Modes:
 
 
 def _list_numbers(value: Value) -> Sample:
-    """The numbers of an argument; a value or cell by itself must be a number."""
+    """Return the numbers of an argument; a value or cell by itself must be a number."""
     alone = value.shape[1:] in ((), (1, 1))
     kinds = flatten_cells(value.kinds, value)
     wrong = error_where(alone & (kinds != NUMBER) & (kinds < ERROR), ErrorCode.VALUE)
@@ -55,7 +55,9 @@ def _list_numbers(value: Value) -> Sample:
 
 
 def _first_indices(x: Floats, counts: Bools) -> Indices:
-    """The `indices` of `_Modes`: sorted numbers form runs of equal ones; the longest, from two on, are the modes."""
+    """Return the `indices` of `_Modes`: sorted numbers form runs of equal ones; the longest, from two on, are the
+    modes.
+    """
     k = x.shape[1]
     order = np.argsort(np.where(counts, x, np.inf), axis=1, kind="stable")
     ordered, valid = np.take_along_axis(x, order, axis=1), np.take_along_axis(counts, order, axis=1)
@@ -68,7 +70,7 @@ def _first_indices(x: Floats, counts: Bools) -> Indices:
 
 @excel("MODE.SNGL", Arrays(repeat=True), aliases=("MODE",), facts=Facts(empty_cells=EmptyCells.IGNORED))
 def mode(*values: Value) -> Value:
-    """The most frequent number, the first of several; `#N/A` where none occurs twice."""
+    """Return the most frequent number, the first of several; `#N/A` where none occurs twice."""
     modes = _modes_of(values)
     first = np.minimum(modes.indices[:, :1], modes.x.shape[1] - 1)
     found = np.take_along_axis(modes.x, first, axis=1)[:, 0]

@@ -13,7 +13,7 @@ __all__ = ["chi_square_above"]
 
 @excel("GAMMA", Number)
 def gamma(x: Floats) -> Floats:
-    """The gamma function; `#NUM!` for 0 and negative whole numbers."""
+    """Return the gamma function; `#NUM!` for 0 and negative whole numbers."""
     from scipy.special import gamma as function
 
     pole = (x <= 0) & (np.floor(x) == x)

@@ -18,7 +18,7 @@ def _below(z: Floats) -> Floats:
 
 
 def _quantile(p: Floats) -> Floats:
-    """The inverse of `_below`; any number where p is no probability above 0 and below 1."""
+    """Return the inverse of `_below`; any number where p is no probability above 0 and below 1."""
     from scipy.special import ndtri
 
     return np.asarray(ndtri(np.where(_is_open_probability(p), p, 0.5)))
@@ -44,7 +44,7 @@ def gauss(z: Floats) -> Floats:
 
 @excel("NORM.S.DIST", Number, Logical)
 def norm_s_dist(z: Floats, cumulative: Bools) -> Floats:
-    """Standard normal distribution."""
+    """Return the standard normal distribution."""
     return by_form(cumulative, lambda: _below(z), lambda: phi(z))
 
 
@@ -69,7 +69,7 @@ def standardize(x: Floats, mean: Floats, deviation: Floats) -> Floats:
 
 @excel("NORM.DIST", Number, Number, Number, Logical, aliases=("NORMDIST",))
 def norm_dist(x: Floats, mean: Floats, deviation: Floats, cumulative: Bools) -> Floats:
-    """Normal distribution."""
+    """Return the normal distribution."""
     spread = np.where(np.asarray(deviation) > 0, deviation, 1.0)
     z = (x - mean) / spread
     result = by_form(cumulative, lambda: _below(z), lambda: phi(z) / spread)

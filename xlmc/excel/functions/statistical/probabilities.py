@@ -32,7 +32,9 @@ __all__ = [
 
 
 def incomplete_beta(a: Floats, b: Floats, x: Floats, y: Floats) -> Floats:
-    """The regularised incomplete beta function, the probability of a number up to x = 1 - y; arrays that broadcast."""
+    """Return the regularised incomplete beta function, the probability of a number up to x = 1 - y; arrays that
+    broadcast.
+    """
     from scipy.special import betainc, betaincc
 
     low = np.asarray(x) <= y
@@ -43,7 +45,7 @@ def incomplete_beta(a: Floats, b: Floats, x: Floats, y: Floats) -> Floats:
 
 
 def inverse_beta(a: Floats, b: Floats, p: Floats) -> tuple[Floats, Floats]:
-    """The quantile x of the beta distribution, and 1 - x; arrays that broadcast."""
+    """Return the quantile x of the beta distribution, and 1 - x; arrays that broadcast."""
     from scipy.special import betainccinv, betaincinv
 
     return np.asarray(betaincinv(a, b, p)), np.asarray(betainccinv(b, a, p))
@@ -59,7 +61,9 @@ def degrees_of_freedom(given: Floats) -> tuple[Bools, Floats]:
 
 
 def by_form(cumulative: Bools, probability: Callable[[], Any], density: Callable[[], Any]) -> Floats:
-    """The probability up to a point where `cumulative`, else the density there; each is computed only if needed."""
+    """Return the probability up to a point where `cumulative`, else the density there; each is computed only
+    if needed.
+    """
     below = probability() if np.any(cumulative) else 0.0
     at = 0.0 if np.all(cumulative) else density()
     return np.where(cumulative, below, at)

@@ -22,7 +22,7 @@ _FALLING: Final = np.zeros((1, 1))
 
 
 def _interpolate(sample: Sample, ranks: Floats) -> Floats:
-    """The numbers at ranks (n, m), counted from 0, interpolated; any number where they lie outside."""
+    """Return the numbers at ranks (n, m), counted from 0, interpolated; any number where they lie outside."""
     last = np.maximum(sample.size - 1, 0.0)
     low = np.floor(np.clip(ranks, 0.0, last))
     ordered = np.where(np.isinf(ordered := sample.ordered()), 0.0, ordered)
@@ -55,14 +55,14 @@ def _exclusive(sample: Sample, share: Floats) -> Floats:
 )
 @at_each()
 def percentile(sample: Sample, share: Floats) -> Floats:
-    """The number below which a share, 0 to 1, of the sample lies."""
+    """Return the number below which a share, 0 to 1, of the sample lies."""
     return _inclusive(sample, share)
 
 
 @excel("PERCENTILE.EXC", Cells, Number, facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT))
 @at_each()
 def percentile_exclusive(sample: Sample, share: Floats) -> Floats:
-    """The number below which a share lies, ends excluded: `#NUM!` for shares nearer to 0 or 1 than 1/(n + 1)."""
+    """Return the number below which a share lies, ends excluded: `#NUM!` for shares nearer to 0 or 1 than 1/(n + 1)."""
     return _exclusive(sample, share)
 
 
@@ -75,19 +75,19 @@ def percentile_exclusive(sample: Sample, share: Floats) -> Floats:
 )
 @at_each()
 def quartile(sample: Sample, quarters: Floats) -> Floats:
-    """The number below which so many quarters, 0 to 4, of the sample lie."""
+    """Return the number below which so many quarters, 0 to 4, of the sample lie."""
     return _inclusive(sample, np.floor(quarters) / 4)
 
 
 @excel("QUARTILE.EXC", Cells, Number, facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT))
 @at_each()
 def quartile_exclusive(sample: Sample, quarters: Floats) -> Floats:
-    """The number below which so many quarters, 1 to 3, of the sample lie, ends excluded."""
+    """Return the number below which so many quarters, 1 to 3, of the sample lie, ends excluded."""
     return _exclusive(sample, np.floor(quarters) / 4)
 
 
 def _rank_of(sample: Sample, x: Floats) -> tuple[Floats, Bools]:
-    """The rank of numbers (n, m) in the sample, counted from 0, and whether they lie inside it."""
+    """Return the rank of numbers (n, m) in the sample, counted from 0, and whether they lie inside it."""
     below, equal = sample.count_where(np.less, x), sample.count_where(np.equal, x)
     inside = (equal > 0) | ((below > 0) & (below < sample.size))
     ordered = np.where(np.isinf(ordered := sample.ordered()), 0.0, ordered)
@@ -98,7 +98,7 @@ def _rank_of(sample: Sample, x: Floats) -> tuple[Floats, Bools]:
 
 
 def _cut(share: Floats, digits: Floats) -> Floats:
-    """A share cut to so many digits."""
+    """Cut a share to so many digits."""
     tens = TENS[np.clip(np.floor(digits), 0, 15).astype(np.intp)]
     return np.asarray(int_(share * tens) / tens)
 
@@ -118,7 +118,7 @@ def _cut_or_error(sample: Sample, inside: Bools, digits: Floats, share: Floats) 
 )
 @at_each()
 def percent_rank(sample: Sample, x: Floats, digits: Floats = _THREE) -> Floats:
-    """The share of the sample below a number, 0 to 1, cut to so many digits; `#N/A` outside the sample."""
+    """Return the share of the sample below a number, 0 to 1, cut to so many digits; `#N/A` outside the sample."""
     rank, inside = _rank_of(sample, x)
     share = np.where(sample.size > 1, rank / np.maximum(sample.size - 1, 1.0), 1.0)
     return _cut_or_error(sample, inside, digits, np.where(inside, share, 0.0))
@@ -127,13 +127,15 @@ def percent_rank(sample: Sample, x: Floats, digits: Floats = _THREE) -> Floats:
 @excel("PERCENTRANK.EXC", Cells, Number, Number(default=3.0), facts=Facts(empty_cells=EmptyCells.IGNORED))
 @at_each()
 def percent_rank_exclusive(sample: Sample, x: Floats, digits: Floats = _THREE) -> Floats:
-    """The share of the sample below a number, ends excluded, cut to so many digits; `#N/A` outside the sample."""
+    """Return the share of the sample below a number, ends excluded, cut to so many digits; `#N/A` outside the
+    sample.
+    """
     rank, inside = _rank_of(sample, x)
     return _cut_or_error(sample, inside, digits, np.where(inside, (rank + 1) / (sample.size + 1), 0.0))
 
 
 def _rank(x: Floats, sample: Sample, rising: Floats) -> tuple[Floats, Floats]:
-    """The rank of each number, and how many equal it; with `rising` 0 the largest has rank 1."""
+    """Return the rank of each number, and how many equal it; with `rising` 0 the largest has rank 1."""
     ahead = np.where(rising == 0, sample.count_where(np.greater, x), sample.count_where(np.less, x))
     return ahead + 1, sample.count_where(np.equal, x)
 

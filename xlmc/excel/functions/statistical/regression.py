@@ -54,14 +54,14 @@ class _Known:
 
 
 def _none_if_blank(value: Value | None) -> Value | None:
-    """The argument; None for one that is left out, or left empty between commas."""
+    """Return the argument; None if it is left out, or left empty between commas."""
     if value is None or value.numbers.ndim == 3:
         return value
     return None if require_same_in_all_trials(value.kinds == BLANK) else value
 
 
 def _numbers(value: Value) -> tuple[Floats, Codes]:
-    """A range all of numbers (n, r, c), and its first error: (n,)."""
+    """Return a range all of numbers (n, r, c), and its first error: (n,)."""
     cells = value.as_range()
     kinds = flatten_cells(cells.kinds, cells)
     wrong = error_where((kinds != NUMBER) & (kinds < ERROR), ErrorCode.VALUE)
@@ -71,7 +71,7 @@ def _numbers(value: Value) -> tuple[Floats, Codes]:
 
 
 def _read_known(ys: Value, xs: Value | None) -> _Known | None:
-    """The observations; None if the sizes of y and x do not go together. Without x it is 1, 2, 3, …"""
+    """Return the observations; None if the sizes of y and x do not go together. Without x it is 1, 2, 3, …"""
     y, wrong_y = _numbers(ys)
     shape = y.shape[1:]
     if (given := _none_if_blank(xs)) is None:
@@ -96,7 +96,7 @@ def _variables(x: Floats, in_row: bool, shape: tuple[int, ...]) -> Floats | None
 
 
 def _read_condition(value: Value | None, otherwise: bool) -> tuple[Bools, Codes]:
-    """A condition that may be left out: (n,) each."""
+    """Return a condition that may be left out: (n,) each."""
     if value is None:
         return np.full(1, otherwise), np.zeros(1, np.uint8)
     truth, errors = value.to_logicals()
@@ -105,7 +105,7 @@ def _read_condition(value: Value | None, otherwise: bool) -> tuple[Bools, Codes]
 
 
 def _logarithms(known: _Known) -> _Known:
-    """The observations of ln y; `#NUM!` where some y is not above 0."""
+    """Return the observations of ln y; `#NUM!` where some y is not above 0."""
     positive = np.asarray(known.y > 0)
     errors = first_error(known.errors, error_where(np.asarray((known.y <= 0).any(axis=1)), ErrorCode.NUM))
     return _Known(np.log(np.where(positive, known.y, 1.0)), known.x, errors, known.in_row, known.shape)
@@ -116,13 +116,13 @@ def _ratio(above: Floats, below: Floats) -> Floats:
 
 
 def _coefficients(found: _Fit, *, exponential: bool) -> Floats:
-    """The coefficients, that of the last variable first, then the intercept: (n, p + 1)."""
+    """Return the coefficients, that of the last variable first, then the intercept: (n, p + 1)."""
     result = np.concatenate([found.slopes[:, ::-1], found.intercept[:, None]], axis=1)
     return np.exp(result) if exponential else result
 
 
 def _table(found: _Fit, free: Bools, first: Floats) -> Floats:
-    """The five rows of LINEST under the first: (n, 5, p + 1)."""
+    """Return the five rows of LINEST under the first: (n, 5, p + 1)."""
     n = max(first.shape[0], free.shape[0])
     table = np.full((n, 5, first.shape[1]), NA)
     left = found.freedom > 0
@@ -174,7 +174,7 @@ def logest(ys: Value, xs: Value | None = None, const: Value | None = None, stats
 
 
 def _read_new(known: _Known, xs: Value | None, new: Value | None) -> tuple[Floats, Codes, tuple[int, ...]] | None:
-    """New observations (n, m, p), their errors, and rows and columns of the result; None if they do not fit."""
+    """Return new observations (n, m, p), their errors, and rows and columns of the result; None if they do not fit."""
     given = _none_if_blank(new)
     if given is None:
         return known.x, np.zeros(1, np.uint8), known.shape
@@ -206,7 +206,7 @@ _NEW = (Arrays(default=None), Arrays(default=None), _SETTING)
 
 @excel("TREND", Arrays, *_NEW, returns=Kind.ANY, facts=Facts(spills=True))
 def trend(ys: Value, xs: Value | None = None, new: Value | None = None, const: Value | None = None) -> Value:
-    """The plane of least squares at new x, or at the known ones: (n, rows, columns of these).
+    """Return the plane of least squares at new x, or at the known ones: (n, rows, columns of these).
 
     `#REF!` for sizes that do not go together.
     """
@@ -215,7 +215,7 @@ def trend(ys: Value, xs: Value | None = None, new: Value | None = None, const: V
 
 @excel("GROWTH", Arrays, *_NEW, returns=Kind.ANY, facts=Facts(spills=True))
 def growth(ys: Value, xs: Value | None = None, new: Value | None = None, const: Value | None = None) -> Value:
-    """The exponential curve of LOGEST at new x, or at the known ones; `#NUM!` where some y is not above 0."""
+    """Return the exponential curve of LOGEST at new x, or at the known ones; `#NUM!` where some y is not above 0."""
     return _predict(ys, xs, new, const, exponential=True)
 
 
@@ -248,7 +248,7 @@ class _Fit:
     freedom: Floats
 
     def at(self, x: Floats) -> Floats:
-        """The plane at new observations: (n, m, p) -> (n, m)."""
+        """Return the plane at new observations: (n, m, p) -> (n, m)."""
         result = self.intercept[:, None] + np.zeros(x.shape[:2])
         for j in range(x.shape[2]):
             result = result + self.slopes[:, j, None] * x[:, :, j]
@@ -256,7 +256,7 @@ class _Fit:
 
 
 def fit(y: Floats, x: Floats, free: Bools) -> _Fit:
-    """The plane through observations y (n, m) at x (n, m, p); with an intercept where `free` (n,), else through 0."""
+    """Fit a plane to observations y (n, m) at x (n, m, p); with an intercept where `free` (n,), else through 0."""
     m = y.shape[1]
     mean_y, centred = _centre(y, free)
     means, columns = zip(*(_centre(x[:, :, j], free) for j in range(x.shape[2])), strict=True)
@@ -281,7 +281,9 @@ def fit(y: Floats, x: Floats, free: Bools) -> _Fit:
 
 
 def _centre(x: Floats, free: Bools) -> tuple[Floats, Floats]:
-    """The mean of each row and the distances from it, or 0 and the row where not `free`: (n, m) -> (n,), (n, m)."""
+    """Return the mean of each row and the distances from it, or 0 and the row where not `free`: (n, m) ->
+    (n,), (n, m).
+    """
     mean, distance, _ = mean_of(x, np.ones(x.shape, bool))
     return np.where(free, mean, 0.0), np.where(free[:, None], distance, x)
 
@@ -318,13 +320,13 @@ class _Frame:
         return found
 
     def residual(self, y: Floats, slopes: list[Floats]) -> Floats:
-        """What remains of y without the columns times these coefficients: (n, m)."""
+        """Return what remains of y without the columns times these coefficients: (n, m)."""
         for slope, column in zip(slopes, self.columns, strict=True):
             y = y - slope[:, None] * column
         return y
 
     def inverse(self) -> list[list[Floats]]:
-        """The inverse of the triangle, 0 for what depends on others: p rows of p (n,)."""
+        """Return the inverse of the triangle, 0 for what depends on others: p rows of p (n,)."""
         p = len(self.columns)
         rows: list[list[Floats]] = [[np.zeros(1)] * p for _ in range(p)]
         for j in range(p):

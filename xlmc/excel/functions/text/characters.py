@@ -23,23 +23,25 @@ _UNKNOWN: Final = 63.0
 
 @excel("CHAR", Number, returns=Kind.TEXT, macintosh=True)
 def char(codes: Floats, *, macintosh: bool = False) -> Value:
-    """The character of a code from 1 to 255 in the character set of Windows, or of the Macintosh."""
+    """Return the character of a code from 1 to 255 in the character set of Windows, or of the Macintosh."""
     return _CHARACTERS[macintosh](codes)
 
 
 @excel("CODE", Text, macintosh=True)
 def code(texts: Objects, *, macintosh: bool = False) -> Value:
-    """The code of the first character in the character set of Windows, or of the Macintosh; 63 if it is not there."""
+    """Return the code of the first character in the character set of Windows, or of the Macintosh; 63 if it is not
+    there.
+    """
     return _CODES[macintosh](texts)
 
 
 def _codes_to_characters(characters: str) -> Callable[..., Value]:
-    """A body that gives the characters of codes; `characters` stand in the order of their codes."""
+    """Make a body that gives the characters of codes; `characters` stand in the order of their codes."""
     return per_element(lambda code: characters[math.trunc(code)] if 1 <= code < 256 else ErrorCode.VALUE)
 
 
 def _characters_to_codes(characters: str) -> Callable[..., Value]:
-    """A body that gives the codes of first characters."""
+    """Make a body that gives the codes of first characters."""
     codes = {character: float(number) for number, character in enumerate(characters)}
     return per_element(lambda text: codes.get(text[0], _UNKNOWN) if text else ErrorCode.VALUE)
 
@@ -58,7 +60,7 @@ _CODES: Final = tuple(map(_characters_to_codes, _SETS))
 @excel("UNICHAR", Number, returns=Kind.TEXT)
 @per_element
 def unichar(code: float) -> object:
-    """The character of a Unicode code point; `#N/A` for surrogates and for code points without a character."""
+    """Return the character of a Unicode code point; `#N/A` for surrogates and for code points without a character."""
     number = math.trunc(code)
     if not 1 <= number <= 0x10FFFF:
         return ErrorCode.VALUE
@@ -68,12 +70,12 @@ def unichar(code: float) -> object:
 @excel("UNICODE", Text)
 @per_element
 def unicode(text: str) -> object:
-    """The Unicode code point of the first character."""
+    """Return the Unicode code point of the first character."""
     return float(ord(text[0])) if text else ErrorCode.VALUE
 
 
 def _upper(character: str) -> str:
-    """The capital of a letter, unless it is more than one character, as of ß."""
+    """Return the capital of a letter, unless it is more than one character, as of ß."""
     return character.upper() if len(character.upper()) == 1 else character
 
 
@@ -84,28 +86,28 @@ def _lower(character: str) -> str:
 @excel("UPPER", Text, returns=Kind.TEXT)
 @per_element
 def upper(text: str) -> str:
-    """The text in capitals."""
+    """Return the text in capitals."""
     return "".join(map(_upper, text))
 
 
 @excel("LOWER", Text, returns=Kind.TEXT)
 @per_element
 def lower(text: str) -> str:
-    """The text in small letters."""
+    """Return the text in small letters."""
     return "".join(map(_lower, text))
 
 
 @excel("ASC", Text, returns=Kind.TEXT)
 @per_element
 def half_width(text: str) -> str:
-    """The text: only versions of Excel for Chinese, Japanese and Korean have full-width characters to change."""
+    """Return the text: only versions of Excel for Chinese, Japanese and Korean have full-width characters to change."""
     return text
 
 
 @excel("PROPER", Text, returns=Kind.TEXT)
 @per_element
 def proper(text: str) -> str:
-    """A capital for each letter that follows no letter, small letters for the others."""
+    """Write a capital for each letter that follows no letter, small letters for the others."""
     pairs = zip(" " + text, text, strict=False)
     return "".join(_lower(letter) if before.isalpha() else _upper(letter) for before, letter in pairs)
 
@@ -113,19 +115,19 @@ def proper(text: str) -> str:
 @excel("TRIM", Text, returns=Kind.TEXT)
 @per_element
 def trim(text: str) -> str:
-    """The text without spaces at its ends, and with single spaces between words; no-break spaces stay."""
+    """Return the text without spaces at its ends, and with single spaces between words; no-break spaces stay."""
     return _SPACES.sub(" ", text).strip(" ")
 
 
 @excel("CLEAN", Text, returns=Kind.TEXT)
 @per_element
 def clean(text: str) -> str:
-    """The text without its control characters, 0 to 31."""
+    """Return the text without its control characters, 0 to 31."""
     return _CONTROLS.sub("", text)
 
 
 @excel("ENCODEURL", Text, returns=Kind.TEXT)
 @per_element
 def encode_url(text: str) -> str:
-    """The text as part of a web address: all but letters, digits and `-._~` become UTF-8 bytes such as `%20`."""
+    """Return the text as part of a web address: all but letters, digits and `-._~` become UTF-8 bytes such as `%20`."""
     return quote(text, safe="", errors="replace")

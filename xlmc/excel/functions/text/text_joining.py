@@ -21,26 +21,26 @@ __all__: list[str] = []
 @excel("CONCATENATE", Text(repeat=True), returns=Kind.TEXT, aliases=("&",))
 @per_element
 def concatenate(*texts: str) -> object:
-    """The texts, one after the other; `a & b & c` is one call, for two would copy the first texts twice."""
+    """Join the texts, one after the other; `a & b & c` is one call, for two would copy the first texts twice."""
     joined = "".join(texts)
     return joined if fits_in_a_cell(joined) else ErrorCode.VALUE
 
 
 @excel("CONCAT", Cells(repeat=True), returns=Kind.TEXT, facts=Facts(empty_cells=EmptyCells.IGNORED))
 def concat(*values: Value) -> Value:
-    """The texts of all cells, row by row."""
+    """Return the texts of all cells, row by row."""
     texts, errors = _texts_of_cells(values)
     return with_errors(_value_of_trials(_join_within_limit(row) for row in texts.tolist()), errors)
 
 
 def _join_within_limit(texts: list[str]) -> str:
-    """The texts joined; where they are much too long together, a text that is just too long stands for them."""
+    """Join the texts; where they are much too long together, a text that is just too long stands for them."""
     return "".join(texts) if sum(map(len, texts)) <= 2 * LONGEST else "x" * (LONGEST + 1)
 
 
 @excel("TEXTJOIN", Cells, Logical, Cells(repeat=True), returns=Kind.TEXT)
 def text_join(delimiters: Value, ignore_empty: Value, *values: Value) -> Value:
-    """The texts of all cells with a delimiter between each two; several delimiters take turns.
+    """Join the texts of all cells with a delimiter between each two; several delimiters take turns.
 
     Where `ignore_empty`, empty texts are left out.
     """
@@ -70,7 +70,7 @@ def _join(delimiters: list[str], texts: list[str], ignore_empty: bool) -> object
 
 
 def _texts_of_cells(values: Iterable[Value]) -> tuple[Objects, Codes]:
-    """The texts of all cells, (n, k), and the first error of each trial."""
+    """Return the texts of all cells, (n, k), and the first error of each trial."""
     columns, codes = [], []
     for value in values:
         texts, errors = value.to_texts()
@@ -104,7 +104,7 @@ def _refuse_long(texts: Objects) -> Value:
 
 
 def _quote(item: object) -> str:
-    """A value as it is written in a formula: texts in quotes."""
+    """Write a value as in a formula: texts in quotes."""
     return '"{}"'.format(item.replace('"', '""')) if isinstance(item, str) else object_text(item)
 
 
@@ -116,7 +116,7 @@ def value_to_text(value: Value, style: Value | None = None) -> Value:
 
 
 def _choose_style(concise: Value, strict: Value, style: Value | None) -> Value:
-    """The text in the style asked for; `#VALUE!` for a style that is neither 0 nor 1."""
+    """Return the text in the style asked for; `#VALUE!` for a style that is neither 0 nor 1."""
     return _in_style(concise, strict, constant(0.0) if style is None else style)
 
 

@@ -21,7 +21,7 @@ _WIDE: Final = Context(prec=1000, rounding=ROUND_HALF_UP)
 @excel("TEXT", Anything, Text, returns=Kind.TEXT, dated=True)
 @per_object
 def text(value: object, code: object, *, date1904: bool = False) -> object:
-    """A number in a number format, `TEXT(0.285, "0.0%")`; a text or logical as the format writes texts.
+    """Write a number in a number format, `TEXT(0.285, "0.0%")`; a text or logical as the format writes texts.
 
     Raises:
         FormulaError: the format asks for numerals, or for names of months and days, that are not known here.
@@ -39,7 +39,7 @@ def text(value: object, code: object, *, date1904: bool = False) -> object:
 
 
 def _number_to_write(value: object, date1904: bool) -> float | None:
-    """A number, a blank as 0, or a text that is a number; None for any other."""
+    """Return a number, a blank as 0, or a text that is a number; None for any other."""
     if isinstance(value, str):
         return parse_number(value, date1904)
     return None if isinstance(value, bool) else 0.0 if value is None else float(value)  # type: ignore[arg-type]
@@ -48,19 +48,19 @@ def _number_to_write(value: object, date1904: bool) -> float | None:
 @excel("FIXED", Number, Number(default=2.0), Logical(default=False), returns=Kind.TEXT)
 @per_element
 def fixed(number: float, decimals: float, no_commas: bool) -> object:
-    """A number rounded to so many decimals, with commas between thousands unless `no_commas`."""
+    """Write a number rounded to so many decimals, with commas between thousands unless `no_commas`."""
     return _write_rounded(number, decimals, "0" if no_commas else "#,##0", "-{}")
 
 
 @excel("DOLLAR", Number, Number(default=2.0), returns=Kind.TEXT, aliases=("USDOLLAR",))
 @per_element
 def dollar(number: float, decimals: float) -> object:
-    """An amount in dollars, rounded to so many decimals; in brackets if negative."""
+    """Write an amount in dollars, rounded to so many decimals; in brackets if negative."""
     return _write_rounded(number, decimals, "$#,##0", "({})")
 
 
 def _write_rounded(number: float, decimals: float, whole: str, negative: str) -> object:
-    """The rounded number in the format `whole` with decimals; a negative one inserted in the text `negative`."""
+    """Write the rounded number in the format `whole` with decimals; a negative one inserted in the text `negative`."""
     digits = math.trunc(max(decimals, -400.0))
     if digits > _MOST_DECIMALS:
         return ErrorCode.VALUE
@@ -74,7 +74,9 @@ def _write_rounded(number: float, decimals: float, whole: str, negative: str) ->
 @excel("VALUE", Anything, dated=True)
 @per_object
 def value(item: object, *, date1904: bool = False) -> object:
-    """The number that a text stands for, as arithmetic would read it: amounts, percentages, fractions, dates, times."""
+    """Return the number that a text stands for, as arithmetic would read it: amounts, percentages, fractions, dates,
+    times.
+    """
     if isinstance(item, bool):
         return ErrorCode.VALUE
     number = _number_to_write(item, date1904)
@@ -84,7 +86,7 @@ def value(item: object, *, date1904: bool = False) -> object:
 @excel("NUMBERVALUE", Text, Text(default="."), Text(default=","))
 @per_element
 def number_value(source: str, point: str, group: str) -> object:
-    """The number that a text stands for, with these characters as decimal point and as separator of thousands.
+    """Return the number that a text stands for, with these characters as decimal point and as separator of thousands.
 
     Spaces do not count, each percent sign divides by 100, and an empty text is 0.
     """

@@ -30,14 +30,14 @@ def fits_in_a_cell(text: str) -> bool:
 
 
 def to_units(text: str) -> str:
-    """The text with a character for each of its UTF-16 units, so that Python counts as Excel does."""
+    """Return the text with a character for each of its UTF-16 units, so that Python counts as Excel does."""
     if text.isascii() or max(text) < "\U00010000":
         return text
     return "".join(map(chr, np.frombuffer(text.encode("utf-16-le", "surrogatepass"), "<u2")))
 
 
 def from_units(text: str) -> str:
-    """The text with its pairs of surrogates joined again; half a pair becomes U+FFFD."""
+    """Return the text with its pairs of surrogates joined again; half a pair becomes U+FFFD."""
     if text.isascii() or not any("\ud800" <= character < "\ue000" for character in text):
         return text
     return text.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "replace")
@@ -69,7 +69,7 @@ def length(text: str) -> float:
 @per_element
 @in_units
 def left(text: str, count: float) -> object:
-    """The first characters."""
+    """Return the first characters."""
     return ErrorCode.VALUE if count < 0 else text[: math.trunc(count)]
 
 
@@ -77,7 +77,7 @@ def left(text: str, count: float) -> object:
 @per_element
 @in_units
 def right(text: str, count: float) -> object:
-    """The last characters."""
+    """Return the last characters."""
     return ErrorCode.VALUE if count < 0 else text[max(len(text) - math.trunc(count), 0) :]
 
 
@@ -85,7 +85,7 @@ def right(text: str, count: float) -> object:
 @per_element
 @in_units
 def middle(text: str, start: float, count: float) -> object:
-    """A number of characters from a position on."""
+    """Return a number of characters from a position on."""
     if start < 1 or count < 0:
         return ErrorCode.VALUE
     first = math.trunc(start) - 1
@@ -96,7 +96,7 @@ def middle(text: str, start: float, count: float) -> object:
 @per_element
 @in_units
 def replace(text: str, start: float, count: float, new: str) -> object:
-    """The text with so many characters from a position on replaced."""
+    """Return the text with so many characters from a position on replaced."""
     if start < 1 or count < 0:
         return ErrorCode.VALUE
     first = math.trunc(start) - 1
@@ -108,7 +108,7 @@ def replace(text: str, start: float, count: float, new: str) -> object:
 @per_element
 @in_units
 def repeat(text: str, count: float) -> object:
-    """The text so many times over; `#VALUE!` beyond 32,767 characters."""
+    """Return the text so many times over; `#VALUE!` beyond 32,767 characters."""
     times = math.trunc(count)
     if count < 0 or times * len(text) > LONGEST:
         return ErrorCode.VALUE
@@ -122,7 +122,7 @@ _WILDCARD: Final = re.compile(r"~.|~$|.", re.DOTALL)
 @per_element
 @in_units
 def find(wanted: str, text: str, start: float) -> object:
-    """The position of a text in another one, searched from a position on; capitals count."""
+    """Return the position of a text in another one, searched from a position on; capitals count."""
     first = math.trunc(start) - 1
     found = text.find(wanted, first) if 0 <= first <= len(text) else -1
     return ErrorCode.VALUE if found < 0 else found + 1.0
@@ -139,7 +139,7 @@ def search(wanted: str, text: str, start: float) -> object:
 
 
 def _first_fit(wanted: str, text: str, start: int) -> int | None:
-    """The first position where the pattern fits.
+    """Return the first position where the pattern fits.
 
     Each piece between stars is looked for behind the piece before. If that fails after the first position of the first
     piece, it fails after every later one.
@@ -159,7 +159,7 @@ def _first_fit(wanted: str, text: str, start: int) -> int | None:
 
 @lru_cache(maxsize=1024)
 def _pieces(wanted: str) -> tuple[re.Pattern[str], ...]:
-    """The pattern cut at its stars, each piece compiled."""
+    """Cut the pattern at its stars, each piece compiled."""
     pieces = [""]
     for token in _WILDCARD.findall(wanted):
         if token == "*":
@@ -172,7 +172,7 @@ def _pieces(wanted: str) -> tuple[re.Pattern[str], ...]:
 @excel("SUBSTITUTE", Text, Text, Text, Number(default=None), returns=Kind.TEXT)
 @per_element
 def substitute(text: str, old: str, new: str, which: float | None) -> object:
-    """The text with `new` for every `old`, or for the occurrence `which` alone; capitals count."""
+    """Return the text with `new` for every `old`, or for the occurrence `which` alone; capitals count."""
     if which is not None and which < 1:
         return ErrorCode.VALUE
     if not old:

@@ -55,7 +55,7 @@ def _piece(
     at_end: object = None,
     instead: object = None,
 ) -> object:
-    """What stands on one side of the n-th delimiter."""
+    """Return what stands on one side of the n-th delimiter."""
     error = _first_error(text, *marks, which, fold, at_end)
     if error is not None:
         return error
@@ -78,14 +78,14 @@ def _first_error(*items: object) -> ErrorCode | None:
 
 
 def _whole_number(item: object, default: int) -> int | None:
-    """A number rounded down, -1.6 to -2; a default for what is left out."""
+    """Round a number down, -1.6 to -2; a default for what is left out."""
     if item is None:
         return default
     return math.floor(item) if isinstance(item, float | bool) else None
 
 
 def _occurrence(text: str, marks: list[str], number: int, fold: bool, at_end: bool) -> tuple[int, int] | None:
-    """The start and the end of the n-th delimiter, counted from the end if negative; None when there are fewer.
+    """Return the start and the end of the n-th delimiter, counted from the end if negative; None when there are fewer.
 
     With `at_end`, the end of the text that the count runs to is a delimiter, too. An empty delimiter is found at once.
     """
@@ -101,7 +101,7 @@ def _occurrence(text: str, marks: list[str], number: int, fold: bool, at_end: bo
 
 
 def _delimiter(marks: Iterable[str], fold: bool) -> re.Pattern[str]:
-    """A pattern that finds any of the delimiters, the longest first."""
+    """Compile a pattern that finds any of the delimiters, the longest first."""
     longest_first = sorted(set(marks), key=len, reverse=True)
     return re.compile("|".join(map(re.escape, longest_first)), re.IGNORECASE if fold else 0)
 
@@ -122,7 +122,7 @@ _register("TEXTAFTER", "What stands after the n-th delimiter; `#N/A` without it.
     facts=Facts(spills=True),
 )
 def text_split(text: Value, *options: Value) -> Value:
-    """A text cut into columns, and rows, at delimiters; short rows are filled up with `pad`. Several texts give the
+    """Cut a text into columns, and rows, at delimiters; short rows are filled up with `pad`. Several texts give the
     first piece of each.
 
     Raises:
@@ -139,7 +139,7 @@ def text_split(text: Value, *options: Value) -> Value:
 
 
 def _cells_of_trial(value: Value, index: int) -> list[object]:
-    """The cells of one trial."""
+    """Return the cells of one trial."""
     objects = value.objects()
     return list(objects[index : index + 1].ravel() if len(objects) > 1 else objects.ravel())
 

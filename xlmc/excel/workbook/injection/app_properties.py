@@ -28,7 +28,7 @@ class _Group:
 
 
 def list_sheets(xml: bytes, part: str, present: Collection[str], added: Sequence[str]) -> bytes:
-    """The part with the added sheets listed behind those present.
+    """Return the part with the added sheets listed behind those present.
 
     Raises:
         WorkbookError: the part is not XML.
@@ -47,7 +47,7 @@ def list_sheets(xml: bytes, part: str, present: Collection[str], added: Sequence
 
 
 def unlist_sheets(xml: bytes, part: str, present: Collection[str], removed: Collection[str]) -> bytes:
-    """The part without the removed sheets, and without the named ranges on them (`Results!Print_Titles`).
+    """Return the part without the removed sheets, and without the named ranges on them (`Results!Print_Titles`).
 
     Args:
         xml: the part.

@@ -46,7 +46,7 @@ class NewSheet:
 
 
 def add_sheets(xml: bytes, part: str, new: Sequence[NewSheet]) -> bytes:
-    """The workbook part with the sheets behind all others.
+    """Return the workbook part with the sheets behind all others.
 
     Raises:
         WorkbookError: the part is not XML, or holds no list of sheets.
@@ -64,7 +64,7 @@ def add_sheets(xml: bytes, part: str, new: Sequence[NewSheet]) -> bytes:
 
 
 def add_pointers(xml: bytes, part: str, targets: Sequence[tuple[str, str]]) -> tuple[bytes, list[str]]:
-    """A rels part with pointers to the targets, given as (type, target), and their new ids.
+    """Return a rels part with pointers to the targets, given as (type, target), and their new ids.
 
     Raises:
         WorkbookError: the part is not XML.
@@ -80,7 +80,7 @@ def add_pointers(xml: bytes, part: str, targets: Sequence[tuple[str, str]]) -> t
 
 
 def drop_pointers(xml: bytes, part: str, ids: Collection[str]) -> bytes:
-    """A rels part without the pointers of these ids.
+    """Return a rels part without the pointers of these ids.
 
     Raises:
         WorkbookError: the part is not XML.
@@ -93,7 +93,7 @@ def drop_pointers(xml: bytes, part: str, ids: Collection[str]) -> bytes:
 
 
 def sheet_list(root: Element, part: str) -> Element:
-    """The element that lists the sheets.
+    """Return the element that lists the sheets.
 
     Raises:
         WorkbookError: there is none.
@@ -124,7 +124,7 @@ def _sheet_element(document: SplicedXml, sheet: NewSheet, sheet_id: int) -> byte
 
 
 def _free_ids(sheets: Element, wanted: int) -> list[int]:
-    """The numbers behind the last one used, as Excel counts; lower ones where there are no more."""
+    """Yield the numbers behind the last one used, as Excel counts; lower ones where there are no more."""
     used = {int(i) for i in (sheet.attributes.get("sheetId", "") for sheet in sheets.children) if i.isdecimal()}
     last = max(used, default=0)
     free = (number for number in chain(range(last + 1, _LAST_SHEET_ID + 1), range(1, last)) if number not in used)
@@ -132,7 +132,7 @@ def _free_ids(sheets: Element, wanted: int) -> list[int]:
 
 
 def _keep_unlisted_apart(document: SplicedXml, present: int, added: int) -> None:
-    """A damaged book may have names of a sheet that does not exist: they must not become names of a new one."""
+    """Keep names of sheets that do not exist, as damaged books have, from becoming names of a new sheet."""
     holder = document.root.find("definedNames")
     for name in holder.children if holder else ():
         index = name.attributes.get("localSheetId", "")
@@ -179,12 +179,12 @@ _MARK = "_xlmc_result"
 
 
 def mark(sheet: str) -> SheetName:
-    """The name that says the sheet of this name is a result sheet."""
+    """Return the name that says the sheet of this name is a result sheet."""
     return SheetName(_MARK, _text(sheet), hidden=True)
 
 
 def marked_sheets(root: Element, part: str) -> list[int]:
-    """The positions of the result sheets among all sheets, in order.
+    """Return the positions of the result sheets among all sheets, in order.
 
     Raises:
         WorkbookError: the workbook part holds no list of sheets.
@@ -199,13 +199,15 @@ def marked_sheets(root: Element, part: str) -> list[int]:
 
 
 def marked_names(names: Iterable[DefinedName]) -> list[str]:
-    """The names of the result sheets, by the defined names of a workbook."""
+    """Return the names of the result sheets, by the defined names of a workbook."""
     marks = (name for name in names if name.name == _MARK)
     return [mark.sheet for mark in marks if mark.sheet is not None and mark.text == _text(mark.sheet)]
 
 
 def without_sheets(document: SplicedXml, gone: Sequence[int]) -> bytes:
-    """The workbook part without the sheets at these positions and without their names; other positions close up."""
+    """Return the workbook part without the sheets at these positions and without their names; other positions
+    close up.
+    """
     sheets = _children(document.root, "sheets")
     left = [index for index in range(len(sheets)) if index not in gone]
     visible = next((index for index in left if sheets[index].attributes.get("state", "visible") == "visible"), None)
@@ -231,7 +233,7 @@ def _close_up_names(document: SplicedXml, gone: Sequence[int]) -> None:
 
 
 def _close_up_views(document: SplicedXml, gone: Sequence[int], shown: int) -> None:
-    """A window that showed a sheet that is gone shows the first visible one."""
+    """Have a window that showed a sheet that is gone show the first visible one."""
     for view in _children(document.root, "bookViews"):
         for attribute in ("activeTab", "firstSheet"):
             text = view.attributes.get(attribute, "0")

@@ -31,7 +31,7 @@ Content = str | float | bool | ErrorCode | None
 
 
 def with_contents(xml: bytes, part: str, sheet: str, contents: Mapping[tuple[int, int], Content]) -> bytes:
-    """A sheet's part with these contents; a cell keeps its look, and a new one takes that of the cell above it.
+    """Return a sheet's part with these contents; a cell keeps its look, and a new one takes that of the cell above it.
 
     Args:
         xml: the part.
@@ -72,7 +72,7 @@ def with_contents(xml: bytes, part: str, sheet: str, contents: Mapping[tuple[int
 
 
 def with_last_row(xml: bytes, part: str, last: int) -> bytes:
-    """A table's part whose table, and its filter, reach to another last row.
+    """Return a table's part whose table, and its filter, reach to another last row.
 
     Raises:
         WorkbookError: the part is no table.
@@ -87,7 +87,7 @@ def with_last_row(xml: bytes, part: str, last: int) -> bytes:
 
 
 def with_calculation_on_load(xml: bytes, part: str) -> bytes:
-    """A workbook's part that has Excel calculate all formulas when it opens the file."""
+    """Return a workbook's part that has Excel calculate all formulas when it opens the file."""
     document = SplicedXml(xml, part)
     found = document.root.find("calcPr")
     if found is not None:

@@ -32,7 +32,7 @@ class Roles:
 
 
 def roles(parts: Mapping[str, bytes]) -> Roles:
-    """The roles in this package.
+    """Return the roles in this package.
 
     Raises:
         WorkbookError: the package does not say which part is the workbook, or lacks its content types.
@@ -55,7 +55,7 @@ def _target(parts: Mapping[str, bytes], part: str, kind: str) -> str | None:
 
 
 def types_of(xml: bytes, names: Collection[str]) -> dict[str, str]:
-    """The content type of each named part.
+    """Return the content type of each named part.
 
     Raises:
         KeyError: a part of unknown type, which a built workbook does not hold.
@@ -71,7 +71,7 @@ def types_of(xml: bytes, names: Collection[str]) -> dict[str, str]:
 
 
 def add_types(xml: bytes, types: Mapping[str, str]) -> bytes:
-    """The part with these parts' types said in it: pictures by extension where that is still free, others by name.
+    """Add these parts' types to the part: pictures by extension where that is still free, others by name.
 
     Raises:
         WorkbookError: the part is not XML.
@@ -91,7 +91,7 @@ def add_types(xml: bytes, types: Mapping[str, str]) -> bytes:
 
 
 def drop_types(xml: bytes, dropped: Collection[str], remaining: Collection[str]) -> bytes:
-    """The part without the dropped parts, and without extensions that only they had.
+    """Return the part without the dropped parts, and without extensions that only they had.
 
     Raises:
         WorkbookError: the part is not XML.

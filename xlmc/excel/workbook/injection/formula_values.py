@@ -60,7 +60,7 @@ def with_values(
 
 
 def without_formula_values(parts: Mapping[str, bytes]) -> dict[str, bytes]:
-    """The parts, without the cached values of formulas where a run may write others.
+    """Return the parts, without the cached values of formulas where a run may write others.
 
     These are workbooks whose cells or names call a function of @RISK or Crystal Ball, or that hold a what-if data
     table. A run may fill in results, and all that is computed from them, or #N/A where it cannot; what Excel itself
@@ -75,7 +75,7 @@ def without_formula_values(parts: Mapping[str, bytes]) -> dict[str, bytes]:
 
 
 def _without_tables(xml: bytes) -> bytes:
-    """A sheet without the values of its data tables, whose cells hold no formulas but for the first."""
+    """Return a sheet without the values of its data tables, whose cells hold no formulas but for the first."""
     areas = [
         area
         for found in _DATA_TABLE.finditer(xml)
@@ -143,7 +143,7 @@ def _clear(document: SplicedXml, cell: Element) -> None:
 
 
 def _write(value: CellValue) -> tuple[str, str]:
-    """The type of a cell that holds the value, and its text as XML."""
+    """Return the type of a cell that holds the value, and its text as XML."""
     match value:
         case bool():
             return "b", str(int(value))

@@ -40,7 +40,7 @@ _TOKEN = re.compile(
 
 
 def free_names(wanted: Sequence[str], taken: Collection[str]) -> dict[str, str]:
-    """A sheet name for each one wanted: itself, or `Results (2)` where the workbook has a sheet of that name."""
+    """Choose a sheet name for each one wanted: itself, or `Results (2)` where the workbook has a sheet of that name."""
     used = {name.casefold() for name in taken}
     found: dict[str, str] = {}
     for name in wanted:
@@ -50,18 +50,20 @@ def free_names(wanted: Sequence[str], taken: Collection[str]) -> dict[str, str]:
 
 
 def free_table_name(wanted: str, taken: Collection[str]) -> str:
-    """The table name itself, or `Trials_2`. `taken` holds folded names of tables and of defined names alike."""
+    """Choose a table name: the name itself, or `Trials_2`. `taken` holds folded names of tables and of defined names
+    alike.
+    """
     candidates = (wanted if number == 1 else f"{wanted}_{number}" for number in count(1))
     return next(candidate for candidate in candidates if candidate.casefold() not in taken)
 
 
 def quoted(name: str) -> str:
-    """The name as a formula may always write it: `O'Hara -> 'O''Hara'`."""
+    """Write the name as a formula may always do: `O'Hara -> 'O''Hara'`."""
     return "'" + name.replace("'", "''") + "'"
 
 
 def rename_in_formula(formula: str, sheets: Mapping[str, str], tables: Mapping[str, str]) -> str:
-    """The formula with sheets and tables called by their new names; strings and other workbooks' sheets stay.
+    """Return the formula with sheets and tables called by their new names; strings and other workbooks' sheets stay.
 
     Keys of both mappings are folded old names.
     """
@@ -86,7 +88,8 @@ def _numbered(name: str) -> Iterator[str]:
 
 
 def reached(parts: Mapping[str, bytes], *starts: str) -> list[str]:
-    """The parts themselves and all they lead to, nearest first, each once. `""` is the package, and not in the list.
+    """Return the parts themselves and all they lead to, nearest first, each once. `""` is the package, and not in the
+    list.
 
     Raises:
         WorkbookError: a rels part is not XML.
@@ -101,7 +104,7 @@ def reached(parts: Mapping[str, bytes], *starts: str) -> list[str]:
 
 
 def _pointed_to(parts: Mapping[str, bytes], part: str) -> list[str]:
-    """The parts in this package that one part points to, each once.
+    """Return the parts in this package that one part points to, each once.
 
     Raises:
         WorkbookError: the rels part is not XML.
@@ -139,7 +142,7 @@ def claimed_names(parts: Mapping[str, bytes]) -> set[str]:
 
 
 def free_part_names(wanted: Iterable[str], taken: Iterable[str]) -> dict[str, str]:
-    """New part names by old, numbered on from those taken: `xl/charts/chart1.xml -> xl/charts/chart7.xml`.
+    """Return new part names by old, numbered on from those taken: `xl/charts/chart1.xml -> xl/charts/chart7.xml`.
 
     Part names differ by more than case, and a picture's number is used once whatever its format.
     """
@@ -185,7 +188,7 @@ def free_tables(
 
 
 def tables_in(parts: Mapping[str, bytes], workbook: str) -> Iterator[Mapping[str, str]]:
-    """The attributes of every table of the workbook."""
+    """Return the attributes of every table of the workbook."""
     for sheet in _pointed_to(parts, workbook):
         for rel in relationships(parts, sheet).values():
             if rel.kind == "table" and rel.target in parts:

@@ -61,12 +61,12 @@ class Renames:
     tables: Mapping[str, str] = field(default_factory=dict)
 
     def formula(self, text: str) -> str:
-        """The formula, or link target, with the new names."""
+        """Return the formula, or link target, with the new names."""
         return rename_in_formula(text, self.sheets, self.tables)
 
 
 def at_home(xml: bytes, strings: Sequence[bytes], styles: StyleMap) -> bytes:
-    """The sheet with its styles in the user's numbers, its texts inline, and its tab not selected.
+    """Return the sheet with its styles in the user's numbers, its texts inline, and its tab not selected.
 
     Args:
         xml: a worksheet as XlsxWriter writes it.
@@ -86,18 +86,18 @@ def at_home(xml: bytes, strings: Sequence[bytes], styles: StyleMap) -> bytes:
 
 
 def with_differential(xml: bytes, styles: StyleMap) -> bytes:
-    """The XML with every `dxfId`, `dataDxfId`, … in the user's numbers."""
+    """Return the XML with every `dxfId`, `dataDxfId`, … in the user's numbers."""
     number = _put_number(styles.differential)
     return _TAG.sub(lambda tag: _DIFFERENTIAL.sub(number, tag[0]) if b"xfId=" in tag[0] else tag[0], xml)
 
 
 def shared_items(xml: bytes | None) -> list[bytes]:
-    """The contents of a built workbook's shared strings (`<t>…</t>`, or runs of rich text), in order."""
+    """Return the contents of a built workbook's shared strings (`<t>…</t>`, or runs of rich text), in order."""
     return [] if xml is None else _ITEM.findall(xml)
 
 
 def rename_in_xml(xml: bytes, renames: Renames) -> bytes:
-    """A built part with the new names of sheets and tables in its formulas, links and text boxes."""
+    """Return a built part with the new names of sheets and tables in its formulas, links and text boxes."""
     if not renames.sheets and not renames.tables:
         return xml
 
@@ -123,7 +123,9 @@ def _cells(body: bytes, strings: Sequence[bytes], cells: Sequence[int]) -> bytes
 
 
 def _in_parts(body: bytes) -> Iterator[bytes]:
-    """The rows in parts of about `_AT_ONCE` bytes: the pieces of cells take many times the memory of the text."""
+    """Return the rows in parts of about `_AT_ONCE` bytes: the pieces of cells take many times the memory of
+    the text.
+    """
     start = 0
     while start < len(body):
         end = body.find(b"</row>", start + _AT_ONCE)
@@ -133,7 +135,7 @@ def _in_parts(body: bytes) -> Iterator[bytes]:
 
 
 def _plain_cells(body: bytes, strings: Sequence[bytes], cells: Sequence[int]) -> bytes:
-    """The same as `_cells`, in one cut, for rows in which only tags of cells can hold ` s="`: they have no styles of
+    """Do the same as `_cells`, in one cut, for rows in which only tags of cells can hold ` s="`: they have no styles of
     their own, no formulas and no inline texts.
 
     A cell without a style needs none: the built workbook's first one is the user's first.
@@ -179,7 +181,7 @@ class BuiltBook:
 
 
 def read_built(parts: Mapping[str, bytes]) -> BuiltBook:
-    """The built workbook of a package.
+    """Return the built workbook of a package.
 
     Raises:
         ValueError: it has names for the whole workbook, which might be the user's own, or chart sheets, to which no
@@ -234,7 +236,7 @@ class Carrier:
     tables: TableNumbers
 
     def parts(self) -> dict[str, bytes]:
-        """The new parts, each followed by its rels part."""
+        """Return the new parts, each followed by its rels part."""
         carried = {}
         for old, new in self.names.items():
             carried[new] = self._rewrite(old)
@@ -283,7 +285,7 @@ def relative_target(source: str, target: str) -> str:
 
 
 def _with_axis_format(xml: bytes) -> bytes:
-    """The chart with a number format on every category axis: Excel writes one always, and some programs want it.
+    """Return the chart with a number format on every category axis: Excel writes one always, and some programs want it.
 
     Only the axes are looked at: a chart is one of XlsxWriter's, and mostly numbers.
     """

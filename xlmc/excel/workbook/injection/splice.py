@@ -55,25 +55,25 @@ class Element:
         return self.name.rpartition(" ")[0]
 
     def find_all(self, local: str) -> list[Element]:
-        """The children of that local name in this element's own namespace, in order."""
+        """Return the children of that local name in this element's own namespace, in order."""
         return [child for child in self.children if child.local == local and child.namespace == self.namespace]
 
     def find(self, local: str) -> Element | None:
-        """The first of `find_all`."""
+        """Return the first element of `find_all`."""
         return next(iter(self.find_all(local)), None)
 
     def foreign(self, local: str) -> str | None:
-        """The attribute of that local name in any namespace but none, such as `id` for `r:id`."""
+        """Return the attribute of that local name in any namespace but none, such as `id` for `r:id`."""
         return next((value for name, value in self.attributes.items() if name.endswith(f" {local}")), None)
 
     def canonical(self) -> list[object]:
-        """What the element says, whatever its prefixes, attribute order and layout: nested lists of text."""
+        """Return what the element says, whatever its prefixes, attribute order and layout: nested lists of text."""
         text = self.text if not self.children else self.text.strip()
         return [self.name, sorted(self.attributes.items()), text, [child.canonical() for child in self.children]]
 
 
 def parse_spans(xml: bytes, part: str) -> Element:
-    """The root of a UTF-8 part, every element with its byte offsets.
+    """Return the root of a UTF-8 part, every element with its byte offsets.
 
     Raises:
         WorkbookError: the part is not XML, declares a document type, or nests too deep.
@@ -106,7 +106,7 @@ def parse_spans(xml: bytes, part: str) -> Element:
 
 
 def as_utf8(xml: bytes, part: str) -> bytes:
-    """The same XML in UTF-8, its declaration put right; the same bytes where it is UTF-8 already.
+    """Return the same XML in UTF-8, its declaration put right; the same bytes where it is UTF-8 already.
 
     Raises:
         WorkbookError: the part is in an encoding that is unknown, or not the one it declares.
@@ -179,19 +179,19 @@ class SplicedXml:
         self._edits.append((at, at, b" " + attribute.encode() + b"=" + quoted))
 
     def prefix(self, element: Element) -> str:
-        """The element's own prefix with its colon, as the part writes it; empty for the default namespace."""
+        """Return the element's own prefix with its colon, as the part writes it; empty for the default namespace."""
         name = self._tag_name(element).decode()
         return name[: name.rfind(":") + 1]
 
     def prefix_of(self, namespace: str) -> str | None:
-        """The prefix (without colon) the root element binds to the namespace, if it binds one."""
+        """Return the prefix (without colon) the root element binds to the namespace, if it binds one."""
         for match in self._attributes(self.root):
             if match["name"].startswith(b"xmlns:") and match["quoted"][1:-1] == namespace.encode():
                 return match["name"].removeprefix(b"xmlns:").decode()
         return None
 
     def result(self) -> bytes:
-        """The part with all changes made."""
+        """Return the part with all changes made."""
         edits = sorted([*self._edits, *self._append_edits()], key=lambda edit: edit[:2])
         pieces, at = [], 0
         for start, end, fragment in edits:
@@ -218,7 +218,9 @@ class SplicedXml:
 
 
 def render(tag: str, attributes: Mapping[str, object], content: str | None = None) -> bytes:
-    """An element as text: `tag` with its prefix, attributes in order, `content` XML already (None: self-closed)."""
+    """Write an element as text: `tag` with its prefix, attributes in order, `content` XML already (None:
+    self-closed).
+    """
     pairs = "".join(f" {name}={_quote(value)}" for name, value in attributes.items())
     return (f"<{tag}{pairs}/>" if content is None else f"<{tag}{pairs}>{content}</{tag}>").encode()
 

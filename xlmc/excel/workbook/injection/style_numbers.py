@@ -13,7 +13,9 @@ _STYLED: Final = re.compile(rb"""<(?:\w+:)?(?:c|row|col)\b[^<>]*?\s(?:s|style)=[
 
 
 def styles_from(xml: bytes, least: int) -> set[int]:
-    """The style numbers in a sheet's part that are at least this; a sheet without them is looked through quickly."""
+    """Return the style numbers in a sheet's part that are at least this; a sheet without them is looked through
+    quickly.
+    """
     if _suspect(least).search(xml) is None:
         return set()
     return {number for found in _STYLED.finditer(xml) if (number := int(found[1])) >= least}
@@ -21,7 +23,7 @@ def styles_from(xml: bytes, least: int) -> set[int]:
 
 @cache
 def _suspect(least: int) -> re.Pattern[bytes]:
-    """The pattern of an attribute that may be such a style number."""
+    """Return the pattern of an attribute that may be such a style number."""
     digits = str(least)
     larger = [
         f"{digits[:at]}[{int(digit) + 1}-9]{'[0-9]' * (len(digits) - at - 1)}"

@@ -46,7 +46,7 @@ PLAIN = (
 
 
 def same_styles(styles: bytes) -> StyleMap:
-    """The map for a workbook that takes over the built styles as they are."""
+    """Return the map for a workbook that takes over the built styles as they are."""
     root = parse_spans(styles, "styles")
     sizes = (len(_style_entries(root, "cellXfs")), len(_style_entries(root, "dxfs")))
     return StyleMap(*(tuple(range(size)) for size in sizes))
@@ -55,7 +55,7 @@ def same_styles(styles: bytes) -> StyleMap:
 def merge_styles(
     styles: bytes, part: str, built: bytes, beyond: Callable[[int], Collection[int]] = lambda _: ()
 ) -> tuple[bytes, StyleMap]:
-    """The user's styles part with the built styles added, and where they now are.
+    """Return the user's styles part with the built styles added, and where they now are.
 
     Args:
         styles: the user's part.
@@ -109,7 +109,9 @@ def _normal(root: Element) -> _Normal:
 def _cell_style(
     built: Element, indices: Mapping[str, list[int]], formats: _NumberFormats, normal: _Normal
 ) -> _StyleEntry:
-    """A built cell style in the user's numbers, resting on the user's Normal and saying where it departs from it."""
+    """Put a built cell style into the user's numbers, resting on the user's Normal and saying where it
+    departs from it.
+    """
     entry = _StyleEntry.of(built)
     attributes = dict(entry.attributes)
     attributes["numFmtId"] = formats.number(attributes["numFmtId"])
@@ -123,7 +125,7 @@ def _cell_style(
 
 
 def _differential(built: Element, formats: _NumberFormats) -> _StyleEntry:
-    """A built conditional style with its number format in the user's numbers."""
+    """Put a built conditional style, with its number format, into the user's numbers."""
     entry = _StyleEntry.of(built)
     return _StyleEntry(entry.local, entry.attributes, tuple(_renumbered(child, formats) for child in entry.children))
 
@@ -163,7 +165,7 @@ class _StyleEntry:
         return (self.local, tuple(sorted(self.attributes.items())), tuple(child.key() for child in self.children))
 
     def text(self, prefix: str) -> str:
-        """The entry as XML with that prefix (and its colon) on every element.
+        """Return the entry as XML with that prefix (and its colon) on every element.
 
         Raises:
             ValueError: the entry has an extension, which a built workbook's styles must not.
@@ -187,7 +189,7 @@ class _StyleList:
         self._known = {_StyleEntry.of(entry).key(): index for index, entry in enumerate(entries)}
 
     def index_of(self, entry: _StyleEntry) -> int:
-        """The index of the entry, which is added if it is new."""
+        """Return the index of the entry, which is added if it is new."""
         index = self._known.setdefault(entry.key(), self._size)
         if index == self._size:
             self._new.append(entry)
@@ -242,7 +244,7 @@ class _NumberFormats:
         self._next = max([_FIRST_CUSTOM_FORMAT - 1, *used]) + 1
 
     def number(self, built: str, code: str | None = None) -> str:
-        """The number of a built workbook's format; `code` where the format says it itself."""
+        """Return the number of a built workbook's format; `code` where the format says it itself."""
         if int(built) < _FIRST_CUSTOM_FORMAT and not self._is_redefined(int(built)):
             return built
         code = code or self._codes.get(built) or BUILT_IN[int(built)]
@@ -258,7 +260,9 @@ class _NumberFormats:
 
 
 def _defined_formats(root: Element) -> dict[int, set[str]]:
-    """The codes of each number of a format; one that is defined twice, or in several forms, may have several."""
+    """Return the codes of each number of a format; a number that is defined twice, or in several forms, may have
+    several.
+    """
     found: dict[int, set[str]] = {}
     holder = root.find("numFmts")
     for entry in _descendants(holder) if holder else ():
@@ -268,7 +272,7 @@ def _defined_formats(root: Element) -> dict[int, set[str]]:
 
 
 def _style_entries(root: Element, name: str) -> list[Element]:
-    """The entries of one list of a styles part, in order; none where there is no such list.
+    """Return the entries of one list of a styles part, in order; none where there is no such list.
 
     Each child is one entry, whatever its name: an `mc:AlternateContent` holds one style in several forms.
     """

@@ -57,7 +57,7 @@ _PICTURE: Final = (
 
 
 def parts_of_old_workbook(data: bytes) -> dict[str, bytes]:
-    """The parts of the workbook, with a mark from which a reader says what they come from: see `mark`.
+    """Return the parts of the workbook, with a mark from which a reader says what they come from: see `mark`.
 
     Args:
         data: the file.
@@ -86,7 +86,7 @@ def parts_of_old_workbook(data: bytes) -> dict[str, bytes]:
 
 
 def _with_calculation(xml: bytes, part: str, settings: Mapping[str, str]) -> bytes:
-    """The workbook's part with these settings of Excel's calculation, of which LibreOffice drops some.
+    """Return the workbook's part with these settings of Excel's calculation, of which LibreOffice drops some.
 
     Raises:
         WorkbookError: it has no place for them.
@@ -103,7 +103,7 @@ def _with_calculation(xml: bytes, part: str, settings: Mapping[str, str]) -> byt
 
 
 def _exact(sheet: OldSheet, cells: Mapping[Position, CellContent]) -> dict[Position, float | bool]:
-    """The numbers of cells that LibreOffice has shortened, and the results of formulas as Excel saved them.
+    """Return the numbers of cells that LibreOffice has shortened, and the results of formulas as Excel saved them.
 
     Raises:
         WorkbookError: a constant is another number, or a formula is none any more.
@@ -148,7 +148,7 @@ def _is_number(value: CellValue) -> TypeGuard[float]:
 
 
 def _positions(sheet: OldSheet) -> set[Position]:
-    """The cells that array formulas and what-if tables fill.
+    """Return the cells that array formulas and what-if tables fill.
 
     Raises:
         WorkbookError: they are more than there could be.
@@ -199,7 +199,7 @@ def _put_texts(parts: dict[str, bytes], entry: SheetEntry, texts: Iterable[Shape
 
 
 def _shape(text: ShapeText, number: int) -> str:
-    """A hidden picture of one pixel, as Excel writes it for Crystal Ball."""
+    """Make a hidden picture of one pixel, as Excel writes it for Crystal Ball."""
     name = _NOT_IN_NAMES.sub(lambda found: f"_x{ord(found[0]):04x}_", text.shape)
     more = f"<x:ScriptExtended>{_text_of(text.more)}</x:ScriptExtended>" if text.more else ""
     return (

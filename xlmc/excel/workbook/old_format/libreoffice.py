@@ -41,7 +41,7 @@ _PROFILE: Final = """<?xml version="1.0" encoding="UTF-8"?>
 
 
 def converted_to_xlsx(data: bytes) -> bytes:
-    """The file as LibreOffice writes it as `.xlsx`.
+    """Convert the file with LibreOffice to `.xlsx`.
 
     Raises:
         WorkbookError: LibreOffice is not installed, or cannot convert the file.

@@ -20,7 +20,7 @@ _VERSION: Final = re.compile(rb"<Application>(LibreOffice/[\d.]+)")
 
 
 def with_mark(parts: Mapping[str, bytes], macros: bool) -> dict[str, bytes]:
-    """The parts with the mark, which names the LibreOffice that wrote them, and whether macros were left out."""
+    """Return the parts with the mark, which names the LibreOffice that wrote them, and whether macros were left out."""
     if _PROPERTIES not in parts:
         return dict(parts)
     by = _VERSION.search(parts.get("docProps/app.xml", b""))
@@ -29,7 +29,7 @@ def with_mark(parts: Mapping[str, bytes], macros: bool) -> dict[str, bytes]:
 
 
 def old_workbook_notices(parts: Mapping[str, bytes]) -> Iterator[str]:
-    """What a person should know of a workbook that was an `.xls`, also of one with results in it."""
+    """Return the notices about a workbook that was an `.xls`, also of one with results in it."""
     found = _MARK.search(parts.get(_PROPERTIES, b""))
     if found is not None:
         by = found["by"].decode().replace("/", " ")

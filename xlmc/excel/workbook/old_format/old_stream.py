@@ -99,7 +99,7 @@ def read_old_workbook(data: bytes) -> OldBook:
 
 
 def _stream(data: bytes) -> tuple[bytes, bool]:
-    """The workbook's stream, and whether the file holds macros."""
+    """Return the workbook's stream, and whether the file holds macros."""
     try:
         with olefile.OleFileIO(io.BytesIO(data)) as file:
             names = {path[0].casefold() for path in file.listdir(storages=True)}
@@ -241,7 +241,7 @@ def _take_cells(sheet: OldSheet, kind: int, data: bytes) -> None:
 
 
 def _short_number(short: int) -> float:
-    """A number in 30 bits: a whole one, or the first bits of a float; both perhaps times 100."""
+    """Read a number in 30 bits: a whole one, or the first bits of a float; both perhaps times 100."""
     if short & 2:
         whole = short >> 2
         number = float(whole - (1 << 30) if whole >> 29 else whole)

@@ -33,7 +33,7 @@ class ShapeText(NamedTuple):
 
 
 def shape_texts(drawing: bytes, sheet: str) -> Iterator[ShapeText]:
-    """The texts of all shapes, in the order of the drawing.
+    """Return the texts of all shapes, in the order of the drawing.
 
     Args:
         drawing: its bytes, from all its records.
@@ -57,7 +57,7 @@ class _DrawingError(ValueError):
 
 
 def _shapes(data: bytes, start: int, end: int, depth: int) -> Iterator[bytes]:
-    """The content of every shape's container, also in groups of shapes."""
+    """Return the content of every shape's container, also in groups of shapes."""
     if depth > _DEEPEST:
         raise _DrawingError("its shapes are nested too deeply")
     for version, kind, at, stop in _records(data, start, end):
@@ -81,7 +81,7 @@ def _records(data: bytes, start: int, end: int) -> Iterator[tuple[int, int, int,
 
 
 def _properties(shape: bytes) -> dict[int, bytes]:
-    """The properties of a shape that are longer than a number, by their identifiers."""
+    """Return the properties of a shape that are longer than a number, by their identifiers."""
     found: dict[int, bytes] = {}
     for version, kind, at, stop in _records(shape, 0, len(shape)):
         if kind in _TABLES:
@@ -97,5 +97,5 @@ def _properties(shape: bytes) -> dict[int, bytes]:
 
 
 def _text(value: bytes) -> str:
-    """A text in UTF-16 up to its final zero; what is no text there is marked."""
+    """Read a text in UTF-16 up to its final zero; what is no text there is marked."""
     return value[: len(value) // 2 * 2].decode("utf-16-le", "replace").split("\0", 1)[0]

@@ -100,7 +100,7 @@ def read_dialogs(
     forecasts: Claims,
     findings: Findings,
 ) -> FromDialogs:
-    """What Crystal Ball's dialogs define in a workbook.
+    """Return what Crystal Ball's dialogs define in a workbook.
 
     Args:
         workbook: that may hold Crystal Ball's data.
@@ -155,7 +155,9 @@ class _Dialogs:
         return self._found
 
     def _placed(self, stored: Iterable[tuple[str, Stored]], kind: type[_T]) -> list[tuple[str, _T, Cell]]:
-        """The objects of a kind with their sheets and cells, by sheet, row and column; those of no cell left out."""
+        """Return the objects of a kind with their sheets and cells, by sheet, row and column; those of no cell left
+        out.
+        """
         found, gone = [], []
         for sheet, each in stored:
             if isinstance(each, kind):
@@ -217,7 +219,9 @@ class _Dialogs:
         )
 
     def _refuse_twice(self, stored: StoredAssumption, name: str, cell: Cell) -> None:
-        """A row of a table on the cell of an assumption: it is the cure where that cannot be read, else a mistake."""
+        """Look up a row of a table on the cell of an assumption: it is the cure where that cannot be read, else a
+        mistake.
+        """
         row = self._taken[cell]
         try:
             distribution_of(stored)
@@ -228,7 +232,7 @@ class _Dialogs:
         self._findings.problem(message, row, "Delete the row, or clear the assumption in Crystal Ball")
 
     def _base(self, cell: Cell) -> float | None:
-        """The cell's own value.
+        """Return the cell's own value.
 
         Raises:
             UnreadableError, DefinitionError: a formula computes it, or it is no number.
@@ -246,7 +250,7 @@ class _Dialogs:
         cell: Cell,
         rewritten: dict[Cell, ir.Expression],
     ) -> dict[str, Parameter]:
-        """The parameters and cutoffs: numbers, or cells where they come from cells.
+        """Return the parameters and cutoffs: numbers, or cells where they come from cells.
 
         Raises:
             UnreadableError: a reference leads nowhere, or it cannot be said what it gives.
@@ -344,7 +348,7 @@ class _Dialogs:
         )
 
     def _accepts_outside(self, stored: ForecastFilter, cell: Cell) -> Filter:
-        """A test in a cell of its own, because a filter's limits cannot say `or`."""
+        """Write a test in a cell of its own, because a filter's limits cannot say `or`."""
         ends = [("<", stored.low)] * math.isfinite(stored.low) + [(">", stored.high)] * math.isfinite(stored.high)
         parts = [ir.Binary(sign, cell, ir.Number(end), all_bits=True) for sign, end in ends]
         site = InFormula.of(cell, "filter")
@@ -354,7 +358,9 @@ class _Dialogs:
     def _limits(
         self, certainty: tuple[float, float], name: str, cell: Cell
     ) -> tuple[float | None, tuple[float, float] | None]:
-        """The threshold, or the range that is asked for, from the range that the certainty was last shown for."""
+        """Return the threshold, or the range that is asked for, from the range that the certainty was last
+        shown for.
+        """
         low, high = certainty
         ends = [end for end in certainty if math.isfinite(end) and abs(end) < _BEYOND]
         if not ends:
@@ -402,7 +408,7 @@ class _Dialogs:
             self._found.correlations.append(Correlation(first, second, coefficient_cell, where))
 
     def _end(self, sheet: str, end: tuple[str, str], known: Mapping[_Key, StoredAssumption]) -> _Key | None:
-        """The assumption that is meant, if it was read; copies of a sheet have assumptions of the same GUIDs."""
+        """Return the assumption that is meant, if it was read; copies of a sheet have assumptions of the same GUIDs."""
         of_sheet, guid = end
         sheets = self._names.sheets_of(of_sheet)
         keys = [(name, guid) for name in ([sheet] if sheet in sheets else sheets) if (name, guid) in known]
@@ -433,7 +439,7 @@ class _Dialogs:
     # names and remarks
 
     def _shown(self, sheet: str, name: str, references: Iterable[CellReference], cell: Cell) -> str:
-        """The name that Crystal Ball shows: its text, or what the cell or formula gives that it refers to."""
+        """Return the name that Crystal Ball shows: its text, or what the cell or formula gives that it refers to."""
         if not name.startswith("="):
             return name.strip() or str(cell)
         for reference in references:
@@ -492,7 +498,7 @@ _CURE_OF_CORRELATION: Final = "Write it into the table xlmc_correlations, or cor
 
 
 def _free_name(name: str, cell: Cell, claims: Claims, findings: Findings) -> str:
-    """The name; with its cell behind it where another has it."""
+    """Return the name; with its cell behind it where another has it."""
     if name_key(name) in claims.names:
         findings.notice(f"another {claims.kind} is called {name!r}; this one is called '{name} ({cell})'", cell)
         name = f"{name} ({cell})"

@@ -142,7 +142,7 @@ class Distribution:
 
 
 def distribution_of(stored: StoredAssumption) -> Distribution:
-    """The distribution of an assumption.
+    """Return the distribution of an assumption.
 
     Raises:
         UnreadableError: its text is not understood, or the numbers beside it say something else.

@@ -90,7 +90,7 @@ def _read_block(sheet: str, shape: str, text: str, blocks: Blocks) -> None:
 
 
 def unpacked(text: str) -> Any:
-    """The root object of a block.
+    """Return the root object of a block.
 
     Raises:
         StreamError: the text is not what it must be.

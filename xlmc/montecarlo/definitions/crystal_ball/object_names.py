@@ -36,19 +36,19 @@ class ObjectNames:
         self.any = any(_OF_OBJECT.fullmatch(each.name) or _OF_REFERENCE.fullmatch(each.name) for each in workbook.names)
 
     def cell_of(self, sheet: str, guid: str) -> Cell | None:
-        """The cell of an object whose block lies on this sheet; None if it was deleted."""
+        """Return the cell of an object whose block lies on this sheet; None if it was deleted."""
         name = self._workbook.defined_name(f"CB_{guid}", sheet)
         return None if name is None else self._cell(name)
 
     def objects(self) -> Iterator[tuple[str, str, Cell]]:
-        """The sheet, the GUID and the cell of every object that has one, as the names say."""
+        """Return the sheet, the GUID and the cell of every object that has one, as the names say."""
         for name in self._workbook.names:
             match = _OF_OBJECT.fullmatch(name.name)
             if match and (cell := self._cell(name)) is not None:
                 yield name.sheet or cell.sheet, match[1].lower(), cell
 
     def sheets_of(self, guid: str) -> list[str]:
-        """The sheets that Crystal Ball knows by this GUID: the one, and copies that were made without it."""
+        """Return the sheets that Crystal Ball knows by this GUID: the one, and copies that were made without it."""
         return [
             name.sheet
             for name in self._workbook.names
@@ -58,7 +58,7 @@ class ObjectNames:
         ]
 
     def reference(self, sheet: str, key: str) -> ir.Expression:
-        """The resolved tree, most often a cell, that a reference of an object on this sheet stands for.
+        """Return the resolved tree, most often a cell, that a reference of an object on this sheet stands for.
 
         Raises:
             UnreadableError: there is no such name, or it has lost its cell or leads to another workbook.
@@ -81,7 +81,7 @@ class ObjectNames:
         return tree
 
     def text(self, tree: ir.Expression) -> str | None:
-        """The text that a tree of texts, cells and `&` gives; None of any other."""
+        """Return the text that a tree of texts, cells and `&` gives; None of any other."""
         match tree:
             case ir.Text():
                 return tree.value

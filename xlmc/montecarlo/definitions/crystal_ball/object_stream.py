@@ -84,7 +84,7 @@ _DECIMAL, _TEXT = 5, 18
 
 
 def read_stream(data: bytes) -> Any:
-    """The root object of a stream, with all references resolved; they may form circles.
+    """Return the root object of a stream, with all references resolved; they may form circles.
 
     Arrays are lists.
 
@@ -148,7 +148,7 @@ class _Reader:
     # records
 
     def _value(self) -> Any:
-        """The next record that is no library."""
+        """Return the next record that is no library."""
         kind = self._byte()
         while kind == 12:
             self._int()
@@ -258,7 +258,7 @@ class _Reader:
     # values
 
     def _more(self, kind: int) -> int:
-        """What a member's binary type adds: the primitive type, where it has one."""
+        """Return what a member's binary type adds: the primitive type, where it has one."""
         if kind in (_PRIMITIVE, _PRIMITIVE_ARRAY):
             return self._byte()
         if kind in (_SYSTEM_CLASS, _CLASS):
@@ -278,7 +278,7 @@ class _Reader:
         raise StreamError(f"it holds a primitive value of type {kind}")
 
     def _text(self) -> str:
-        """A text behind its length in bytes, seven bits a byte, the lowest first."""
+        """Return a text behind its length in bytes, seven bits a byte, the lowest first."""
         length = shift = 0
         while True:
             byte = self._byte()

@@ -30,7 +30,7 @@ def with_precision(
     forecasts: Sequence[Forecast],
     findings: Findings,
 ) -> Settings:
-    """The settings with the precision that dialogs ask for.
+    """Return the settings with the precision that dialogs ask for.
 
     Args:
         settings: of the table `xlmc_settings`, which wins.
@@ -66,7 +66,7 @@ def with_precision(
 
 
 def _goal(asked: Precision) -> Goal:
-    """The goal of one forecast.
+    """Return the goal of one forecast.
 
     Raises:
         SimulationError: it asks for nothing that can be reached.

@@ -29,7 +29,7 @@ _WHY: Final = "Stands in"
 def refused_rows(
     workbook: Workbook, tables: Sequence[DefinitionTable], drawn: Container[Cell], findings: Findings
 ) -> dict[Cell, FormulaError]:
-    """The cells that a converted workbook still refuses, each with why.
+    """Find the cells that a converted workbook still refuses, each with why.
 
     Args:
         workbook: that was converted.
@@ -62,7 +62,7 @@ def refused_forecasts(
     own: Sequence[Filter],
     findings: Findings,
 ) -> dict[str, DefinitionError]:
-    """The forecasts that need a refused cell, by name, each with the error to tell.
+    """Find the forecasts that need a refused cell, by name, each with its error.
 
     Args:
         workbook: that holds them.
@@ -113,7 +113,7 @@ def _cells(filter_: Filter) -> Iterator[Cell]:
 
 
 def _upstream(graph: Graph, parameters: Mapping[Cell, Sequence[Cell]], cells: Iterable[Cell]) -> Iterator[Cell]:
-    """The cells and all that they depend on, what the parameters of assumptions depend on among them."""
+    """Return the cells and all that they depend on, what the parameters of assumptions depend on among them."""
     seen: set[Cell] = set()
     open_ = list(cells)
     while open_:

@@ -150,7 +150,7 @@ Stored = StoredAssumption | StoredForecast | StoredCorrelation | StoredDecision 
 
 
 def stored_objects(root: Any) -> list[Thing]:
-    """The things in the list that is the root of a block.
+    """Return the things in the list that is the root of a block.
 
     Raises:
         StoredError: it is no such list.
@@ -159,7 +159,7 @@ def stored_objects(root: Any) -> list[Thing]:
 
 
 def stored_object(thing: Thing) -> Stored:
-    """What a thing says.
+    """Read what a thing says.
 
     Raises:
         StoredError: it lacks a member, or one is of another type.
@@ -279,7 +279,7 @@ def _enumerated(thing: Thing) -> int:
 
 
 def _items(thing: Any) -> list[Any]:
-    """The elements of an ArrayList, whose array may be longer than its contents."""
+    """Return the elements of an ArrayList, whose array may be longer than its contents."""
     top = _as_thing(thing, "the root")
     items, size = _list(top, "_items"), _member(top, "_size")
     if type(size) is not int or not 0 <= size <= len(items):

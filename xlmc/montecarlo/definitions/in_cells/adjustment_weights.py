@@ -50,13 +50,13 @@ def weights_of_matrices(workbook: Workbook, matrices: Collection[Area]) -> dict[
 
 
 def _named(workbook: Workbook, name: str, sheet: str | None) -> list[DefinedName]:
-    """The names that are called so, those of the same sheet, or of the workbook, first."""
+    """Return the names that are called so, those of the same sheet, or of the workbook, first."""
     found = [each for each in workbook.names if each.name.lower() == name]
     return sorted(found, key=lambda each: each.sheet != sheet)
 
 
 def _area(workbook: Workbook, name: DefinedName) -> Area | None:
-    """The range that a name stands for; None if it stands for something else."""
+    """Return the range that a name stands for; None if it stands for something else."""
     host = Cell(name.sheet or next(iter(workbook.sheets)), 1, 1)
     try:
         tree: ir.Expression = Resolver(workbook, strict=False).tree(parse(name.text), host)
@@ -66,7 +66,7 @@ def _area(workbook: Workbook, name: DefinedName) -> Area | None:
 
 
 def weight_of(workbook: Workbook, weights: Mapping[Area, Area], matrix: Area, lower: int, upper: int) -> float:
-    """The weight of the coefficient in this row and column of a matrix, counted from 1; 0 where it has none.
+    """Return the weight of the coefficient in this row and column of a matrix, counted from 1; 0 where it has none.
 
     Raises:
         DefinitionError: it is no number from 0 to 100.

@@ -78,18 +78,18 @@ def quotient(over: ir.Expression | float, under: ir.Expression) -> ir.Expression
 
 
 def whole_part(tree: ir.Expression) -> ir.Expression:
-    """The largest whole number that is not above."""
+    """Return the largest whole number that is not above."""
     return ir.Call("INT", (tree,))
 
 
 def elements(tree: ir.Expression) -> Iterator[ir.Expression]:
-    """The elements of a list: of `{1,2,3}`, of a range row by row; one for anything else."""
+    """Return the elements of a list: of `{1,2,3}`, of a range row by row; one for anything else."""
     for row in rows_of_trees(tree):
         yield from row
 
 
 def rows_of_trees(tree: ir.Expression) -> list[tuple[ir.Expression, ...]]:
-    """The same, row by row."""
+    """Return the same, row by row."""
     match tree:
         case ir.Array(rows):
             return list(rows)

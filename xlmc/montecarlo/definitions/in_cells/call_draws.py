@@ -142,7 +142,7 @@ class Signature:
     computed: Mapping[str, Callable[[Arguments], ir.Expression]] = field(default_factory=dict)
 
     def drawn(self, function: str, arguments: tuple[ir.Expression, ...], properties: Properties) -> Drawn:
-        """The draw that these arguments, one for each of `takes`, describe.
+        """Return the draw that these arguments, one for each of `takes`, describe.
 
         Raises:
             FormulaError: one is left out, or lists differ in length.
@@ -163,7 +163,7 @@ class Signature:
 
 
 def _listed(function: str, sources: tuple[ir.Expression, ...]) -> tuple[tuple[ir.Expression, ...], ...]:
-    """Lists side by side as rows.
+    """Return lists side by side as rows.
 
     Raises:
         FormulaError: they differ in length.
@@ -176,7 +176,7 @@ def _listed(function: str, sources: tuple[ir.Expression, ...]) -> tuple[tuple[ir
 
 
 def built_family(drawn: Drawn, data: DataRange | None, saved: Callable[[Cell], float | None]) -> Family:
-    """The family of a draw within another, with its data.
+    """Return the family of a draw within another, with its data.
 
     Raises:
         FormulaError: a cell of the data is not a number, or they are not a distribution.
@@ -198,7 +198,7 @@ def base_of(
     limits: tuple[float | None, ...],
     saved: Callable[[Cell], float | None],
 ) -> float | None:
-    """The mean; None if a number is not known before the workbook is calculated, or there is no finite mean.
+    """Return the mean; None if a number is not known before the workbook is calculated, or there is no finite mean.
 
     Args:
         family: of the draw; without its data.
@@ -224,7 +224,7 @@ def base_of(
 
 
 def _built(family: Family, data: DataRange, saved: Callable[[Cell], float | None]) -> Family | None:
-    """The family with its data; None if a cell is not calculated yet, or they are not a distribution.
+    """Return the family with its data; None if a cell is not calculated yet, or they are not a distribution.
 
     Of the latter the model tells when it is made.
     """
@@ -251,7 +251,7 @@ def _mean_between(family: Family, lower: float, upper: float, known: Mapping[str
 
 
 def percentile_cutoffs(drawn: Drawn, numbers: Mapping[str, float | None], percents: tuple[float, float]) -> Cutoffs:
-    """The cutoffs below which these probabilities lie; None for one at an end.
+    """Return the cutoffs below which these probabilities lie; None for one at an end.
 
     Raises:
         FormulaError: a parameter is not a number that is known before the workbook is calculated.

@@ -175,7 +175,7 @@ def _take(reading: CellReading, found: InCells, claims: Claims, findings: Findin
 
 
 def _free_name(assumption: Assumption, claims: Claims, findings: Findings) -> str:
-    """The draw's own name, followed by its cell where another draw has that name."""
+    """Return the draw's own name, followed by its cell where another draw has that name."""
     name = assumption.name
     if name_key(name) in claims.names:
         name = f"{name} ({assumption.cell})"
@@ -185,7 +185,7 @@ def _free_name(assumption: Assumption, claims: Claims, findings: Findings) -> st
 
 
 def _about(error: FormulaError | DefinitionError, cell: Cell, formula: Formula) -> FormulaError:
-    """The error with this cell as its location; one about a cell that the formula names says so."""
+    """Return the error with this cell as its location; one about a cell that the formula names says so."""
     if isinstance(error, FormulaError):
         text = formula.text if error.text is None else error.text
         return FormulaError(error.message, where=cell, hint=error.hint, text=text, span=error.span)
@@ -193,7 +193,7 @@ def _about(error: FormulaError | DefinitionError, cell: Cell, formula: Formula) 
 
 
 def _suspects(workbook: Workbook) -> Iterator[tuple[Cell, Formula]]:
-    """The formula cells that hold calls, sheet by sheet, row by row; sheets that cannot hold one are not parsed.
+    """Yield the formula cells that hold calls, sheet by sheet, row by row; sheets that cannot hold one are not parsed.
 
     A cell also holds a call by a defined name that stands for one.
     """
@@ -214,7 +214,7 @@ def _suspects(workbook: Workbook) -> Iterator[tuple[Cell, Formula]]:
 
 
 def _names_of_calls(workbook: Workbook) -> set[str]:
-    """The defined names, in small letters, that stand for calls, also by other names."""
+    """Return the defined names, in small letters, that stand for calls, also by other names."""
     found: set[str] = set()
     while True:
         any_name = _any_of(found)
@@ -229,7 +229,7 @@ def _names_of_calls(workbook: Workbook) -> set[str]:
 
 
 def _any_of(names: Collection[str]) -> re.Pattern[str] | None:
-    """Finds any of these names in a formula."""
+    """Compile a pattern that finds any of these names in a formula."""
     if not names:
         return None
     return re.compile(rf"(?<![\w.\\])(?:{'|'.join(map(re.escape, sorted(names)))})(?![\w.])", re.IGNORECASE)
@@ -243,7 +243,7 @@ def in_cell_forecasts(
     claims: Claims,
     findings: Findings,
 ) -> list[Forecast]:
-    """The cells with `RiskOutput`, then those of which `RiskMean(B9)` and its like show results.
+    """Return the cells with `RiskOutput`, then those of which `RiskMean(B9)` and its like show results.
 
     Args:
         found: the calls of the workbook.
@@ -281,7 +281,7 @@ def in_cell_forecasts(
 def _of_input(
     of: Assumption, found: InCells, function: str, cell: Cell, central: float, claims: Claims, findings: Findings
 ) -> Forecast:
-    """A forecast that is a draw itself, shifted where its call says so."""
+    """Make a forecast of a draw itself, shifted where its call says so."""
     message = f"the draws of {of.name!r} are taken for a forecast, because {function} shows results of them"
     findings.notice(message, cell)
     site = of.cell

@@ -36,7 +36,7 @@ def compound_of(
     built: Callable[[Drawn], Family],
     percents: Callable[[Drawn], Cutoffs],
 ) -> Drawn:
-    """What the call draws.
+    """Return what the call draws.
 
     Args:
         frequency: what the number of amounts is drawn from, or its value.

@@ -16,7 +16,7 @@ __all__ = ["constant_text"]
 
 
 def constant_text(workbook: Workbook, tree: ir.Expression, host: Cell) -> str:
-    """The text, or a number as a text; empty where it is none, or depends on what is drawn.
+    """Return the text, or a number as a text; empty where it is none, or depends on what is drawn.
 
     Args:
         workbook: whose cells it names; of formulas among them the values that Excel saved hold, where there are any.

@@ -60,7 +60,7 @@ def in_cell_correlations(
     rows: Iterable[Correlation],
     findings: Findings,
 ) -> list[Correlation]:
-    """The correlations between draws that name rows of one matrix, or one partner; of 0 only weighted ones.
+    """Return the correlations between draws that name rows of one matrix, or one partner; of 0 only weighted ones.
 
     Args:
         workbook: holds the matrices.
@@ -90,7 +90,7 @@ def in_cell_correlations(
 
 
 def _groups(assumptions: Iterable[Assumption], draws: _Draws, which: str) -> list[list[_Row]]:
-    """The draws that are not frozen and belong together, by area and instance."""
+    """Return the draws that are not frozen and belong together, by area and instance."""
     groups: dict[tuple[Area, str], list[_Row]] = {}
     for assumption in assumptions:
         draw = draws.get(assumption.name)
@@ -127,7 +127,7 @@ def _compare_halves(workbook: Workbook, area: Area, used: Cell, findings: Findin
 
 
 def _correlation(workbook: Workbook, weights: Mapping[Area, Area], first: _Row, second: _Row) -> Correlation:
-    """The number below the diagonal; the one above where that cell is blank.
+    """Return the number below the diagonal; the one above where that cell is blank.
 
     Raises:
         DefinitionError: neither holds a number from -1 to 1, or its weight is none.
@@ -157,7 +157,7 @@ def _refuse_outside(value: float, where: Cell) -> None:
 
 
 def _partners(assumptions: Sequence[Assumption], draws: _Draws, findings: Findings) -> Iterator[Correlation]:
-    """The correlations by `RiskIndepC` and `RiskDepC`."""
+    """Return the correlations by `RiskIndepC` and `RiskDepC`."""
     groups: dict[str, list[tuple[Assumption, Parameter | None]]] = {}
     for assumption in assumptions:
         draw = draws.get(assumption.name)
@@ -185,7 +185,7 @@ def _partners(assumptions: Sequence[Assumption], draws: _Draws, findings: Findin
 
 
 def _implied(first: float, second: float) -> float:
-    """The rank correlation of two that have these with a third, and no other connection."""
+    """Return the rank correlation of two that have these with a third, and no other connection."""
     scores = 4 * math.sin(math.pi / 6 * first) * math.sin(math.pi / 6 * second)
     return 6 / math.pi * math.asin(scores / 2)
 
@@ -197,7 +197,7 @@ def in_cell_copulas(
     correlations: Iterable[Correlation],
     findings: Findings,
 ) -> tuple[Copula, ...]:
-    """The copulas that join draws in cells.
+    """Return the copulas that join draws in cells.
 
     Args:
         workbook: holds their ranges.
@@ -224,7 +224,7 @@ def in_cell_copulas(
 
 
 def _copula(workbook: Workbook, group: Sequence[_Row], findings: Findings) -> Copula:
-    """What the range says.
+    """Read what the range says.
 
     Raises:
         DefinitionError: it does not say which copula it is, or its numbers are none of it.
@@ -259,7 +259,7 @@ _MOST_THETA: Final = 500.0
 
 
 def _kind(grid: Mapping[Cell, object], area: Area) -> tuple[Cell, tuple[str, str]]:
-    """The cell that names the copula; its kind and reflection."""
+    """Return the cell that names the copula; its kind and reflection."""
     for cell, value in grid.items():
         text = plain(value) if isinstance(value, str) else ""
         for word, kind in _KINDS.items():
@@ -284,7 +284,7 @@ def _turned(kind: str, reflection: str, positions: Sequence[int], where: Cell) -
 
 
 def _beside(workbook: Workbook, grid: Mapping[Cell, object], area: Area, labels: Sequence[str]) -> float | None:
-    """The number right of the first of these words, or below it."""
+    """Return the number right of the first of these words, or below it."""
     for cell, value in grid.items():
         if isinstance(value, str) and plain(value).rstrip(":") in labels:
             for other in (Cell(cell.sheet, cell.row, cell.column + 1), Cell(cell.sheet, cell.row + 1, cell.column)):
@@ -295,7 +295,7 @@ def _beside(workbook: Workbook, grid: Mapping[Cell, object], area: Area, labels:
 
 
 def _matrix(workbook: Workbook, area: Area, least: int, where: Cell, findings: Findings) -> list[list[float]]:
-    """The largest square block of the range with a diagonal of 1, of which one half may be blank.
+    """Return the largest square block of the range with a diagonal of 1, of which one half may be blank.
 
     Raises:
         DefinitionError: there is none that has a row for each draw.

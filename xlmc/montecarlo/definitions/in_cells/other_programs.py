@@ -45,7 +45,7 @@ _LIKE: Final = {
 
 
 def of_another_program(name: str) -> FormulaError | None:
-    """What to say of a function, by its name in capitals; None if it is not known to belong to such a program."""
+    """Say what a function is, by its name in capitals; None if it is not known to belong to such a program."""
     prefix = next((each for each in PREFIXES if name.startswith(each)), None)
     rest = name.removeprefix(prefix or "")
     if prefix is None or not (prefix == "VOSE" or rest in _LIKE or rest in _MARKS or _RESULTS.match(rest)):
@@ -55,7 +55,7 @@ def of_another_program(name: str) -> FormulaError | None:
 
 
 def _instead(rest: str) -> str:
-    """The function to write instead of one that ends so."""
+    """Name the function to write instead of one that ends so."""
     if rest in _MARKS:
         return 'mark the answer by RiskOutput("its name")+ in front of its formula, or in a table xlmc_forecasts'
     if _is_result(rest):

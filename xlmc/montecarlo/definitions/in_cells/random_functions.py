@@ -67,7 +67,7 @@ _MOST: Final = 10_000
 
 
 def random_draw(tree: ir.Expression) -> Drawn | None:
-    """What a part of a formula draws with Excel's own functions; None if it is no draw.
+    """Return what a part of a formula draws with Excel's own functions; None if it is no draw.
 
     Raises:
         FormulaError: a call has arguments that it cannot have here.
@@ -90,7 +90,7 @@ def random_draw(tree: ir.Expression) -> Drawn | None:
 
 
 def _inverse(name: str, arguments: tuple[ir.Expression, ...]) -> Drawn | None:
-    """The draw of an inverse function where its probability is `RAND()` itself."""
+    """Return the draw of an inverse function where its probability is `RAND()` itself."""
     for signature in INVERSES[name]:
         index = signature.takes.index("RAND")
         fits = len(signature.takes) == len(arguments) and not any(map(is_left_out, arguments))

@@ -99,7 +99,7 @@ class CellReading:
         self._has_theory = False
 
     def rewrite(self, tree: ir.Expression) -> ir.Expression:
-        """The formula with assumptions instead of calls.
+        """Return the formula with assumptions instead of calls.
 
         Raises:
             FormulaError: a call is not supported or not what it must be, or shows results of the run.
@@ -128,7 +128,7 @@ class CellReading:
         substitute(tree, look)
 
     def _theory(self, part: ir.Expression) -> ir.Expression | None:
-        """The number that a function of a distribution itself is.
+        """Return the number that a function of a distribution itself is.
 
         Raises:
             FormulaError: its distribution is not known before the run.
@@ -153,7 +153,7 @@ class CellReading:
         return theoretical(function, self._distribution(function, arguments[0]), number)
 
     def _distribution(self, function: str, tree: ir.Expression) -> Distribution:
-        """The distribution of the one draw that a call, or a cell's formula, holds."""
+        """Return the distribution of the one draw that a call, or a cell's formula, holds."""
         if isinstance(tree, Cell):
             formula = self._workbook.content(tree).formula
             tree = tree if formula is None else Resolver(self._workbook).formula(tree, formula)
@@ -178,7 +178,7 @@ class CellReading:
         return Distribution(draw.distribution, shift)
 
     def _number_of_cutoff(self, cutoff: Parameter) -> float:
-        """A cutoff as a number; NaN, which is no distribution, where it is not known."""
+        """Return a cutoff as a number; NaN, which is no distribution, where it is not known."""
         if not isinstance(cutoff, Cell):
             return cutoff
         found = number_of(self.trees.get(cutoff, cutoff), self._constant)
@@ -235,7 +235,7 @@ class CellReading:
         return self._program_call(part)
 
     def _program_call(self, call: ir.Call) -> ir.Expression:
-        """What stands instead of a call of Crystal Ball or @RISK."""
+        """Return what stands instead of a call of Crystal Ball or @RISK."""
         if call.name in STAND_INS:
             value, values = stand_in(call, self._tabulated)
             if values:
@@ -246,7 +246,7 @@ class CellReading:
         return self._take_draw(replace(drawn, text=formula_text(call)), number)
 
     def _drawn(self, call: ir.Call) -> Drawn:
-        """What a call draws whose arguments may draw, too."""
+        """Return what a call draws whose arguments may draw, too."""
         rewritten = ir.Call(call.name, self._rewritten(call.arguments))
         drawn = crystal_ball_draw(rewritten) or risk_draw(rewritten, self._lognorm)
         if drawn is None:
@@ -254,14 +254,14 @@ class CellReading:
         return drawn
 
     def _rewritten(self, trees: Iterable[ir.Expression]) -> tuple[ir.Expression, ...]:
-        """The arguments of a call with assumptions instead of the calls in them."""
+        """Return the arguments of a call with assumptions instead of the calls in them."""
         self._depth += 1
         found = tuple(substitute(tree, self._replacement) for tree in trees)
         self._depth -= 1
         return found
 
     def _compound(self, call: ir.Call, number: int) -> Drawn:
-        """What `RiskCompound` draws; the draws within it are no assumptions of their own."""
+        """Return what `RiskCompound` draws; the draws within it are no assumptions of their own."""
         count = next((i for i, part in enumerate(call.arguments) if is_property(part)), len(call.arguments))
         if count < 2:
             raise FormulaError(
@@ -279,7 +279,7 @@ class CellReading:
         )
 
     def _inner(self, tree: ir.Expression) -> Drawn | ir.Expression:
-        """What an argument of `RiskCompound` draws; the argument itself, rewritten, where it is a value."""
+        """Return what an argument of `RiskCompound` draws; the argument itself, rewritten, where it is a value."""
         if isinstance(tree, ir.Call) and _is_draw_of_a_program(tree) and tree.name != COMPOUND:
             drawn = self._drawn(tree)
             self.has_lognorm = self.has_lognorm or drawn.function == "RiskLognorm"
@@ -288,7 +288,7 @@ class CellReading:
         return rewritten
 
     def _formula_of(self, severity: ir.Expression) -> ir.Expression:
-        """The call in a cell that holds nothing else: its draws are made anew for each amount.
+        """Read the call in a cell that holds nothing else: its draws are made anew for each amount.
 
         Raises:
             FormulaError: it draws by a larger formula.
@@ -305,7 +305,7 @@ class CellReading:
         return tree
 
     def _percent_trees(self, drawn: Drawn) -> tuple[ir.Expression | None, ir.Expression | None]:
-        """The cutoffs of an inner draw that `RiskTruncateP` gives, as trees."""
+        """Return the cutoffs of an inner draw that `RiskTruncateP` gives, as trees."""
         assert drawn.properties.percents is not None
         numbers = {key: number_of(tree, self._constant) for key, tree in drawn.parameters.items()}
         low, high = percentile_cutoffs(drawn, numbers, drawn.properties.percents)
@@ -370,7 +370,7 @@ class CellReading:
         return site
 
     def _plan(self, drawn: Drawn, number: int) -> Assumption:
-        """The assumption, but for its cell and for a name where it does not name itself.
+        """Return the assumption, but for its cell and for a name where it does not name itself.
 
         Raises:
             FormulaError: an argument cannot be used.
@@ -424,7 +424,7 @@ class CellReading:
         return found[0], found[1]
 
     def _parameter(self, tree: ir.Expression, label: str) -> Parameter:
-        """A number, a cell, or a new cell that holds the expression."""
+        """Return a number, a cell, or a new cell that holds the expression."""
         number = number_of(tree)
         if number is not None:
             return number
@@ -454,7 +454,7 @@ class CellReading:
         return self._parameter(tree, label)
 
     def _base_number(self, tree: ir.Expression) -> float | None:
-        """What a tree is in the base case, as far as the file says."""
+        """Return what a tree is in the base case, as far as the file says."""
         return number_of(tree, self._saved_number)
 
     def _base_parameter(self, parameter: Parameter) -> float | None:
@@ -468,7 +468,7 @@ class CellReading:
         return self._bases[cell] if cell in self._bases else static_value(cell, self._workbook)
 
     def _constant(self, cell: Cell) -> float | None:
-        """What a cell holds that nothing changes."""
+        """Return what a cell holds that nothing changes."""
         return None if cell in self._bases or self._computed.at_all(cell) else static_value(cell, self._workbook)
 
 
@@ -493,7 +493,7 @@ def _drawing_calls_in(trees: Iterable[ir.Expression]) -> list[ir.Call]:
 
 
 def _drawing_calls(tree: ir.Expression) -> list[ir.Call]:
-    """The calls of Crystal Ball and @RISK that draw, the outermost ones."""
+    """Yield the calls of Crystal Ball and @RISK that draw, the outermost ones."""
     found: list[ir.Call] = []
 
     def look(part: ir.Expression) -> ir.Expression | None:
@@ -514,6 +514,6 @@ def _is_draw_of_a_program(part: ir.Expression) -> bool:
 
 
 def _refuse_calls_within(tree: ir.Lambda) -> None:
-    """A call in a LAMBDA would draw as often as the LAMBDA is called."""
+    """Refuse a call in a LAMBDA, which would draw as often as the LAMBDA is called."""
     if _draws(tree.body):
         raise FormulaError("a LAMBDA draws at random", hint="draw in cells of their own, and give these to the LAMBDA")

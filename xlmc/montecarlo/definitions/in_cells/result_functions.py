@@ -199,7 +199,8 @@ def is_result(tree: ir.Expression) -> bool:
 
 
 def not_computed(tree: ir.Expression) -> str | None:
-    """The name of a function of @RISK or Crystal Ball that shows a result xlmc does not compute; None for any other.
+    """Return the name of a function of @RISK or Crystal Ball that shows a result xlmc does not compute; None for any
+    other.
 
     A function with their prefix that nobody knows may show a result, and is taken for one that does.
     """
@@ -221,7 +222,7 @@ def mentions_result(text: str) -> bool:
 
 
 def result_call(call: ir.Call) -> ResultCall:
-    """What a call shows.
+    """Return what a call shows.
 
     Raises:
         FormulaError: its arguments are not what they must be.
@@ -259,7 +260,7 @@ def _cell_or_name(function: str, tree: ir.Expression) -> Cell | str:
 
 
 def _limits(function: str, given: list[ir.Expression]) -> Limits | None:
-    """The part of the values that `RiskTruncate` or `RiskTruncateP` leaves."""
+    """Return the part of the values that `RiskTruncate` or `RiskTruncateP` leaves."""
     if not given:
         return None
     call = given[0]

@@ -59,7 +59,7 @@ def _erf_deviation(given: Arguments) -> ir.Expression:
 
 
 def _percent_of(name: str) -> Callable[[Arguments], ir.Expression]:
-    """A percentage of RiskTrigen; where the upper one is at most 1, both are shares, as XLRisk takes them."""
+    """Convert a percentage of RiskTrigen; where the upper one is at most 1, both are shares, as XLRisk takes them."""
 
     def percent(given: Arguments) -> ir.Expression:
         asked, top = given[name], number_of(given["top share"])
@@ -175,7 +175,7 @@ TRUNCATED: Final = {
 
 
 def _truncated(call: ir.Call, lognorm: str) -> Drawn | None:
-    """What `RiskTnormal(mean, sd, min, max)` and its like draw.
+    """Return what `RiskTnormal(mean, sd, min, max)` and its like draw.
 
     Raises:
         FormulaError: it has too few or too many arguments.
@@ -194,7 +194,7 @@ _OPTIONAL: Final = {"RiskBeta": (0.0, 1.0)}
 
 
 def _completed(name: str, given: tuple[ir.Expression, ...]) -> tuple[ir.Expression, ...]:
-    """The arguments of a call, with those that may be left out."""
+    """Return the arguments of a call, with those that may be left out."""
     usual = _OPTIONAL.get(name, ())
     first = len(RISK[name].takes) - len(usual)
     if not usual or not first <= len(given) <= len(RISK[name].takes):
@@ -279,7 +279,7 @@ _ALTERNATES_BY_NAME: Final = {
 def _alternate_draw(
     name: str, arguments: tuple[ir.Expression, ...], properties: Callable[[str], Properties]
 ) -> Drawn | None:
-    """What a call of an alternate form draws; otherwise None.
+    """Return what a call of an alternate form draws; otherwise None.
 
     Args:
         name: of the function, in capitals.
@@ -315,7 +315,7 @@ def _alternate_draw(
 def _pairs(
     function: str, alternate: _Alternate, arguments: tuple[ir.Expression, ...], descending: bool
 ) -> tuple[_Pairs, _Points]:
-    """The parameters by our key, and the percentiles by the probability below them, rising."""
+    """Return the parameters by our key, and the percentiles by the probability below them, rising."""
     if len(arguments) % 2 or not arguments:
         raise FormulaError(f"{function} has {len(arguments)} arguments", hint="give pairs: what, and its value")
     given: _Pairs = {}
@@ -354,7 +354,7 @@ def _share(function: str, what: ir.Expression, descending: bool) -> float:
 
 
 def _uniform(function: str, given: _Pairs, points: _Points) -> _Pairs:
-    """The limits of a Uniform through what is given: a straight line of values over probabilities."""
+    """Return the limits of a Uniform through what is given: a straight line of values over probabilities."""
     known = dict(points)
     known |= {end: given[key] for key, end in (("low", 0.0), ("high", 1.0)) if key in given}
     if len(known) != 2:

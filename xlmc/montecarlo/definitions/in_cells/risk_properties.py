@@ -48,7 +48,7 @@ def is_property(tree: ir.Expression) -> bool:
 
 
 def properties_of(function: str, calls: _Given) -> Properties:
-    """What these property functions say together.
+    """Return what these property functions say together.
 
     Args:
         function: whose they are, for messages.

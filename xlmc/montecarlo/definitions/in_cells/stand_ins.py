@@ -56,7 +56,7 @@ _BY_NAME: Final = {name.upper(): (name, hint) for name, hint in REFUSED.items()}
 
 
 def unsupported(name: str) -> FormulaError:
-    """What is said of a function that xlmc does not know, by its name in capitals."""
+    """Say why a function is refused that xlmc does not know, by its name in capitals."""
     if name.startswith("RISKTS"):
         name, hint = name, REFUSED["RiskTSAR1"]
     else:
@@ -65,7 +65,7 @@ def unsupported(name: str) -> FormulaError:
 
 
 def stand_in(call: ir.Call, tabulated: int = 1) -> tuple[ir.Expression, tuple[ir.Expression, ...]]:
-    """What a call of one of `STAND_INS` stands for, and the values of a `RiskSimtable`.
+    """Return what a call of one of `STAND_INS` stands for, and the values of a `RiskSimtable`.
 
     Args:
         call: resolved.
@@ -91,7 +91,7 @@ def stand_in(call: ir.Call, tabulated: int = 1) -> tuple[ir.Expression, tuple[ir
 def simtable_scenarios(
     tables: Mapping[Cell, Sequence[Sequence[ir.Expression]]], findings: Findings
 ) -> Iterator[Scenario]:
-    """The scenarios that `RiskSimtable` asks for: with its second value, with its third, … None if it has one.
+    """Return the scenarios that `RiskSimtable` asks for: with its second value, with its third, … None if it has one.
 
     Every `RiskSimtable` of the workbook gives its first value in the workbook itself, and its n-th in the scenario of
     that number, over the same random numbers.
@@ -115,5 +115,5 @@ def simtable_scenarios(
 
 
 def _shown(value: ir.Expression) -> str:
-    """A value of a table in words: 2 and not 2.0."""
+    """Write a value of a table in words: 2 and not 2.0."""
     return f"{value.value:.15g}" if isinstance(value, ir.Number) else formula_text(value)

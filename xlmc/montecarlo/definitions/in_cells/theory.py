@@ -50,12 +50,12 @@ class Distribution:
         return float(self.whole.variance()) if isinstance(self.whole, Member) else self.central(2)
 
     def central(self, order: int) -> float:
-        """A central moment."""
+        """Return a central moment."""
         mean = self.mean() - self.shift
         return self._expected(lambda x: (x - mean) ** order)
 
     def absolute(self) -> float:
-        """The mean distance from the mean."""
+        """Return the mean distance from the mean."""
         from scipy.special import ndtr, ndtri
 
         mean = self.mean() - self.shift
@@ -184,7 +184,7 @@ THEORETICAL: Final[dict[str, tuple[int, _Function]]] = {
 
 
 def theoretical(function: str, of: Distribution, number: float) -> float:
-    """What a function of `THEORETICAL` is.
+    """Return what a function of `THEORETICAL` is.
 
     Raises:
         FormulaError: there is no such number.

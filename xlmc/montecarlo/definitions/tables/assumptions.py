@@ -49,7 +49,7 @@ _HEADING = re.compile(r"p(\d{1,3}(?:\.\d+)?)")
 def read_assumptions(
     workbook: Workbook, tables: Iterable[DefinitionTable], computed: Computed, claims: Claims, findings: Findings
 ) -> tuple[Assumption, ...]:
-    """The assumptions without a mistake, in the order of the rows.
+    """Return the assumptions without a mistake, in the order of the rows.
 
     Args:
         workbook: where they are read.
@@ -85,7 +85,7 @@ def _is_bare(row: Row, family: Family) -> bool:
 def _assumption(
     row: Row, known: tuple[str, ...], computed: Computed, claims: Claims, findings: Findings
 ) -> Assumption | None:
-    """The assumption of a row; None if the findings have a problem of it.
+    """Return the assumption of a row; None if the findings have a problem of it.
 
     Raises:
         DefinitionError: its numbers break a rule of its distribution.
@@ -135,7 +135,7 @@ def _assumption(
 
 
 def _call(row: Row) -> InFormula | None:
-    """The call of a formula that the row stands for; None if it stands for none.
+    """Return the call of a formula that the row stands for; None if it stands for none.
 
     Raises:
         DefinitionError: the row says the cell of the call or its number alone, or has no Value.
@@ -163,7 +163,7 @@ def _family(row: Row) -> Family:
 
 
 def _base(workbook: Workbook, computed: Computed, cell: Cell, frozen: bool, findings: Findings) -> float | None:
-    """The assumption cell's own value; None, with a notice, where it is blank.
+    """Return the assumption cell's own value; None, with a notice, where it is blank.
 
     Raises:
         DefinitionError: the cell holds a formula or anything but a number, or is blank and frozen.
@@ -184,7 +184,7 @@ def _base(workbook: Workbook, computed: Computed, cell: Cell, frozen: bool, find
 
 
 def _given(row: Row, family: Family, findings: Findings) -> dict[str, Parameter]:
-    """The family's parameters and the cutoffs in this row by key; every mistake is recorded on its own."""
+    """Read the family's parameters and the cutoffs in this row by key; every mistake is recorded on its own."""
     found: dict[str, Parameter] = {
         spec.key: spec.default
         for spec in family.parameters
@@ -204,7 +204,7 @@ def _given(row: Row, family: Family, findings: Findings) -> dict[str, Parameter]
 
 
 def _cell_of(row: Row, family: Family, key: str) -> Cell:
-    """The cell that gives a parameter or a cutoff; the row's first cell for one that is left to its default."""
+    """Return the cell that gives a parameter or a cutoff; the row's first cell for one that is left to its default."""
     headings = next((spec.headings for spec in family.parameters if spec.key == key), (CUTOFFS.get(key, ""),))
     return next((row.cell(heading) for heading in headings if row.filled(heading)), row.where)
 
@@ -254,7 +254,7 @@ def _remark_on_range(draw: Draw, row: Row, base: float | None, cell: Cell, findi
 
 
 def _heading_of(row: Row, family: Family, spec: ParameterSpec) -> str:
-    """The one column that gives the parameter in this row.
+    """Return the one column that gives the parameter in this row.
 
     Raises:
         DefinitionError: none does, or two do.
@@ -274,7 +274,7 @@ def _heading_of(row: Row, family: Family, spec: ParameterSpec) -> str:
 
 
 def _refuse_unused(row: Row, family: Family, findings: Findings) -> None:
-    """A number that is silently ignored would mislead: whoever gives a Normal a Low believes that it ends there."""
+    """Refuse a number that would be silently ignored: whoever gives a Normal a Low believes that it ends there."""
     used = {plain(heading) for spec in family.parameters for heading in spec.headings}
     used |= {plain("Data")} if family.data else set()
     for heading in (*PARAMETERS, *filter(is_percentile, row.headings)):
@@ -292,7 +292,7 @@ def is_percentile(heading: str) -> bool:
 
 
 def _with_percentiles(row: Row, family: Family) -> Family:
-    """The family with the row's percentiles instead of the parameters that it leaves blank; itself without any.
+    """Return the family with the row's percentiles instead of the parameters that it leaves blank; itself without any.
 
     Raises:
         DefinitionError: the row has more or fewer percentiles than blank parameters, or one outside 0 to 100.

@@ -20,7 +20,7 @@ NO_TABLE = "of a table"
 def cells_that_change(
     workbook: Workbook, old: Assumption | Filter, new: Assumption | Filter
 ) -> tuple[dict[Cell, CellValue], list[str]]:
-    """The cells to be typed into, so that a row says what `new` says in place of `old`.
+    """Return the cells to be typed into, so that a row says what `new` says in place of `old`.
 
     Returns:
         Cell -> what it would hold, None for nothing; and the headings of the columns that the table lacks. What is in
@@ -55,7 +55,7 @@ def _row_of(workbook: Workbook, first: Cell) -> Row | None:
 
 
 def _columns(old: Assumption | Filter, new: Assumption | Filter) -> Iterator[tuple[tuple[str, ...], CellValue]]:
-    """The headings of each column that says something else, and what it says."""
+    """Return the headings of each column that says something else, and what it says."""
     if isinstance(old, Assumption) and isinstance(new, Assumption):
         if old.frozen != new.frozen:
             yield ("Frozen",), new.frozen

@@ -28,7 +28,7 @@ def read_correlations(
     frozen: Iterable[str],
     findings: Findings,
 ) -> tuple[Correlation, ...]:
-    """The correlations without a mistake, in the order of the rows, those of frozen assumptions left out.
+    """Return the correlations without a mistake, in the order of the rows, those of frozen assumptions left out.
 
     Args:
         workbook: where they are read.
@@ -58,7 +58,7 @@ def _correlation(
 
 
 def _assumption_named(row: Row, heading: str, names: Mapping[str, str]) -> str:
-    """The assumption's name as defined.
+    """Return the assumption's name as defined.
 
     Raises:
         DefinitionError: there is no such assumption.

@@ -24,7 +24,7 @@ OPTIONS = ("Cumulative", "Bandwidth")
 
 
 def given_data(row: Row, family: Family, computed: Computed, findings: Findings) -> DataRange:
-    """The data that the row names.
+    """Return the data that the row names.
 
     Args:
         row: the row.
@@ -49,7 +49,7 @@ def given_data(row: Row, family: Family, computed: Computed, findings: Findings)
 
 
 def area_values(workbook: Workbook, area: Area, computed: Computed) -> tuple[tuple[Parameter | None, ...], ...]:
-    """What the cells of a range hold, row by row: numbers, cells with formulas, None for blanks.
+    """Read what the cells of a range hold, row by row: numbers, cells with formulas, None for blanks.
 
     Raises:
         DefinitionError: a cell holds text, a logical or an error.
@@ -70,7 +70,7 @@ def area_values(workbook: Workbook, area: Area, computed: Computed) -> tuple[tup
 
 
 def refuse_options(row: Row, family: Family, findings: Findings) -> None:
-    """What is filled in for a distribution that cannot use it: options of data, cutoffs of Custom."""
+    """Yield what is filled in for a distribution that cannot use it: options of data, cutoffs of Custom."""
     used = () if family.data is None else family.data.options
     findings.attempt(_refuse_cumulative, row, family, used)
     if row.filled("Bandwidth") and "Bandwidth" not in used:
@@ -89,7 +89,7 @@ def _refuse_cumulative(row: Row, family: Family, used: tuple[str, ...]) -> None:
 
 
 def data_family(family: Family, data: DataRange, number: Callable[[Cell], float]) -> Family:
-    """The distribution that the data make.
+    """Make the distribution of the data.
 
     Args:
         family: of this name, with data or without.
@@ -117,7 +117,7 @@ def data_family(family: Family, data: DataRange, number: Callable[[Cell], float]
 
 
 def _located(fault: DataError, area: Area) -> DefinitionError:
-    """The fault with its cells."""
+    """Name the cells of the fault."""
 
     def cell(row: int, column: int) -> Cell:
         return Cell(area.sheet, area.top + row, area.left + column)

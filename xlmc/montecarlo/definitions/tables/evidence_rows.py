@@ -65,7 +65,7 @@ def read_evidence(
     findings: Findings,
     switched: Mapping[str, bool],
 ) -> tuple[Evidence, ...]:
-    """The rows without a mistake, in their order, those that are not used among them.
+    """Read the rows without a mistake, in their order, those that are not used among them.
 
     Args:
         workbook: where they are read.
@@ -139,7 +139,7 @@ def _used(row: Row, switched: Mapping[str, bool]) -> bool:
 
 
 def _error(row: Row) -> str:
-    """The kind of error, a key of `ERRORS`; `uniform` where the cell is blank.
+    """Return the kind of error, a key of `ERRORS`; `uniform` where the cell is blank.
 
     Raises:
         DefinitionError: there is no such kind.
@@ -254,7 +254,9 @@ def _cell_of(row: Row, key: str) -> Cell:
 
 
 def as_filter(evidence: Evidence) -> Filter:
-    """The filter that keeps what agrees with a row that is used; its limits are numbers once those of the row are."""
+    """Return the filter that keeps what agrees with a row that is used; its limits are numbers once those of the row
+    are.
+    """
     law = None if any(evidence.cells) else evidence.law
     return Filter(
         evidence.name,

@@ -126,7 +126,7 @@ def _refuse_contradiction(row: Row, limits: Mapping[str, Parameter | None]) -> N
 
 
 def contradiction(limits: Mapping[str, float | None]) -> tuple[str, str] | None:
-    """The first of two limits that no number can satisfy both, and why; otherwise None.
+    """Return the first of two limits that no number can satisfy both, and why; otherwise None.
 
     Args:
         limits: by key; None for one that is not given or not known.
@@ -162,7 +162,7 @@ def _look_at(workbook: Workbook, cell: Cell, must_be_true: bool, computed: bool,
 
 
 def _is_a_quantity(value: object) -> bool:
-    """A number that does not stand for TRUE or FALSE."""
+    """Report a number that does not stand for TRUE or FALSE."""
     return isinstance(value, int | float) and not isinstance(value, bool | ErrorCode) and value not in (0, 1)
 
 
@@ -173,7 +173,7 @@ def read_checks(
     claims: Claims,
     findings: Findings,
 ) -> tuple[Check, ...]:
-    """The checks without a mistake, in the order of the rows.
+    """Return the checks without a mistake, in the order of the rows.
 
     Args:
         workbook: where they are read.

@@ -35,7 +35,7 @@ def read_forecasts(
     claims: Claims,
     findings: Findings,
 ) -> tuple[Forecast, ...]:
-    """The forecasts without a mistake, in the order of the rows.
+    """Return the forecasts without a mistake, in the order of the rows.
 
     Args:
         workbook: where they are read.
@@ -82,7 +82,7 @@ def _forecast(row: Row, computed: Computed, central: float, claims: Claims, find
 
 
 def _named(row: Row, heading: str, words: type[Named]) -> Named | None:
-    """The role or kind in the cell; None if it is blank.
+    """Return the role or kind in the cell; None if it is blank.
 
     Raises:
         DefinitionError: the cell holds another word.
@@ -99,7 +99,7 @@ def _named(row: Row, heading: str, words: type[Named]) -> Named | None:
 
 
 def _resolution(row: Row, units: str) -> float | None:
-    """The resolution in the cell, a number or such as `1 mph` in the units of the row; None if it is blank.
+    """Return the resolution in the cell, a number or such as `1 mph` in the units of the row; None if it is blank.
 
     Raises:
         DefinitionError: it is no number above 0, or in other units.
@@ -146,7 +146,7 @@ def _refuse_misfits(row: Row, kind: Kind | None, role: Role | None) -> None:
 
 
 def _asked(row: Row) -> tuple[float, float] | None:
-    """The range whose certainty is to be reported; a blank end is no limit, and two are no range.
+    """Return the range whose certainty is to be reported; a blank end is no limit, and two are no range.
 
     Raises:
         DefinitionError: an end is no number, or the range ends below its beginning.

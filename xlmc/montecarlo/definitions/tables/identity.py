@@ -81,7 +81,7 @@ class Claims:
 
 
 def identify(row: Row, claims: Claims, findings: Findings) -> tuple[str, Cell] | None:
-    """The row's name and cell, now taken; None, and a problem, where either is missing, wrong or taken."""
+    """Return the row's name and cell, now taken; None, and a problem, where either is missing, wrong or taken."""
     name = findings.attempt(required_text, row, "Name")
     if name is None or findings.attempt(claims.take_name, name, row.cell("Name")) is None:
         return None
@@ -92,7 +92,7 @@ def identify(row: Row, claims: Claims, findings: Findings) -> tuple[str, Cell] |
 
 
 def _cell_of_row(row: Row, name: str, findings: Findings) -> Cell:
-    """The cell that the row is about.
+    """Return the cell that the row is about.
 
     Args:
         row: the row.
@@ -157,7 +157,7 @@ def _cell_by_name(row: Row, name: str) -> Cell:
 
 
 def _name_in_sight(workbook: Workbook, name: str, where: Cell) -> DefinedName | None:
-    """The defined name as a table on this sheet means it, if there is one.
+    """Return the defined name as a table on this sheet means it, if there is one.
 
     Raises:
         DefinitionError: the workbook's and the sheet's own differ, or only other sheets have one.

@@ -50,7 +50,7 @@ class RowEdit:
 def row_edit(
     workbook: Workbook, name: str, family: str, parameters: Mapping[str, float], base: float, source: str
 ) -> RowEdit:
-    """What has to be written so that an assumption has a distribution.
+    """Write what is needed so that an assumption has a distribution.
 
     Args:
         workbook: that has the table.
@@ -113,7 +113,7 @@ def _at(row: Row, heading: str) -> tuple[int, int]:
 
 
 def _place(workbook: Workbook, tables: Sequence[DefinitionTable]) -> tuple[DefinitionTable, int]:
-    """The first row of a table that is empty, or the row below the last table."""
+    """Return the first row of a table that is empty, or the row below the last table."""
     for table in tables:
         body = table.table.body
         for number in range(body.top, body.bottom + 1):
@@ -124,7 +124,7 @@ def _place(workbook: Workbook, tables: Sequence[DefinitionTable]) -> tuple[Defin
 
 
 def _row_below(workbook: Workbook, table: DefinitionTable) -> int:
-    """The row below a table.
+    """Return the row below a table.
 
     Raises:
         DefinitionError: it is taken.

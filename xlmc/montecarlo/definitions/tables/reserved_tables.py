@@ -59,7 +59,7 @@ class DefinitionTable:
 
 
 def definition_tables(workbook: Workbook, findings: Findings) -> dict[str, list[DefinitionTable]]:
-    """The reserved tables of every sheet by kind, each kind present."""
+    """Return the reserved tables of every sheet by kind, each kind present."""
     found: dict[str, list[DefinitionTable]] = {kind: [] for kind in KINDS}
     for table in workbook.tables:
         kind = next((kind for kind in KINDS if table.name.casefold().startswith(kind)), None)

@@ -79,7 +79,7 @@ def read_scenarios(
     filters: Iterable[Filter],
     findings: Findings,
 ) -> tuple[Scenario, ...]:
-    """The scenarios without a mistake, in the order of the rows.
+    """Return the scenarios without a mistake, in the order of the rows.
 
     Args:
         workbook: where they are read.
@@ -135,7 +135,7 @@ def _scenario(row: Row, columns: Sequence[_Column], claims: Claims, findings: Fi
 
 
 def _read(column: _Column, row: Row) -> Change:
-    """The change that a cell asks for; a formula counts as what Excel calculated.
+    """Return the change that a cell asks for; a formula counts as what Excel calculated.
 
     Raises:
         DefinitionError: it cannot be read.
@@ -162,7 +162,7 @@ class _Headings:
         self._rows = list(_named_rows(workbook, tables))
 
     def column(self, heading: str, where: Cell) -> _Column:
-        """What it changes.
+        """Return what it changes.
 
         Raises:
             DefinitionError: nothing, or more than one thing.
@@ -186,7 +186,9 @@ class _Headings:
             yield _of_filter(heading, self._filters[key])
 
     def _of_columns(self, heading: str) -> Iterator[_Column]:
-        """A column of a row of another table; or a number of an assumption or a limit that has no such column."""
+        """Return a column of a row of another table; or a number of an assumption or a limit that has no such
+        column.
+        """
         key = name_key(heading)
         found: dict[Cell, _Column] = {}
         for name, row in self._rows:
@@ -229,7 +231,7 @@ class _Headings:
 
 
 def _named_rows(workbook: Workbook, tables: Mapping[str, Sequence[DefinitionTable]]) -> Iterator[tuple[str, Row]]:
-    """The rows of the other tables that have a name, by its key."""
+    """Return the rows of the other tables that have a name, by its key."""
     for kind, those in tables.items():
         for table in those if kind != "xlmc_scenarios" else ():
             body = table.table.body
@@ -320,7 +322,7 @@ def _number_or_none(content: CellContent, where: Cell) -> float | None:
 
 
 def _numbers_of(assumption: Assumption) -> Iterator[tuple[str, Sequence[str]]]:
-    """The parameters and cutoffs of an assumption: key, and how people write it."""
+    """Return the parameters and cutoffs of an assumption: key, and how people write it."""
     if isinstance(assumption.cell, InFormula):
         for spec in assumption.family.parameters:
             yield spec.key, spec.headings
@@ -333,6 +335,6 @@ def _is_number_column(heading: str) -> bool:
 
 
 def _number(text: str) -> float:
-    """A number as it is typed into a text: `.6`, `60 %`, `−3`."""
+    """Write a number as it is typed into a text: `.6`, `60 %`, `−3`."""
     bare = text.replace("−", "-").strip()
     return float(bare.removesuffix("%")) / 100 if bare.endswith("%") else float(bare)

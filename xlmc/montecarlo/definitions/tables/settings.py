@@ -44,7 +44,7 @@ class _Setting(NamedTuple):
 def read_settings(
     workbook: Workbook, tables: list[DefinitionTable], engines: Collection[str], findings: Findings
 ) -> tuple[Settings, float, frozenset[str]]:
-    """The settings; the share of the central range for forecasts that give none; and what is set, by plain names.
+    """Read the settings; the share of the central range for forecasts that give none; and what is set, by plain names.
 
     Mistakes leave the default.
 
@@ -94,7 +94,7 @@ def _take(row: Row, values: dict[str, Any], settings: Mapping[str, _Setting], fi
 
 
 def _arithmetic(row: Row, _findings: Findings) -> None:
-    """A row of earlier books, which could ask for float32."""
+    """Read a row of earlier books, which could ask for float32."""
     typed = required_text(row, "Value")
     if plain(typed) != "float64":
         message = f"There is no arithmetic {typed!r}: xlmc computes in float64"
@@ -124,7 +124,7 @@ def _of_run(engines: Collection[str], *, ends: bool) -> dict[str, _Reader]:
 
 
 def _read(setting: Setting, engines: Collection[str], row: Row, _findings: Findings) -> Any:
-    """The value of a setting's row.
+    """Return the value of a setting's row.
 
     Raises:
         DefinitionError: it is none.
@@ -143,7 +143,7 @@ def _read(setting: Setting, engines: Collection[str], row: Row, _findings: Findi
 
 
 def _word(row: Row, kind: Word, words: Collection[str]) -> str:
-    """The one of the words that was typed, in any case."""
+    """Return the one of the words that was typed, in any case."""
     typed = required_text(row, "Value")
     found = {plain(word): word for word in words} | kind.also()
     if plain(typed) in found:
@@ -154,7 +154,7 @@ def _word(row: Row, kind: Word, words: Collection[str]) -> str:
 
 
 def _number_of(row: Row, name: str) -> float:
-    """The number in the row's Value.
+    """Return the number in the row's Value.
 
     Raises:
         DefinitionError: there is something else in it.
@@ -163,7 +163,7 @@ def _number_of(row: Row, name: str) -> float:
 
 
 def _whole_number(row: Row, name: str, least: int, most: int) -> int:
-    """The whole number in the row's Value, also as a text like `200,000` or `200k`.
+    """Return the whole number in the row's Value, also as a text like `200,000` or `200k`.
 
     Raises:
         DefinitionError: there is something else in it, or a number outside `least` … `most`.
@@ -177,7 +177,7 @@ def _whole_number(row: Row, name: str, least: int, most: int) -> int:
 
 
 def _whole_number_as_text(row: Row, name: str) -> int | None:
-    """What is written in a cell of text; None if the cell holds something else."""
+    """Return what is written in a cell of text; None if the cell holds something else."""
     text = row.content("Value").value
     if not isinstance(text, str):
         return None
@@ -189,13 +189,13 @@ def _whole_number_as_text(row: Row, name: str) -> int | None:
 
 
 def _goal_settings() -> dict[str, Callable[[Row, Findings], Any]]:
-    """Setting -> reader of its row: what goals take."""
+    """List setting -> reader of its row: what goals take."""
     options = {option.setting: partial(_option, option) for option in _options()}
     return options | {"Precision": _precision, "Precision %": _percent}
 
 
 def _read_stopping(tables: list[DefinitionTable], values: dict[str, Any], findings: Findings) -> Stopping:
-    """What the settings say of the end of the run, taken out of `values`; a mistake is reported for the whole table."""
+    """Take what the settings say of the end of the run out of `values`; a mistake is reported for the whole table."""
     arguments = {option.setting: option.name for option in _options()} | {"Precision %": "precision"}
     arguments |= {row.heading: row.key for row in SETTINGS.values() if row.field}
     given = {name: values.pop(plain(name)) for name in arguments if plain(name) in values}
@@ -253,7 +253,7 @@ def _seconds(row: Row) -> float:
 
 
 def _as_written(row: Row, read: Callable[[Any], T], given: object) -> T:
-    """What is read from the value; a fault names the cell."""
+    """Read a value; a fault names the cell."""
     try:
         return read(given)
     except SimulationError as error:

@@ -69,15 +69,15 @@ class Row:
         return tuple(written for written, _ in self.table.columns.values())
 
     def heading(self, heading: str) -> str:
-        """The heading as this table writes it."""
+        """Return the heading as this table writes it."""
         return self.table.columns[plain(heading)][0]
 
     def cell(self, heading: str) -> Cell:
-        """The table's own cell in that column."""
+        """Return the table's own cell in that column."""
         return Cell(self.table.table.area.sheet, self.number, self.table.columns[plain(heading)][1])
 
     def content(self, heading: str) -> CellContent:
-        """What the table's own cell holds; blank where the table has no such column."""
+        """Return what the table's own cell holds; blank where the table has no such column."""
         return self.workbook.content(self.cell(heading)) if self.has(heading) else CellContent()
 
     @property
@@ -86,7 +86,7 @@ class Row:
         return Cell(self.table.table.area.sheet, self.number, self.table.table.area.left)
 
     def notes(self, known: Iterable[str]) -> dict[str, str]:
-        """The filled cells of the columns that nobody else reads, heading as written -> text."""
+        """Return the filled cells of the columns that nobody else reads, heading as written -> text."""
         spellings = {plain(heading) for heading in known}
         return {
             written: as_text(self.content(written).value)
@@ -96,7 +96,7 @@ class Row:
 
 
 def as_text(value: CellValue) -> str:
-    """A value as Excel shows it in a cell of general format."""
+    """Write a value as Excel shows it in a cell of general format."""
     match value:
         case None:
             return ""
@@ -117,7 +117,7 @@ def rows_of(
     known: Iterable[str],
     findings: Findings,
 ) -> Iterator[Row]:
-    """The rows of these tables that hold anything, without header and totals.
+    """Yield the rows of these tables that hold anything, without header and totals.
 
     A table that lacks a required column is a problem and gives no rows. A heading that nobody reads but that looks
     like a known one is pointed out, because its column is kept as a note only; where the table lacks the known one,
@@ -187,7 +187,7 @@ def _filled_rows(workbook: Workbook, table: DefinitionTable) -> Iterator[Row]:
 
 
 def required_text(row: Row, heading: str) -> str:
-    """The text of the cell, trimmed.
+    """Return the text of the cell, trimmed.
 
     Raises:
         DefinitionError: the cell is blank or holds an error.
@@ -200,7 +200,7 @@ def required_text(row: Row, heading: str) -> str:
 
 
 def optional_text(row: Row, heading: str) -> str:
-    """The text of the cell, trimmed; '' where it is blank or the table has no such column.
+    """Return the text of the cell, trimmed; '' where it is blank or the table has no such column.
 
     Raises:
         DefinitionError: the cell holds an error, or a formula that was never calculated.
@@ -214,7 +214,7 @@ def optional_text(row: Row, heading: str) -> str:
 
 
 def number(row: Row, heading: str) -> float | None:
-    """The number in the cell, typed in or as Excel cached it; None if it is blank.
+    """Return the number in the cell, typed in or as Excel cached it; None if it is blank.
 
     Raises:
         DefinitionError: the cell holds anything else.
@@ -225,7 +225,7 @@ def number(row: Row, heading: str) -> float | None:
 
 
 def parameter(row: Row, heading: str) -> Parameter | None:
-    """The number in the cell, or the cell itself where it holds a formula; None if it is blank.
+    """Return the number in the cell, or the cell itself where it holds a formula; None if it is blank.
 
     Raises:
         DefinitionError: the cell holds text, a logical or an error, typed in or as Excel cached it. A formula that
@@ -242,7 +242,7 @@ def parameter(row: Row, heading: str) -> Parameter | None:
 
 
 def static_value(given: Parameter | None, workbook: Workbook) -> float | None:
-    """The number, or the one that Excel cached for the cell, if any."""
+    """Return the number, or the number that Excel cached for the cell, if any."""
     if not isinstance(given, Cell):
         return given
     value = workbook.content(given).value
@@ -250,7 +250,7 @@ def static_value(given: Parameter | None, workbook: Workbook) -> float | None:
 
 
 def logical(row: Row, heading: str) -> bool:
-    """TRUE or FALSE, also as the words true, false, yes, no, on, off; blank is FALSE.
+    """Read TRUE or FALSE, also as the words true, false, yes, no, on, off; blank is FALSE.
 
     Raises:
         DefinitionError: the cell holds anything else.
@@ -300,7 +300,7 @@ class _HasName(Protocol):
 
 
 def central_share(what: str, value: float, where: Cell, findings: Findings) -> float:
-    """A percentage above 0 and below 100 as a share.
+    """Read a percentage above 0 and below 100 as a share.
 
     A number below 1 is taken for a share, as a cell in percent format holds it, with a notice.
 
@@ -323,7 +323,7 @@ def central_share(what: str, value: float, where: Cell, findings: Findings) -> f
 
 
 def number_in(what: str, content: CellContent, where: Cell) -> float:
-    """The number that a cell holds.
+    """Return the number that a cell holds.
 
     Args:
         what: what a person calls the cell, for the message.

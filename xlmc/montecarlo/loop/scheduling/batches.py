@@ -114,7 +114,7 @@ class Sharing:
         self._done: dict[int, Block | Exception] = {}
 
     def in_order(self) -> Iterator[Block]:
-        """The blocks in the order of their tasks; what goes wrong in one is raised in its turn.
+        """Yield the blocks in the order of their tasks; what goes wrong in one is raised in its turn.
 
         Raises:
             BaseException: what went wrong, or why a worker answers no more.
@@ -152,7 +152,7 @@ class Sharing:
         return max(1, min(most, 1 + begun, left))
 
     def _next_tasks(self, wanted: int) -> list[Task]:
-        """The next tasks; none where there are no more, or where too many blocks are ahead of their turn."""
+        """Take the next tasks; none where there are no more, or where too many blocks are ahead of their turn."""
         free = _AHEAD * self._runners - (self._given - self._turn)
         found = list(islice(self._tasks, max(0, min(wanted, free))))
         self._given += len(found)
@@ -172,7 +172,7 @@ def discard(answers: Answers) -> None:
 
 
 def by_threads(runners: Sequence[Runner], blocks: int, tasks: Iterable[Task]) -> Iterator[Block]:
-    """The blocks in the order of their tasks.
+    """Yield the blocks in the order of their tasks.
 
     Args:
         runners: one for each thread; the first is for this thread.

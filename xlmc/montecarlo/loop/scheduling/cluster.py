@@ -44,7 +44,7 @@ MODELS = 4
 def by_cluster(
     spec: RunSpec, scheduler: str, workers: int | None, blocks: int, tasks: Iterable[Task]
 ) -> Iterator[Block]:
-    """The blocks in the order of their tasks.
+    """Yield the blocks in the order of their tasks.
 
     Args:
         spec: what to run.

@@ -68,7 +68,7 @@ class IdlePool:
         self._lock = Lock()
 
     def take(self, count: int) -> list[WorkerProcess]:
-        """A number of processes: idle ones first, then new ones.
+        """Take a number of processes: idle ones first, then new ones.
 
         Raises:
             SimulationError: one cannot be started.
@@ -134,7 +134,7 @@ if hasattr(os, "register_at_fork"):
 
 
 def by_processes(portable: Portable, own: Runner, others: int, blocks: int, tasks: Iterable[Task]) -> Iterator[Block]:
-    """The blocks in the order of their tasks.
+    """Yield the blocks in the order of their tasks.
 
     Args:
         portable: makes the runner of each other process.

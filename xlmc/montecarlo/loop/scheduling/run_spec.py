@@ -29,7 +29,7 @@ LIBRARIES = ("numpy", "scipy", "formulas", *(engine.library for engine in ENGINE
 def model_runner(
     model: CompiledModel, program: Program, engine: str, seed: int, block: int, plan: SamplingPlan | None = None
 ) -> ModelRunner:
-    """What runs the blocks of a model in this process, in one thread."""
+    """Make what runs the blocks of a model in this process, in one thread."""
     sampler, evaluator = model.sampler(seed, block, engine, plan), program.evaluator(block)
     return ModelRunner(sampler, evaluator, block, len(model.forecasts), model.fallible)
 
@@ -55,18 +55,18 @@ class RunSpec:
         block: int,
         plan: SamplingPlan | None = None,
     ) -> RunSpec:
-        """The specification of a run of this model."""
+        """Specify a run of this model."""
         bare = replace(model.workbook, parts={}, data=b"")  # the file as it was: only the result sheets need it
         needed = plan if plan is not None and plan.size else None  # independent trials may be any number
         definitions = replace(model.definitions, feeding=None)  # who feeds it is in its formulas by now
         return cls(bare, definitions, model.path, engine, seed, block, needed)
 
     def pack(self) -> bytes:
-        """The specification and the software that it was made with, as bytes for `unpacked`."""
+        """Pack the specification and the software that it was made with into bytes for `unpacked`."""
         return pickle.dumps((software(), pickle.dumps(self, protocol=5)), protocol=5)
 
     def model(self) -> CompiledModel:
-        """The model, made again."""
+        """Make the model again."""
         return CompiledModel(self.workbook, self.definitions, self.path)
 
     def runner(self) -> ModelRunner:
@@ -75,12 +75,13 @@ class RunSpec:
         return self.runner_of(model, model.program(self.engine))
 
     def runner_of(self, model: CompiledModel, program: Program) -> ModelRunner:
-        """What runs the blocks, given `model()` and its program."""
+        """Make what runs the blocks, given `model()` and its program."""
         return model_runner(model, program, self.engine, self.seed, self.block, self.plan)
 
 
 def unpack(packed: bytes) -> RunSpec:
-    """What was packed. The bytes must come from a process of one's own: to unpickle them is to run what is in them.
+    """Unpack a specification. The bytes must come from a process of one's own: to unpickle them is to run what is in
+    them.
 
     Raises:
         SimulationError: it was packed with other software than there is here.

@@ -60,7 +60,7 @@ def _blocks(runner: Runner | None, tasks: list[Task]) -> list[Block | Exception]
 
 
 def _portable(error: Exception) -> Exception:
-    """The error, or its words where it cannot be pickled and made again."""
+    """Return the error, or its words where it cannot be pickled and made again."""
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:  # an exception may hold anything, and its class may want any arguments
@@ -69,7 +69,7 @@ def _portable(error: Exception) -> Exception:
 
 
 def _answers() -> BinaryIO:
-    """The pipe for answers; what anybody prints goes to stderr instead."""
+    """Return the pipe for answers; what anybody prints goes to stderr instead."""
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     return answers

@@ -62,7 +62,7 @@ class WorkerPool:
         tasks: Iterator[Task],
         block_memory: Callable[[], BlockMemory],
     ) -> Generator[Block, None, None]:
-        """The blocks of a run, of `block` trials each, in the order of their tasks; copy what you keep of each.
+        """Yield the blocks of a run, of `block` trials each, in the order of their tasks; copy what you keep of each.
 
         Where they are run one after another, the columns of the next block may be written to what `block_memory` gives.
 
@@ -108,5 +108,5 @@ def _near_the_function(asked: str | None) -> str:
 
 
 def _scheduler(engine: str, jobs: int, blocks: int) -> str:
-    """The scheduler of a run that names none: processes where they save more time than they take to start."""
+    """Choose the scheduler of a run that names none: processes where they save more time than they take to start."""
     return "processes" if jobs > 1 and blocks >= ENGINES[engine].process_blocks else "threads"

@@ -90,7 +90,7 @@ class Sequences:
         self._squares += apart * (found - self._average)
 
     def excess(self, digits: int) -> float:
-        """The largest 2s over δ; infinite before there are two sequences."""
+        """Return the largest 2s over δ; infinite before there are two sequences."""
         if self.count < 2:
             return math.inf
         twice = 2.0 * math.sqrt(float(self._squares.max()) / (self.count - 1) / self.count)

@@ -64,7 +64,7 @@ class Wanted:
 
 
 def wanted_of(index: int, central: float, asked: Sequence[str]) -> list[Wanted]:
-    """What is asked of a forecast, `range` being both ends of the range that holds the share `central`.
+    """Return what is asked of a forecast, `range` being both ends of the range that holds the share `central`.
 
     >>> [wanted.percent for wanted in wanted_of(0, 0.5, ("mean", "range", "p90"))]
     [None, 25.0, 75.0, 90.0]
@@ -130,7 +130,7 @@ class UntilPrecise:
         return True
 
     def _excess(self, wanted: Wanted, columns: Columns) -> float:
-        """The half width over what it may be; infinite where there is no interval."""
+        """Divide the half width by what it may be; infinite where there is no interval."""
         found = self._estimate(wanted, columns)
         half = half_width(found)
         allowed = self._asked.tolerance * (abs(found.value) if self._asked.relative else 1.0)
@@ -152,7 +152,7 @@ def _least(moments: RunningMoments) -> int:
 
 
 def half_width(estimate: Estimate) -> float:
-    """The longer side of its interval; infinite where it has none."""
+    """Return the longer side of its interval; infinite where it has none."""
     if estimate.interval is None:
         return math.inf
     low, high = estimate.interval

@@ -91,7 +91,7 @@ class RunningMoments:
         return trial_skewness(Shape(*self._standardised()[3:]), pull, self.n)
 
     def _standardised(self) -> Floats:
-        """The means of the powers of the standardised values."""
+        """Return the means of the powers of the standardised values."""
         root = (self._sums[2] / self.n) ** 0.5
         found = self._sums / self.n
         for power in range(2, found.size):
@@ -100,7 +100,7 @@ class RunningMoments:
 
 
 def _sums_of_powers(apart: Floats, count: int) -> Floats:
-    """The sums of the powers 0, 1, … of values about their mean."""
+    """Return the sums of the powers 0, 1, … of values about their mean."""
     sums, power = np.zeros(count), apart
     sums[0] = apart.size
     for exponent in range(2, count):
@@ -110,7 +110,7 @@ def _sums_of_powers(apart: Floats, count: int) -> Floats:
 
 
 def _moved(sums: Floats, step: float) -> Floats:
-    """The sums of powers about a mean that is `step` higher."""
+    """Return the sums of powers about a mean that is `step` higher."""
     return np.array([sum(math.comb(p, k) * (-step) ** k * sums[p - k] for k in range(p + 1)) for p in range(sums.size)])
 
 

@@ -66,7 +66,7 @@ class Watch:
         return block.trials if self._rule is None else self._rule.counting(block, self._seen)
 
     def after(self, block: Observed, columns: Columns, *, interrupted: bool = False) -> Stopped | None:
-        """What ends the run with this block, cut to the trials that count; None if nothing does."""
+        """Return what ends the run with this block, cut to the trials that count; None if nothing does."""
         self._seen += block.trials
         goal = None if self._rule is None else self._rule.goal
         if self._rule is not None and self._rule.reached(block, columns):
@@ -77,7 +77,7 @@ class Watch:
         return self.meanwhile(interrupted=interrupted)
 
     def meanwhile(self, *, interrupted: bool = False) -> Stopped | None:
-        """What ends the run where no block was run: somebody, or the time; None if nothing does."""
+        """Return what ends the run where no block was run: somebody, or the time; None if nothing does."""
         goal = None if self._rule is None else self._rule.goal
         if interrupted:
             return Stopped("interruption", "it was interrupted", goal)
@@ -123,7 +123,7 @@ class Interruption:
 
 
 def chosen_rule(asked: Stopping, forecasts: Sequence[Forecast]) -> StopRule | None:
-    """The rule; None if the run is to run its trials.
+    """Make the rule; None if the run is to run its trials.
 
     Raises:
         SimulationError: there is no forecast of a name, or none at all.

@@ -97,7 +97,7 @@ def fit(
     as_json_of = partial(_as_json, found, f"{book} {where}", blank, row)
     report = _report(found, values, f"{book.name} {where}", blank, row, as_json_of)
     written = write_files(files.writers(report))
-    into = None if edited is None else written_or_told(edited.path, partial(fit_into.write, edited))
+    into = None if edited is None else written_or_reported(edited.path, partial(fit_into.write, edited))
     if as_json:
         say_json(report.as_json())
     else:
@@ -234,7 +234,7 @@ def _report(
     row: dict[str, str],
     as_json: Callable[[], dict[str, object]],
 ) -> StudyReport:
-    """What was found; the row to paste comes last."""
+    """Yield what was found; the row to paste comes last."""
     from xlmc.outputs.study_report import StudyReport, Table
 
     as_row = Table(f"{row['Distribution']} as a row of xlmc_assumptions", tuple(row), (tuple(row.values()),))

@@ -78,8 +78,8 @@ def methods(
     given = {name: value for name, value in asked.items() if value is not None}
     if quick:
         given = quick_settings(given)
-    with step_line(quiet) as told:
-        found = study(model, accuracy=accuracy, seed=seed, told=told, **given)
+    with step_line(quiet) as tell:
+        found = study(model, accuracy=accuracy, seed=seed, tell=tell, **given)
     written = write_files((path, partial(save_methods, found, path, overwrite=overwrite)) for path in files)
     if as_json:
         say_json(study_json(found))

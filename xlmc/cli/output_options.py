@@ -11,7 +11,7 @@ import click
 
 from xlmc.cli.options import OneOf
 from xlmc.cli.terminal import say
-from xlmc.cli.writing import written_or_told
+from xlmc.cli.writing import written_or_reported
 from xlmc.excel.workbook.package import WORKBOOKS
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.document import Wanted
 
-__all__ = ["Outputs", "Wishes", "output_options", "results_beside", "with_files", "with_options"]
+__all__ = ["Outputs", "ReportContents", "output_options", "results_beside", "with_files", "with_options"]
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -130,7 +130,7 @@ _OVERWRITE = click.option(
 
 
 def output_options(default: str, *, without: Collection[str] = ()) -> Callable[[F], F]:
-    """Add the options; the command is given the files as `output` and `also`, `overwrite`, and `wishes`.
+    """Add the options; the command is given the files as `output` and `also`, `overwrite`, and `contents`.
 
     Args:
         default: what is written when nothing is named, for the help.
@@ -146,10 +146,10 @@ def output_options(default: str, *, without: Collection[str] = ()) -> Callable[[
     def add(command: F) -> F:
         @wraps(command)
         def packed(*args: Any, **others: Any) -> Any:
-            wishes = Wishes(**{name: others.pop(name) for name in Wishes._fields})
-            return command(*args, wishes=wishes, **others)
+            contents = ReportContents(**{name: others.pop(name) for name in ReportContents._fields})
+            return command(*args, contents=contents, **others)
 
-        return with_files(text, names)(with_options(*_WISHES, _OVERWRITE)(cast(F, packed)))
+        return with_files(text, names)(with_options(*_CONTENTS, _OVERWRITE)(cast(F, packed)))
 
     return add
 
@@ -231,7 +231,7 @@ class Outputs(NamedTuple):
         default: a result workbook that the person did not name: another one is numbered on where it is taken.
         in_place: write the result sheets into the source itself, too.
         overwrite: replace files that are not ours too.
-        wishes: what the reports are to hold.
+        contents: what the reports are to hold.
         beside: the saved run that the page shows beside this one.
     """
 
@@ -241,11 +241,11 @@ class Outputs(NamedTuple):
     default: Path | None = None
     in_place: bool = False
     overwrite: bool = False
-    wishes: Wishes = Wishes()
+    contents: ReportContents = ReportContents()
     beside: Path | None = None
 
     def of(self, *kinds: _Kind) -> list[Path]:
-        """The named files of some kinds."""
+        """Return the named files of some kinds."""
         return [path for path in self.files if path.suffix.casefold() in {e for kind in kinds for e in kind.endings}]
 
     @property
@@ -289,7 +289,7 @@ class Outputs(NamedTuple):
         if self.reports:
             from xlmc.outputs.document import check_wanted_of
 
-            check_wanted_of(self.wishes.wanted(), model)
+            check_wanted_of(self.contents.wanted(), model)
         elif has_book:
             from xlmc.outputs.case_fields import case_of
 
@@ -319,8 +319,8 @@ class Outputs(NamedTuple):
         for path in self.books:
             check_ending(path, like)
         if self.reports:
-            self.wishes.wanted()
-        elif self.wishes != Wishes():
+            self.contents.wanted()
+        elif self.contents != ReportContents():
             raise click.UsageError(
                 "--case, --sections, --forecasts and --paper are of a report: give -o REPORT.pdf or -o REPORT.docx."
             )
@@ -385,7 +385,7 @@ class Outputs(NamedTuple):
             if found is None:
                 written = False
             else:
-                lines.append(f"{said} {found}")
+                lines.append(f"{label} {found}")
         if run.kept_inputs < run.accepted:
             kept = f"the draws of {run.kept_inputs:,} of {run.accepted:,} accepted trials were kept"
             for path in self.trials:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.output_options import Outputs, Wishes, output_options, results_beside
+from xlmc.cli.output_options import Outputs, ReportContents, output_options, results_beside
 from xlmc.cli.terminal import say
 from xlmc.cli.writing import NOT_WRITTEN
 
@@ -31,7 +31,7 @@ def report(
     output: tuple[Path, ...],
     also: tuple[Path, ...],
     overwrite: bool,
-    wishes: Wishes,
+    contents: ReportContents,
     quiet: bool,
 ) -> None:
     """Write the results of a saved run, without simulating again: the same as when it was run.
@@ -46,7 +46,7 @@ def report(
     from xlmc.excel.workbook.seal import read_seal
     from xlmc.excel.workbook.target import copy_ending
 
-    asked = Outputs(run, run.name, (*output, *also), overwrite=overwrite, wishes=wishes, beside=second)
+    asked = Outputs(run, run.name, (*output, *also), overwrite=overwrite, contents=contents, beside=second)
     if second is not None and not asked.is_one_page:
         raise click.UsageError(
             "A second run is shown on a page, and there alone: give -o PAGE.html, and no other file."

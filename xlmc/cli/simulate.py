@@ -15,7 +15,7 @@ from xlmc.cli.options import (
     jobs_option,
     run_options,
 )
-from xlmc.cli.output_options import Outputs, Wishes, output_options, results_beside
+from xlmc.cli.output_options import Outputs, ReportContents, output_options, results_beside
 from xlmc.cli.terminal import paragraph, say
 from xlmc.cli.writing import NOT_WRITTEN
 
@@ -55,7 +55,7 @@ def simulate(
     output: tuple[Path, ...],
     also: tuple[Path, ...],
     overwrite: bool,
-    wishes: Wishes,
+    contents: ReportContents,
     quiet: bool,
     **asked: Any,
 ) -> None:
@@ -72,7 +72,7 @@ def simulate(
         load(book)  # says so
     feeds = read_feeds(feed)
     default = None if in_place or output else results_beside(book)
-    wanted = Outputs(book, book.name, (*output, *also), default, in_place, overwrite, wishes)
+    wanted = Outputs(book, book.name, (*output, *also), default, in_place, overwrite, contents)
     if in_place and len(wanted.books) > 1:
         raise click.UsageError("--in-place and -o with a workbook cannot both be given.")
     outputs = wanted.check(book) if os.path.exists(book) else wanted  # `load` says that there is no book

@@ -54,8 +54,8 @@ def stability(
     model = load(book)
     files = Files((*output, *also), [book], overwrite=overwrite, of_run=True)
     files.check()
-    with step_line(quiet) as told:
-        found = room.stability(model, trials=trials, seed=seed, jobs=jobs, told=told)
+    with step_line(quiet) as tell:
+        found = study.stability(model, trials=trials, seed=seed, jobs=jobs, tell=tell)
     report = _report(found, all_cells)
     written = write_files(files.writers(report))
     if as_json:

@@ -20,7 +20,7 @@ SCENARIO_HEADS: Final = ("Scenario", "Accepted", "Share", POINTS, "What is chang
 
 
 def scenario_rows(found: Sequence[ScenarioAnswers], impossible: Mapping[str, str]) -> list[tuple[str, ...]]:
-    """A row for the workbook itself and for each scenario, under `SCENARIO_HEADS`.
+    """Yield a row for the workbook itself and for each scenario, under `SCENARIO_HEADS`.
 
     Args:
         found: of the workbook itself, then of the scenarios.

@@ -137,7 +137,7 @@ def scenario_answers(
     if not run.settings.scenarios:
         return ()
     if run not in _FOUND:
-        _FOUND[run] = found = _answers(run, jobs, told)
+        _FOUND[run] = found = _answers(run, jobs, tell)
         run.take_tabulated(
             {
                 change.number: each.run
@@ -213,12 +213,12 @@ def scenario_named(model: CompiledModel, scenario: Scenario | str) -> Scenario:
     return known[name_key(scenario)]
 
 
-def _answers(run: RunResult, jobs: int, told: Callable[[str], None] | None) -> _Found:
+def _answers(run: RunResult, jobs: int, tell: Callable[[str], None] | None) -> _Found:
     refuse_no_scenarios(run.model)
     answers, impossible = [answers_of(run, None, run)], dict[str, str]()
     for scenario in run.model.definitions.scenarios:
-        if told is not None:
-            told(scenario.name)
+        if tell is not None:
+            tell(scenario.name)
         try:
             found = run_scenario(model_of(run.model, scenario), run, jobs=jobs)
         except XlmcError as error:

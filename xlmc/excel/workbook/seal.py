@@ -106,7 +106,7 @@ def sealed_text(content: bytes, ending: str, book: str) -> bytes:
 
 
 def sealed_json(value: object, book: str) -> bytes:
-    """An object as JSON, with the seal behind its other members; it holds no infinities."""
+    """Return an object as JSON, with the seal behind its other members; it holds no infinities."""
     text = json.dumps(value, ensure_ascii=False, allow_nan=False, indent=2)
     return sealed_text(text.removesuffix("\n}").encode(), ".json", book)
 

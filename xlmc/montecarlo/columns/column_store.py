@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from xlmc.engine.cache_lines import CACHE_LINE
 from xlmc.errors import SimulationError
-from xlmc.excel.workbook.temporary_names import new_folder_name, owned, remove_stray_folders
+from xlmc.excel.workbook.temporary_names import new_folder_name, owned, remove_abandoned_folders
 from xlmc.montecarlo.interruption import checkpoint
 
 __all__ = [
@@ -227,13 +227,13 @@ class ColumnStore:
         remove_abandoned_folders()
 
     def add(self, key: Hashable, values: Array) -> None:
-        """Put `(m,)` values at the end of a column; those that were written to `room` are there already.
+        """Put `(m,)` values at the end of a column; those that were written to `reserve` are there already.
 
         The system gives memory when it is first written to, which may take longer than all else: so work that is not
         wanted any more is given up here.
         """
         checkpoint()
-        end = self.room(key, values.size)
+        end = self.reserve(key, values.size)
         if values.size and (values.base is not end.base or _address(values) != _address(end)):
             end[:] = values
         self._sizes[key] += values.size

@@ -67,7 +67,7 @@ def read_definitions(
     switched: Mapping[str, bool] = NO_SWITCHES,
     python: Mapping[Cell, Expression] | None = None,
 ) -> Definitions:
-    """What the tables `xlmc_assumptions`, `xlmc_forecasts`, … of a workbook say, and calls such as `RiskNormal`.
+    """Read what the tables `xlmc_assumptions`, `xlmc_forecasts`, … of a workbook say, and calls such as `RiskNormal`.
 
     Nothing is raised for a mistake in them: all mistakes are in `problems`, each with its cell and what to do.
 
@@ -175,7 +175,7 @@ def read_definitions(
 
 
 def _switches(rows: Iterable[Filter | Evidence]) -> Iterator[tuple[str, tuple[Cell, bool]]]:
-    """The rows that can be used or not; see `Definitions`."""
+    """Return the rows that can be used or not; see `Definitions`."""
     for each in rows:
         if each.can_be_used:
             yield each.name, (each.row, each.used)

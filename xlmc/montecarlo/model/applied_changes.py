@@ -120,7 +120,7 @@ def _typed(changes: Iterable[Change]) -> dict[Cell, CellValue]:
 
 
 def _with_typed(model: CompiledModel, changes: Sequence[Change]) -> CompiledModel:
-    """The model with what is typed into cells, switched or tabulated, before any other change."""
+    """Make the model with what is typed into cells, switched or tabulated, before any other change."""
     for change in changes:
         if isinstance(change, Typed):
             _refuse_cell(model, change)
@@ -138,7 +138,7 @@ def _tabulated(changes: Iterable[Change]) -> int:
 
 
 def _switched(changes: Iterable[Change]) -> dict[str, bool]:
-    """Filters and evidence that are used, or not, by the keys of their names."""
+    """Return filters and evidence that are used, or not, by the keys of their names."""
     return {name_key(change.row): change.used for change in changes if isinstance(change, Switched)}
 
 

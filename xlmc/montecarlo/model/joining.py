@@ -36,7 +36,7 @@ _KEPT_AS_THEY_ARE: Final = frozenset({"own_family", "checked"})
 
 
 def joined(model: CompiledModel, feeds: Sequence[Feed], sources: Mapping[str, CompiledModel]) -> CompiledModel:
-    """The model with assumptions fed by answers of other workbooks.
+    """Make the model with assumptions fed by answers of other workbooks.
 
     Args:
         model: of the workbook that is run; stays as it is.
@@ -108,7 +108,7 @@ class _Joining:
         self._notices.append(Notice(said, _moved(assumption.cell, book)))
 
     def _book(self, name: str) -> str:
-        """The key of a workbook that was named by its file name, or not at all."""
+        """Return the key of a workbook that was named by its file name, or not at all."""
         if not name:
             return name
         found = next((each for each in self._books if each.casefold() == name.casefold()), None)
@@ -119,7 +119,7 @@ class _Joining:
         return found
 
     def definitions(self) -> Definitions:
-        """What all workbooks ask for together."""
+        """Return what all workbooks ask for together."""
         own = self._model.definitions
         names = _Names((*own.filters, *own.forecast_filters, *own.evidence, *own.checks))
         parts = [self._left(own, "")]
@@ -149,7 +149,7 @@ class _Joining:
         )
 
     def _left(self, definitions: Definitions, book: str) -> Definitions:
-        """The definitions of a workbook without its assumptions that are fed.
+        """Return the definitions of a workbook without its assumptions that are fed.
 
         Raises:
             SimulationError: one of them is correlated.
@@ -168,7 +168,7 @@ class _Joining:
         return replace(definitions, assumptions=left, correlations=rows)
 
     def _of_source(self, source: CompiledModel, book: str, names: _Names) -> Definitions:
-        """What a workbook that feeds asks for, in terms of the joined one's cells and names."""
+        """Return what a workbook that feeds asks for, in terms of the joined one's cells and names."""
         found = self._left(source.definitions, book)
         own: list[Assumption] = []
         for each in found.assumptions:
@@ -239,7 +239,7 @@ class _Joining:
         self._notices.append(Notice(said, here.cell))
 
     def _fed_forecasts(self) -> Iterator[Forecast]:
-        """What the fed assumptions are, as answers of the run."""
+        """Return what the fed assumptions are, as answers of the run."""
         taken = {name_key(each.name) for each in self._model.forecasts}
         for (book, _), (_, assumption, _, _) in self._fed.items():
             name = assumption.name if name_key(assumption.name) not in taken else f"{assumption.name} (fed)"
@@ -247,7 +247,7 @@ class _Joining:
             yield Forecast(name, _moved(assumption.cell, book), _moved(assumption.row, book), units=assumption.units)
 
     def workbook(self) -> Workbook:
-        """The workbook that is run, with formulas in the fed cells, and the others as those that it links to."""
+        """Return the workbook that is run, with formulas in the fed cells, and the others as those that it links to."""
         own = self._model.workbook
         formulas = {
             _moved(a.cell, book): _formula(text, a.cell) for (book, _), (_, a, _, text) in self._fed.items()
@@ -268,7 +268,9 @@ class _Joining:
 
 
 def _linked(source: CompiledModel, name: str, formulas: Mapping[Cell, CellContent]) -> LinkedBook:
-    """The sheets of a workbook that its formulas or definitions read, under the names that they have in the other."""
+    """Return the sheets of a workbook that its formulas or definitions read, under the names that they have in the
+    other.
+    """
     book = source.workbook
     read = {host_of(cell).sheet for cell in (*source.read, *source.trees, *(a.cell for a in source.assumptions))}
     found: dict[str, Sheet] = {}
@@ -312,7 +314,7 @@ def _parts(tree: ir.Expression) -> list[ir.Expression]:
 
 
 def _found(name: str, known: Mapping[str, Iterable[Any]], label: str) -> Any:
-    """The definition of a name, of the first kind that has it.
+    """Return the definition of a name, of the first kind that has it.
 
     Raises:
         SimulationError: none has.
@@ -351,7 +353,7 @@ class _Names:
 
 
 def _renamed(row: _T, names: Mapping[str, str]) -> _T:
-    """A filter, check or item of evidence under its name in the joined model."""
+    """Return a filter, check or item of evidence under its name in the joined model."""
     found: Any = row
     if isinstance(found, Filter) and found.evidence is not None:
         found = replace(found, evidence=replace(found.evidence, name=names[found.evidence.name]))
@@ -366,7 +368,7 @@ def _of_book(notice: Notice, book: str) -> Notice:
 
 
 def _moved(cell: Cell, book: str) -> Cell:
-    """The cell on its sheet's name in the joined workbook: `[momentum.xlsx]Model`; itself for no book."""
+    """Return the cell on its sheet's name in the joined workbook: `[momentum.xlsx]Model`; itself for no book."""
     return type(cell)(f"[{book}]{cell.sheet}", cell.row, cell.column) if book else cell
 
 
@@ -383,7 +385,7 @@ def _moved_tree(tree: ir.Expression | FormulaError, book: str) -> ir.Expression 
 
 
 def _moved_all(value: _T, book: str) -> _T:
-    """A definition with all its cells in the joined workbook."""
+    """Return a definition with all its cells in the joined workbook."""
     found: Any = value
     if isinstance(found, Cell):
         return _moved(found, book)  # type: ignore[return-value]

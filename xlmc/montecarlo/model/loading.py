@@ -58,7 +58,7 @@ def load(path: str | Path, feeds: Sequence[Feed] = ()) -> CompiledModel:
 
 
 def fed(model: CompiledModel, feeds: Sequence[Feed]) -> CompiledModel:
-    """The model fed by other workbooks, which are read; itself where there are no feeds.
+    """Make the model fed by other workbooks, which are read; itself where there are no feeds.
 
     Raises:
         WorkbookError, SimulationError, DefinitionError, FormulaError: as for `load`.
@@ -80,7 +80,7 @@ def model_with_values(
     tabulated: int = 1,
     switched: Mapping[str, bool] = NO_SWITCHES,
 ) -> CompiledModel:
-    """The model of a workbook with values typed into its cells, which is fed as the first one is.
+    """Make the model of a workbook with values typed into its cells, which is fed as the first one is.
 
     Args:
         model: of the workbook as it is.
@@ -108,7 +108,7 @@ def build_model(
     switched: Mapping[str, bool] = NO_SWITCHES,
     python: Mapping[Cell, ir.Expression] | None = None,
 ) -> CompiledModel:
-    """The model of a workbook that was read.
+    """Make the model of a workbook that was read.
 
     Args:
         workbook: that was read.

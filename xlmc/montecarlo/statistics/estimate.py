@@ -186,7 +186,7 @@ def _write_rounded(number: float, decimals: int) -> str:
 
 
 def finite_json(value: object) -> object:
-    """A value with null for each number that JSON cannot hold."""
+    """Return a value with null for each number that JSON cannot hold."""
     match value:
         case float():
             return finite(value)

@@ -135,7 +135,7 @@ def replay(
 
 
 def _fed_by(record: Record, path: Path, books: Iterable[str | Path]) -> tuple[Feed, ...]:
-    """The feeds of a recorded run, with the files that fed it.
+    """Return the feeds of a recorded run, with the files that fed it.
 
     Raises:
         WorkbookError: one is missing, or is not the one that did.

@@ -224,7 +224,7 @@ def changed_from_of(record: Record) -> ChangedFrom | None:
 
 
 def _feeds(simulation: RunResult) -> Iterator[Section]:
-    """The other workbooks whose answers fed assumptions; nothing where there are none."""
+    """Return the other workbooks whose answers fed assumptions; nothing where there are none."""
     feeding = simulation.model.definitions.feeding
     if feeding is None:
         return
@@ -242,7 +242,9 @@ def _feeds(simulation: RunResult) -> Iterator[Section]:
 
 
 def recorded_feeds(record: Record) -> list[tuple[Feed, str]]:
-    """The feeds of a recorded run, each with the SHA-256 of the workbook that fed; their sources are file names."""
+    """Return the feeds of a recorded run, each with the SHA-256 of the workbook that fed; their sources are
+    file names.
+    """
     if FEEDS not in record:
         return []
     found = []

@@ -98,7 +98,7 @@ def _entries(simulation: RunResult) -> Iterator[tuple[str, int, Iterator[bytes]]
 
 
 def _sources(simulation: RunResult) -> dict[str, Workbook]:
-    """The workbooks that fed the run, by file name."""
+    """Return the workbooks that fed the run, by file name."""
     feeding = simulation.model.definitions.feeding
     return {} if feeding is None else dict(feeding.sources)
 

@@ -125,7 +125,7 @@ def _model(package: Package, found: Document, path: Path) -> CompiledModel:
 
 
 def _model_of(package: Package, entry: str, about: _Book, path: Path) -> CompiledModel:
-    """The model of a workbook in the package.
+    """Return the model of a workbook in the package.
 
     Raises:
         WorkbookError: it is not the one that was run.

@@ -269,7 +269,7 @@ class Noise:
 
 
 def noise(found: ForecastSensitivity) -> tuple[Noise, ...]:
-    """The noise of the influences on a forecast, in their order."""
+    """Return the noise of the influences on a forecast, in their order."""
     count = max(len(found.influences) + found.omitted, 1)
     each = 1.0 - (1.0 - _CHANCE) ** (1.0 / count)
     return tuple(_noise(one, _errors(each / 2.0), _errors(each)) for one in found.influences)

@@ -115,7 +115,7 @@ def today(*, date1904: bool = False) -> Floats:
 
 @excel("NOW", volatile=True, dated=True)
 def now(*, date1904: bool = False) -> Floats:
-    """The day and time at which it is computed, by the clock of the machine."""
+    """Return the day and time at which it is computed, by the clock of the machine."""
     return np.atleast_1d(serial_at(datetime.now(), date1904))
 
 

@@ -37,7 +37,7 @@ def with_values(
     *,
     complete: bool = False,
 ) -> bytes:
-    """A sheet's part with these values cached in cells that are there.
+    """Return a sheet's part with these values cached in cells that are there.
 
     Args:
         xml: the part.

@@ -43,7 +43,7 @@ def cells_that_change(
 
 
 def use_cell(workbook: Workbook, first: Cell) -> Cell | None:
-    """The cell of the column `Use` in the row that begins there; None where its table has no such column."""
+    """Return the cell of the column `Use` in the row that begins there; None where its table has no such column."""
     row = _row_of(workbook, first)
     return row.cell("Use") if row is not None and row.has("Use") else None
 

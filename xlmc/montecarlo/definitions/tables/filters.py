@@ -46,7 +46,7 @@ def read_filters(
     findings: Findings,
     switched: Mapping[str, bool],
 ) -> tuple[Filter, ...]:
-    """The filters without a mistake, in the order of the rows, those that are not used among them.
+    """Return the filters without a mistake, in the order of the rows, those that are not used among them.
 
     Args:
         workbook: where they are read.
@@ -100,7 +100,7 @@ def _filter(
 
 
 def _unused(row: Row, name: str, cell: Cell) -> Filter:
-    """A row that is switched off, with what can be read of it: its mistakes do not matter."""
+    """Read a row that is switched off, as far as it can be read: its mistakes do not matter."""
     aside = Findings()
     limits: dict[str, Any] = {key: aside.attempt(parameter, row, heading) for key, heading in LIMITS.items()}
     because, only_for = (aside.attempt(optional_text, row, heading) or "" for heading in ("Because", "Only for"))

@@ -259,7 +259,7 @@ def logical(row: Row, heading: str) -> bool:
 
 
 def logical_in(what: str, content: CellContent, where: Cell) -> bool:
-    """TRUE or FALSE, also as these words, of a cell that is not blank.
+    """Read TRUE or FALSE, also as these words, of a cell that is not blank.
 
     Raises:
         DefinitionError: the cell holds anything else.
@@ -289,7 +289,7 @@ def is_used(row: Row, switched: Mapping[str, bool]) -> bool:
 
 
 def named_rows(rows: Sequence[_HasName]) -> str:
-    """The names of some rows for one message, the first few of them."""
+    """Name some rows for one message, the first few of them."""
     more = f" and {len(rows) - _MOST_NAMED:,} more" if len(rows) > _MOST_NAMED else ""
     return ", ".join(repr(each.name) for each in rows[:_MOST_NAMED]) + more
 

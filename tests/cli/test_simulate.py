@@ -100,7 +100,7 @@ def test_a_run_that_the_disk_cannot_hold_is_refused(xlmc, book, tmp_path, monkey
     xlmc("simulate", book, "-n", 5_000)
     before = results.read_bytes()
     monkeypatch.setattr("xlmc.montecarlo.columns.column_store.IN_MEMORY", 0)
-    monkeypatch.setattr("xlmc.montecarlo.loop.disk_needed.room_on_disk", lambda: (tmp_path, 1_000))
+    monkeypatch.setattr("xlmc.montecarlo.loop.disk_needed.free_disk", lambda: (tmp_path, 1_000))
     outcome = xlmc("simulate", book, "-n", 10_000)
     assert outcome.code == 2
     assert "the run needs about" in outcome.err

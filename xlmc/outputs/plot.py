@@ -115,7 +115,7 @@ def _nothing() -> SimulationError:
 
 
 def _known(simulation: RunResult, name: str) -> str:
-    """The name of a forecast as defined.
+    """Return the name of a forecast as defined.
 
     Raises:
         SimulationError: there is none.
@@ -127,7 +127,7 @@ def _known(simulation: RunResult, name: str) -> str:
 
 
 def _one(simulation: RunResult, name: str | None) -> Drawn:
-    """The forecast of a name, or the first that can be drawn."""
+    """Return the forecast of a name, or the first that can be drawn."""
     found = figures_of(simulation, None if name is None else [_known(simulation, name)])
     if not found:
         raise _nothing()
@@ -164,7 +164,7 @@ def _tornado(axes: Axes, simulation: RunResult, name: str | None) -> None:
 
 
 def _scatter(axes: Axes, simulation: RunResult, name: str | None) -> None:
-    """The forecast over the draws of the assumption that it follows most."""
+    """Draw the forecast over the draws of the assumption that it follows most."""
     each = _one(simulation, name)
     answer = simulation.results[each.answer.name].column[: simulation.kept_inputs]
     known = ~np.isnan(answer)
@@ -207,7 +207,7 @@ def _trend(axes: Axes, simulation: RunResult, name: str | None) -> None:
 
 
 def _before_after(axes: Axes, simulation: RunResult, name: str | None) -> None:
-    """An assumption before and after filtering: the one that was asked for, or that the filters move most."""
+    """Draw an assumption before and after filtering: the one that was asked for, or that the filters move most."""
     names = {name_key(each): each for each in simulation.inputs}
     if name is not None and name_key(name) not in names:
         raise SimulationError(f"there is no assumption {name!r}", hint=did_you_mean(name, names.values()))

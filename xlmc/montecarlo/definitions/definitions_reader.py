@@ -82,7 +82,7 @@ def read_definitions(
     findings, python = Findings(), python or {}
     tables = definition_tables(workbook, findings)
     uncertain, answers, tests = Claims("assumption"), Claims("forecast"), Claims("filter")
-    settings, central, said = read_settings(workbook, tables["xlmc_settings"], engines, findings)
+    settings, central, stated = read_settings(workbook, tables["xlmc_settings"], engines, findings)
     computed = Computed(workbook, drawn=uncertain.cells, python=python)
     assumptions = read_assumptions(workbook, tables["xlmc_assumptions"], computed, uncertain, findings)
     forecasts = read_forecasts(workbook, tables["xlmc_forecasts"], computed, central, answers, findings)

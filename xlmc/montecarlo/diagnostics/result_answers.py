@@ -168,7 +168,7 @@ def _statistic(result: ForecastResult, asked: ResultCall, number: float | None) 
 
 
 def _percentile(result: ForecastResult, percent: float) -> float:
-    """A percentile; where values repeat, as counts do, the add-ins show one of them: see `Sample.reaching`."""
+    """Return a percentile; where values repeat, as counts do, the add-ins show one of them: see `Sample.reaching`."""
     found, sample = result.percentile_at(percent).value, result.sample
     repeats = bool((sample.x[1:] == sample.x[:-1]).any())
     return sample.reaching(percent / 100) if repeats and not np.isnan(found) else found

@@ -170,7 +170,7 @@ class ForecastResult:
 
     def percentile_at(self, percent: float) -> Estimate:
         """Return the percentile of any percentage from 0 to 100, below the first percent, too."""
-        return self._where_told(statistics.percentile(self.sample, percent), percent / 100.0)
+        return self._if_known(statistics.percentile(self.sample, percent), percent / 100.0)
 
     def quantile(self, share: float) -> Estimate:
         """Return the value that this share (0 to 1) of the trials do not exceed: `quantile(0.95)` is `percentile(95)`.

@@ -292,7 +292,9 @@ def _other(assumption: Assumption, change: Change, lowering: Lowering) -> Assump
 
 
 def _redrawn(assumption: Assumption, to: Distribution) -> Assumption:
-    """The assumption, drawn from another distribution; its base value, units and source stay where none are given."""
+    """Return the assumption, drawn from another distribution; its base value, units and source stay where none are
+    given.
+    """
     return replace(
         assumption,
         distribution=to.family,

@@ -235,14 +235,14 @@ def _refuse_nothing(assumptions: Mapping[str, Distribution], forecasts: Mapping[
 
 
 def _base(name: str, given: Distribution) -> float:
-    """The value of the base case: the one given, or the median."""
+    """Return the value of the base case: the one given, or the median."""
     if given.base is not None:
         return given.base
     return float(given.draw(name).distribution.percentile(np.array([0.5]))[0])
 
 
 def _try(body: _Body, bases: Mapping[str, float]) -> dict[str, float]:
-    """The outputs at the base case, computed twice and in several trials at once.
+    """Compute the outputs at the base case twice, and in several trials at once.
 
     Raises:
         FormulaError: they differ: the function does not take arrays, or is not the same each time.
@@ -267,7 +267,7 @@ def _written(
     correlations: Mapping[tuple[str, str], float],
     by: str,
 ) -> tuple[bytes, tuple[Cell, ...], dict[Cell, str]]:
-    """The workbook that lists the definitions.
+    """Make the workbook that lists the definitions.
 
     Returns:
         Its bytes, the cells of the assumptions, and cell of a forecast or filter -> its name.

@@ -72,7 +72,7 @@ def stability(
     if model.definitions.python:
         hint = "Write the model as formulas of a workbook, which can be computed again with 50 digits"
         raise SimulationError("A function of Python has no formulas to look through", where=model.path, hint=hint)
-    tell = told or (lambda _: None)
+    tell = tell or (lambda _: None)
     tell("a run")
     run: RunResult = simulate(model, trials=trials, seed=seed, jobs=jobs)
     case = Case(model, run, run.settings.seed)

@@ -96,7 +96,7 @@ class WorkerPool:
 
 
 def _near_the_function(asked: str | None) -> str:
-    """The scheduler of a model that a function of Python computes.
+    """Choose the scheduler of a model that a function of Python computes.
 
     Raises:
         SimulationError: another one was asked for.

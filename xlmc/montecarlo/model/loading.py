@@ -132,7 +132,7 @@ def build_model(
 
 
 def _without_dashes(model: CompiledModel) -> CompiledModel:
-    """The model without the forecasts whose cells are a dash in every trial: they wait for inputs; itself without any.
+    """Return the model without the forecasts whose cells are a dash in every trial, as they wait for inputs.
 
     One of which nothing else is asked stays, so that it is told of.
     """

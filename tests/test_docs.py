@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import re
 import sys
+import tomllib
 from pathlib import Path
 
 import click
@@ -112,9 +113,16 @@ def test_readme_shows_the_output_of_its_command(tmp_path, monkeypatch, capsys):
     assert [line.rstrip() for line in shown.splitlines() if "results.xlsx" not in line] == table
 
 
-def test_package_and_citation_name_the_version():
-    for name, line in (("pyproject.toml", f'version = "{__version__}"'), ("CITATION.cff", f"version: {__version__}")):
-        assert line in (ROOT / name).read_text(encoding="utf-8").splitlines(), name
+def test_the_version_stands_in_pyproject_alone():
+    stated = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    assert stated == __version__
+    named = [path for path in ROOT.glob("*.cff") if "\nversion:" in path.read_text(encoding="utf-8")]
+    named += [
+        path
+        for path in (ROOT / "xlmc").rglob("*.py")
+        if re.search(r"^__version__ = [\"']", path.read_text(encoding="utf-8"), re.MULTILINE)
+    ]
+    assert not named
 
 
 def test_links_between_documents_lead_somewhere():

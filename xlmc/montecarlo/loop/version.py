@@ -1,5 +1,23 @@
 """The version of xlmc: runs name it, and processes that share one must have the same."""
 
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
 __all__ = ["__version__"]
 
-__version__ = "0.12.0"
+
+def _version() -> str:
+    """Return the version that `pyproject.toml` states: of a checkout from that file, else as it was installed."""
+    project = Path(__file__).parents[3] / "pyproject.toml"
+    if project.is_file():
+        found = re.search(r'^name = "xlmc"\nversion = "([^"]+)"$', project.read_text(encoding="utf-8"), re.MULTILINE)
+        if found is not None:
+            return found[1]
+    from importlib.metadata import version
+
+    return version("xlmc")
+
+
+__version__ = _version()

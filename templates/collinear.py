@@ -14,8 +14,10 @@ from templates.description import (
     Template,
 )
 from templates.editions import Both
-from templates.guidance import CAVEATS, FIRST_STEPS, SIGNS
+from templates.guidance import CAVEATS, FIRST_STEPS, READINGS, SIGNS
+from templates.other_readings import cut_off_delta_v, recorded_delta_v, seen_speed
 from templates.restitution import RESTITUTION, restitution_input
+from templates.restitution_curve import curve_diagram, curve_evidence, curve_inputs, curve_section
 from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY, MPH, RADIUS_OF_GYRATION
 from templates.vehicles import vehicle
@@ -239,7 +241,7 @@ _MORE = (
 )
 
 _CHECKS = checks_section(
-    4,
+    5,
     check(
         "check_closing",
         "«1» catches «2»",
@@ -286,6 +288,7 @@ _GUIDE = (
         ),
     ),
     FIRST_STEPS,
+    READINGS,
     SIGNS,
     GuideSection(
         "When to use this model",
@@ -322,11 +325,12 @@ TEMPLATE = Template(
     needs="weights, restitution, one known speed",
     assumptions=_ASSUMPTIONS,
     constants=_CONSTANTS,
-    optional=_OPTIONAL,
+    optional=(*_OPTIONAL, *curve_inputs()),
     sections=(
         Section("1  Speeds and changes in velocity", _SPEEDS),
         Section("2  Answers (the forecasts)", _ANSWERS),
         Section("3  Limits of one dimension, claims", _MORE),
+        curve_section(4, "e", "closing_[mph|kmh]"),
         _CHECKS,
     ),
     forecasts=(
@@ -341,6 +345,13 @@ TEMPLATE = Template(
         FilterRow("Closing speed", "closing_[mph|kmh]", "One must catch the other to strike it", above=0),
         FilterRow("Energy lost", "E_lost", "An impact takes energy away; it cannot add any", at_least=0),
     ),
+    evidence=(
+        *(recorded_delta_v(f"{vehicle(j)} delta-V", f"dV{j}_[mph|kmh]") for j in (1, 2)),
+        *(cut_off_delta_v(f"{vehicle(j)} delta-V", f"dV{j}_[mph|kmh]") for j in (1, 2)),
+        seen_speed("«1» impact speed", "V1_[mph|kmh]"),
+        *curve_evidence(),
+    ),
+    diagram=curve_diagram("e", "closing_[mph|kmh]"),
     settings=(("Trials", 200_000), ("Seed", 999)),
     correlations=(),
     correlation_note="Do the weights share an error? Then correlate them here.",

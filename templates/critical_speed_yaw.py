@@ -17,7 +17,8 @@ from templates.description import (
     Template,
 )
 from templates.editions import Both
-from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
+from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, READINGS, SIGNS
+from templates.other_readings import seen_speed, told_speed
 from templates.road_friction import FRICTION, FRICTION_ROWS, FRICTION_SHAPE, FRICTION_SOURCE
 from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY
@@ -178,6 +179,7 @@ _DIAGRAM = Diagram(
 _GUIDE = (
     EXAMPLE_NUMBERS,
     FIRST_STEPS,
+    READINGS,
     SIGNS,
     GuideSection(
         "When to use this model",
@@ -223,6 +225,10 @@ TEMPLATE = Template(
         ForecastRow("Radius of the path", "R_path", "[ft|m]"),
     ),
     filters=(FilterRow("Arc of the mark", "arc", "The chord spans less than a half circle", above=0, below=1),),
+    evidence=(
+        seen_speed("Critical speed", "v_[mph|kmh]"),
+        told_speed("Critical speed", "v_[mph|kmh]"),
+    ),
     settings=(("Trials", 200_000), ("Seed", 999)),
     correlations=(),
     correlation_note="Chord and middle ordinate are measured apart: none.",

@@ -18,7 +18,8 @@ from templates.description import (
     Template,
 )
 from templates.editions import Both
-from templates.guidance import CAVEATS, FIRST_STEPS, SIGNS
+from templates.guidance import CAVEATS, FIRST_STEPS, READINGS, SIGNS
+from templates.other_readings import cut_off_delta_v, recorded_delta_v, seen_speed
 from templates.restitution import RESTITUTION, restitution_input
 from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY, MPH, RADIUS_OF_GYRATION
@@ -478,6 +479,7 @@ _GUIDE = (
         ),
     ),
     FIRST_STEPS,
+    READINGS,
     SIGNS,
     GuideSection(
         "When to use this model",
@@ -551,6 +553,11 @@ TEMPLATE = Template(
             at_least=0.67,
             at_most=1.5,
         ),
+    ),
+    evidence=(
+        *(recorded_delta_v(f"{who} delta-V", f"dV{j}_[mph|kmh]") for j, who in ((1, FIRST), (2, SECOND))),
+        *(cut_off_delta_v(f"{who} delta-V", f"dV{j}_[mph|kmh]") for j, who in ((1, FIRST), (2, SECOND))),
+        seen_speed("Closing speed along the force", "closing_[mph|kmh]"),
     ),
     settings=(("Trials", 200_000), ("Seed", 999)),
     correlations=(CorrelationRow("b0_1", "b1_1", 0), CorrelationRow("b0_2", "b1_2", 0)),

@@ -17,7 +17,8 @@ from templates.description import (
     Template,
 )
 from templates.editions import Both
-from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
+from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, READINGS, SIGNS
+from templates.other_readings import seen_speed, told_speed
 from templates.speed_answer import speed_answer
 from templates.thrown_body import (
     ANGLE_CHECK,
@@ -140,6 +141,7 @@ _DIAGRAM = Diagram(
 _GUIDE = (
     EXAMPLE_NUMBERS,
     FIRST_STEPS,
+    READINGS,
     SIGNS,
     GuideSection(
         "When to use this model",
@@ -209,6 +211,10 @@ TEMPLATE = Template(
             "A vehicle pushes or lifts a body forward: not steeper than twice the angle that throws farthest",
             at_most=1,
         ),
+    ),
+    evidence=(
+        seen_speed("«1» speed", "V_vehicle_[mph|kmh]"),
+        told_speed("«1» speed", "V_vehicle_[mph|kmh]"),
     ),
     settings=(("Trials", 200_000), ("Seed", 999)),
     correlations=(),

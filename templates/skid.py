@@ -17,7 +17,8 @@ from templates.description import (
     Template,
 )
 from templates.editions import Both
-from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, SIGNS
+from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, READINGS, SIGNS
+from templates.other_readings import seen_speed, told_speed
 from templates.road_friction import FRICTION, FRICTION_ROWS, FRICTION_SHAPE, FRICTION_SOURCE
 from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY, MPH
@@ -408,6 +409,7 @@ _DIAGRAM = Diagram(
 _GUIDE = (
     EXAMPLE_NUMBERS,
     FIRST_STEPS,
+    READINGS,
     SIGNS,
     GuideSection(
         "When to use this model",
@@ -479,6 +481,11 @@ TEMPLATE = Template(
             "Reaches the end", "left_2", "Where the beginning is known: it did not stop before the end", at_least=0
         ),
         FilterRow("Mean deceleration", "drag_mean", "The skid slowed the vehicle; it did not speed it up", above=0),
+    ),
+    evidence=(
+        seen_speed("Speed at the beginning of the skid", "v_[mph|kmh]"),
+        seen_speed("Speed at the end of the skid", "vend_[mph|kmh]"),
+        told_speed("Speed at the beginning of the skid", "v_[mph|kmh]"),
     ),
     settings=(("Trials", 200_000), ("Seed", 999)),
     correlations=(),

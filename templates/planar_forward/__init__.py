@@ -7,6 +7,7 @@ from templates.description import (
     CorrelationRow,
     Diagram,
     Equation,
+    EvidenceRow,
     FilterRow,
     ForecastRow,
     Input,
@@ -16,6 +17,7 @@ from templates.description import (
     Template,
 )
 from templates.editions import Both
+from templates.other_readings import cut_off_delta_v, recorded_delta_v
 from templates.plan_view import line, mark
 from templates.planar_forward.equations import model_sections
 from templates.planar_forward.guide import GUIDE
@@ -161,12 +163,41 @@ def describe(scene: Scene) -> Template:
             FilterRow("Energy lost", "E_lost", "An impact takes energy away; it cannot add any", at_least=0),
             FilterRow("Normal closing speed", "approach_[mph|kmh]", "The contact points must meet", above=0),
         ),
+        evidence=_evidence(),
         settings=(("Trials", 200_000), ("Seed", 999)),
         correlations=(CorrelationRow("f_1", "f_2", 0),),
         correlation_note=shared_road_note(),
         guide=(scene.guide, *GUIDE),
         diagram=_diagram(),
     )
+
+
+def _evidence() -> tuple[EvidenceRow, ...]:
+    """Where the vehicles came to rest, and what recorders kept: speeds and angles are then searched for."""
+    rows: list[EvidenceRow] = []
+    for j in (1, 2):
+        who = vehicle(j)
+        rows += [
+            EvidenceRow(
+                f"{who} departure angle as surveyed",
+                f"beta_{j}",
+                None,
+                "Uniform",
+                {},
+                "The line from the impact toward rest, and how far it may be off; within the turn that the model gives",
+            ),
+            EvidenceRow(
+                f"{who} travel to rest as surveyed",
+                f"s_{j}",
+                None,
+                "Uniform",
+                {},
+                "The distance surveyed, and how far it may be off",
+            ),
+            recorded_delta_v(f"{who} delta-V", f"dV{j}_[mph|kmh]"),
+            cut_off_delta_v(f"{who} delta-V", f"dV{j}_[mph|kmh]"),
+        ]
+    return tuple(rows)
 
 
 def _forecasts() -> tuple[ForecastRow, ...]:

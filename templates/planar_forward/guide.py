@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from templates.description import GuideSection
-from templates.guidance import CAVEATS, FIRST_STEPS, NAMES
+from templates.guidance import CAVEATS, FIRST_STEPS, NAMES, READINGS
 from templates.restitution import RESTITUTION
 
 __all__ = ["GUIDE"]
@@ -48,4 +48,4 @@ _CORRECTIONS = GuideSection(
     ),
 )
 
-GUIDE = (FIRST_STEPS, NAMES, _WHEN, _CLOSURES, RESTITUTION, CAVEATS, _CORRECTIONS)
+GUIDE = (FIRST_STEPS, READINGS, NAMES, _WHEN, _CLOSURES, RESTITUTION, CAVEATS, _CORRECTIONS)

@@ -8,6 +8,7 @@ from templates.planar_impact.answers import answer_sections
 from templates.planar_impact.equations import model_sections
 from templates.planar_impact.evaluate import evaluate
 from templates.planar_impact.guide import guide
+from templates.restitution_curve import curve_evidence, curve_inputs
 from templates.two_vehicles.drawing import rest_points, vehicle_curves
 from templates.two_vehicles.options import drawing_inputs, duration_input, turn_filters, turn_inputs
 from templates.two_vehicles.readings import lever_inputs, readings, rotation_inputs
@@ -42,7 +43,7 @@ def describe(scene: Scene) -> Template:
         constants=(*((SWITCH,) if more else ()), *yaw_rates(), *constants_of_momentum(inches=True)),
         optional=(
             duration_input(),
-            *((*turn_inputs(), *lever_inputs(), *rotation_inputs()) if more else ()),
+            *((*turn_inputs(), *lever_inputs(), *rotation_inputs(), *curve_inputs()) if more else ()),
             *drawing_inputs(),
         ),
         sections=leave_together(sections) if more else sections,
@@ -54,7 +55,7 @@ def describe(scene: Scene) -> Template:
         correlation_note=shared_road_note() if more else shared_road(),
         guide=guide(scene.guide, more=more),
         diagram=drawn_together(_diagram("travel")) if more else _diagram("s"),
-        evidence=readings(yaw=True) if more else (),
+        evidence=(*readings(yaw=True), *curve_evidence()) if more else (),
         waiting=run_out_inputs() if more else (),
         waiting_note=RUN_OUT_NOTE,
     )

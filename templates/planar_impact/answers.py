@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from templates.checks import checks_section
 from templates.description import Equation, Section
+from templates.restitution_curve import curve_section
 from templates.two_vehicles.answers import ANSWERS, APPROACH, FORCE, ROTATION
 from templates.two_vehicles.checks import ANGLES, BOUNDS, CLOSING, ENERGY, FORWARD, FRICTION
 from templates.two_vehicles.options import duration_section, turn_section
@@ -31,7 +32,13 @@ def answer_sections(*, more: bool) -> tuple[Section, ...]:
     Args:
         more: give the rows of a turning vehicle, and those that readings are held against, too.
     """
-    optional = (duration_section(8), *((turn_section(9), recorder_section(10), before_section(11)) if more else ()))
+    further = (
+        turn_section(9),
+        recorder_section(10),
+        before_section(11),
+        curve_section(12, "e_n", "approach_[mph|kmh]"),
+    )
+    optional = (duration_section(8), *(further if more else ()))
     checks = (ENERGY, CLOSING, ANGLES, FORWARD, BOUNDS, FRICTION, *((RUN_OUT_CHECK,) if more else ()))
     return (
         Section("6  Answers (the forecasts)", for_both(ANSWERS)),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from templates.description import Equation, EvidenceRow, Input, Section
 from templates.editions import Both
+from templates.other_readings import cut_off_delta_v
 from templates.units import MPH
 from templates.vehicles import for_both, vehicle
 
@@ -152,6 +153,7 @@ def readings(*, yaw: bool) -> tuple[EvidenceRow, ...]:
                 _RECORDER,
                 f"{_RULE}. Right positive, as 49 CFR 563.5 counts",
             ),
+            cut_off_delta_v(f"{who} delta-V", f"dV{j}_[mph|kmh]"),
             EvidenceRow(
                 f"{who} impact speed, from an EDR or a video",
                 f"V{j}_[mph|kmh]",

@@ -24,7 +24,7 @@ def test_lists_the_templates(xlmc):
     assert [name for name in names if name in TEMPLATES] == TEMPLATES
     rows = [line for line in outcome.out.splitlines() if line.strip().partition(" ")[0] in TEMPLATES]
     assert all("?" in row for row in rows)  # the question and the needs in one line
-    assert len(outcome.out.strip().splitlines()) == len(rows) + 6  # title, headings, rules, how to copy
+    assert len(outcome.out.strip().splitlines()) == len(rows) + 8  # title, headings, rules, blank, how to copy
     assert "run-out" in outcome.out
     assert "--units si" in outcome.out
 

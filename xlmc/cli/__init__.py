@@ -1,5 +1,6 @@
-"""The command line: `xlmc new`, `xlmc check`, `xlmc fit`, `xlmc verify`, `xlmc calculate`, `xlmc simulate`,
-`xlmc open`, `xlmc report`, `xlmc replay`, `xlmc compare`, `xlmc screen`, `xlmc methods`, `xlmc stability`.
+"""The command line: `xlmc new`, `xlmc prepare`, `xlmc check`, `xlmc fit`, `xlmc verify`, `xlmc calculate`,
+`xlmc simulate`, `xlmc open`, `xlmc report`, `xlmc replay`, `xlmc compare`, `xlmc screen`, `xlmc methods`,
+`xlmc stability`.
 
 Exit codes: 0 done; 1 the run finished but its answer must not be used as it is; 2 bad input, with the cell and what
 to do; 130 interrupted by Ctrl-C; 143 ended by SIGTERM. Modules here import what costs time inside their functions.
@@ -28,6 +29,7 @@ from xlmc.cli.methods import methods
 from xlmc.cli.mistakes import did_you_mean, mistake
 from xlmc.cli.new import new
 from xlmc.cli.open import open_window
+from xlmc.cli.prepare import prepare_book
 from xlmc.cli.replay import replay
 from xlmc.cli.report import report
 from xlmc.cli.scenario import scenario
@@ -103,6 +105,7 @@ def xlmc(context: click.Context, no_kept_code: bool) -> None:
 
 for _command in (
     new,
+    prepare_book,
     check,
     convert,
     fit,

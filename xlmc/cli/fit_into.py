@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from xlmc.errors import WorkbookError
-
 if TYPE_CHECKING:
     from xlmc.analysis.studies.fitting import Fitted
-    from xlmc.excel.workbook.workbook import Table, Workbook
+    from xlmc.excel.workbook.workbook import Workbook
     from xlmc.montecarlo.definitions.tables.new_row import RowEdit
 
 __all__ = ["Edited", "prepare", "write"]
@@ -74,25 +71,15 @@ def write(edited: Edited) -> Path:
 
 def _parts(workbook: Workbook, row: RowEdit) -> dict[str, bytes]:
     from xlmc.excel.workbook.injection.cell_edit import with_contents, with_last_row
+    from xlmc.excel.workbook.structure import table_part
 
     parts = dict(workbook.parts)
     sheet = workbook.sheets[row.table.area.sheet]
     parts[sheet.part] = with_contents(parts[sheet.part], sheet.part, sheet.name, row.contents)
     if row.grows:
-        part = _table_part(parts, row.table)
+        part = table_part(parts, row.table.name)
         parts[part] = with_last_row(parts[part], part, row.row)
     return parts
-
-
-def _table_part(parts: Mapping[str, bytes], table: Table) -> str:
-    from xlmc.excel.workbook.safe_xml import decode, tree
-
-    for name, xml in parts.items():
-        if name.casefold().endswith(".xml") and b"tableColumns" in xml:
-            root = tree(xml, name)
-            if decode(root.get("displayName", root.get("name", ""))) == table.name:
-                return name
-    raise WorkbookError(f"no part of the file holds the table {table.name}")
 
 
 def _refuse_new_problems(before: Workbook, after: Workbook) -> None:

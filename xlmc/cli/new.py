@@ -20,6 +20,9 @@ __all__ = ["Template", "new", "templates"]
 _UNITS: Final = {"imperial": "", "si": "-si"}
 """Units of an edition -> what its file name has after the template's name."""
 
+_BLANK: Final = "blank"
+"""The workbook for a model of one's own; it is made, and not copied."""
+
 _PACKAGE: Final = Path(__file__).parents[1]
 
 _DUBLIN_CORE: Final = "{http://purl.org/dc/elements/1.1/}"
@@ -40,26 +43,52 @@ def new(template: str | None, book: Path | None, units: str, overwrite: bool) ->
     if template is None:
         _list(known)
         return
+    if template.casefold() == _BLANK:
+        _write_blank(_target(_BLANK, book), overwrite=overwrite)
+        return
     template = {name.casefold(): name for name in known}.get(template.casefold(), template)
     if template not in known:
-        near = did_you_mean(template, known) or f" There are {', '.join(known)}."
+        near = did_you_mean(template, (_BLANK, *known)) or f" There are {', '.join((_BLANK, *known))}."
         raise click.UsageError(f"there is no template {template!r}.{near}")
     if units not in known[template].editions:
         raise WorkbookError(f"the {units} edition of {template} is missing", hint="install xlmc again")
-    target = book or Path(f"{template}.xlsx")
-    if target.suffix.casefold() != ".xlsx":
-        hint = f"Name it {target.with_suffix('.xlsx').name if target.name else 'case.xlsx'}"
-        raise WorkbookError("a template is an Excel workbook, whose name ends in .xlsx", where=target, hint=hint)
+    target = _target(template, book)
     editions = [edition for entry in known.values() for edition in entry.editions.values()]
     _copy(known[template].editions[units], target, editions, overwrite=overwrite)
     say(f"{target} is ready: open it, fill in the green cells, then run: xlmc simulate {target}")
 
 
+def _target(template: str, book: Path | None) -> Path:
+    """Return where the copy goes.
+
+    Raises:
+        WorkbookError: its name does not end as that of a workbook.
+    """
+    target = book or Path(f"{template}.xlsx")
+    if target.suffix.casefold() != ".xlsx":
+        hint = f"Name it {target.with_suffix('.xlsx').name if target.name else 'case.xlsx'}"
+        raise WorkbookError("a template is an Excel workbook, whose name ends in .xlsx", where=target, hint=hint)
+    return target
+
+
+def _write_blank(target: Path, *, overwrite: bool) -> None:
+    from xlmc.excel.workbook.target import Target
+    from xlmc.excel.workbook.writer import write_workbook
+    from xlmc.outputs.prepared.blank import blank_book
+
+    goal = Target(target, "", overwrite)
+    goal.check()
+    write_workbook(target, blank_book(), goal.check)
+    say(f"{target} is ready: its sheet Guide says what to do. To run it as it is, type: xlmc simulate {target}")
+
+
 def _list(known: Mapping[str, Template]) -> None:
     from xlmc.cli.printing import table
 
-    rows = [(name, entry.question, entry.needs) for name, entry in known.items()]
+    own = (_BLANK, "A model of your own", "Formulas of your own; tables with a worked row each")
+    rows = [own, *((name, entry.question, entry.needs) for name, entry in known.items())]
     table("Templates, the simplest first", ("Template", "Answers", "Needs"), rows)
+    say(paragraph("xlmc prepare BOOK.xlsx adds the tables to a workbook that you have already."))
     say(paragraph("xlmc new TEMPLATE my-case.xlsx copies one; --units si for metres, kilograms and km/h."))
 
 

@@ -47,7 +47,7 @@ def test_a_workbook_without_mistakes(read):
 
 
 def test_no_table_at_all(only_problem):
-    only_problem("case.xlsx", "no xlmc tables", "Insert ▸ Table", tables=dict(NONE))
+    only_problem("case.xlsx", "no xlmc tables", "xlmc prepare case.xlsx", tables=dict(NONE))
     only_problem("case.xlsx", "no xlmc tables", "xlmc new", tables=dict(NONE))
 
 
@@ -55,7 +55,11 @@ def test_no_table_at_all(only_problem):
 def test_a_kind_that_is_missing(read, kind):
     found = read(tables={f"xlmc_{kind}s": None, "xlmc_correlations": None})
     assert [(problem.where, problem.message, problem.hint) for problem in found.problems] == [
-        ("case.xlsx", f"The workbook defines no {kind}", f"Add a table named xlmc_{kind}s")
+        (
+            "case.xlsx",
+            f"The workbook defines no {kind}",
+            f"xlmc prepare case.xlsx adds a table xlmc_{kind}s with rows to choose from",
+        )
     ]
 
 

@@ -19,7 +19,16 @@ from xlmc.excel.workbook.workbook import DefinedName, Table
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
-__all__ = ["SheetEntry", "Structure", "area_of", "iteration_of", "read_structure", "read_table", "tables_of"]
+__all__ = [
+    "SheetEntry",
+    "Structure",
+    "area_of",
+    "iteration_of",
+    "read_structure",
+    "read_table",
+    "table_part",
+    "tables_of",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,6 +198,20 @@ def tables_of(parts: Mapping[str, bytes], sheet_part: str, sheet: str) -> Iterat
             if rel.target not in parts:
                 raise WorkbookError(f"a table of sheet {sheet!r} is missing from the file", hint=REPAIR)
             yield read_table(parts[rel.target], rel.target, sheet)
+
+
+def table_part(parts: Mapping[str, bytes], table: str) -> str:
+    """Return the name of the part that holds a table.
+
+    Raises:
+        WorkbookError: none does.
+    """
+    for name, xml in parts.items():
+        if name.casefold().endswith(".xml") and b"tableColumns" in xml:
+            root = tree(xml, name)
+            if decode(root.get("displayName", root.get("name", ""))) == table:
+                return name
+    raise WorkbookError(f"no part of the file holds the table {table}", hint=REPAIR)
 
 
 def read_table(xml: bytes, part: str, sheet: str) -> Table:

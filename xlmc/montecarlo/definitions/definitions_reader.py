@@ -34,7 +34,12 @@ from xlmc.montecarlo.definitions.tables.evidence_rows import as_filter, read_evi
 from xlmc.montecarlo.definitions.tables.filters import read_checks, read_filters
 from xlmc.montecarlo.definitions.tables.forecasts import read_forecasts
 from xlmc.montecarlo.definitions.tables.identity import Claims
-from xlmc.montecarlo.definitions.tables.reserved_tables import CONVERTED, DefinitionTable, definition_tables
+from xlmc.montecarlo.definitions.tables.reserved_tables import (
+    CONVERTED,
+    DefinitionTable,
+    definition_tables,
+    likely_table,
+)
 from xlmc.montecarlo.definitions.tables.scenario_rows import read_scenarios
 from xlmc.montecarlo.definitions.tables.settings import read_settings
 from xlmc.montecarlo.definitions.tables.table_rows import holds_rows
@@ -274,12 +279,27 @@ def _say_how_to_mark(workbook: Workbook, findings: Findings) -> None:
 
 
 def _say_how_to_begin(workbook: Workbook, findings: Findings) -> None:
+    if _point_out_likely(workbook, _MODEL, findings):
+        return
     findings.problem(
         "The workbook holds no xlmc tables, so there is nothing to run",
         workbook.name,
-        "Insert ▸ Table, then name it xlmc_assumptions, xlmc_forecasts or xlmc_filters under Table Design;"
-        " or start from a template with xlmc new",
+        f"xlmc prepare {workbook.name} adds xlmc_assumptions and the others, with rows for its inputs and answers;"
+        " xlmc new lists templates",
     )
+
+
+_MODEL: Final = ("xlmc_assumptions", "xlmc_forecasts", "xlmc_filters")
+
+
+def _point_out_likely(workbook: Workbook, kinds: Iterable[str], findings: Findings) -> bool:
+    """Tell of tables that only lack the name of a reserved one; whether there are any."""
+    found = [(kind, table) for kind in kinds if (table := likely_table(workbook, kind)) is not None]
+    for kind, table in found:
+        message = f"The table {table.name} has the headings of {kind}, and is not read under its name"
+        where = Cell(table.area.sheet, table.area.top, table.area.left)
+        findings.problem(message, where, f"Rename it {kind} (click into it, then Table Design ▸ Table Name)")
+    return bool(found)
 
 
 def _refuse_none(workbook: Workbook, what: str, tables: list[DefinitionTable], findings: Findings) -> None:
@@ -288,5 +308,6 @@ def _refuse_none(workbook: Workbook, what: str, tables: list[DefinitionTable], f
         return
     if tables:
         findings.problem(f"The table {tables[0].table.name} holds no {what}", tables[0].where, "Fill in a row")
-    else:
-        findings.problem(f"The workbook defines no {what}", workbook.name, f"Add a table named xlmc_{what}s")
+    elif not _point_out_likely(workbook, [f"xlmc_{what}s"], findings):
+        hint = f"xlmc prepare {workbook.name} adds a table xlmc_{what}s with rows to choose from"
+        findings.problem(f"The workbook defines no {what}", workbook.name, hint)

@@ -28,15 +28,15 @@ _OF_VALUES = ("xlmc_settings", "xlmc_case")
 
 
 def calculate_labels(workbook: Workbook) -> Workbook:
-    """Return the workbook with the texts of its tables `xlmc_…` calculated where the file has none; itself if it has
-    all.
+    """Return the workbook with texts, TRUE and FALSE of its tables `xlmc_…` calculated where the file has none.
 
     Where saved values may be older than the formulas, those of these tables are calculated again, whatever they are.
     A notice names what differs from the saved value.
     """
     tables = [table for table in workbook.tables if table.name.casefold().startswith(_TABLES)]
     missing = [cell for table in tables for cell in _body(table, _POINTS) if workbook.content(cell).is_uncalculated]
-    found: dict[Cell, CellValue] = {**calculated_texts(workbook, missing)} if missing else {}
+    values = _calculated(workbook, missing) if missing else {}
+    found = {cell: value for cell, value in values.items() if isinstance(value, str | bool)}
     stale = _stale_values(workbook, tables) if workbook.may_be_stale else {}
     if not (missing or stale):
         return workbook

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Final
 
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.excel.address import Area, Cell, column_letters, parse_address
 from xlmc.excel.workbook.injection.splice import Element, SplicedXml, cell_text, render
 from xlmc.excel.workbook.safe_xml import REPAIR
+from xlmc.excel.workbook.workbook import CellValue
 
-__all__ = ["Content", "with_calculation_on_load", "with_contents", "with_last_row"]
+__all__ = ["Content", "Typed", "saved_value", "with_calculation_on_load", "with_contents", "with_last_row"]
 
 _BEHIND_CALCULATION: Final = (
     "oleSize",
@@ -26,8 +28,17 @@ _BEHIND_CALCULATION: Final = (
 )
 """What stands behind `calcPr` in a workbook part (ECMA-376, part 1, 18.2.27)."""
 
-Content = str | float | bool | ErrorCode | None
-"""The content of a cell: a text, a number, a logical, an error, or nothing."""
+
+@dataclass(frozen=True, slots=True)
+class Typed:
+    """A formula that is typed into a cell, without its `=`, and the value that it has."""
+
+    formula: str
+    value: CellValue = None
+
+
+Content = str | float | bool | ErrorCode | Typed | None
+"""The content of a cell: a text, a number, a logical, an error, a formula, or nothing."""
 
 
 def with_contents(xml: bytes, part: str, sheet: str, contents: Mapping[tuple[int, int], Content]) -> bytes:
@@ -143,6 +154,11 @@ def _fragment(prefix: str, row: int, column: int, content: Content, style: str |
     attributes = {"r": f"{column_letters(column)}{row}"} | ({} if style is None else {"s": style})
     if content is None:
         return render(f"{prefix}c", attributes)
+    if isinstance(content, Typed):
+        kind, text = saved_value(content.value)
+        formula = f"<{prefix}f>{cell_text(content.formula)}</{prefix}f>"
+        value = "" if content.value is None else f"<{prefix}v>{text}</{prefix}v>"
+        return render(f"{prefix}c", attributes | ({} if kind == "n" else {"t": kind}), formula + value)
     if isinstance(content, str):
         text = f'<{prefix}is><{prefix}t xml:space="preserve">{cell_text(content)}</{prefix}t></{prefix}is>'
         return render(f"{prefix}c", attributes | {"t": "inlineStr"}, text)
@@ -151,6 +167,21 @@ def _fragment(prefix: str, row: int, column: int, content: Content, style: str |
     if isinstance(content, bool):
         return render(f"{prefix}c", attributes | {"t": "b"}, f"<{prefix}v>{int(content)}</{prefix}v>")
     return render(f"{prefix}c", attributes, f"<{prefix}v>{content!r}</{prefix}v>")
+
+
+def saved_value(value: CellValue) -> tuple[str, str]:
+    """Return the type of a cell that holds the value, and its text as XML."""
+    match value:
+        case bool():
+            return "b", str(int(value))
+        case ErrorCode():
+            return "e", value.text
+        case str():
+            return "str", cell_text(value)
+        case None:
+            return "str", ""
+        case _:
+            return "n", repr(float(value)).removesuffix(".0")
 
 
 def _extend_dimension(document: SplicedXml, last: int) -> None:

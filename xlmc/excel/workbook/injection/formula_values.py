@@ -6,10 +6,9 @@ import re
 from collections.abc import Collection, Iterator, Mapping
 from typing import Final
 
-from xlmc.errors import ErrorCode
 from xlmc.excel.address import Area, Cell, parse_address
-from xlmc.excel.workbook.injection.cell_edit import with_contents
-from xlmc.excel.workbook.injection.splice import Element, SplicedXml, cell_text, render
+from xlmc.excel.workbook.injection.cell_edit import saved_value, with_contents
+from xlmc.excel.workbook.injection.splice import Element, SplicedXml, render
 from xlmc.excel.workbook.workbook import CellValue
 
 __all__ = ["with_values", "without_formula_values"]
@@ -118,7 +117,7 @@ def _cells(root: Element) -> Iterator[tuple[tuple[int, int], Element]]:
 
 
 def _put(document: SplicedXml, cell: Element, value: CellValue) -> None:
-    kind, text = _write(value)
+    kind, text = saved_value(value)
     if cell.attributes.get("t", "n") != kind:
         document.set(cell, "t", kind)
     old = cell.find("v")
@@ -140,18 +139,3 @@ def _clear(document: SplicedXml, cell: Element) -> None:
         document.remove(old)
     if cell.attributes.get("t", "n") != "n":
         document.set(cell, "t", "n")
-
-
-def _write(value: CellValue) -> tuple[str, str]:
-    """Return the type of a cell that holds the value, and its text as XML."""
-    match value:
-        case bool():
-            return "b", str(int(value))
-        case ErrorCode():
-            return "e", value.text
-        case str():
-            return "str", cell_text(value)
-        case None:
-            return "str", ""
-        case _:
-            return "n", repr(float(value)).removesuffix(".0")

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import SequenceMatcher
 
-from xlmc.excel.address import Cell
+from xlmc.excel.address import Area, Cell, parse_address
 from xlmc.excel.workbook.printable import label
 from xlmc.excel.workbook.workbook import Table, Workbook
 from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.distributions.spelling import nearest, plain
 
-__all__ = ["CASE", "CONVERTED", "KINDS", "NEAR_MISS", "DefinitionTable", "definition_tables"]
+__all__ = ["CASE", "CONVERTED", "KINDS", "NEAR_MISS", "DefinitionTable", "definition_tables", "likely_table"]
 
 CONVERTED = "xlmc_converted"
 """What the name of the table starts with that `xlmc convert` writes: a workbook that has it has its definitions in
@@ -42,6 +42,19 @@ NEAR_MISS = 0.8
 _SLIP = 0.74  # likeness of the first letters above which they are: one of four is another
 
 
+_LEAST_ROWS = 2
+"""Headings, and a row."""
+
+_SIGNS = {
+    "xlmc_assumptions": ({"name", "distribution"}, {"name", "low", "high"}, {"name", "mean", plain("Std dev")}),
+    "xlmc_forecasts": ({"name", "cell", "threshold"}, {"name", "value", "threshold"}, {"name", "cell", "units"}),
+    "xlmc_filters": ({"name", plain("At least")}, {"name", plain("At most")}, {"name", "above"}, {"name", "below"}),
+    "xlmc_correlations": ({"first", "second", "correlation"},),
+    "xlmc_settings": ({"setting", "value"},),
+}
+"""Headings that hardly any other table has."""
+
+
 @dataclass(frozen=True, slots=True)
 class DefinitionTable:
     """A reserved table. `columns` maps the plain spelling of a heading to the heading as written and its column."""
@@ -59,7 +72,10 @@ class DefinitionTable:
 
 
 def definition_tables(workbook: Workbook, findings: Findings) -> dict[str, list[DefinitionTable]]:
-    """Return the reserved tables of every sheet by kind, each kind present."""
+    """Return the reserved tables of every sheet by kind, each kind present.
+
+    A plain range counts too, where its sheet has the name of a table, or a defined name of a table stands for it.
+    """
     found: dict[str, list[DefinitionTable]] = {kind: [] for kind in KINDS}
     for table in workbook.tables:
         kind = next((kind for kind in KINDS if table.name.casefold().startswith(kind)), None)
@@ -67,7 +83,54 @@ def definition_tables(workbook: Workbook, findings: Findings) -> dict[str, list[
             found[kind].append(_with_headings(kind, table, findings))
         elif not table.name.casefold().startswith(CASE):
             _point_out_unknown(table, findings)
+    for kind in KINDS:
+        area = None if found[kind] or kind == CONVERTED else _plain_range(workbook, kind)
+        if area is not None:
+            headings = [workbook.content(Cell(area.sheet, area.top, at)).value for at in _columns(area)]
+            table = Table(kind, area, tuple("" if each is None else str(each) for each in headings))
+            message = f"The range {area} is read as the table {kind}: it has its name, and is no table of Excel"
+            findings.notice(message, Cell(area.sheet, area.top, area.left))
+            found[kind].append(_with_headings(kind, table, findings))
     return found
+
+
+def likely_table(workbook: Workbook, kind: str) -> Table | None:
+    """Return a table with the headings of a reserved one under a name of its own; None where there is none."""
+    for table in workbook.tables:
+        headings = {plain(heading) for heading in table.columns}
+        if not table.name.casefold().startswith(_PREFIX) and any(each <= headings for each in _SIGNS.get(kind, ())):
+            return table
+    return None
+
+
+def _plain_range(workbook: Workbook, kind: str) -> Area | None:
+    """Return the cells that have the name of a table without being one: headings, and rows down to a blank one."""
+    named = workbook.defined_name(kind)
+    if named is not None:
+        try:
+            found = parse_address(named.text)
+        except ValueError:
+            return None
+        sheet = workbook.sheet_named(found.sheet)
+        if not isinstance(found, Area) or found.rows < _LEAST_ROWS or sheet is None:
+            return None
+        return replace(found, sheet=sheet.name)
+    sheet = workbook.sheet_named(kind)
+    filled = sorted(at for at, content in sheet.cells.items() if not content.is_blank) if sheet is not None else []
+    if sheet is None or not filled or any(table.area.sheet == sheet.name for table in workbook.tables):
+        return None
+    (top, left), right = filled[0], filled[0][1]
+    taken = set(filled)
+    while (top, right + 1) in taken:
+        right += 1
+    bottom = top
+    while any((bottom + 1, column) in taken for column in range(left, right + 1)):
+        bottom += 1
+    return Area(sheet.name, top, left, bottom, right) if bottom > top else None
+
+
+def _columns(area: Area) -> range:
+    return range(area.left, area.right + 1)
 
 
 def _point_out_unknown(table: Table, findings: Findings) -> None:

@@ -18,7 +18,7 @@ from xlmc.montecarlo.definitions.tables.table_rows import Row, as_text, central_
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.distributions.spelling import did_you_mean, plain
 
-__all__ = ["LEAST_PERCENT", "read_settings"]
+__all__ = ["LEAST_PERCENT", "read_settings", "setting_names"]
 
 _DEFAULT_CENTRAL = 0.51
 """The share of the central range where neither the forecast nor the settings give one: the paper's 51 %."""
@@ -71,6 +71,11 @@ def read_settings(
         _DEFAULT_CENTRAL if central is None else central,
         stated,
     )
+
+
+def setting_names() -> list[str]:
+    """Return the settings that a row may name, as people write them."""
+    return [setting.name for setting in _settings(()).values() if setting.read is not _arithmetic]
 
 
 def _take(row: Row, values: dict[str, Any], settings: Mapping[str, _Setting], findings: Findings) -> None:

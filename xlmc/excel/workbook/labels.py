@@ -1,0 +1,114 @@
+"""What people call a cell: the text left of it or above it, and the unit beside it."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Final
+
+from xlmc.excel.address import Cell, column_letters
+from xlmc.excel.workbook.printable import label
+from xlmc.excel.workbook.workbook import Workbook
+
+__all__ = ["Label", "label_of"]
+
+_FARTHEST: Final = 30
+"""Cells to the left, and above, in which a label is looked for."""
+
+_LONGEST: Final = 80
+
+_IN_BRACKETS: Final = re.compile(r"^(?P<name>.*\S)\s*[(\[](?P<unit>[^()\[\]]{1,12})[)\]]\s*:?$")
+_SYMBOLS: Final = (
+    "m mm cm km µm μm um nm in inch inches ft feet yd mi mile miles s sec second seconds ms min minutes h "
+    "hr hrs hour hours d day days week weeks wk month months mo yr yrs year years a g kg mg t ton tons "
+    "tonne tonnes lb lbs lbm lbf kip kips oz slug N kN MN J kJ MJ GJ W kW MW GW Wh kWh MWh GWh Btu BTU hp "
+    "Pa kPa MPa GPa psi ksi psf ksf bar mbar atm K C F R deg rad mph kph kmh fps mps kn knots Hz kHz MHz "
+    "rpm V kV mV A mA kA Ω kΩ ohm ohms l L ml mL gal gallon gallons % ‰ ppm $ € £ k$ M$ $k $M USD EUR GBP "
+    "CHF pcs pc unit units each ea people persons acre acres ha sqft sf cf cy gpm cfs mol mmol kmol dB ° "
+    "°C °F ºC ºF g's "
+)
+_BASES: Final = frozenset(_SYMBOLS.split())
+_EXPONENT: Final = re.compile(r"(?:\^?-?\d|[²³⁴⁻¹]+)$")
+_JOINED: Final = re.compile(r"[*·⋅./×\- ]+")
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """A cell's name and unit; either may be empty."""
+
+    name: str = ""
+    unit: str = ""
+
+
+def label_of(book: Workbook, cell: Cell) -> Label:
+    """Return the name and the unit of a cell by the texts around it.
+
+    The name is the nearest text to the left. Where another number stands between, the cell is one of a row of numbers,
+    and the text above it is added; without a text to the left, it is that alone. A symbol of a unit right of the cell,
+    between it and its name, or in brackets behind the name, is its unit.
+    """
+    left, between = _left(book, cell)
+    above = _above(book, cell)
+    unit = ""
+    if len(left) > 1 and not between and _is_unit(left[0]):
+        unit, left = left[0], left[1:]
+    name = left[0] if left else ""
+    if not name:
+        name = above
+    elif between and above and above != name:
+        name = f"{name}, {above}"
+    right = book.content(Cell(cell.sheet, cell.row, cell.column + 1))
+    if not unit and right.formula is None and isinstance(right.value, str) and _is_unit(right.value.strip()):
+        unit = right.value.strip()
+    found = _IN_BRACKETS.match(name)
+    if found is not None and (not unit or found["unit"].casefold() == unit.casefold()) and _is_unit(found["unit"]):
+        name, unit = found["name"], found["unit"]
+    if not name:
+        name = next((each.name for each in book.names if _stands_for(book, each.text, cell)), "")
+    return Label(label(name.strip().rstrip(":=").strip())[:_LONGEST], unit.strip("()[] "))
+
+
+def _left(book: Workbook, cell: Cell) -> tuple[list[str], bool]:
+    """Return the texts to the left, the nearest first, and whether a number stands before the first of them."""
+    texts: list[str] = []
+    between = False
+    for column in range(cell.column - 1, max(0, cell.column - 1 - _FARTHEST), -1):
+        content = book.content(Cell(cell.sheet, cell.row, column))
+        if content.is_blank:
+            if texts:
+                break
+            continue
+        if isinstance(content.value, str):
+            texts.append(content.value.strip())
+            if len(texts) > 1:
+                break
+        elif texts:
+            break
+        else:
+            between = True
+    return texts, between
+
+
+def _above(book: Workbook, cell: Cell) -> str:
+    for row in range(cell.row - 1, max(0, cell.row - 1 - _FARTHEST), -1):
+        value = book.content(Cell(cell.sheet, row, cell.column)).value
+        if isinstance(value, str) and value.strip():
+            return value.strip()
+    return ""
+
+
+def _is_unit(text: str) -> bool:
+    """Return whether a text may be a unit: `m/s²`, `lb`, `%`, `kN·m`; a word of a sentence is none.
+
+    >>> [_is_unit(text) for text in ("mph", "m/s^2", "%", "kN*m", "Length", "total", "from the plan")]
+    [True, True, True, True, False, False, False]
+    """
+    factors = [_EXPONENT.sub("", each) for each in _JOINED.split(re.sub(r"[()\[\]]", "", text)) if each]
+    return bool(factors) and all(each in _BASES or each == "1" for each in factors) and len(text) <= 14
+
+
+def _stands_for(book: Workbook, text: str, cell: Cell) -> bool:
+    return text.replace("$", "").casefold() in (
+        f"{cell.sheet}!{column_letters(cell.column)}{cell.row}".casefold(),
+        f"'{cell.sheet}'!{column_letters(cell.column)}{cell.row}".casefold(),
+    )

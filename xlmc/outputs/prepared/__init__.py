@@ -1,0 +1,1 @@
+"""Workbooks of a person's own with xlmc's tables in them."""

@@ -96,7 +96,7 @@ def _trial_skewness(m: _Shape, pull: pulls.Pull) -> Floats:
 def _interval(m: _Shape, value: Floats, size: Floats, pull: pulls.Pull, error: Floats, units: Floats) -> Numbers:
     of_trials = _trial_skewness(m, pull)
     told = (m.kurtosis > pulls.PEAKED_BESIDE_ROOT * np.sqrt(m.n)) & (
-        np.abs(of_trials) * np.sqrt(m.n) > pulls.BEYOND * m.n**pulls.BEYOND_POWER
+        np.abs(of_trials) * np.sqrt(m.n) > [pulls.reach(float(n)) for n in m.n]
     )
     if m.totals is None:
         low, high = _t_range(units - 1.0, of_trials)

@@ -8,8 +8,12 @@ mean of such a forecast does not exist; the number printed for it depends on the
 **The tail.** Hill's estimator gives its index α: P(|x - median| > t) falls as t^-α. The mean exists if α is above 1,
 the standard deviation if it is above 2. A ratio whose denominator passes 0 has α = 1.
 
-**The spread.** The error of a standard deviation comes from the fourth moment, which exists if α is above 4. Where α is
-below, or where at most ten trials hold more than half of the sum of fourth powers, its interval may be too short.
+**The spread.** The error of a standard deviation comes from the fourth moment, which exists if α is above 4. The runs
+whose interval is too short are those without far trials, so the far trials cannot tell. The shape of the tail before
+them can: beyond a high threshold t, P(x > t + y) falls as (1 + ξy/s)^(-1/ξ) with ξ = 1/α (Pickands 1975, Ann. Stat. 3,
+119). L-moments estimate ξ (Hosking & Wallis 1987, Technometrics 29, 339); it is 0 for the tails of normal, gamma and
+Gumbel forecasts, wherever t lies. The interval may be too short unless ξ is below 1/4 by nearly its standard error, or
+if ten trials hold more than half of the sum of fourth powers.
 """
 
 from __future__ import annotations
@@ -71,22 +75,25 @@ def _tail_index(ascending: Floats, part: float = 1.0) -> tuple[float, float]:
 
 
 _LIMIT: Final = 2.0
-_LIMIT_OF_SPREAD: Final = 4.0
-"""The index below which the standard deviation, and its error, do not exist."""
+"""The index below which the standard deviation does not exist."""
 
 _FEW: Final = 10
 _TRIALS_FOR_ONE: Final = 1_000
-"""The most trials that count as a few: one in so many, and at most ten."""
+"""Ten trials count as a few if they are at most one in so many."""
+
+_LEAST_OF_TAIL: Final = 20
+_TRIALS_OF_FIFTH: Final = 1_000
+"""Up to so many trials the tail is a fifth of them; of more trials, a share that falls as 1/√n."""
+
+_SHAPE_OF_SPREAD: Final = 0.25
+"""The shape above which the fourth moment does not exist."""
 
 
 def heavy_tail(x: Floats) -> tuple[float, float] | None:
     """Return index and standard error of a tail so heavy that the standard deviation does not converge, else None."""
-    return _heavier_than(_LIMIT, np.sort(x[np.isfinite(x)]))
-
-
-def _heavier_than(limit: float, ascending: Floats) -> tuple[float, float] | None:
+    ascending = np.sort(x[np.isfinite(x)])
     index, error = _tail_index(ascending)
-    return (index, error) if index + 2 * error < limit and _tail_index(ascending, _FAR)[0] < limit else None
+    return (index, error) if index + 2 * error < _LIMIT and _tail_index(ascending, _FAR)[0] < _LIMIT else None
 
 
 def decides_spread(ascending: Floats, mean: float, scale: float, kurtosis: float) -> bool:
@@ -98,9 +105,43 @@ def decides_spread(ascending: Floats, mean: float, scale: float, kurtosis: float
         scale: the root of their mean square about it.
         kurtosis: their kurtosis.
     """
-    few = min(_FEW, ascending.size // _TRIALS_FOR_ONE)
-    if not (few and scale > 0.0):
+    n = ascending.size
+    if not scale > 0.0 or kurtosis < 3.0 + math.sqrt(24.0 / n):  # no more far trials than a normal forecast has
         return False
-    ends = (np.concatenate([ascending[:few], ascending[-few:]]) - mean) / scale
-    top_sum = float(np.sort(ends**4)[-few:].sum())
-    return top_sum > 0.5 * kurtosis * ascending.size or _heavier_than(_LIMIT_OF_SPREAD, ascending) is not None
+    return _few_hold_half(ascending, mean, scale, kurtosis) or _is_heavy(ascending / scale)
+
+
+def _few_hold_half(ascending: Floats, mean: float, scale: float, kurtosis: float) -> bool:
+    """Return whether ten trials hold more than half of the sum of fourth powers."""
+    if ascending.size < _FEW * _TRIALS_FOR_ONE:
+        return False
+    ends = (np.concatenate([ascending[:_FEW], ascending[-_FEW:]]) - mean) / scale
+    return float(np.sort(ends**4)[-_FEW:].sum()) > 0.5 * kurtosis * ascending.size
+
+
+def _is_heavy(ascending: Floats) -> bool:
+    """Return whether the shape of either tail, and that of its far quarter, may be above 1/4.
+
+    The standard error of a shape of 1/4 from k exceedances is 1.27/√k.
+    """
+    n = ascending.size
+    k = int(0.2 * math.sqrt(n * min(n, _TRIALS_OF_FIFTH)))
+    if k < _LEAST_OF_TAIL:
+        return False
+    far = max(int(_FAR * k), _LEAST_OF_TAIL)
+    return any(
+        _shape(tail[:k] - tail[k]) > _SHAPE_OF_SPREAD - k**-0.5
+        and _shape(tail[:far] - tail[far]) > _SHAPE_OF_SPREAD - 2.0 * far**-0.5
+        for tail in (ascending[::-1], -ascending)
+    )
+
+
+def _shape(beyond: Floats) -> float:
+    """Return the shape ξ of (k,) descending exceedances by their L-moments; -inf if nearly all are at the threshold."""
+    beyond = beyond[beyond > 0.0]
+    k = beyond.size
+    if 2 * k < _LEAST_OF_TAIL:
+        return -math.inf
+    first = float(beyond.mean())
+    second = float(np.mean(beyond * (1.0 - (2.0 * np.arange(k) + 1.0) / k)))
+    return 2.0 - first / second if second > 0.0 else -math.inf

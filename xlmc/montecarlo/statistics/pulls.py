@@ -36,6 +36,7 @@ __all__ = [
     "Shaped",
     "beyond_reach",
     "few_decide",
+    "reach",
     "replicate_skewness",
     "step_error",
     "trial_error",
@@ -54,6 +55,9 @@ lognormal one with σ = 1, 11 for the SD of an exponential one (docs/sampling.md
 
 BEYOND, BEYOND_POWER = 0.63, 0.4
 """Above a skewness of 0.63 n^0.4 even the corrected interval is too short: that of n pulls cannot exceed √n."""
+
+PART_OF_ROOT = 1.0 / 3.0
+"""With a few hundred trials it is too short above this part of √n already."""
 
 PEAKED_BESIDE_ROOT = 0.7
 """No tail is too heavy if the kurtosis over √n is below this. A normal forecast has 3, an exponential one 9."""
@@ -135,7 +139,12 @@ def few_decide(skewness: float, n: float) -> bool:
 def beyond_reach(m: Shaped, pull: Pull, n: float) -> bool:
     """Return whether the tail of n trials is so heavy that their interval may be too short."""
     skewness = abs(trial_skewness(m, pull, n)) * math.sqrt(n)
-    return m.kurtosis > PEAKED_BESIDE_ROOT * math.sqrt(n) and skewness > BEYOND * n**BEYOND_POWER
+    return m.kurtosis > PEAKED_BESIDE_ROOT * math.sqrt(n) and skewness > reach(n)
+
+
+def reach(n: float) -> float:
+    """Return the skewness of n pulls above which even the corrected interval of their mean is too short."""
+    return min(BEYOND * n**BEYOND_POWER, PART_OF_ROOT * math.sqrt(n))
 
 
 def wider(one: Estimate, other: Estimate) -> Estimate:

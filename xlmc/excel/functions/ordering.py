@@ -3,25 +3,31 @@
 A number becomes itself, a logical 1 or 0, a text its rank among all texts that are compared. This is Excel's order of
 texts when it sorts and in approximate lookups: case does not count; symbols come before digits, digits before letters;
 accents, hyphens and apostrophes count only between texts that are otherwise equal.
+
+Thousands of lookups may search one table, each for one key. So the texts of a table that does not vary are put in order
+once, and texts of keys that it does not have are put between them.
+
 Letters: n trials, k values of a trial.
 """
 
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Callable
+from bisect import bisect_left, bisect_right
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Final
+from functools import cached_property
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from xlmc.excel.functions.lookup.picked_cells import Indices, flatten_cells
-from xlmc.excel.functions.values import ERROR, TEXT, Codes, Floats, Objects, Value
+from xlmc.excel.functions.values import ERROR, TEXT, Codes, Floats, Objects, Value, kept_with_table
 
 __all__ = ["Ordered", "order_key", "search_each_trial", "to_ordered"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class Ordered:
     """Values of any kind, side by side, and the floats they compare by.
 
@@ -35,6 +41,17 @@ class Ordered:
     order: Floats
     texts: tuple[str, ...]
 
+    @cached_property
+    def rising(self) -> dict[int, tuple[Indices, Floats]]:
+        """Kind -> the indices of its values in (1, k), and the values, in rising order; errors are left out."""
+        kinds, order = self.kinds[0], self.order[0]
+        found = {}
+        for kind in np.unique(kinds[kinds < ERROR]).tolist():
+            indices = np.flatnonzero(kinds == kind)
+            indices = indices[np.argsort(order[indices], kind="stable")]
+            found[kind] = indices, order[indices]
+        return found
+
     def column(self, index: int, n: int) -> Ordered:
         """Return the values at one index, in n trials: (n, 1)."""
         kinds, order = self.kinds[:, index : index + 1], self.order[:, index : index + 1]
@@ -45,14 +62,61 @@ class Ordered:
         return Ordered(self.kinds.reshape(-1, 1), self.order.reshape(-1, 1), self.texts)
 
 
+class _Texts(NamedTuple):
+    """Texts in lower case, each once, in rising order; what they are sorted by; and the rank of each."""
+
+    in_order: tuple[str, ...]
+    keys: tuple[tuple[str, str], ...]
+    ranks: dict[str, float]
+
+    @classmethod
+    def of(cls, written: Iterable[str]) -> _Texts:
+        """Put texts in order."""
+        pairs = sorted((order_key(text), text) for text in {text.casefold() for text in written})
+        texts = tuple(text for _, text in pairs)
+        return cls(texts, tuple(key for key, _ in pairs), {text: float(rank) for rank, text in enumerate(texts)})
+
+
 def to_ordered(*values: Value) -> list[Ordered]:
-    """Flatten values to (n, k) each and give them floats by which all of them compare."""
-    arrays = [value.texts for value in values if value.texts is not None]
-    written = dict.fromkeys(text for array in arrays for text in array.ravel().tolist())
-    texts = tuple(sorted({text.casefold() for text in written}, key=order_key))
-    indices = {text: float(index) for index, text in enumerate(texts)}
-    ranks = {text: indices[text.casefold()] for text in written}
-    return [_to_ordered(value, ranks, texts) for value in values]
+    """Flatten values to (n, k) each and give them floats by which all of them compare.
+
+    Of the largest of those that do not vary the texts are put in order once for all calls.
+    """
+    still = max(filter(_is_kept, values), key=lambda value: value.numbers.size, default=None)
+    if still is None:
+        texts = _Texts.of(text for value in values for text in _written(value))
+        return [_to_ordered(value, texts.ranks, texts.in_order) for value in values]
+    kept, alone = _in_order(still)
+    others = {text.casefold() for value in values if value is not still for text in _written(value)}
+    new = sorted((order_key(text), text) for text in others if text not in kept.ranks)
+    if not new:
+        return [alone if value is still else _to_ordered(value, kept.ranks, kept.in_order) for value in values]
+    before = [bisect_left(kept.keys, key) for key, _ in new]
+    merged = np.insert(np.array(kept.in_order, object), before, np.array([text for _, text in new], object))
+    ranks = {text: float(place + index) for index, (place, (_, text)) in enumerate(zip(before, new, strict=True))}
+    ranks |= {text: kept.ranks[text] + bisect_right(before, kept.ranks[text]) for text in others - ranks.keys()}
+    moved = alone.order + np.searchsorted(before, alone.order, side="right")
+    own = Ordered(alone.kinds, np.where(alone.kinds == TEXT, moved, alone.order), tuple(merged.tolist()))
+    return [own if value is still else _to_ordered(value, ranks, own.texts) for value in values]
+
+
+_LEAST_KEPT: Final = 16
+"""Cells; fewer are put in order anew as fast."""
+
+
+def _is_kept(value: Value) -> bool:
+    return value.numbers.ndim == 3 and value.shape[0] == 1 and value.numbers.size >= _LEAST_KEPT
+
+
+@kept_with_table
+def _in_order(value: Value) -> tuple[_Texts, Ordered]:
+    """Return the texts of a value in order, and the value."""
+    texts = _Texts.of(_written(value))
+    return texts, _to_ordered(value, texts.ranks, texts.in_order)
+
+
+def _written(value: Value) -> Iterable[str]:
+    return () if value.texts is None else value.texts.ravel().tolist()
 
 
 def search_each_trial(keys: Value, vector: Value, find: Callable[[Ordered, Ordered], Indices]) -> Indices:
@@ -82,7 +146,7 @@ def _to_ordered(value: Value, ranks: dict[str, float], texts: tuple[str, ...]) -
 
 
 def _look_up_ranks(texts: Objects, ranks: dict[str, float]) -> Floats:
-    return np.array([ranks[text] for text in texts.ravel().tolist()], np.float64).reshape(texts.shape)
+    return np.array([ranks[text.casefold()] for text in texts.ravel().tolist()], np.float64).reshape(texts.shape)
 
 
 _SYMBOLS: Final = '\t\n\r !"#$%&()*,./:;?@[\\]^_`{|}~+<=>'

@@ -8,7 +8,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Final
+from functools import wraps
+from typing import Any, Concatenate, Final, ParamSpec, TypeVar
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,9 +40,13 @@ __all__ = [
     "constant",
     "from_objects",
     "general_text",
+    "kept_with_table",
     "parse_number",
     "unbox_errors",
 ]
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -84,7 +90,7 @@ class ShapeVaries(Exception):  # noqa: N818 - it is no error: the body asks to b
     """The shape of the result differs between trials: evaluate trial by trial."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Value:
     """One Excel value per trial (and per cell of a range).
 
@@ -277,6 +283,25 @@ def _kind(item: object) -> int:
             return TEXT
         case _:
             return NUMBER
+
+
+def kept_with_table(make: Callable[Concatenate[Value, P], T]) -> Callable[Concatenate[Value, P], T]:
+    """Keep what a function makes of a value that does not vary as long as that value lives: lookups share tables.
+
+    The arguments besides the value are hashable, and what is made does not hold the value.
+    """
+    kept: WeakKeyDictionary[Value, dict[tuple[object, ...], T]] = WeakKeyDictionary()
+
+    @wraps(make)
+    def made(value: Value, /, *args: P.args, **kwargs: P.kwargs) -> T:
+        if value.shape[0] != 1 or kwargs:
+            return make(value, *args, **kwargs)
+        found = kept.setdefault(value, {})
+        if args not in found:
+            found[args] = make(value, *args, **kwargs)
+        return found[args]
+
+    return made
 
 
 def constant(item: object) -> Value:

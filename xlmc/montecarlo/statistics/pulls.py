@@ -144,7 +144,7 @@ def beyond_reach(m: Shaped, pull: Pull, n: float) -> bool:
 
 def reach(n: float) -> float:
     """Return the skewness of n pulls above which even the corrected interval of their mean is too short."""
-    return min(BEYOND * n**BEYOND_POWER, PART_OF_ROOT * math.sqrt(n))
+    return float(min(BEYOND * n**BEYOND_POWER, PART_OF_ROOT * math.sqrt(n)))
 
 
 def wider(one: Estimate, other: Estimate) -> Estimate:

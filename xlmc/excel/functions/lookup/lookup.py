@@ -28,7 +28,16 @@ from xlmc.excel.functions.arguments import (
 )
 from xlmc.excel.functions.facts import Facts
 from xlmc.excel.functions.logical import choose
-from xlmc.excel.functions.lookup.picked_cells import Indices, by_portions, map_parts, pick, transpose_cells, width_of
+from xlmc.excel.functions.lookup.picked_cells import (
+    Indices,
+    by_portions,
+    column_of,
+    map_parts,
+    pick,
+    transpose_cells,
+    turn,
+    width_of,
+)
 from xlmc.excel.functions.lookup.vector_search import (
     EXACT,
     LARGER,
@@ -105,7 +114,7 @@ def hlookup(key: Value, table: Value, row: Value, near: Value | None = None) -> 
     """Return the cell in a row of the table and the column that begins with the key or, if `near`, the last value up to
     it.
     """
-    turned = transpose_cells(table) if table.numbers.ndim == 3 else table
+    turned = turn(table) if table.numbers.ndim == 3 else table
     return by_portions(_vlookup, [key, turned, row, constant(True) if near is None else near], width_of(table))
 
 
@@ -113,7 +122,7 @@ def _vlookup(key: Value, table: Value, column: Value, near: Value) -> Value:
     key, column, near = align_ranges(key, column, near)
     close, unclear = near.to_logicals()
     cells = table.as_range()
-    rows = _classic_index(key, map_parts(cells, lambda part: part[:, :, :1]), close.astype(np.float64))
+    rows = _classic_index(key, column_of(cells, 0), close.astype(np.float64))
     columns, wrong = whole_numbers(column)
     errors = first_error(
         *(key.errors, errors_unless_range(table, key), unclear),
@@ -140,7 +149,7 @@ def lookup(key: Value, cells: Value, results: Value | None = None) -> Value:
 def _lookup_in_array(key: Value, cells: Value) -> Value:
     grid = _upright(cells.as_range())
     errors = first_error(key.errors, errors_unless_range(cells, key))
-    first, last = map_parts(grid, lambda part: part[:, :, :1]), map_parts(grid, lambda part: part[:, :, -1:])
+    first, last = column_of(grid, 0), column_of(grid, grid.shape[2] - 1)
     return _take_beside(key, first, last, errors)
 
 
@@ -148,13 +157,13 @@ def _lookup_in_vector(key: Value, cells: Value, results: Value) -> Value:
     errors = first_error(key.errors, errors_unless_range(cells, key), errors_unless_range(results, key))
     if not _is_vector(results.as_range()):
         return error_everywhere(key, _NOT_FOUND, errors)
-    first = map_parts(_upright(cells.as_range()), lambda part: part[:, :, :1])
+    first = column_of(_upright(cells.as_range()), 0)
     return _take_beside(key, first, map_parts(results.as_range(), _as_column), errors)
 
 
 def _upright(grid: Value) -> Value:
     """Return the range, turned where it is wider than high: LOOKUP searches its first row then."""
-    return transpose_cells(grid) if grid.shape[2] > grid.shape[1] else grid
+    return turn(grid) if grid.shape[2] > grid.shape[1] else grid
 
 
 def _as_column(part: Floats) -> Floats:
@@ -273,8 +282,8 @@ def _xlookup(key: Value, cells: Value, results: Value, instead: Value, mode: Val
     vector, grid = cells.as_range(), results.as_range()
     if _is_column_beside(vector, grid):
         return _take_found(key, vector, grid, instead, mode, direction, errors)
-    if _is_column_beside(transpose_cells(vector), transpose_cells(grid)):
-        row = _take_found(key, transpose_cells(vector), transpose_cells(grid), instead, mode, direction, errors)
+    if _is_column_beside(turn(vector), turn(grid)):
+        row = _take_found(key, turn(vector), turn(grid), instead, mode, direction, errors)
         return row if row.shape[1:] == key.shape[1:] else transpose_cells(row)
     return error_everywhere(key, ErrorCode.VALUE, errors)
 

@@ -11,13 +11,14 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.excel.functions.values import Objects, ShapeVaries, Value
+from xlmc.excel.functions.values import Objects, ShapeVaries, Value, kept_with_table
 
 __all__ = [
     "Indices",
     "arrange",
     "by_portions",
     "cell_of",
+    "column_of",
     "flatten_cells",
     "join_cells",
     "join_values",
@@ -25,6 +26,7 @@ __all__ = [
     "pick",
     "repeat_trials",
     "transpose_cells",
+    "turn",
     "width_of",
 ]
 
@@ -52,6 +54,18 @@ def join_cells(rows: Sequence[NDArray[Any]]) -> NDArray[Any]:
 def transpose_cells(cells: Value) -> Value:
     """Turn rows into columns: (n, r, c) -> (n, c, r)."""
     return map_parts(cells, lambda part: part.swapaxes(1, 2))
+
+
+@kept_with_table
+def column_of(cells: Value, column: int) -> Value:
+    """Return a column, (n, r, 1); of cells that do not vary it is the same object for every lookup in them."""
+    return map_parts(cells, lambda part: part[:, :, column : column + 1])
+
+
+@kept_with_table
+def turn(cells: Value) -> Value:
+    """Turn rows into columns; cells that do not vary give the same object for every lookup in them."""
+    return transpose_cells(cells)
 
 
 def pick(cells: Value, rows: Indices, columns: Indices) -> Value:
@@ -123,6 +137,8 @@ def by_portions(compute: Callable[..., Value], values: Sequence[Value], width: i
 
 def _trials(value: Value, part: slice) -> Value:
     """Return some of the trials; a constant stays as it is."""
+    if value.shape[0] == 1:
+        return value
     texts = None if value.texts is None else _some(value.texts, part)
     return Value(_some(value.numbers, part), _some(value.kinds, part), texts)
 

@@ -60,12 +60,9 @@ def nearest(keys: Value, vector: Value, side: int = EXACT, *, last: bool = False
 def _find_in_one(keys: Ordered, vector: Ordered, side: int, last: bool) -> Indices:
     """Find (m, 1) keys in (1, k) values -> (m,): sort the values and bisect."""
     result = np.full(keys.order.shape[0], -1)
-    kinds, order = vector.kinds[0], vector.order[0]
-    for kind in np.unique(kinds[kinds < ERROR]):
-        indices = np.flatnonzero(kinds == kind)
-        indices = indices[np.argsort(order[indices], kind="stable")]
+    for kind, (indices, rising) in vector.rising.items():
         mine = keys.kinds[:, 0] == kind
-        result[mine] = _bisect(order[indices], indices, keys.order[mine, 0], side, last)
+        result[mine] = _bisect(rising, indices, keys.order[mine, 0], side, last)
     return result
 
 

@@ -131,7 +131,7 @@ def _is_heavy(ascending: Floats) -> bool:
     far = max(int(_FAR * k), _LEAST_OF_TAIL)
     return any(
         _shape(tail[:k] - tail[k]) > _SHAPE_OF_SPREAD - k**-0.5
-        and _shape(tail[:far] - tail[far]) > _SHAPE_OF_SPREAD - 2.0 * far**-0.5
+        and _shape(tail[:far] - tail[far]) > _SHAPE_OF_SPREAD - 3.0 * far**-0.5
         for tail in (ascending[::-1], -ascending)
     )
 

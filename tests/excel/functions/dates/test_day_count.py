@@ -14,6 +14,7 @@ from xlmc.excel.functions.dates.day_count import (
     days_between,
     days_in_year,
     european_360,
+    is_basis,
     is_leap_year,
     is_month_end,
     month_length,
@@ -171,3 +172,9 @@ def test_each_trial_may_have_its_unit():
     units = from_objects(np.array(["D", "M", "X"], object))
     result = function_named("DATEDIF")([Value.of_numbers(np.array([x])) for x in (0.0, 100.0)] + [units])
     assert result.objects().tolist() == [100.0, 3.0, NUM_OF_DATE_DIFFERENCES]
+
+
+def test_a_basis_is_a_number_from_0_to_4_without_its_fraction():
+    numbers = [-1.0, -0.5, 0.0, 0.5, 4.0, 4.9, 5.0, np.nan]
+    assert is_basis(np.array(numbers)).tolist() == [False, False, True, True, True, True, False, False]
+    assert [bool(is_basis(number)) for number in numbers] == is_basis(np.array(numbers)).tolist()

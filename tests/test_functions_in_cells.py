@@ -376,9 +376,9 @@ def test_what_has_no_mean_says_so(model):
         "A4": "=RiskPareto(1.5,1)",
         "A5": "=SUM(A1:A4)+RiskOutput()",
     }
-    told = [notice for notice in model(cells).notices if "has no finite mean" in notice.message]
-    assert [str(notice.where) for notice in told] == ["S!A1", "S!A3"]
-    assert "'S!A1#1' (Cauchy) has no finite mean" in told[0].message
+    expected = [notice for notice in model(cells).notices if "has no finite mean" in notice.message]
+    assert [str(notice.where) for notice in expected] == ["S!A1", "S!A3"]
+    assert "'S!A1#1' (Cauchy) has no finite mean" in expected[0].message
 
 
 def test_draws_that_nothing_needs_are_told_of_together(model):
@@ -420,8 +420,8 @@ def test_sums_and_values(model):
     cells = {f"A{row}": formula for row, formula in enumerate(SUMS, start=1)}
     cells |= {"B1": "=RiskPoisson(3)", "B2": "=RiskNormal(10,SQRT(20))", "B3": "=B4*2", "B4": "=RiskNormal(5,1)"}
     made = model({**cells, "C1": 7, "C2": 8, "C3": 9})
-    told = [str(notice.where) for notice in made.notices if "a run uses the first" in notice.message]
-    assert told == ["S!A9"]
+    expected = [str(notice.where) for notice in made.notices if "a run uses the first" in notice.message]
+    assert expected == ["S!A9"]
     run = simulated(made, trials=TRIALS, seed=999)
     for name, (mean, deviation) in zip("abcdefghij", SUMS.values(), strict=True):
         assert abs(run[name].mean.value - mean) < 5 * deviation / math.sqrt(TRIALS), name

@@ -127,7 +127,7 @@ json.dump(said, sys.stdout)
 
 
 @pytest.fixture(scope="module")
-def said(enlarged, folder, run):
+def printed(enlarged, folder, run):
     """What programs print: two runs, by the workbook's own settings and with `jit`; a replay; a help; two scripts."""
     commands = {
         "replay": ["xlmc", "replay", "slow.xlsx"],
@@ -146,7 +146,7 @@ def said(enlarged, folder, run):
 
 
 @pytest.fixture(scope="module")
-def answers(folder, said):
+def answers(folder, printed):
     """The forecasts of both runs."""
     return {
         engine: json.loads((folder / f"{engine}.json").read_text(encoding="utf-8"))["forecasts"]
@@ -194,12 +194,12 @@ def test_its_errors_come_from_the_pairs(answers):
     assert mean["error"] < 0.001
 
 
-def test_the_setting_is_recorded_and_repeated(folder, said):
+def test_the_setting_is_recorded_and_repeated(folder, printed):
     book = openpyxl.load_workbook(folder / "slow.xlsx")
     record = {row[0]: row[2] for row in book["Record"].iter_rows(values_only=True) if row[0]}
     assert record["settings.purpose"] == "final"
     assert "--purpose final" in record["run.repeat"]
-    assert "--purpose" in said["help"]
+    assert "--purpose" in printed["help"]
 
 
 def test_the_sheet_holds_the_largest_values(folder, answers, trials):
@@ -210,22 +210,22 @@ def test_the_sheet_holds_the_largest_values(folder, answers, trials):
         assert list(rows[name]) == sorted((trial[name] for trial in trials), reverse=True)[:5]
 
 
-def test_the_run_is_recorded_and_repeated(folder, said):
-    assert "\nidentical: the same " in said["replay"]
+def test_the_run_is_recorded_and_repeated(folder, printed):
+    assert "\nidentical: the same " in printed["replay"]
     record = openpyxl.load_workbook(folder / "slow.xlsx")["Record"]
     texts = {str(cell) for row in record.iter_rows(values_only=True) for cell in row}
     assert "slow" in texts
     assert any("antithetic pairs: 1000 independent replicates" in text.replace(",", "") for text in texts)
 
 
-def test_the_help_lists_them(said):
-    text = " ".join(said["help"].split())
+def test_the_help_lists_them(printed):
+    text = " ".join(printed["help"].split())
     assert "antithetic: antithetic pairs" in text
     assert "slow: the careful path alone" in text
 
 
-def test_the_page_of_distributions_shows_it(enlarged, said):
-    assert said["distributions"] == ""
+def test_the_page_of_distributions_shows_it(enlarged, printed):
+    assert printed["distributions"] == ""
     section = (enlarged / "docs" / "distributions.md").read_text(encoding="utf-8").partition("\n## Arcsine\n")[2]
     assert "Drawn: Location 0, Amplitude 1" in section.partition("\n## ")[0]
     drawn = (enlarged / "docs" / "pictures" / "distributions" / "arcsine.svg").read_text(encoding="utf-8")
@@ -244,10 +244,10 @@ def test_the_page_of_distributions_is_not_written_without_the_numbers_of_a_pictu
     assert [path.name for path in without.parent.iterdir()] == ["list_distributions.py"]
 
 
-def test_the_pages_that_it_names_are_those_that_lack_its_examples(said):
+def test_the_pages_that_it_names_are_those_that_lack_its_examples(printed):
     """All but the list of functions, which another test compares with the registry."""
     sections = dict(section.split("\n", 1) for section in PAGE.read_text(encoding="utf-8").split("\n## ")[1:])
-    lines = said["described"].splitlines()
+    lines = printed["described"].splitlines()
     for heading, example in EXAMPLES.items():
         (named,) = re.findall(r"^Its pages?:(.*?)\. Its tests", sections[heading], re.MULTILINE | re.DOTALL)
         lacking = [page for page, _, name in (line.partition(": ") for line in lines) if name == example]

@@ -63,8 +63,8 @@ def test_forecasts_that_differ_are_told_with_their_cell():
     truth = [[1.0, 2.0], [3.0, 0.0]]
     assert rates.differing(TASK, truth, truth) == []
     assert rates.differing(TASK, [[1.0 + 1e-10, 2.0]], truth) == []
-    (said,) = rates.differing(TASK, [[1.0, 2.0], [3.0, 1e-12]], truth)
-    assert said.startswith("A!AA2 in check trial 2")
+    (message,) = rates.differing(TASK, [[1.0, 2.0], [3.0, 1e-12]], truth)
+    assert message.startswith("A!AA2 in check trial 2")
     assert len(rates.differing(TASK, [[None, 2.1]], truth)) == 2
 
 

@@ -33,7 +33,7 @@ def test_what_counts_as_a_fault(changed, fault):
 
 
 @pytest.mark.parametrize(
-    ("seconds", "said"),
+    ("seconds", "message"),
     [
         ({"mc": 0.2, "lhs": 0.15, "mc/jit": 0.01}, []),
         ({"mc": 2.0, "lhs": 1.9, "mc/jit": 0.5}, ["b, seed 1: mc/jit instead of mc"]),
@@ -41,5 +41,5 @@ def test_what_counts_as_a_fault(changed, fault):
         ({}, []),
     ],
 )
-def test_what_the_present_rule_would_recommend(seconds, said):
-    assert other_today({"b": {"1": {"recommended": "mc", "seconds": seconds}}}) == said
+def test_what_the_present_rule_would_recommend(seconds, message):
+    assert other_today({"b": {"1": {"recommended": "mc", "seconds": seconds}}}) == message

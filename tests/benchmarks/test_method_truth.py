@@ -35,7 +35,7 @@ SOUND = {"stated": 1_000, "true": 1_000, "ratio": 1.0, "seconds": 1.0}
 
 
 @pytest.mark.parametrize(
-    ("changed", "recommended", "said"),
+    ("changed", "recommended", "message"),
     [
         ({"ratio": 2.1, "stated": 2_100}, "mc", ["b: mc is said to need 2,100 trials, and needs 1,000"]),
         ({"ratio": 0.4, "stated": 400}, "mc", ["b: mc is said to need 400 trials, and needs 1,000"]),
@@ -44,9 +44,9 @@ SOUND = {"stated": 1_000, "true": 1_000, "ratio": 1.0, "seconds": 1.0}
         ({}, None, ["b: nothing is recommended"]),
     ],
 )
-def test_what_misses_a_bar(changed, recommended, said):
+def test_what_misses_a_bar(changed, recommended, message):
     found = {"b": {"recommended": recommended, "needs": {"mc": {**SOUND, **changed}, "lhs": SOUND}}}
-    assert misses(found) == said
+    assert misses(found) == message
 
 
 def test_a_tenth_of_a_second_does_not_matter_and_other_methods_are_only_named():

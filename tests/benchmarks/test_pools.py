@@ -22,9 +22,9 @@ ROWS = {
 
 
 def test_the_reason_for_processes_of_our_own_is_what_was_measured():
-    told = re.findall(r"^ {4}(case study.*?|skid.*?) {3,}([\d.]+) +([\d.]+)$", processes.__doc__, re.MULTILINE)
-    assert {row for row, *_ in told} == {*ROWS}
-    for row, *figures in told:
+    message = re.findall(r"^ {4}(case study.*?|skid.*?) {3,}([\d.]+) +([\d.]+)$", processes.__doc__, re.MULTILINE)
+    assert {row for row, *_ in message} == {*ROWS}
+    for row, *figures in message:
         case, kind = ROWS[row]
         measured = pools.speeds(FOUND[case]["seconds"])
         assert [float(figure) for figure in figures] == [measured[f"{way}{kind}"]["own"][1] for way in pools.WAYS[1:]]

@@ -66,11 +66,11 @@ def test_the_bar_of_tails_can_be_missed(tails):
     assert missed[0] == "kink, mc, 10,000 trials, mean: held in 90.0%, told in 0.0%"
     assert missed[2] == "kink, mc, 10,000 trials, SD: told in 7.5%"
     assert missed[-1] == "kink, mc, 10,000 trials, share: 1.50 times as long as need be"
-    told = tails.Cell("lognormal, σ 1.5", "mc", 1_000, 4_000, [3_600] * 6, [3_900] * 6, [3.0] * 6)
-    assert tails.faults([told]) == []
-    quiet = told._replace(silent=[0, 400, 0, 0, 0, 0])
-    (said,) = tails.faults([quiet])
-    assert said == "lognormal, σ 1.5, mc, 1,000 trials, SD: missed without a notice in 10.0%"
+    expected = tails.Cell("lognormal, σ 1.5", "mc", 1_000, 4_000, [3_600] * 6, [3_900] * 6, [3.0] * 6)
+    assert tails.faults([expected]) == []
+    quiet = expected._replace(silent=[0, 400, 0, 0, 0, 0])
+    (message,) = tails.faults([quiet])
+    assert message == "lognormal, σ 1.5, mc, 1,000 trials, SD: missed without a notice in 10.0%"
 
 
 @pytest.mark.parametrize("method", ["mc", "lhs", "sobol"])

@@ -23,5 +23,5 @@ def test_the_page_and_the_results_are_of_one_run():
         "found"
     ]
     assert f"Reference: {found['reference']['trials']:,} trials" in PAGE
-    for said in found["recommendation"]:
-        assert said in PAGE
+    for message in found["recommendation"]:
+        assert message in PAGE

@@ -96,12 +96,12 @@ def started(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Callabl
     numbers = []
 
     def start(*arguments: object) -> Started:
-        (out, told), (err, said) = os.pipe(), os.pipe()
+        (out, expected), (err, message) = os.pipe(), os.pipe()
         if not (number := os.fork()):
-            _run_command(told, said, arguments)
+            _run_command(expected, message, arguments)
         numbers.append(number)
-        os.close(told)
-        os.close(said)
+        os.close(expected)
+        os.close(message)
         return Started(number, open(out, encoding="utf-8"), open(err, encoding="utf-8"))
 
     yield start

@@ -250,8 +250,8 @@ MISTAKES = {
 }
 
 
-@pytest.mark.parametrize(("arguments", "said"), MISTAKES.values(), ids=MISTAKES)
-def test_a_mistake_is_one_message_and_nothing_is_written(xlmc, book, tmp_path, arguments, said):
+@pytest.mark.parametrize(("arguments", "message"), MISTAKES.values(), ids=MISTAKES)
+def test_a_mistake_is_one_message_and_nothing_is_written(xlmc, book, tmp_path, arguments, message):
     (tmp_path / "two.csv").write_text("S!A1\n1\n2\n", encoding="utf-8")
     (tmp_path / "heading.csv").write_text("Speed\n1\n", encoding="utf-8")
     (tmp_path / "comma.csv").write_text('S!A1\n"0,5"\n', encoding="utf-8")
@@ -259,7 +259,7 @@ def test_a_mistake_is_one_message_and_nothing_is_written(xlmc, book, tmp_path, a
     before = book.read_bytes()
     outcome = xlmc("calculate", book, *arguments)
     assert outcome.code == 2
-    assert all(each in outcome.err for each in said), outcome.err
+    assert all(each in outcome.err for each in message), outcome.err
     assert outcome.err.count("\n") == 1
     assert book.read_bytes() == before
     assert not [*tmp_path.glob("copy*"), *tmp_path.glob("book-*")]

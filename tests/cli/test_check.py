@@ -84,8 +84,8 @@ def test_limits_that_are_computed_from_the_own_cell_are_shown_as_numbers(xlmc, s
     assert outcome.code == 0, outcome.err
     shown = f"Low {base * 0.97:g}, High {base * 1.03:g}"
     assert f"Uniform: {shown}" in outcome.out
-    said = " ".join(outcome.err.split())
-    assert f"computed from the base value of the assumption's own cell ({base:g}): {shown}" in said
+    text = " ".join(outcome.err.split())
+    assert f"computed from the base value of the assumption's own cell ({base:g}): {shown}" in text
 
 
 @pytest.mark.parametrize("command", [("check",), ("simulate", "-n", "100", "--quiet")])

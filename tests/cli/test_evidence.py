@@ -71,15 +71,15 @@ def test_evidence_that_agrees_is_shown_everywhere_with_what_it_moves(xlmc, short
         "not used",
     ]
     assert all(each["name"] in ("a", "b") for each in data["assumptions"])
-    told = words(tmp_path / "book-results.xlsx")
-    for said in (
+    expected = words(tmp_path / "book-results.xlsx")
+    for message in (
         "The items corroborate each other",
         "What each item moves",
         "CDR report, p. 4",
         "not used: Use is off",
     ):
-        assert said in told
-        assert said in page.read_text(encoding="utf-8")
+        assert message in expected
+        assert message in page.read_text(encoding="utf-8")
     assert "evidence\x1f" not in page.read_text(encoding="utf-8") + found.read_text(encoding="utf-8")
     docx = pytest.importorskip("docx")
     paragraphs = [each.text for each in docx.Document(report).paragraphs]

@@ -75,10 +75,10 @@ def test_python_gives_the_numbers_of_the_command(xlmc, fed, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("typed", "said"),
+    ("typed", "message"),
     [("no equals sign", "is not written as one"), ("x=missing.xlsx!y", "there is no such file")],
 )
-def test_what_cannot_be_fed_is_one_message(xlmc, typed, said):
+def test_what_cannot_be_fed_is_one_message(xlmc, typed, message):
     done = xlmc("simulate", "skid-100-ft.xlsx", "--feed", typed)
     assert (done.code, done.err.count("\n")) == (2, 1)
-    assert said in done.err
+    assert message in done.err

@@ -208,11 +208,11 @@ def test_many_values_and_counts_far_apart_are_drawn_with_few_points(xlmc, tmp_pa
 def test_several_columns_are_not_pooled_in_silence(xlmc, measured, cells, columns):
     outcome = xlmc("fit", measured, cells)
     assert outcome.code == 0, outcome.err
-    told = f"the values of {columns} are fitted together" if columns else "are fitted together"
-    assert (told in outcome.err) == bool(columns)
+    expected = f"the values of {columns} are fitted together" if columns else "are fitted together"
+    assert (expected in outcome.err) == bool(columns)
     if columns:
         assert "such as Tests!A2:A21" in outcome.err
-        assert told in json.loads(xlmc("fit", measured, cells, "--json").out)["cautions"][0]
+        assert expected in json.loads(xlmc("fit", measured, cells, "--json").out)["cautions"][0]
 
 
 def test_a_row_of_values_is_one_quantity(xlmc, tmp_path):

@@ -86,7 +86,7 @@ def test_json(xlmc, book):
     assert methods["mc"]["runs"][-1]["trials"] == 4096
     assert methods["mc"]["needs"]["trials"] > 0
     assert found["accuracy"] == "1%"
-    assert any("Recommended: " in said for said in found["recommendation"])
+    assert any("Recommended: " in sentence for sentence in found["recommendation"])
     assert found["reference"]["sampling"] == "sobol"
     assert found["not_used"] == {}
 

@@ -96,10 +96,10 @@ def test_what_became_somebodys_stays_and_results_go_to_the_next_number(xlmc, boo
     before = contents(tmp_path)
     for seed in (1, 2) if change is change_a_part else (1,):  # the second time the number is our own
         outcome = xlmc("simulate", book, "--seed", seed, "--quiet")
-        told = [line for line in outcome.err.splitlines() if "results go to" in line]
-        assert len(told) == 1
-        assert reason in told[0]
-        assert "book-results-2.xlsx" in told[0]
+        expected = [line for line in outcome.err.splitlines() if "results go to" in line]
+        assert len(expected) == 1
+        assert reason in expected[0]
+        assert "book-results-2.xlsx" in expected[0]
         assert "Results are in" in outcome.out
         assert "book-results-2.xlsx" in outcome.out
     after = contents(tmp_path)
@@ -376,8 +376,8 @@ def test_a_fault_in_one_output_costs_no_other_and_not_the_answer(xlmc, plain_boo
     done = xlmc("simulate", plain_book, "-n", 500, *(text for _, options, _ in OUTPUTS.values() for text in options))
     assert done.code == 2
     assert "accepted trials" in done.out
-    said = [line for line in done.err.splitlines() if line.startswith("xlmc: ")]
-    assert len(said) == 1
-    assert "xlmc has failed (ZeroDivisionError: float division by zero)" in said[0]
+    message = [line for line in done.err.splitlines() if line.startswith("xlmc: ")]
+    assert len(message) == 1
+    assert "xlmc has failed (ZeroDivisionError: float division by zero)" in message[0]
     written = {path.name for path in plain_book.parent.iterdir()} - {"case.xlsx"}
     assert written == {name for _, _, name in OUTPUTS.values()} - {lost}

@@ -60,9 +60,9 @@ def test_a_saved_run_that_was_changed_is_told(xlmc, simulated, book, tmp_path):
     at = data.index(b"sha256=") + 7
     data[at : at + 4] = b"0000" if data[at : at + 4] != b"0000" else b"1111"
     changed.write_bytes(data)
-    said = "was changed since xlmc wrote it (its seal is broken)"
-    assert said in xlmc("report", changed, "--json", "changed.json").err
-    assert said not in xlmc("report", whole, "--json", "whole.json").err
+    text = "was changed since xlmc wrote it (its seal is broken)"
+    assert text in xlmc("report", changed, "--json", "changed.json").err
+    assert text not in xlmc("report", whole, "--json", "whole.json").err
 
 
 def test_nothing_is_simulated(xlmc, simulated, book, monkeypatch):

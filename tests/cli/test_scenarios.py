@@ -96,8 +96,8 @@ def test_from_the_workbook_to_all_outputs(xlmc, book, tmp_path):
     word = docx.Document(str(tmp_path / "r.docx"))
     changed, answers = ([[cell.text for cell in row.cells] for row in table.rows[1:]] for table in word.tables)
     assert [row[0] for row in changed] == [row[0] for row in answers] == names
-    told = outcome.out.replace(" ", "").replace("\n", "")
-    assert all("".join(row).replace(" ", "") in told for row in (*changed, *answers))
+    expected = outcome.out.replace(" ", "").replace("\n", "")
+    assert all("".join(row).replace(" ", "") in expected for row in (*changed, *answers))
     assert any("Differences are those to the workbook as it is" in each.text for each in word.paragraphs)
 
     for kept in ("book-results.xlsx", "r.xlmcrun"):
@@ -266,9 +266,9 @@ def test_another_threshold_of_a_scenario_is_told_and_differences_are_of_what_is_
     assert changed["above"]["difference"]["value"] == pytest.approx(gap)
     assert more["forecasts"][1]["above"]["estimate"]["value"] > 0
     assert more["forecasts"][1]["above"]["difference"] is None
-    told = " ".join(outcome.out.split())
-    assert f"Thresholds of 'area': 'as it is' {own['threshold']:g}, 'higher' 22, 'one more'" in told
-    assert "Thresholds of 'inverse': 'as it is' none, 'higher' none, 'one more' 0.1, 'none' none." in told
+    expected = " ".join(outcome.out.split())
+    assert f"Thresholds of 'area': 'as it is' {own['threshold']:g}, 'higher' 22, 'one more'" in expected
+    assert "Thresholds of 'inverse': 'as it is' none, 'higher' none, 'one more' 0.1, 'none' none." in expected
     rows = shown(tmp_path / "book-results.xlsx")[0]
     (row,) = (row for row in rows if row and row[0] == "higher" and changed["above"]["estimate"]["value"] in row)
     assert row[15] == pytest.approx(gap)

@@ -89,9 +89,9 @@ def test_a_full_disk_is_a_message_and_nothing_is_lost(xlmc, book, tmp_path, monk
 
 def test_a_run_on_disk_says_so_before_it_starts(xlmc, book, monkeypatch):
     monkeypatch.setattr("xlmc.montecarlo.columns.column_store.IN_MEMORY", 0)
-    said = xlmc("simulate", book, "-n", 2_000).err
-    assert said.startswith("This run keeps about ")
-    assert "GB on disk in" in said
+    sentence = xlmc("simulate", book, "-n", 2_000).err
+    assert sentence.startswith("This run keeps about ")
+    assert "GB on disk in" in sentence
     assert xlmc("simulate", book, "-n", 1_000, "--quiet").err == ""
 
 
@@ -266,10 +266,10 @@ def test_the_engine_jit_prints_the_same_answers_and_keeps_its_code_unless_it_is_
 def test_a_local_cluster_and_its_workers_are_asked_for(xlmc, book, monkeypatch):
     asked, run_model = [], simulate.run_model
 
-    def told(model, options, **named):
+    def recorded(model, options, **named):
         asked.append((options.scheduler, options.workers))
         return run_model(model, replace(options, scheduler=None, workers=None), **named)
 
-    monkeypatch.setattr(simulate, "run_model", told)
+    monkeypatch.setattr(simulate, "run_model", recorded)
     assert xlmc("simulate", book, "-n", 1_000, "--scheduler", "local", "--workers", 1).code == 0
     assert asked == [("local", 1)]

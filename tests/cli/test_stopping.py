@@ -113,12 +113,12 @@ def test_ctrl_c_keeps_what_was_accepted(xlmc, started, book, tmp_path, monkeypat
     """
     add = simulate._Gathered.add
 
-    def told(self, block):
+    def announced(self, block):
         add(self, block)
         print("block", file=sys.stderr, flush=True)
         time.sleep(0.01)  # so that few more come before the signal, however busy the machine is
 
-    monkeypatch.setattr(simulate._Gathered, "add", told)
+    monkeypatch.setattr(simulate._Gathered, "add", announced)
     running = started("simulate", book, "-n", 10**9, "--quiet", "-j", 2, "--scheduler", "processes")
     assert [running.err.readline() for _ in range(3)] == ["block\n"] * 3
     os.killpg(running.number, signal.SIGINT)

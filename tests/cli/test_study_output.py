@@ -59,12 +59,12 @@ def test_documents_say_what_the_terminal_says(xlmc, command, tmp_path):
     outcome = xlmc(*command, "--pdf", tmp_path / "found.pdf", "--docx", tmp_path / "found.docx")
     assert outcome.code == 0, outcome.err
     assert outcome.out.count("Written: ") == 2
-    said = "".join(SAYS[command[0]].split())
+    message = "".join(SAYS[command[0]].split())
     pdf = "".join(page.extract_text() for page in pypdf.PdfReader(tmp_path / "found.pdf").pages)
-    assert said in "".join(pdf.split())
+    assert message in "".join(pdf.split())
     written = docx.Document(str(tmp_path / "found.docx"))
     cells = [cell.text for table in written.tables for row in table.rows for cell in row.cells]
-    assert said in "".join("".join([*cells, *(each.text for each in written.paragraphs)]).split())
+    assert message in "".join("".join([*cells, *(each.text for each in written.paragraphs)]).split())
     again = xlmc(*command, "--pdf", tmp_path / "found.pdf")  # a document bears no mark of who wrote it
     assert again.code == 2
     assert "the file exists already" in again.err
@@ -91,7 +91,7 @@ def test_every_kind_is_written_by_its_ending(xlmc, command, book, tmp_path):
 
 def test_what_cannot_be_written_is_refused_before_anything_is_run(xlmc, command, book, tmp_path):
     before = book.read_bytes()
-    for given, said in (
+    for given, message in (
         (["-o", book], "this is the file that is read"),
         (["-o", tmp_path / "found.txt"], "the ending .txt is none of a file that this command writes"),
         (["-o", tmp_path / "found.xlsm"], "the ending .xlsm is none of a file that this command writes"),
@@ -104,7 +104,7 @@ def test_what_cannot_be_written_is_refused_before_anything_is_run(xlmc, command,
     ):
         outcome = xlmc(*command, *given)
         assert outcome.code == 2
-        assert said in outcome.err
+        assert message in outcome.err
     theirs = tmp_path / "theirs.html"
     theirs.write_text("mine", encoding="utf-8")
     assert xlmc(*command, "--html", theirs).code == 2

@@ -174,8 +174,8 @@ def test_changes_are_typed_into_the_column_or_it_is_named(tmp_path):
 
 def test_a_save_that_switches_is_told(own, tmp_path):
     other = load(book_at(tmp_path / "book.xlsx", {**USED, "fast": "off", "slow": None, "recorder": True}))
-    told = what_changed(own, other)
-    assert sorted(each for each in told if "used" in each) == ["fast: not used", "recorder: used", "slow: used"]
+    message = what_changed(own, other)
+    assert sorted(each for each in message if "used" in each) == ["fast: not used", "recorder: used", "slow: used"]
 
 
 def test_rows_that_are_off_are_listed_and_may_be_wrong(xlmc, tmp_path):
@@ -190,8 +190,8 @@ def test_rows_that_are_off_are_listed_and_may_be_wrong(xlmc, tmp_path):
     session = Session(load(path))
     session.receive(change("slow", "used", True, of="filter"))
     job = session.job()
-    (told,) = session.finish(job, job.run(lambda: True, lambda share: None, lambda: 0.0))
-    assert "S!D12" in told["text"]
+    (message,) = session.finish(job, job.run(lambda: True, lambda share: None, lambda: 0.0))
+    assert "S!D12" in message["text"]
     session.receive(change("slow", "used", False, of="filter"))
     settle(session)
     assert session.rest is not None

@@ -116,9 +116,9 @@ def test_output_into_a_full_file_is_one_line_and_the_files_are_written(into, tmp
 
 def test_files_are_written_before_the_answer_is_printed(xlmc, plain_book, tmp_path, monkeypatch):
     there = []
-    said = terminal.put
+    message = terminal.put
     monkeypatch.setattr(
-        "xlmc.cli.printing.put", lambda *args: (there.append((tmp_path / "r.xlsx").exists()), said(*args))
+        "xlmc.cli.printing.put", lambda *args: (there.append((tmp_path / "r.xlsx").exists()), message(*args))
     )
     assert xlmc("simulate", plain_book, "-o", "r.xlsx").code == 0
     assert there == [True, True]

@@ -49,13 +49,13 @@ def test_a_number_that_could_mean_two_or_none(one_line, typed):
     assert "not a whole number. Type it like 200000" in one_line("simulate", BOOK, "-n", typed)
 
 
-@pytest.mark.parametrize(("typed", "said"), [("0", "too small. Type 1 or more."), ("-5", "too small")])
-def test_a_number_out_of_range(one_line, typed, said):
-    assert said in one_line("simulate", BOOK, "-n", typed)
+@pytest.mark.parametrize(("typed", "message"), [("0", "too small. Type 1 or more."), ("-5", "too small")])
+def test_a_number_out_of_range(one_line, typed, message):
+    assert message in one_line("simulate", BOOK, "-n", typed)
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (("simulat", BOOK), "there is no command 'simulat'. Did you mean simulate?"),
         ((BOOK,), f"type: xlmc simulate {BOOK}"),
@@ -81,8 +81,8 @@ def test_a_number_out_of_range(one_line, typed, said):
         (("simulate", "."), "folder"),
     ],
 )
-def test_slips(one_line, arguments, said):
-    assert said in one_line(*arguments)
+def test_slips(one_line, arguments, message):
+    assert message in one_line(*arguments)
 
 
 @pytest.mark.parametrize("units", ["SI", "Si", "si"])

@@ -71,11 +71,11 @@ def test_formulas_that_no_program_calculated_have_their_values(path, calculated,
     assert type(calculated[f"S!{cell}"]) is type(value)
 
 
-@pytest.mark.parametrize(("cell", "said"), UNKNOWN.items())
-def test_what_cannot_be_computed_has_no_value_and_a_reason(calculated, cell, said):
+@pytest.mark.parametrize(("cell", "text"), UNKNOWN.items())
+def test_what_cannot_be_computed_has_no_value_and_a_reason(calculated, cell, text):
     assert calculated[f"S!{cell}"] is None
     (notice,) = (each for each in calculated.notices if str(each.where) == f"S!{cell}")
-    assert said in notice.message
+    assert text in notice.message
     assert "it has no value" in notice.message
 
 

@@ -49,7 +49,7 @@ def test_a_cell_has_the_value_that_is_saved(book, place, value):
 
 
 @pytest.mark.parametrize(
-    ("place", "said"),
+    ("place", "message"),
     [
         ("A1", "write Sheet!Cell"),
         ("Other!A1", "there is no sheet 'Other' in book.xlsx; there are Some cells"),
@@ -59,8 +59,8 @@ def test_a_cell_has_the_value_that_is_saved(book, place, value):
         ("Some cells!A0", "is no cell of book.xlsx"),
     ],
 )
-def test_what_is_no_cell_is_said(book, place, said):
-    with pytest.raises(KeyError, match=said):
+def test_what_is_no_cell_is_said(book, place, message):
+    with pytest.raises(KeyError, match=message):
         book[place]
 
 

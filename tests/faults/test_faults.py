@@ -162,9 +162,9 @@ def test_a_program_that_is_asked_to_end_clears_away(small_book, tmp_path, tempor
     process = subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, text=True, env=environment)
     assert began(temporary, lambda: process.poll() is not None)
     process.send_signal(signal.SIGHUP)
-    told = process.communicate(timeout=120)[1]
+    message = process.communicate(timeout=120)[1]
     assert process.returncode == 129
-    assert told == "xlmc: ended by SIGHUP; no file is left half-written.\n"
+    assert message == "xlmc: ended by SIGHUP; no file is left half-written.\n"
     assert list(temporary.iterdir()) == []
     assert [left.name for left in tmp_path.iterdir()] == ["temporary"]
 
@@ -173,7 +173,7 @@ def forked(book, tmp_path, temporary):
     """The number of a process that runs the command line; what it tells goes to the file `told`."""
 
     def work():
-        os.dup2(os.open(tmp_path / "told", os.O_WRONLY | os.O_CREAT), 2)
+        os.dup2(os.open(tmp_path / "message", os.O_WRONLY | os.O_CREAT), 2)
         column_store.IN_MEMORY = column_store.WRITTEN = 0
         tempfile.tempdir = str(temporary)
         sys.argv = ["xlmc", *typed(book, tmp_path)]
@@ -193,9 +193,9 @@ def test_a_run_that_is_asked_to_end_clears_away(small_book, tmp_path, temporary)
     child = forked(small_book, tmp_path, temporary)
     os.kill(child, signal.SIGTERM)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 143
-    assert (tmp_path / "told").read_text("utf-8") == "xlmc: ended by SIGTERM; no file is left half-written.\n"
+    assert (tmp_path / "message").read_text("utf-8") == "xlmc: ended by SIGTERM; no file is left half-written.\n"
     assert list(temporary.iterdir()) == []
-    assert sorted(left.name for left in tmp_path.iterdir()) == ["temporary", "told"]
+    assert sorted(left.name for left in tmp_path.iterdir()) == ["temporary", "message"]
 
 
 def test_the_next_run_removes_the_columns_of_a_killed_one(small_book, tmp_path, temporary, monkeypatch):

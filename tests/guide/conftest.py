@@ -38,8 +38,8 @@ def _type(book: openpyxl.Workbook) -> None:
     heads = {cell.value: cell.column for cell in book["Inputs"][5]}
     rows = {row[heads["Cell name"] - 1].value: row[0].row for row in book["Inputs"].iter_rows(min_row=6)}
     for symbol, _, low, high, source in RANGES:
-        told = {"Value": (float(low) + float(high)) / 2, "Low": float(low), "High": float(high), "Source": source}
-        for head, value in told.items():
+        message = {"Value": (float(low) + float(high)) / 2, "Low": float(low), "High": float(high), "Source": source}
+        for head, value in message.items():
             book["Inputs"].cell(rows[symbol], heads[head], value)
     wanted = book["Results wanted"]
     named = [cell.value for cell in book["Inputs"][4]]

@@ -126,8 +126,8 @@ def test_the_guide_tells_the_papers_ranges_and_filters(tables):
     spec = importlib.util.spec_from_file_location("build_examples", ROOT / "examples" / "build.py")
     build = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(build)
-    told = {symbol: (float(low), float(high)) for symbol, _, low, high, _ in tables["ranges"]}
-    assert told == {symbol: (low, high) for symbol, (low, high, _) in build._TABLE_1.items()}
+    message = {symbol: (float(low), float(high)) for symbol, _, low, high, _ in tables["ranges"]}
+    assert message == {symbol: (low, high) for symbol, (low, high, _) in build._TABLE_1.items()}
     assert sorted(because for *_, because in tables["filters"]) == sorted(build.INTERSECTION.because.values())
     assert [new for _, new in tables["names"]] == list(build.INTERSECTION.vehicles)
 
@@ -143,8 +143,8 @@ def test_following_the_guide_is_the_worked_example(run):
 def test_what_a_change_does(run, changed, change):
     found = simulated(model_of(changed(CHANGES[change]))) if change in CHANGES else run
     means = (found[name].mean.value for name in ("Nissan delta-V", "Nissan impact speed"))
-    told = " | ".join([change, f"{found.accepted:,}", *(f"{mean:.2f}" for mean in means)])
-    assert f"| {told} |" in GUIDE, told
+    message = " | ".join([change, f"{found.accepted:,}", *(f"{mean:.2f}" for mean in means)])
+    assert f"| {message} |" in GUIDE, message
 
 
 def within(values, low, high):
@@ -162,7 +162,7 @@ def test_numbers_in_sentences(run):
     simpler = simulated(load(ROOT / "examples" / "intersection-momentum.xlsx"))
     base = run.model.workbook.sheets["Results wanted"].cells[22, 2].value
     beta = run.frame()["Chevrolet departure angle"].mean()
-    told = [
+    message = [
         f"between {low.value:.1f} and {high.value:.1f} mph",
         f"between {lowest.value:.1f} and {highest.value:.1f} mph",
         f"faster than 35 mph is {faster:.0%}".replace("%", " %"),
@@ -181,7 +181,7 @@ def test_numbers_in_sentences(run):
         f"those near {beta:.1f}°",
     ]
     assert [each.name for each in run.model.filters][1:3] == ["Restitution, tangential", "Nissan impact speed"]
-    missing = [phrase for phrase in told if phrase not in PROSE]
+    missing = [phrase for phrase in message if phrase not in PROSE]
     assert not missing
 
 

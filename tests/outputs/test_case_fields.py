@@ -59,15 +59,15 @@ def test_no_table_gives_no_fields():
 
 
 @pytest.mark.parametrize(
-    ("workbook", "said"),
+    ("workbook", "sentence"),
     [
         (book(("Date", 1.0), ("date", 2.0)), "Date occurs twice in xlmc_case"),
         (book(tables=2), "both say whose case this is"),
         (book(("Date", 1.0, 2.0), columns=("a", "b", "c")), "must have two columns"),
     ],
 )
-def test_a_table_that_says_two_things_is_refused_with_its_cell(workbook, said):
-    with pytest.raises(DefinitionError, match=said) as refused:
+def test_a_table_that_says_two_things_is_refused_with_its_cell(workbook, sentence):
+    with pytest.raises(DefinitionError, match=sentence) as refused:
         case_of(workbook, {})
     assert "S!" in str(refused.value)
 

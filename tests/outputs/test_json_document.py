@@ -120,10 +120,10 @@ def test_every_statistic_is_there_to_the_last_bit(run):
     assert_same(found["trials"]["acceptance"], run.acceptance)
 
 
-def assert_same(told, estimate):
+def assert_same(reported, estimate):
     numbers = (estimate.value, estimate.error, *(estimate.interval or (None, None)))
     for key, number in zip(("value", "error", "low", "high"), numbers, strict=True):
-        assert told[key] == (None if number is None or not math.isfinite(number) else number), key
+        assert reported[key] == (None if number is None or not math.isfinite(number) else number), key
 
 
 def test_the_filters_account_for_every_trial(run):
@@ -169,10 +169,10 @@ def test_warnings_and_notices(none_accepted):
     ],
 )
 def test_what_is_no_number_is_null_with_a_reason(estimate, reason):
-    told = estimate_json(estimate)
-    json.dumps(told, allow_nan=False)
-    assert told.get("reason") == reason
-    assert (reason is not None) == (None in told.values())
+    reported = estimate_json(estimate)
+    json.dumps(reported, allow_nan=False)
+    assert reported.get("reason") == reason
+    assert (reason is not None) == (None in reported.values())
 
 
 def test_it_is_written_whole_in_utf8(run, tmp_path):
@@ -199,18 +199,18 @@ def test_statements_certainties_pairs_and_sensitivities_are_those_of_python(run)
     found = json.loads(json.dumps(document(run)))
     assert found["statements"] == [{"forecast": s.forecast, "kind": s.kind, "text": s.text} for s in statements(run)]
     for each, result in zip(found["forecasts"], run.results.values(), strict=True):
-        for told, certainty in zip(each["certainties"], certainties(result), strict=True):
-            assert (told["kind"], told["words"]) == (certainty.kind, certainty.words)
-            assert (told["low"] is None) == math.isinf(certainty.low)
-            assert_same(told["share"], certainty.share)
-    [told], [pair] = found["pairs"], pairs_of(run)
-    assert (told["first"], told["second"], told["limits"]) == ("area", "difference", list(pair.limits))
-    assert_same(told["correlation"], pair.correlation)
+        for reported, certainty in zip(each["certainties"], certainties(result), strict=True):
+            assert (reported["kind"], reported["words"]) == (certainty.kind, certainty.words)
+            assert (reported["low"] is None) == math.isinf(certainty.low)
+            assert_same(reported["share"], certainty.share)
+    [reported], [pair] = found["pairs"], pairs_of(run)
+    assert (reported["first"], reported["second"], reported["limits"]) == ("area", "difference", list(pair.limits))
+    assert_same(reported["correlation"], pair.correlation)
     expected = sensitivities(run)
     assert found["sensitivity"]["examined"] == expected.examined
-    for told, each in zip(found["sensitivity"]["forecasts"], expected.forecasts, strict=True):
-        assert [i["assumption"] for i in told["influences"]] == [i.assumption for i in each.influences] != []
-        assert_same(told["influences"][0]["rank_correlation"], each.influences[0].rank_correlation)
-        assert told["bars"][0]["answers"] == list(each.bars[0].answers)
-    for told, limit in zip(found["sensitivity"]["filter_limits"], expected.filter_limits, strict=True):
-        assert [point["limit"] for point in told["points"]] == [point.limit for point in limit.points]
+    for reported, each in zip(found["sensitivity"]["forecasts"], expected.forecasts, strict=True):
+        assert [i["assumption"] for i in reported["influences"]] == [i.assumption for i in each.influences] != []
+        assert_same(reported["influences"][0]["rank_correlation"], each.influences[0].rank_correlation)
+        assert reported["bars"][0]["answers"] == list(each.bars[0].answers)
+    for reported, limit in zip(found["sensitivity"]["filter_limits"], expected.filter_limits, strict=True):
+        assert [point["limit"] for point in reported["points"]] == [point.limit for point in limit.points]

@@ -31,7 +31,7 @@ NAMES = {
 
 
 @pytest.fixture(scope="module", params=[{}, {"sampling": "lhs"}, {"until_accepted": 150}], ids=["mc", "lhs", "until"])
-def told(request, small_book, tmp_path_factory):
+def reports(request, small_book, tmp_path_factory):
     """The run, its document, its sheets, and the run after it was saved and opened."""
     folder = tmp_path_factory.mktemp("same")
     run = simulated(load(small_book), **request.param)
@@ -60,8 +60,8 @@ def block(sheet, name):
     }
 
 
-def of_json(told):
-    return told["value"], told["error"], told["low"], told["high"]
+def of_json(reports):
+    return reports["value"], reports["error"], reports["low"], reports["high"]
 
 
 def of_python(estimate):
@@ -73,8 +73,8 @@ def finite(numbers):
     return tuple(n if isinstance(n, int | float) and abs(n) < float("inf") else None for n in numbers)
 
 
-def test_statistics(told):
-    run, document, book, opened = told
+def test_statistics(reports):
+    run, document, book, opened = reports
     for each in document["forecasts"]:
         name = each["name"]
         on_sheet, result = block(book["Statistics"], name), run[name].statistics
@@ -92,16 +92,16 @@ def test_statistics(told):
         assert on_sheet["Trials"][0] == each["trials"] == result.trials
 
 
-def test_certainty(told):
-    run, document, book, _ = told
+def test_certainty(reports):
+    run, document, book, _ = reports
     area = document["forecasts"][0]
     expected = of_python(run["area"].statistics.probability_above)
     assert of_json(area["certainty"]["probability_above"]) == expected
     assert block(book["Statistics"], "area")["Above threshold"] == expected
 
 
-def test_answers_on_the_first_sheet(told):
-    run, document, book, _ = told
+def test_answers_on_the_first_sheet(reports):
+    run, document, book, _ = reports
     found = [row for row in book["Results"].iter_rows(values_only=True) if row[0] in run.forecasts]
     rows = {row[0]: row for row in reversed(found)}  # the first of each: the errors in cells come further down
     for each in document["forecasts"]:
@@ -112,8 +112,8 @@ def test_answers_on_the_first_sheet(told):
         assert list(rows[each["name"]][:12]) == expected
 
 
-def test_filters(told):
-    run, document, book, _ = told
+def test_filters(reports):
+    run, document, book, _ = reports
     [row] = [r for r in book["Results"].iter_rows(values_only=True) if r[0] == "1. root" and isinstance(r[1], int)]
     [root] = document["filters"]
     expected = (run.tally.errors[0]["#NUM!"], int(run.tally.rejected[0]), int(run.tally.only[0]))
@@ -121,16 +121,16 @@ def test_filters(told):
     assert (row[3], row[4]) == (root["share"]["value"], root["share"]["error"])
 
 
-def test_trials(told):
-    run, document, book, _ = told
+def test_trials(reports):
+    run, document, book, _ = reports
     rows = {row[0]: row for row in book["Results"].iter_rows(values_only=True) if row[0] in ("Run", "Accepted")}
     assert rows["Run"][2] == document["trials"]["run"] == run.trials
     assert rows["Accepted"][2] == document["trials"]["accepted"] == run.accepted
     assert rows["Accepted"][3:7] == of_json(document["trials"]["acceptance"]) == of_python(run.acceptance)
 
 
-def test_assumptions(told):
-    _, document, book, _ = told
+def test_assumptions(reports):
+    _, document, book, _ = reports
     rows = [row for row in book["Assumptions"].iter_rows(values_only=True) if row[3] in ("before", "accepted")]
     marginals = [each[kind] for each in document["assumptions"] for kind in ("prior", "accepted")]
     for row, marginal in zip(rows, marginals, strict=True):
@@ -139,8 +139,8 @@ def test_assumptions(told):
         assert list(row[5:15]) == [number[key] for number in numbers for key in ("value", "error")]
 
 
-def test_accepted_trials(told):
-    run, _, book, _ = told
+def test_accepted_trials(reports):
+    run, _, book, _ = reports
     rows = [row for row in book["Trials"].iter_rows(min_row=5, values_only=True) if row[0] is not None]
     frame = run.frame()
     assert [row[0] for row in rows] == list(frame.index)

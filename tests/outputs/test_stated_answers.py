@@ -49,23 +49,23 @@ def outputs(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def said(outputs):
+def stated(outputs):
     """What Python says of the saved run."""
     return Simulation(open_run(outputs[0] / "out.xlmcrun")).sentences
 
 
-def test_each_answer_is_stated_as_its_row_asks(said):
-    first, bound, avoided = said
+def test_each_answer_is_stated_as_its_row_asks(stated):
+    first, bound, avoided = stated
     assert first.startswith("delta-V: more probable than not (")
     assert first.endswith((" between 25 and 36 mph", " between 24 and 35 mph"))
     assert bound.startswith("projection speed, at least: at least 15 mph, more probable than not (")
     share, _, rest = avoided.removeprefix("avoided: yes with probability ").partition(" % ± 0.3 %")
     assert abs(float(share) - 80.0) < 4 * 0.29  # of 20,000 trials
     assert rest == ", more probable than not"
-    assert not any("residual" in each for each in said)
+    assert not any("residual" in each for each in stated)
 
 
-def test_every_output_says_the_same(outputs, said):
+def test_every_output_says_the_same(outputs, stated):
     folder, terminal = outputs
     page = (folder / "out.html").read_text(encoding="utf-8")
     with zipfile.ZipFile(folder / "out.docx") as package:
@@ -74,8 +74,8 @@ def test_every_output_says_the_same(outputs, said):
     cells = [cell.value for row in sheet for cell in row]
     document = json.loads((folder / "out.json").read_text(encoding="utf-8"))
     window = rest_of(open_run(folder / "out.xlmcrun"))
-    assert [each["text"] for each in document["statements"]] == window["sentences"] == list(said)
-    for each in said:
+    assert [each["text"] for each in document["statements"]] == window["sentences"] == list(stated)
+    for each in stated:
         assert f"{each}." in cells
         assert f"{each}." in terminal
         assert f"{each}." in report

@@ -40,11 +40,11 @@ ONE = {"x": {"cell": "A1", "low": 0, "high": 1}}
 
 
 def asked(model, trials=4000, **options):
-    return "".join(said.text for said in question(simulate(model, trials=trials, seed=3, **options)))
+    return "".join(message.text for message in question(simulate(model, trials=trials, seed=3, **options)))
 
 
 @pytest.mark.parametrize(
-    ("filters", "said", "unsaid"),
+    ("filters", "message", "unsaid"),
     [
         ({"off": {"cell": "A3", "at_most": 0.95}, "low": {"cell": "A1", "below": 0.5}}, ["low below 0.5"], ["off"]),
         ({"sure": {"cell": "A4", "at_least": 1, "at_most": 3}, "low": {"cell": "A1", "below": 0.5}}, ["low"], ["sure"]),
@@ -56,9 +56,9 @@ def asked(model, trials=4000, **options):
     ],
     ids=str,
 )
-def test_what_no_trial_can_break_is_not_said_to_be_asked(model_of, filters, said, unsaid):
+def test_what_no_trial_can_break_is_not_said_to_be_asked(model_of, filters, message, unsaid):
     text = asked(model_of(SWITCHED, ONE, {"y": "A1"}, filters))
-    assert all(each in text for each in said), text
+    assert all(each in text for each in message), text
     assert not any(each in text.removeprefix("The workbook computes") for each in unsaid), text
 
 
@@ -192,7 +192,7 @@ def test_numbers_far_from_0_keep_the_digits_that_tell_them_apart(make):
     assert (low, high) == pytest.approx((45321.75, 45321.76), abs=2e-5)
     assert found["Range"] == "99.99999 %"
     assert dict(zip(headings, constant, strict=True))["Mean"] == "1234567.8 ± 0"
-    said = [each.text for each in statements(run)]
-    assert any("P(x > 45321.755)" in each for each in said)
-    assert any("x from 45321.7512 to 45321.7588" in each for each in said)
-    assert any(each.startswith("c: 1,234,567.8 in all") for each in said)
+    message = [each.text for each in statements(run)]
+    assert any("P(x > 45321.755)" in each for each in message)
+    assert any("x from 45321.7512 to 45321.7588" in each for each in message)
+    assert any(each.startswith("c: 1,234,567.8 in all") for each in message)

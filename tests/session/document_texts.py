@@ -18,8 +18,8 @@ def squeezed(text: str) -> str:
 
 def texts_of(document: Document) -> Iterator[str]:
     """Every text that a reader of the document sees, in its order, but for those in pictures."""
-    for label, said in document.cover:
-        yield from (label, said)
+    for label, message in document.cover:
+        yield from (label, message)
     for block in document.blocks:
         match block:
             case Heading(text, _) | Paragraph(text, _):

@@ -9,11 +9,11 @@ import pytest
 
 
 def _reason(report: pytest.TestReport | pytest.CollectReport) -> str:
-    said = report.longrepr[2] if isinstance(report.longrepr, tuple) else str(report.longrepr)
-    return said.removeprefix("Skipped: ")
+    message = report.longrepr[2] if isinstance(report.longrepr, tuple) else str(report.longrepr)
+    return message.removeprefix("Skipped: ")
 
 
-def told(reports: Iterable[pytest.TestReport | pytest.CollectReport]) -> list[str]:
+def untested(reports: Iterable[pytest.TestReport | pytest.CollectReport]) -> list[str]:
     """For each reason a line with the files it kept from being tested, and how many of their tests."""
     files: dict[str, Counter[str]] = defaultdict(Counter)
     for report in reports:
@@ -28,5 +28,5 @@ def _of(tests: Counter[str]) -> str:
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     if reports := terminalreporter.stats.get("skipped", []):
         terminalreporter.section("Not tested here")
-        for line in told(reports):
+        for line in untested(reports):
             terminalreporter.write_line(line)

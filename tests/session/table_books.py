@@ -60,7 +60,7 @@ def some_book(book, number):
     return book(cells, GIVEN, {f"f{row}": f"B{row}" for row in range(1, 7)}, filters)
 
 
-def told(run):
+def outcome_of(run):
     columns = {**run.inputs, **run.forecasts}
     arrays = [run.trial_index.tobytes(), *(values.tobytes() for values in columns.values())]
     return arrays, run.faults, run.tally.rejected.tolist(), run.error_trials, run.block

@@ -54,14 +54,14 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 def pytest_sessionfinish(session: pytest.Session) -> None:
     found = session.config.stash.get(_FOUND, None)
     if found is not None:
-        session.config.stash[_CHANGES] = told = changes(found, snapshot(session.config.rootpath))
-        if told and session.exitstatus in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED):
+        session.config.stash[_CHANGES] = message = changes(found, snapshot(session.config.rootpath))
+        if message and session.exitstatus in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED):
             session.exitstatus = pytest.ExitCode.TESTS_FAILED
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
-    if told := config.stash.get(_CHANGES, []):
+    if message := config.stash.get(_CHANGES, []):
         terminalreporter.section("The tree is not as the tests found it", red=True)
         terminalreporter.write_line("A test writes to tmp_path. Unless you edited these files while the tests ran:")
-        for line in told:
+        for line in message:
             terminalreporter.write_line(f"  {line}")

@@ -47,16 +47,16 @@ def test_exactly_one_is_one_draw_seen_twice(sign):
 def test_possible_matrices_are_left_alone_and_impossible_ones_are_told():
     from stressing.dependence import MATRICES, book, measure
 
-    told = {}
+    reported = {}
     for name, named in MATRICES.items():
         model = book(named)
         found = measure(model, named, TRIALS, 5)
-        told[name] = bool(model.notices)
+        reported[name] = bool(model.notices)
         for pair in found:
             assert abs(pair["found"] - pair["expected"]) < 5 * pair["error"], (name, pair)
-            assert told[name] or pair["aimed"] == pytest.approx(pair["asked"], abs=1e-9), (name, pair)
+            assert reported[name] or pair["aimed"] == pytest.approx(pair["asked"], abs=1e-9), (name, pair)
         pearson = np.eye(3)
         for (i, j), pair in zip([(0, 1), (0, 2), (1, 2)], found, strict=True):
             pearson[i, j] = pearson[j, i] = 2 * np.sin(np.pi * pair["aimed"] / 6)
         assert np.linalg.eigvalsh(pearson)[0] > -1e-9
-    assert [name for name, said in told.items() if said] == ["just impossible", "contradictory"]
+    assert [name for name, message in reported.items() if message] == ["just impossible", "contradictory"]

@@ -123,8 +123,8 @@ def test_the_command_writes_its_sheets_and_says_that_they_are_few(folder, n):
     assert done.exit_code == (1 if n == 0 else 0), done.output
     assert "Traceback" not in done.output
     assert f"Accepted {n} of 2,000 trials" in done.output
-    told = "no trial was accepted" if n == 0 else "Only 1 trial was" if n == 1 else f"Only {n} trials were accepted"
-    assert told in " ".join(done.output.split())
+    message = "no trial was accepted" if n == 0 else "Only 1 trial was" if n == 1 else f"Only {n} trials were accepted"
+    assert message in " ".join(done.output.split())
     with zipfile.ZipFile(target) as package:
         names = re.findall(r'<sheet name="([^"]+)"', package.read("xl/workbook.xml").decode())
         parts = [name for name in package.namelist() if name.startswith(("xl/worksheets/", "xl/sharedStrings"))]

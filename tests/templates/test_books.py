@@ -276,18 +276,18 @@ def test_the_committed_book_is_what_the_script_writes(name, book_path, described
 )
 def test_the_script_builds_each_book_from_what_it_says(folder, first, books, builders, described, tmp_path_factory):
     """One of them is written as it is for a person: with the values that the script computes."""
-    said = {}
+    message = {}
 
     def write(template, path):
-        said[path.stem] = template
+        message[path.stem] = template
         if path.stem == first:
             write_book(template, path)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(builders[folder], "write_book", write)
         paths = builders[folder].build(tmp_path_factory.mktemp(folder))
-    assert [path.stem for path in paths] == list(said)
-    assert said == {name: described[name] for name in books}
+    assert [path.stem for path in paths] == list(message)
+    assert message == {name: described[name] for name in books}
     (path,) = (path for path in paths if path.stem == first)
     expect_same_parts(books[first], path)
 

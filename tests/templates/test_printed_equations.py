@@ -115,8 +115,8 @@ def as_python(equation, names):
     symbols = sorted(names, key=len, reverse=True)
     any_symbol = "|".join(rf"(?<![\w]){re.escape(symbol)}(?!(?!²)[\w′])" for symbol in symbols)
     text = re.sub(any_symbol, lambda found: names[found[0]], equation)
-    for sign, said in SIGNS.items():
-        text = text.replace(sign, said)
+    for sign, message in SIGNS.items():
+        text = text.replace(sign, message)
     for function, called in CALLS.items():
         text = re.sub(rf"\b{function}\(", f"{called}(", text)
     return branches(text)
@@ -128,7 +128,7 @@ def test_a_printed_equation_computed_as_mathematics_gives_its_cell(described, sh
     values = {symbol: Blank() if value is None else value for symbol, value in shown(name).items()}
     notation = {each.symbol: each.notation for each in quantities(template)}
     by_symbol = {symbol.lower(): symbol for symbol in values if not notation.get(symbol)}
-    by_symbol |= {said: symbol for symbol, said in notation.items() if said}
+    by_symbol |= {message: symbol for symbol, message in notation.items() if message}
     names = {printed_as: f"v[{symbol!r}]" for printed_as, symbol in by_symbol.items()}
     compared = 0
     for row in template.equations:

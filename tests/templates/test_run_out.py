@@ -62,11 +62,11 @@ def test_a_speed_that_is_typed_in_takes_the_place_of_the_run_out(name, g, per_se
 @pytest.mark.parametrize(("name", "g", "per_second"), EDITIONS)
 def test_entries_that_change_nothing_change_nothing(name, g, per_second, cells):
     plain = cells(name, {"f_1": 0.7}, ["V1_f", "way_1"])
-    said = cells(
+    message = cells(
         name, {"f_1": 0.7, "share_1_1": 1.0, "grade_1_1": 0.0, "v_end_1": 0.0, "s_1_3": 0.0}, ["V1_f", "way_1"]
     )
-    assert [plain["way_1"].item(), said["way_1"].item()] == [0, 1]
-    assert said["V1_f"].item() == pytest.approx(plain["V1_f"].item(), rel=1e-15)
+    assert [plain["way_1"].item(), message["way_1"].item()] == [0, 1]
+    assert message["V1_f"].item() == pytest.approx(plain["V1_f"].item(), rel=1e-15)
 
 
 @pytest.mark.parametrize("wrong", [{"share_1_2": 70.0}, {"grade_2_1": -90.0}, {"v_end_1": -3.0}])

@@ -309,15 +309,15 @@ def test_a_driver_who_braked(cells, seed, limit):
     assert found["t_beyond"] == pytest.approx(max(0.5 - response, response - 3), rel=1e-6)
 
 
-@pytest.mark.parametrize("said", [(1, 0), (2, 0), (2, 60)], ids=["no marks", "did not", "did not, marks left over"])
+@pytest.mark.parametrize("message", [(1, 0), (2, 0), (2, 60)], ids=["no marks", "did not", "did not, marks left over"])
 @pytest.mark.parametrize("limit", [25, 32, 45])
 @SEEDS
-def test_a_driver_who_never_braked(cells, seed, limit, said):
+def test_a_driver_who_never_braked(cells, seed, limit, message):
     """Whatever he would have done after the impact's time, the outcome at another speed lies between both ends."""
     rng = np.random.default_rng(seed)
     v, f, u = rng.uniform(48, 54), rng.uniform(0.5, 0.8), rng.uniform(2.5, 5)
     time, far = rng.uniform(1, 5), rng.uniform(3, 8)
-    braked, marks = said
+    braked, marks = message
     given = {"v_impact": v * MPH, "d_brake": marks, "braked": braked, "f": f, "u": u * MPH, "a_intruder": 0}
     given |= {"d_intruder": u * time, "clearance": far, "limit": limit, "g": G}
     found = one(cells("time-distance", given, [*TIMES, "t_clear", "t_weighed", "t_usual"]))

@@ -126,10 +126,10 @@ def test_what_is_too_large_is_refused_with_its_cell(book, name, monkeypatch):
     monkeypatch.setattr("xlmc.engine.graph.recursive_calls.MOST_STEPS", 1_000)  # so that it takes no second
     if name == "a doubling array":
         monkeypatch.setattr("xlmc.excel.functions.budget.MOST_CELLS", 1 << 18)
-    formula, said = REFUSED[name]
+    formula, sentence = REFUSED[name]
     message = outcome(lambda: answer(book, {"Z1": formula}))
     assert message.startswith("S!Z1: "), message
-    assert said in message
+    assert sentence in message
 
 
 SHEETS = ['=SUM(INDIRECT("A2:XFC1048575"))+A1', "=SUM(OFFSET(A2,0,0,1048574,16383))+A1", "=SUM(A2:XFC1048575)+A1"]

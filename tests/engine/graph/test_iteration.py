@@ -127,8 +127,8 @@ def test_a_run_says_that_cells_are_iterated_and_whether_they_settle(loan):
     assert not any("settle" in note.message for note in run.notices)
     run = simulate(loan({"A1": 0.05, "B1": "=IF(A1>0.06,B1+1,0.5)"}, "B1", Iteration()), trials=500, seed=1)
     many = int((run.prior["rate"] > 0.06).sum())
-    (said,) = [note.message for note in run.notices if "settle" in note.message]
-    assert f"does not settle in {many} of 500 trials" in said
+    (text,) = [note.message for note in run.notices if "settle" in note.message]
+    assert f"does not settle in {many} of 500 trials" in text
 
 
 STARTS = [

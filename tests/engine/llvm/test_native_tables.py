@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("llvmlite")
 
 from simulated import simulated
-from table_books import CELLS, GIVEN, TABLE, TRIALS, some_book, told
+from table_books import CELLS, GIVEN, TABLE, TRIALS, outcome_of, some_book
 
 from xlmc.engine.llvm import machine as machines
 from xlmc.engine.llvm import program as programs
@@ -34,10 +34,10 @@ def computing(patch):
 def test_the_bits_of_random_books_are_the_same(book, monkeypatch, side_by_side, processor, number):
     """These two books have every lookup of `table_books` and all but one of its functions, a power."""
     with side_by_side(1):
-        found = told(simulated(some_book(book, number), TRIALS, 5, engine="jit"))
+        found = outcome_of(simulated(some_book(book, number), TRIALS, 5, engine="jit"))
     with monkeypatch.context() as patch, side_by_side(0):
         computing(patch)
-        assert found == told(simulated(some_book(book, number), TRIALS, 5, engine="jit"))
+        assert found == outcome_of(simulated(some_book(book, number), TRIALS, 5, engine="jit"))
 
 
 ROWS = range(1, 13)
@@ -81,13 +81,13 @@ def built(book, formula):
 def test_rows_of_a_sheet_share_tables_and_code(book, monkeypatch, side_by_side, processor, formula):
     with side_by_side(1):
         model, names, codes = built(book, formula)
-        found = told(simulated(model, TRIALS, 5, engine="jit"))
+        found = outcome_of(simulated(model, TRIALS, 5, engine="jit"))
     assert "picked" in names
     assert not {"ATAN", "SIN", "EXP", "^", "LN", "the cell found"} & {*names}
     with monkeypatch.context() as patch, side_by_side(0):
         computing(patch)
         computed, _, codes_of_computed = built(book, formula)
-        assert found == told(simulated(computed, TRIALS, 5, engine="jit"))
+        assert found == outcome_of(simulated(computed, TRIALS, 5, engine="jit"))
     assert len(codes) <= len(codes_of_computed) + 1
 
 

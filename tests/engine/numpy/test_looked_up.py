@@ -7,7 +7,7 @@ from itertools import cycle
 import numpy as np
 import pytest
 from simulated import simulated
-from table_books import CELLS, GIVEN, TABLE, TRIALS, some_book, told
+from table_books import CELLS, GIVEN, TABLE, TRIALS, outcome_of, some_book
 
 from xlmc.engine.graph.graph import Apply
 from xlmc.engine.graph.trial_sets import ALL_TRIALS
@@ -22,7 +22,7 @@ def tangents(request, monkeypatch):
 
 
 def runs(model):
-    return [told(simulated(model, trials, 5)) for trials in (1, 2_049)]
+    return [outcome_of(simulated(model, trials, 5)) for trials in (1, 2_049)]
 
 
 @pytest.mark.parametrize(("number", "tangents"), [*zip(range(6), cycle([True, False]))], indirect=["tangents"])

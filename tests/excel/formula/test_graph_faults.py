@@ -71,11 +71,11 @@ def test_without_faults_it_is_the_same_graph(tolerant, workbook):
 )
 def test_the_cells_of_a_circle_are_listed_and_those_that_need_them_are_not(tolerant, cells, circles):
     graph = tolerant(cells, ["A1"])
-    told = {
+    expected = {
         cell.a1: error.message.removeprefix("the cells need each other in a circle: ")
         for cell, error in graph.circles.items()
     }
-    assert told == circles
+    assert expected == circles
     assert not graph.faults
     assert {error.hint for error in graph.circles.values()} == {
         "break the circle, or turn on iterative calculation in Excel's options, if it is meant"

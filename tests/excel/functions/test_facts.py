@@ -239,8 +239,8 @@ def test_facts_are_stated(names, holds):
 
 
 def test_a_lookup_says_how_by_an_argument_that_it_has_or_always_looks_up_by_halves():
-    told = {name: row.facts.mode_argument for name, row in ROWS.items() if row.facts.mode_argument is not None}
-    assert {name for name, argument in told.items() if argument >= ROWS[name].arity()[1]} == {"LOOKUP"}
+    message = {name: row.facts.mode_argument for name, row in ROWS.items() if row.facts.mode_argument is not None}
+    assert {name for name, argument in message.items() if argument >= ROWS[name].arity()[1]} == {"LOOKUP"}
 
 
 def test_what_lies_between_two_numbers_does():

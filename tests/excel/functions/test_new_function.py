@@ -173,9 +173,9 @@ def _refusal(formula, engine, folder):
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("formula", ["MADEUP.FORGOT(A1)", "SUM(MADEUP.FORGOT(IF(A1>0,A1)))"])
 def test_a_row_that_does_not_say_that_it_spills_is_refused_with_the_cell(door, tmp_path, formula, engine):
-    said = _refusal(formula, engine, tmp_path)
-    assert "MADEUP.FORGOT gives many cells, which its row in the registry does not say" in said
-    assert "facts=Facts(spills=True)" in said
+    message = _refusal(formula, engine, tmp_path)
+    assert "MADEUP.FORGOT gives many cells, which its row in the registry does not say" in message
+    assert "facts=Facts(spills=True)" in message
 
 
 @pytest.mark.parametrize("formula", ["MADEUP.CURVE(A1)", "SUM(MADEUP.PARTS(A1))"])
@@ -191,8 +191,8 @@ def test_a_whole_column_is_refused_by_name(door, tmp_path, formula):
 def test_what_nobody_said_of_it_is_taken_with_care(path):
     model = load(path)
     found = derivatives(model, {"x": np.array([1.25, 1.75])})
-    told = {one.function for one in found.numerical}
-    assert told == {"MADEUP.CURVE", "MADEUP.PARTS", "MADEUP.SIZE"}
+    reported = {one.function for one in found.numerical}
+    assert reported == {"MADEUP.CURVE", "MADEUP.PARTS", "MADEUP.SIZE"}
 
 
 def test_the_list_of_functions_names_it(door):

@@ -22,7 +22,7 @@ def packed(**entries):
 
 
 @pytest.mark.parametrize(
-    ("data", "said", "cure"),
+    ("data", "sentence", "cure"),
     [
         (OLE, "old Excel workbook (.xls)", "save it as an Excel Workbook"),
         (OLE + "EncryptedPackage".encode("utf-16-le"), "encrypted", "Remove its password"),
@@ -35,8 +35,8 @@ def packed(**entries):
         (bytes(300), "not an Excel workbook", "save it as"),
     ],
 )
-def test_what_is_no_workbook_is_named_with_its_cure(data, said, cure):
-    with pytest.raises(WorkbookError) as told:
+def test_what_is_no_workbook_is_named_with_its_cure(data, sentence, cure):
+    with pytest.raises(WorkbookError) as expected:
         read_workbook(data, "case.xlsx")
-    assert said in told.value.message
-    assert cure in (told.value.hint or "")
+    assert sentence in expected.value.message
+    assert cure in (expected.value.hint or "")

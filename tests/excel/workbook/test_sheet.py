@@ -225,9 +225,9 @@ def test_a_document_type_is_refused():
 
 
 @pytest.mark.parametrize(
-    ("namespace", "said"),
+    ("namespace", "sentence"),
     [("", "'My sheet' is in no XML namespace"), ("urn:other", "'My sheet' is in the XML namespace 'urn:")],
 )
-def test_a_worksheet_in_a_foreign_namespace_is_refused_and_not_blank(namespace, said):
-    with pytest.raises(WorkbookError, match=said):
+def test_a_worksheet_in_a_foreign_namespace_is_refused_and_not_blank(namespace, sentence):
+    with pytest.raises(WorkbookError, match=sentence):
         parsed("<sheetData/>", namespace)

@@ -98,7 +98,7 @@ def test_a_table_of_settings_and_the_command_win(book, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("changes", "cells", "told"),
+    ("changes", "cells", "expected"),
     [
         ({"G4": "Model!$B$3:$B$5"}, {"Revenue (Model!B3)", "Revenue (Model!B4)"}, "Model!B5"),
         ({"G4": "Model!$B$3,$B$4", "G5": None}, {"Revenue (Model!B3)", "Revenue (Model!B4)"}, ""),
@@ -112,12 +112,12 @@ def test_a_table_of_settings_and_the_command_win(book, tmp_path):
         ({"Model!B3": '=RiskOutput("R")+B1*B2'}, {"R", "Profit"}, ""),
     ],
 )
-def test_what_the_list_of_outputs_may_hold(book, changes, cells, told):
+def test_what_the_list_of_outputs_may_hold(book, changes, cells, expected):
     if "Model!B3" in changes:  # marked in the cell, too
         changes = {**changes, "G4": "Model!$B$3", "H4": "R"}
     model = load(book(changes))
     assert {each.name for each in model.forecasts} == cells
-    assert any(told in str(notice) for notice in model.notices)
+    assert any(expected in str(notice) for notice in model.notices)
 
 
 def test_a_sheet_with_an_apostrophe_is_found_whatever_its_address_quotes(book):

@@ -129,9 +129,9 @@ def test_a_check_of_a_blank_assumption_cell_is_refused(checked):
 
 def test_what_the_checks_hold_is_said(checked):
     inputs = {**INPUTS, "extra": {"cell": "A3", "low": 0, "high": 1}, "idle": {"cell": "A2", "low": 0, "high": 1}}
-    said = [str(notice) for notice in checked({**CELLS, "C1": "=A3<0.6"}, {"both": "C1"}, inputs).notices]
-    assert "S!A3: no forecast or filter needs the assumption 'extra': the checks take its base value" in said
-    assert "S!A2: no forecast or filter needs the assumption 'idle'" in said
+    message = [str(notice) for notice in checked({**CELLS, "C1": "=A3<0.6"}, {"both": "C1"}, inputs).notices]
+    assert "S!A3: no forecast or filter needs the assumption 'extra': the checks take its base value" in message
+    assert "S!A2: no forecast or filter needs the assumption 'idle'" in message
 
 
 @pytest.mark.parametrize(

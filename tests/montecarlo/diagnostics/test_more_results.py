@@ -147,8 +147,8 @@ def test_what_cannot_be_shown_is_named(shown):
     for formula, reason in MISSING.items():
         assert found[formula] == "#N/A", formula
         assert any(why.startswith(reason) for why in run.shown_results.missing.values()), formula
-    told = " ".join(notice.message for notice in run.model.notices)
-    assert "RiskSensitivity is not computed by xlmc" in told
+    expected = " ".join(notice.message for notice in run.model.notices)
+    assert "RiskSensitivity is not computed by xlmc" in expected
 
 
 def test_a_run_may_depend_on_a_number_of_a_distribution(shown):

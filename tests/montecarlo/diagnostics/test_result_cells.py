@@ -409,8 +409,8 @@ def test_what_xlmc_does_not_compute_shows_not_available_and_is_named(tmp_path):
     for reason, address in first.items():
         assert reason in warning
         assert re.search(rf"\bS!{address}\b", warning)
-        told = [each.message for each in run.model.notices if str(each.where) == f"S!{address}"]
-        assert len([message for message in told if "#N/A" in message and reason in message]) == 1
+        reported = [each.message for each in run.model.notices if str(each.where) == f"S!{address}"]
+        assert len([message for message in reported if "#N/A" in message and reason in message]) == 1
     together = "RiskCpk is not computed by xlmc in S!B1, S!B12:B13: #N/A"
     assert any(together in each.message for each in run.model.notices)
 

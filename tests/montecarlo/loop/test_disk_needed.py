@@ -33,7 +33,7 @@ def written(run):
     return kept + sum(values.size for values in run.inputs.values())
 
 
-def told(model, *given, **more):
+def announced(model, *given, **more):
     sentences = []
     return sentences, simulated(model, *given, tell=sentences.append, **more)
 
@@ -42,7 +42,7 @@ def told(model, *given, **more):
 def test_what_is_said_is_what_is_written(model, small_memory, monkeypatch, inputs):
     found = []
     monkeypatch.setattr(DiskNeeded, "check", lambda needed: found.append(needed))
-    sentences, run = told(model, TRIALS, keep_inputs=inputs)
+    sentences, run = announced(model, TRIALS, keep_inputs=inputs)
     (needed,) = found
     assert needed.stored == pytest.approx(written(run), rel=0.03)
     assert needed.sorted == pytest.approx(2 * run.accepted, rel=0.03)
@@ -53,36 +53,36 @@ def test_what_is_said_is_what_is_written(model, small_memory, monkeypatch, input
 
 def test_a_run_that_stays_in_memory_says_nothing(model, small_memory, monkeypatch):
     most = 2 * TRIALS  # all accepted, these would not stay in memory
-    assert told(model, 6_000, keep_inputs=0)[0] == []
+    assert announced(model, 6_000, keep_inputs=0)[0] == []
     monkeypatch.setattr(column_store, "IN_MEMORY", 8 * 2 * most * 3 // 4)
-    assert told(model, most, keep_inputs=0)[0] == []
+    assert announced(model, most, keep_inputs=0)[0] == []
 
 
 def test_a_goal_of_accepted_trials_says_how_many_there_will_be(model, small_memory):
-    assert told(model, TRIALS, until_accepted=1_000)[0] == []
-    assert len(told(model, TRIALS, until_accepted=9_000)[0]) == 1
+    assert announced(model, TRIALS, until_accepted=1_000)[0] == []
+    assert len(announced(model, TRIALS, until_accepted=9_000)[0]) == 1
 
 
 def test_nobody_knows_how_long_a_run_with_another_goal_will_be(model, small_memory):
-    assert told(model, TRIALS, time_limit=60)[0] == []
-    assert told(model, TRIALS, precision="20%")[0] == []
+    assert announced(model, TRIALS, time_limit=60)[0] == []
+    assert announced(model, TRIALS, precision="20%")[0] == []
 
 
 def test_a_disk_with_too_little_room_refuses_the_run_before_it_starts(model, small_memory, monkeypatch):
     monkeypatch.setattr(module, "free_disk", lambda: (Path("small"), 300_000))
-    said, begun = [], []
+    message, begun = [], []
     with pytest.raises(SimulationError, match="the run needs about") as refused:
-        simulated(model, TRIALS, tell=said.append, progress=begun.append)
-    assert (said, begun) == ([], [])
+        simulated(model, TRIALS, tell=message.append, progress=begun.append)
+    assert (message, begun) == ([], [])
     assert refused.value.where == "small"
     assert "TMPDIR" in str(refused.value)
     monkeypatch.setattr(module, "free_disk", lambda: (Path("large"), 3_000_000))
-    simulated(model, TRIALS, tell=said.append)
-    assert len(said) == 1
+    simulated(model, TRIALS, tell=message.append)
+    assert len(message) == 1
 
 
 def test_the_first_trials_are_counted_and_change_no_bit(model, small_memory, monkeypatch):
-    counted = told(model, TRIALS)[1]
+    counted = announced(model, TRIALS)[1]
     monkeypatch.setattr("xlmc.montecarlo.simulation.simulate.disk_needed", lambda *_: None)
     plain = simulated(model, TRIALS)
     assert counted.trial_index.tolist() == plain.trial_index.tolist()

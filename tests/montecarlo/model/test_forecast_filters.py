@@ -91,8 +91,8 @@ def test_engines_discard_the_same_trials(book, filters):
     named = {f"f{i}": {k: v for k, v in f.items() if k != "limits"} | f["limits"] for i, f in enumerate(filters)}
     model = book(cells, INPUTS, FORECASTS, named)
     runs = [simulated(model, TRIALS, engine=engine) for engine in ("numpy", "jit")]
-    told = [(r.discards, r.faults, r.accepted, r.error_trials, r.tally.rejected.tolist()) for r in runs]
-    assert told[0] == told[1]
+    message = [(r.discards, r.faults, r.accepted, r.error_trials, r.tally.rejected.tolist()) for r in runs]
+    assert message[0] == message[1]
     for name, values in runs[0].forecasts.items():
         assert values.tobytes() == runs[1].forecasts[name].tobytes(), name
 
@@ -117,9 +117,9 @@ def test_without_such_filters_nothing_changes(book, model, run):
 
 def test_record_json_and_sheets_say_what_was_discarded(run):
     rows = make_record(run).rows("forecast_filters")
-    told = [(row["name"], row["only_for"], row["limits"], row["discarded"]) for row in rows]
+    message = [(row["name"], row["only_for"], row["limits"], row["discarded"]) for row in rows]
     wanted = [(each.name, name, run.discards[name][each.name]) for each in OWN for name in each.only_for]
-    assert [(name, forecast, count) for name, forecast, _, count in told] == wanted
+    assert [(name, forecast, count) for name, forecast, _, count in message] == wanted
     given = document(run)["forecast_filters"]
     assert [(each["name"], each["only_for"], each["discarded"]) for each in given] == wanted
     assert given[0]["limits"] == "at least 3"

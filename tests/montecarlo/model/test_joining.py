@@ -149,7 +149,7 @@ def test_correlations_of_the_other_book_hold(books, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("feeds", "said"),
+    ("feeds", "message"),
     [
         (["x=impact.xlsx!impact"], "there is no assumption 'x'"),
         (["end=impact.xlsx!x"], "there is no forecast or assumption 'x'"),
@@ -160,8 +160,8 @@ def test_correlations_of_the_other_book_hold(books, tmp_path):
         (["end=impact"], "is not written as one"),
     ],
 )
-def test_what_cannot_be_fed_is_refused(books, feeds, said):
-    with pytest.raises(SimulationError, match=said):
+def test_what_cannot_be_fed_is_refused(books, feeds, message):
+    with pytest.raises(SimulationError, match=message):
         fed(books["skid"], *feeds)
 
 

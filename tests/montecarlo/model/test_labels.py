@@ -84,11 +84,11 @@ def test_values_that_may_be_older_than_their_formulas_are_calculated_again(workb
     found = {at: content.value for at, content in after.sheets["S"].cells.items()}
     changed = {(2, 1): "Speed 8", (2, 3): 4.0, (2, 5): True, (5, 2): 8000.0}
     assert found == saved | changed
-    said = {
+    text = {
         str(notice.where): notice.message.partition(", which is used: let Excel calculate")[0]
         for notice in after.notices
     }
-    assert said == {
+    assert text == {
         "S!A2": "the file says 'Speed 0', but the formula gives 'Speed 8'",
         "S!C2": "the file says 0, but the formula gives 4",
         "S!E2": "the file says FALSE, but the formula gives TRUE",

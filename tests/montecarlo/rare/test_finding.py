@@ -96,10 +96,10 @@ def test_learning_keeps_to_the_limit():
     """Long rounds would take far more: what is left of the limit is one round at most."""
     distance = wavy(1e-6)
     random = [np.random.default_rng((12, each)) for each in (0, 1)]
-    told = []
-    found = find(distance, lambda z: distance(z) == 0.0, 4, 100, 1_000_000, *random, told.append)
+    message = []
+    found = find(distance, lambda z: distance(z) == 0.0, 4, 100, 1_000_000, *random, message.append)
     assert found.evaluations <= 1_000_000 + 32_768
-    assert told == sorted(told)
+    assert message == sorted(message)
 
 
 def test_acceptance_is_more_than_nothing_where_few_trials_are_wanted():

@@ -218,13 +218,13 @@ def test_the_command_line_says_so(tmp_path):
 def test_the_sheets_say_so(run):
     with ZipFile(BytesIO(packed_sheets(run))) as package:
         written = "".join(package.read(name).decode() for name in package.namelist() if name.endswith(".xml"))
-    for said in (
+    for message in (
         "Evaluated in all",
         "Drawn before the search",
         "drawn before the search for accepted ones began",
         "Search for rare accepted trials",
     ):
-        assert said in written
+        assert message in written
     assert f"{run.rare.evaluations:,} trials" in written
 
 

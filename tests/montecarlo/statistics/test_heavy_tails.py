@@ -25,7 +25,7 @@ LIGHT = {
 }
 
 
-def told(distribution, n, runs):
+def times_warned(distribution, n, runs):
     rng = np.random.default_rng(5)
     draws = (distribution.rvs(n, random_state=rng) for _ in range(runs))
     return sum("standard deviation" in xs.too_short(x) for x in draws)
@@ -33,16 +33,16 @@ def told(distribution, n, runs):
 
 @pytest.mark.parametrize("n", [10_000, 50_000])
 @pytest.mark.parametrize("name", HEAVY)
-def test_power_tails_are_told(name, n):
-    """In 30 runs; what is told in 95 % of them fails in 4 or fewer with a probability of 98 %."""
-    assert told(HEAVY[name], n, 30) >= 26
+def test_power_tails_give_a_warning(name, n):
+    """In 30 runs; a warning of 95 % of them fails in 4 or fewer with a probability of 98 %."""
+    assert times_warned(HEAVY[name], n, 30) >= 26
 
 
 @pytest.mark.parametrize("n", [10_000, 50_000])
 @pytest.mark.parametrize("name", LIGHT)
 def test_light_tails_are_not(name, n):
     """5 % at most: of 30 runs 4 or fewer with a probability of 98 %."""
-    assert told(LIGHT[name], n, 30) <= 4
+    assert times_warned(LIGHT[name], n, 30) <= 4
 
 
 @pytest.mark.parametrize("name", LIGHT)

@@ -141,11 +141,11 @@ def test_ordinary_forecasts_have_no_notice(method):
 @pytest.mark.parametrize("method", ["mc", "lhs", "sobol"])
 @pytest.mark.parametrize("trials", [1_000, 10_000])
 def test_a_tail_without_a_fourth_moment_to_speak_of_is_told(method, trials):
-    told = 0
+    message = 0
     for seed in range(40):
         u, ids = uniforms(method, trials, seed)
-        told += "standard deviation" in xs.too_short(np.exp(1.5 * ndtri(u)), None, ids)
-    assert told >= 38
+        message += "standard deviation" in xs.too_short(np.exp(1.5 * ndtri(u)), None, ids)
+    assert message >= 38
 
 
 def test_nothing_to_tell_of_nothing():

@@ -242,13 +242,13 @@ def test_what_is_refused_stays_refused_when_another_program_drops_the_blocks(tmp
     assert "'With odd' needs Sheet1!B4" in refused.message
     from click.testing import CliRunner
 
-    told = CliRunner().invoke(command, ["simulate", str(new), "-n", "1000"])
-    assert told.exit_code == 1
-    assert "this answer is missing, and the others do not need it" in " ".join(told.stderr.split())
-    assert "must not be used" not in told.stderr
-    said = openpyxl.load_workbook(new.with_stem(f"{new.stem}-results"))["Results"]["A3"].value
-    assert said.startswith("An answer is missing: the forecast 'With odd' needs Sheet1!B4")
-    assert said.endswith("The answers of other forecasts do not need it.")
+    reported = CliRunner().invoke(command, ["simulate", str(new), "-n", "1000"])
+    assert reported.exit_code == 1
+    assert "this answer is missing, and the others do not need it" in " ".join(reported.stderr.split())
+    assert "must not be used" not in reported.stderr
+    text = openpyxl.load_workbook(new.with_stem(f"{new.stem}-results"))["Results"]["A3"].value
+    assert text.startswith("An answer is missing: the forecast 'With odd' needs Sheet1!B4")
+    assert text.endswith("The answers of other forecasts do not need it.")
 
 
 def test_rows_for_calls_follow_their_cells_and_say_when_the_call_is_gone(tmp_path):

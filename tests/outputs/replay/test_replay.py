@@ -388,9 +388,9 @@ UNREADABLE = {
 
 
 def refused(book, message):
-    with pytest.raises(WorkbookError, match=message) as told:
+    with pytest.raises(WorkbookError, match=message) as reported:
         replay(book)
-    assert str(told.value).startswith((f"{book}: ", f"{book.name}: ", "Record!"))
+    assert str(reported.value).startswith((f"{book}: ", f"{book.name}: ", "Record!"))
 
 
 @pytest.mark.parametrize(("key", "value", "message"), UNREADABLE.values(), ids=[*UNREADABLE])

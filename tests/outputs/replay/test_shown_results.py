@@ -140,8 +140,8 @@ def test_a_range_that_somebody_typed_is_said_and_no_edit(edited):
 
     found = replay(edited(change))
     assert found.identical
-    [said] = found.shown.left_out
-    assert "holds a range that a person typed" in said
+    [message] = found.shown.left_out
+    assert "holds a range that a person typed" in message
 
 
 def test_what_a_program_counts_in_a_range_of_ones_own_is_recounted(results, run, tmp_path):

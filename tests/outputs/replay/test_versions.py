@@ -17,10 +17,10 @@ REPOSITORY = Path(__file__).resolve().parents[3]
 
 @pytest.fixture
 def rules(monkeypatch):
-    said = tuple(
+    made = tuple(
         Rule(version, version, re.compile(met)) for version, met in (("0.3.0", "a"), ("0.10.0", "a"), ("9.0", "a"))
     )
-    monkeypatch.setattr(versions, "RULES", said)
+    monkeypatch.setattr(versions, "RULES", made)
     monkeypatch.setattr(versions, "__version__", "0.10.1")
 
 
@@ -47,7 +47,7 @@ def test_rules_are_in_the_order_of_versions_and_none_is_of_the_future():
 
 
 @pytest.mark.parametrize(
-    ("said", "formula", "met"),
+    ("message", "formula", "met"),
     [
         ("TRUNC", "=1+trunc(A1,2)", True),
         ("TRUNC", "=MYTRUNC(A1)", False),
@@ -65,8 +65,8 @@ def test_rules_are_in_the_order_of_versions_and_none_is_of_the_future():
         ("all cells of a dynamic array", "=SUM(_xlfn.ANCHORARRAY(A1))", True),
     ],
 )
-def test_what_a_rule_concerns(said, formula, met):
-    [rule] = [rule for rule in RULES if rule.sentence.startswith(said)]
+def test_what_a_rule_concerns(made, formula, met):
+    [rule] = [rule for rule in RULES if rule.sentence.startswith(made)]
     assert bool(rule.met.search(formula)) is met
 
 
@@ -97,5 +97,5 @@ def test_a_rule_that_concerns_two_cells_together():
         (["Normal", "Correlation"], False),
         (["Yes-No"], False),
     ):
-        said = [rule.sentence for rule in rules_since("0.1.0", contents)]
-        assert any(each.startswith(correlated) for each in said) is expected
+        made = [rule.sentence for rule in rules_since("0.1.0", contents)]
+        assert any(each.startswith(correlated) for each in made) is expected

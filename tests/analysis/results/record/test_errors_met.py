@@ -12,5 +12,5 @@ from xlmc.analysis.results.record.errors_met import lost_sentences
 def test_a_share_is_written_without_a_power_of_ten(book, limit, share):
     cells = {"A1": 0.999, "B1": f"=IF(A1<{limit},1/0,A1)"}
     model = book(cells, {"a": {"cell": "A1", "low": 0, "high": 1}}, {"f": "B1"})
-    said, *_ = lost_sentences(simulated(model, trials=100_000, seed=999))
-    assert share in said
+    message, *_ = lost_sentences(simulated(model, trials=100_000, seed=999))
+    assert share in message

@@ -63,9 +63,9 @@ def test_goals_stand_as_in_version_0_4(run, asked, expected):
     settings, section = section_of(run, asked)
     assert {entry.key: entry.label for entry in section.entries} == LABELS
     assert [entry.key for entry in section.entries] == list(LABELS)
-    said = {entry.key: entry.value for entry in section.entries if entry.value is not None}
+    text = {entry.key: entry.value for entry in section.entries if entry.value is not None}
     assert {
-        key: value for key, value in said.items() if key not in ("trials", "seed", "sampling", "engine")
+        key: value for key, value in text.items() if key not in ("trials", "seed", "sampling", "engine")
     } == expected
     assert recorded_settings(Record((section,))) == settings
 

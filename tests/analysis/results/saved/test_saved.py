@@ -315,10 +315,10 @@ def test_an_edited_field_opens_as_a_run_or_is_refused_naming_the_file(tiny, tmp_
     try:
         found = open_run(path)
     except XlmcError as error:
-        said = str(error)
+        text = str(error)
     else:
-        said = f"{path} {found.stopped.sentence} {found.accepted}"
-    assert str(path) in said
+        text = f"{path} {found.stopped.sentence} {found.accepted}"
+    assert str(path) in text
 
 
 @pytest.mark.parametrize("words", [{"because": 1}, {"because": None}, {"because": "a", "goal": [1]}], ids=repr)
@@ -342,10 +342,10 @@ def test_an_edited_field_inside_a_part_opens_as_a_run_or_is_refused(tiny, tmp_pa
     for name in names:
         path = repacked(tiny, tmp_path / "edited.xlmcrun", lambda p, d, name=name: inside(d).update({name: value}))
         try:
-            said = f"{path} {make_record(open_run(path), 'typed').as_dict()}"
+            text = f"{path} {make_record(open_run(path), 'typed').as_dict()}"
         except XlmcError as error:
-            said = str(error)
-        assert str(path) in said
+            text = str(error)
+        assert str(path) in text
 
 
 def test_an_edited_saved_run_is_answered_in_words_with_exit_code_2(saved, tmp_path, monkeypatch, capsys):
@@ -355,10 +355,10 @@ def test_an_edited_saved_run_is_answered_in_words_with_exit_code_2(saved, tmp_pa
     monkeypatch.setattr("sys.argv", ["xlmc", "report", str(path), "-o", str(tmp_path / "out.xlsx")])
     with pytest.raises(SystemExit) as ended:
         main()
-    said = capsys.readouterr()
-    assert ended.value.code == 2, said
-    assert "edited.xlmcrun" in "".join(said.err.split())
-    assert "Traceback" not in said.err
+    text = capsys.readouterr()
+    assert ended.value.code == 2, text
+    assert "edited.xlmcrun" in "".join(text.err.split())
+    assert "Traceback" not in text.err
 
 
 def test_packed_entries_are_refused(saved, tmp_path):

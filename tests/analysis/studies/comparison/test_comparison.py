@@ -63,9 +63,9 @@ def test_distributions_that_agree_where_trials_do_not(linear, first, second):
     found = compare(linear(first), linear(second, "y.xlsx"), "0.1", **SIZE)
     assert only(found).judgement.verdict is Verdict.WITHIN
     assert only(found).only_distributions_agree
-    said = verdict_text(found)
-    assert said[0] == "The two books agree for y to 0.1."
-    assert said[1].startswith("Of y only the distributions agree, and the trials do not")
+    message = verdict_text(found)
+    assert message[0] == "The two books agree for y to 0.1."
+    assert message[1].startswith("Of y only the distributions agree, and the trials do not")
 
 
 def test_the_size_of_differences_in_one_trial(linear):
@@ -256,7 +256,7 @@ def test_the_probability_of_being_above_the_threshold_is_compared(book):
     assert each.judgement.verdict is Verdict.BEYOND
     assert each.judgement.largest == "P(> 2)"
     assert each.difference.above.second.value == pytest.approx(0.02, abs=0.004)
-    (said,) = verdict_text(found)
-    assert "y to 1 and P(> 2) to 0.1 points: P(> 2) differs by " in said
-    assert "points" in said.partition("differs by")[2]
+    (message,) = verdict_text(found)
+    assert "y to 1 and P(> 2) to 0.1 points: P(> 2) differs by " in message
+    assert "points" in message.partition("differs by")[2]
     assert compare(first, second, "1", chance=5, trials=20_000, seed=1).forecasts[0].judgement.verdict is Verdict.WITHIN

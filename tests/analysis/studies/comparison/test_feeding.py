@@ -41,15 +41,15 @@ def test_time_and_distance_need_no_model_of_the_impact_where_every_speed_gives_o
 
 
 @pytest.mark.parametrize(
-    ("feeds", "units", "said"),
+    ("feeds", "units", "message"),
     [
         ({"x": "y"}, "mph", "there is no assumption 'x'"),
         ({"a": "x"}, "mph", "there is no forecast 'x'"),
         ({"a": "y"}, "deg", "have the units 'mph' and 'deg'"),
     ],
 )
-def test_what_cannot_be_fed_is_refused(answering, feeds, units, said):
-    with pytest.raises(SimulationError, match=said):
+def test_what_cannot_be_fed_is_refused(answering, feeds, units, message):
+    with pytest.raises(SimulationError, match=message):
         compare(answering("a", 0, 1, "mph"), answering("b", 0, 1, units), feeds=feeds, **SIZE)
 
 

@@ -186,17 +186,17 @@ def test_headings_are_those_of_the_families():
     [(2, "2 values cannot tell"), (14, "cannot tell"), (15, "only roughly"), (29, "only roughly"), (30, None)],
 )
 def test_few_values(n, words):
-    said = cautions(n, ["Normal"])
+    sentence = cautions(n, ["Normal"])
     if words is None:
-        assert said == ()
+        assert sentence == ()
     else:
-        assert words in said[0]
-        assert "uniform range" in said[0]
+        assert words in sentence[0]
+        assert "uniform range" in sentence[0]
 
 
 def test_rivals():
-    (said,) = cautions(100, ["Normal", "Logistic", "Weibull"])
-    assert said.startswith("Normal, Logistic and Weibull describe the values about equally well")
+    (sentence,) = cautions(100, ["Normal", "Logistic", "Weibull"])
+    assert sentence.startswith("Normal, Logistic and Weibull describe the values about equally well")
 
 
 def test_anderson_darling_against_scipy():

@@ -49,10 +49,10 @@ def test_the_words_alone_answer(picture, timed):
     assert asked.startswith("1 %, as asked for; cheapest: ")
     assert found.cheapest[0].method.name in asked
     assert finer.startswith("0.1 %; cheapest: ")
-    said = {each.text for each in column_of(picture)}
-    assert {"Taylor, first order: never", "Taylor, second order: never"} <= said
-    assert any(each.startswith("Recommended: Monte Carlo, ") for each in said)
-    assert any(each.startswith("Monte Carlo: 1 % in ") and ", 0.1 % in " in each for each in said)
+    message = {each.text for each in column_of(picture)}
+    assert {"Taylor, first order: never", "Taylor, second order: never"} <= message
+    assert any(each.startswith("Recommended: Monte Carlo, ") for each in message)
+    assert any(each.startswith("Monte Carlo: 1 % in ") and ", 0.1 % in " in each for each in message)
     assert picture.absent[0].startswith("Monte Carlo, engine formulas is not drawn: 1 % in ")
 
 
@@ -63,8 +63,10 @@ def straight(sum_of_normals):
 
 
 def test_without_filters_one_panel_alone_says_that_every_trial_is_accepted(straight):
-    said = {axis.get_title(loc="left"): [text.get_text() for text in axis.texts] for axis in draw(straight).axes[1:]}
-    assert {title for title, texts in said.items() if "every trial is accepted" in texts} == {"Accepted share, % of it"}
+    message = {axis.get_title(loc="left"): [text.get_text() for text in axis.texts] for axis in draw(straight).axes[1:]}
+    assert {title for title, texts in message.items() if "every trial is accepted" in texts} == {
+        "Accepted share, % of it"
+    }
 
 
 def test_a_method_that_states_no_error_is_never_the_cheapest(straight, timed):
@@ -75,7 +77,8 @@ def test_a_method_that_states_no_error_is_never_the_cheapest(straight, timed):
     assert not any("Taylor" in words for words in asked.words if "reference" not in words)
     assert "near enough, as the reference shows: Taylor, first order" in asked.words
     assert any(
-        "Taylor, first order" in said and "only the reference shows" in said for said in recommendation(straight)
+        "Taylor, first order" in message and "only the reference shows" in message
+        for message in recommendation(straight)
     )
     assert not any("Taylor" in words for mark in picture_of(timed, "seconds").marks for words in mark.words)
 
@@ -103,7 +106,7 @@ def test_the_figure_has_one_panel_that_answers_and_five_small_ones(timed):
     assert "slope −½" in written
     assert "slope −1" in written
     above = " ".join(figure.subfigs[0].get_suptitle().split())
-    assert all(said in above for said in HOW_TO_READ)
+    assert all(message in above for message in HOW_TO_READ)
     assert not draw(timed, words=False).subfigs[0].get_suptitle()
 
 

@@ -77,7 +77,7 @@ def test_a_floor_is_found_where_there_is_one_and_left_open_where_runs_are_few(sm
     open_ = law_with(0.0, 3)
     assert open_.floor_low < tolerance < open_.floor_high
     assert need(small, curve).reaches == "unknown"
-    assert any(said.startswith("These runs cannot tell whether Surrogate") for said in recommendation(small))
+    assert any(message.startswith("These runs cannot tell whether Surrogate") for message in recommendation(small))
 
 
 def test_the_parts_of_a_miss_are_measured(small):
@@ -104,8 +104,8 @@ def test_filters_that_hardly_reject_are_not_blamed_for_curvature(book):
     first = curve_of(found, "taylor-1")
     parts = parts_of(found, shortfall(found, first))
     assert abs(parts.formulas) > 20.0 * abs(parts.filters)
-    (said,) = [each for each in recommendation(found) if each.startswith("Taylor, first order misses")]
-    assert "because it takes every curve for straight" in said.split("; ")[-1]
+    (message,) = [each for each in recommendation(found) if each.startswith("Taylor, first order misses")]
+    assert "because it takes every curve for straight" in message.split("; ")[-1]
 
 
 def test_a_forecast_that_crosses_zero_is_asked_for_no_more_than_another(book):
@@ -126,7 +126,9 @@ def test_an_answer_that_the_reference_cannot_judge_is_left_open(small):
     near = with_errors(first, lambda _, each: Rms(0.9 * own, own, 0.9 * own, np.nan, 1))
     judged = replace(small, once=tuple(near if curve is first else curve for curve in small.once))
     assert shortfall(judged, near).reaches == "unknown"
-    assert any("cannot tell whether Taylor, first order is near enough" in said for said in recommendation(judged))
+    assert any(
+        "cannot tell whether Taylor, first order is near enough" in message for message in recommendation(judged)
+    )
 
 
 def test_times_never_fall_as_runs_grow(small):
@@ -192,16 +194,16 @@ def test_what_is_cheaper_by_the_clock_only_has_its_price_said(small, seconds, pr
 
 
 @pytest.mark.parametrize(
-    ("beyond", "error", "said"), [(3.0, 0.3, True), (3.0, 0.01, False), (0.5, 0.3, False), (1e4, 0.6, True)]
+    ("beyond", "error", "message"), [(3.0, 0.3, True), (3.0, 0.01, False), (0.5, 0.3, False), (1e4, 0.6, True)]
 )
-def test_a_number_of_trials_that_no_run_had_is_given_with_its_error(small, monkeypatch, beyond, error, said):
+def test_a_number_of_trials_that_no_run_had_is_given_with_its_error(small, monkeypatch, beyond, error, message):
     usual = choice(small)
     wanted = replace(usual.needs[usual.chosen], beyond=beyond, error=error)
     other = replace(usual, needs={**usual.needs, usual.chosen: wanted})
     monkeypatch.setattr(import_module("xlmc.analysis.studies.methods.recommendation"), "choice", lambda _: other)
     (verdict, *_) = recommendation(small)
     factor = f"The number of trials is computed, and known to a factor of {np.exp(2 * error):.2g}."
-    assert (factor in verdict) == said
+    assert (factor in verdict) == message
     assert ("as many trials as the longest measured runs had" in verdict) == (beyond == 1e4)
 
 

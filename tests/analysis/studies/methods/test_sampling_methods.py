@@ -126,10 +126,10 @@ def test_a_column_that_does_not_vary_is_no_trouble():
 
 
 def test_the_surrogate_stops_above_a_ratio(case_study):
-    (said,) = Surrogate().run(case_study, 2_048, 1).remarks
-    assert "Model!D52" not in said  # the tangential restitution
-    assert "Model!D49" in said  # what it is the ratio of
-    assert "Model!D50" in said
+    (message,) = Surrogate().run(case_study, 2_048, 1).remarks
+    assert "Model!D52" not in message  # the tangential restitution
+    assert "Model!D49" in message  # what it is the ratio of
+    assert "Model!D50" in message
 
 
 def test_a_workbook_that_is_no_polynomial_anywhere(book):

@@ -119,8 +119,8 @@ def test_the_tables(small):
     assert errors["Monte Carlo, engine formulas"][1].startswith("≈ ")
     assert len(methods_tables.forecast_table(small).rows) == 4 * (1 + len(errors))
     assert {row[0] for row in methods_tables.reference_table(small).rows} == set(small.varying)
-    said = dict(methods_tables.cannot_lines(small))
-    assert "does not see filters" in said["Taylor, second order"]
+    sentence = dict(methods_tables.cannot_lines(small))
+    assert "does not see filters" in sentence["Taylor, second order"]
 
 
 def test_need_follows_the_square_root(small):
@@ -152,9 +152,9 @@ def of_straight(book):
 
 def test_nothing_is_said_of_filters_where_there_are_none(of_straight):
     found = of_straight
-    assert all("filters" not in said for _, said in methods_tables.cannot_lines(found))
+    assert all("filters" not in sentence for _, sentence in methods_tables.cannot_lines(found))
     assert dict(methods_tables.cannot_lines(found))["Taylor, first order"].startswith("takes every curve for straight")
-    assert not any(said.endswith(".") for _, said in methods_tables.cannot_lines(found))
+    assert not any(sentence.endswith(".") for _, sentence in methods_tables.cannot_lines(found))
 
 
 def test_independent_trials_are_carried_on_by_theory(of_straight):
@@ -177,7 +177,7 @@ def test_ends_that_are_never_off_need_no_more_trials(book):
     plain = next(curve for curve in found.curves if curve.method is MONTE_CARLO)
     assert plain.lengths[-1].errors["f", "low"].value == 0.0
     assert np.isfinite(need(found, plain).trials)
-    assert not any("however many trials" in said for said in recommendation(found))
+    assert not any("however many trials" in sentence for sentence in recommendation(found))
 
 
 def test_the_command_runs_what_is_recommended(book):
@@ -189,14 +189,16 @@ def test_the_command_runs_what_is_recommended(book):
         {"y": "B1"},
     )
     found = study(model, accuracy="0.003%", reference_trials=1 << 18, trials=1 << 14, replicates=4)
-    (said,) = [paragraph for paragraph in recommendation(found) if paragraph.startswith("Recommended")]
-    assert said.startswith("Recommended: Scrambled Sobol")
-    assert "--sampling sobol`" in said
+    (sentence,) = [paragraph for paragraph in recommendation(found) if paragraph.startswith("Recommended")]
+    assert sentence.startswith("Recommended: Scrambled Sobol")
+    assert "--sampling sobol`" in sentence
 
 
 def test_errors_in_cells_are_warned_of(book):
     model = book({"A1": 1.0, "B1": "=LN(A1)"}, {"a": {"cell": "A1", "low": -1, "high": 2}}, {"f": "B1"})
-    assert any("lost to errors in cells" in said for said in reference_of(model, 1 << 14, "mc", "numpy", 3).warnings)
+    assert any(
+        "lost to errors in cells" in sentence for sentence in reference_of(model, 1 << 14, "mc", "numpy", 3).warnings
+    )
     assert (
         "lost to errors in cells"
         in recommendation(study(model, reference_trials=1 << 14, trials=1 << 10, replicates=2))[0]
@@ -206,10 +208,10 @@ def test_errors_in_cells_are_warned_of(book):
 def test_accuracy_in_units(straight):
     found = study(straight, accuracy="0.5", reference_trials=1 << 14, trials=1 << 10, replicates=2)
     assert found.tolerance("y") == 0.5
-    said = recommendation(found)
-    assert said[0].startswith("Recommended: ")
-    assert "each known to within 0.5 in its units, in 95 of 100 runs" in said[1]
-    assert any("--precision 0.5 --precision-of mean,sd,range`" in each for each in said)
+    sentence = recommendation(found)
+    assert sentence[0].startswith("Recommended: ")
+    assert "each known to within 0.5 in its units, in 95 of 100 runs" in sentence[1]
+    assert any("--precision 0.5 --precision-of mean,sd,range`" in each for each in sentence)
 
 
 @pytest.mark.parametrize(
@@ -269,9 +271,11 @@ def test_a_mean_that_does_not_converge_is_asked_of_no_method(book):
     model = book({"A1": 0.5, "B1": "=1/A1"}, {"a": {"cell": "A1", "low": -1, "high": 1}}, {"f": "B1"})
     found = study(model, reference_trials=1 << 17, trials=1 << 13, replicates=2)
     assert found.reference.heavy == {"f": ("mean", "sd")}
-    said = recommendation(found)
-    assert "The mean and SD of f do not converge, as far as these trials show" in said[2]  # a lognormal may look so too
-    assert "more trials help no method" in said[2]
+    sentence = recommendation(found)
+    assert (
+        "The mean and SD of f do not converge, as far as these trials show" in sentence[2]
+    )  # a lognormal may look so too
+    assert "more trials help no method" in sentence[2]
     plain = next(curve for curve in found.curves if curve.method is MONTE_CARLO)
     assert need(found, plain).statistic in ("low", "high")
     assert np.isnan(plain.lengths[-1].shares["mean"])  # its error is no share of anything, and no slope is drawn of it

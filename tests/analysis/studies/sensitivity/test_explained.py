@@ -63,15 +63,15 @@ def test_what_no_classes_follow_is_called_a_lower_bound():
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.7])
 def test_smooth_forecasts_keep_their_classes(share):
     """In most runs; the interval is at most 1.3 times as long, and no words stand in."""
-    rng, kept, told, widths = np.random.default_rng(5), 0, 0, []
+    rng, kept, message, widths = np.random.default_rng(5), 0, 0, []
     for _ in range(40):
         x, other = rng.random((2, 4_000))
         y = math.sqrt(share) * x + math.sqrt(1.0 - share) * other
         given, before = found(x, y), explained_share(Ranked.of(x), y, Units.of(x.size))
-        kept, told = kept + given.coarse_enough, told + given.at_least
+        kept, message = kept + given.coarse_enough, message + given.at_least
         widths.append(np.ptp(given.share.interval) / np.ptp(before.interval))
     assert kept >= 32
-    assert told <= 2
+    assert message <= 2
     assert np.median(widths) < 1.3
 
 

@@ -144,7 +144,7 @@ SMALL = {"x": (1e-9, 2e-9)}
 
 
 @pytest.mark.parametrize(
-    ("cells", "where", "said", "instead"),
+    ("cells", "where", "message", "instead"),
     [
         ({"B1": "=(1-COS(A1))/A1^2"}, "S!B1", "'f' shows 0 in a trial in which it is 0.5", "=2*SIN(A1/2)^2/A1^2"),
         ({"C1": "=1-COS(A1)", "B1": "=C1/A1^2"}, "S!C1", "'f' shows 0 in a trial in which it is 0.5", "=2*SIN(A1/2)^2"),
@@ -154,10 +154,10 @@ SMALL = {"x": (1e-9, 2e-9)}
     ],
     ids=str,
 )
-def test_what_is_absorbed_whole_goes_to_50_digits(look, cells, where, said, instead):
+def test_what_is_absorbed_whole_goes_to_50_digits(look, cells, where, message, instead):
     found = look(cells, trials=2000, **SMALL)
     (one,) = [each for each in found.findings if each.level is Level.WRONG]
-    assert (str(one.cell), said in one.effect) == (where, True), one.effect
+    assert (str(one.cell), message in one.effect) == (where, True), one.effect
     assert instead is None or one.instead == instead
 
 

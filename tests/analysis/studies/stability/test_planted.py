@@ -112,10 +112,10 @@ def test_each_is_found_with_its_culprit_and_another_form(found, name):
 
 
 def test_there_is_no_false_alarm(found):
-    said = {(each.name, each.kind) for each in found.findings if each.name not in PLANTED}
-    said -= {(name, kind) for name, kind in said if name.endswith(" ") and kind == "jump"}
-    assert {kind for _, kind in said} <= {"amplification"}
-    assert {name for name, _ in said} <= {"A1-A2", "1/(A1-A2)", "DEVSQ(A1:A4)/3"}
+    message = {(each.name, each.kind) for each in found.findings if each.name not in PLANTED}
+    message -= {(name, kind) for name, kind in message if name.endswith(" ") and kind == "jump"}
+    assert {kind for _, kind in message} <= {"amplification"}
+    assert {name for name, _ in message} <= {"A1-A2", "1/(A1-A2)", "DEVSQ(A1:A4)/3"}
 
 
 def test_only_the_assumptions_of_the_cell_are_named(found):

@@ -32,7 +32,7 @@ def once(rich, results):
     return inject(rich, results)
 
 
-def said(parts, name):
+def text_of(parts, name):
     return parse_spans(as_utf8(parts[name], name), name).canonical()
 
 
@@ -208,7 +208,7 @@ def test_taken_out_again_the_users_workbook_is_left(rich, once):
     assert back.keys() == rich.keys()
     assert {name for name in rich if back[name] != rich[name]} <= FIVE
     for name in FIVE - {"xl/styles.xml"}:
-        assert said(back, name) == said(rich, name)
+        assert text_of(back, name) == text_of(rich, name)
 
 
 def test_the_fingerprint_is_that_of_the_users_workbook(rich, once, other_results):
@@ -284,8 +284,8 @@ def _formats(styles, parts):
         for number in re.findall(rb'<c r="[A-Z]+[0-9]+" s="([0-9]+)"', parts[part]):
             style = lists["cellXfs"][int(number)].attributes
             places = (("fontId", "fonts"), ("fillId", "fills"), ("borderId", "borders"))
-            said = [lists[where][int(style[what])].canonical() for what, where in places]
-            found.append((codes.get(style["numFmtId"], style["numFmtId"]), said))
+            text_of = [lists[where][int(style[what])].canonical() for what, where in places]
+            found.append((codes.get(style["numFmtId"], style["numFmtId"]), text_of))
     return found
 
 

@@ -49,7 +49,7 @@ def makes():
     return set()
 
 
-def said(parts, name):
+def text_of(parts, name):
     return parse_spans(as_utf8(parts[name], name), name).canonical()
 
 
@@ -94,7 +94,7 @@ def test_only_the_five_change_removal_undoes_it_and_openpyxl_reads_the_result(pa
     back = remove_result_sheets(once)
     assert back.keys() == host.keys()
     for name in changing - {role.styles}:
-        assert said(back, name) == said(host, name)
+        assert text_of(back, name) == text_of(host, name)
     if number % 3 == 0:
         assert original_hash(once) == original_hash(host)
     if number % 6 == 1:

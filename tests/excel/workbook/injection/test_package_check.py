@@ -57,6 +57,6 @@ def test_result_sheets_are_whole(rich, results):
 @pytest.mark.parametrize("text", [' s="5000" ', '&lt;c r="A1" s="5000"/>', '<![CDATA[ s="5000"]]>'])
 def test_a_text_that_looks_like_a_style_is_none(book, text):
     cell = f'<c r="Z1" t="inlineStr"><is><t>{text}</t></is></c></row>'.encode()
-    said = {**book, SHEET: book[SHEET].replace(b"</row>", cell, 1)}
-    assert cell in said[SHEET]
-    assert checked_bytes(said, book)
+    message = {**book, SHEET: book[SHEET].replace(b"</row>", cell, 1)}
+    assert cell in message[SHEET]
+    assert checked_bytes(message, book)

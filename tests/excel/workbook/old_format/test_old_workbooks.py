@@ -102,14 +102,14 @@ REFUSED = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("data", "said"), REFUSED.values(), ids=REFUSED)
-def test_what_cannot_be_read_is_refused_before_libreoffice_is_started(data, said, monkeypatch):
+@pytest.mark.parametrize(("data", "sentence"), REFUSED.values(), ids=REFUSED)
+def test_what_cannot_be_read_is_refused_before_libreoffice_is_started(data, sentence, monkeypatch):
     monkeypatch.setattr(subprocess, "Popen", None)
-    with pytest.raises(WorkbookError) as told:
+    with pytest.raises(WorkbookError) as reported:
         read_workbook(data, "case.xls")
-    assert said in str(told.value)
-    assert "case.xls" in str(told.value)
-    assert told.value.hint
+    assert sentence in str(reported.value)
+    assert "case.xls" in str(reported.value)
+    assert reported.value.hint
 
 
 def converted(cells, titles=("S",)):
@@ -198,12 +198,12 @@ DIFFERENT = {
 }
 
 
-@pytest.mark.parametrize(("records", "cells", "titles", "said"), DIFFERENT.values(), ids=DIFFERENT)
-def test_what_both_read_must_agree(records, cells, titles, said, monkeypatch):
+@pytest.mark.parametrize(("records", "cells", "titles", "sentence"), DIFFERENT.values(), ids=DIFFERENT)
+def test_what_both_read_must_agree(records, cells, titles, sentence, monkeypatch):
     monkeypatch.setattr(joined_package, "converted_to_xlsx", lambda _: converted(cells, titles))
-    with pytest.raises(WorkbookError) as told:
+    with pytest.raises(WorkbookError) as reported:
         read_workbook(plain_book({"S": records}), "case.xls")
-    assert said in str(told.value)
+    assert sentence in str(reported.value)
 
 
 def test_without_libreoffice_one_message_says_what_to_do(tmp_path, monkeypatch):
@@ -211,8 +211,8 @@ def test_without_libreoffice_one_message_says_what_to_do(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     path = tmp_path / "case.xls"
     path.write_bytes(plain_book({"S": number(1, 1, 1.0)}))
-    told = CliRunner().invoke(command, ["simulate", str(path)])
-    message = str(told.exception)
+    reported = CliRunner().invoke(command, ["simulate", str(path)])
+    message = str(reported.exception)
     assert "LibreOffice is not installed" in message
     assert "Install LibreOffice" in message
     assert "load Crystal Ball first" in message
@@ -226,17 +226,17 @@ NO_HELP = {
 
 
 @pytest.mark.skipif(os.name != "posix", reason="a script stands for LibreOffice")
-@pytest.mark.parametrize(("script", "seconds", "said", "more"), NO_HELP.values(), ids=NO_HELP)
-def test_a_libreoffice_that_does_not_help_is_told(script, seconds, said, more, tmp_path, monkeypatch):
+@pytest.mark.parametrize(("script", "seconds", "sentence", "more"), NO_HELP.values(), ids=NO_HELP)
+def test_a_libreoffice_that_does_not_help_is_told(script, seconds, sentence, more, tmp_path, monkeypatch):
     program = tmp_path / "soffice"
     program.write_text(f"#!/bin/sh\n{script}\n", "utf-8")
     program.chmod(0o755)
     monkeypatch.setattr(libreoffice, "_program", lambda: str(program))
     monkeypatch.setattr(libreoffice, "_SECONDS", seconds)
-    with pytest.raises(WorkbookError) as told:
+    with pytest.raises(WorkbookError) as reported:
         read_workbook(plain_book({"S": b""}), "case.xls")
-    assert said in str(told.value)
-    assert more in str(told.value)
+    assert sentence in str(reported.value)
+    assert more in str(reported.value)
 
 
 WRITTEN = Path(__file__).with_name("written_by_libreoffice.xls")

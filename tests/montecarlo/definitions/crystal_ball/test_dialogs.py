@@ -70,8 +70,8 @@ def test_families_go_by_their_text_and_those_not_met_in_genuine_books_are_pointe
     items = [Drawn(S, f"$B${row}", f"x{row}", f[0], f[1]) for row, f in enumerate(FAMILIES, 1)]
     found = read(*items, Asked(S, "$D$1", "Sum"), cells=cells)
     assert [a.distribution for a in found.assumptions] == [family for _, _, family, _ in FAMILIES]
-    told = {str(notice.where) for notice in found.notices if "not yet met" in notice.message}
-    assert told == {str(a.cell) for a, f in zip(found.assumptions, FAMILIES, strict=True) if not f[3]}
+    expected = {str(notice.where) for notice in found.notices if "not yet met" in notice.message}
+    assert expected == {str(a.cell) for a, f in zip(found.assumptions, FAMILIES, strict=True) if not f[3]}
 
 
 UNREADABLE = {
@@ -189,8 +189,8 @@ def test_the_range_of_a_certainty_is_a_threshold(read):
 
 def test_decision_variables_keep_their_values_and_are_named_once(read):
     found = read(SKID, TOTAL, Decided(S, "$B$3", "Share"))
-    (said,) = [notice for notice in found.notices if "decision" in notice.message]
-    assert "'Share' (Sheet1!B3)" in said.message
+    (sentence,) = [notice for notice in found.notices if "decision" in notice.message]
+    assert "'Share' (Sheet1!B3)" in sentence.message
 
 
 def test_the_answers_are_those_of_the_distributions(tmp_path):
@@ -227,14 +227,14 @@ FILTERS = {
 }
 
 
-@pytest.mark.parametrize(("members", "limits", "only_for", "told"), FILTERS.values(), ids=list(FILTERS))
-def test_a_filter_is_of_its_forecast_unless_it_says_all(read, members, limits, only_for, told):
+@pytest.mark.parametrize(("members", "limits", "only_for", "expected"), FILTERS.values(), ids=list(FILTERS))
+def test_a_filter_is_of_its_forecast_unless_it_says_all(read, members, limits, only_for, expected):
     filtered = replace(TOTAL, prefs={"fFilterPrefs": {"fUseFilter": True, **members}})
     found = read(SKID, filtered, Asked(S, "$B$6", "Other"))
     (each,) = (*found.filters, *found.forecast_filters)
     assert (each.at_least, each.at_most, each.only_for) == (*limits, only_for)
     assert bool(only_for) == bool(found.forecast_filters)
-    assert any("not yet met" in notice.message for notice in found.notices) == told
+    assert any("not yet met" in notice.message for notice in found.notices) == expected
 
 
 def test_a_filter_of_one_forecast_is_saved_and_repeated(tmp_path):
@@ -291,8 +291,8 @@ PRECISIONS = {
 }
 
 
-@pytest.mark.parametrize(("prefs", "setting", "goal", "said"), PRECISIONS.values(), ids=PRECISIONS)
-def test_precision_control_is_the_goal_of_a_run(tmp_path, prefs, setting, goal, said):
+@pytest.mark.parametrize(("prefs", "setting", "goal", "sentence"), PRECISIONS.values(), ids=PRECISIONS)
+def test_precision_control_is_the_goal_of_a_run(tmp_path, prefs, setting, goal, sentence):
     path = tmp_path / "book.xlsx"
     asked = [replace(each, prefs=own) for each, own in zip((TOTAL, OTHER), [*prefs, {}], strict=False)]
     save(path, CELLS, [[SKID, *asked]])
@@ -311,7 +311,7 @@ def test_precision_control_is_the_goal_of_a_run(tmp_path, prefs, setting, goal, 
         assert (ends.goal.tolerance, ends.goal.relative, ends.goal.numbers) == (width, relative, numbers)
         assert ends.forecasts == forecasts
     (notice,) = [each.message for each in found.notices if "precision control" in each.message]
-    assert said in notice
+    assert sentence in notice
     assert ("not yet met" in notice) == (width is not None)
 
 

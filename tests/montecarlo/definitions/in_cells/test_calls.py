@@ -460,10 +460,10 @@ def test_outputs(workbook):
         ("S!A4", ""),
     ]
     assert [str(cell) for cell in found.results] == ["S!B4", "S!B5", "S!B6", "S!B7"]
-    told = " ".join(notice.message for notice in found.notices)
-    assert "S!A4 is taken for a forecast" in told
-    assert "no forecast is called so" in told
-    assert "which nothing computes" in told
+    expected = " ".join(notice.message for notice in found.notices)
+    assert "S!A4 is taken for a forecast" in expected
+    assert "no forecast is called so" in expected
+    assert "which nothing computes" in expected
 
 
 MATRIX = {"F1": 1.0, "F2": 0.5, "G2": 1.0, "F3": -0.2, "G3": 0.0, "H3": 1.0}

@@ -185,7 +185,7 @@ def spearman_of(run, first, second):
 
 
 @pytest.mark.parametrize(
-    ("above", "told"),
+    ("above", "expected"),
     [
         ({"L1": 0.9, "M1": None}, []),
         ({"L1": 0.2}, ["S!K2 is 0.9, and S!L1 is 0.2"]),
@@ -194,11 +194,11 @@ def spearman_of(run, first, second):
     ],
     ids=["alike", "another number", "a text", "one of two"],
 )
-def test_halves_that_contradict_each_other_are_told_and_the_lower_one_holds(model, above, told):
+def test_halves_that_contradict_each_other_are_told_and_the_lower_one_holds(model, above, expected):
     made = model({**MATRIX, **above})
     found = [notice.message for notice in made.notices if "contradict each other" in notice.message]
-    assert len(found) == len(told)
-    assert all(text in message for text, message in zip(told, found, strict=True))
+    assert len(found) == len(expected)
+    assert all(text in message for text, message in zip(expected, found, strict=True))
     assert {(c.first, c.second): c.value for c in made.definitions.correlations} == {
         ("S!A1#1", "S!A2#1"): 0.9,
         ("S!A2#1", "S!A3#1"): 0.9,

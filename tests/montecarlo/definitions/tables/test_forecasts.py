@@ -53,11 +53,11 @@ def test_range(read, typed, share):
     assert found.forecasts[0].central == share
 
 
-@pytest.mark.parametrize(("typed", "share", "said"), [(0.51, 0.51, "51"), (0.9, 0.9, "90"), (1, 0.01, "1")])
-def test_a_range_that_may_be_a_share(read, typed, share, said):
+@pytest.mark.parametrize(("typed", "share", "text"), [(0.51, 0.51, "51"), (0.9, 0.9, "90"), (1, 0.01, "1")])
+def test_a_range_that_may_be_a_share(read, typed, share, text):
     found = read({"Answers!D2": typed})
     assert found.forecasts[0].central == share
-    assert [str(notice) for notice in found.notices] == [f"Answers!D2: Range % {typed} is read as {said} %"]
+    assert [str(notice) for notice in found.notices] == [f"Answers!D2: Range % {typed} is read as {text} %"]
 
 
 def test_the_settings_give_the_range_of_rows_that_have_none(read, blocks):

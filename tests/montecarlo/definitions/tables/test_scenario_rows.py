@@ -128,10 +128,10 @@ def test_names_of_scenarios_and_columns_are_taken_once(read, blocks):
 
 
 def test_an_address_as_a_heading_goes_stale_and_a_name_does_not(read, blocks):
-    for heading, told in (("Model!A1", True), ("speed_cell", False)):
+    for heading, reported in (("Model!A1", True), ("speed_cell", False)):
         laid = cells(blocks, heading, 1.0)
         notices = read(laid, TABLE, names=[("speed_cell", "Model!$A$1", None)]).notices
-        assert any("goes stale when rows move" in str(notice) for notice in notices) == told
+        assert any("goes stale when rows move" in str(notice) for notice in notices) == reported
 
 
 def test_what_may_mean_two_things_is_refused(read, blocks):

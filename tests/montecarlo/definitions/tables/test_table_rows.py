@@ -61,19 +61,19 @@ def test_a_table_whose_name_is_misspelt_is_refused(make_book, blocks, name, mean
 
 
 @pytest.mark.parametrize(
-    ("name", "told"),
+    ("name", "expected"),
     [
         ("xlmc_notes", "xlmc reads xlmc_assumptions, xlmc_forecasts"),
         ("xlmc_results", "xlmc reads xlmc_assumptions, xlmc_forecasts"),
         ("Assumptions", "did you mean xlmc_assumptions?"),
     ],
 )
-def test_another_name_that_may_be_meant_for_xlmc_gets_a_notice(make_book, blocks, name, told):
+def test_another_name_that_may_be_meant_for_xlmc_gets_a_notice(make_book, blocks, name, expected):
     book = make_book(blocks("S!B2", [HEADINGS, ["a"]]), [(name, "S!B2:E3")])
     _, findings = names_of(book, "xlmc_filters")
     assert findings.problems == []
     (notice,) = findings.notices
-    assert str(notice).startswith(f"S!B2: The table {name} is not read: {told}")
+    assert str(notice).startswith(f"S!B2: The table {name} is not read: {expected}")
 
 
 def test_totals_and_blank_rows_are_left_out(make_book, blocks):
@@ -159,7 +159,7 @@ def test_a_misspelt_heading_that_numbers_depend_on_is_refused(read, changes, whe
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "expected"),
     [
         ({"Answers!E10": "Abov"}, "Answers!E10: The column 'Abov' is kept as a note only: did you mean Above?"),
         ({"Answers!G10": "Becuase"}, "Answers!G10: The column 'Becuase' is kept as a note only: did you mean Because?"),
@@ -167,14 +167,14 @@ def test_a_misspelt_heading_that_numbers_depend_on_is_refused(read, changes, whe
     ],
     ids=["nothing stands in it", "it is only shown", "the table has the column that it is like"],
 )
-def test_a_slip_in_another_heading_is_pointed_out(read, changes, told):
+def test_a_slip_in_another_heading_is_pointed_out(read, changes, expected):
     found = read(changes)
     assert found.problems == ()
-    assert [str(notice) for notice in found.notices if "note only" in notice.message] == [told]
+    assert [str(notice) for notice in found.notices if "note only" in notice.message] == [expected]
 
 
 @pytest.mark.parametrize(
-    ("below", "tables", "said"),
+    ("below", "tables", "sentence"),
     [
         (["b", 1], [], True),  # typed below the table, where no program takes it in
         (["b"], [], False),  # a remark
@@ -183,9 +183,9 @@ def test_a_slip_in_another_heading_is_pointed_out(read, changes, told):
         (["Name", "Cell"], [("other", "S!B4:E5")], False),  # another table
     ],
 )
-def test_a_row_right_below_a_table_is_pointed_out(make_book, blocks, below, tables, said):
+def test_a_row_right_below_a_table_is_pointed_out(make_book, blocks, below, tables, sentence):
     cells = blocks("S!B2", [HEADINGS, ["a", 1, 0], below, ["c", 3]])
     names, findings = names_of(make_book(cells, [("xlmc_filters", "S!B2:E3"), *tables]), "xlmc_filters")
     assert (names, findings.problems) == (["a"], [])
-    assert [str(notice.where) for notice in findings.notices] == ["S!B4"] * said
+    assert [str(notice.where) for notice in findings.notices] == ["S!B4"] * sentence
     assert all("drag the table's corner over it" in notice.message for notice in findings.notices)

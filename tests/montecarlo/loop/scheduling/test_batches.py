@@ -159,13 +159,13 @@ class Ends(Numbers):
 
 
 @pytest.mark.parametrize(
-    ("error", "told"), [(SystemExit(3), SystemExit), (StopIteration(), RuntimeError), (MemoryError(), MemoryError)]
+    ("error", "message"), [(SystemExit(3), SystemExit), (StopIteration(), RuntimeError), (MemoryError(), MemoryError)]
 )
-def test_whatever_ends_a_block_ends_the_run(error, told):
+def test_whatever_ends_a_block_ends_the_run(error, message):
     """It does not wait for ever, nor pass for the end."""
-    with pytest.raises(told):
+    with pytest.raises(message):
         list(by_threads([Slow(Numbers()), Ends(error)], 1000, numbered()))
-    with pytest.raises(told):
+    with pytest.raises(message):
         list(by_threads([Ends(error)], 1000, numbered()))
 
 

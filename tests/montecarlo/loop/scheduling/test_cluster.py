@@ -59,22 +59,22 @@ def test_processes_change_no_bit(model, bits, cluster):
 
 def test_ctrl_c_in_a_local_cluster_keeps_what_was_accepted(model, bits, capfd):
     """A terminal tells all processes of Ctrl-C; its workers go on until this process ends them."""
-    before, told, alive = {*Process().children(recursive=True)}, [], []
+    before, expected, alive = {*Process().children(recursive=True)}, [], []
 
     def press(standing):
-        if standing.trials >= 300 and not told:
-            told.extend({*Process().children(recursive=True)} - before)
-            for worker in told:
+        if standing.trials >= 300 and not expected:
+            expected.extend({*Process().children(recursive=True)} - before)
+            for worker in expected:
                 worker.send_signal(signal.SIGINT)
             time.sleep(0.2)  # for one that ends
-            alive.extend(worker for worker in told if worker.is_running() and worker.status() != STATUS_ZOMBIE)
+            alive.extend(worker for worker in expected if worker.is_running() and worker.status() != STATUS_ZOMBIE)
             signal.raise_signal(signal.SIGINT)
 
     run = simulated(model, 10**9, scheduler="local", workers=1, keep_interrupted=True, progress=press)
     assert run.stopped.by == "interruption"
     assert run.trials >= 300
     assert bits(run) == bits(simulated(model, run.trials))
-    assert alive == told != []
+    assert alive == expected != []
     assert "Traceback" not in capfd.readouterr().err
 
 
@@ -169,14 +169,14 @@ def test_without_dask(model, monkeypatch):
 @pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="Windows blocks no signals")
 def test_ctrl_c_while_workers_start_reaches_this_process_alone_and_later():
     asked = [sys.executable, "-SEc", "import signal; print(signal.SIGINT in signal.pthread_sigmask(0, ()))"]
-    said = []
+    message = []
 
     def start():
         with scheduling._interrupts_later():
             signal.raise_signal(signal.SIGINT)
-            said.append(subprocess.run(asked, capture_output=True, text=True, check=True).stdout)
+            message.append(subprocess.run(asked, capture_output=True, text=True, check=True).stdout)
 
     with pytest.raises(KeyboardInterrupt):
         start()
-    assert said == ["True\n"]
+    assert message == ["True\n"]
     assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())

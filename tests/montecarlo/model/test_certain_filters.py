@@ -49,3 +49,11 @@ def test_a_filter_may_be_broken_unless_all_numbers_that_lead_to_it_hold(book, as
 def test_a_distribution_without_ends_may_break_any_limit(book):
     model = book(CELLS, NORMAL, {"x": "B1"}, {"f": {"cell": "B1", "below": 1e9}})
     assert [each.name for each in breakable(model)] == ["f"]
+
+
+def test_evidence_is_asked_though_every_trial_agrees_with_it(book):
+    reading = {"cell": "B1", "reading": 1.0, "plus_minus": 5.0}
+    model = book(CELLS, UNIFORM, {"x": "B1"}, {}, None, {"e": reading})
+    (filter_,) = model.filters
+    assert (filter_.at_least, filter_.at_most) == (-4.0, 6.0)
+    assert breakable(model) == (filter_,)

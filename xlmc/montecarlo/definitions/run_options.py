@@ -1,4 +1,4 @@
-"""How a run is asked for: one value that goes from Python, the command line, a record or the live window to the run."""
+"""The options of a run: one value that goes from Python, the command line, a record or the live window to the run."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class RunArguments(TypedDict, total=False):
 
 @dataclass(frozen=True, slots=True)
 class RunOptions:
-    """How a run is asked for; None of a setting for what the workbook says. `Model.simulate` describes each.
+    """The options of a run; None means what the workbook says. `Model.simulate` describes each.
 
     Attributes:
         keep_prior: whether the draws of the first trials are kept before filtering, which results show and no run of

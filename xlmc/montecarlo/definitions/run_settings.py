@@ -48,7 +48,7 @@ class Settings:
 
 
 USUAL: Final = Settings()
-"""The settings where nobody says anything."""
+"""The defaults, for what neither the workbook nor the command says."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,8 +65,8 @@ class Setting:
         field: of `Settings`; empty where the key is.
         options: of the command line; empty where it has none.
         help: a sentence there.
-        blank: nothing may be said of it; its entry is then empty.
-        sparse: the record has no entry of it where nothing is said.
+        blank: it may be left unset; its entry is then empty.
+        sparse: the record has no entry of it while it is unset.
         recorded_as: its key in the record; empty where `key` is.
     """
 
@@ -153,7 +153,7 @@ SETTINGS: Final[dict[str, Setting]] = {
             key="evidence",
             heading="Evidence",
             label="Evidence by",
-            kind=Word(lambda: EVIDENCE_METHODS, "{} is not a way to use evidence"),
+            kind=Word(lambda: EVIDENCE_METHODS, "{} is not a method to use evidence"),
             repeat="unlike the workbook",
             options=("--evidence",),
             help="How evidence with a normal or lognormal error is used: rejection: it rejects trials; weights: it"
@@ -199,7 +199,7 @@ SETTINGS: Final[dict[str, Setting]] = {
             key="rare",
             heading="Rare",
             label="Search for rare trials",
-            kind=Word(lambda: RARE, "{} is not a way to look for rare trials"),
+            kind=Word(lambda: RARE, "{} is not a method to look for rare trials"),
             repeat="always",
             field=f"{ENDS}rare",
             options=("--rare",),

@@ -31,7 +31,7 @@ MISTAKES = [
     ("Engine", "numpi", VALUE, "There is no engine 'numpi'", "Did you mean numpy?"),
     ("Until accepted", 1, VALUE, "Until accepted must be a whole number from 2", "Correct the number"),
     ("Until accepted", 2.5, VALUE, "Until accepted must be a whole number", "Correct the number"),
-    ("Rare", "sometimes", VALUE, "'sometimes' is not a way to look for rare trials", "Use auto, never or always"),
+    ("Rare", "sometimes", VALUE, "'sometimes' is not a method to look for rare trials", "Use auto, never or always"),
     ("Precision", 0, VALUE, "Precision must be above 0, not 0", "Correct the number"),
     ("Precision", "1%", VALUE, "Precision holds the text '1%', not a number", "Type a number"),
     ("Precision %", 0.01, VALUE, "Precision % must be 0.1 or more, not 0.01", "Type 1 for 1 %"),

@@ -48,7 +48,7 @@ def test_light_tails_are_not(name, n):
 @pytest.mark.parametrize("name", LIGHT)
 def test_nor_with_a_thousand_trials(name):
     """1 % of the runs: of 200 runs 7 or fewer with a probability of 99.9 %."""
-    assert told(LIGHT[name], 1_000, 200) <= 7
+    assert times_warned(LIGHT[name], 1_000, 200) <= 7
 
 
 @pytest.mark.parametrize("n", [100, 1_000])

@@ -23,7 +23,8 @@ from xlmc.analysis.studies.methods.curve import runs_of
 from xlmc.analysis.studies.methods.sampled import MONTE_CARLO
 from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.model.model import CompiledModel
-from xlmc.outputs.methods import methods_tables, save_methods
+from xlmc.outputs.methods import methods_tables
+from xlmc.outputs.methods.matplotlib_figure import png
 from xlmc.outputs.methods.methods_json import study_json
 
 __all__ = ["PAGE", "filled", "theory_rows", "theory_runs", "write"]
@@ -79,7 +80,7 @@ def filled(page: str, found: Study, lengths: Sequence[Runs]) -> str:
         "lengths": methods_tables.length_table(found),
     }
     for name, table in made.items():
-        page = placed(page, name, f"*{table.title}*\n\n{_markdown(table.headings, table.rows, table.right)}")
+        page = placed(page, name, f"*{table.title}*\n\n{_markdown(table.heads, table.rows, min(table.at_right))}")
     headings = ("Trials", "Forecast", *STATISTICS.values())
     page = placed(page, "theory", _markdown(headings, theory_rows(found, lengths), 2))
     words = "\n\n".join(f"> {said}" if said else "" for said in recommendation(found))
@@ -118,7 +119,7 @@ def write(found: Study, lengths: Sequence[Runs]) -> None:
     record: dict[str, Any] = {"machine": describe(), "found": study_json(found)}
     RESULTS.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     PAGE.write_text(filled(PAGE.read_text(encoding="utf-8"), found, lengths), encoding="utf-8")
-    save_methods(found, PICTURE, overwrite=True)
+    PICTURE.write_bytes(png(found))
     ratios = [float(cell.partition(" ")[0]) for row in theory_rows(found, lengths) for cell in row[2:]]
     print(
         f"Monte Carlo's errors are {min(ratios):.2f} to {max(ratios):.2f} of theory's, {np.median(ratios):.2f} mostly"

@@ -11,15 +11,16 @@ from typing import TYPE_CHECKING
 
 import click
 
+from xlmc.cli.blocks import show
 from xlmc.cli.options import WholeNumber, chance_option, engine_option, jobs_option, tolerance_option
-from xlmc.cli.study_output import STUDY, show, study_options
+from xlmc.cli.study_output import STUDY, study_options
 from xlmc.cli.terminal import say_json
 from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.comparison import Comparison, ForecastComparison
     from xlmc.analysis.studies.comparison.causes import Step
-    from xlmc.outputs.study_report import Block, StudyReport
+    from xlmc.outputs.study_report import StudyReport
 
 __all__ = ["compare"]
 
@@ -71,6 +72,7 @@ def compare(
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.diagnostics.directions import direction_notices
     from xlmc.montecarlo.model.loading import load
+    from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import Files
 
     books = load(first), load(second)
@@ -95,7 +97,7 @@ def compare(
     if as_json:
         say_json(report.as_json())
     else:
-        show([report.below, *report.blocks])
+        show(blocks_of([report.below, *report.blocks]))
         written.report_failures()
     runs = list(zip(book_names(found), (found.first, found.second), strict=True))
     notices([replace(notice, where=name) for name, run in runs for notice in direction_notices(run.results.values())])
@@ -131,12 +133,13 @@ def _pairs(given: tuple[str, ...], option: str, form: str) -> dict[str, str]:
 
 def _report(found: Comparison) -> StudyReport:
     from xlmc.analysis.studies.comparison.verdicts import book_names, verdict_text
-    from xlmc.outputs.study_report import StudyReport, Table
+    from xlmc.outputs.document.parts import Table, blocks_of
+    from xlmc.outputs.study_report import StudyReport
 
     books = book_names(found)
     headings = ("", "First", "Second", "Difference", "Tolerance")
     tables = [Table(_title(each), headings, tuple(_rows(each)), (1, 2, 3, 4)) for each in found.forecasts]
-    blocks: list[Block] = [*verdict_text(found), *tables, *_sentences(found), _MEANING]
+    blocks = blocks_of([*verdict_text(found), *tables, *_sentences(found), _MEANING])
     title, below = "Do two models give the same answer?", f"{books[0]} (first) and {books[1]} (second)"
     return StudyReport(title, below, blocks, "Comparison", partial(_as_json, found))
 

@@ -12,16 +12,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from xlmc.cli.blocks import show
 from xlmc.cli.options import OneOf
-from xlmc.cli.study_output import STUDY, show, study_options
+from xlmc.cli.study_output import STUDY, study_options
 from xlmc.cli.terminal import say, say_json
 from xlmc.cli.writing import NOT_WRITTEN, write_files, written_or_reported
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.fitting import Fitted, Fitting
     from xlmc.excel.address import Area
-    from xlmc.outputs.study_curves import Curves
-    from xlmc.outputs.study_report import Block, StudyReport, Table
+    from xlmc.outputs.document.parts import Block, Figure, Table
+    from xlmc.outputs.study_report import StudyReport
 
 __all__ = ["fit"]
 
@@ -78,6 +79,7 @@ def fit(
     from xlmc.analysis.studies import fitting
     from xlmc.cli import fit_into
     from xlmc.excel.workbook.printable import label
+    from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import Files
 
     book, reference = _book_and_range(source, cells)
@@ -101,8 +103,8 @@ def fit(
     if as_json:
         say_json(report.as_json())
     else:
-        as_warnings = _cautions(found)  # as warnings, below
-        show([each for each in report.blocks[:-1] if each not in as_warnings])
+        said = blocks_of(_cautions(found))  # as warnings, below
+        show([each for each in report.blocks[:-1] if each not in said])
         say(f"\n{chosen.name} as a row of xlmc_assumptions, to paste under these headings:\n")
         say("\t".join(row))
         say("\t".join(row.values()))
@@ -234,17 +236,18 @@ def _report(
     row: dict[str, str],
     as_json: Callable[[], dict[str, object]],
 ) -> StudyReport:
-    """Yield what was found; the row to paste comes last."""
-    from xlmc.outputs.study_report import StudyReport, Table
+    """What was found; the row to paste comes last."""
+    from xlmc.outputs.document.parts import Table, blocks_of
+    from xlmc.outputs.study_report import StudyReport
 
     as_row = Table(f"{row['Distribution']} as a row of xlmc_assumptions", tuple(row), (tuple(row.values()),))
     below = f"{source}: {found.n} values"
     verdict = f"{found.fits[0].name} describes the {found.n} values best by {found.by.upper()}."
-    blocks: list[Block] = [verdict, *_cautions(found), _ranking(found, source, blank), _curves(found, values)]
+    blocks: list[str | Block] = [verdict, *_cautions(found), _ranking(found, source, blank), _curves(found, values)]
     blocks += [f"Not fitted: {name}: {reason}." for name, reason in found.unfit.items()]
     blocks += [f"Standard errors of {', '.join(names)}: {source}." for source, names in _sources(found).items()]
     title = "Distributions fitted to measurements"
-    return StudyReport(title, below, [*blocks, _MEANING, as_row], "Fit", as_json)
+    return StudyReport(title, below, blocks_of([*blocks, _MEANING, as_row]), "Fit", as_json)
 
 
 def _cautions(found: Fitting) -> list[str]:
@@ -252,7 +255,7 @@ def _cautions(found: Fitting) -> list[str]:
 
 
 def _ranking(found: Fitting, source: str, blank: int) -> Table:
-    from xlmc.outputs.study_report import Table
+    from xlmc.outputs.document.parts import Table
 
     left_out = f"; {blank} blank cells left out" if blank else ""
     title = f"{source}: {found.n} values as {found.kind}{left_out}; the best by {found.by.upper()} first"
@@ -273,12 +276,12 @@ def _ranking(found: Fitting, source: str, blank: int) -> Table:
     return Table(title, headings, rows, (2, 3, 4, 5, 6))
 
 
-def _curves(found: Fitting, values: list[float]) -> Curves:
-    """Return the values and the families that describe them best, as shares at most."""
+def _curves(found: Fitting, values: list[float]) -> Figure:
+    """The values and the families that describe them best, as shares at most."""
     import numpy as np
 
     from xlmc.analysis.studies.fitting import share_at_most
-    from xlmc.outputs.study_curves import Curves, Line
+    from xlmc.outputs.document.parts import Chart, Figure, Line, Lines
 
     ranked = np.sort(values)
     shown = np.unique(np.linspace(0, ranked.size - 1, min(ranked.size, _VALUES)).astype(int))
@@ -293,7 +296,9 @@ def _curves(found: Fitting, values: list[float]) -> Curves:
         points = _staircase(at, shares) if found.kind == "counts" else zip(at.tolist(), shares.tolist(), strict=True)
         lines.append(Line(fitted.name, tuple(points)))
     title = f"The values and the {len(lines) - 1} distributions that describe them best"
-    return Curves(title, "Value", "Share at most", tuple(lines))
+    said = f"{title}: {', '.join(line.name for line in lines)}"
+    data = Lines(tuple(lines), "Share at most", share=True)
+    return Figure(Chart("", "Value", data, said), f"{title}.")
 
 
 def _staircase(x: Any, shares: Any) -> tuple[tuple[float, float], ...]:

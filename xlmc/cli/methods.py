@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+from xlmc.cli.blocks import show
 from xlmc.cli.options import WholeNumber
 from xlmc.cli.study_output import study_options
-from xlmc.cli.terminal import paragraph, say, say_json
+from xlmc.cli.terminal import say_json
 from xlmc.cli.writing import write_files
-
-if TYPE_CHECKING:
-    from xlmc.analysis.studies.methods import Study
 
 __all__ = ["methods"]
 
@@ -68,41 +65,25 @@ def methods(
     from xlmc.analysis.studies.methods import quick_settings, study
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.model.loading import load
-    from xlmc.outputs.methods import check_targets, save_methods
-    from xlmc.outputs.methods.methods_json import study_json
+    from xlmc.outputs.methods import in_short, methods_report
+    from xlmc.outputs.study_report import Files
 
     model = load(book)
-    files = (*output, *also)
-    check_targets(files, book, overwrite=overwrite)
+    files = Files((*output, *also), [book], overwrite=overwrite, drawn=True)
+    files.check()
     asked: dict[str, Any] = {"reference_trials": reference_trials, "trials": trials, "replicates": replicates}
     given = {name: value for name, value in asked.items() if value is not None}
     if quick:
         given = quick_settings(given)
     with step_line(quiet) as tell:
         found = study(model, accuracy=accuracy, seed=seed, tell=tell, **given)
-    written = write_files((path, partial(save_methods, found, path, overwrite=overwrite)) for path in files)
+    report = methods_report(found, figures=files.show_figures)
+    written = write_files(files.writers(report))
     if as_json:
-        say_json(study_json(found))
+        say_json(report.as_json())
     else:
-        _show(found)
+        show(in_short(found))
         written.report_failures()
     written.check()
     if found.reference.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
-
-
-def _show(found: Study) -> None:
-    from xlmc.analysis.studies.methods import recommendation
-    from xlmc.cli.printing import table
-    from xlmc.outputs.methods import methods_tables
-
-    shown = methods_tables.reference_table(found), methods_tables.error_table(found), methods_tables.bounds_table(found)
-    for each in shown:
-        if each.rows:
-            table(each.title, each.headings, each.rows, right=range(each.right, len(each.headings)))
-    for name, line in methods_tables.cannot_lines(found):
-        say(paragraph(f"{name}: {line}.", hanging="    "))
-    say()
-    for advice in recommendation(found):
-        say(paragraph(advice))
-        say()

@@ -18,7 +18,7 @@ from xlmc.excel.workbook.printable import printable
 if TYPE_CHECKING:
     from xlmc.errors import Notice
 
-__all__ = ["notices", "table", "table_lines", "warnings"]
+__all__ = ["heading", "notices", "table", "table_lines", "warnings"]
 
 _PIPE_WIDTH: Final = 160
 
@@ -39,7 +39,16 @@ def table(title: str, headings: Sequence[str], rows: Sequence[Sequence[str]], *,
     widest = width() if on_terminal() else _PIPE_WIDTH
     shown = [[_one_line(cell) for cell in row] for row in rows]
     lines = table_lines([_one_line(heading) for heading in headings], shown, right, widest, encodable("─"))
-    put("\n".join((_bold(paragraph(_one_line(title))), "", *lines)) + "\n\n")
+    put("\n".join((*_title(title), *lines)) + "\n\n")
+
+
+def heading(title: str) -> None:
+    """Print a heading, with a line of space below it."""
+    put("\n".join(_title(title)) + "\n")
+
+
+def _title(text: str) -> tuple[str, ...]:
+    return (_bold(paragraph(_one_line(text))), "") if text else ()
 
 
 def notices(found: Sequence[Notice]) -> None:

@@ -10,14 +10,16 @@ from typing import TYPE_CHECKING
 
 import click
 
+from xlmc.cli.blocks import show
 from xlmc.cli.options import WholeNumber, chance_option, engine_option, jobs_option, tolerance_option
-from xlmc.cli.study_output import STUDY_OF_A_RUN, show, study_options
+from xlmc.cli.study_output import STUDY_OF_A_RUN, study_options
 from xlmc.cli.terminal import say_json
 from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.screening import AtEnds, Cost, Screening
-    from xlmc.outputs.study_report import Block, StudyReport, Table
+    from xlmc.outputs.document.parts import Block, Table
+    from xlmc.outputs.study_report import StudyReport
 
 __all__ = ["screen"]
 
@@ -83,6 +85,7 @@ def screen(
     from xlmc.cli.printing import warnings
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.model.loading import load
+    from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import Files
 
     model = load(book)
@@ -108,7 +111,7 @@ def screen(
     if as_json:
         say_json(report.as_json())
     else:
-        show([f"{report.below.partition(':')[0]}: what it could do without", *report.blocks])
+        show(blocks_of([f"{report.below.partition(':')[0]}: what it could do without", *report.blocks]))
         written.report_failures()
     warnings(found.run.warnings, found.run.refused)
     written.check()
@@ -117,11 +120,12 @@ def screen(
 
 
 def _report(found: Screening) -> StudyReport:
+    from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import StudyReport
 
     run = found.run
     below = f"{run.model.workbook.name}: {found.runs} runs of {run.trials:,} trials, seed {run.settings.seed}"
-    blocks = [*_verdicts(found), *_tables(found), *_meaning(found)]
+    blocks = blocks_of([*_verdicts(found), *_tables(found), *_meaning(found)])
     title = "What the book could do without"
     return StudyReport(title, below, blocks, "Screening", partial(_as_json, found), run)
 
@@ -145,8 +149,8 @@ def _tables(found: Screening) -> Iterator[Block]:
 
 
 def _table(found: Screening, title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]]) -> Table:
-    """Make a table of what each change costs. `first` are columns with headings."""
-    from xlmc.outputs.study_report import Table
+    """What each change costs. `first` are columns with headings."""
+    from xlmc.outputs.document.parts import Table
 
     accepted = ["Accepted, %"] if found.run.model.filters else []  # without filters nothing can change it
     headings = (*(heading for heading, _ in first), "Cost", *accepted)
@@ -185,7 +189,7 @@ def _size(tolerances: float) -> str:
 def _of_forecast(found: Screening, name: str) -> Table:
     """Make a table of the number of a forecast that each change moves most, measured in its tolerance."""
     from xlmc.analysis.studies.comparison.verdicts import amount
-    from xlmc.outputs.study_report import Table
+    from xlmc.outputs.document.parts import Table
 
     units = found.run[name].definition.units
     rows = []

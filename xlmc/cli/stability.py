@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING
 
 import click
 
+from xlmc.cli.blocks import show
 from xlmc.cli.options import WholeNumber, jobs_option
-from xlmc.cli.study_output import STUDY_OF_A_RUN, show, study_options
+from xlmc.cli.study_output import STUDY_OF_A_RUN, study_options
 from xlmc.cli.terminal import paragraph, say, say_json
 from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.stability import CellDigits, Finding, Stability
-    from xlmc.outputs.study_report import Block, StudyReport, Table
+    from xlmc.outputs.document.parts import Table
+    from xlmc.outputs.study_report import StudyReport
 
 __all__ = ["stability"]
 
@@ -110,15 +112,18 @@ def _show_cells(found: Stability, all_cells: bool) -> None:
 
 
 def _report(found: Stability, all_cells: bool) -> StudyReport:
+    from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import StudyReport
 
     findings = [text for number, one in enumerate(found.findings, start=1) for text in _finding_texts(number, one)]
-    blocks: list[Block] = [
-        f"{_count(found.findings).capitalize()}.",
-        *findings,
-        _cells(found, all_cells),
-        *_sentences(found),
-    ]
+    blocks = blocks_of(
+        [
+            f"{_count(found.findings).capitalize()}.",
+            *findings,
+            _cells(found, all_cells),
+            *_sentences(found),
+        ]
+    )
     below = f"{found.run.model.workbook.name}: {found.run.trials:,} trials, seed {found.run.settings.seed}"
     return StudyReport("Can the digits be trusted?", below, blocks, "Stability", partial(_as_json, found), found.run)
 
@@ -142,7 +147,7 @@ def _finding_sentences(finding: Finding) -> Iterator[str]:
 
 
 def _cells(found: Stability, all_cells: bool) -> Table:
-    from xlmc.outputs.study_report import Table
+    from xlmc.outputs.document.parts import Table
 
     model = found.run.model
     targets = {row.cell for row in model.forecasts} | {row.cell for row in model.filters}

@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from xlmc.cli.output_options import with_files, with_options
-from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.comparison import Acceptance, Change, Difference
     from xlmc.montecarlo.statistics import Estimate
-    from xlmc.outputs.study_report import Block
 
 STUDY = "a sheet (.xlsx), a document (.pdf, .docx), a page (.html), the result as JSON (.json)"
 STUDY_OF_A_RUN = f"{STUDY}, the accepted trials of the book's run (.csv, .parquet), that run (.xlmcrun)"
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
-__all__ = ["STUDY", "STUDY_OF_A_RUN", "acceptance_json", "difference_json", "estimate_json", "show", "study_options"]
+__all__ = ["STUDY", "STUDY_OF_A_RUN", "acceptance_json", "difference_json", "estimate_json", "study_options"]
 
 
 def study_options(kinds: str) -> Callable[[Command], Command]:
@@ -38,23 +36,6 @@ def study_options(kinds: str) -> Callable[[Command], Command]:
         return with_files(text, ("html", "pdf", "docx"))(with_options(overwrite)(command))
 
     return add
-
-
-def show(blocks: Iterable[Block]) -> None:
-    """Print paragraphs, and tables with a line of space around them; curves are for files."""
-    from xlmc.cli.printing import table
-    from xlmc.outputs.study_report import Table
-
-    spaced = True
-    for each in blocks:
-        if isinstance(each, str):
-            say(paragraph(each))
-            spaced = False
-        elif isinstance(each, Table):
-            if not spaced:
-                say()
-            table(each.title, each.headings, each.rows, right=each.right)
-            spaced = True
 
 
 def estimate_json(estimate: Estimate) -> dict[str, float | None]:

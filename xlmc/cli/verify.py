@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.study_output import STUDY, show, study_options
+from xlmc.cli.blocks import show
+from xlmc.cli.study_output import STUDY, study_options
 from xlmc.cli.terminal import say_json
 from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.verify import CellCheck, Verification
-    from xlmc.outputs.study_report import Block
+    from xlmc.outputs.document.parts import Block
 
 __all__ = ["verify"]
 
@@ -43,6 +44,7 @@ def verify(
     from xlmc.excel.workbook.reader import read_workbook
     from xlmc.montecarlo.definitions.definitions_reader import read_definitions
     from xlmc.montecarlo.model.labels import calculate_labels
+    from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import Files, StudyReport
 
     workbook = read_workbook(book)
@@ -56,7 +58,7 @@ def verify(
     report = StudyReport(
         "Recomputed values beside those that Excel saved",
         f"{book.name}: {cells}",
-        _blocks(found, _WRITTEN),
+        blocks_of(_blocks(found, _WRITTEN)),
         "Verification",
         partial(_as_json, found),
     )
@@ -64,7 +66,7 @@ def verify(
     if as_json:
         say_json(report.as_json())
     else:
-        show(_blocks(found, _SHOWN))
+        show(blocks_of(_blocks(found, _SHOWN)))
         written.report_failures()
     written.check()
     if found.count(Status.DIFFERING):
@@ -98,13 +100,13 @@ def _plain(value: object) -> object:
     return value.text if isinstance(value, ErrorCode) else value
 
 
-def _blocks(found: Verification, most: int) -> list[Block]:
-    """Yield what was found, with `most` differing cells."""
+def _blocks(found: Verification, most: int) -> list[str | Block]:
+    """What was found, with `most` differing cells."""
     from xlmc.analysis.studies.verify import Status, groups
-    from xlmc.outputs.study_report import Table
+    from xlmc.outputs.document.parts import Table
 
     counts = [f"{found.count(status):,} {status.value}" for status in Status if found.count(status)]
-    blocks: list[Block] = [f"{len(found.cells):,} formula cells: {', '.join(counts) or 'nothing to check'}."]
+    blocks: list[str | Block] = [f"{len(found.cells):,} formula cells: {', '.join(counts) or 'nothing to check'}."]
     differing = found.of(Status.DIFFERING)
     if differing:
         rows = tuple(

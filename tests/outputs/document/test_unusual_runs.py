@@ -110,7 +110,7 @@ def test_every_kind_of_block_can_be_empty_of_pictures():
     from xlmc.outputs.document.typst_writer import pdf_bytes
 
     plain = Document("t", "", None, "h", "f", (), (Heading("one"), Paragraph("two", "warning")))
-    assert plain.drawings == []
+    assert plain.pictures == []
     assert pdf_bytes(plain).startswith(b"%PDF")
     assert docx_bytes(plain).startswith(b"PK")
     drawing = Drawing('<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"/>', "nothing", 5.0)

@@ -7,10 +7,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.montecarlo.statistics import Estimate, format_estimate
-from xlmc.outputs.page.element import Html
-from xlmc.outputs.page.flow import Flow, estimate_html, shown_html, shown_text
+from xlmc.outputs.document.element import Html
+from xlmc.outputs.document.html_writer import estimate_html, shown_html
+from xlmc.outputs.page.flow import Flow
 from xlmc.outputs.sheets import cells, results_sheet, statistics_sheet
-from xlmc.outputs.sheets.cells import Shown, count
+from xlmc.outputs.sheets.cells import Shown, count, shown_text
 
 
 def test_headings_paragraphs_and_tables_follow_each_other():

@@ -13,6 +13,7 @@ from xlmc.excel.workbook.printable import printable
 from xlmc.excel.workbook.writer import package_bytes
 from xlmc.outputs.document.parts import (
     Bullets,
+    Chart,
     Code,
     Content,
     Document,
@@ -20,7 +21,9 @@ from xlmc.outputs.document.parts import (
     Figure,
     Heading,
     Paragraph,
+    Picture,
     Table,
+    cell_text,
 )
 from xlmc.outputs.document.typst_writer import UNDATED, pictures
 
@@ -54,7 +57,7 @@ class _Writer:
 
         self._drawn = drawn
         self._file = docx.Document()
-        self._pictures = iter(pictures(drawn.drawings))
+        self._pictures = iter(pictures(drawn.pictures))
         width, _ = _SIZES[drawn.paper]
         self._room = width - 2 * _MARGIN
 
@@ -84,7 +87,10 @@ class _Writer:
                     self._picture(paragraph, drawing)
                     self._caption(caption)
                 case Table():
-                    self._caption(block.caption, before=True)
+                    if block.title:
+                        self._file.add_heading(printable(block.title), 1)
+                    if block.caption:
+                        self._caption(block.caption, before=True)
                     self._table(block)
         return self._file
 
@@ -138,7 +144,7 @@ class _Writer:
         paragraph = self._file.add_paragraph(printable(text), style="Caption")
         paragraph.paragraph_format.keep_with_next = before
 
-    def _picture(self, paragraph: Any, drawing: Drawing) -> None:
+    def _picture(self, paragraph: Any, drawing: Picture) -> None:
         from docx.shared import Mm
 
         shape = paragraph.add_run().add_picture(io.BytesIO(next(self._pictures)), width=Mm(drawing.width))
@@ -149,18 +155,20 @@ class _Writer:
     def _table(self, table: Table) -> None:
         from docx.shared import Mm
 
-        made = self._file.add_table(rows=1 + len(table.rows), cols=len(table.heads))
+        lines = (table.heads, *table.rows) if table.heads else table.rows
+        made = self._file.add_table(rows=len(lines), cols=table.columns)
         made.style = "Table Grid"
         made.autofit = False
-        whole = sum(table.widths)
-        widths = [Mm(self._room * width / whole) for width in table.widths]
+        whole, at_right = sum(table.relative_widths), table.at_right
+        widths = [Mm(self._room * width / whole) for width in table.relative_widths]
         for column, width in zip(made.columns, widths, strict=True):
             column.width = width
-        for number, (row, contents) in enumerate(zip(made.rows, (table.heads, *table.rows), strict=True)):
-            _keep_whole(row, repeated=number == 0)
+        for number, (row, contents) in enumerate(zip(made.rows, lines, strict=True)):
+            heads = number == 0 and bool(table.heads)
+            _keep_whole(row, repeated=heads)
             for index, (cell, content) in enumerate(zip(row.cells, contents, strict=True)):
                 cell.width = widths[index]
-                self._cell(cell.paragraphs[0], content, bold=number == 0, right=index in table.right)
+                self._cell(cell.paragraphs[0], content, bold=heads, right=index in at_right)
         self._file.add_paragraph().paragraph_format.space_after = _points(2)
 
     def _cell(self, paragraph: Any, content: Content, *, bold: bool, right: bool) -> None:
@@ -169,10 +177,10 @@ class _Writer:
         paragraph.paragraph_format.space_after = _points(0)
         if right:
             paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT
-        if isinstance(content, Drawing):
+        if isinstance(content, Drawing | Chart):
             self._picture(paragraph, content)
         else:
-            run = paragraph.add_run(printable(content))
+            run = paragraph.add_run(printable(cell_text(content)))
             run.font.size, run.bold = _points(_CELL), bold or None
 
 

@@ -1,39 +1,45 @@
-"""The pictures of a report, as SVG that needs no font but the one that Typst brings along."""
+"""Every chart as SVG, for pages, PDF and Word: it needs no font but the one that Typst brings along."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.analysis.studies.sensitivity import ForecastSensitivity
 from xlmc.excel.workbook.printable import printable
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.loop.forecast_result import ForecastResult
-from xlmc.outputs.document.parts import Drawing
-from xlmc.outputs.filter_effect import Shapes
+from xlmc.outputs.document.parts import Bar, Bars, Chart, Drawing, Line, Lines, Shape
 from xlmc.outputs.histogram import Figure
-from xlmc.outputs.page.svg import Scale, scale_of
 from xlmc.outputs.sheets.styles import DARK, GRID, INK, LIGHT
 from xlmc.outputs.summary import percent
 
 __all__ = [
-    "before_and_after",
+    "COLOURS",
+    "Scale",
     "drawing",
+    "drawn",
     "forecast_drawing",
-    "influence_drawing",
     "line_to",
     "path_of",
+    "scale_of",
     "text_at",
 ]
 
 FONT = "Libertinus Serif"
 _THRESHOLD = "#9C0006"
 _POINTS = 401
-_LONGEST = 40
+_LONGEST, _BESIDE = 40, 20
+"""Characters of a name at the left of a bar, and beside the lines."""
+_FILLS = {"dark": DARK, "light": LIGHT}
+COLOURS = ("#1F3044", "#2F6DA8", "#C8553D", "#4F8A5B", "#8E5EA2", "#D99A2B")
+"""Of lines."""
+_ROUND_STEPS = (1.0, 2.0, 5.0, 10.0)
+_ROOM = 0.03
 _DASHES = ' stroke-dasharray="4 3"'
 
 Floats = NDArray[np.float64]
@@ -91,84 +97,135 @@ def forecast_drawing(figure: Figure, result: ForecastResult, width: float) -> Dr
     return drawing(found, 570.0, bottom + 40, said, width)
 
 
-def before_and_after(name: str, shown: Shapes | None) -> Drawing | None:
-    """How often an assumption has each value before filtering (pale), and in accepted trials (the line).
+def drawn(chart: Chart) -> Drawing:
+    """A chart as SVG."""
+    match chart.data:
+        case Bars():
+            return _bars(chart, chart.data)
+        case Lines():
+            return _lines(chart, chart.data)
+        case Shape():
+            return _shape(chart, chart.data)
 
-    Args:
-        name: of the assumption.
-        shown: its shapes; None where there are none to draw.
-    """
-    if shown is None:
-        return None
-    edges, pale, dark = shown.edges, shown.before, shown.accepted
-    low, high = float(edges[0]), float(edges[-1])
-    most = float(max(pale.max(), dark.max()))
+
+def _bars(chart: Chart, shown: Bars) -> Drawing:
+    """Bars with their names at the left, over grid lines; a line at 0."""
+    left, right, row = 220.0, 548.0, 17.0
+    top = 26.0 if chart.title else 6.0
+    bottom = top + row * len(shown.bars)
+    ends = [end for bar in shown.bars for piece in bar.pieces for end in piece[:2]]
+    ends += [end for bar in shown.bars for end in bar.whisker or ()]
+    across = scale_of([0.0, *ends], left, right)
+    if min([0.0, *(end for end in ends if math.isfinite(end))]) == 0.0:
+        across = Scale(0.0, across.high, left, right, across.step)
+    found = _title(chart)
+    for tick in across.ticks:
+        x = across(tick)
+        found += [line_to(x, top, x, bottom, GRID), text_at(x, bottom + 13, across.text(tick))]
+    for index, bar in enumerate(shown.bars):
+        found += _bar(bar, top + row * index, row, left, across)
+    found.append(line_to(across(0.0), top, across(0.0), bottom, INK))
+    found.append(text_at((left + right) / 2, bottom + 28, chart.across))
+    return drawing(found, 570.0, bottom + 34, chart.said, chart.width)
+
+
+def _bar(bar: Bar, top: float, row: float, left: float, across: Scale) -> list[str]:
+    found = [text_at(left - 6, top + 12, _short(bar.name), anchor="end")]
+    for first, last, look in bar.pieces:
+        if math.isfinite(first) and math.isfinite(last):
+            start, stop = sorted((across(first), across(last)))
+            found.append(_rect(start, top + 3, stop - start, row - 6, _FILLS[look]))
+    if bar.whisker is not None and all(map(math.isfinite, bar.whisker)):
+        start, stop = map(across, bar.whisker)
+        middle = top + row / 2
+        found.append(line_to(start, middle, stop, middle, INK))
+        found += [line_to(end, middle - 3, end, middle + 3, INK) for end in (start, stop)]
+    return found
+
+
+def _lines(chart: Chart, shown: Lines) -> Drawing:
+    """Lines over grid lines, with their names beside them."""
+    left, right, top, bottom = 60.0, 420.0, 26.0 if chart.title else 10.0, 250.0
+    points = [point for line in shown.lines for point in _finite(line)]
+    known = [shown.now] if shown.now is not None else []
+    x = scale_of([*known, *(point[0] for point in points)], left, right)
+    reach = [value for _, y, error in points for value in (y - (error or 0.0), y + (error or 0.0))]
+    y = scale_of([0.0, 1.0] if shown.share else [0.0, *reach], bottom, top)
+    found = _title(chart)
+    for tick in y.ticks:
+        found += [
+            line_to(left, y(tick), right, y(tick), GRID),
+            text_at(left - 6, y(tick) + 4, y.text(tick), anchor="end"),
+        ]
+    found += [text_at(x(tick), bottom + 15, x.text(tick)) for tick in x.ticks]
+    found.append(line_to(left, bottom, right, bottom, INK))
+    if shown.now is not None:
+        found.append(line_to(x(shown.now), top, x(shown.now), bottom, INK, dashed=True))
+    for index, line in enumerate(shown.lines):
+        colour, at = COLOURS[index % len(COLOURS)], top + 14 + 18 * index
+        width = 1.4 if index else 2.2
+        ends = _finite(line)
+        found.append(path_of([(x(a), y(b)) for a, b, _ in ends], colour, width) if ends else "")
+        for a, b, error in ends if shown.dots else ():
+            found += [line_to(x(a), y(b - error), x(a), y(b + error), INK)] if error else []
+            found.append(f'<circle cx="{x(a):.2f}" cy="{y(b):.2f}" r="2.5" fill="{colour}"/>')
+        found += [
+            line_to(right + 12, at, right + 34, at, colour, width),
+            text_at(right + 40, at + 4, _short(line.name, _BESIDE), anchor="start"),
+        ]
+    found.append(text_at((left + right) / 2, bottom + 34, chart.across))
+    found.append(text_at(14, (top + bottom) / 2, shown.upwards, turned=True))
+    return drawing(found, 570.0, bottom + 42, chart.said, chart.width)
+
+
+def _finite(line: Line) -> list[tuple[float, float, float | None]]:
+    """The points that can be drawn, each with its error."""
+    return [(p[0], p[1], p[2] if len(p) > 2 else None) for p in line.points if math.isfinite(p[1])]
+
+
+def _title(chart: Chart) -> list[str]:
+    return [text_at(0, 14, chart.title, anchor="start", size=13)] if chart.title else []
+
+
+def _shape(chart: Chart, shown: Shape) -> Drawing:
+    """How often an assumption has each value before filtering (pale), and in accepted trials (the line)."""
+    low, high = shown.edges[0], shown.edges[-1]
+    most = max(*shown.before, *shown.accepted)
     width, height, bottom = 150.0, 48.0, 34.0
     across = Scale(low, high, 1.0, width - 1.0, 1.0)
     up = Scale(0.0, most or 1.0, bottom, 2.0, 1.0)
     found = []
     outline: list[tuple[float, float]] = []
-    for index in range(pale.size):
-        x, upper = across(float(edges[index])), across(float(edges[index + 1]))
-        found.append(_rect(x, up(float(pale[index])), upper - x, bottom - up(float(pale[index])), LIGHT))
-        outline += [(x, up(float(dark[index]))), (upper, up(float(dark[index])))]
+    for index, (before, accepted) in enumerate(zip(shown.before, shown.accepted, strict=True)):
+        x, upper = across(shown.edges[index]), across(shown.edges[index + 1])
+        found.append(_rect(x, up(before), upper - x, bottom - up(before), LIGHT))
+        outline += [(x, up(accepted)), (upper, up(accepted))]
     found += [
         path_of([(1.0, bottom), *outline, (width - 1.0, bottom)], DARK, 1.3),
         line_to(1, bottom, width - 1, bottom, INK),
     ]
-    first, last = (_end_text(end, high - low) for end in (low, high))
+    first, last = (end_text(end, high - low) for end in (low, high))
     found.append(text_at(1.0, height - 2, first, anchor="start", size=13))
     found.append(text_at(width - 1.0, height - 2, last, anchor="end", size=13))
-    said = f"{name}: before filtering pale, accepted as a line, from {first} to {last}"
-    return drawing(found, width, height, said, 28.0)
+    return drawing(found, width, height, f"{chart.said}, from {first} to {last}", chart.width)
 
 
-def _end_text(end: float, span: float) -> str:
+def end_text(end: float, span: float) -> str:
     """An end of the draws, to some thousandths of what they reach over.
 
-    >>> _end_text(0.0002339, 10.0), _end_text(0.60003, 0.35)
+    >>> end_text(0.0002339, 10.0), end_text(0.60003, 0.35)
     ('0', '0.6')
     """
     digits = 2 - math.floor(math.log10(span)) if span > 0 else 6
     return f"{round(end, digits) + 0.0:.10g}"
 
 
-def influence_drawing(found: ForecastSensitivity, most: int) -> Drawing:
-    """The variance of a forecast that each assumption explains, as bars with whiskers; the largest on top."""
-    shown = found.influences[:most]
-    left, right, row = 220.0, 548.0, 17.0
-    bottom = 6 + row * len(shown)
-    shares = [(each.assumption, 100.0 * each.explained.value, each.explained.error) for each in shown]
-    ends = [value + 100.0 * (error or 0.0) for _, value, error in shares if math.isfinite(value)]
-    across = scale_of([0.0, *ends], left, right)
-    across = Scale(min(0.0, min([*ends, 0.0])), across.high, left, right, across.step)
-    drawn = []
-    for tick in across.ticks:
-        drawn += [
-            line_to(across(tick), 6, across(tick), bottom, GRID),
-            text_at(across(tick), bottom + 13, across.text(tick)),
-        ]
-    for index, (name, value, error) in enumerate(shares):
-        top = 6 + row * index
-        drawn.append(text_at(left - 6, top + 12, _short(name), anchor="end"))
-        if not math.isfinite(value):
-            continue
-        drawn.append(_rect(across(0.0), top + 3, max(across(value) - across(0.0), 0.0), row - 6, DARK))
-        if error:
-            ends_x = (across(max(value - 100.0 * error, across.low)), across(value + 100.0 * error))
-            drawn.append(line_to(ends_x[0], top + row / 2, ends_x[1], top + row / 2, INK))
-    drawn += [line_to(across(0.0), 6, across(0.0), bottom, INK)]
-    drawn.append(text_at((left + right) / 2, bottom + 28, "Share of the variance explained, %"))
-    said = f"{found.forecast}: the variance that each assumption explains, the largest first"
-    return drawing(drawn, 570.0, bottom + 34, said, 125.0)
-
-
 def _near(value: float, low: float, high: float) -> float:
     return min(max(value, low), high) if math.isfinite(value) else low
 
 
-def _short(name: str) -> str:
-    return name if len(name) <= _LONGEST else f"{name[: _LONGEST - 1]}…"
+def _short(name: str, longest: int = _LONGEST) -> str:
+    return name if len(name) <= longest else f"{name[: longest - 1]}…"
 
 
 def _grid(scale: Scale, left: float, right: float, form: str) -> list[str]:
@@ -218,3 +275,50 @@ def text_at(
     look = f'font-family={quoteattr(FONT)} font-size="{size:g}" fill="{fill}" text-anchor="{anchor}"'
     turn = f' transform="rotate(-90 {x:.2f} {y:.2f})"' if turned else ""
     return f'<text x="{x:.2f}" y="{y:.2f}" {look}{turn}>{escape(printable(value))}</text>'
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """A straight axis from `low` at `start` to `high` at `stop`, with round ticks `step` apart."""
+
+    low: float
+    high: float
+    start: float
+    stop: float
+    step: float
+
+    def __call__(self, value: float) -> float:
+        """The coordinate of a number."""
+        return self.start + (self.stop - self.start) * (value - self.low) / (self.high - self.low)
+
+    @property
+    def ticks(self) -> list[float]:
+        """The multiples of the step within the scale."""
+        first, last = math.ceil(self.low / self.step - 1e-9), math.floor(self.high / self.step + 1e-9)
+        return [float(f"{index * self.step:.12g}") for index in range(first, last + 1)]
+
+    def text(self, tick: float) -> str:
+        """A tick in the digits that the step needs."""
+        return f"{tick:g}".replace("-", "−")
+
+
+def scale_of(values: list[float], start: float, stop: float, *, most: int = 6) -> Scale:
+    """A scale that reaches over all finite values, with a little room, and has `most` ticks at most.
+
+    >>> scale_of([0.0, 0.93], 0.0, 100.0).ticks
+    [0.0, 0.2, 0.4, 0.6, 0.8]
+    """
+    known = [value for value in values if math.isfinite(value)] or [0.0]
+    low, high = min(known), max(known)
+    if high - low <= 1e-12 * max(abs(low), abs(high), 1e-300):
+        margin = 0.5 * abs(low) or 0.5
+        low, high = low - margin, high + margin
+    else:
+        low, high = low - _ROOM * (high - low), high + _ROOM * (high - low)
+    step = _round_above((high - low) / most)
+    return Scale(low, high, start, stop, step)
+
+
+def _round_above(width: float) -> float:
+    power = 10.0 ** math.floor(math.log10(width))
+    return power * next(factor for factor in _ROUND_STEPS if factor * power >= width * (1.0 - 1e-9))

@@ -1,25 +1,42 @@
-"""What a report is made of, whatever it is written as: both writers read the same parts, so they cannot disagree.
+"""The blocks of a document, whatever it is written as: all writers read the same blocks, so they cannot disagree.
 
-All texts are plain; a writer makes sure that none becomes markup.
+Sections make the blocks from a run or a study. They are written as PDF (`typst_writer`), for Word (`docx_writer`), as
+HTML for pages and notebooks (`html_writer`), onto sheets (`xlsx_writer`) and to the terminal (`xlmc.cli.blocks`). All
+texts are plain; a writer makes sure that none becomes markup. No writer formats a number: a cell that holds one brings
+its format along.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import date
+from typing import Final
+
+from xlmc.outputs.sheets.cells import Shown, shown_text
 
 __all__ = [
+    "NUMBERS",
+    "Bar",
+    "Bars",
     "Block",
     "Bullets",
+    "Chart",
     "Code",
     "Content",
     "Document",
     "Drawing",
     "Figure",
     "Heading",
+    "Line",
+    "Lines",
     "Paper",
     "Paragraph",
+    "Picture",
+    "Shape",
     "Table",
+    "blocks_of",
+    "cell_text",
 ]
 
 Paper = str
@@ -36,7 +53,7 @@ class Heading:
 
 @dataclass(frozen=True, slots=True)
 class Paragraph:
-    """A paragraph; `look` is `text`, `small`, or `warning`."""
+    """A paragraph; `look` is `text`, `small`, `warning`, `quote` or `subtitle`."""
 
     text: str
     look: str = "text"
@@ -72,37 +89,161 @@ class Drawing:
     width: float
 
 
-Content = str | Drawing
-"""The content of a cell of a table."""
+@dataclass(frozen=True, slots=True)
+class Bar:
+    """A named row of pieces, each from one number to another, in a look (`dark`, `light`), and a whisker."""
+
+    name: str
+    pieces: tuple[tuple[float, float, str], ...]
+    whisker: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Bars:
+    """Bars from left to right, the first on top, with a line at 0."""
+
+    bars: tuple[Bar, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A line through points `(x, y)` or `(x, y, error of y)`; an error may be None."""
+
+    name: str
+    points: tuple[tuple[float, float] | tuple[float, float, float | None], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Lines:
+    """Lines over one axis, six at most.
+
+    Attributes:
+        lines: the first is the thickest where the others are compared with it.
+        upwards: the name of the vertical axis.
+        share: the vertical axis runs from 0 to 1, in percent on a sheet; else it reaches over all points, and 0.
+        dots: mark the points.
+        now: where a dashed upright line stands.
+    """
+
+    lines: tuple[Line, ...]
+    upwards: str
+    share: bool = False
+    dots: bool = False
+    now: float | None = None
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The least and the largest x."""
+        found = [point[0] for line in self.lines for point in line.points]
+        return min(found), max(found)
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """How often an assumption has each value: `(b + 1,)` edges, `(b,)` shares before filtering and accepted."""
+
+    edges: tuple[float, ...]
+    before: tuple[float, ...]
+    accepted: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Chart:
+    """A chart, which each writer draws in its own way.
+
+    Attributes:
+        title: above it; empty for none.
+        across: the name of the horizontal axis.
+        data: what it shows, which says of which kind it is.
+        said: what it shows, for those who cannot see it.
+        width: in millimetres, where it is printed.
+    """
+
+    title: str
+    across: str
+    data: Bars | Lines | Shape
+    said: str
+    width: float = 150.0
+
+
+Picture = Drawing | Chart
+
+Content = str | Shown | Drawing | Chart
+"""The content of a cell of a table: a text, a number with its format, or a picture."""
+
+NUMBERS: Final = frozenset({"number", "answer", "error", "second number", "second error", "moved", "trial"})
+"""Looks of cells that hold numbers, which stand at the right."""
 
 
 @dataclass(frozen=True, slots=True)
 class Figure:
     """A picture with its caption."""
 
-    drawing: Drawing
+    drawing: Picture
     caption: str
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table with one row of headings, and its caption above it.
+    """A table with one row of headings.
 
     Attributes:
-        heads: `(c,)` headings.
+        title: the heading of its own above it; empty for none.
+        heads: `(c,)` headings; empty for none.
         rows: each of `(c,)` cells.
-        widths: `(c,)` relative widths of the columns.
-        right: the columns whose cells stand at the right.
+        right: the columns whose cells stand at the right; those of numbers do so anyway.
+        widths: `(c,)` relative widths of the columns; by default what the cells need.
+        caption: above it, in small letters; empty for none.
     """
 
-    caption: str
+    title: str
     heads: tuple[str, ...]
     rows: tuple[tuple[Content, ...], ...]
-    widths: tuple[float, ...]
-    right: frozenset[int] = frozenset()
+    right: Sequence[int] = ()
+    widths: tuple[float, ...] = ()
+    caption: str = ""
+
+    @property
+    def columns(self) -> int:
+        """How many there are."""
+        return len(self.heads) or max(map(len, self.rows), default=0)
+
+    @property
+    def at_right(self) -> frozenset[int]:
+        """The columns whose cells stand at the right."""
+        shown = ((index, cell) for row in self.rows for index, cell in enumerate(row) if isinstance(cell, Shown))
+        return frozenset(self.right) | {index for index, cell in shown if cell.look in NUMBERS}
+
+    @property
+    def relative_widths(self) -> tuple[float, ...]:
+        """How wide each column is beside the others: numbers and names stay whole, sentences need not."""
+        if self.widths:
+            return self.widths
+        widest = _WIDEST if self.columns <= _FEW else _NARROW
+        lengths = [len(head) for head in self.heads] or [0] * self.columns
+        for row in self.rows:
+            for index, cell in enumerate(row):
+                lengths[index] = max(lengths[index], len(cell_text(cell)))
+        return tuple(3.0 + min(length, widest) for length in lengths)
+
+
+_WIDEST, _NARROW, _FEW = 40, 14, 8
+"""Characters of a column that may stay in one line: of a table of few columns, and of one of more."""
+
+
+def cell_text(cell: Content) -> str:
+    """What a cell says, as text."""
+    if isinstance(cell, Shown):
+        return shown_text(cell)
+    return cell if isinstance(cell, str) else cell.said
 
 
 Block = Heading | Paragraph | Bullets | Code | Figure | Table
+
+
+def blocks_of(found: Iterable[str | Block]) -> tuple[Block, ...]:
+    """Blocks, of which paragraphs may be given as their texts."""
+    return tuple(Paragraph(each) if isinstance(each, str) else each for each in found)
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,12 +276,12 @@ class Document:
         return list(zip(self.blocks, (*self.blocks[1:], None), strict=True))
 
     @property
-    def drawings(self) -> list[Drawing]:
+    def pictures(self) -> list[Picture]:
         """Every picture, in the order of the document."""
-        found: list[Drawing] = []
+        found: list[Picture] = []
         for block in self.blocks:
             if isinstance(block, Figure):
                 found.append(block.drawing)
             elif isinstance(block, Table):
-                found += [cell for row in block.rows for cell in row if isinstance(cell, Drawing)]
+                found += [cell for row in block.rows for cell in row if isinstance(cell, Drawing | Chart)]
         return found

@@ -25,14 +25,15 @@ from xlmc.montecarlo.diagnostics.checking import checks_sentence
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
 from xlmc.montecarlo.statistics import proportion
-from xlmc.outputs.document.drawings import before_and_after, forecast_drawing, influence_drawing
+from xlmc.outputs.document.charts import influence_chart, shape_chart
+from xlmc.outputs.document.drawings import forecast_drawing
 from xlmc.outputs.document.equations import equations_of
 from xlmc.outputs.document.glossary import GLOSSARY, WORDS_OF_EVIDENCE, WORDS_OF_SCENARIOS
-from xlmc.outputs.document.parts import Block, Bullets, Code, Content, Drawing, Figure, Paragraph, Table
+from xlmc.outputs.document.parts import Block, Bullets, Code, Content, Figure, Paragraph, Picture, Table
 from xlmc.outputs.document.scene_drawing import scene_drawing
 from xlmc.outputs.evidence_tables import ITEM_HEADS, MOVES_MEANING, item_rows, move_rows, trials_sentence
 from xlmc.outputs.evidence_tables import MEANING as MEANING_OF_EVIDENCE
-from xlmc.outputs.filter_effect import filter_effect_of, shapes_of
+from xlmc.outputs.filter_effect import filter_effect_of
 from xlmc.outputs.histogram import figures_of
 from xlmc.outputs.scenario_tables import SCENARIO_HEADS, answer_heads, answer_rows, scenario_rows
 from xlmc.outputs.sheets.results_sheet import base_sentences, opening_sentences, range_sentences
@@ -84,7 +85,7 @@ class Material:
     figures: int = field(default=0)
     tables: int = field(default=0)
 
-    def figure(self, drawing: Drawing, caption: str) -> Figure:
+    def figure(self, drawing: Picture, caption: str) -> Figure:
         """A figure with the next number."""
         self.figures += 1
         return Figure(drawing, f"Figure {self.figures}. {caption}")
@@ -99,9 +100,8 @@ class Material:
     ) -> Table:
         """A table with the next number."""
         self.tables += 1
-        return Table(
-            f"Table {self.tables}. {caption}", tuple(heads), tuple(map(tuple, rows)), tuple(widths), frozenset(right)
-        )
+        numbered = f"Table {self.tables}. {caption}"
+        return Table("", tuple(heads), tuple(map(tuple, rows)), tuple(right), tuple(widths), numbered)
 
 
 def _answer(material: Material) -> Iterator[Block]:
@@ -323,13 +323,13 @@ def _assumption_row(simulation: RunResult, each: Assumption) -> list[Content]:
         base = "" if each.base is None else f"{each.base:.9g}"
         return [name, words, f"{status(simulation.model, each.name, each.frozen)}: {base}", _NONE, _NONE]
     both = (found.prior, found.accepted)
-    drawing = before_and_after(each.name, shapes_of(simulation, each.name))
+    shape = shape_chart(simulation, each.name)
     return [
         name,
         words,
         "\n".join(estimate_text(marginal.mean) for marginal in both),
         "\n".join(estimate_text(marginal.standard_deviation) for marginal in both),
-        drawing or _NONE,
+        shape or _NONE,
     ]
 
 
@@ -351,7 +351,7 @@ def _sensitivity(material: Material) -> Iterator[Block]:
     for each in shown:
         if each.influences and len(shown) <= _FEW:
             caption = f"What {each.forecast} depends on most."
-            yield material.figure(influence_drawing(each, most), caption)
+            yield material.figure(influence_chart(each, most), caption)
         lines += _influence_rows(each, most)
     if lines:
         heads = ("Forecast", "Assumption", "Variance explained", "Rank correlation")

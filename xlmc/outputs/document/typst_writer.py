@@ -12,9 +12,11 @@ from typing import Any, Final
 
 from xlmc.errors import SimulationError
 from xlmc.excel.workbook.printable import printable
+from xlmc.outputs.document.drawings import drawn
 from xlmc.outputs.document.parts import (
     Block,
     Bullets,
+    Chart,
     Code,
     Content,
     Document,
@@ -22,7 +24,9 @@ from xlmc.outputs.document.parts import (
     Figure,
     Heading,
     Paragraph,
+    Picture,
     Table,
+    cell_text,
 )
 
 __all__ = ["UNDATED", "pdf_bytes", "pictures"]
@@ -70,7 +74,7 @@ def pdf_bytes(document: Document) -> bytes:
     return bytes(_compiled(_source(document), pdf_standards=_STANDARDS))
 
 
-def pictures(drawings: Sequence[Drawing]) -> list[bytes]:
+def pictures(drawings: Sequence[Picture]) -> list[bytes]:
     """Drawings as PNG, as large as they are printed.
 
     Raises:
@@ -145,6 +149,8 @@ def _block(block: Block, leads: bool) -> Iterator[str]:
         case Figure(drawing, caption):
             yield f"#figure({_image(drawing)}, caption: [#{_text(caption)}])"
         case Table():
+            if block.title:
+                yield f"#heading(level: 1, {_text(block.title)})"
             yield _table(block)
 
 
@@ -153,21 +159,24 @@ def _size(look: str) -> str:
 
 
 def _table(table: Table) -> str:
-    columns = ", ".join(f"{width:g}fr" for width in table.widths)
-    aligned = ", ".join("right" if index in table.right else "left" for index in range(len(table.heads)))
+    columns = ", ".join(f"{width:g}fr" for width in table.relative_widths)
+    at_right = table.at_right
+    aligned = ", ".join("right" if index in at_right else "left" for index in range(table.columns))
     heads = ", ".join(f"[#{_text(head)}]" for head in table.heads)
+    top = f"table.header({heads}), " if heads else ""
     rows = "".join(f"  {', '.join(_cell(cell) for cell in row)},\n" for row in table.rows)
-    inner = f"table(columns: ({columns},), align: ({aligned},), table.header({heads}),\n{rows})"
+    inner = f"table(columns: ({columns},), align: ({aligned},), {top}\n{rows})"
     return f"#figure(kind: table, caption: [#{_text(table.caption)}], {inner})"
 
 
 def _cell(content: Content) -> str:
-    if isinstance(content, Drawing):
+    if isinstance(content, Drawing | Chart):
         return f"[#{_image(content)}]"
-    return f"table.cell(breakable: false, [#{_text(content)}])"
+    return f"table.cell(breakable: false, [#{_text(cell_text(content))}])"
 
 
-def _image(drawing: Drawing) -> str:
+def _image(picture: Picture) -> str:
+    drawing = drawn(picture) if isinstance(picture, Chart) else picture
     size = f'width: {drawing.width:g}mm, format: "svg"'
     return f"image(bytes({_text(drawing.svg)}), {size}, alt: {_text(drawing.said)})"
 

@@ -25,9 +25,9 @@ from xlmc.montecarlo.statistics import (
     rank_correlation,
 )
 from xlmc.montecarlo.statistics.estimate import finite
+from xlmc.outputs.document.element import EMPTY, Html, element, join
 from xlmc.outputs.histogram import Figure, figures_of, histogram, multiples
 from xlmc.outputs.live.protocol import Message
-from xlmc.outputs.page.element import EMPTY, Html, element, join
 from xlmc.outputs.page.flow import Flow
 from xlmc.outputs.page.payload import forecast_payload
 from xlmc.outputs.page.sensitivity_sections import dependence, limits

@@ -14,13 +14,13 @@ from xlmc.errors import XlmcError
 from xlmc.montecarlo.definitions.run_options import KEPT_INPUTS, RunOptions
 from xlmc.montecarlo.interruption import looking
 from xlmc.montecarlo.simulation.simulate import run_model
+from xlmc.outputs.document.element import element, join
 from xlmc.outputs.live.adjustments import Adjustments
 from xlmc.outputs.live.comparison import Comparison
 from xlmc.outputs.live.frames import Bases, bases_of, frame_of, matters_html, pair_of, rest_of, tables_html
 from xlmc.outputs.live.moving_models import KnownModels
 from xlmc.outputs.live.protocol import Message, Said
 from xlmc.outputs.live.window_book import shapes_of
-from xlmc.outputs.page.element import element, join
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.loop.stopping import Progress

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import io
 import math
 import textwrap
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["OTHER", "STYLES", "Style", "draw"]
+__all__ = ["OTHER", "STYLES", "Style", "draw", "png", "svg"]
 
 
 class Style(NamedTuple):
@@ -281,3 +283,22 @@ def _tick(value: float, _: float) -> str:
 
 def _say(axis: Axes, text: str) -> None:
     axis.text(0.5, 0.5, text, transform=axis.transAxes, ha="center", color=_GREY)
+
+
+@lru_cache(maxsize=2)  # drawing takes a second, and page and document show the same
+def svg(study: Study, against: Work) -> str:
+    """The figure of a study as SVG, its letters as shapes; the same study gives the same bytes."""
+    import matplotlib as mpl
+
+    drawn = io.StringIO()
+    with mpl.rc_context({"svg.fonttype": "path", "svg.hashsalt": "xlmc"}):
+        draw(study, against, words=False).savefig(drawn, format="svg", metadata={"Date": None})
+    text = drawn.getvalue()
+    return text[text.index("<svg") :]
+
+
+def png(study: Study) -> bytes:
+    """The figure against time as a picture."""
+    drawn = io.BytesIO()
+    draw(study).savefig(drawn, format="png", dpi=130)
+    return drawn.getvalue()

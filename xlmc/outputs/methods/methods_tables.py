@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 import numpy as np
@@ -13,10 +12,10 @@ from xlmc.analysis.studies.methods.answer import seconds_text, trials_text
 from xlmc.analysis.studies.methods.need import shortfall
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.statistics import format_estimate
+from xlmc.outputs.document.parts import Table
 from xlmc.outputs.summary import share_text
 
 __all__ = [
-    "Table",
     "accepted_text",
     "bounds_table",
     "cannot",
@@ -31,16 +30,6 @@ __all__ = [
 ]
 
 _NONE = "–"
-
-
-@dataclass(frozen=True, slots=True)
-class Table:
-    """Rows under headings; the columns from `right` on hold numbers."""
-
-    title: str
-    headings: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    right: int = 1
 
 
 def floor_of(study: Study, statistic: str) -> float:
@@ -70,7 +59,7 @@ def reference_table(study: Study) -> Table:
         f"Reference: {found.trials:,} trials ({how}, engine {found.engine}, seed {found.seed}), "
         f"{accepted_text(study)}, {seconds_text(found.seconds)}"
     )
-    return Table(title, ("Forecast", "Units", *STATISTICS.values()), tuple(rows), 2)
+    return _table(title, ("Forecast", "Units", *STATISTICS.values()), rows, 2)
 
 
 def error_table(study: Study) -> Table:
@@ -84,7 +73,7 @@ def error_table(study: Study) -> Table:
         "Root mean square errors, in % of each forecast's 5–95 % range (over the forecasts); of the accepted share, in "
         f"% of it. Needs: for {text}, in 95 of 100 runs"
     )
-    return Table(title, headings, tuple(rows))
+    return _table(title, headings, rows)
 
 
 def _cells(study: Study, curve: Curve) -> Iterator[str]:
@@ -146,7 +135,7 @@ def length_table(study: Study) -> Table:
             for runs in (curve.lengths if curve.answers else ())
         ]
     title = "Errors in % of each forecast's 5–95 % range, root mean square over runs and forecasts"
-    return Table(title, headings, tuple(rows))
+    return _table(title, headings, rows)
 
 
 def _runs(runs: Runs) -> int:
@@ -166,7 +155,7 @@ def forecast_table(study: Study) -> Table:
                 cells = (format_of(each.value, each.error) for each in found)
                 rows.append((forecast.name, forecast.units, curve.method.name, *cells))
     headings = ("Forecast", "Units", "Method", *STATISTICS.values())
-    return Table("Root mean square errors of the longest runs, in the forecasts' units", headings, tuple(rows), 3)
+    return _table("Root mean square errors of the longest runs, in the forecasts' units", headings, rows, 3)
 
 
 def bounds_table(study: Study) -> Table:
@@ -182,7 +171,7 @@ def bounds_table(study: Study) -> Table:
     rows.append(("Evaluations", "", *(f"{runs.evaluations:,.0f}" for runs in last), ""))
     rows.append(("Time", "", *(seconds_text(runs.seconds) for runs in last), ""))
     headings = ("Forecast", "Units", *(curve.method.name for curve in curves), "Reference, central range")
-    return Table("Bounds: what is possible", headings, tuple(rows), 2)
+    return _table("Bounds: what is possible", headings, rows, 2)
 
 
 def ends_lines(study: Study) -> list[tuple[str, str]]:
@@ -269,3 +258,8 @@ def percent_text(share: float) -> str:
 def slope_text(slope: float) -> str:
     """`−0.49`."""
     return _NONE if not np.isfinite(slope) else f"{slope:.2f}".replace("-", "−")
+
+
+def _table(title: str, headings: Sequence[str], rows: Sequence[tuple[str, ...]], first: int = 1) -> Table:
+    """A table whose columns from `first` on hold numbers."""
+    return Table(title, tuple(headings), tuple(rows), tuple(range(first, len(headings))))

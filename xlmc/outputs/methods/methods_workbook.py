@@ -1,25 +1,26 @@
-"""A study of methods as a workbook: the words, the tables as numbers, and Excel charts with logarithmic axes."""
+"""The further sheets of a study of methods: every run as numbers, and Excel charts with logarithmic axes."""
 
 from __future__ import annotations
 
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from xlmc.analysis.studies.methods import STATISTICS, Curve, Runs, Study, recommendation
+from xlmc.analysis.studies.methods import STATISTICS, Curve, Runs, Study
 from xlmc.outputs.methods import methods_tables
 from xlmc.outputs.methods.excel_charts import DATA, write_charts
-from xlmc.outputs.methods.methods_page import ENDS
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.sheets.page import Page
-from xlmc.outputs.sheets.styles import CREATED, Styles
+from xlmc.outputs.sheets.styles import Styles
 
-__all__ = ["book"]
+if TYPE_CHECKING:
+    from xlmc.outputs.document.parts import Table
+    from xlmc.outputs.sheets.exact_book import ExactBook
 
-_WORDS: Final = (34.0, *[19.0] * 10, 30.0)
+__all__ = ["add_sheets"]
+
 _RUNS: Final = (34.0, 12.0, 8.0, 13.0, 14.0, *[14.0] * 5, 13.0, 10.0, 9.0, 11.0)
-_LAST: Final = 8
 _HEADINGS: Final = (
     "Method",
     "Trials",
@@ -35,60 +36,15 @@ _HEADINGS: Final = (
 )
 
 
-def book(study: Study) -> dict[str, bytes]:
-    """Make the parts of the workbook: Methods, Charts, Runs, Forecasts, Chart data."""
-    from xlmc.outputs.sheets.exact_book import ExactBook
-
-    with ExactBook() as made:
-        made.set_properties({"created": CREATED})
-        styles = Styles(made)
-        words = Page(made.add_worksheet("Methods"), styles, _WORDS)
-        charts = Page(made.add_worksheet("Charts"), styles, ())
-        runs = Page(made.add_worksheet("Runs"), styles, _RUNS)
-        forecasts = Page(made.add_worksheet("Forecasts"), styles, (34.0, 10.0, 38.0, 22.0, 22.0, 22.0, 22.0))
-        data = Page(made.add_worksheet(DATA), styles, (70.0, 14.0, 14.0, 14.0, 14.0))
-        _write_words(words, study)
-        curve_rows = _write_runs(runs, study)
-        write_charts(charts, data, made, study, curve_rows)
-        _write_forecasts(forecasts, study)
-    parts: dict[str, bytes] = made.parts
-    return parts
-
-
-def _write_words(page: Page, study: Study) -> None:
-    name = study.model.workbook.name
-    page.title("Methods of uncertainty analysis", name)
-    page.row += 1
-    for sentence in recommendation(study):
-        page.wide(sentence.replace("`", ""), "paragraph", _LAST)
-    for table in (
-        methods_tables.error_table(study),
-        methods_tables.bounds_table(study),
-        methods_tables.reference_table(study),
-    ):
-        if table.rows:
-            page.heading(table.title)
-            _texts(page, table)
-    page.heading("What each method says of itself, and cannot do")
-    for method, sentence in methods_tables.cannot_lines(study):
-        page.line([Shown(method, look="name"), Shown(sentence)], [0, 1], _LAST)
-    ends = methods_tables.ends_lines(study)
-    if ends:
-        page.heading(ENDS)
-    for bound, point in ends:
-        page.line([Shown(bound, look="name"), Shown(point)], [0, 1], _LAST)
-    page.set_up_printing(name)
-
-
-def _texts(page: Page, table: methods_tables.Table) -> None:
-    rows = [
-        [
-            Shown(cell, look="name" if index == 0 else "text" if index < table.right else "number")
-            for index, cell in enumerate(row)
-        ]
-        for row in table.rows
-    ]
-    page.table(table.headings, rows)
+def add_sheets(study: Study, made: ExactBook, styles: Styles) -> None:
+    """Add the sheets Charts, Runs, Forecasts and Chart data to the workbook of a study."""
+    charts = Page(made.add_worksheet("Charts"), styles, ())
+    runs = Page(made.add_worksheet("Runs"), styles, _RUNS)
+    forecasts = Page(made.add_worksheet("Forecasts"), styles, (34.0, 10.0, 38.0, 22.0, 22.0, 22.0, 22.0))
+    data = Page(made.add_worksheet(DATA), styles, (70.0, 14.0, 14.0, 14.0, 14.0))
+    curve_rows = _write_runs(runs, study)
+    write_charts(charts, data, made, study, curve_rows)
+    _write_forecasts(forecasts, study)
 
 
 def _write_runs(page: Page, study: Study) -> list[tuple[Curve, int, int]]:
@@ -145,5 +101,9 @@ def _write_forecasts(page: Page, study: Study) -> None:
     table = methods_tables.forecast_table(study)
     page.title("Forecast by forecast", f"{table.title}; ± is the standard error of a root mean square")
     page.row += 1
-    _texts(page, table)
+    page.table(table.heads, [[Shown(str(c), look=_look(i, table)) for i, c in enumerate(row)] for row in table.rows])
     page.set_up_printing(study.model.workbook.name)
+
+
+def _look(index: int, table: Table) -> str:
+    return "name" if index == 0 else "number" if index in table.at_right else "text"

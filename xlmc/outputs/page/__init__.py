@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from xlmc.outputs.page.html_page import check_page_path, page_policy, page_text, save_page
+from xlmc.outputs.page.html_page import check_page_path, page_policy, page_text, plain_page, save_page
 
-__all__ = ["check_page_path", "page_policy", "page_text", "save_page"]
+__all__ = ["check_page_path", "page_policy", "page_text", "plain_page", "save_page"]

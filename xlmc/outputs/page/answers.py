@@ -9,8 +9,8 @@ from xlmc.analysis.results.statements import MEANING, statements
 from xlmc.analysis.results.statements.in_words import sampling_sentence
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
-from xlmc.outputs.page.element import EMPTY, Html, element
-from xlmc.outputs.page.flow import estimate_html, number, share_html
+from xlmc.outputs.document.element import EMPTY, Html, element
+from xlmc.outputs.document.html_writer import estimate_html, number, share_html
 from xlmc.outputs.sheets.results_sheet import base_sentences, opening_sentences, range_sentences
 from xlmc.outputs.summary import ERROR_SENTENCE, SummaryRow, base_text, percent, question, range_heading, summarise
 

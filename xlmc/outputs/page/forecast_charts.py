@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from xlmc.outputs.document.element import EMPTY, Html, element, join, void
+from xlmc.outputs.document.html_writer import estimate_html
 from xlmc.outputs.histogram import Figure
-from xlmc.outputs.page.element import EMPTY, Html, element, join, void
-from xlmc.outputs.page.flow import estimate_html
 from xlmc.outputs.page.payload import most_values, overlays_of
 from xlmc.outputs.summary import SummaryRow, percent
 

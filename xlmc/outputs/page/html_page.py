@@ -21,9 +21,9 @@ from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.seal import sealed_text
 from xlmc.excel.workbook.target import Target
 from xlmc.excel.workbook.writer import check_folder, write_workbook
+from xlmc.outputs.document.element import EMPTY, Html, element, join
 from xlmc.outputs.histogram import figures_of
 from xlmc.outputs.page.answers import answers
-from xlmc.outputs.page.element import EMPTY, Html, element, join
 from xlmc.outputs.page.forecast_charts import charts, overlays
 from xlmc.outputs.page.payload import payload_text
 from xlmc.outputs.page.second_run import second_run
@@ -44,11 +44,13 @@ from xlmc.outputs.page.sheet_sections import (
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
 
-__all__ = ["check_page_path", "page_policy", "page_text", "save_page"]
+__all__ = ["check_page_path", "page_policy", "page_text", "plain_page", "save_page"]
 
 ENDINGS = (".html", ".htm")
 
 _STYLES = ("uplot/uPlot.min.css", "page.css", "charts.css", "print.css")
+
+_PLAIN_STYLES = _STYLES[1:]
 
 _SCRIPTS = (
     "sharp.js",
@@ -172,6 +174,19 @@ def page_text(simulation: RunResult, *, beside: RunResult | None = None, command
     )
 
 
+def plain_page(title: str, below: str, content: Html) -> str:
+    """A page without scripts, in the style of the others: a title, the line below it, and what is to be read."""
+    styles = [_asset(path) for path in _PLAIN_STYLES]
+    header = element("header", element("h1", title), element("p", below, class_="subtitle"))
+    return Template(_asset("plain.html")).substitute(
+        policy=escape(_policy(styles, [])),
+        title=escape(title),
+        styles="".join(f"<style>{style}</style>\n" for style in styles),
+        header=header.source,
+        sections=content.source,
+    )
+
+
 def _asset(path: str) -> str:
     return files("xlmc.outputs.page").joinpath(path).read_text(encoding="utf-8")
 
@@ -188,7 +203,7 @@ def page_policy() -> str:
         (
             "default-src 'none'",
             f"style-src {' '.join(_hashes(styles))}",
-            f"script-src {' '.join(_hashes(scripts))}",
+            "script-src " + (" ".join(_hashes(scripts)) or "'none'"),
             "img-src data:",
             "base-uri 'none'",
             "form-action 'none'",

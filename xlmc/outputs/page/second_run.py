@@ -10,8 +10,8 @@ from xlmc.analysis.results.statements.in_words import distribution_text, limits_
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.outputs.page.element import EMPTY, Html, element, join
-from xlmc.outputs.page.flow import estimate_html, share_html
+from xlmc.outputs.document.element import EMPTY, Html, element, join
+from xlmc.outputs.document.html_writer import estimate_html, share_html
 from xlmc.outputs.summary import SummaryRow, percent, summarise
 
 if TYPE_CHECKING:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from xlmc.analysis.results.statements.in_words import number_text
-from xlmc.analysis.studies.sensitivity.measures import noise
-from xlmc.outputs.page.element import EMPTY, Html, element
+from xlmc.outputs.document.charts import contribution_chart, influence_chart, limit_chart, tornado_chart
+from xlmc.outputs.document.element import EMPTY, Html, element
+from xlmc.outputs.document.html_writer import picture_html
+from xlmc.outputs.document.parts import Chart
 from xlmc.outputs.page.flow import Flow
-from xlmc.outputs.page.svg import Bar, Line, bars, lines
 from xlmc.outputs.sheets.limits_sheet import limit_sentences, moved_caption, write_acceptance, write_answers
 from xlmc.outputs.sheets.sensitivity_sheet import (
     BARS,
@@ -23,7 +23,6 @@ from xlmc.outputs.sheets.sensitivity_sheet import (
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.sensitivity import FilterLimit, ForecastSensitivity, Sensitivities
-    from xlmc.montecarlo.statistics import Estimate
 
 __all__ = ["dependence", "limits"]
 
@@ -50,36 +49,15 @@ def _forecast(found: ForecastSensitivity, whole: Sensitivities) -> Html:
 
 def _charts(found: ForecastSensitivity, whole: Sensitivities) -> Iterator[Html]:
     if found.influences:
-        drawn, weak = found.influences[:BARS], noise(found)[:BARS]
         explained, _, _, contribution = influence_captions(found, whole.sobol_trials)
-        shares = [_share(each.assumption, each.explained, one.explained) for each, one in zip(drawn, weak, strict=True)]
-        yield _figure(bars(shares, "Variance explained", "Share of the variance, %"), explained)
-        scaled = [
-            _share(each.assumption, each.contribution, one.correlation) for each, one in zip(drawn, weak, strict=True)
-        ]
-        title = "Contribution to variance (approximate)"
-        yield _figure(bars(scaled, title, "Squared rank correlation, % of all, signed"), contribution)
+        yield _figure(influence_chart(found, BARS, "Variance explained"), explained)
+        yield _figure(contribution_chart(found, BARS, "Contribution to variance (approximate)"), contribution)
     if found.bars and found.base is not None:
-        units = f", {found.units}" if found.units else ""
-        tornado = [_tornado_bar(each.assumption, each.low, each.high, found.base) for each in found.bars[:BARS]]
-        axis = f"Change{units} (light: at 10 %, dark: at 90 %)"
-        yield _figure(bars(tornado, "Tornado", axis), move_captions(found)[0])
+        yield _figure(tornado_chart(found, BARS, "Tornado"), move_captions(found)[0])
 
 
-def _share(name: str, found: Estimate, pale: bool) -> Bar:
-    value = 100.0 * found.value if math.isfinite(found.value) else 0.0
-    error = None if found.error is None else 100.0 * found.error
-    whisker = None if error is None else (value - error, value + error)
-    return Bar(name, ((0.0, value, "light" if pale else "dark"),), whisker)
-
-
-def _tornado_bar(name: str, low: float | None, high: float | None, base: float) -> Bar:
-    ends = ((low, "light"), (high, "dark"))
-    return Bar(name, tuple((0.0, end - base, look) for end, look in ends if end is not None))
-
-
-def _figure(drawing: Html, caption: str) -> Html:
-    return element("figure", drawing, element("figcaption", caption))
+def _figure(chart: Chart, caption: str) -> Html:
+    return element("figure", picture_html(chart), element("figcaption", caption))
 
 
 def _tables(found: ForecastSensitivity, whole: Sensitivities) -> Iterator[Html]:
@@ -124,15 +102,4 @@ def _answer_charts(limit: FilterLimit, units: dict[str, str]) -> Iterator[Html]:
     for index, slope in enumerate(limit.slopes):
         by_unit.setdefault(units[slope.forecast], []).append(index)
     for unit, indexes in by_unit.items():
-        drawn = [
-            Line(
-                limit.slopes[index].forecast,
-                tuple((p.limit, p.answers[index].change.value, p.answers[index].change.error) for p in limit.points),
-            )
-            for index in indexes
-        ]
-        upwards = f"Change of the mean{f', {unit}' if unit else ''}"
-        across = f"Limit: {limit.filter} {limit.relation}"
-        names = "; ".join(f"{number} {line.name}" for number, line in enumerate(drawn, 1))
-        chart = lines(drawn, "Change of each mean", across, upwards, limit.limit)
-        yield _figure(chart, f"{names}. {moved_caption(limit)}")
+        yield _figure(limit_chart(limit, indexes, unit), moved_caption(limit))

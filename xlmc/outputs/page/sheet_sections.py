@@ -11,10 +11,11 @@ from xlmc.analysis.results.statements.in_words import distribution_text, number_
 from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenario_answers
 from xlmc.excel.workbook.printable import printable
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.outputs.filter_effect import PERCENTS, FilterEffect, Marginal, filter_effect_of, shapes_of
-from xlmc.outputs.page.element import EMPTY, Html, element
-from xlmc.outputs.page.flow import Flow, estimate_html, number
-from xlmc.outputs.page.svg import before_after
+from xlmc.outputs.document.charts import shape_chart
+from xlmc.outputs.document.element import EMPTY, Html, element
+from xlmc.outputs.document.html_writer import estimate_html, number, picture_html
+from xlmc.outputs.filter_effect import PERCENTS, FilterEffect, Marginal, filter_effect_of
+from xlmc.outputs.page.flow import Flow
 from xlmc.outputs.sheets.accounting import write_accounting, write_checks
 from xlmc.outputs.sheets.assumptions_sheet import MEANING, MOVED, NARROWED, STRATIFIED, write_correlations
 from xlmc.outputs.sheets.cells import NONE
@@ -165,11 +166,8 @@ def _assumption(simulation: RunResult, assumption: Assumption) -> Html:
 
 def _shape(simulation: RunResult, name: str) -> Html:
     """A small picture of the draws before filtering and of the accepted ones; nothing where all draws are one value."""
-    found = shapes_of(simulation, name)
-    if found is None:
-        return EMPTY
-    said = f"{name}: before filtering pale, accepted as a line"
-    return before_after(found.before.tolist(), found.accepted.tolist(), said)
+    found = shape_chart(simulation, name)
+    return EMPTY if found is None else picture_html(found, "shape")
 
 
 def _name_line(assumption: Assumption) -> Iterator[Html | str]:

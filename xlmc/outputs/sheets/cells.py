@@ -8,8 +8,10 @@ larger than a unit shows its units too, with the error beside it.
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 
+from xlmc.analysis.results.statements.in_words import number_text
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import two_digit_exponent
 
@@ -28,6 +30,7 @@ __all__ = [
     "paired_format",
     "share",
     "share_format",
+    "shown_text",
     "spread_format",
 ]
 
@@ -50,6 +53,11 @@ _DIGITS = 6
 
 _ROOM = 9
 """Characters that columns have room for; fewer decimals are shown rather than `###`."""
+
+_FORMAT = re.compile(r"(?P<grouped>#,##)?0(\.(?P<decimals>0+))?(?P<ending>%|E\+00)?")
+
+_LONGEST = 11
+"""Characters of a number that Excel shows in a cell without a format."""
 
 _LARGEST, _SMALLEST = 1e7, 1e-4
 """A number outside these limits is shown with a power of ten."""
@@ -170,3 +178,45 @@ def _fraction(decimals: int) -> str:
 
 def _usable(number: float) -> bool:
     return number != 0.0 and math.isfinite(number)
+
+
+def shown_text(shown: Shown) -> str:
+    """What the sheet shows.
+
+    Raises:
+        ValueError: there is no such number format.
+    """
+    value = shown.value
+    if value is None:
+        return ""
+    if isinstance(value, str):
+        return value
+    if not math.isfinite(value):
+        return NONE if math.isnan(value) else "∞" if value > 0 else "−∞"
+    return _general(value) if shown.format == "General" else _format_number(value, shown.format)
+
+
+def _general(value: float) -> str:
+    text = number_text(value)
+    return text if len(text) <= _LONGEST else f"{value:.9g}"
+
+
+def _format_number(value: float, number_format: str) -> str:
+    if number_format == NOISE:
+        return "noise"
+    if number_format.startswith(AT_LEAST):
+        return f"at least {_format_number(value, number_format.removeprefix(AT_LEAST))}"
+    found = _FORMAT.fullmatch(number_format)
+    if found is None:
+        raise ValueError(f"no number format of a result sheet: {number_format!r}")
+    decimals, ending = len(found["decimals"] or ""), found["ending"]
+    if ending == "E+00":
+        return f"{value:.{decimals}e}"
+    if ending == "%":
+        return f"{_round(100.0 * value, decimals):.{decimals}f} %"
+    value = _round(value, decimals)
+    return f"{value:,.{decimals}f}" if found["grouped"] else f"{value:.{decimals}f}"
+
+
+def _round(value: float, decimals: int) -> float:
+    return round(value, decimals) + 0.0  # no negative zero

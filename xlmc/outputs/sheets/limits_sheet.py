@@ -106,7 +106,7 @@ def write_acceptance(page: Page, limit: FilterLimit) -> TableAt:
     for slope in limit.slopes:
         page.line([Shown(slope.forecast, look="name"), *cells.estimate(slope.mean)], starts, last)
     page.row = max(bottom, page.row)
-    return TableAt(page.sheet.get_name(), header, header + 1, header + len(limit.points))
+    return TableAt(page.name, header, header + 1, header + len(limit.points))
 
 
 def _acceptance(point: LimitPoint, limit: FilterLimit) -> list[Shown]:
@@ -149,7 +149,7 @@ def write_answers(page: Page, limit: FilterLimit) -> list[TableAt]:
         now = next(point.answers[index] for point in limit.points if point.limit == limit.limit)
         for point in limit.points:
             page.line(_answer(slope.forecast, point.limit, point.answers[index], now))
-        tables.append(TableAt(page.sheet.get_name(), header, first, page.row - 1))
+        tables.append(TableAt(page.name, header, first, page.row - 1))
     return tables
 
 

@@ -59,6 +59,11 @@ class Page:
         sheet.set_default_row(ROW)
         sheet.hide_gridlines(2)
 
+    @property
+    def name(self) -> str:
+        """Of the worksheet."""
+        return str(self.sheet.get_name())
+
     def put(self, row: int, column: int, shown: Shown) -> None:
         """Write one cell."""
         value = shown.value

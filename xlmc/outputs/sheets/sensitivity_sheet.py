@@ -239,7 +239,7 @@ def write_influences(page: Page, found: ForecastSensitivity, sobol: bool) -> Tab
         [*headers, *(["First order", "±", "Total effect", "±"] if sobol else [])],
         [_row(one, its, sobol) for one, its in zip(shown, weak, strict=False)],
     )
-    return TableAt(page.sheet.get_name(), header, header + 1, header + min(len(shown), _DRAWN))
+    return TableAt(page.name, header, header + 1, header + min(len(shown), _DRAWN))
 
 
 def _row(found: Influence, weak: Noise, sobol: bool) -> list[Shown]:
@@ -335,7 +335,7 @@ def write_moves(page: Page, found: ForecastSensitivity) -> TableAt:
     ]
     header, shown = page.row, found.bars[:ROWS]
     page.table(headers, [_move_row(bar, found.base or 0.0, found.bars[0].span) for bar in shown])
-    return TableAt(page.sheet.get_name(), header, header + 1, header + min(len(shown), _DRAWN))
+    return TableAt(page.name, header, header + 1, header + min(len(shown), _DRAWN))
 
 
 def _move_row(bar: Bar, base: float, widest: float) -> list[Shown]:

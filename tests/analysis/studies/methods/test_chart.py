@@ -15,9 +15,10 @@ from hypothesis import strategies as st
 from xlmc.analysis.studies.methods import recommendation, study
 from xlmc.analysis.studies.methods.need import choice
 from xlmc.excel.workbook.writer import package_bytes
+from xlmc.outputs.methods import methods_report
 from xlmc.outputs.methods.matplotlib_figure import STYLES, draw
-from xlmc.outputs.methods.methods_workbook import book
 from xlmc.outputs.methods.speed_chart import HOW_TO_READ, column_of, picture_of, spread
+from xlmc.outputs.study_report import book_parts
 
 
 @pytest.fixture(scope="module")
@@ -111,7 +112,7 @@ def test_the_figure_has_one_panel_that_answers_and_five_small_ones(timed):
 
 
 def test_the_workbook_has_the_same_chart(timed, picture):
-    with ZipFile(io.BytesIO(package_bytes(book(timed)))) as package:
+    with ZipFile(io.BytesIO(package_bytes(book_parts(methods_report(timed, figures=False))))) as package:
         charts = [package.read(name).decode() for name in sorted(package.namelist()) if name.startswith("xl/charts/ch")]
     assert len(charts) == 6
     assert not any("<c:legend>" in chart for chart in charts)

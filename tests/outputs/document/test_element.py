@@ -5,7 +5,7 @@ from html.parser import HTMLParser
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.outputs.page.element import EMPTY, Html, element, join, void
+from xlmc.outputs.document.element import EMPTY, Html, element, join, void
 
 
 def read(source):

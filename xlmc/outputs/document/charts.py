@@ -1,0 +1,86 @@
+"""The charts of a run: what each shows, which no writer changes."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from xlmc.analysis.studies.sensitivity.measures import noise
+from xlmc.outputs.document.parts import Bar, Bars, Chart, Line, Lines, Shape
+from xlmc.outputs.filter_effect import shapes_of
+
+if TYPE_CHECKING:
+    from xlmc.analysis.studies.sensitivity import FilterLimit, ForecastSensitivity
+    from xlmc.montecarlo.simulation.simulation import RunResult
+    from xlmc.montecarlo.statistics import Estimate
+
+__all__ = ["contribution_chart", "influence_chart", "limit_chart", "shape_chart", "tornado_chart"]
+
+
+def shape_chart(simulation: RunResult, name: str) -> Chart | None:
+    """How often an assumption has each value, before filtering and accepted; None where all draws are one value."""
+    found = shapes_of(simulation, name)
+    if found is None:
+        return None
+    shape = Shape(*(tuple(map(float, each)) for each in (found.edges, found.before, found.accepted)))
+    return Chart("", "", shape, f"{name}: before filtering pale, accepted as a line", 28.0)
+
+
+def influence_chart(found: ForecastSensitivity, most: int, title: str = "") -> Chart:
+    """The variance of a forecast that each assumption explains, the largest on top; pale what may be noise."""
+    pairs = zip(found.influences[:most], noise(found), strict=False)
+    bars = tuple(_share(each.assumption, each.explained, weak.explained) for each, weak in pairs)
+    return _bars(title, "Variance explained", "Share of the variance explained, %", bars)
+
+
+def contribution_chart(found: ForecastSensitivity, most: int, title: str) -> Chart:
+    """The squared rank correlation of each assumption, as Crystal Ball shows it."""
+    pairs = zip(found.influences[:most], noise(found), strict=False)
+    bars = tuple(_share(each.assumption, each.contribution, weak.correlation) for each, weak in pairs)
+    return _bars(title, title, "Squared rank correlation, % of all, signed", bars)
+
+
+def tornado_chart(found: ForecastSensitivity, most: int, title: str) -> Chart:
+    """How far the forecast moves from its base case as one assumption moves alone."""
+    base = found.base or 0.0
+    bars = tuple(
+        Bar(
+            bar.assumption,
+            tuple((0.0, end - base, look) for end, look in ((bar.low, "light"), (bar.high, "dark")) if end is not None),
+        )
+        for bar in found.bars[:most]
+    )
+    units = f", {found.units}" if found.units else ""
+    return _bars(title, title, f"Change{units} (light: at 10 %, dark: at 90 %)", bars)
+
+
+def limit_chart(limit: FilterLimit, indexes: list[int], unit: str) -> Chart:
+    """How the means of some forecasts, which have one unit, change as a limit of a filter moves.
+
+    Args:
+        limit: of the filter.
+        indexes: of the forecasts.
+        unit: theirs.
+    """
+    lines = tuple(
+        Line(
+            limit.slopes[index].forecast,
+            tuple((p.limit, p.answers[index].change.value, p.answers[index].change.error) for p in limit.points),
+        )
+        for index in indexes
+    )
+    upwards = f"Change of the mean{f', {unit}' if unit else ''}"
+    across = f"Limit: {limit.filter} {limit.relation}"
+    said = f"Change of each mean: {', '.join(line.name for line in lines)}"
+    return Chart("Change of each mean", across, Lines(lines, upwards, dots=True, now=limit.limit), said)
+
+
+def _bars(title: str, what: str, across: str, bars: tuple[Bar, ...]) -> Chart:
+    return Chart(title, across, Bars(bars), f"{what}: {', '.join(bar.name for bar in bars)}", 125.0)
+
+
+def _share(name: str, found: Estimate, pale: bool) -> Bar:
+    value = 100.0 * found.value if math.isfinite(found.value) else 0.0
+    error = None if found.error is None else 100.0 * found.error
+    whisker = None if error is None else (value - error, value + error)
+    return Bar(name, ((0.0, value, "light" if pale else "dark"),), whisker)

@@ -1,0 +1,122 @@
+"""Blocks as HTML, for pages and notebooks. A number carries its full value with it, for programs that read the page."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from xlmc.analysis.results.statements.in_words import number_text
+from xlmc.montecarlo.statistics import Estimate
+from xlmc.outputs.document.drawings import drawn
+from xlmc.outputs.document.element import EMPTY, Html, element, join
+from xlmc.outputs.document.parts import (
+    NUMBERS,
+    Block,
+    Bullets,
+    Chart,
+    Code,
+    Content,
+    Drawing,
+    Figure,
+    Heading,
+    Paragraph,
+    Picture,
+    Table,
+)
+from xlmc.outputs.sheets.cells import NONE, Shown, shown_text
+from xlmc.outputs.summary import estimate_text, share_text
+
+__all__ = ["blocks_html", "estimate_html", "number", "picture_html", "share_html", "shown_html"]
+
+_LOOKS = {"text": None, "small": "remark"}
+
+
+def blocks_html(blocks: Iterable[Block]) -> Html:
+    """The blocks one after the other; a heading of the first level is the page's second."""
+    return join([_html(block) for block in blocks])
+
+
+def _html(block: Block) -> Html:
+    match block:
+        case Heading(text, level):
+            return element(f"h{level + 1}", text)
+        case Paragraph(text, look):
+            return element("p", text, class_=_LOOKS.get(look, look), role="alert" if look == "warning" else None)
+        case Bullets(texts, look):
+            return element("ul", *(element("li", text) for text in texts), class_=_LOOKS.get(look, look))
+        case Code(text):
+            return element("pre", element("code", text))
+        case Figure(picture, caption):
+            return element("figure", picture_html(picture), element("figcaption", caption) if caption else EMPTY)
+        case Table():
+            return _table(block)
+
+
+def picture_html(picture: Picture, look: str = "drawn") -> Html:
+    """A picture as SVG in the page itself; its look is `drawn`, or `shape` within a line."""
+    shown = drawn(picture) if isinstance(picture, Chart) else picture
+    return Html.of_svg(shown.svg, shown.said, look)
+
+
+def _table(table: Table) -> Html:
+    """A table, which scrolls where it is wider than the page."""
+    at_right = table.at_right
+    heads = [_head(text, index in at_right) for index, text in enumerate(table.heads)]
+    body = [element("tr", *(_cell(cell, index, at_right) for index, cell in enumerate(row))) for row in table.rows]
+    inner = element(
+        "table",
+        element("caption", table.caption) if table.caption else EMPTY,
+        element("thead", element("tr", *heads)) if heads else EMPTY,
+        element("tbody", *body),
+    )
+    title = element("h2", table.title) if table.title else EMPTY
+    return title + element("div", inner, class_="wide-table")
+
+
+def _head(text: str, right: bool) -> Html:
+    if not text:
+        return element("td")
+    return element("th", text, scope="col", class_="number" if right else None)
+
+
+def _cell(cell: Content, index: int, at_right: frozenset[int]) -> Html:
+    if isinstance(cell, Drawing | Chart):
+        return element("td", picture_html(cell, "shape"))
+    if isinstance(cell, Shown):
+        if index == 0 and isinstance(cell.value, str):
+            return element("th", cell.value, scope="row")
+        return element("td", shown_html(cell), class_=cell.look if cell.look in NUMBERS else None)
+    if index == 0 and index not in at_right:
+        return element("th", cell, scope="row")
+    return element("td", *_lines(cell), class_="number" if index in at_right else None)
+
+
+def _lines(text: str) -> Iterable[Html | str]:
+    """A text, each line of it below the other."""
+    first, *rest = text.split("\n")
+    yield first
+    for each in rest:
+        yield Html("<br>")
+        yield each
+
+
+def shown_html(shown: Shown) -> Html:
+    """What the sheet shows, as HTML; a number carries its full value with it."""
+    if isinstance(shown.value, str) or shown.value is None or not math.isfinite(shown.value):
+        return element("span", shown_text(shown))
+    return number(shown.value, shown_text(shown))
+
+
+def number(value: float, shown: str) -> Html:
+    """A number as it is shown, with its full value for programs that read the page."""
+    return element("data", shown, value=number_text(value))
+
+
+def estimate_html(found: Estimate) -> Html:
+    """`11.799 ± 0.013` with the full value; a dash where there is no number."""
+    return number(found.value, estimate_text(found)) if math.isfinite(found.value) else element("span", NONE)
+
+
+def share_html(found: Estimate) -> Html:
+    """`12.3 ± 0.5 %` with the full value; a dash where there is no number."""
+    return number(found.value, share_text(found)) if math.isfinite(found.value) else element("span", NONE)

@@ -1,0 +1,197 @@
+"""Blocks on a sheet: paragraphs, tables of texts and numbers, and charts of Excel's own.
+
+What charts are drawn from stands on a second sheet. Pictures, which a sheet of results cannot hold, are told in words.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Final
+
+from xlmc.outputs.document.drawings import COLOURS
+from xlmc.outputs.document.parts import (
+    Bars,
+    Block,
+    Bullets,
+    Chart,
+    Code,
+    Content,
+    Drawing,
+    Figure,
+    Heading,
+    Lines,
+    Paragraph,
+    Table,
+    cell_text,
+)
+from xlmc.outputs.sheets.cells import Shown, spread_format
+from xlmc.outputs.sheets.styles import DARK, INK, SIZE, across, bounds, straight, upwards
+
+if TYPE_CHECKING:
+    from xlsxwriter.chart import Chart as ExcelChart
+    from xlsxwriter.workbook import Workbook
+
+    from xlmc.outputs.sheets.page import Page
+
+__all__ = ["sheet_widths", "write_blocks"]
+
+_WIDTHS: Final = (44.0, *[17.0] * 7)
+_LONG: Final = 60
+"""Characters of a column of the sheet that stay in one line."""
+_LAST: Final = 5
+"""The column to which paragraphs reach."""
+_CHART_ROWS: Final = 17
+_PIXELS: Final = 23
+"""Of a row."""
+_LOOKS: Final = {"text": "paragraph", "small": "remark"}
+
+
+def write_blocks(page: Page, blocks: Iterable[Block], book: Workbook, numbers: Callable[[], Page]) -> None:
+    """Write blocks from the page's row on down.
+
+    Args:
+        page: the sheet.
+        blocks: to write.
+        book: that the sheet is in.
+        numbers: gives the sheet that takes what charts are drawn from; it is asked only where there is one.
+    """
+    for block in blocks:
+        match block:
+            case Heading(text, _):
+                page.heading(text)
+            case Paragraph(text, look):
+                page.wide(text, _LOOKS.get(look, look), _LAST)
+            case Bullets(texts, look):
+                for text in texts:
+                    page.wide(f"• {text}", _LOOKS.get(look, look), _LAST)
+            case Code(text):
+                page.wide(text, "paragraph", _LAST)
+            case Figure(picture, caption):
+                if isinstance(picture, Chart) and isinstance(picture.data, Lines | Bars):
+                    _write_chart(page, book, picture, numbers())
+                else:
+                    page.wide(f"{picture.said}.", "remark", _LAST)
+                if caption:
+                    page.wide(caption, "remark", _LAST)
+            case Table():
+                _write_table(page, block)
+
+
+def sheet_widths(blocks: Iterable[Block]) -> list[float]:
+    """The widths of the sheet's columns: wider where a table has long texts."""
+    widths = list(_WIDTHS)
+    for block in blocks:
+        if isinstance(block, Table):
+            right = block.at_right
+            for column, cells in enumerate(zip(*block.rows, strict=True)):
+                if column not in right and column < len(widths):
+                    longest = max(len(cell_text(cell)) for cell in cells)
+                    widths[column] = max(widths[column], min(longest, _LONG))
+    return widths
+
+
+def _write_table(page: Page, table: Table) -> None:
+    if table.title:
+        page.heading(table.title)
+    if table.caption:
+        page.wide(table.caption, "remark", _LAST)
+    right = table.at_right
+    rows = [[_cell(cell, index, index in right) for index, cell in enumerate(row)] for row in table.rows]
+    if table.heads:
+        page.table(table.heads, rows)
+    else:
+        for row in rows:
+            page.line(row)
+    page.row += 1
+
+
+def _cell(cell: Content, index: int, is_number: bool) -> Shown:
+    """A cell of the sheet: a text that is a number becomes one; a number with its error stays text."""
+    if isinstance(cell, Shown):
+        return cell
+    text = cell.said if isinstance(cell, Drawing | Chart) else cell
+    if not is_number:
+        return Shown(text, look="name" if index == 0 else "text")
+    try:
+        return Shown(float(text))
+    except ValueError:
+        return Shown(text, look="number")
+
+
+def _write_chart(page: Page, book: Workbook, chart: Chart, numbers: Page) -> None:
+    """Write a chart, and go to the row behind it."""
+    if isinstance(chart.data, Lines):
+        made, rows = _line_chart(book, chart, chart.data, numbers), _CHART_ROWS
+        made.set_size({"width": SIZE[0], "height": SIZE[1]})
+    else:
+        assert isinstance(chart.data, Bars)
+        made, high = _bar_chart(book, chart, chart.data, numbers), 110 + 24 * len(chart.data.bars)
+        made.set_size({"width": SIZE[0], "height": high})
+        rows = high // _PIXELS + 1
+    if chart.title:
+        made.set_title({"name": chart.title, "name_font": {"size": 12, "bold": True, "color": INK}})
+    else:
+        made.set_title({"none": True})
+    page.sheet.insert_chart(page.row, 0, made, {"object_position": 1, "description": chart.said})
+    page.row += rows
+
+
+def _line_chart(book: Workbook, chart: Chart, shown: Lines, numbers: Page) -> ExcelChart:
+    made = straight(book.add_chart({"type": "scatter", "subtype": "straight"}))
+    for index, line in enumerate(shown.lines):
+        points = [(point[0], point[1]) for point in line.points]
+        spread = spread_format(points[-1][0] - points[0][0])
+        share = "0.00%" if shown.share else "General"
+        first, last, column = _columns(numbers, (line.name, shown.upwards), points, (spread, share))
+        made.add_series(
+            {
+                "name": [numbers.name, first - 1, column],
+                "categories": [numbers.name, first, column, last, column],
+                "values": [numbers.name, first, column + 1, last, column + 1],
+                "line": {"color": COLOURS[index % len(COLOURS)], "width": 1.5 if index else 2.25},
+                "marker": {"type": "circle" if shown.dots else "none", "size": 4},
+            }
+        )
+    low, high = shown.ends
+    made.set_x_axis({**across(), "name": chart.across, **bounds(low, high)})
+    vertical = upwards(shown.upwards, "0%" if shown.share else "General")
+    made.set_y_axis({**vertical, **({"min": 0, "max": 1} if shown.share else {})})
+    made.set_legend({"position": "right"})
+    return made
+
+
+def _bar_chart(book: Workbook, chart: Chart, shown: Bars, numbers: Page) -> ExcelChart:
+    made = straight(book.add_chart({"type": "bar", "subtype": "stacked"}))
+    ends: list[list[str | float]] = [[bar.name, *(piece[1] for piece in bar.pieces)] for bar in shown.bars]
+    pieces = max((len(bar.pieces) for bar in shown.bars), default=0)
+    heads = (chart.across, *(f"To {index + 1}" for index in range(pieces)))
+    first, last, column = _columns(numbers, heads, ends, ("", *["General"] * pieces))
+    for index in range(pieces):
+        made.add_series(
+            {
+                "categories": [numbers.name, first, column, last, column],
+                "values": [numbers.name, first, column + 1 + index, last, column + 1 + index],
+                "fill": {"color": DARK},
+                "gap": 40,
+            }
+        )
+    made.set_x_axis({**across(), "name": chart.across})
+    made.set_y_axis({"reverse": True, "label_position": "low"})
+    made.set_legend({"none": True})
+    return made
+
+
+def _columns(
+    page: Page, heads: Sequence[str], rows: Sequence[Sequence[str | float]], formats: Sequence[str]
+) -> tuple[int, int, int]:
+    """Write columns beside those that are there: their first row, their last, and the first of them."""
+    last = page.sheet.dim_colmax
+    column = 0 if last is None or page.row == 0 else last + 2
+    page.row = 1
+    page.sheet.set_column(column, column + len(heads) - 1, 16)
+    for offset, head in enumerate(heads):
+        page.put(0, column + offset, Shown(head, look="header left"))
+    for row, cells in enumerate(rows, 1):
+        for offset, (cell, form) in enumerate(zip(cells, formats, strict=True)):
+            page.put(row, column + offset, Shown(cell) if isinstance(cell, str) else Shown(cell, form))
+    return 1, len(rows), column

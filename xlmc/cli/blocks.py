@@ -33,7 +33,7 @@ def show(blocks: Iterable[Block]) -> None:
                     say()
                 heading(text)
             case Figure(_, caption):
-                say(paragraph(caption))
+                say(paragraph(f"Drawn in files: {caption}"))
             case _:
                 if not spaced:
                     say()

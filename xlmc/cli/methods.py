@@ -10,7 +10,7 @@ import click
 from xlmc.cli.blocks import show
 from xlmc.cli.options import WholeNumber
 from xlmc.cli.study_output import study_options
-from xlmc.cli.terminal import say_json
+from xlmc.cli.terminal import paragraph, say, say_json
 from xlmc.cli.writing import write_files
 
 __all__ = ["methods"]
@@ -62,7 +62,7 @@ def methods(
     quiet: bool,
 ) -> None:
     """Measure every method of uncertainty analysis on BOOK: time, evaluations, errors, and which to use."""
-    from xlmc.analysis.studies.methods import quick_settings, study
+    from xlmc.analysis.studies.methods import quick_settings, recommendation, study
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.model.loading import load
     from xlmc.outputs.methods import in_short, methods_report
@@ -83,6 +83,9 @@ def methods(
         say_json(report.as_json())
     else:
         show(in_short(found))
+        say()
+        for advice in recommendation(found):
+            say(f"{paragraph(advice)}\n")
         written.report_failures()
     written.check()
     if found.reference.warnings:

@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 __all__ = ["sheet_widths", "write_blocks"]
 
 _WIDTHS: Final = (44.0, *[17.0] * 7)
-_LONG: Final = 60
-"""Characters of a column of the sheet that stay in one line."""
+_LONG, _LONG_NUMBER = 60, 26
+"""Characters of a column of the sheet that stay in one line, of texts and of numbers."""
 _LAST: Final = 5
 """The column to which paragraphs reach."""
 _CHART_ROWS: Final = 17
@@ -81,13 +81,18 @@ def sheet_widths(blocks: Iterable[Block]) -> list[float]:
     """The widths of the sheet's columns: wider where a table has long texts."""
     widths = list(_WIDTHS)
     for block in blocks:
-        if isinstance(block, Table):
+        if isinstance(block, Table) and not _is_wrapped(block):
             right = block.at_right
+            widths += [_WIDTHS[-1]] * (block.columns - len(widths))
             for column, cells in enumerate(zip(*block.rows, strict=True)):
-                if column not in right and column < len(widths):
-                    longest = max(len(cell_text(cell)) for cell in cells)
-                    widths[column] = max(widths[column], min(longest, _LONG))
+                longest = max(len(cell_text(cell)) for cell in cells)
+                widths[column] = max(widths[column], min(longest, _LONG_NUMBER if column in right else _LONG))
     return widths
+
+
+def _is_wrapped(table: Table) -> bool:
+    """Whether it is of a name and a long text, which reaches over the columns of the other tables."""
+    return table.columns == 2 and any(len(cell_text(row[1])) > _LONG for row in table.rows)
 
 
 def _write_table(page: Page, table: Table) -> None:
@@ -97,7 +102,10 @@ def _write_table(page: Page, table: Table) -> None:
         page.wide(table.caption, "remark", _LAST)
     right = table.at_right
     rows = [[_cell(cell, index, index in right) for index, cell in enumerate(row)] for row in table.rows]
-    if table.heads:
+    if _is_wrapped(table):
+        for row in ([Shown(head, look="header left") for head in table.heads], *rows):
+            page.line(row, (0, 1), _LAST)
+    elif table.heads:
         page.table(table.heads, rows)
     else:
         for row in rows:

@@ -47,14 +47,14 @@ def methods_report(study: Study, *, figures: bool) -> StudyReport:
 
 
 def in_short(study: Study) -> list[Block]:
-    """What the terminal shows: the tables, then what the methods cannot do, and last the recommendation."""
+    """What the terminal shows before the recommendation: the tables, and what the methods cannot do."""
     tables = (
         methods_tables.reference_table(study),
         methods_tables.error_table(study),
         methods_tables.bounds_table(study),
     )
     words = [Paragraph(f"{name}: {said}.") for name, said in methods_tables.cannot_lines(study)]
-    return [*_filled(tables), *words, *map(Paragraph, recommendation(study))]
+    return [*_filled(tables), *words]
 
 
 def _figures(study: Study) -> list[Block]:

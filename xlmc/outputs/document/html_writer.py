@@ -28,6 +28,8 @@ from xlmc.outputs.summary import estimate_text, share_text
 
 __all__ = ["blocks_html", "estimate_html", "number", "picture_html", "share_html", "shown_html"]
 
+_TEXT_WIDTH = 160.0
+"""Millimetres up to which a picture is as wide as the text of a page."""
 _LOOKS = {"text": None, "small": "remark"}
 
 
@@ -47,7 +49,8 @@ def _html(block: Block) -> Html:
         case Code(text):
             return element("pre", element("code", text))
         case Figure(picture, caption):
-            return element("figure", picture_html(picture), element("figcaption", caption) if caption else EMPTY)
+            look = "drawn" if picture.width <= _TEXT_WIDTH else "drawn wide"
+            return element("figure", picture_html(picture, look), element("figcaption", caption) if caption else EMPTY)
         case Table():
             return _table(block)
 

@@ -184,7 +184,7 @@ def _bar_chart(book: Workbook, chart: Chart, shown: Bars, numbers: Page) -> Exce
             }
         )
     made.set_x_axis({**across(), "name": chart.across})
-    made.set_y_axis({"reverse": True, "label_position": "low"})
+    made.set_y_axis({"reverse": True, "label_position": "low", "num_font": {"rotation": 0}})  # all are shown
     made.set_legend({"none": True})
     return made
 

@@ -236,7 +236,7 @@ def _report(
     row: dict[str, str],
     as_json: Callable[[], dict[str, object]],
 ) -> StudyReport:
-    """What was found; the row to paste comes last."""
+    """Report what was found; the row to paste comes last."""
     from xlmc.outputs.document.parts import Table, blocks_of
     from xlmc.outputs.study_report import StudyReport
 
@@ -277,7 +277,7 @@ def _ranking(found: Fitting, source: str, blank: int) -> Table:
 
 
 def _curves(found: Fitting, values: list[float]) -> Figure:
-    """The values and the families that describe them best, as shares at most."""
+    """Return the values and the families that describe them best, as shares at most."""
     import numpy as np
 
     from xlmc.analysis.studies.fitting import share_at_most

@@ -149,7 +149,7 @@ def _tables(found: Screening) -> Iterator[Block]:
 
 
 def _table(found: Screening, title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]]) -> Table:
-    """What each change costs. `first` are columns with headings."""
+    """Make a table of what each change costs. `first` are columns with headings."""
     from xlmc.outputs.document.parts import Table
 
     accepted = ["Accepted, %"] if found.run.model.filters else []  # without filters nothing can change it

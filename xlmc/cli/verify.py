@@ -101,7 +101,7 @@ def _plain(value: object) -> object:
 
 
 def _blocks(found: Verification, most: int) -> list[str | Block]:
-    """What was found, with `most` differing cells."""
+    """Return what was found, with `most` differing cells."""
     from xlmc.analysis.studies.verify import Status, groups
     from xlmc.outputs.document.parts import Table
 

@@ -287,7 +287,7 @@ def _say(axis: Axes, text: str) -> None:
 
 @lru_cache(maxsize=2)  # drawing takes a second, and page and document show the same
 def svg(study: Study, against: Work) -> str:
-    """The figure of a study as SVG, its letters as shapes; the same study gives the same bytes."""
+    """Draw the figure of a study as SVG, its letters as shapes; the same study gives the same bytes."""
     import matplotlib as mpl
 
     drawn = io.StringIO()
@@ -298,7 +298,7 @@ def svg(study: Study, against: Work) -> str:
 
 
 def png(study: Study) -> bytes:
-    """The figure against time as a picture."""
+    """Draw the figure against time as a picture."""
     drawn = io.BytesIO()
     draw(study).savefig(drawn, format="png", dpi=130)
     return drawn.getvalue()

@@ -26,7 +26,7 @@ _WORKS: Final[tuple[tuple[Work, str], ...]] = (("seconds", "time"), ("evaluation
 
 
 def methods_report(study: Study, *, figures: bool) -> StudyReport:
-    """The report; matplotlib draws its figures where they are wanted, which takes some seconds."""
+    """Make the report; matplotlib draws its figures where they are wanted, which takes some seconds."""
     first = _filled([methods_tables.error_table(study)])
     rest = _filled([methods_tables.bounds_table(study), methods_tables.reference_table(study)])
     long = _filled([methods_tables.forecast_table(study), methods_tables.length_table(study)])
@@ -47,7 +47,7 @@ def methods_report(study: Study, *, figures: bool) -> StudyReport:
 
 
 def in_short(study: Study) -> list[Block]:
-    """What the terminal shows before the recommendation: the tables, and what the methods cannot do."""
+    """Return what the terminal shows before the recommendation: the tables, and what the methods cannot do."""
     tables = (
         methods_tables.reference_table(study),
         methods_tables.error_table(study),
@@ -71,5 +71,5 @@ def _filled(tables: Iterable[Table]) -> list[Block]:
 
 
 def _lines(title: str, head: str, lines: Sequence[tuple[str, str]]) -> list[Block]:
-    """A table of two columns, the second of which is wrapped."""
+    """Make a table of two columns, the second of which is wrapped."""
     return [Table(title, (head, "In words"), tuple(lines), widths=(1.0, 3.0))] if lines else []

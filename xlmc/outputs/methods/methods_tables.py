@@ -261,5 +261,5 @@ def slope_text(slope: float) -> str:
 
 
 def _table(title: str, headings: Sequence[str], rows: Sequence[tuple[str, ...]], first: int = 1) -> Table:
-    """A table whose columns from `first` on hold numbers."""
+    """Make a table whose columns from `first` on hold numbers."""
     return Table(title, tuple(headings), tuple(rows), tuple(range(first, len(headings))))

@@ -66,7 +66,7 @@ _MARKS: Final = ("circle", "square", "diamond", "triangle", "x", "star", "plus",
 _WHISKER: dict[str, Any] = {"color": "#52606D", "width": 1}
 
 _LEVEL: Final = 0
-"""The rotation of names that lie level and are all shown: LibreOffice leaves out every second of those that say none."""
+"""The rotation of names that are all shown: LibreOffice leaves out every second of those that state none."""
 
 _GRIDLINES: Final[dict[str, Any]] = {
     "line": {"none": True},

@@ -13,6 +13,7 @@ import pytest
 from described import undescribed
 from fewer_sheets import SHORT, keep_few_trials, keep_sheets, leave_out_fits
 
+import xlmc as package
 from xlmc.cli import main, xlmc
 from xlmc.montecarlo.distributions import FAMILIES
 from xlmc.montecarlo.loop.version import __version__
@@ -129,3 +130,17 @@ def test_links_between_documents_lead_somewhere():
     for page in (*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")):
         for target in re.findall(r"\]\((?!http)([^)#]+)", page.read_text(encoding="utf-8")):
             assert (page.parent / target).exists(), f"{page.name}: {target}"
+
+
+def test_every_public_name_is_in_the_reference():
+    page = (ROOT / "docs" / "api.md").read_text(encoding="utf-8")
+    listed = set(re.findall(r"^\.\. auto(?:function|class):: (\w+)", page, re.MULTILINE))
+    assert listed == set(package.__all__) - {"__version__"}
+
+
+def test_the_gallery_shows_every_example():
+    script = script_of_docs("gallery_of_books")
+    examples = {f"examples/{path.name}" for path in (ROOT / "examples").glob("*.xlsx") if "-results" not in path.stem}
+    assert examples <= script.BOOKS.keys()
+    assert len(script.BOOKS) >= 15
+    assert all((ROOT / book).is_file() for book in script.BOOKS)

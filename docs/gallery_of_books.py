@@ -82,8 +82,7 @@ def _card(pages: Path, folder: Path, book: str, title: str) -> str:
             "",
             f"{said}.",
             "",
-            f"{len(run.model.live)} ranges, {len(run.model.filters)} filters; "
-            f"{{download}}`{Path(book).name} <{link}>`",
+            f"{len(run.model.live)} ranges, {len(run.model.filters)} filters; {{download}}`{Path(book).name} <{link}>`",
             ":::",
         )
     )

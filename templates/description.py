@@ -25,6 +25,7 @@ __all__ = [
     "GuideSection",
     "Input",
     "Look",
+    "PastedTable",
     "Role",
     "Section",
     "Template",
@@ -222,6 +223,21 @@ class Diagram:
 
 
 @dataclass(frozen=True, slots=True)
+class PastedTable:
+    """A table that is pasted as it is, and what is read from it.
+
+    Attributes:
+        columns: headings; the table stands below them, from column A on.
+        rows: room for so many.
+        read: quantities, each a named cell beside the table.
+    """
+
+    columns: tuple[str, ...]
+    rows: int
+    read: tuple[Equation, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Template:
     """A whole workbook.
 
@@ -235,6 +251,7 @@ class Template:
         named: what these names are of: `vehicle`, or `phase`.
         waiting: uncertain inputs that do nothing until they have a value; they have a sheet of their own.
         waiting_note: what that sheet says of them.
+        record: a table that may be pasted; it has a sheet of its own.
     """
 
     title: str
@@ -258,6 +275,7 @@ class Template:
     evidence: tuple[EvidenceRow, ...] = ()
     waiting: tuple[Input, ...] = ()
     waiting_note: str = ""
+    record: PastedTable | None = None
 
     @property
     def inputs(self) -> tuple[Input, ...]:

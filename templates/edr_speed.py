@@ -14,6 +14,7 @@ from templates.description import (
     GuideSection,
     Input,
     Look,
+    PastedTable,
     Role,
     Section,
     Template,
@@ -146,13 +147,144 @@ _OPTIONAL = (
     Input("e", "e", "Restitution", "", None, "Optional. The same; along one line only"),
 )
 
+_ROWS = 101
+"""10 s at ten a second, or 5 s at twenty."""
+
+
+def _column(letter: str) -> str:
+    return f"{letter}$6:{letter}${5 + _ROWS}".replace(letter, f"${letter}")
+
+
+_TIME, _SPEED, _BRAKE = map(_column, "ABC")
+_ON = f"({_TIME}>rec_on)*ISNUMBER({_TIME})*ISNUMBER({_SPEED})"
+_FEW = 'IF(rec_slipped<3,"–",'
+
+
+def _last_off(word: str) -> str:
+    return f"IF(COUNTIFS({_BRAKE},{word})>0,MAXIFS({_TIME},{_BRAKE},{word}),MIN({_TIME})-1)"
+
+
+_TABLE = PastedTable(
+    ("Time, s", "Speed, [mph|km/h]", "Brake: On/Off or 1/0"),
+    _ROWS,
+    (
+        Equation(
+            "rec_n",
+            "",
+            "Samples",
+            "",
+            f"COUNT({_SPEED})",
+            note="Fewer than 2: the table is not used",
+            number_format="0",
+        ),
+        Equation("rec_end", "", "Time of the last sample, s", "s", f"MAX({_TIME})", number_format="0.00"),
+        Equation(
+            "rec_step", "", "Interval between samples, s", "s", f"IF(rec_n>1,(MAX({_TIME})-MIN({_TIME}))/(rec_n-1),0)"
+        ),
+        Equation(
+            "rec_oldest",
+            "",
+            "Recorded speed, first sample",
+            "",
+            f"SUMIFS({_SPEED},{_TIME},MIN({_TIME}))",
+            number_format="0.0",
+        ),
+        Equation(
+            "rec_newest",
+            "",
+            "Recorded speed, last sample",
+            "",
+            f"SUMIFS({_SPEED},{_TIME},rec_end)",
+            number_format="0.0",
+        ),
+        Equation("rec_sum", "", "Sum of all recorded speeds", "", f"SUM({_SPEED})", number_format="0.0"),
+        Equation(
+            "rec_off",
+            "",
+            "Last time at which the brake was off, s",
+            "s",
+            f"MAX({_last_off(chr(34) + 'Off' + chr(34))},{_last_off('0')})",
+            note="One second before the first sample where it was on in all",
+            number_format="0.00",
+        ),
+        Equation(
+            "rec_on",
+            "",
+            "First time at which it was on until the end, s",
+            "s",
+            f'IF(OR(rec_n<2,rec_off>=rec_end),"–",MINIFS({_TIME},{_TIME},">"&rec_off))',
+            note="A dash: it was off at the end",
+            number_format="0.00",
+        ),
+        Equation(
+            "rec_at_on",
+            "",
+            "Recorded speed then",
+            "",
+            f'IF(ISNUMBER(rec_on),SUMIFS({_SPEED},{_TIME},rec_on),"–")',
+            number_format="0.0",
+        ),
+        Equation(
+            "rec_slipped",
+            "",
+            "Samples after that, with wheels that slip",
+            "",
+            f"IF(ISNUMBER(rec_on),SUMPRODUCT({_ON}),0)",
+            number_format="0",
+        ),
+        Equation(
+            "rec_slip_sum",
+            "",
+            "Sum of their speeds",
+            "",
+            f"IF(rec_slipped>0,SUMPRODUCT({_ON}*{_SPEED}),0)",
+            number_format="0.0",
+        ),
+        Equation("rec_mid", "", "Their mean time, s", "s", f"{_FEW}SUMPRODUCT({_ON}*{_TIME})/rec_slipped)"),
+        Equation(
+            "rec_spread",
+            "",
+            "Sum of squares of their times about it",
+            "s²",
+            f"{_FEW}SUMPRODUCT({_ON}*({_TIME}-rec_mid)^2))",
+        ),
+        Equation(
+            "rec_slope",
+            "",
+            "Least squares: change of recorded speed in a second",
+            "",
+            f"{_FEW}SUMPRODUCT({_ON}*({_TIME}-rec_mid)*{_SPEED})/rec_spread)",
+            note="One line through all samples with slip. A dash: fewer than 3; sheet Inputs has the friction",
+        ),
+        Equation(
+            "rec_fit",
+            "",
+            "Recorded speed at the last sample, by that line",
+            "",
+            "IF(rec_slipped<3,rec_newest,rec_slip_sum/rec_slipped+rec_slope*(rec_end-rec_mid))",
+            note="With fewer than 3 the sample itself",
+            number_format="0.00",
+        ),
+        Equation(
+            "rec_share",
+            "",
+            "Error of rounding left in it, of one sample's",
+            "",
+            "IF(rec_slipped<3,1,SQRT(1/rec_slipped+(rec_end-rec_mid)^2/rec_spread))",
+            note="Samples are rounded each by itself, so that a line through many is known better than one of them",
+        ),
+    ),
+)
+
+_USED = "IF(rec_n>=2"
+
 _SPEEDS = (
     Equation(
         "braked",
         "",
         "The brake was on at the last sample (1 = yes)",
         "",
-        "IF(n_on>0,1,0)",
+        f"{_USED},IF(ISNUMBER(rec_on),1,0),IF(n_on>0,1,0))",
         "input",
         number_format="0",
     ),
@@ -161,17 +293,28 @@ _SPEEDS = (
         "v0,true",
         "True speed at the last sample",
         "[mph|km/h]",
-        "IF(n_on>1,(v_last+q)/(1-kappa),v_last+q+bias)",
+        f"{_USED},IF(rec_slipped>0,(rec_fit+q*rec_share)/(1-kappa),rec_newest+q+bias),"
+        "IF(n_on>1,(v_last+q)/(1-kappa),v_last+q+bias))",
         "(v + q)/(1 − κ)",
         "Recorded is (1 − κ) of the true speed while wheels slip; otherwise, and at the sample at which the brake "
         "first shows on, the difference of coasting tests holds.",
+    ),
+    Equation(
+        "a_brake",
+        "a",
+        "Deceleration until the impact, while braking",
+        "[ft|m]/s²",
+        f"IF(AND(rec_n>=2,ISNUMBER(rec_slope)),-rec_slope/({MPH})/(1-kappa),f*g)",
+        "f·g, or of the record",
+        "Of the line through the samples on sheet Record, where there are three or more with slip.",
+        number_format="0.00",
     ),
     Equation(
         "v_impact_s",
         "vi",
         "Speed at the impact",
         "[ft|m]/s",
-        f"t_0/({MPH})-braked*f*g*tau",
+        f"t_0/({MPH})-braked*a_brake*tau",
         "vtrue − a·τ",
         "The deceleration goes on after the last sample where the brake was on.",
     ),
@@ -217,6 +360,59 @@ _RECORD = (
     *(_way(number) for number in _SAMPLES),
 )
 
+_WHOLE = (
+    Equation(
+        "slip_sum",
+        "Σslip",
+        "True speeds of samples with slip, added",
+        "[mph|km/h]",
+        "IF(rec_n>=2,(rec_slip_sum+rec_slipped*q)/(1-kappa),0)",
+        "Σ (v + q)/(1 − κ)",
+        number_format="0.0",
+    ),
+    Equation(
+        "ends_half",
+        "½vend",
+        "Half the true speed at the last sample, from the table",
+        "[mph|km/h]",
+        "IF(rec_n>=2,IF(rec_slipped>0,(rec_newest+q)/(1-kappa),rec_newest+q+bias)/2,0)",
+        "trapezoids",
+        number_format="0.00",
+    ),
+    Equation(
+        "x_table",
+        "xtab",
+        "Way from brake on to the last sample, from the table",
+        "[ft|m]",
+        f"IF(AND(rec_n>=2,ISNUMBER(rec_on)),IF(rec_slipped>0,((N(rec_at_on)+q+bias)/2+slip_sum-ends_half)*rec_step/({MPH}),0),0)",
+        "Σ mean speed · step",
+        number_format="0.0",
+    ),
+    Equation(
+        "x_record",
+        "xrec",
+        "Way from the first sample to the impact",
+        "[ft|m]",
+        "IF(rec_n>=2,(rec_sum-rec_slip_sum+(rec_n-rec_slipped)*(q+bias)+slip_sum-(rec_oldest+q+bias)/2-ends_half)"
+        f'*rec_step/({MPH})+(t_0/({MPH})+v_impact_s)/2*tau,"–")',
+        "Σ mean speed · step",
+        "A dash until sheet Record holds a table.",
+        Role.ANSWER,
+        "0.0",
+    ),
+    Equation(
+        "t_braked",
+        "tbr",
+        "Time from brake on to the impact, at least",
+        "s",
+        'IF(ISNUMBER(rec_on),rec_end-rec_on+tau,"–")',
+        "record",
+        "The brake came on after the sample before: at most one interval more. A dash without a table.",
+        Role.ANSWER,
+        "0.00",
+    ),
+)
+
 _ANSWERS = (
     speed_answer("vi", "vi", "Speed at the impact", "v_impact_s"),
     Equation(
@@ -224,7 +420,9 @@ _ANSWERS = (
         "von ([mph|km/h])",
         "Speed at the sample at which the brake was first on",
         "[mph|km/h]",
-        "CHOOSE(MAX(n_on,1),t_0," + ",".join(f"t_{number}" for number in _SAMPLES) + ")",
+        f"{_USED},IF(ISNUMBER(rec_on),rec_at_on+q+bias,t_0),CHOOSE(MAX(n_on,1),t_0,"
+        + ",".join(f"t_{number}" for number in _SAMPLES)
+        + "))",
         "record",
         "The last sample, where the brake was off in all.",
         Role.ANSWER,
@@ -235,7 +433,7 @@ _ANSWERS = (
         "xon",
         "Way from that sample to the impact",
         "[ft|m]",
-        "+".join(f"x_{number}" for number in _SAMPLES) + "+(t_0/(" + MPH + ")+v_impact_s)/2*tau",
+        f"{_USED},x_table," + "+".join(f"x_{number}" for number in _SAMPLES) + f")+(t_0/({MPH})+v_impact_s)/2*tau",
         "Σ x",
         "",
         Role.ANSWER,
@@ -269,14 +467,14 @@ _CHECKS = checks_section(
     check(
         "check_samples",
         "The brake was first on at a sample that is given",
-        "AND(n_on>=0,n_on<=n_given+1,n_on=INT(n_on),ISNUMBER(v_on_[mph|kmh]),ISNUMBER(x_on))",
+        "AND(ISNUMBER(v_on_[mph|kmh]),ISNUMBER(x_on),OR(rec_n>=2,AND(n_on>=0,n_on<=n_given+1,n_on=INT(n_on))))",
         "record",
         "FALSE: fill in the recorded speeds back to the sample at which the brake was first on.",
     ),
     check(
         "check_last",
         "The vehicle moved at the last sample",
-        "v_last>0",
+        f"{_USED},rec_newest,v_last)>0",
         "record",
         "FALSE: it stood, and there is no speed at the impact to be found; or it stopped before the impact.",
     ),
@@ -291,9 +489,9 @@ _CHECKS = checks_section(
     check(
         "check_time",
         "The impact lies at the last sample or after it",
-        "AND(tau>=0,T_s>0)",
+        "AND(tau>=0,T_s>0,OR(rec_n<2,tau<=2*rec_step))",
         "record",
-        "FALSE: a time below 0, or no interval between samples.",
+        "FALSE: a time below 0, or no interval; or τ on sheet Inputs is that of a slower recorder than the table's.",
     ),
     check(
         "check_forward",
@@ -341,7 +539,11 @@ _GUIDE = (
             "Results wanted) keeps impossible pairs apart.",
             "Another tyre size or axle ratio than the factory's: multiply the recorded speeds (Nagel, Collision 3(2), "
             "2008). Older recorders of some makers sample asynchronously, up to a second off: widen τ.",
-            "Samples ten times a second: enter every fifth, or the last ten, and set the interval.",
+            "A whole pre-crash table: paste times, speeds and brake on sheet Record, as the report prints them, up to "
+            "101 samples. It takes the place of the samples on sheet Inputs. One line of least squares through all "
+            "samples with slipping wheels gives the deceleration and the speed at the last one, with the error of "
+            "rounding that so many samples leave. Enter the interval between samples as High of τ. Of several events, "
+            "take the table of the one that is asked about.",
         ),
     ),
     GuideSection(
@@ -371,7 +573,7 @@ TEMPLATE = Template(
     optional=_OPTIONAL,
     sections=(
         Section("1  Speed at the last sample and at the impact", _SPEEDS),
-        Section("2  The record", _RECORD),
+        Section("2  The record", (*_RECORD, *_WHOLE)),
         Section("3  Answers (the forecasts)", _ANSWERS),
         Section("4  Recorded delta-V", _DELTA_V),
         _CHECKS,
@@ -380,6 +582,8 @@ TEMPLATE = Template(
         ForecastRow("«1» speed at the impact", "vi_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("«1» speed when the brake was first on", "v_on_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("«1» way from brake on to the impact", "x_on", "[ft|m]"),
+        ForecastRow("«1» way from the first sample to the impact", "x_record", "[ft|m]"),
+        ForecastRow("«1» time from brake on to the impact, at least", "t_braked", "s", stated="lower bound"),
     ),
     filters=(
         FilterRow("Forward at the impact", "v_impact_s", "The vehicle had not stopped", above=0),
@@ -414,4 +618,5 @@ TEMPLATE = Template(
     guide=_GUIDE,
     diagram=_DIAGRAM,
     vehicles=("Vehicle",),
+    record=_TABLE,
 )

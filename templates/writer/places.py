@@ -6,7 +6,17 @@ from xlsxwriter.utility import quote_sheetname, xl_rowcol_to_cell
 
 from templates.description import Template
 
-__all__ = ["HEADER_ROW", "MOST_CAPTIONS", "VALUE_COLUMN", "WAITING", "Place", "name_cells", "places", "reference"]
+__all__ = [
+    "HEADER_ROW",
+    "MOST_CAPTIONS",
+    "RECORD",
+    "VALUE_COLUMN",
+    "WAITING",
+    "Place",
+    "name_cells",
+    "places",
+    "reference",
+]
 
 Place = tuple[str, int]
 """Sheet and row, the row counted from 0."""
@@ -15,6 +25,8 @@ HEADER_ROW = 4
 VALUE_COLUMN = 3
 WAITING = "Run-out"
 """The sheet of inputs that wait."""
+RECORD = "Record"
+"""The sheet of a table that is pasted."""
 MOST_CAPTIONS = 3
 """Names that have the defined name of their cell beside them, within the columns that are not folded away."""
 _GAP = 4
@@ -31,6 +43,8 @@ def places(template: Template) -> dict[str, Place]:
             row += 1
         row += _GAP
     found |= {given.symbol: (WAITING, row) for row, given in enumerate(template.waiting, HEADER_ROW + 1)}
+    read = () if template.record is None else template.record.read
+    found |= {each.symbol: (RECORD, row) for row, each in enumerate(read, HEADER_ROW + 1)}
     row = HEADER_ROW + 1
     for section in template.sections:
         for equation in section.equations:

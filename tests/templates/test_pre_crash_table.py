@@ -1,0 +1,110 @@
+"""A pre-crash table that is pasted as it is: what a braking vehicle made of it comes back."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from simulated import simulated
+from typed_cells import model_of, named_cells, with_typed
+
+from templates.writer.cached import computed
+from xlmc.excel.address import Cell
+
+EDITIONS = [("edr-speed", 3600 / 5280), ("edr-speed-si", 3.6)]
+FIRST_ROW = 6
+KAPPA, BIAS = 0.12, 0.6
+
+
+def pasted(book, table, typed=None):
+    """The book with rows of time, speed, brake on its sheet Record."""
+    cells = {Cell("Record", FIRST_ROW + i, 1 + j): value for i, row in enumerate(table) for j, value in enumerate(row)}
+    return with_typed(book, cells | (typed or {}))
+
+
+def shown(book, wanted):
+    """The values of named cells, every formula computed."""
+    done, at = computed(book), named_cells(book)
+    return [done[at[symbol].sheet, at[symbol].row - 1, at[symbol].column - 1] for symbol in wanted]
+
+
+def record(step, count, brakes_at, before, rate, words, rounded=0.0):
+    """The table of a vehicle that goes on at a speed and slows from a time on: true speeds, and rows as recorded."""
+    times = np.round(np.arange(-count + 1, 1) * step, 10)
+    true = before - rate * np.maximum(times - brakes_at, 0)
+    on = times > brakes_at
+    slips = on & (times > times[on].min()) if on.any() else on
+    shown = np.where(slips, true * (1 - KAPPA), true - BIAS)
+    shown = np.round(shown / rounded) * rounded if rounded else shown
+    return true, [[float(t), float(v), words[bool(b)]] for t, v, b in zip(times, shown, on, strict=True)]
+
+
+@pytest.fixture
+def read_off(read):
+    """`read_off(name, table, inputs, wanted)`: values of cells with a table pasted, every formula computed."""
+
+    def values(name, table, inputs, wanted):
+        return shown(pasted(read(name), table, inputs), wanted)
+
+    return values
+
+
+@pytest.mark.parametrize("words", [("Off", "On"), (0, 1)], ids=["words", "digits"])
+@pytest.mark.parametrize(("step", "count"), [(0.5, 11), (0.1, 51), (0.05, 101)])
+@pytest.mark.parametrize(("name", "per_second"), EDITIONS)
+def test_a_vehicle_that_brakes_comes_back(name, per_second, step, count, words, read_off):
+    rate, before, brakes_at = 6.5 * per_second, 30.0 * per_second, -2.17 * step * 4
+    if step < 0.5:
+        brakes_at = -1.717
+    true, table = record(step, count, brakes_at, before, rate, words)
+    given = {"kappa": KAPPA, "bias": BIAS, "q": 0.0, "tau": 0.04}
+    unit = "kmh" if name.endswith("-si") else "mph"
+    wanted = [f"vi_{unit}", "a_brake", "x_record", "x_on", "t_braked", "checks_hold", f"v_on_{unit}"]
+    speed, slowing, way, braked, time, holds, at_on = read_off(name, table, given, wanted)
+    end = before + rate * brakes_at - rate * 0.04
+    assert speed == pytest.approx(end, rel=1e-9)
+    assert slowing == pytest.approx(rate / per_second, rel=1e-9)
+    first_on = next(row[0] for row in table if row[2] == words[1])
+    assert time == pytest.approx(0.04 - first_on, abs=1e-12)
+    assert 0 <= -brakes_at + 0.04 - time <= step
+    assert at_on == pytest.approx(before - rate * (first_on - brakes_at), rel=1e-12)
+    # The way is the area under the speed: trapezoids are off by a·step²/8 in the interval in which braking began.
+    whole = (before * (brakes_at - table[0][0]) + (before + end) / 2 * (0.04 - brakes_at)) / per_second
+    assert way == pytest.approx(whole, abs=rate / per_second * step**2 / 8 + 1e-9)
+    since = (at_on + end) / 2 * (0.04 - first_on) / per_second
+    assert braked == pytest.approx(since, rel=1e-9)
+    assert holds is True
+    assert true[0] == before
+
+
+@pytest.mark.parametrize(("name", "per_second"), EDITIONS)
+def test_without_braking_the_last_sample_stands(name, per_second, read_off):
+    _, table = record(0.1, 51, 9, 20 * per_second, 1.0, ("Off", "On"))
+    unit = "kmh" if name.endswith("-si") else "mph"
+    given = {"bias": BIAS, "q": 0.0, "tau": 0.1}
+    speed, on, time = read_off(name, table, given, [f"vi_{unit}", "braked", "t_braked"])
+    assert (speed, on, time) == (pytest.approx(20 * per_second), 0, "–")
+
+
+def test_rounding_is_covered_by_the_error_of_the_line(read):
+    """Records rounded to whole km/h: the true speed is off by the share of one sample's error that the line leaves."""
+    rng, book, off = np.random.default_rng(3), read("edr-speed-si"), []
+    for _ in range(60):
+        before, rate, begun = rng.uniform(80, 110), rng.uniform(20, 28), rng.uniform(1.2, 1.9)
+        _, table = record(0.1, 51, -begun, before, rate, ("Off", "On"), rounded=1.0)
+        given = {"kappa": KAPPA, "bias": BIAS, "q": 0.0, "tau": 0.0}
+        speed, share = shown(pasted(book, table, given), ["vi_kmh", "rec_share"])
+        assert share < 0.7
+        off.append((speed - (before - rate * begun)) * (1 - KAPPA) / (share / np.sqrt(12)))
+    assert 0.7 < np.std(off) < 1.3
+    assert abs(np.mean(off)) < 4 / np.sqrt(60)
+
+
+def test_the_table_is_run_and_its_answers_wait_without_it(read):
+    book = read("edr-speed")
+    free = simulated(model_of(book), 2_000)
+    waiting = ["Vehicle way from the first sample to the impact", "Vehicle time from brake on to the impact, at least"]
+    assert not set(waiting) & set(free.forecasts)
+    _, table = record(0.1, 51, -1.717, 60, 15.0, ("Off", "On"), rounded=1.0)
+    run = simulated(model_of(pasted(book, table)), 2_000)
+    assert set(waiting) < set(run.forecasts)
+    assert run.results["Vehicle speed at the impact"].standard_deviation.value > 0

@@ -29,7 +29,7 @@ from xlmc.montecarlo.definitions.stating import Role
 from xlmc.montecarlo.definitions.stopping import Precision
 from xlmc.montecarlo.definitions.tables.settings import LEAST_PERCENT
 from xlmc.montecarlo.distributions import FAMILIES
-from xlmc.montecarlo.distributions.by_percentiles import ByPercentiles
+from xlmc.montecarlo.distributions.found_member import FoundMember
 
 __all__ = ["Block", "Entry", "Formula", "NewRow", "NewTable", "new_tables", "text_of"]
 
@@ -166,7 +166,7 @@ def _filters(definitions: Definitions) -> list[Filter]:
 def _can_be_a_row(assumption: Assumption) -> bool:
     """Whether a row of a table can say it: a family that a table knows, by parameters, percentiles or data."""
     own = assumption.own_family
-    return own is None or isinstance(own, ByPercentiles) or assumption.data is not None
+    return own is None or isinstance(own, FoundMember) or assumption.data is not None
 
 
 def _headings(rows: Iterable[NewRow]) -> dict[str, None]:

@@ -16,6 +16,7 @@ from xlmc.montecarlo.distributions.beta_pert import BetaPERT
 from xlmc.montecarlo.distributions.beta_subj import BetaSubj
 from xlmc.montecarlo.distributions.binomial import Binomial
 from xlmc.montecarlo.distributions.burr12 import Burr12
+from xlmc.montecarlo.distributions.by_moments import ByMoments
 from xlmc.montecarlo.distributions.by_percentiles import ByPercentiles
 from xlmc.montecarlo.distributions.cauchy import Cauchy
 from xlmc.montecarlo.distributions.cumul import Cumul, CumulD
@@ -69,6 +70,7 @@ from xlmc.montecarlo.distributions.yes_no import YesNo
 
 __all__ = [
     "FAMILIES",
+    "ByMoments",
     "ByPercentiles",
     "DataError",
     "DataSpec",

@@ -10,14 +10,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from functools import lru_cache
 from itertools import pairwise, product
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from xlmc.montecarlo.distributions.base import Array, Family, Member, Values
+from xlmc.montecarlo.distributions.found_member import FoundMember
 from xlmc.montecarlo.distributions.parameters import Fault, ParameterSpec, Role, show
 
 __all__ = ["ByPercentiles", "by_percentiles", "match_percentiles"]
@@ -56,7 +55,7 @@ def by_percentiles(family: Family, given: Collection[str], percents: Sequence[fl
     return ByPercentiles(family, tuple(key for key in family.keys if key not in unknown), tuple(sorted(percents)))
 
 
-class ByPercentiles(Family):
+class ByPercentiles(FoundMember):
     """The member of a family that has some parameters as given and these percentiles; before any truncation.
 
     Its parameters are those given, in the family's order, then the percentiles by rising percentage. They are numbers:
@@ -75,12 +74,9 @@ class ByPercentiles(Family):
     given_by = "percentiles"
 
     def __init__(self, family: Family, given: tuple[str, ...], percents: tuple[float, ...]) -> None:
-        self.family, self.percents = family, percents
-        self.name, self.aliases = family.name, family.aliases
-        self._given = tuple(spec for spec in family.parameters if spec.key in given)
+        self.percents = percents
         headings = [f"P{show(percent)}" for percent in percents]
-        self.parameters = (*self._given, *(ParameterSpec(each.lower(), (each,)) for each in headings))
-        self._member = lru_cache(maxsize=64)(self._find)
+        super().__init__(family, given, tuple(ParameterSpec(each.lower(), (each,)) for each in headings))
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Look again for the members that it has found."""
@@ -103,62 +99,12 @@ class ByPercentiles(Family):
             return Fault(percentiles[-1][0].key, message, "Correct the percentiles, or choose another distribution")
         return None
 
-    def valid(self, *params: Values, **named: Values) -> bool | NDArray[np.bool_]:
-        return self.broken_rule(*self._numbers(self.bind(params, named))) is None
-
-    def member(self, *params: float, **named: float) -> tuple[float, ...]:
-        """Return the family's own parameters, in its order.
-
-        Raises:
-            ValueError: no member of the family has these percentiles.
-        """
-        found = self._member(*self.bind(params, named))
-        if found is None:
-            raise ValueError(self.check(*params, **named))
-        return found
-
     def _find(self, *values: float) -> tuple[float, ...] | None:
         given = {spec.key: float(value) for spec, value in zip(self._given, values, strict=False)}
         points = [
             (percent / 100, float(x)) for percent, x in zip(self.percents, values[len(self._given) :], strict=True)
         ]
         return match_percentiles(self.family, given, points)
-
-    def _numbers(self, values: tuple[Any, ...]) -> tuple[float, ...]:
-        """Return the parameters as numbers.
-
-        Raises:
-            TypeError: one of them varies by trial.
-        """
-        if any(np.ndim(value) for value in values):
-            raise TypeError(f"{self.name} by percentiles takes numbers, not one for each trial")
-        return tuple(float(value) for value in values)
-
-    def _own(self, values: tuple[Any, ...]) -> Member:
-        """Return the family with its own parameters; NaN, where no member has these percentiles."""
-        found = self._member(*self._numbers(values)) or (np.nan,) * len(self.family.parameters)
-        return Member(self.family, found)
-
-    def _ppf(self, u: Array, *values: Any) -> Array:
-        return self._own(values).ppf(u, out=u)
-
-    def _isf(self, q: Array, *values: Any) -> Array:
-        return self._own(values).isf(q)
-
-    def _cdf(self, x: Values, *values: Any) -> Values:
-        return self._own(values).cdf(x)
-
-    def _sf(self, x: Values, *values: Any) -> Values:
-        return self._own(values).sf(x)
-
-    def _mean(self, *values: Any) -> Values:
-        return self._own(values).mean()
-
-    def _variance(self, *values: Any) -> Values:
-        return self._own(values).variance()
-
-    def _support(self, *values: Any) -> tuple[Values, Values]:
-        return self._own(values).support()
 
 
 def match_percentiles(family: Family, given: Mapping[str, float], points: Points) -> Solution:

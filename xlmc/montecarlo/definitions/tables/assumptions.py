@@ -26,16 +26,25 @@ from xlmc.montecarlo.definitions.tables.table_rows import (
     static_value,
 )
 from xlmc.montecarlo.distributions import FAMILIES, Family, ParameterSpec, family_named
+from xlmc.montecarlo.distributions.by_moments import COV, COV_SHARE, by_moments
 from xlmc.montecarlo.distributions.by_percentiles import by_percentiles
-from xlmc.montecarlo.distributions.parameters import show
-from xlmc.montecarlo.distributions.spelling import plain
+from xlmc.montecarlo.distributions.parameters import MEAN, STD_DEV, show
+from xlmc.montecarlo.distributions.spelling import name_key, plain
 from xlmc.montecarlo.sampling.draws import Draw
 
 __all__ = ["PARAMETERS", "is_percentile", "read_assumptions"]
 
 _OURS = (heading for family in FAMILIES.values() for spec in family.parameters for heading in spec.headings)
 
-PARAMETERS = tuple(dict.fromkeys((*_OURS, "Data")))
+PLUS_MINUS = ("±", "+/-", "Plus minus")
+"""Columns of a distance on both sides of the cell's own value."""
+
+PLUS_MINUS_PERCENT = ("± %", "+/- %", "Plus minus %")
+"""The same in percent of that value."""
+
+_FURTHER = (*COV.headings, *COV_SHARE.headings, *PLUS_MINUS, *PLUS_MINUS_PERCENT)
+
+PARAMETERS = tuple(dict.fromkeys((*_OURS, "Data", *_FURTHER)))
 """Every column that means a parameter of some distribution, beside percentiles: filled in, it is no note."""
 
 _LIMITS = frozenset({"low", "minimum", "min", "high", "maximum", "max"})
@@ -102,6 +111,8 @@ def _assumption(
         refuse_options(row, kind, findings)
         if frozen and base is not None and kind is FAMILIES["Uniform"] and _is_bare(row, kind):
             given = {"low": base, "high": base}  # held at its value, whatever its range would be
+        elif any(map(row.filled, (*PLUS_MINUS, *PLUS_MINUS_PERCENT))):
+            given = findings.attempt(_around, row, kind, base, findings) or {}
         else:
             given = _given(row, kind, findings)
         data = None if kind.data is None else findings.attempt(given_data, row, kind, computed, findings)
@@ -159,7 +170,8 @@ def _call(row: Row) -> InFormula | None:
 def _family(row: Row) -> Family:
     typed = optional_text(row, "Distribution")
     family = family_named(typed, where=row.cell("Distribution")) if typed else FAMILIES["Uniform"]
-    return _with_percentiles(row, family)
+    found = _with_percentiles(row, family)
+    return _with_moments(row, found, typed) if found is family else found
 
 
 def _base(workbook: Workbook, computed: Computed, cell: Cell, frozen: bool, findings: Findings) -> float | None:
@@ -266,10 +278,11 @@ def _heading_of(row: Row, family: Family, spec: ParameterSpec) -> str:
     if filled:
         return filled[0]
     present = [heading for heading in spec.headings if row.has(heading)]
+    name = _called(optional_text(row, "Distribution"), family)
     if present:
-        message = f"{family.name} needs {row.heading(present[0])}, and this cell is blank"
+        message = f"{name} needs {row.heading(present[0])}, and this cell is blank"
         raise DefinitionError(message, where=row.cell(present[0]), hint="Type a number, or a formula that gives one")
-    message = f"{family.name} needs {spec.heading}, and the table has no such column"
+    message = f"{name} needs {spec.heading}, and the table has no such column"
     raise DefinitionError(message, where=row.where, hint=f"Add a column {spec.heading}")
 
 
@@ -283,7 +296,91 @@ def _refuse_unused(row: Row, family: Family, findings: Findings) -> None:
         hint = "Clear the cell, or choose a distribution that has this parameter"
         if plain(heading) in _LIMITS:
             hint = "Clear the cell; to cut the distribution off, use Lower cutoff and Upper cutoff"
-        findings.problem(f"{family.name} has no {row.heading(heading)}", row.cell(heading), hint)
+        name = _called(optional_text(row, "Distribution"), family)
+        findings.problem(f"{name} has no {row.heading(heading)}", row.cell(heading), hint)
+
+
+def _with_moments(row: Row, family: Family, typed: str) -> Family:
+    """Return the family with the row's mean and spread instead of its parameters; itself where it has these.
+
+    Raises:
+        DefinitionError: they do not say which member is meant.
+    """
+    spreads = [(spec, each) for spec in (STD_DEV, COV, COV_SHARE) for each in spec.headings if row.filled(each)]
+    means = [heading for heading in MEAN.headings if row.filled(heading)]
+    if len(spreads) > 1:
+        message = f"{row.heading(spreads[0][1])} and {row.heading(spreads[1][1])} are both given"
+        raise DefinitionError(message, where=row.cell(spreads[1][1]), hint="Clear one of them")
+    if not spreads or (spreads[0][0] is STD_DEV and STD_DEV.key in family.keys):
+        return family
+    spread, heading = spreads[0]
+    if not means:
+        if spread is STD_DEV:
+            return family
+        message = f"{row.heading(heading)} is given without a Mean, of which it is a part"
+        raise DefinitionError(message, where=row.cell(heading), hint="Give Mean, too")
+    if not typed:
+        message = f"the row gives Mean and {row.heading(heading)}, and no Distribution"
+        raise DefinitionError(
+            message, where=row.where, hint="Choose one under Distribution, such as Normal or Lognormal"
+        )
+    given = [spec.key for spec in family.parameters if any(map(row.filled, spec.headings))]
+    try:
+        return by_moments(family, given, spread)
+    except ValueError as error:
+        own = ", ".join(spec.heading for spec in family.parameters) or "Data"
+        hint = f"{_called(typed, family)} is given by {own}"
+        raise DefinitionError(str(error), where=row.cell(heading), hint=hint) from None
+
+
+def _around(row: Row, family: Family, base: float | None, findings: Findings) -> dict[str, Parameter]:
+    """Return the ends of a distribution that reaches as far below the cell's value as above it.
+
+    Raises:
+        DefinitionError: the family has no such ends, they are given, too, or there is no value or no distance.
+    """
+    filled = [heading for heading in (*PLUS_MINUS, *PLUS_MINUS_PERCENT) if row.filled(heading)]
+    heading, where = row.heading(filled[0]), row.cell(filled[0])
+    if len(filled) > 1:
+        message = f"{heading} and {row.heading(filled[1])} are both given"
+        raise DefinitionError(message, where=row.cell(filled[1]), hint="Clear one of them")
+    if family.name not in ("Uniform", "Triangular", "BetaPERT"):
+        hint = "Choose one of these, or clear the cell and give the distribution's own parameters"
+        message = (
+            f"{heading} says how far Uniform, Triangular and BetaPERT reach, and the distribution is {family.name}"
+        )
+        raise DefinitionError(message, where=where, hint=hint)
+    if base is None:
+        message = f"{heading} needs a value to reach from, and the assumption's cell is blank"
+        raise DefinitionError(message, where=where, hint="Type the value into the assumption's cell")
+    if row.content(filled[0]).formula is not None:
+        hint = "Type the number, or give Low and High as formulas"
+        raise DefinitionError(f"{heading} holds a formula", where=where, hint=hint)
+    distance = number_in(heading, row.content(filled[0]), where)
+    if filled[0] in PLUS_MINUS_PERCENT:
+        if 0 < distance < 1:
+            findings.notice(
+                f"{heading} {show(distance)} is read as {show(distance)} %, not {show(100 * distance)} %", where
+            )
+        distance *= abs(base) / 100
+    if not distance > 0:
+        raise DefinitionError(f"{heading} must be above 0", where=where, hint="Give a positive number")
+    given: dict[str, Parameter] = {"low": base - distance, "high": base + distance}
+    if "likeliest" in family.keys:
+        given["likeliest"] = base
+    own = [each for spec in family.parameters for each in spec.headings if row.filled(each)]
+    if own:
+        message = f"{heading} and {row.heading(own[0])} are both given"
+        raise DefinitionError(message, where=row.cell(own[0]), hint="Clear one of them")
+    for key, cutoff in CUTOFFS.items():
+        if row.filled(cutoff) and (value := findings.attempt(parameter, row, cutoff)) is not None:
+            given[key] = value
+    return given
+
+
+def _called(typed: str, family: Family) -> str:
+    """Return what to call a family: as the person typed it, with xlmc's name where that is another."""
+    return family.name if not typed or name_key(typed) == name_key(family.name) else f"{typed} ({family.name})"
 
 
 def is_percentile(heading: str) -> bool:

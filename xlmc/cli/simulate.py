@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from xlmc.cli.blocks import show
 from xlmc.cli.options import (
     WholeNumber,
     feed_option,
@@ -155,6 +156,8 @@ def show_run(run: RunResult) -> None:
     from xlmc.cli.check import check_table, show_first
     from xlmc.cli.printing import table
     from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
+    from xlmc.outputs.document import further_sections
+    from xlmc.outputs.document.parts import Heading
     from xlmc.outputs.summary import ERROR_SENTENCE, summarise, summary_text
 
     show_first(run)
@@ -173,6 +176,8 @@ def show_run(run: RunResult) -> None:
     _show_evidence(run)
     check_table(run)
     _show_scenarios(run)
+    for heading, blocks in further_sections(run, "terminal").values():
+        show([Heading(heading), *blocks])
     say(paragraph(ERROR_SENTENCE))
     for notice in run.notices_of_run:
         say(paragraph(f"{notice}."))

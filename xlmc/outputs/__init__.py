@@ -2,7 +2,57 @@
 
 from __future__ import annotations
 
-from xlmc.outputs.sheets.save import save
+from functools import cache, partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from xlmc.outputs.sheets.save import save as save_sheets
+from xlmc.outputs.sheets.trials_sheet import TRIAL_ROWS
 from xlmc.outputs.summary import ERROR_SENTENCE, SummaryRow, summarise, summary_text
 
+if TYPE_CHECKING:
+    from xlmc.montecarlo.simulation.simulation import RunResult
+    from xlmc.outputs.document.parts import Block
+    from xlmc.outputs.sheets.book import ResultSheet, Writing
+    from xlmc.outputs.sheets.page import Page
+
 __all__ = ["ERROR_SENTENCE", "SummaryRow", "save", "summarise", "summary_text"]
+
+_TAB = 31
+"""Characters of a sheet's name, Excel's limit."""
+
+
+def save(
+    simulation: RunResult, path: Path, *, command: str | None = None, rows: int = TRIAL_ROWS, overwrite: bool = False
+) -> Path:
+    """Write the workbook with its result sheets, and those of the sections that have no sheet of their own.
+
+    `xlmc.outputs.sheets.save.save` says what the arguments are, and what is raised.
+    """
+    from xlmc.outputs.document import further_sections
+
+    found = further_sections(simulation, "sheets").values()
+    further = [_sheet(heading, blocks) for heading, blocks in found]
+    return save_sheets(simulation, path, command=command, rows=rows, overwrite=overwrite, further=further)
+
+
+def _sheet(heading: str, blocks: list[Block]) -> ResultSheet:
+    from xlmc.outputs.document.xlsx_writer import sheet_widths
+    from xlmc.outputs.sheets.book import ResultSheet
+
+    return ResultSheet(heading[:_TAB], partial(_write, heading, blocks), tuple(sheet_widths(blocks)))
+
+
+def _write(heading: str, blocks: list[Block], page: Page, run: Writing) -> None:
+    from xlmc.outputs.document.xlsx_writer import write_blocks
+    from xlmc.outputs.sheets.page import Page
+    from xlmc.outputs.sheets.styles import Styles
+
+    page.title(heading, run.name)
+
+    @cache
+    def numbers() -> Page:
+        return Page(run.book.add_worksheet(f"{heading[: _TAB - 5]} data"), Styles(run.book), ())
+
+    write_blocks(page, blocks, run.book, numbers)
+    page.set_up_printing(run.name)

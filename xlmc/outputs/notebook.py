@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.statements.in_words import distribution_text, limits_text
 from xlmc.montecarlo.distributions.parameters import show
+from xlmc.outputs.document import further_sections
+from xlmc.outputs.document.html_writer import blocks_html
 from xlmc.outputs.histogram import figures_of
 from xlmc.outputs.summary import ERROR_SENTENCE, summarise, summary_text
 
@@ -58,6 +60,7 @@ def run_html(run: RunResult) -> str:
         (each.name, limits_text(each), f"{rejected:,}", f"{only:,}")
         for each, rejected, only in zip(run.model.filters, run.tally.rejected, run.tally.only, strict=True)
     ]
+    further = further_sections(run, "notebook").values()
     changed = [] if run.changed_from is None else [run.changed_from.sentence]
     return "".join(
         (
@@ -69,6 +72,7 @@ def run_html(run: RunResult) -> str:
             if filters
             else "",
             *_sentences("Notice", map(str, run.notices)),
+            *(f"<h3>{escape(heading)}</h3>{blocks_html(blocks).source}" for heading, blocks in further),
             f"<p style='font-size:smaller'>{escape(ERROR_SENTENCE)}</p>",
         )
     )

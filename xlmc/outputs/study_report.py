@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -176,12 +176,12 @@ def book_parts(report: StudyReport) -> dict[str, bytes]:
         styles = Styles(made)
         blocks = report.blocks if report.on_sheet is None else report.on_sheet
         written = Page(made.add_worksheet(report.sheet), styles, sheet_widths(blocks))
-        data: list[Page] = []
 
+        @cache
         def numbers() -> Page:
-            if not data:
-                data.append(Page(made.add_worksheet("Numbers"), styles, ()))
-            return data[0]
+            data = Page(made.add_worksheet("Numbers"), styles, ())
+            data.sheet.hide()
+            return data
 
         written.title(report.title, report.below)
         written.row += 1
@@ -189,8 +189,7 @@ def book_parts(report: StudyReport) -> dict[str, bytes]:
         written.set_up_printing(report.title)
         if report.add_sheets is not None:
             report.add_sheets(made, styles)
-        for page in data:
-            page.sheet.hide()
-            page.set_up_printing(report.title, repeat=0)
+        if numbers.cache_info().currsize:
+            numbers().set_up_printing(report.title, repeat=0)
     parts: dict[str, bytes] = made.parts
     return parts

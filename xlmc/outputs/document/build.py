@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.simulation.simulation import RunResult
 
-__all__ = ["PAPERS", "Wanted", "build", "check_wanted", "check_wanted_of"]
+__all__ = ["PAPERS", "Wanted", "build", "check_wanted", "check_wanted_of", "further_sections"]
 
 PAPERS: Final = ("letter", "a4")
 
@@ -84,9 +84,9 @@ def build(simulation: RunResult, wanted: Wanted, *, command: str | None = None) 
     scenario_answers(simulation)  # cells may ask about them, and warnings tell of those that cannot
     material = Material(simulation, make_record(simulation, command), _forecasts(wanted, simulation.model))
     blocks: list[Block] = []
-    for name, (heading, make) in SECTIONS.items():
-        found = list(make(material)) if not wanted.sections or name in wanted.sections else []
-        blocks += [Heading(heading), *found] if found else []
+    for name, section in SECTIONS.items():
+        found = list(section.make(material)) if not wanted.sections or name in wanted.sections else []
+        blocks += [Heading(section.heading), *found] if found else []
     title = case["Title"] or f"Results of {workbook.name}"
     number = case["Case number"]
     cover = [(name, text) for name, text in case.fields.items() if name != "Title"]
@@ -103,6 +103,21 @@ def build(simulation: RunResult, wanted: Wanted, *, command: str | None = None) 
         blocks=tuple(blocks),
         paper=wanted.paper,
     )
+
+
+def further_sections(simulation: RunResult, output: str) -> dict[str, tuple[str, list[Block]]]:
+    """Return the sections that an output shows as the report does: name -> heading and blocks.
+
+    Args:
+        simulation: the finished run.
+        output: one of `OUTPUTS`, whose other sections have a form of their own there.
+    """
+    rows = {name: section for name, section in SECTIONS.items() if output not in section.elsewhere}
+    if not rows:
+        return {}
+    material = Material(simulation, make_record(simulation, None), _forecasts(Wanted(), simulation.model))
+    found = {name: (section.heading, list(section.make(material))) for name, section in rows.items()}
+    return {name: (heading, blocks) for name, (heading, blocks) in found.items() if blocks}
 
 
 def _forecasts(wanted: Wanted, model: CompiledModel) -> tuple[str, ...]:

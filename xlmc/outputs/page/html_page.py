@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from html import escape
 from importlib.resources import files
 from pathlib import Path
@@ -21,7 +21,9 @@ from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.seal import sealed_text
 from xlmc.excel.workbook.target import Target
 from xlmc.excel.workbook.writer import check_folder, write_workbook
+from xlmc.outputs.document import further_sections
 from xlmc.outputs.document.element import EMPTY, Html, element, join
+from xlmc.outputs.document.html_writer import blocks_html
 from xlmc.outputs.histogram import figures_of
 from xlmc.outputs.page.answers import answers
 from xlmc.outputs.page.forecast_charts import charts, overlays
@@ -161,13 +163,19 @@ def page_text(simulation: RunResult, *, beside: RunResult | None = None, command
         "notices": notices(simulation),
         "record": record(make_record(simulation, command)),
     }
+    further = further_sections(simulation, "page")
+    parts |= {
+        key: element("section", element("h2", heading), blocks_html(blocks), id=key)
+        for key, (heading, blocks) in further.items()
+    }
+    links = _LINKS | {key: heading for key, (heading, _) in further.items()}
     styles, scripts = _code()
     return Template(_asset("page.html")).substitute(
         policy=escape(page_policy()),
         title=escape(f"{name}: results of the simulation"),
         licence=_asset(_LICENCE),
         styles="".join(f"<style>{style}</style>\n" for style in styles),
-        header=_header(simulation, [key for key, part in parts.items() if part != EMPTY]).source,
+        header=_header(simulation, {key: links[key] for key, part in parts.items() if part != EMPTY}).source,
         sections=join(list(parts.values())).source,
         data=payload_text(simulation, figures, beside),
         scripts="".join(f"<script>{script}</script>\n" for script in scripts),
@@ -216,9 +224,9 @@ def _hashes(texts: list[str]) -> Iterator[str]:
         yield f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 
-def _header(simulation: RunResult, keys: list[str]) -> Html:
+def _header(simulation: RunResult, parts: Mapping[str, str]) -> Html:
     run = f"{simulation.evaluated:,} trials, {simulation.accepted:,} accepted; seed {simulation.settings.seed}"
-    links = (element("a", label, href=f"#{key}") for key, label in _LINKS.items() if key in keys)
+    links = (element("a", label, href=f"#{key}") for key, label in parts.items())
     return element(
         "header",
         element("h1", "Results of the simulation"),

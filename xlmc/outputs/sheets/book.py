@@ -59,13 +59,20 @@ class Writing:
     trials: TrialsAt
     bins: Sequence[BinsAt]
 
-    def __init__(self, book: ExactBook, simulation: RunResult, command: str | None, rows: int) -> None:
+    def __init__(
+        self,
+        book: ExactBook,
+        simulation: RunResult,
+        command: str | None,
+        rows: int,
+        sheets: Sequence[ResultSheet],
+    ) -> None:
         self.book, self.simulation, self.command, self.rows = book, simulation, command, rows
         self.name = simulation.model.workbook.name
         styles, header = Styles(book), case_of(simulation.model.workbook, {}).in_a_line
         self.pages = {
             sheet.name: Page(book.add_worksheet(sheet.name), styles, sheet.widths, header)
-            for sheet in SHEETS
+            for sheet in sheets
             if sheet.wanted(self)
         }
 
@@ -188,7 +195,11 @@ SHEETS: Final[tuple[ResultSheet, ...]] = (
 
 
 def build_sheets(
-    simulation: RunResult, *, command: str | None = None, rows: int = trials_sheet.TRIAL_ROWS
+    simulation: RunResult,
+    *,
+    command: str | None = None,
+    rows: int = trials_sheet.TRIAL_ROWS,
+    further: Sequence[ResultSheet] = (),
 ) -> dict[str, bytes]:
     """The result sheets of a run, as the parts of a workbook that holds them alone.
 
@@ -196,6 +207,7 @@ def build_sheets(
         simulation: the finished run.
         command: what the person typed, for the record.
         rows: the most accepted trials to write out.
+        further: sheets behind the others.
 
     Raises:
         DefinitionError: the table `xlmc_case` is not what it must be.
@@ -204,8 +216,9 @@ def build_sheets(
 
     with ExactBook() as book:
         book.set_properties({"created": CREATED})
-        run = Writing(book, simulation, command, rows)
-        waiting = [sheet for sheet in SHEETS if sheet.name in run.pages]
+        sheets = (*SHEETS, *further)
+        run = Writing(book, simulation, command, rows, sheets)
+        waiting = [sheet for sheet in sheets if sheet.name in run.pages]
         while waiting:
             names = {sheet.name for sheet in waiting}
             sheet = next(each for each in waiting if names.isdisjoint(each.after))

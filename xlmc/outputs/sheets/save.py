@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,7 +15,7 @@ from xlmc.excel.workbook.seal import sealed_parts
 from xlmc.excel.workbook.target import Target, copy_ending, is_same_file, refuse_into_source, refuse_read
 from xlmc.excel.workbook.writer import write_workbook
 from xlmc.montecarlo.diagnostics.result_cells import filled_sheets
-from xlmc.outputs.sheets.book import build_sheets
+from xlmc.outputs.sheets.book import ResultSheet, build_sheets
 from xlmc.outputs.sheets.trials_sheet import TRIAL_ROWS
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ def save(
     command: str | None = None,
     rows: int = TRIAL_ROWS,
     overwrite: bool = False,
+    further: Sequence[ResultSheet] = (),
 ) -> Path:
     """Write the workbook with result sheets behind its own; those of an earlier run are replaced.
 
@@ -41,6 +43,7 @@ def save(
         command: what the person typed, for the record.
         rows: the most accepted trials to write out.
         overwrite: replace any other file too, and write into the workbook itself where the path is its own.
+        further: sheets behind the others.
 
     Returns:
         The path.
@@ -60,7 +63,7 @@ def save(
     check_ending(path, simulation.model.path)
     check()
     scenario_answers(simulation)  # cells may ask about them
-    sheets = build_sheets(simulation, command=command, rows=rows)
+    sheets = build_sheets(simulation, command=command, rows=rows, further=further)
     own = {**book.parts, **filled_sheets(book, simulation.shown_results)}
     parts = inject(own, sheets)
     if not _is_source(simulation, path):  # the person's own file, which is never ours to replace

@@ -1,0 +1,91 @@
+"""A section takes one row, and is in every output."""
+
+from __future__ import annotations
+
+import io
+
+import openpyxl
+import pytest
+from openpyxl.worksheet.table import Table as ExcelTable
+
+import xlmc
+from xlmc.cli.simulate import show_run
+from xlmc.outputs import save
+from xlmc.outputs.document import SECTIONS, Wanted, document_bytes
+from xlmc.outputs.document.build import build
+from xlmc.outputs.document.parts import Bar, Bars, Bullets, Chart, Code, Figure, Line, Lines, Paragraph, Table
+from xlmc.outputs.document.report_sections import OUTPUTS, Section
+from xlmc.outputs.notebook import run_html
+from xlmc.outputs.page import page_text
+from xlmc.outputs.sheets.cells import Shown
+
+SAID = ("Moon phase", "The moon was new.", "Full moons", "1,234.5", "Phase of the night", "a <b>", "xlmc moon")
+
+
+def blocks(_):
+    yield Paragraph("The moon was new.")
+    yield Bullets(("a <b>",))
+    yield Code("xlmc moon")
+    yield Table("", ("Kind", "Full moons"), (("seen", Shown(1234.5, "#,##0.0")),), caption="Phase of the night")
+    yield Figure(Chart("", "Share", Bars((Bar("a", ((0.0, 1.0, "dark"),)),)), "a bar"), "Phase of the night")
+    yield Figure(Chart("", "x", Lines((Line("a", ((0.0, 1.0), (1.0, 2.0))),), "y"), "a line"), "Phase of the night")
+
+
+@pytest.fixture(scope="module")
+def case_run(tmp_path_factory):
+    """The run of a workbook with one assumption, which is the forecast."""
+    book = openpyxl.Workbook()
+    sheet = book.active
+    for row in (("Name", "Value", "Low", "High"), ("x", 0.5, 0, 1)):
+        sheet.append(row)
+    sheet.add_table(ExcelTable(displayName="xlmc_assumptions", ref="A1:D2"))
+    sheet["F1"], sheet["G1"], sheet["F2"], sheet["G2"] = "Name", "Value", "double", "=2*B2"
+    sheet.add_table(ExcelTable(displayName="xlmc_forecasts", ref="F1:G2"))
+    path = tmp_path_factory.mktemp("case") / "case.xlsx"
+    book.save(path)
+    return xlmc.load(path).simulate(500)._run
+
+
+@pytest.fixture(autouse=True)
+def section(monkeypatch):
+    monkeypatch.setitem(SECTIONS, "moon", Section("Moon phase", blocks))
+
+
+def test_it_is_in_the_report(case_run):
+    document = build(case_run, Wanted(sections=("moon",)))
+    pypdf, docx = pytest.importorskip("pypdf"), pytest.importorskip("docx")
+    pdf = "".join(page.extract_text() for page in pypdf.PdfReader(io.BytesIO(document_bytes(document, ".pdf"))).pages)
+    assert [each for each in SAID if "".join(each.split()) not in "".join(pdf.split())] == []
+    word = docx.Document(io.BytesIO(document_bytes(document, ".docx")))
+    cells = [cell.text for table in word.tables for row in table.rows for cell in row.cells]
+    texts = "\n".join([*cells, *(each.text for each in word.paragraphs)])
+    assert [each for each in SAID if each not in texts] == []
+
+
+def test_it_is_on_the_page_and_in_a_notebook(case_run):
+    for text in (page_text(case_run), run_html(case_run)):
+        assert [each for each in SAID if each.replace("<", "&lt;").replace(">", "&gt;") not in text] == []
+    assert '<a href="#moon">Moon phase</a>' in page_text(case_run)
+
+
+def test_it_is_a_sheet(case_run, tmp_path):
+    path = save(case_run, tmp_path / "results.xlsx")
+    book = openpyxl.load_workbook(path)
+    cells = [cell.value for row in book["Moon phase"].iter_rows() for cell in row if cell.value is not None]
+    texts = "\n".join(map(str, cells))
+    assert [each for each in SAID if each != "1,234.5" and each not in texts] == []
+    assert 1234.5 in cells
+    assert len(book["Moon phase"]._charts) == 2
+
+
+def test_it_is_on_the_terminal(case_run, capsys):
+    show_run(case_run)
+    out = capsys.readouterr().out
+    assert [each for each in SAID if each not in out] == []
+
+
+def test_every_row_says_where_an_output_has_it_otherwise():
+    for name, row in SECTIONS.items():
+        if name != "moon":
+            assert set(row.elsewhere) == set(OUTPUTS), name
+            assert all(row.elsewhere.values())

@@ -20,6 +20,7 @@ from xlmc.outputs.summary import percent
 
 __all__ = [
     "COLOURS",
+    "FONT",
     "Scale",
     "drawing",
     "drawn",

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from xlmc.analysis.results.statements.in_words import number_text
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.outputs.document.drawings import drawn
+from xlmc.outputs.document.drawings import FONT, drawn
 from xlmc.outputs.document.element import EMPTY, Html, element, join
 from xlmc.outputs.document.parts import (
     NUMBERS,
@@ -58,7 +58,8 @@ def _html(block: Block) -> Html:
 def picture_html(picture: Picture, look: str = "drawn") -> Html:
     """A picture as SVG in the page itself; its look is `drawn`, or `shape` within a line."""
     shown = drawn(picture) if isinstance(picture, Chart) else picture
-    return Html.of_svg(shown.svg, shown.said, look)
+    plain = shown.svg.replace(f' font-family="{FONT}"', "")  # the page has a font of its own
+    return Html.of_svg(plain, shown.said, look)
 
 
 def _table(table: Table) -> Html:

@@ -62,7 +62,7 @@ class Window:
 
     def __init__(self) -> None:
         self.view: Said | None = None
-        self.refused = False
+        self.refused = self.holds = False
         self._waiting: dict[tuple[str, ...], str] = {}
         self._more = asyncio.Event()
 
@@ -145,8 +145,12 @@ class Desk:
         return window
 
     def leave(self, window: Window) -> None:
-        """A window was closed."""
+        """A window was closed; a handle that it held is let go."""
         self._windows.discard(window)
+        if window.holds and self.session is not None:
+            self._tell([self.session.let_go()])
+            self._keep()
+            self._wake.set()
         self._look()
 
     def _look(self) -> None:
@@ -176,6 +180,8 @@ class Desk:
         if said.kind == "print":
             self._later(self._print(window))
             return
+        if said.kind in ("set", "numbers"):
+            window.holds = said.kind == "set" and said["held"]
         try:
             replies = self.session.receive(said)
         except XlmcError as error:

@@ -229,6 +229,11 @@ class Session:
         moved = {"kind": "moved", "of": of, "name": name, "key": key, "value": own[key] if value is None else value}
         return Replies(all=[moved]) if self._held else True
 
+    def let_go(self) -> Message:
+        """Take it that no handle is held any more: the window that held one is gone. The state."""
+        self._held = False
+        return self._state()
+
     def _set_all(self, said: Said) -> bool:
         self._adjust(said["of"], said["name"], said["values"], said["seq"])
         self._held = False

@@ -1,0 +1,407 @@
+"""Random use of the live window: three clients, a workbook that changes under them, and a server that is started again.
+
+    python tests/session/random_use.py MINUTES [SEED]
+
+Whatever is done in whatever order, the window answers, keeps every scenario, and shows what the edited workbook gives.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import random
+import time
+
+import openpyxl
+from openpyxl.worksheet.table import Table
+
+from xlmc.errors import XlmcError
+from xlmc.excel.workbook.reader import read_workbook
+from xlmc.montecarlo.model.loading import build_model, load
+from xlmc.montecarlo.simulation.simulate import simulate
+from xlmc.outputs.live.hand_over import edited_state
+from xlmc.outputs.live.kept_scenarios import Keeper
+
+PATIENCE = 120.0
+"""Seconds after which a window counts as stuck."""
+
+TABS = ("charts", "matters", "pairs", "tables", "scenarios", "studies")
+KINDS = (
+    "move move move hold numbers freeze band limit use reset keep keep drop show undo variants compare view view pin stop"
+    " print save book book reload restart restore burst"
+)
+"""What a client does next; twice what is done more often."""
+
+DISTRIBUTIONS = ("Uniform", "Triangular", "Normal")
+HEADINGS = (
+    "Name",
+    "Cell",
+    "Distribution",
+    "Low",
+    "High",
+    "Likeliest",
+    "Mean",
+    "Std dev",
+    "Lower cutoff",
+    "Upper cutoff",
+    "Frozen",
+)
+
+
+class Book:
+    """A workbook of five assumptions, two answers, two filters and a row of evidence, that is changed at random."""
+
+    def __init__(self, path, dice):
+        self.path, self.dice, self.names = path, dice, iter(range(1, 10**9))
+        self.rows = [self.row(cell) for cell in range(1, 6)]
+        self.filters = [["possible", "=M!B1", 1.0, None, None], ["slow", "=M!B2", None, 80.0, None]]
+        self.evidence = ["camera", "=M!B1", 30.0, 25.0, None]
+        self.write()
+
+    def row(self, cell):
+        return {"name": f"input {next(self.names)}", "cell": cell, "kind": self.dice.choice(DISTRIBUTIONS), "low": 5.0}
+
+    def data(self):
+        book = openpyxl.Workbook()
+        model, sheet = book.active, book.create_sheet("T")
+        model.title = "M"
+        for cell in range(1, 6):
+            model.cell(cell, 1, 6.0)
+        model["B1"], model["B2"] = "=A1+A2*A3/6+A4", "=A4*A5"
+        rows = [HEADINGS]
+        for each in self.rows:
+            low, high = each["low"], each["low"] + 2.0
+            numbers = {
+                "Uniform": (low, high, None, None, None),
+                "Triangular": (low, high, low + 1.0, None, None),
+                "Normal": (None, None, None, low + 1.0, 0.5),
+            }[each["kind"]]
+            rows.append(
+                [each["name"], f"=M!A{each['cell']}", each.get("typed", each["kind"]), *numbers, None, None, None]
+            )
+        tables = {
+            "xlmc_assumptions": rows,
+            "xlmc_forecasts": [["Name", "Cell"], ["sum", "=M!B1"], ["product", "=M!B2"]],
+            "xlmc_filters": [["Name", "Cell", "At least", "At most", "Use"], *self.filters],
+            "xlmc_evidence": [["Name", "Cell", "Reading", "Plus or minus", "Use"], self.evidence],
+            "xlmc_settings": [["Setting", "Value"], ["Trials", 1_000]],
+        }
+        top = 1
+        for name, lines in tables.items():
+            for number, line in enumerate(lines):
+                for column, value in enumerate(line, start=1):
+                    sheet.cell(top + number, column, value)
+            bottom = top + len(lines) - 1
+            sheet.add_table(Table(displayName=name, ref=f"A{top}:{chr(64 + len(lines[0]))}{bottom}"))
+            top = bottom + 2
+        waiting = self.path.with_name("waiting.tmp")
+        book.save(waiting)
+        return waiting.read_bytes()
+
+    def write(self):
+        data = self.data()
+        os.replace(self.path.with_name("waiting.tmp"), self.path)
+        return data
+
+    def edit(self):
+        """Change one thing of it, as a person or a program does; in the end the file is whole and good."""
+        dice, row = self.dice, self.dice.choice(self.rows)
+        match dice.choice(
+            ("rename", "remove", "kind", "range", "filter", "half", "wrong", "gone", "lock", "junk", "use")
+        ):
+            case "rename":
+                row["name"] = f"input {next(self.names)}"
+            case "remove" if len(self.rows) > 2:
+                self.rows.remove(row)
+            case "kind":
+                row["kind"] = dice.choice(DISTRIBUTIONS)
+            case "range":
+                row["low"] = round(dice.uniform(2.0, 9.0), 2)
+            case "filter":
+                self.filters[0][2] = round(dice.uniform(0.0, 15.0), 1)
+            case "use":
+                each = dice.choice([*self.filters, self.evidence])
+                each[-1] = dice.choice((None, "no", True))
+            case "half":
+                data = self.data()
+                self.path.write_bytes(data[: len(data) // 2])
+                time.sleep(dice.uniform(0.0, 0.5))
+            case "junk":
+                self.path.write_bytes(b"not a workbook")
+                time.sleep(dice.uniform(0.0, 0.5))
+            case "wrong":
+                row["typed"] = "Uniforn"
+                self.write()
+                time.sleep(dice.uniform(0.0, 0.5))
+                del row["typed"]
+            case "gone":
+                self.path.unlink()
+                time.sleep(dice.uniform(0.0, 0.3))
+            case "lock":
+                lock = self.path.with_name(f"~${self.path.name}")
+                if lock.exists():
+                    lock.unlink()
+                else:
+                    lock.write_bytes(b"a person")
+            case _:
+                self.rows.append(self.row(dice.randint(1, 5))) if not self._taken() else None
+        self.write()
+
+    def _taken(self):
+        return len({each["cell"] for each in self.rows}) < len(self.rows) or len(self.rows) >= 5
+
+
+class Use:
+    """Three clients of a server that uses a folder; `start(book)` starts it.
+
+    Args:
+        start: gives a `Running` server of a workbook, whose scenarios lie in `state`.
+        folder: for the workbook.
+        state: of the scenarios.
+        seed: of all that is random.
+    """
+
+    def __init__(self, start, folder, state, seed):
+        self.dice, self.start, self.state = random.Random(seed), start, state
+        self.book = Book(folder / "book.xlsx", self.dice)
+        self.server = start(book=self.book.path)
+        self.kept, self.number, self.seq, self.done = set(), 0, 0, []
+        self.clients = [self._client() for _ in range(3)]
+        self.compared = 0
+
+    def _client(self):
+        stack = contextlib.ExitStack()
+        window = stack.enter_context(self.server.window(self.server.library.only))
+        window.stack = stack
+        window.next("state")
+        return window
+
+    @property
+    def desk(self):
+        return self.server.server._desks[self.server.library.only]
+
+    def close(self):
+        for each in self.clients:
+            each.stack.close()
+
+    def step(self):
+        """Do one thing."""
+        dice, place = self.dice, self.dice.randrange(3)
+        client = self.clients[place]
+        drain(client)
+        state = client.heard_last("state")
+        what = dice.choice(KINDS.split())
+        self.done.append((place, what))
+        row = dice.choice(state["assumptions"])
+        numbers = [each for each in row["numbers"] if each["value"] is not None]
+        if what in ("move", "hold", "burst") and numbers:
+            number = dice.choice(numbers)
+            value = round(number["value"] + dice.uniform(-0.7, 0.7), 3)
+            for _ in range(20 if what == "burst" else 1):
+                value = round(value + 0.001, 3)
+                self._set(client, "assumption", row["name"], number["key"], value, held=what == "hold")
+            if what == "hold" and dice.random() < 0.6:
+                self._set(client, "assumption", row["name"], number["key"], value)
+            elif what == "hold":  # the page goes while a handle is held
+                client.stack.close()
+                self.clients[place] = self._client()
+        elif what == "numbers" and {"low", "high"} <= {each["key"] for each in numbers}:
+            values = {"low": round(dice.uniform(3, 6), 2), "high": round(dice.uniform(5.5, 9), 2)}
+            self.seq += 1
+            client.say("numbers", of="assumption", name=row["name"], values=values, seq=self.seq)
+        elif what == "freeze":
+            self._set(client, "assumption", row["name"], "frozen", not row["frozen"])
+        elif what == "band" and row["band"]:
+            self._set(
+                client,
+                "assumption",
+                row["name"],
+                dice.choice(["band_low", "band_high"]),
+                dice.choice([0.0, 20.0, 70.0, 100.0]),
+            )
+        elif what in ("limit", "use") and state["filters"]:
+            filter_ = dice.choice(state["filters"])
+            if what == "use":
+                self._set(client, "filter", filter_["name"], "used", not filter_["used"])
+            elif filter_["limits"]:
+                limit = dice.choice(filter_["limits"])
+                self._set(client, "filter", filter_["name"], limit["key"], round(dice.uniform(0, 90), 1))
+        elif what == "reset":
+            client.say("reset", of="assumption", name=dice.choice(["", row["name"]]))
+        elif what == "keep":
+            self.number += 1
+            name = f"state {self.number} <b>&'\""
+            client.say("keep", name=name)
+            self.kept.add(name)
+        elif what == "drop" and self.kept:
+            name = dice.choice(sorted(self.kept))
+            client.say("drop", name=name)
+            self.kept.discard(name)
+        elif what == "show" and state["scenarios"]:
+            client.say("show", name=dice.choice(state["scenarios"])["name"])
+        elif what == "undo":
+            self._undo_and_redo(client)
+        elif what == "variants":
+            before = {each["name"] for each in state["scenarios"]}
+            client.say("variants")
+            self.still()
+            self.kept |= {each["name"] for each in client.heard_last("state")["scenarios"]} - before
+        elif what == "view":
+            names = dice.sample(["sum", "product"], dice.randint(0, 2))
+            view = {
+                "forecasts": names,
+                "chosen": names,
+                "tab": dice.choice(TABS),
+                "first": "sum",
+                "second": row["name"],
+            }
+            client.say("view", **view, fits=dice.random() < 0.2)
+        elif what in ("pin", "stop", "compare", "print"):
+            client.say(what)
+        elif what == "restore":
+            client.say("restore", take=dice.random() < 0.5)
+        elif what == "save":
+            client.say("save", what=dice.choice(["json", "page", "copy"]))
+        elif what == "book":
+            self.book.edit()
+        elif what == "reload":
+            client.stack.close()
+            self.clients[place] = self._client()
+        elif what == "restart":
+            self.settle()
+            self.close()
+            self.server.server.end()
+            self.server.ended()
+            self.server = self.start(book=self.book.path)
+            self.clients = [self._client() for _ in range(3)]
+
+    def _set(self, client, of, name, key, value, held=False):
+        self.seq += 1
+        client.say("set", of=of, name=name, key=key, value=value, held=held, seq=self.seq)
+
+    def _undo_and_redo(self, client):
+        """Go back some moments, and forth again: then all is as it was."""
+        self.settle()
+        before = self._moment()
+        times = self.dice.randint(1, 4)
+        back = 0
+        for _ in range(times):
+            if not client.heard_last("state")["undo"]:
+                break
+            client.say("undo")
+            client.next("state")
+            back += 1
+        for _ in range(back):
+            client.say("redo")
+            client.next("state")
+        self.settle()
+        assert self._moment() == before, (back, self.done[-10:])
+
+    def _moment(self):
+        session = self.desk.session
+        return session.adjustments, dict(session.kept)
+
+    def still(self):
+        """Wait until nothing is done any more, and every client has heard of it."""
+        end = time.monotonic() + PATIENCE
+        for client in self.clients:  # what is said is heard in order: when this is refused, all before it was done
+            self.number += 1
+            name = f"no state {self.number}"
+            client.say("show", name=name)
+            client.next("trouble", lambda message, name=name: name in message["text"], PATIENCE)
+        while not self._quiet():
+            assert time.monotonic() < end, ("stuck", self.done[-12:])
+            time.sleep(0.01)
+        session = self.desk.session
+        for client in self.clients:
+            wanted = "trouble" if session._is_faulty else "rest"
+            while not self._has_heard(client, wanted):
+                assert time.monotonic() < end, ("not told", wanted, self.done[-12:])
+                drain(client)
+            texts = json.dumps(client.heard)
+            assert "xlmc has failed" not in texts, texts
+            del client.heard[:-200]
+
+    def settle(self):
+        """Be still, and look whether every scenario is there."""
+        self.still()
+        session = self.desk.session
+        assert set(session.kept) == self.kept, (set(session.kept) ^ self.kept, self.done[-12:])
+        assert Keeper(self.state).scenarios(self.book.path)[0] == session.kept
+
+    def _quiet(self):
+        desk = self.server.server._desks.get(self.server.library.only)
+        session = None if desk is None else desk.session
+        if session is None:
+            return False
+        if session.own.workbook.sha256 != read_workbook(self.book.path).sha256:
+            return False
+        return session._is_at_rest or session._is_faulty or session._stopped_at == session.version
+
+    def _has_heard(self, client, wanted):
+        session = self.desk.session
+        found = {each["kind"]: each for each in client.heard}
+        if found.get("state", {}).get("version") != session.version:
+            return False
+        if session._stopped_at == session.version and not session._is_at_rest:
+            return True
+        if wanted == "trouble":
+            return any(each["kind"] == "trouble" and each["text"] for each in client.heard)
+        return found.get("rest", {}).get("version") == session.version
+
+    def check(self):
+        """Compare what is shown with what the edited workbook gives."""
+        self.settle()
+        session = self.desk.session
+        if not session._is_at_rest or session._is_faulty:
+            return
+        own = load(self.book.path)
+        assert [each.name for each in own.assumptions] == [each.name for each in session.own.assumptions]
+        found, expected = session.rest, own
+        if session.adjustments:
+            try:
+                edited = edited_state(own, session.adjustments, "")
+            except XlmcError as error:
+                raise AssertionError((session.adjustments, self.done[-12:])) from error
+            expected = build_model(read_workbook(edited.data, "book.xlsx"), self.book.path)
+        expected = simulate(expected, evidence=None)
+        assert found.trial_index.tobytes() == expected.trial_index.tobytes(), self.done[-12:]
+        for name, values in expected.forecasts.items():
+            assert found.forecasts[name].tobytes() == values.tobytes(), (name, self.done[-12:])
+        for client in self.clients:
+            frame = client.heard_last("frame")
+            assert (frame["version"], frame["accepted"]) == (session.version, expected.accepted)
+        self.compared += 1
+
+
+def drain(client):
+    with contextlib.suppress(TimeoutError):
+        while True:
+            client.heard.append(json.loads(client.socket.recv(timeout=0.02)))
+
+
+def main():
+    import sys
+    import tempfile
+    from pathlib import Path
+
+    sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "outputs" / "live"))
+    from conftest import _servers
+
+    minutes, seed = float(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 1
+    with tempfile.TemporaryDirectory() as folder, _servers(Path(folder) / "state") as start:
+        use = Use(start, Path(folder), Path(folder) / "state", seed)
+        end = time.monotonic() + 60.0 * minutes
+        steps = 0
+        while time.monotonic() < end:
+            for _ in range(use.dice.randint(1, 8)):
+                use.step()
+                steps += 1
+            use.check()
+        print(f"{steps} steps, {use.compared} states equal to the edited workbook, {len(use.kept)} scenarios kept")
+        use.close()
+
+
+if __name__ == "__main__":
+    main()

@@ -322,6 +322,60 @@ def test_by_keys_alone(chromium, running, tmp_path):
     assert float(certainty.get_attribute("data-low")) < low
 
 
+def violations(chromium):
+    """What axe finds on the page as it is."""
+    return chromium.execute_async_script(
+        "axe.run(document, {resultTypes: ['violations']}).then(({violations}) => "
+        "arguments[0](violations.map(({id, nodes}) => [id, nodes.map(({html}) => html.slice(0, 200))])))"
+    )
+
+
+def test_the_dark_and_forced_colours(chromium, running, tmp_path):
+    page = Page(chromium, running(book=wide_book(tmp_path / "case.xlsx", assumptions=6, forecasts=2)))
+    page.at_rest(lambda: page.type(page.box(page.card(FRICTION), "High"), "1.2"))
+    if AXE is not None:
+        chromium.execute_cdp_cmd("Runtime.evaluate", {"expression": AXE.read_text(encoding="utf-8")})
+
+    def emulate(**features):
+        given = [{"name": name.replace("_", "-"), "value": value} for name, value in features.items()]
+        chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": given})
+
+    try:
+        emulate(prefers_color_scheme="dark")
+        look = "const {{ {0} }} = getComputedStyle(document.querySelector(arguments[0])); return {0}".format
+        assert page.run(look("backgroundColor"), "body") == "rgb(22, 28, 35)"
+        assert page.run(look("backgroundColor"), ".chart") == "rgb(255, 255, 255)"  # as it is copied and printed
+        for tab in ("charts", "matters", "pairs", "tables", "scenarios", "studies"):
+            page.run("Live.right.choose(arguments[0])", tab)
+            if tab in ("matters", "tables"):
+                page.until(f"document.querySelectorAll('#panel-{tab} table').length")
+            assert AXE is None or violations(chromium) == [], tab
+        emulate(forced_colors="active")
+        page.run("Live.right.choose('charts')")
+        assert page.run(look("outlineStyle"), "#tabs [aria-selected=true]") == "solid"
+    finally:
+        chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+
+
+def test_a_skip_link_leads_past_the_cards(chromium, running, tmp_path):
+    from selenium.webdriver import ActionChains
+    from selenium.webdriver.common.keys import Keys
+
+    page = Page(chromium, running(book=wide_book(tmp_path / "case.xlsx")))
+    page.run("document.activeElement.blur(); scrollTo(0, 0)")
+    ActionChains(chromium).send_keys(Keys.TAB, Keys.ENTER).perform()
+    assert page.run("return document.activeElement.id") == "tab-charts"
+    stops = 0
+    while not page.run("return document.activeElement.closest('.forecast') !== null"):
+        ActionChains(chromium).send_keys(Keys.TAB).perform()
+        stops += 1
+        assert stops <= 15
+    page.run("scrollTo(0, 2000)")
+    assert page.run(
+        "const { top } = document.getElementById('tabs').getBoundingClientRect(); return top >= 0 && top < 300"
+    )
+
+
 def test_names_of_a_hostile_workbook_are_text_and_at_every_width_nothing_overflows(chromium, running, tmp_path):
     book = openpyxl.load_workbook(simple(tmp_path / "case.xlsx"))
     for sheet in book:
@@ -351,11 +405,7 @@ def test_names_of_a_hostile_workbook_are_text_and_at_every_width_nothing_overflo
             assert moving == 0  # whoever wants less motion has it
             assert unnamed == [], (width, tab)
             if AXE is not None and (width, tab) in LOOKED_AT:
-                found = chromium.execute_async_script(
-                    "axe.run(document, {resultTypes: ['violations']}).then(({violations}) => "
-                    "arguments[0](violations.map(({id, nodes}) => [id, nodes.map(({html}) => html.slice(0, 200))])))"
-                )
-                assert found == [], (width, tab)
+                assert violations(chromium) == [], (width, tab)
     chromium.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
     assert EVIL in page.one("#left").text
     assert page.run("return window.stolen") is None

@@ -173,21 +173,35 @@ def _texts(now: Estimate, before: Estimate | None) -> tuple[str, str, str]:
         return shown, "", ""
     apart = now.value - before.value
     if not math.isfinite(apart):
-        return shown, _text(before), ""
+        return shown, _text(before, shown), ""
     sign = "+" if apart > 0 else "−" if apart < 0 else ""
-    decimals = len(shown.partition(" ")[0].partition(".")[2])
+    decimals = _decimals(shown)
     said = f"{abs(apart):.{decimals}f}" if now.error is None else _text(Estimate(abs(apart), now.error))
-    return shown, _text(before), sign + said.partition(" ± ")[0]
+    return shown, _text(before, shown), sign + said.partition(" ± ")[0]
 
 
-def _text(estimate: Estimate) -> str:
-    return "" if math.isnan(estimate.value) else format_estimate(estimate.value, estimate.error)
+def _decimals(shown: str) -> int:
+    return len(shown.partition(" ")[0].partition(".")[2])
+
+
+def _text(estimate: Estimate, like: str = "") -> str:
+    """The number with its error; with as many decimals as the number beside it, where both are written out."""
+    if math.isnan(estimate.value):
+        return ""
+    own = format_estimate(estimate.value, estimate.error)
+    if not like or "e" in f"{own}{like}".casefold() or _decimals(own) == _decimals(like):
+        return own
+    decimals = _decimals(like)
+    error = "" if estimate.error is None or " ± " not in own else f" ± {estimate.error:.{decimals}f}"
+    return f"{estimate.value:.{decimals}f}{error}"
 
 
 def _moved(figure: Figure, now: ForecastResult, before: ForecastResult) -> str:
     """`Nissan impact speed: mean 4.72 → 5.31 mph`."""
     units = f" {figure.answer.units}" if figure.answer.units else ""
-    old, new = (_text(each.mean).partition(" ± ")[0] for each in (before, now))
+    new = _text(now.mean)
+    old = _text(before.mean, new).partition(" ± ")[0]
+    new = new.partition(" ± ")[0]
     return f"{figure.answer.name}: mean {old} → {new}{units}"
 
 

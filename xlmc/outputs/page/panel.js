@@ -145,15 +145,19 @@ class Panel {
 
   set(low, high, { share = null, lowText = null, highText = null } = {}) {
     Object.assign(this.state, { low, high, share });
-    this.state.lowText = Number.isFinite(low) && lowText ? lowText : this.text(low);
-    this.state.highText = Number.isFinite(high) && highText ? highText : this.text(high);
+    const finer = [low, high].some((end) => Number.isFinite(end) && !this.isOnStep(end)); // both with as many decimals
+    this.state.lowText = Number.isFinite(low) && lowText ? lowText : this.text(low, finer);
+    this.state.highText = Number.isFinite(high) && highText ? highText : this.text(high, finer);
     this.show();
   }
 
+  isOnStep(value) {
+    return Math.abs(value / this.step - Math.round(value / this.step)) < 1e-6;
+  }
+
   /** An end as text, one digit finer than the step where it is not on it. */
-  text(value) {
-    const onStep = Math.abs(value / this.step - Math.round(value / this.step)) < 1e-6;
-    return valueText(value, onStep ? this.decimals : this.decimals + 1);
+  text(value, finer) {
+    return valueText(value, finer ? this.decimals + 1 : this.decimals);
   }
 
   /** Bring chart, grabbers, boxes and certainty up to date. */

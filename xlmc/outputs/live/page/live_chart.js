@@ -196,7 +196,7 @@ class LivePanel extends Panel {
     const { beside, said } = this.forecast;
     const compared = beside.some(([, , before]) => before);
     const table = this.find(".beside");
-    const heads = compared ? ["", "Now", "Behind", "Difference"] : ["", "Now"];
+    const heads = compared ? ["", "Now", "Before", "Difference"] : ["", "Now"];
     table.tHead.replaceChildren(make("tr", {}, ...heads.map((text) => (text
       ? make("th", { scope: "col", class: "number", text }) : make("td")))));
     table.tBodies[0].replaceChildren(...beside.map(([label, now, before, apart]) => make("tr", {},

@@ -14,6 +14,9 @@ const Live = {
     this.left = new LeftSide(this.wire, (seq, event) => { if (event) this.moves.set(seq, event.timeStamp); });
     this.right = new RightSide(this.wire);
     const say = (id, message) => document.getElementById(id).addEventListener("click", () => this.wire.say(message));
+    document.getElementById("skip").addEventListener("click", () => document.getElementById(`tab-${this.right.tab}`).focus());
+    const top = document.querySelector(".top");
+    new ResizeObserver(() => document.documentElement.style.setProperty("--top", `${top.offsetHeight}px`)).observe(top);
     say("undo", { kind: "undo" });
     say("redo", { kind: "redo" });
     document.addEventListener("keydown", (event) => this.press(event));

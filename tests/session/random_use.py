@@ -311,7 +311,7 @@ class Use:
             client.say("show", name=name)
             client.next("trouble", lambda message, name=name: name in message["text"], PATIENCE)
         while not self._quiet():
-            assert time.monotonic() < end, ("stuck", self.done[-12:])
+            assert time.monotonic() < end, ("stuck", self._standing(), self.done[-12:])
             time.sleep(0.01)
         session = self.desk.session
         for client in self.clients:
@@ -329,6 +329,16 @@ class Use:
         session = self.desk.session
         assert set(session.kept) == self.kept, (set(session.kept) ^ self.kept, self.done[-12:])
         assert Keeper(self.state).scenarios(self.book.path)[0] == session.kept
+
+    def _standing(self):
+        """What is known of a window that is stuck."""
+        desk = self.desk
+        session = desk.session
+        kept = ("version", "_done", "_stopped_at", "_problem", "_held", "_current", "_stopped")
+        same = session is not None and session.own.workbook.sha256 == read_workbook(self.book.path).sha256
+        found = {name: getattr(session, name, None) for name in kept}
+        ended = [(task, task.done()) for task in desk._tasks]
+        return {"same file": same, "stamp": desk._stamp, "trouble": desk._trouble, "ended": ended, **found}
 
     def _quiet(self):
         desk = self.server.server._desks.get(self.server.library.only)

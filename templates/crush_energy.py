@@ -20,6 +20,7 @@ from templates.description import (
 from templates.editions import Both
 from templates.guidance import CAVEATS, FIRST_STEPS, READINGS, SIGNS
 from templates.other_readings import cut_off_delta_v, recorded_delta_v, seen_speed
+from templates.plan_view import mark
 from templates.restitution import RESTITUTION, restitution_input
 from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY, MPH, RADIUS_OF_GYRATION
@@ -218,6 +219,25 @@ _OPTIONAL = tuple(
     for letter, unit in (("A", "[lb/in|N/cm]"), ("B", "[lb/in²|N/cm²]"))
 )
 
+_LEVER = tuple(
+    Input(f"{symbol}_{j}", f"{notation}{j}", f"{vehicle(j)} {name}", "[in|cm]", None, source)
+    for j in (1, 2)
+    for symbol, notation, name, source in (
+        (
+            "face",
+            "xf",
+            "distance of the undamaged struck face from the CG",
+            "Optional. With it the lever arm follows from C1 to C6 and the direction of the force, in each trial",
+        ),
+        (
+            "aside",
+            "yf",
+            "middle of the crush width, beside the CG, toward station 6",
+            "Optional, with the row above. Blank: opposite the CG",
+        ),
+    )
+)
+
 _LENGTH = "[in_per_ft|cm_per_m]"
 
 _STIFFNESS = (
@@ -293,13 +313,75 @@ _ENERGY = (
     ),
 )
 
+
+def _depth(i: int) -> str:
+    return f"MAX(c_{{j}}_{i}+bias_{{j}},0)"
+
+
+_PANELS = tuple((_depth(a), _depth(b), a) for a, b in _PAIRS)
+
+_CENTROID = (
+    Equation(
+        "area_{j}",
+        "Ac{j}",
+        "{who} area of the crush",
+        "[in²|cm²]",
+        "L_{j}/5*(" + "+".join(f"({a}+{b})/2" for a, b, _ in _PANELS) + ")",
+        "∫ C dL",
+        number_format="#,##0.0",
+    ),
+    Equation(
+        "along_{j}",
+        "yc{j}",
+        "{who} centroid of the crush, from the middle toward station 6",
+        "[in|cm]",
+        "IF(area_{j}>0,(L_{j}/5)^2*("
+        + "+".join(f"({i - 3.5:g})*({a}+{b})/2+({a}+2*{b})/6" for a, b, i in _PANELS)
+        + ")/area_{j},0)",
+        "∫ y C dL / ∫ C dL",
+        "<Straight between the stations.|>",
+        number_format="0.00",
+    ),
+    Equation(
+        "inward_{j}",
+        "xc{j}",
+        "{who} centroid of the crush, below the undamaged face",
+        "[in|cm]",
+        "IF(area_{j}>0,L_{j}/5*(" + "+".join(f"({a}^2+{a}*{b}+{b}^2)/6" for a, b, _ in _PANELS) + ")/area_{j},0)",
+        "½ ∫ C² dL / ∫ C dL",
+        number_format="0.00",
+    ),
+    Equation(
+        "arm_{j}",
+        "hc{j}",
+        "{who} lever arm of a force through that centroid",
+        "[ft|m]",
+        f"IF(ISNUMBER(face_{{j}}),ABS((face_{{j}}-inward_{{j}})*SIN(RADIANS(theta_{{j}}))+(N(aside_{{j}})+along_{{j}})"
+        f'*COS(RADIANS(theta_{{j}})))/{_LENGTH},"–")',
+        "|x sin θ + y cos θ|",
+        "<Takes the place of the lever arm among the assumptions once the distance of the face from the CG is entered. "
+        "θ counts toward station 6.|>",
+        number_format="0.000",
+    ),
+)
+
 _IMPACT = (
+    *_CENTROID,
+    Equation(
+        "h_used_{j}",
+        "hu{j}",
+        "{who} lever arm that is used",
+        "[ft|m]",
+        "IF(ISNUMBER(face_{j}),arm_{j},h_{j})",
+        "input, or from the profile",
+        number_format="0.000",
+    ),
     Equation(
         "m_eff_{j}",
         "m{j}′",
         "{who} effective mass at the line of force",
         "[lb·s²/ft|kg]",
-        "m_{j}*k_{j}^2/(k_{j}^2+h_{j}^2)",
+        "m_{j}*k_{j}^2/(k_{j}^2+h_used_{j}^2)",
         "m k²/(k² + h²)",
         "<Off centre, part of the closing speed turns the vehicle instead of stopping it.|>",
         number_format="#,##0.00",
@@ -466,7 +548,11 @@ _DIAGRAM = Diagram(
     "Crush profiles, base case",
     "Along the crush, [in|cm]",
     "Depth, [in|cm]",
-    (_profile(1, Look.FIRST), _profile(2, Look.SECOND)),
+    (
+        _profile(1, Look.FIRST),
+        _profile(2, Look.SECOND),
+        mark("Centroids", *((f"along_{j}", f"inward_{j}") for j in (1, 2))),
+    ),
     remark="Drawn from the cells below, each profile about the middle of its width.",
 )
 
@@ -524,7 +610,7 @@ TEMPLATE = Template(
     needs="crush profiles, stiffness, weights, line of the force",
     assumptions=_assumptions(),
     constants=_constants(),
-    optional=_OPTIONAL,
+    optional=(*_OPTIONAL, *_LEVER),
     sections=(
         Section("1  Stiffness from a crash test", for_both(_STIFFNESS)),
         Section("2  Crush energy", for_both(_ENERGY)),

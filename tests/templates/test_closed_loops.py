@@ -222,3 +222,33 @@ def test_the_speeds_of_crush_energy_are_those_that_momentum_energy_takes(cells, 
         given |= {f"w_{j}": weights[j], f"beta_{j}": beta, f"s_{j}": travel, f"f_{j}": 0.7, f"phi_{j}": 0}
         given[f"EES_{j}"] = found[f"EES{j}_mph"].item()
     returned(cells, "momentum-energy", given, {"V1_mph": speeds[1], "V2_mph": speeds[2], "E_lost": found["E_crush"]})
+
+
+def test_the_centroid_of_a_profile_and_the_lever_arm_through_it_come_back(cells):
+    """The area of a profile cut into thin strips; the arm of a force as the distance of its line from the CG."""
+    rng, n = np.random.default_rng(12), 40
+    depths = rng.uniform(0, 30, (6, n))
+    given = {f"c_1_{i}": depths[i - 1] for i in range(1, 7)} | {"bias_1": 0.0, "L_1": rng.uniform(40, 70, n)}
+    given |= {"theta_1": rng.uniform(-40, 40, n), "face_1": rng.uniform(80, 100, n), "aside_1": rng.uniform(-20, 20, n)}
+    found = cells("crush-energy", given, ["along_1", "inward_1", "arm_1", "h_used_1", "m_eff_1", "m_1", "k_1"])
+    strips = (np.arange(50_000) + 0.5) / 50_000
+    for trial in range(n):
+        width = given["L_1"][trial]
+        depth = np.interp(strips, np.linspace(0, 1, 6), depths[:, trial])
+        along = np.sum((strips - 0.5) * width * depth) / np.sum(depth)
+        inward = np.sum(depth**2 / 2) / np.sum(depth)
+        centre = np.array([given["face_1"][trial] - inward, given["aside_1"][trial] + along])
+        turned = np.radians(given["theta_1"][trial])
+        force = np.array([-np.cos(turned), np.sin(turned)])
+        arm = np.hypot(*(centre - force * (centre @ force))) / 12
+        assert [found[s][trial] for s in ("along_1", "inward_1", "arm_1")] == pytest.approx(
+            [along, inward, arm], rel=1e-6
+        )
+    np.testing.assert_array_equal(found["arm_1"], found["h_used_1"])
+    effective = found["m_1"] * found["k_1"] ** 2 / (found["k_1"] ** 2 + found["arm_1"] ** 2)
+    np.testing.assert_allclose(found["m_eff_1"], effective, rtol=1e-12)
+
+
+def test_without_the_distance_of_the_face_the_lever_arm_is_that_of_the_inputs(cells):
+    found = cells("crush-energy", {"h_1": np.array([0.3, 1.7])}, ["h_used_1", "arm_1"])
+    np.testing.assert_array_equal(found["h_used_1"], [0.3, 1.7])

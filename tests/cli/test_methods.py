@@ -91,6 +91,29 @@ def test_json(xlmc, book):
     assert found["not_used"] == {}
 
 
+def test_an_engine_that_refuses_the_book_is_named_and_left_out(xlmc, tmp_path):
+    """`formulas` cannot take a union of references; the other engines and methods answer all the same."""
+    path = tmp_path / "union.xlsx"
+    tables = {"xlmc_assumptions": "Inputs!A1:D3", "xlmc_forecasts": "Wanted!A1:C2"}
+    sheets = BOOK | {"Model": [["=SUM((Inputs!B2,Inputs!B3))"]], "Wanted": BOOK["Wanted"][:2]}
+    workbook_of(sheets, tables).save(path)
+    outcome = xlmc("methods", path, *SHORT, "--json")
+    assert outcome.code == 0
+    found = json.loads(outcome.out)
+    assert list(found["not_used"]) == ["Monte Carlo, engine formulas"]
+    said = found["not_used"]["Monte Carlo, engine formulas"]
+    assert said.startswith("Model!A1: the engine `formulas` cannot compute this.")
+    assert "SUM((Inputs!B2,Inputs!B3))" in said
+    methods = {each["method"]: each for each in found["methods"]}
+    assert "mc" in methods
+    assert not any("formulas" in key for key in methods)
+    assert any("Recommended: " in said for said in found["recommendation"])
+    shown = xlmc("methods", path, *SHORT)
+    assert shown.code == 0
+    assert "engine formulas" in shown.out
+    assert "Traceback" not in shown.out + shown.err
+
+
 @pytest.mark.parametrize(
     ("name", "message"),
     [

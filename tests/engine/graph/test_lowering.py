@@ -3,8 +3,9 @@ from __future__ import annotations
 import pytest
 
 from xlmc.engine.graph.graph import Apply, Constant, Input, Range
+from xlmc.engine.graph.lowering import Lowering
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.excel.address import parse_address
+from xlmc.excel.address import Area, parse_address
 
 
 @pytest.fixture
@@ -151,3 +152,37 @@ def test_what_a_wide_range_leaves_out(lower):
     assert sum(isinstance(node, Input) for node in cells) == 1
     assert all(isinstance(node, Input | Constant) for node in cells)
     assert lowering.known(target) is None
+
+
+def at(address):
+    return parse_address(address, "S")
+
+
+LED = "SUM(OFFSET(B1,0,0,30,1))"
+"""OFFSET leads to B1:B30, of which B7 is computed from a draw."""
+
+
+def test_an_area_that_awaits_none_is_looked_through_once(lower, monkeypatch):
+    """And each formula that is led there is known to need the cells in it: draws come in that order."""
+    looked = []
+    true_awaits = Lowering.awaits
+    monkeypatch.setattr(Lowering, "awaits", lambda self, cell: looked.append(cell) or true_awaits(self, cell))
+    cells = {f"B{row}": float(row) for row in range(1, 31)} | {"B7": "=A1*2"}
+    wanted = [f"D{row}" for row in range(1, 21)]
+    formulas = {address: f"={LED}+{number}" for number, address in enumerate(wanted)}
+    lowering, _ = lower(cells | formulas, ["A1"], wanted)
+    led = Area("S", 1, 2, 30, 2)
+    assert lowering.awaited(led) == ()
+    assert {address: lowering.led_to[at(address)] for address in wanted} == {address: {at("B7")} for address in wanted}
+    assert looked.count(at("B1")) == 20 + 1  # at first all await B7; once the graph holds it, one looks for all
+
+
+def test_an_area_is_looked_through_until_all_in_it_is_lowered(lower):
+    """B7 is lowered after what is led to it, so the first formula waits, and the graph is made again."""
+    lowering, _ = lower({"B7": "=A1*2", "D1": f"={LED}"}, ["A1"], ["D1"])
+    fresh = type(lowering)(lowering.graph, {at("A1"): "A1"}, {})
+    assert fresh.awaited(Area("S", 1, 2, 30, 2)) == ()
+    assert fresh.awaited(Area("S", 1, 2, 30, 2)) == ()
+    other, _ = lower({"B7": "=A1*2", "D1": "=A1+1"}, ["A1"], ["D1"])  # D1 does not lead to B7: it is not lowered
+    assert list(other.awaited(Area("S", 1, 2, 30, 2))) == [at("B7")]
+    assert list(other.awaited(Area("S", 1, 2, 30, 2))) == [at("B7")]  # and asked for again

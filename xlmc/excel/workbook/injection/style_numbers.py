@@ -23,7 +23,7 @@ def styles_from(xml: bytes, least: int) -> set[int]:
 
 @cache
 def _suspect(least: int) -> re.Pattern[bytes]:
-    """Return the pattern of an attribute that may be such a style number: it begins with a letter, which is found fast."""
+    """Return the pattern of an attribute that may be such a style number; its first letter is found fast."""
     digits = str(least)
     larger = [
         f"{digits[:at]}[{int(digit) + 1}-9]{'[0-9]' * (len(digits) - at - 1)}"

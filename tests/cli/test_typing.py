@@ -71,7 +71,7 @@ def test_a_number_out_of_range(one_line, typed, message):
         (("check", "a.xlsx", "b.xlsx"), "'b.xlsx' does not belong here. Type: xlmc check BOOK"),
         (("simulate", BOOK, "-n"), "Option '-n' requires an argument."),
         (("new", "planar-imapct"), "Did you mean planar-impact?"),
-        (("new", "zzzz"), "There are skid, "),
+        (("new", "zzzz"), "There are blank, skid, "),
         (("new", "skid", "x.xls"), "x.xls: a template is an Excel workbook, whose name ends in .xlsx. Name it x.xlsx."),
         (("new", "skid", "x.xlsm"), "ends in .xlsx"),
         (("new", "skid", "x"), "Name it x.xlsx"),
@@ -99,10 +99,12 @@ def test_no_argument_at_all_is_answered_by_the_help(xlmc):
 
 COMMANDS = [
     "new",
+    "prepare",
     "check",
     "convert",
     "fit",
     "verify",
+    "calculate",
     "simulate",
     "scenario",
     "open",

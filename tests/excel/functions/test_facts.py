@@ -114,7 +114,9 @@ LISTS = {
     ("analysis/studies/stability/stable_forms.py", "LOGARITHMS"): "no other form is offered for any other function",
     ("analysis/studies/stability/stable_forms.py", "_of_logarithms"): "one form of a formula",
     ("analysis/studies/stability/stable_forms.py", "_of_squares"): "one form of a formula",
-    ("analysis/studies/verify.py", "_PERIODIC"): "any other function must agree with what Excel saved",
+    ("excel/workbook/typed_values.py", "_LOGICALS"): "words for truth values, no functions",
+    ("montecarlo/model/joining.py", "_OF_ONE_BOOK"): "any other function names cells of another workbook as well",
+    ("engine/saved_values.py", "_PERIODIC"): "any other function must agree with what Excel saved",
 }
 """(file, name or function) -> what holds of a function that is not in its lists of names."""
 

@@ -117,7 +117,9 @@ def _widest_first(answers: Floats) -> list[int]:
     known = np.isfinite(answers)
     lowest = np.min(answers, axis=1, where=known, initial=math.inf)
     highest = np.max(answers, axis=1, where=known, initial=-math.inf)
-    return list(map(int, np.argsort(-np.where(known.any(axis=1), highest - lowest, 0.0), kind="stable")))
+    with np.errstate(over="ignore"):  # from the smallest to the largest double
+        span = np.where(known.any(axis=1), highest - lowest, 0.0)
+    return list(map(int, np.argsort(-span, kind="stable")))
 
 
 def _bar(assumption: str, units: str, base: float, inputs: Floats, answers: Floats, rejected: Floats) -> Bar:

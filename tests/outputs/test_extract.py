@@ -177,7 +177,7 @@ def test_parquet_without_pyarrow_is_a_message(model, tmp_path, monkeypatch):
 def test_a_failed_write_leaves_the_old_file(model, tmp_path, monkeypatch):
     path = tmp_path / "trials.csv"
     path.write_bytes(b"old")
-    monkeypatch.setattr("xlmc.outputs.extract._fields", lambda values: 1 / 0)
+    monkeypatch.setattr("xlmc.outputs.extract._fields", lambda values, labels: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         Simulation(simulated(model)).extract(path, overwrite=True)
     assert [(each.name, each.read_bytes()) for each in tmp_path.iterdir()] == [("trials.csv", b"old")]

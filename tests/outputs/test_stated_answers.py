@@ -86,10 +86,10 @@ def test_the_record_and_the_json_keep_what_was_asked(outputs):
     document = json.loads((outputs[0] / "out.json").read_text(encoding="utf-8"))
     found = [(each["report_to"], each["kind"], each["role"]) for each in document["forecasts"]]
     assert found == [
-        (1, None, "answer"),
+        (1, "number", "answer"),
         (1, "number", "lower bound"),
         (None, "yes/no", "answer"),
-        (None, None, "diagnostic"),
+        (None, "number", "diagnostic"),
     ]
     rows = document["record"]["forecasts"]["rows"]
     assert [(each["report_to"], each["kind"], each["role"]) for each in rows] == [
@@ -139,7 +139,7 @@ def test_a_yes_or_no_is_a_share_in_percent_in_every_table_of_answers(outputs):
     assert (mean, error) == ((share.value, "0.00%"), (share.error, "0.00%"))
     page = (folder / "out.html").read_text(encoding="utf-8")
     assert f">{text}</data>" in page
-    assert f"avoided: yes (1) in {text} of 20,000 accepted trials, else no (0)" in page
+    assert f"avoided: yes in {text} of 20,000 accepted trials, else no" in page
     with zipfile.ZipFile(folder / "out.docx") as package:
         assert text in package.read("word/document.xml").decode()
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.engine.graph.graph import Target, corner
-from xlmc.excel.functions.values import BLANK, ERROR, TEXT, Bools, Codes, Floats, Value
+from xlmc.excel.functions.values import BLANK, ERROR, TEXT, Bools, Codes, Floats, Objects, Value
 
 __all__ = [
     "BLANK_RESULT",
@@ -46,16 +46,24 @@ DISCARDED_FIRST: Final = 203
 class Column:
     """One target over a block: `(n,)` numbers (logicals as 1 and 0) and codes, 0 where the number counts.
 
-    `codes` is None when every trial counts.
+    `codes` is None when every trial counts. `texts` are the texts of trials whose code is that of a text, `(n,)`; None
+    where there is none.
     """
 
     values: Floats | Bools
     codes: Codes | None = None
+    texts: Objects | None = None
 
     def as_floats(self, *, copy: bool = True) -> Floats:
         """Return the numbers, `(n,)`, with `copy` in memory of their own; NaN where the trial does not count."""
         floats = self.values.astype(np.float64, copy=copy)
         return floats if self.codes is None else np.where(self.codes > 0, np.nan, floats)
+
+    def at(self, trials: NDArray[np.intp] | Bools) -> Column:
+        """Return some of the trials, by number or by a mask."""
+        codes = None if self.codes is None else self.codes[trials]
+        codes = codes if codes is not None and codes.any() else None
+        return Column(self.values[trials], codes, None if self.texts is None or codes is None else self.texts[trials])
 
 
 class Evaluator(Protocol):
@@ -178,4 +186,5 @@ def column_of(value: Value, n: int) -> Column:
     codes = np.where(value.kinds == TEXT, np.uint8(TEXT_RESULT), codes)
     codes = np.where(value.kinds == BLANK, np.uint8(BLANK_RESULT), codes)
     values = np.broadcast_to(value.numbers, (n,))
-    return Column(values, np.broadcast_to(codes, (n,)) if codes.any() else None)
+    texts = None if value.texts is None else np.broadcast_to(value.texts, (n,))
+    return Column(values, np.broadcast_to(codes, (n,)) if codes.any() else None, texts)

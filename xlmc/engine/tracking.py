@@ -205,11 +205,13 @@ def _pick(inputs: Inputs, at: Trials) -> dict[str, Floats]:
 
 
 def _side_by_side(columns: Sequence[Column]) -> Column:
-    codes = None
+    codes, texts = None, None
     if any(column.codes is not None for column in columns):
         parts = [np.zeros(c.values.size, np.uint8) if c.codes is None else c.codes for c in columns]
         codes = np.concatenate(parts)
-    return Column(np.concatenate([column.values for column in columns]), codes)
+    if any(column.texts is not None for column in columns):
+        texts = np.concatenate([np.full(c.values.size, "", object) if c.texts is None else c.texts for c in columns])
+    return Column(np.concatenate([column.values for column in columns]), codes, texts)
 
 
 def array_bytes(lowering: Lowering, filters: Sequence[int], forecasts: Sequence[int], nodes: Iterable[int]) -> int:

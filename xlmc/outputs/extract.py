@@ -6,7 +6,7 @@ import csv
 import io
 import json
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -51,6 +51,7 @@ class Column:
     units: str
     cell: str
     values: NDArray[np.float64]
+    labels: Sequence[str] | None = None
 
 
 def extract(simulation: RunResult, path: Path, *, command: str | None = None, overwrite: bool = False) -> Path:
@@ -123,7 +124,14 @@ def _columns(simulation: RunResult) -> list[Column]:
         name = weight_heading({*forecasts, *(each.name for each in found)})
         found.append(Column(name, "weight", "", "", simulation.weighting.weights))
     return found + [
-        Column(forecast_heading(f.name), "forecast", f.units, str(f.cell), simulation.forecasts[f.name])
+        Column(
+            forecast_heading(f.name),
+            "forecast",
+            f.units,
+            str(f.cell),
+            simulation.forecasts[f.name],
+            simulation.labels.get(f.name),
+        )
         for f in simulation.model.forecasts
     ]
 
@@ -156,14 +164,17 @@ def _write_csv(simulation: RunResult, file: BinaryIO, command: str | None) -> No
         writer = csv.writer(text)
         writer.writerow(headings)
         for trials, values in _chunks(simulation, columns, PART):
-            writer.writerows(zip(trials.tolist(), *map(_fields, values), strict=True))
+            fields = [_fields(part, column.labels) for part, column in zip(values, columns, strict=True)]
+            writer.writerows(zip(trials.tolist(), *fields, strict=True))
     finally:
         text.detach()  # flushed, and not closed
 
 
-def _fields(values: NDArray[np.float64]) -> list[float | str]:
-    """Numbers, which the writer gives their shortest exact text, and nothing where there is none."""
+def _fields(values: NDArray[np.float64], labels: Sequence[str] | None) -> list[float | str]:
+    """Numbers, which the writer gives their shortest exact text, or texts; nothing where there is none."""
     found: list[Any] = values.tolist()
+    if labels is not None:
+        return ["" if value != value else safe_heading(labels[int(value)]) for value in found]
     return ["" if value != value else value for value in found] if np.isnan(values).any() else found
 
 
@@ -175,12 +186,22 @@ def _write_parquet(simulation: RunResult, file: BinaryIO, command: str | None) -
     columns = _columns(simulation)
     fields = [pa.field(TRIAL, pa.int64(), nullable=False)]
     fields += [
-        pa.field(each.name, pa.float64(), metadata={"kind": each.kind, "units": each.units, "cell": each.cell})
+        pa.field(
+            each.name,
+            pa.float64() if each.labels is None else pa.string(),
+            metadata={"kind": each.kind, "units": each.units, "cell": each.cell},
+        )
         for each in columns
     ]
     record = json.dumps(make_record(simulation, command).as_dict(), ensure_ascii=False, allow_nan=False)
     schema = pa.schema(fields, metadata={"xlmc": record})
     with parquet.ParquetWriter(file, schema) as writer:
         for trials, values in _chunks(simulation, columns, _ROW_GROUP):
-            arrays = [pa.array(trials), *(pa.array(part, mask=np.isnan(part)) for part in values)]
+            arrays = [pa.array(trials)]
+            for part, column in zip(values, columns, strict=True):
+                if column.labels is None:
+                    arrays.append(pa.array(part, mask=np.isnan(part)))
+                else:
+                    texts = [None if each != each else column.labels[int(each)] for each in part.tolist()]
+                    arrays.append(pa.array(texts, pa.string()))
             writer.write_batch(pa.record_batch(arrays, schema=schema))

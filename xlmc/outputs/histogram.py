@@ -11,6 +11,8 @@ drawn, for they would leave the rest in one bar, but counted as below and above.
 **Central range.** Its ends fall where they fall. Each bin's trials are counted inside and outside it apart, so a bin
 that straddles an end is shown as both, and the inside parts add up to exactly the trials of the range.
 
+**One bar each.** Yes and no, texts, and whole numbers that lie close enough have a bar each, centred on its value.
+
 A `Figure` is the histogram of a forecast with its title and caption, as sheet, page and picture draw it.
 """
 
@@ -25,13 +27,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.montecarlo.columns import parts, release
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.definitions.stating import Kind
+from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.montecarlo.statistics.sample import Sample, Values
-from xlmc.outputs.summary import SummaryRow, answer_text, central_text, estimate_text, percent, summarise
+from xlmc.outputs.summary import SummaryRow, answer_text, central_text, percent, share_text, summarise
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
 
-__all__ = ["Figure", "Histogram", "figures_of", "histogram", "multiples", "varying"]
+__all__ = ["Figure", "Histogram", "bars_of", "figures_of", "histogram", "multiples", "not_drawn", "varying"]
 
 Floats = NDArray[np.float64]
 
@@ -43,8 +48,11 @@ _MOST_LABELS, _FEWEST_LABELS = 12, 4
 _LINE, _POWER = 84, 7
 """Characters that an axis has room for, and of a label with a power of ten."""
 
+_LONGEST_LABEL = 24
+"""Characters of a text below its bar."""
+
 _FENCE, _VAST = 5.0, 1e300
-_MOST_DECIMALS, _LONGEST = 6, 1e7
+_MOST_DECIMALS, _LONGEST = 6, 1e15
 """A label with more decimals, or of a larger number, has a power of ten."""
 
 _FINEST = 1e-9
@@ -61,6 +69,8 @@ class Histogram:
         below, above: trials that are not drawn.
         step: bins from one label to the next; the first bin has one.
         decimals: of the width.
+        names: `(b,)` what each bar is of, where it has one value alone, on which it is centred; None elsewhere.
+        form: how the edges are written.
     """
 
     edges: Floats
@@ -71,6 +81,8 @@ class Histogram:
     above: int
     step: int
     decimals: int
+    names: tuple[str, ...] | None = None
+    form: Form = PLAIN
 
     @property
     def counted(self) -> int:
@@ -79,17 +91,23 @@ class Histogram:
 
     @property
     def upper_edges(self) -> Floats:
+        if self.names is not None:
+            return np.asarray(self.edges + self.width)
         return multiples(self.width, round(float(self.edges[0] / self.width)) + 1, self.edges.size)
 
     @property
     def labels(self) -> list[str]:
-        """The lower end in text for every `step`-th bin, nothing for the others."""
+        """The lower end, or the value of a bar, in text for every `step`-th bin, nothing for the others."""
+        if self.names is not None:
+            return [short_name(name) if i % self.step == 0 else "" for i, name in enumerate(self.names)]
         decimals = _decimals(self.width * self.step)
         return ["" if i % self.step else self._text(edge, decimals) for i, edge in enumerate(self.edges)]
 
     @property
     def last_label(self) -> str:
         """The upper end of the last bin in text; bins fill whole steps, so that it is due a label."""
+        if self.names is not None:
+            return ""
         return self._text(float(self.upper_edges[-1]), _decimals(self.width * self.step))
 
     @property
@@ -97,17 +115,21 @@ class Histogram:
         """The Excel number format that writes edges in full, if there is room."""
         if not self._short:
             return "General"
-        return "0" + ("." + "0" * self.decimals if self.decimals else "")
+        if self.form.kind is Kind.DATE:
+            return self.form.moment_code
+        if self.form.kind is Kind.PERCENT:
+            return f"0{_fraction(max(self.decimals - 2, 0))}%"
+        return f"0{_fraction(self.decimals)}"
 
     def _text(self, edge: float, decimals: int) -> str:
-        return f"{edge:.{decimals}f}" if self._short else f"{edge:.4g}"
+        return self.form.tick(edge, decimals) if self._short else f"{edge:.4g}"
 
     @property
     def _short(self) -> bool:
         return self.decimals <= _MOST_DECIMALS and bool(np.max(np.abs(self.upper_edges)) < _LONGEST)
 
 
-def histogram(values: Values, low: float, high: float) -> Histogram | None:
+def histogram(values: Values, low: float, high: float, form: Form = PLAIN) -> Histogram | None:
     """Count finite values `(n,)`, or a `Sample` of them, apart for those in [low, high]; otherwise None.
 
     Of weighted trials as many are counted as carry as much.
@@ -116,9 +138,9 @@ def histogram(values: Values, low: float, high: float) -> Histogram | None:
     if x.size == 0:
         return None
     first, last = _shown(x)
-    width = _width(x, first, last)
+    width = form.rounded_width(_width(x, first, last))
     start, stop = math.floor(first / width), math.floor(last / width) + 1
-    step = _step(width, start, stop)
+    step = _step(width, start, stop, form)
     start, stop = step * math.floor(start / step), step * math.ceil(stop / step)
     edges = multiples(width, start, stop - start + 1)
     reached = np.searchsorted(x, edges, side="left")
@@ -134,7 +156,66 @@ def histogram(values: Values, low: float, high: float) -> Histogram | None:
         above=int(x.size - reached[-1]),
         step=step,
         decimals=_decimals(width),
+        form=form,
     )
+
+
+def bars_of(row: SummaryRow, sample: Sample) -> Histogram | None:
+    """Return the bars of a forecast: one for each text, for no and yes, for each whole number; bins of the others."""
+    if row.categories:
+        return _named_bars(sample, row.numbers, [*row.categories], row.form)
+    if row.yes is not None and sample.yes_no:
+        return _named_bars(sample, [0.0, 1.0], ["no", "yes"], row.form)
+    low, high = row.low.value, row.high.value
+    if math.isnan(low) or math.isnan(high):
+        return None  # too few effective trials to draw
+    if row.kind is Kind.WHOLE and sample.whole and 0.0 < float(sample.x[-1]) - float(sample.x[0]) < _MOST:
+        values = np.arange(sample.x[0], sample.x[-1] + 1.0)
+        return _named_bars(sample, values.tolist(), [row.form.number(value) for value in values], row.form, low, high)
+    return histogram(sample, low, high, row.form)
+
+
+def _named_bars(
+    sample: Sample,
+    values: Sequence[float],
+    names: Sequence[str],
+    form: Form,
+    low: float = -math.inf,
+    high: float = math.inf,
+) -> Histogram:
+    """Return a bar for each of these values; those beyond the most that a chart has room for are counted as above."""
+    x = sample.even
+    order = np.asarray(values[:_MOST])
+    counts = np.searchsorted(x, order, side="right") - np.searchsorted(x, order, side="left")
+    centres = order if form.kind is Kind.WHOLE else np.arange(order.size, dtype=np.float64)
+    central = (order >= low) & (order <= high)
+    release(x)
+    longest = max(len(short_name(name)) for name in names[:_MOST])
+    step = (
+        1
+        if form.kind is not Kind.WHOLE
+        else next(
+            each for each in (*_STEPS, _MOST) if order.size / each * (longest + 2) <= _LINE and order.size / each <= 30
+        )
+    )
+    return Histogram(
+        edges=centres - 0.5,
+        width=1.0,
+        inside=np.where(central, counts, 0),
+        outside=np.where(central, 0, counts),
+        below=0,
+        above=int(x.size - counts.sum()),
+        step=step,
+        decimals=0,
+        names=tuple(names[:_MOST]),
+        form=form,
+    )
+
+
+def short_name(name: str) -> str:
+    """Return the text of a category, as long as an axis has room for."""
+    name = name or "(empty)"
+    return name if len(name) <= _LONGEST_LABEL else f"{name[: _LONGEST_LABEL - 1]}…"
 
 
 def _shown(x: Floats) -> tuple[float, float]:
@@ -190,21 +271,21 @@ def _scale(factor: float, like: float) -> float:
     return float(f"{factor}e{f'{like:.6e}'.partition('e')[2]}")  # 0.1, not 0.1 and a rounding error
 
 
-def _step(width: float, first: int, last: int) -> int:
+def _step(width: float, first: int, last: int, form: Form = PLAIN) -> int:
     """Return the fewest bins from one label to the next that keep labels round and apart; bins are these multiples."""
     for step in _STEPS:
-        most = min(_MOST_LABELS, max(_FEWEST_LABELS, _LINE // (_longest_label(width, step, first, last) + 2)))
-        if last - first <= step * most and _mantissa(width * step) in _ROUND_LABELS:
+        most = min(_MOST_LABELS, max(_FEWEST_LABELS, _LINE // (_longest_label(width, step, first, last, form) + 2)))
+        if last - first <= step * most and (form.kind is Kind.DATE or _mantissa(width * step) in _ROUND_LABELS):
             return step
     return _STEPS[-1]
 
 
-def _longest_label(width: float, step: int, first: int, last: int) -> int:
+def _longest_label(width: float, step: int, first: int, last: int, form: Form) -> int:
     """Characters of the longest edge, or as many as a power of ten takes."""
     largest = max(abs(first), abs(last)) * width
     if _decimals(width) > _MOST_DECIMALS or largest >= _LONGEST:
         return _POWER
-    return len(f"{-largest if first < 0 else largest:.{_decimals(width * step)}f}")
+    return len(form.tick(-largest if first < 0 else largest, _decimals(width * step)))
 
 
 def multiples(width: float, first: int, count: int) -> Floats:
@@ -218,7 +299,13 @@ def _decimals(width: float) -> int:
     return max(len(mantissa.rstrip("0").partition(".")[2]) - int(exponent), 0)
 
 
+def _fraction(decimals: int) -> str:
+    return "." + "0" * decimals if decimals else ""
+
+
 _LONGEST_NAME = 90
+_MOST_SAID = 5
+"""Texts whose shares a caption gives."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -238,26 +325,45 @@ class Figure:
     @property
     def axis(self) -> str:
         """What stands below the bars: the units, and what a bar covers."""
-        bars = f"bars {self.bins.width:g} wide, each labelled at its lower end"
+        if self.bins.names is not None:
+            return self.answer.units or ("Value" if self.answer.kind is Kind.WHOLE else "Answer")
+        bars = f"bars {self.bins.form.width(self.bins.width)} wide, each labelled at its lower end"
         return f"{self.answer.units} ({bars})" if self.answer.units else f"B{bars[1:]}"
+
+    @property
+    def said(self) -> str:
+        """The answer in words."""
+        row = self.answer
+        units = f" {row.units}" if row.units else ""
+        said = (
+            f"mean {answer_text(row)}{units}; the central {percent(row.share)} of {count_text(row.trials)} accepted "
+            f"trials lie from {central_text(row)}{units}"
+        )
+        if row.yes is not None:
+            said = f"yes in {answer_text(row)} of {count_text(row.trials)} accepted trials, else no"
+        if row.categories:
+            shares = [f"{text or '(empty)'} {share_text(share)}" for text, share in row.categories.items()]
+            more = f"; {len(shares) - _MOST_SAID} more texts" if len(shares) > _MOST_SAID else ""
+            said = f"{'; '.join(shares[:_MOST_SAID])}{more}; of {count_text(row.trials)} accepted trials"
+        return said
 
     @property
     def caption(self) -> str:
         """What the figure shows, in words."""
         row, bins = self.answer, self.bins
-        units = f" {row.units}" if row.units else ""
-        label = (
-            f"mean {estimate_text(row.mean)}{units}; the central {percent(row.share)} of {row.trials:,} accepted "
-            f"trials lie from {central_text(row)}{units}"
-        )
-        if row.yes is not None:
-            label = f"yes (1) in {answer_text(row)} of {row.trials:,} accepted trials, else no (0)"
-        text = f"Figure {self.number}. {self.name}: {label}."
+        text = f"Figure {self.number}. {self.name}: {self.said}."
         if bins.counted < row.trials:
-            text += f" Trials are weighted: the chart shows {bins.counted:,} trials of equal weight in their place."
+            text += f" Trials are weighted: the chart shows {count_text(bins.counted)} trials of equal weight instead."
         if bins.below or bins.above:
-            text += f" Not drawn: {bins.below:,} trials below and {bins.above:,} above."
+            text += not_drawn(bins)
         return text
+
+
+def not_drawn(bins: Histogram) -> str:
+    """How many trials a chart leaves out, as a sentence."""
+    if bins.names is not None:
+        return f" Not drawn: {count_text(bins.above)} trials of rarer texts."
+    return f" Not drawn: {count_text(bins.below)} trials below and {count_text(bins.above)} above."
 
 
 def figures_of(simulation: RunResult, names: Collection[str] | None = None) -> list[Figure]:
@@ -269,13 +375,13 @@ def figures_of(simulation: RunResult, names: Collection[str] | None = None) -> l
     """
     found: list[Figure] = []
     for row in summarise(simulation, names):
-        bins = histogram(simulation.results[row.name].sample, row.low.value, row.high.value)
-        refused = math.isnan(row.low.value) or math.isnan(row.high.value)  # too few effective trials to draw
-        if bins is not None and not refused:
+        sample = simulation.results[row.name].sample
+        bins = bars_of(row, sample) if sample.n else None
+        if bins is not None:
             found.append(Figure(len(found) + 1, row, bins))
     return found
 
 
 def varying(figures: Sequence[Figure]) -> list[Figure]:
     """Return the figures, without forecasts that are the same in all trials: their curve would be a step."""
-    return [figure for figure in figures if figure.answer.standard_deviation.value > 0.0]
+    return [each for each in figures if each.answer.yes is None and each.answer.standard_deviation.value > 0.0]

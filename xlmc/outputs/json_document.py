@@ -234,7 +234,10 @@ def _forecast(result: ForecastResult, base: BaseCase | None) -> Json:
         "cell": str(definition.cell),
         "units": definition.units,
         "report_to": definition.report_to,
-        "kind": None if definition.kind is None else definition.kind.value,
+        "kind": result.kind.value,
+        "number_format": result.form.code,
+        "yes": None if result.yes is None else estimate_json(result.yes),
+        "categories": [{"text": text, "share": estimate_json(each)} for text, each in result.categories.items()],
         "role": definition.role.value,
         "trials": found.trials,
         "statistics": {name: estimate_json(getattr(found, name)) for name in STATISTICS},
@@ -244,7 +247,7 @@ def _forecast(result: ForecastResult, base: BaseCase | None) -> Json:
         if above is None
         else {"threshold": definition.threshold, "probability_above": estimate_json(above)},
         "certainties": [_as_json(each) for each in certainties(result)],
-        "base_case": None if base is None else finite(base.forecasts[definition.name]),
+        "base_case": None if base is None else base.texts.get(definition.name, finite(base.forecasts[definition.name])),
         "without_number": {error: count for error, count in sorted(result.faults.items()) if count},
     }
 
@@ -342,7 +345,7 @@ def _assumption(simulation: RunResult, each: Assumption) -> Json:
         "status": status(simulation.model, each.name, each.frozen),
         "distribution": each.distribution,
         "parameters": parameters_text(each),
-        "cutoffs": cutoffs_text(each.cutoffs),
+        "cutoffs": cutoffs_text(each),
         "base": each.base,
         "source": each.source,
         "prior": None,

@@ -6,9 +6,11 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.statements.in_words import changes_text
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics import format_estimate
+from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.sheets.scenarios_sheet import POINTS, above_head, range_heads
-from xlmc.outputs.summary import estimate_text, share_text
+from xlmc.outputs.summary import share_text
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.scenario_answers import ForecastAnswer, ScenarioAnswers
@@ -29,7 +31,7 @@ def scenario_rows(found: Sequence[ScenarioAnswers], impossible: Mapping[str, str
     rows = [
         (
             each.name,
-            f"{each.run.accepted:,}",
+            count_text(each.run.accepted),
             share_text(each.acceptance),
             _change(each.acceptance_difference, share=True),
             "" if each.scenario is None else changes_text(each.scenario),
@@ -57,8 +59,18 @@ def answer_rows(found: Sequence[ScenarioAnswers], index: int) -> list[tuple[str,
 
 def _cells(answer: ForecastAnswer, above: bool) -> list[str]:
     found = []
+    form = answer.form
     for key, value in (("mean", answer.mean), ("low", answer.low), ("high", answer.high)):
-        found += [estimate_text(value), _change(answer.differences.get(key))]
+        change = answer.differences.get(key)
+        if key == "mean" and not answer.has_range:
+            found += [share_text(value), _change(change, share=True)]
+        elif not answer.has_range:
+            found += ["", ""]
+        elif form.kind is Kind.DATE or change is None:
+            sign = "+" if change is not None and change.value > 0 else ""
+            found += [form.estimate(value), "" if change is None else f"{sign}{form.spread(change)}"]
+        else:
+            found += [form.estimate(value), f"{'+' if change.value > 0 else ''}{form.estimate(change)}"]
     if above:
         share = "" if answer.above is None else share_text(answer.above)
         found += [share, _change(answer.differences.get("above"), share=True)]

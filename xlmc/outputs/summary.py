@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -12,12 +12,16 @@ import numpy as np
 from xlmc.analysis.results.statements import reach_text
 from xlmc.analysis.results.statements.in_words import discards_of, limits_text
 from xlmc.engine.engine import UNDECIDED_RESULT
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.distributions.parameters import range_text, show
+from xlmc.montecarlo.loop.categories import labelled
 from xlmc.montecarlo.model.certain_filters import breakable
 from xlmc.montecarlo.model.draw_binding import base_point
 from xlmc.montecarlo.rare.account import probability_text
 from xlmc.montecarlo.statistics import Estimate, format_estimate
 from xlmc.montecarlo.statistics.estimate import finite
+from xlmc.montecarlo.statistics.number_text import count_text, decimals_of
 
 if TYPE_CHECKING:
     from xlmc.engine.engine import Column
@@ -33,6 +37,7 @@ __all__ = [
     "base_case",
     "base_text",
     "central_text",
+    "end_texts",
     "estimate_text",
     "percent",
     "question",
@@ -52,8 +57,8 @@ ERROR_SENTENCE = (
 
 MIXED = "Central range"
 
-_OF_ERROR = 0.1
-"""How much of the error of a mean a number beside it may lose by rounding."""
+_LONG = 7
+"""Characters from which on a base case has no more decimals than the mean beside it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +72,11 @@ class SummaryRow:
         threshold, above: the probability above the threshold, where one was asked for.
         asked, certainty: the probability of a range, where one was asked for; its ends, infinite where it has none.
         yes: the share of the trials that say yes; None if it is no yes/no answer.
+        kind: what its answers are.
+        form: how its numbers are written.
+        categories: text -> the share of the trials that have it, the most frequent first; empty where it has numbers.
+        numbers: what stands for these texts in its column, in their order.
+        base_text: of a text, the base case.
     """
 
     name: str
@@ -83,20 +93,32 @@ class SummaryRow:
     asked: tuple[float, float] | None = None
     certainty: Estimate | None = None
     yes: Estimate | None = None
+    kind: Kind = Kind.NUMBER
+    form: Form = PLAIN
+    categories: Mapping[str, Estimate] = field(default_factory=dict)
+    numbers: tuple[float, ...] = ()
+    base_text: str = ""
+
+    @property
+    def is_share(self) -> bool:
+        """Whether what is shown first is a share of the trials: of yes, or of the most frequent text."""
+        return self.yes is not None or bool(self.categories)
 
     @property
     def answer(self) -> Estimate:
-        """What is shown first: the mean, or the share of yes, which is shown in percent."""
-        return self.mean if self.yes is None else self.yes
+        """What is shown first: the mean; the share of yes or of the most frequent text, which is shown in percent."""
+        return self.yes or next(iter(self.categories.values()), self.mean)
 
     @property
     def spread(self) -> tuple[Estimate, Estimate, Estimate]:
-        """What is shown of its scatter, SD and central range; nothing of a yes/no answer: its share says all."""
-        return (self.standard_deviation, self.low, self.high) if self.yes is None else (_NOTHING, _NOTHING, _NOTHING)
+        """What is shown of its scatter, SD and central range; nothing of yes/no answers and texts: shares say all."""
+        return (_NOTHING, _NOTHING, _NOTHING) if self.is_share else (self.standard_deviation, self.low, self.high)
 
     @property
     def unit(self) -> str:
-        """The unit of what is shown first."""
+        """The unit of what is shown first; of a share what it is of."""
+        if self.categories:
+            return next(iter(self.categories)) or "(empty)"
         return self.units if self.yes is None else self.units or "yes"
 
 
@@ -127,6 +149,11 @@ def summarise(simulation: RunResult, names: Collection[str] | None = None) -> li
             asked=result.definition.asked,
             certainty=result.certainty,
             yes=result.yes,
+            kind=result.kind,
+            form=result.form,
+            categories=result.categories,
+            numbers=result.numbers_of_texts,
+            base_text="" if base is None else base.texts.get(name, ""),
         )
         for name, result in simulation.results.items()
         if names is None or name in names
@@ -146,48 +173,57 @@ def summary_text(rows: Sequence[SummaryRow]) -> tuple[list[str], list[list[str]]
 
 
 def _line(row: SummaryRow, heading: str) -> dict[str, str]:
-    threshold = "" if row.threshold is None else show(row.threshold)
+    threshold = "" if row.threshold is None else row.form.number(row.threshold)
     spread, low, _ = row.spread
     return {
         "Forecast": row.name,
         "Units": row.unit,
         "Mean": answer_text(row),
-        "SD": estimate_text(spread),
+        "SD": row.form.spread(spread),
         heading: "" if math.isnan(low.value) else central_text(row),
         "Range": "" if heading != MIXED else percent(row.share),
         "Base case": base_text(row),
         "Threshold": threshold,
         "Above threshold": "" if row.above is None else share_text(row.above),
-        "Certainty of": "" if row.asked is None else range_text(*row.asked),
+        "Certainty of": "" if row.asked is None else range_text(*row.asked, row.form.number),
         "Certainty": "" if row.certainty is None else share_text(row.certainty),
     }
 
 
 def answer_text(row: SummaryRow) -> str:
-    """Write what is shown first: the mean, `11.799 ± 0.013`, or the share of yes, `5.44 ± 0.32 %`."""
-    return estimate_text(row.mean) if row.yes is None else share_text(row.yes)
+    """Write what is shown first: the mean, `11.799 ± 0.013`, or the share of yes or of a text, `5.44 ± 0.32 %`."""
+    return share_text(row.answer) if row.is_share else row.form.estimate(row.mean)
 
 
 def base_text(row: SummaryRow) -> str:
     """Write a forecast at the base case; empty without one."""
+    if row.kind is Kind.CATEGORY:
+        return row.base_text
     if row.base is None or row.yes is None:
-        return "" if row.base is None else _beside_mean(row.base, row.mean)
+        return "" if row.base is None else beside_mean(row.base, row)
     return "yes" if row.base else "no"
 
 
 def central_text(row: SummaryRow) -> str:
     """`172.53 ± 0.70 to 243.16 ± 0.97`; ends without an error have the digits of the mean."""
-    ends = (
-        _beside_mean(end.value, row.mean) if end.error is None else estimate_text(end) for end in (row.low, row.high)
-    )
-    return " to ".join(ends)
+    return row.form.ends(row.low, row.high, row.mean)
 
 
-def _beside_mean(value: float, mean: Estimate) -> str:
-    """Write a number without an error to six digits, or to more where it stands beside a mean that is known better."""
-    allowed = math.inf if mean.error is None else _OF_ERROR * mean.error
-    texts = (f"{value:.{digits}g}" for digits in range(6, 12))
-    return next((text for text in texts if abs(float(text) - value) <= allowed), show(value))
+def end_texts(row: SummaryRow) -> tuple[str, str]:
+    """Return the lower and the upper end of the central range; empty where none is shown."""
+    if row.is_share or math.isnan(row.low.value):
+        return "", ""
+    low, _, high = central_text(row).partition(" to ")
+    return low, high
+
+
+def beside_mean(value: float, row: SummaryRow) -> str:
+    """Write a number without an error, to six digits or to more where it stands beside a mean that is known better."""
+    if row.kind is Kind.DATE:
+        return row.form.number(value)
+    exact, error = row.form.number(value), row.mean.error
+    decimals = decimals_of(row.form.factor * error) if error else None
+    return exact if len(exact) <= _LONG or decimals is None else row.form.number(value, decimals)
 
 
 def range_heading(rows: Sequence[SummaryRow]) -> str:
@@ -227,10 +263,12 @@ class BaseCase:
     Attributes:
         forecasts: forecast -> its value; None if it is no number.
         rejected_by: the filters that reject it.
+        texts: forecast whose answers are texts -> its text.
     """
 
     forecasts: Mapping[str, float | None]
     rejected_by: tuple[str, ...]
+    texts: Mapping[str, str] = field(default_factory=dict)
 
 
 def base_case(simulation: RunResult) -> BaseCase | None:
@@ -247,7 +285,11 @@ def base_case(simulation: RunResult) -> BaseCase | None:
     filters = [_fails(column) for column in evaluator.filters(known | model.certain(1), 1)]
     columns = evaluator.forecasts(np.zeros(1, np.intp))
     return BaseCase(
-        forecasts={f.name: _number(column) for f, column in zip(model.forecasts, columns, strict=True)},
+        forecasts={
+            f.name: None if number in model.categories else _number(column)
+            for number, (f, column) in enumerate(zip(model.forecasts, columns, strict=True))
+        },
+        texts={model.forecasts[n].name: text for n in model.categories for text in labelled(columns[n])[1]},
         rejected_by=tuple(f.name for f, fails in zip(model.filters, filters, strict=True) if fails),
     )
 
@@ -277,7 +319,7 @@ def question(simulation: RunResult) -> Iterator[Phrase]:
     yield Phrase(
         f"The workbook computes {_count_text(len(model.forecasts), 'answer (forecast)', 'answers (forecasts)')} from "
         f"{_count_text(len(model.live), 'quantity', 'quantities')} known only within ranges (assumptions). "
-        f"{simulation.evaluated:,} combinations of values from these ranges were tried. "
+        f"{count_text(simulation.evaluated)} combinations of values from these ranges were tried. "
     )
     asked = _asked(simulation)
     if not asked:
@@ -303,7 +345,7 @@ def _asked(simulation: RunResult) -> list[Filter]:
 
 def _counted(simulation: RunResult, filters: bool, evidence: bool) -> str:
     """How many trials do what is asked of them, by filters, by evidence or by both."""
-    count, share, one = f"{simulation.accepted:,}", share_text(simulation.acceptance), simulation.accepted == 1
+    count, share, one = count_text(simulation.accepted), share_text(simulation.acceptance), simulation.accepted == 1
     does = ["passes all filters" if one else "pass all filters"] * filters
     if simulation.weighting is not None:
         each = f"{count} of them ({share}) {does[0]}, and each" if does else "Each of them"
@@ -329,7 +371,7 @@ def _of_some(simulation: RunResult) -> Iterator[Phrase]:
     for each in discards_of(simulation):
         yield Phrase(" Of ")
         yield Phrase(each.forecast, is_name=True)
-        yield Phrase(f" only those {simulation.accepted - each.trials:,} count in which ")
+        yield Phrase(f" only those {count_text(simulation.accepted - each.trials)} count in which ")
         yield Phrase(each.filter.name, is_name=True)
         yield Phrase(f" {limits_text(each.filter)}.")
 

@@ -92,8 +92,8 @@ def test_without_an_error_nothing_limits_the_digits(error):
         (17.02134, 0.0995, "17.02 ± 0.10"),
         (17.02134, 2.31, "17.0 ± 2.3"),
         (17.02134, 23.1, "17 ± 23"),
-        (48211.3, 870.0, "48210 ± 870"),
-        (48251.3, 8700.0, "48300 ± 8700"),
+        (48211.3, 870.0, "48,210 ± 870"),
+        (48251.3, 8700.0, "48,300 ± 8,700"),
         (-17.02134, 0.00231, "-17.0213 ± 0.0023"),
         (-0.0001, 0.23, "0.00 ± 0.23"),
         (0.0, 0.00098, "0.00000 ± 0.00098"),
@@ -115,6 +115,7 @@ def test_format(value, error, text):
 @given(st.floats(-1e9, 1e9), st.floats(1e-4, 1e9))
 def test_what_is_printed_is_within_half_of_the_last_digit(value, error):
     shown_value, shown_error = format_estimate(value, error).split(" ± ")
-    assert float(shown_error) == pytest.approx(error, rel=0.051)
-    unit = 10.0 ** (math.floor(math.log10(float(shown_error))) - 1)
-    assert abs(float(shown_value) - value) <= 0.51 * unit
+    shown_value, shown_error = (float(text.replace(",", "")) for text in (shown_value, shown_error))
+    assert shown_error == pytest.approx(error, rel=0.051)
+    unit = 10.0 ** (math.floor(math.log10(shown_error)) - 1)
+    assert abs(shown_value - value) <= 0.51 * unit

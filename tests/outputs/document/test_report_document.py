@@ -149,7 +149,7 @@ def shown(estimate, text, scale=1.0):
     """Whether a printed number and its error are those of an estimate, to the digits printed."""
     value, _, error = text.removesuffix(" %").partition(" ± ")
     decimals = len(value.partition(".")[2])
-    same = value == f"{scale * estimate['value']:.{decimals}f}", error == f"{scale * estimate['error']:.{decimals}f}"
+    same = value == f"{scale * estimate['value']:,.{decimals}f}", error == f"{scale * estimate['error']:,.{decimals}f}"
     return all(same)
 
 

@@ -91,7 +91,20 @@ def test_a_cell_reads_as_on_the_sheet(shown, text):
 
 def test_an_unknown_format_is_refused():
     with pytest.raises(ValueError, match="yyyy"):
-        shown_text(Shown(1.0, "yyyy-mm-dd"))
+        shown_text(Shown(1.0, "yyyy-0.0"))
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "text"),
+    [
+        (46_082.0, "yyyy-mm-dd", "2026-03-01"),
+        (0.25, "[h]:mm:ss", "6:00:00"),
+        (-1234.5, '"$"#,##0.0', "-$1,234.5"),
+        (12.25, '0.00" days"', "12.25 days"),
+    ],
+)
+def test_forms_of_dates_and_money(value, digits, text):
+    assert shown_text(Shown(value, digits)) == text
 
 
 @given(st.floats(-999, 999), st.floats(1e-3, 9.4))

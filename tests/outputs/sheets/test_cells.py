@@ -16,9 +16,9 @@ PAIRED = [
     (0.05403, 0.00051, "#,##0.00000"),
     (-0.021, 0.013, "#,##0.000"),
     (0.0, 0.3, "#,##0.00"),
-    (5.469e11, 2.177e9, "0.000E+00"),
+    (5.469e11, 2.177e9, "#,##0"),
     (2.5e-7, 1.2e-9, "0.000E+00"),
-    (7.0, 0.0, "General"),
+    (7.0, 0.0, "#,##0"),
     (math.nan, None, "General"),
     (math.inf, None, "General"),
     (17.02134, None, "#,##0.0000"),
@@ -55,7 +55,7 @@ def test_formats_of_shares(estimate, expected):
 
 
 @pytest.mark.parametrize(
-    ("spread", "expected"), [(200.0, "#,##0.0"), (0.35, "#,##0.0000"), (4e8, "0.000E+00"), (0.0, "General")]
+    ("spread", "expected"), [(200.0, "#,##0.0"), (0.35, "#,##0.0000"), (4e8, "#,##0"), (0.0, "General")]
 )
 def test_formats_of_single_trials_follow_their_spread(spread, expected):
     assert spread_format(spread) == expected

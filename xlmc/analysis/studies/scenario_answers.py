@@ -28,7 +28,9 @@ from xlmc.analysis.studies.comparison.paired_statistics import (
 )
 from xlmc.errors import DefinitionError, SimulationError, XlmcError
 from xlmc.montecarlo.definitions.definitions import Forecast
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.scenarios import Scenario, Tabulated
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.applied_changes import applied
 from xlmc.montecarlo.model.model import CompiledModel
@@ -58,6 +60,8 @@ class ForecastAnswer:
     Attributes:
         low, high: the ends of its central range.
         above: P(> threshold); None if it has no threshold.
+        form: how its numbers are written.
+        text: of answers that are texts the most frequent one of the workbook itself, whose share is the mean.
         differences: `mean`, `low`, `high`, `above` -> this less the workbook's own; empty for the workbook itself. A
             scenario may have another threshold or central range: the numbers that stand there are compared.
     """
@@ -68,11 +72,19 @@ class ForecastAnswer:
     high: Estimate
     above: Estimate | None
     differences: Mapping[str, Estimate]
+    form: Form = PLAIN
+    text: str | None = None
 
     @property
     def title(self) -> str:
-        """`Speed, mph`, above its table."""
-        return ", ".join(filter(None, (self.forecast.name, self.forecast.units)))
+        """`Speed, mph`, above its table; of a share what it is of."""
+        of = None if self.text is None else f"share of “{self.text}”"
+        return ", ".join(filter(None, (self.forecast.name, self.forecast.units, of)))
+
+    @property
+    def has_range(self) -> bool:
+        """Whether it has a range: an answer that is a share has none."""
+        return self.form.kind is not Kind.YES_NO
 
 
 @dataclass(frozen=True, slots=True)
@@ -266,19 +278,25 @@ def _share_trials(first: RunResult, second: RunResult) -> bool:
 
 
 def _forecast(run: RunResult, base: RunResult, forecast: Forecast, differs: bool, paired: bool) -> ForecastAnswer:
-    result = run.results[forecast.name]
+    result, text = run.results[forecast.name], next(iter(base.results[forecast.name].categories), None)
+    if text is not None:
+        result = run.saying(forecast.name, text)
     low, high = result.central()
     above = None if forecast.threshold is None else result.probability_above(forecast.threshold)
     found = {"mean": result.mean, "low": low, "high": high} | ({} if above is None else {"above": above})
     changes = _differences(run, base, forecast, found, paired=paired) if differs else {}
-    return ForecastAnswer(forecast, result.mean, low, high, above, changes)
+    return ForecastAnswer(forecast, result.mean, low, high, above, changes, result.form, text)
 
 
 def _differences(
     run: RunResult, base: RunResult, forecast: Forecast, found: Mapping[str, Estimate], *, paired: bool
 ) -> dict[str, Estimate]:
     """Return the difference of each number from the workbook's own."""
-    own = base.results[forecast.name]
+    own, text = base.results[forecast.name], next(iter(base.results[forecast.name].categories), None)
+    columns = [each.forecasts[forecast.name] for each in (base, run)]
+    if text is not None:
+        own = base.saying(forecast.name, text)
+        columns = [each.indicator(forecast.name, text) for each in (base, run)]
     low, high = own.central()
     theirs = {"mean": own.mean, "low": low, "high": high}
     if own.definition.threshold is not None:
@@ -286,7 +304,8 @@ def _differences(
     both = [key for key in found if key in theirs]
     if not paired:
         return {key: _independent(theirs[key], found[key]) for key in both}
-    first, second = (Accepted.of(each.trial_index, each.forecasts[forecast.name]) for each in (base, run))
+    pairs = zip((base, run), columns, strict=True)
+    first, second = (Accepted.of(each.trial_index, column) for each, column in pairs)
     pair = Pair(first, second, run.plan.size, max(base.plan.replicates, run.plan.replicates))
     before, after = _statistics(own.definition), _statistics(forecast)
     return {key: pair.difference(before[key](first), after[key](second)) for key in both}

@@ -248,7 +248,7 @@ class _Screen:
     ) -> None:
         self._run, self._chance, self._acceptance_tolerance = run, chance, acceptance_tolerance
         self._engine, self._jobs, self._tell = engine, jobs, tell
-        self._accepted = {f.name: Accepted.of(run.trial_index, run.forecasts[f.name]) for f in run.model.forecasts}
+        self._accepted = {f.name: Accepted.of(run.trial_index, run.numbers_of(f.name)) for f in run.model.forecasts}
         wanted = [f for f in run.model.forecasts if not asked or f.name in asked]
         self._unasked = tuple(f.name for f in run.model.forecasts if f not in wanted)
         self._judged = [f for f in wanted if self._accepted[f.name].m >= _FEWEST]
@@ -333,7 +333,7 @@ class _Screen:
         accepted = acceptance(self._run, run)
         found = {
             f.name: difference(
-                self._accepted[f.name], Accepted.of(run.trial_index, run.forecasts[f.name]), f.central, f.threshold
+                self._accepted[f.name], Accepted.of(run.trial_index, run.numbers_of(f.name)), f.central, f.threshold
             )
             for f in self._judged
         }
@@ -391,7 +391,7 @@ class _Screen:
         share = float(near.mean() / np.mean(np.abs(prior - base) <= width))
         sizes = [abs(share - 1.0) / self._acceptance_tolerance]
         for forecast in self._judged:
-            values, tolerance = self._run.forecasts[forecast.name][: drawn.size], self._tolerances[forecast.name][0]
+            values, tolerance = self._run.numbers_of(forecast.name)[: drawn.size], self._tolerances[forecast.name][0]
             sizes.append(_largest_move(values, near, forecast, tolerance, self._chance))
         return max(sizes)
 

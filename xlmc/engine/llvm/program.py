@@ -279,5 +279,9 @@ def _correct(columns: Sequence[Column], again: NDArray[np.intp], careful: Sequen
         codes = np.zeros(values.size, np.uint8) if column.codes is None else np.array(column.codes)
         values[again] = found.values
         codes[again] = 0 if found.codes is None else found.codes
-        corrected.append(Column(values, codes if codes.any() else None))
+        texts = column.texts
+        if found.texts is not None:
+            texts = np.full(values.size, "", object) if texts is None else np.array(texts)
+            texts[again] = found.texts
+        corrected.append(Column(values, codes if codes.any() else None, texts))
     return corrected

@@ -89,6 +89,7 @@ class Assumption:
         call: the call of a formula that a row of a table stands for; None elsewhere.
         checked: how it is drawn by the numbers that the row held as it was read, which are a distribution; None if
             one was not known then. A run checks all numbers that are not these, whoever gives them.
+        stated: key of a parameter or cutoff that a formula computes -> its value at the base case, and the formula.
     """
 
     name: str
@@ -105,6 +106,7 @@ class Assumption:
     data: DataRange | None = None
     call: InFormula | None = None
     checked: Draw | None = field(default=None, compare=False, repr=False)
+    stated: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def family(self) -> Family:
@@ -135,7 +137,8 @@ class Assumption:
     def with_numbers(self, numbers: Mapping[str, Parameter | None]) -> Assumption:
         """Return the assumption with these parameters and cutoffs instead of its own; None takes a cutoff away."""
         given = {key: value for key, value in {**self.given, **numbers}.items() if value is not None}
-        return replace(self, given=given)
+        stated = {key: text for key, text in self.stated.items() if key not in numbers}
+        return replace(self, given=given, stated=stated)
 
     @property
     def cells(self) -> tuple[Cell, ...]:
@@ -183,6 +186,7 @@ class Filter:
             `xlmc_filters`.
         only_for: names of the forecasts that it discards trials for; empty where it rejects them for all.
         used: whether the row counts; its column `Use` may switch it off.
+        stated: key of a limit that a formula computes -> its value at the base case, and the formula.
     """
 
     name: str
@@ -202,6 +206,14 @@ class Filter:
     def can_be_used(self) -> bool:
         """Whether it counts where nothing switches it off, as every filter does."""
         return True
+
+    stated: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def formulas(self) -> dict[str, Cell]:
+        """Key of a limit that a formula computes -> the formula's cell."""
+        limits = {key: getattr(self, key) for key in ("at_least", "above", "at_most", "below")}
+        return {key: value for key, value in limits.items() if isinstance(value, Cell)}
 
 
 @dataclass(frozen=True, slots=True)

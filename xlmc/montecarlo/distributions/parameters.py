@@ -115,15 +115,15 @@ def show(value: float) -> str:
     return format(value, ".12g")
 
 
-def range_text(low: float, high: float) -> str:
+def range_text(low: float, high: float, written: Callable[[float], str] = show) -> str:
     """Write a range as a person would say it; an infinite end is left out.
 
     >>> range_text(20, 80.5), range_text(-math.inf, 10), range_text(20, math.inf)
     ('from 20 to 80.5', 'at most 10', 'at least 20')
     """
     if not math.isfinite(low):
-        return f"at most {show(high)}"
-    return f"from {show(low)} to {show(high)}" if math.isfinite(high) else f"at least {show(low)}"
+        return f"at most {written(high)}"
+    return f"from {written(low)} to {written(high)}" if math.isfinite(high) else f"at least {written(low)}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -29,6 +29,7 @@ from xlmc.engine.engine import (
 )
 from xlmc.errors import ErrorCode
 from xlmc.montecarlo.interruption import checkpoint
+from xlmc.montecarlo.loop.categories import labelled
 
 __all__ = ["Block", "FilterTally", "ModelRunner", "Portable", "Runner", "Task", "fault_text", "portions"]
 
@@ -86,6 +87,7 @@ class Block:
             counts.
         prior: assumption -> `(n,)` draws of all trials; None when not asked for. Where all trials are accepted and
             their draws asked for, it is `draws` itself.
+        labels: number of a forecast whose answers are texts -> the texts that its numbers stand for.
     """
 
     trials: int
@@ -98,6 +100,7 @@ class Block:
     lost: int
     prior: dict[str, Floats] | None
     discards: Sequence[Counter[int]] = ()
+    labels: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
 
     def owned(self) -> Block:
         """Return the same block with its columns in memory of their own."""
@@ -162,16 +165,24 @@ class ModelRunner:
         block: trials that it evaluates at once.
         forecasts: how many the evaluator gives.
         fallible: the assumptions whose draws may be errors.
+        categories: the numbers of the forecasts whose answers are texts.
     """
 
     def __init__(
-        self, sampler: Drawing, evaluator: Evaluator, block: int, forecasts: int, fallible: frozenset[str]
+        self,
+        sampler: Drawing,
+        evaluator: Evaluator,
+        block: int,
+        forecasts: int,
+        fallible: frozenset[str],
+        categories: tuple[int, ...] = (),
     ) -> None:
-        self._made_of = sampler, evaluator, block, forecasts, fallible
+        self._made_of = sampler, evaluator, block, forecasts, fallible, categories
+        self._categories = categories
         self._sampler, self._evaluator, self.block = sampler, evaluator, block
         self._width, self._fallible = forecasts, fallible
         self._run_whole: BlockRunner | None = None
-        if isinstance(evaluator, RunsWholeBlocks) and not fallible:
+        if isinstance(evaluator, RunsWholeBlocks) and not fallible and not categories:
             self._run_whole = evaluator.block_runner(sampler.names, sampler.draw, sampler.linear)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -201,10 +212,13 @@ class ModelRunner:
         tally = _tally(columns, [rejected[:trials] for rejected in fails], undecided)
         survivors = np.flatnonzero(~_any(fails, self.block))
         forecasts = self._forecasts(survivors)
+        labels: dict[int, tuple[str, ...]] = {}
+        for number in self._categories:
+            forecasts[number], labels[number] = labelled(forecasts[number])
         used = _spoiled([*invalid.values()], columns, survivors, forecasts, self.block)
         if used.any():
             accepted_block = ~used[survivors]
-            survivors, forecasts = survivors[accepted_block], [_part(column, accepted_block) for column in forecasts]
+            survivors, forecasts = survivors[accepted_block], [column.at(accepted_block) for column in forecasts]
         survivors = survivors[: np.searchsorted(survivors, trials)]
         lost = undecided | used[:trials]
         counted = {name: np.count_nonzero(bad[:trials] & used[:trials]) for name, bad in invalid.items()}
@@ -224,6 +238,7 @@ class ModelRunner:
             int(np.count_nonzero(lost)),
             self._prior(draws, accepted_draws, m, task),
             [_discards(column, m) for column in forecasts],
+            labels,
         )
 
     def _prior(
@@ -358,10 +373,6 @@ def _any_error(columns: Sequence[Column], n: int) -> Bools:
     """
     codes = (column.codes[:n] for column in columns if column.codes is not None)
     return _any([(each > 0) & (each < DISCARDED_FIRST) for each in codes], n)
-
-
-def _part(column: Column, accepted_block: Bools) -> Column:
-    return Column(column.values[accepted_block], None if column.codes is None else column.codes[accepted_block])
 
 
 def _faults(column: Column, trials: int) -> Counter[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from numbers import Real
@@ -18,6 +18,7 @@ from xlmc.errors import Notice, SimulationError
 from xlmc.montecarlo import statistics
 from xlmc.montecarlo.columns import numbers
 from xlmc.montecarlo.definitions.definitions import Forecast
+from xlmc.montecarlo.definitions.forms import Form, kind_of_format
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.model.plain_words import list_of
 from xlmc.montecarlo.statistics import Description, Estimate, Sample, errors_from_trials, too_short
@@ -53,6 +54,9 @@ class ForecastResult:
 
     Args:
         still: no draw reaches it.
+        labels: the texts that its numbers stand for; None where its answers are numbers.
+        code: the number format of its cell.
+        date1904: whether the workbook counts days from 1904.
     """
 
     def __init__(
@@ -65,8 +69,12 @@ class ForecastResult:
         weights: Callable[[], Floats | None] = lambda: None,
         *,
         still: bool = False,
+        labels: Sequence[str] | None = None,
+        code: str = "General",
+        date1904: bool = False,
     ) -> None:
         self.definition, self.faults, self._still = definition, faults, still
+        self._labels, self._code, self._date1904 = labels, code, date1904
         self.discards: Counter[str] = Counter() if discards is None else discards
         self._column, self._replicate, self._weights = column, replicate, weights
 
@@ -94,10 +102,44 @@ class ForecastResult:
         Its row says that it is one or, where the row says nothing, it is 0 or 1 in all trials. Any number but 0 is a
         yes, as in Excel.
         """
-        kind = self.definition.kind
-        if not self.sample.n or not (kind is Kind.YES_NO or (kind is None and self.sample.yes_no)):
+        if not self.sample.n or self.kind is not Kind.YES_NO:
             return None
         return statistics.complement(statistics.probability_between(self.sample, 0.0, 0.0))
+
+    @cached_property
+    def kind(self) -> Kind:
+        """What its answers are: what its row says; else texts, or yes and no where all are 1 or 0; else a date, a
+        percentage or an amount of money where the format of its cell shows one; whole numbers where all are, in a
+        cell that shows no decimals; else a number.
+        """
+        if self._labels is not None:
+            return Kind.CATEGORY
+        if self.definition.kind is not None:
+            return self.definition.kind
+        if self.sample.yes_no:
+            return Kind.YES_NO
+        return kind_of_format(self._code) or (Kind.WHOLE if self.sample.whole else Kind.NUMBER)
+
+    @cached_property
+    def form(self) -> Form:
+        """How its numbers are written."""
+        return Form(self.kind, self._code, self.definition.report_to, self._date1904)
+
+    @cached_property
+    def categories(self) -> dict[str, Estimate]:
+        """Text -> the share of the trials that have it, the most frequent first; nothing where answers are numbers."""
+        shares = {
+            text: statistics.probability_between(self.sample, float(number), float(number))
+            for number, text in enumerate(self._labels or ())
+        }
+        found = {text: share for text, share in shares.items() if share.value > 0.0}
+        return dict(sorted(found.items(), key=lambda each: -each[1].value))
+
+    @property
+    def numbers_of_texts(self) -> tuple[float, ...]:
+        """What stands for each of its texts in its column, in the order of `categories`."""
+        numbers = {text: float(number) for number, text in enumerate(self._labels or ())}
+        return tuple(numbers[text] for text in self.categories)
 
     @property
     def column(self) -> Floats:
@@ -124,6 +166,8 @@ class ForecastResult:
     def statistics(self) -> Description:
         """Every statistic at once; trials with hardly any weight, which a sample leaves out, are counted, too."""
         d = self.definition
+        if self._labels is not None:
+            return statistics.undescribed(int(self.values.size))
         found = statistics.describe(self.sample, central=d.central, threshold=d.threshold)
         if self.sample.w is None:
             return found
@@ -144,15 +188,15 @@ class ForecastResult:
 
     @property
     def mean(self) -> Estimate:
-        return statistics.mean(self.sample)
+        return statistics.mean(self.sample) if self._labels is None else Estimate(math.nan)
 
     @property
     def median(self) -> Estimate:
-        return self._if_known(statistics.median(self.sample), 0.5)
+        return self.percentile_at(50.0)
 
     @property
     def standard_deviation(self) -> Estimate:
-        return statistics.standard_deviation(self.sample)
+        return statistics.standard_deviation(self.sample) if self._labels is None else Estimate(math.nan)
 
     def percentile(self, percent: float) -> Estimate:
         """Return the value that `percent` (0 to 100) of the trials do not exceed, as Excel's PERCENTILE.INC.
@@ -170,6 +214,8 @@ class ForecastResult:
 
     def percentile_at(self, percent: float) -> Estimate:
         """Return the percentile of any percentage from 0 to 100, below the first percent, too."""
+        if self._labels is not None:
+            return Estimate(math.nan)
         return self._if_known(statistics.percentile(self.sample, percent), percent / 100.0)
 
     def quantile(self, share: float) -> Estimate:
@@ -187,6 +233,8 @@ class ForecastResult:
             SimulationError: the share is no number from 0 to 1.
         """
         share = self.definition.central if share is None else _number(share, "a share", 1.0)
+        if self._labels is not None:
+            return Estimate(math.nan), Estimate(math.nan)
         low, high = statistics.central_interval(self.sample, share)
         return self._if_known(low, (1.0 - share) / 2.0), self._if_known(high, (1.0 - share) / 2.0)
 
@@ -194,7 +242,11 @@ class ForecastResult:
     def certainty(self) -> Estimate | None:
         """The share of the trials in the range that was asked for; None if none was, or no trial has a number."""
         asked = self.definition.asked
-        return None if asked is None or not self.sample.n else statistics.probability_between(self.sample, *asked)
+        return (
+            None
+            if asked is None or not self.sample.n or self._labels is not None
+            else statistics.probability_between(self.sample, *asked)
+        )
 
     def probability_above(self, threshold: float) -> Estimate:
         """P(forecast > threshold).

@@ -82,7 +82,9 @@ class KeptRunner:
         draws, evaluator = self._runners[block]
         draws.take(model)
         evaluator.take(model.filters, self._questions)
-        return ModelRunner(draws, model.filtered(evaluator), block, len(model.forecasts), model.fallible)
+        return ModelRunner(
+            draws, model.filtered(evaluator), block, len(model.forecasts), model.fallible, model.categories
+        )
 
     def base(self, model: CompiledModel) -> dict[str, float | None] | None:
         """Return the forecasts of a model that it holds for where each assumption has its base value, by name.
@@ -204,7 +206,7 @@ class _MovedEvaluator:
 
     def forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
         """See `Evaluator`."""
-        return [_taken(column, survivors) for column in self._answers]
+        return [column.at(survivors) for column in self._answers]
 
     def _all(self, inputs: Mapping[str, Floats], n: int) -> list[Column]:
         """Quantities and forecasts in all trials; kept where the same draws come twice, as they then come again."""
@@ -246,10 +248,6 @@ def _first(codes: NDArray[np.uint8], more: NDArray[np.uint8] | None) -> NDArray[
     return codes if more is None else np.where(codes > 0, codes, more)
 
 
-def _taken(column: Column, trials: NDArray[np.intp]) -> Column:
-    codes = None if column.codes is None else column.codes[trials]
-    return Column(column.values[trials], codes if codes is not None and codes.any() else None)
-
-
 def _owned(column: Column) -> Column:
-    return Column(column.values.copy(), None if column.codes is None else column.codes.copy())
+    codes, texts = (None if each is None else each.copy() for each in (column.codes, column.texts))
+    return Column(column.values.copy(), codes, texts)

@@ -142,7 +142,7 @@ def _discarding(column: Column, conditions: Sequence[Column]) -> Column:
         if condition.codes is not None:
             false = false & (condition.codes == 0)
         codes[false] = DISCARDED_FIRST + number
-    return Column(values, codes)
+    return Column(values, codes, column.texts)
 
 
 def _discard(column: Floats, fails: Sequence[Bools]) -> tuple[Floats, Counter[int]]:

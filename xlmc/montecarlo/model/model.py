@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Final, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from xlmc.engine.engine import Evaluator, Program, Target
+from xlmc.engine.engine import TEXT_RESULT, Column, Evaluator, Program, Target
 from xlmc.engine.engines import ENGINES
 from xlmc.engine.graph.lowering import Lowering, lower_until_complete
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
@@ -19,9 +20,13 @@ from xlmc.engine.passes.bounds import Bounds, NodeBounds
 from xlmc.errors import Notice, SimulationError
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir
+from xlmc.excel.functions import Kind
+from xlmc.excel.workbook.injection.content_types import roles
+from xlmc.excel.workbook.number_formats import cell_formats
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.definitions import Assumption, Definitions
 from xlmc.montecarlo.definitions.evidence import Evidence
+from xlmc.montecarlo.definitions.stating import Kind as StatedAs
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.correlating import (
     copula_groups,
@@ -30,7 +35,7 @@ from xlmc.montecarlo.model.correlating import (
     repair_notices,
     tie_notices,
 )
-from xlmc.montecarlo.model.draw_binding import draw_of, dynamic_parameters, with_numbers
+from xlmc.montecarlo.model.draw_binding import base_point, draw_of, dynamic_parameters, parameter_target, with_numbers
 from xlmc.montecarlo.model.forecast_filters import (
     FilteringEvaluator,
     FilteringProgram,
@@ -49,6 +54,7 @@ from xlmc.montecarlo.model.needed import (
     refuse_without_base,
     targets_of,
 )
+from xlmc.montecarlo.model.stated_formulas import with_stated_formulas
 from xlmc.montecarlo.sampling.draws import CorrelatedGroup, Draw, DrawStage, Filler, Sampler
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 
@@ -151,6 +157,18 @@ def _lower_checks(workbook: Workbook, definitions: Definitions, live: Collection
     return lowering
 
 
+_TRIED: Final = 64
+"""Trials that tell whether an answer is a text."""
+
+
+def _are_texts(column: Column) -> bool:
+    """Whether there are texts that say something, and no numbers."""
+    if column.codes is None or column.texts is None:
+        return False
+    texts = column.texts[column.codes == TEXT_RESULT]
+    return bool(np.all(column.codes > 0)) and any(texts)
+
+
 class CompiledModel:
     """A workbook's assumptions, forecasts and filters, and the function that computes them.
 
@@ -172,6 +190,25 @@ class CompiledModel:
         given, definitions = definitions, with_numbers(workbook, definitions)
         self._folded = definitions is not given
         self._compile(workbook, definitions, path)
+        stated = with_stated_formulas(workbook, given, self.definitions, self._at_base)
+        if stated is not self.definitions:
+            self._define(stated, self.draws)
+
+    def _at_base(self, cells: Sequence[Cell]) -> dict[Cell, float]:
+        """Return the values of some cells at the base case, of those that the model has and that are numbers then."""
+        base = base_point(self.bases)
+        known = [cell for cell in cells if cell in self._parameter_cells]
+        if base is None or not known:
+            return {}
+        columns = self.evaluator([parameter_target(cell) for cell in known], 1).filters(base | self.certain(1), 1)
+        numbers = {cell: float(column.as_floats()[0]) for cell, column in zip(known, columns, strict=True)}
+        return {cell: number for cell, number in numbers.items() if np.isfinite(number)}
+
+    @property
+    def _parameter_cells(self) -> set[Cell]:
+        """The cells that compute numbers of what is drawn and limits of filters, which the model has."""
+        found = {cell for each in self.live for cell in each.formulas.values()}
+        return found | {cell for each in (*self.filters, *self.forecast_filters) for cell in each.formulas.values()}
 
     def _compile(self, workbook: Workbook, definitions: Definitions, path: Path) -> None:
         """Make the nodes of what the definitions ask for, and all that depends on them."""
@@ -466,6 +503,29 @@ class CompiledModel:
         if not self.forecast_filters:
             return evaluator
         return FilteringEvaluator(evaluator, filters_by_forecast(self.forecasts, self.forecast_filters))
+
+    @cached_property
+    def categories(self) -> tuple[int, ...]:
+        """The numbers of the forecasts whose answers are texts: the row says so, or each of some trials gives one."""
+        kinds = [self.lowering.dag.types[self.lowering.target(target)] for target in self._forecast_targets]
+        asked = [(number, each.kind) for number, each in enumerate(self.forecasts)]
+        found = {number for number, kind in asked if kind is StatedAs.CATEGORY}
+        unsure = [n for n, kind in asked if kind is None and kinds[n] not in (Kind.NUMBER, Kind.LOGICAL)]
+        if unsure:
+            targets = [self._forecast_targets[number] for number in unsure]
+            columns = self.evaluator(targets, _TRIED).filters(self.sampler(0, _TRIED).draw(0), _TRIED)
+            found |= {number for number, column in zip(unsure, columns, strict=True) if _are_texts(column)}
+        return tuple(sorted(found))
+
+    @cached_property
+    def formats(self) -> dict[str, str]:
+        """The number format of each forecast's cell, by name; `General` where it has none or the file does not say."""
+        book, parts = self.workbook, self.workbook.parts or self.workbook.origin
+        cells = {each.name: (book.sheets[each.cell.sheet].part, each.cell.a1) for each in self.forecasts}
+        if not parts:
+            return dict.fromkeys(cells, "General")
+        found = cell_formats(parts, roles(parts).workbook, cells.values())
+        return {name: found[place] for name, place in cells.items()}
 
     def check_program(self) -> Program:
         """Make the cells of the checks filters, a function of the live assumptions; others stand at their

@@ -275,7 +275,7 @@ def accepted_blocks(
     given.uniforms = uniforms
     sampler = model.sampler(0, block, filler=given.filler)
     evaluator = model.program("numpy").evaluator(block)
-    runner = ModelRunner(sampler, evaluator, block, len(model.forecasts), model.fallible)
+    runner = ModelRunner(sampler, evaluator, block, len(model.forecasts), model.fallible, model.categories)
     for start in range(0, len(uniforms), block):
         count = min(block, len(uniforms) - start)
         yield runner.run(Task(start, count, prior=False, inputs=wants_inputs()))

@@ -18,6 +18,7 @@ from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.diagnostics.checking import LEAST_CHECKED
 from xlmc.montecarlo.diagnostics.weighing import choose_method, weighing
 from xlmc.montecarlo.loop.blocks import Block, FilterTally, ModelRunner, Task
+from xlmc.montecarlo.loop.categories import Labels
 from xlmc.montecarlo.loop.disk_needed import disk_needed
 from xlmc.montecarlo.loop.scheduling.run_spec import model_runner
 from xlmc.montecarlo.loop.scheduling.worker_pool import WorkerPool
@@ -98,9 +99,9 @@ def run_model(
         model, keep_inputs = weighing(model), None  # weights are computed from the draws
     largest = model.program(settings.engine).largest_block if own_runner is None else own_runner.block
     plan = plan_sampling(model, settings)
-    rule, looks = chosen_rule(settings.stopping, model.forecasts), rare_switch(model, settings)
+    rule, looks = chosen_rule(settings.stopping, model.forecasts, model.categories), rare_switch(model, settings)
     watch = Watch(rule, plan.trials, settings.stopping.seconds, time.monotonic)
-    teller = None if progress is None else ProgressTracker([f.name for f in model.forecasts], follow)
+    teller = None if progress is None else ProgressTracker([f.name for f in model.forecasts], _followed(model, follow))
     pool = WorkerPool(options.jobs, options.scheduler, options.workers)
     block = min(BLOCK, largest)
     piece = block if settings.stopping.asked else min(block, pieces)
@@ -161,6 +162,12 @@ def run_model(
     if isinstance(found, Stopped):
         return gathered.simulation(settings, plan, found)
     return _with_search(gathered.simulation(settings, plan, watch.goal_reached), found, most_inputs)
+
+
+def _followed(model: CompiledModel, follow: Collection[str] | None) -> Collection[str]:
+    """Return the forecasts whose means are wanted: of texts there are none."""
+    numbers = [each.name for number, each in enumerate(model.forecasts) if number not in model.categories]
+    return [name for name in numbers if follow is None or name in follow]
 
 
 def _plain_go_on(found: Search | Stopped, looks: RareSwitch, gathered: _Gathered) -> bool:
@@ -224,6 +231,7 @@ def _with_search(plain: RunResult, found: Search, most_inputs: int) -> RunResult
         forecasts=drawn.forecasts,
         faults=drawn.faults,
         discards=drawn.discards,
+        labels=drawn.labels,
         rare=replace(found.account, kept=gathered.accepted, faulty=gathered.lost),
     )
 
@@ -248,6 +256,7 @@ class _Gathered:
         self._invalid: Counter[str] = Counter()
         self._faults: list[Counter[str]] = [Counter() for _ in model.forecasts]
         self._discards: list[Counter[int]] = [Counter() for _ in model.forecasts]
+        self._labels = {number: Labels() for number in model.categories}
         self.trials = self.accepted = self.lost = 0
 
     @property
@@ -275,6 +284,8 @@ class _Gathered:
         if block.prior is not None:
             self._keep_prior(block, block.prior, left)
         for number, values in enumerate(block.forecasts):
+            if number in self._labels:
+                values = self._labels[number].renumbered(values, block.labels[number])
             self._keeper.add(("forecast", number), values)
         self._keeper.write_if_full()
 
@@ -329,4 +340,5 @@ class _Gathered:
             error_trials=self.lost,
             discards=discards_by_name(self._model.forecasts, self._model.forecast_filters, self._discards),
             stopped=stopped,
+            labels={self._model.forecasts[number].name: each.texts for number, each in self._labels.items()},
         )

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from xlmc.montecarlo import statistics
 from xlmc.montecarlo.columns import parts
 from xlmc.montecarlo.definitions.run_options import KEPT_INPUTS, RunOptions
 from xlmc.montecarlo.definitions.run_settings import Settings
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.diagnostics.agreement import Agreement, agreement
 from xlmc.montecarlo.diagnostics.base_formulas import base_formulas
 from xlmc.montecarlo.diagnostics.cell_errors import Root, error_roots
@@ -138,6 +140,7 @@ class RunResult:
             that several discard counts for the first.
         rare: where the accepted trials come from, where that is a learned proposal; None with plain trials.
         changed_from: where its workbook is a changed copy of another one that a person knows; None elsewhere.
+        labels: forecast whose answers are texts -> the texts, each at its number in the column of the forecast.
         tabulated: number of a further value of `RiskSimtable` -> the run with it, as far as they were made.
     """
 
@@ -159,6 +162,7 @@ class RunResult:
     rare: RareAccount | None = None
     discards: Mapping[str, Counter[str]] = field(default_factory=dict)
     changed_from: ChangedFrom | None = None
+    labels: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     tabulated: dict[int, RunResult] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> ForecastResult:
@@ -184,6 +188,9 @@ class RunResult:
                 self.discards.get(f.name, Counter()),
                 lambda: None if self.weighting is None else self.weighting.weights,
                 still=f.cell in self.model.still,
+                labels=self.labels.get(f.name),
+                code=self.model.formats[f.name],
+                date1904=self.model.workbook.date1904,
             )
             for f in self.model.forecasts
         }
@@ -264,9 +271,9 @@ class RunResult:
             few = f"only {_trials(self.accepted)} accepted" if self.weighting is None else ""
             few = few or f"the accepted trials say as much as {effective} trials of equal weight"
             found.append(Notice(f"{few[0].upper()}{few[1:]}. {_OF_FEW}"))
-        samples = {name: result.sample for name, result in self.results.items()}
+        samples = {name: result.sample for name, result in self.results.items() if name not in self.labels}
         found += [Notice(f"{each[0].upper()}{each[1:]}") for each in self.agreement.remarks] if self.agreement else []
-        found += direction_notices(self.results.values())
+        found += direction_notices(each for name, each in self.results.items() if name not in self.labels)
         found += unsettled_notices(self.model, self.prior)
         return (*found, *tail_notices(samples, METHODS[self.plan.method].name))
 
@@ -382,7 +389,9 @@ class RunResult:
         if inputs and self.kept_inputs < self.accepted:
             message = f"the draws of {self.kept_inputs:,} of {self.accepted:,} accepted trials were kept"
             raise SimulationError(message, hint="use frame(inputs=False), or simulate(…, keep_inputs=None)")
-        columns = {forecast_heading(name): values for name, values in self.forecasts.items()}
+        columns: dict[str, Any] = {
+            forecast_heading(name): self._as_texts(name, values) for name, values in self.forecasts.items()
+        }
         if inputs:
             drawn = {assumption_heading(name, self.forecasts): values for name, values in self.inputs.items()}
             columns = drawn | columns
@@ -391,6 +400,33 @@ class RunResult:
         units |= {forecast_heading(f.name): f.units for f in self.model.forecasts}
         found.attrs["units"] = {name: units.get(name, "") for name in found.columns}
         return found
+
+    def numbers_of(self, name: str) -> Floats:
+        """Return the column of a forecast, `(m,)`; NaN where its answers are texts."""
+        values = self.forecasts[name]
+        return values if name not in self.labels else np.full(values.size, np.nan)
+
+    def indicator(self, name: str, text: str) -> Floats:
+        """`(m,)` 1 where a text is the answer, 0 where another is, NaN where there is none."""
+        values, labels = self.forecasts[name], self.labels.get(name, ())
+        number = labels.index(text) if text in labels else -1
+        return np.where(np.isnan(values), np.nan, values == number)
+
+    def saying(self, name: str, text: str) -> ForecastResult:
+        """Return the result of a forecast whose answers are texts, as the share of the trials in which a text is it."""
+        known = self.results[name]
+        asked = replace(known.definition, kind=Kind.YES_NO)
+        weights = None if self.weighting is None else self.weighting.weights
+        return ForecastResult(
+            asked, lambda: self.indicator(name, text), known.faults, lambda: self.replicate, weights=lambda: weights
+        )
+
+    def _as_texts(self, name: str, values: Floats) -> Floats | list[str | None]:
+        """Return the texts of a forecast whose answers are texts, None in a trial without one; else its numbers."""
+        labels = self.labels.get(name)
+        if labels is None:
+            return values
+        return [None if math.isnan(each) else labels[int(each)] for each in values.tolist()]
 
 
 def forecast_heading(name: str) -> str:

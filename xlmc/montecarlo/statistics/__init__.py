@@ -5,10 +5,11 @@ independent replicates (Latin hypercube, scrambled Sobol), and are Monte Carlo e
 """
 
 from xlmc.montecarlo.statistics.association import rank_correlation
-from xlmc.montecarlo.statistics.describe import Description, describe
-from xlmc.montecarlo.statistics.estimate import Estimate, format_estimate, supported_digits
+from xlmc.montecarlo.statistics.describe import Description, describe, undescribed
+from xlmc.montecarlo.statistics.estimate import Estimate, supported_digits
 from xlmc.montecarlo.statistics.heavy_tails import farthest_part
 from xlmc.montecarlo.statistics.mode import mode
+from xlmc.montecarlo.statistics.number_text import format_estimate
 from xlmc.montecarlo.statistics.proportions import (
     complement,
     inverse_proportion,
@@ -72,5 +73,6 @@ __all__ = [
     "standard_deviation",
     "supported_digits",
     "too_short",
+    "undescribed",
     "variance",
 ]

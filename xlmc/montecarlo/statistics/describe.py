@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from numpy.typing import ArrayLike
 
@@ -14,7 +15,7 @@ from xlmc.montecarlo.statistics.proportions import probability_above
 from xlmc.montecarlo.statistics.quantiles import maximum, minimum, range_width
 from xlmc.montecarlo.statistics.sample import Sample, Values
 
-__all__ = ["Description", "describe"]
+__all__ = ["Description", "describe", "undescribed"]
 
 PERCENTS = tuple(float(percent) for percent in range(0, 101, 5))
 """Crystal Ball's deciles, and the percentiles halfway between them."""
@@ -47,6 +48,14 @@ class Description:
     percentiles: Mapping[float, Estimate]
     central: tuple[Estimate, Estimate]
     probability_above: Estimate | None = None
+
+
+def undescribed(trials: int) -> Description:
+    """Return the description of so many answers that are no numbers: each statistic is nan."""
+    nothing = Estimate(math.nan, n=trials)
+    given = {"trials": trials, "percentiles": dict.fromkeys(PERCENTS, nothing), "central": (nothing, nothing)}
+    rest = {each.name: nothing for each in fields(Description) if each.name not in (*given, "probability_above")}
+    return Description(**given, **rest)  # type: ignore[arg-type]
 
 
 def describe(

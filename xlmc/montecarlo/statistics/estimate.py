@@ -1,4 +1,4 @@
-"""A number and how well it is known: its value, standard error and interval, and how many digits are printed."""
+"""A number and how well it is known: its value, standard error and interval."""
 
 from __future__ import annotations
 
@@ -8,18 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from xlmc.montecarlo.interruption import checkpoint
+from xlmc.montecarlo.statistics.number_text import format_estimate
 
-__all__ = ["Estimate", "finite", "finite_json", "format_estimate", "supported_digits", "two_digit_exponent"]
+__all__ = ["Estimate", "finite", "finite_json", "supported_digits"]
 
 LEAST_DOF = 1.0 - 1e-9
 """Fewer degrees of freedom give no error; the margin is for the rounding of an effective sample size."""
 
 LENGTHENED = 0.15
 """Intervals are longer by this share of the skewness, because a sample shows too little of it."""
-
-MOST_DIGITS = 15  # all that a double holds for certain
-_EXACT_DIGITS = range(6, 13)  # of a value whose error is 0
-_NOISE = 1e-9  # share of such a value that may come from rounding in formulas
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -139,50 +136,6 @@ def supported_digits(estimate: Estimate) -> int | None:
     if not estimate.error:
         return None
     return math.floor(-math.log10(2.0 * estimate.error))
-
-
-def format_estimate(value: float, error: float | None) -> str:
-    """Write the error to two significant digits and the value to the same decimal.
-
-    A value whose error is not known has six digits; one whose error is 0, as a constant's, has more where it needs
-    them.
-
-    >>> format_estimate(17.02134, 0.00231)
-    '17.0213 ± 0.0023'
-    >>> format_estimate(48211.3, 870.0)
-    '48210 ± 870'
-    >>> format_estimate(17.02134, None)
-    '17.0213'
-    >>> format_estimate(1234567.8, 0.0), format_estimate(0.1 + 0.2, 0.0)
-    ('1234567.8 ± 0', '0.3 ± 0')
-    """
-    if error is None or not math.isfinite(value):
-        return f"{value:.6g}"
-    if error == 0.0:
-        return f"{_exact_text(value)} ± 0"
-    size = two_digit_exponent(max(abs(value), error))
-    if not -4 <= size < MOST_DIGITS:
-        scaled = format_estimate(value / 10.0**size, error / 10.0**size)
-        return f"({scaled})e{size:+03d}"
-    decimals = 1 - two_digit_exponent(error)
-    if decimals + size >= MOST_DIGITS:  # an error below the last bit of the value
-        return f"{value:.{MOST_DIGITS}g} ± {error:.1e}"
-    return f"{_write_rounded(value, decimals)} ± {_write_rounded(error, decimals)}"
-
-
-def _exact_text(value: float) -> str:
-    """Return the fewest digits, six or more, that say what the value is, up to rounding in formulas."""
-    texts = [f"{value:.{digits}g}" for digits in _EXACT_DIGITS]
-    return next((text for text in texts if abs(float(text) - value) <= _NOISE * abs(value)), texts[-1])
-
-
-def two_digit_exponent(number: float) -> int:
-    """Return the power of ten of a number rounded to two digits: 0.00996 -> -2."""
-    return int(f"{number:.1e}".partition("e")[2])
-
-
-def _write_rounded(number: float, decimals: int) -> str:
-    return f"{round(number, decimals) + 0.0:.{max(decimals, 0)}f}"  # + 0.0: no negative zero
 
 
 def finite_json(value: object) -> object:

@@ -102,6 +102,13 @@ class Sample:
         first = int(np.searchsorted(self.x, 0.0, side="right"))
         return first == self.n or bool(self.x[first] == 1.0)
 
+    @cached_property
+    def whole(self) -> bool:
+        """Whether every value is a whole number, and not all are the same."""
+        if self.n < 2 or self.x[0] == self.x[-1] or max(abs(self.x[0]), abs(self.x[-1])) >= 2.0**53:
+            return False
+        return all(bool(np.all(part == np.floor(part))) for part in parts(self.x))
+
     @property
     def units(self) -> float:
         """Independent units: replicates, or else (effective) trials."""

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from xlmc.analysis.studies.sensitivity.measures import noise
+from xlmc.montecarlo.statistics import complement
 from xlmc.outputs.document.parts import Bar, Bars, Chart, Line, Lines, Shape
 from xlmc.outputs.filter_effect import shapes_of
 
@@ -13,8 +14,9 @@ if TYPE_CHECKING:
     from xlmc.analysis.studies.sensitivity import FilterLimit, ForecastSensitivity
     from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.montecarlo.statistics import Estimate
+    from xlmc.outputs.histogram import Figure
 
-__all__ = ["contribution_chart", "influence_chart", "limit_chart", "shape_chart", "tornado_chart"]
+__all__ = ["contribution_chart", "influence_chart", "limit_chart", "shape_chart", "shares_chart", "tornado_chart"]
 
 
 def shape_chart(simulation: RunResult, name: str) -> Chart | None:
@@ -52,6 +54,18 @@ def tornado_chart(found: ForecastSensitivity, most: int, title: str) -> Chart:
     )
     units = f", {found.units}" if found.units else ""
     return _bars(title, title, f"Change{units} (light: at 10 %, dark: at 90 %)", bars)
+
+
+def shares_chart(figure: Figure) -> Chart:
+    """Draw the share of each text, or of yes and no, with its error."""
+    answer = figure.answer
+    shares = answer.categories if answer.yes is None else {"yes": answer.yes, "no": complement(answer.yes)}
+    bars = tuple(_share(text or "(empty)", share, pale=False) for text, share in [*shares.items()][:_MOST_TEXTS])
+    return Chart("", "Accepted trials, %", Bars(bars), f"{figure.name}: {figure.said}", 125.0)
+
+
+_MOST_TEXTS = 40
+"""Texts that a chart has bars of."""
 
 
 def limit_chart(limit: FilterLimit, indexes: list[int], unit: str) -> Chart:

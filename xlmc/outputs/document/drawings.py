@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.excel.workbook.printable import printable
-from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.loop.forecast_result import ForecastResult
 from xlmc.outputs.document.parts import Bar, Bars, Chart, Drawing, Line, Lines, Shape
 from xlmc.outputs.histogram import Figure
@@ -82,13 +81,14 @@ def forecast_drawing(figure: Figure, result: ForecastResult, width: float) -> Dr
     if answer.threshold is not None and first <= answer.threshold <= last:
         x = across(answer.threshold)
         found += [line_to(x, top, x, bottom, _THRESHOLD, 1.0, dashed=True)]
-        found.append(text_at(x + 3, top + 8, f"threshold {show(answer.threshold)}", anchor="start", fill=_THRESHOLD))
+        limit = f"threshold {answer.form.number(answer.threshold)}"
+        found.append(text_at(x + 3, top + 8, limit, anchor="start", fill=_THRESHOLD))
     mean = across(_near(answer.mean.value, first, last))
     found += [line_to(mean, top, mean, bottom, INK, 1.0)]
     found += [line_to(left, bottom, right, bottom, INK)]
     for edge, label in zip([*bins.edges, bins.upper_edges[-1]], [*bins.labels, bins.last_label], strict=True):
         if label:
-            x = across(float(edge))
+            x = across(float(edge) + (0.0 if bins.names is None else bins.width / 2.0))
             found += [line_to(x, bottom, x, bottom + 4, INK), text_at(x, bottom + 15, label)]
     found.append(text_at((left + right) / 2, bottom + 32, answer.units or "value"))
     said = (

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from xlmc.analysis.results.statements.in_words import number_text
 from xlmc.montecarlo.statistics import Estimate
@@ -116,9 +116,9 @@ def number(value: float, shown: str) -> Html:
     return element("data", shown, value=number_text(value))
 
 
-def estimate_html(found: Estimate) -> Html:
+def estimate_html(found: Estimate, written: Callable[[Estimate], str] = estimate_text) -> Html:
     """`11.799 ± 0.013` with the full value; a dash where there is no number."""
-    return number(found.value, estimate_text(found)) if math.isfinite(found.value) else element("span", NONE)
+    return number(found.value, written(found)) if math.isfinite(found.value) else element("span", NONE)
 
 
 def share_html(found: Estimate) -> Html:

@@ -25,7 +25,8 @@ from xlmc.montecarlo.diagnostics.checking import checks_sentence
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
 from xlmc.montecarlo.statistics import proportion
-from xlmc.outputs.document.charts import influence_chart, shape_chart
+from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.outputs.document.charts import influence_chart, shape_chart, shares_chart
 from xlmc.outputs.document.drawings import forecast_drawing
 from xlmc.outputs.document.equations import equations_of
 from xlmc.outputs.document.glossary import GLOSSARY, WORDS_OF_EVIDENCE, WORDS_OF_SCENARIOS
@@ -34,7 +35,7 @@ from xlmc.outputs.document.scene_drawing import scene_drawing
 from xlmc.outputs.evidence_tables import ITEM_HEADS, MOVES_MEANING, item_rows, move_rows, trials_sentence
 from xlmc.outputs.evidence_tables import MEANING as MEANING_OF_EVIDENCE
 from xlmc.outputs.filter_effect import filter_effect_of
-from xlmc.outputs.histogram import figures_of
+from xlmc.outputs.histogram import figures_of, not_drawn
 from xlmc.outputs.scenario_tables import SCENARIO_HEADS, answer_heads, answer_rows, scenario_rows
 from xlmc.outputs.sheets.results_sheet import base_sentences, opening_sentences, range_sentences
 from xlmc.outputs.sheets.scenarios_sheet import scenario_sentences, scenario_warnings
@@ -44,6 +45,7 @@ from xlmc.outputs.summary import (
     answer_text,
     base_text,
     central_text,
+    end_texts,
     estimate_text,
     percent,
     question,
@@ -134,6 +136,7 @@ def _answer(material: Material) -> Iterator[Block]:
         yield Paragraph(MEANING, "small")
     rows = [row for row in summarise(simulation) if row.name in material.forecasts]
     yield _answers(material, rows)
+    yield from _texts(material, rows)
     yield Paragraph(ERROR_SENTENCE, "small")
     ended = [] if simulation.stopped == ALL_TRIALS else [f"The run ended when {simulation.stopped.sentence}."]
     remarks = (sampling_sentence(simulation), *range_sentences(rows), *base_sentences(simulation), *ended)
@@ -148,16 +151,28 @@ def _answers(material: Material, rows: Sequence[SummaryRow]) -> Table:
     widths = [2.4, 0.9, 1.6, 1.6, 1.6, 1.6, 1.1, *[1.0] * mixed, *[1.3, 1.5] * thresholds]
     lines = []
     for row in rows:
-        line = [row.name, row.unit, answer_text(row), *map(estimate_text, row.spread)]
+        line = [row.name, row.unit, answer_text(row), row.form.spread(row.spread[0]), *end_texts(row)]
         line.append(base_text(row))
         if mixed:
             line.append(percent(row.share))
         if thresholds:
-            line.append("" if row.threshold is None else show(row.threshold))
+            line.append("" if row.threshold is None else row.form.number(row.threshold))
             line.append("" if row.above is None else share_text(row.above))
         lines.append(line)
     caption = "The answers, from the accepted trials; each number with its standard error."
     return material.table(caption, heads, lines, widths, range(2, len(heads)))
+
+
+def _texts(material: Material, rows: Sequence[SummaryRow]) -> Iterator[Table]:
+    """How often each text is the answer, for each forecast whose answers are texts."""
+    for row in rows:
+        if row.categories:
+            lines = [
+                (text or "(empty)", count_text(round(share.value * share.n)), share_text(share))
+                for text, share in row.categories.items()
+            ]
+            caption = f"{row.name}: how often each text is the answer."
+            yield material.table(caption, (row.name, "Trials", "Share"), lines, (3, 1, 1.5), (1, 2))
 
 
 def _scene(material: Material) -> Iterator[Block]:
@@ -178,17 +193,22 @@ def _forecasts(material: Material) -> Iterator[Block]:
         if row.name not in material.forecasts:
             continue
         units = f" {row.units}" if row.units else ""
+        per = f" per {bins.form.width(bins.width)}{units}" if bins.names is None else ""
         caption = (
-            f"{figure.name}. Above, the accepted trials per {bins.width:g}{units}; below, the share of them that "
-            f"is not above each value. Dark: the central {percent(row.share)} of {row.trials:,} accepted trials, from "
-            f"{central_text(row)}{units}. Vertical line: the mean, "
-            f"{estimate_text(row.mean)}{units}."
+            f"{figure.name}. Above, the accepted trials{per}; below, the share of them that "
+            f"is not above each value. Dark: the central {percent(row.share)} of {count_text(row.trials)} accepted "
+            f"trials, from {central_text(row)}{units}. Vertical line: the mean, {answer_text(row)}{units}."
         )
+        if row.is_share:
+            caption = f"{figure.name}: {figure.said}."
         if bins.counted < row.trials:
-            caption += f" Trials are weighted: the figure shows {bins.counted:,} trials of equal weight in their place."
+            caption += f" Trials are weighted: the figure shows {count_text(bins.counted)} trials of equal weight."
         if bins.below or bins.above:
-            caption += f" Not drawn: {bins.below:,} trials below and {bins.above:,} above."
-        yield material.figure(forecast_drawing(figure, simulation.results[row.name], width), caption)
+            caption += not_drawn(bins)
+        drawing = (
+            shares_chart(figure) if row.is_share else forecast_drawing(figure, simulation.results[row.name], width)
+        )
+        yield material.figure(drawing, caption)
 
 
 def _filters(material: Material) -> Iterator[Block]:

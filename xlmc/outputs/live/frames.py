@@ -15,10 +15,12 @@ from xlmc.analysis.results.record import make_record
 from xlmc.analysis.results.statements import statements
 from xlmc.analysis.results.statements.in_words import sampling_sentence
 from xlmc.analysis.studies.sensitivity import sensitivities
+from xlmc.montecarlo.definitions.forms import PLAIN, Form, span_text
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics import (
     Estimate,
     Sample,
-    format_estimate,
+    complement,
     maximum,
     minimum,
     percentiles,
@@ -26,10 +28,10 @@ from xlmc.montecarlo.statistics import (
 )
 from xlmc.montecarlo.statistics.estimate import finite
 from xlmc.outputs.document.element import EMPTY, Html, element, join
-from xlmc.outputs.histogram import Figure, figures_of, histogram, multiples
+from xlmc.outputs.histogram import Figure, bars_of, figures_of, multiples
 from xlmc.outputs.live.protocol import Message
 from xlmc.outputs.page.flow import Flow
-from xlmc.outputs.page.payload import forecast_payload
+from xlmc.outputs.page.payload import forecast_payload, form_json
 from xlmc.outputs.page.sensitivity_sections import dependence, limits
 from xlmc.outputs.page.sheet_sections import (
     assumptions,
@@ -94,7 +96,9 @@ def frame_of(
     charts: dict[str, Any] = dict.fromkeys(name for name in names if name in simulation.results)
     for name in charts:
         figure = _figure(simulation.results[name], None if base is None else base[name])
-        if figure is not None:
+        if figure is not None and figure.answer.is_share:
+            charts[name] = _shares(figure, None if behind is None else behind.results.get(name))
+        elif figure is not None:
             payload = forecast_payload(simulation, figure, most, fits=fits)
             charts[name] = payload | _beside(figure, simulation.results[name], behind)
     return {
@@ -118,8 +122,7 @@ def _figure(result: ForecastResult, base: float | None) -> Figure | None:
     None where it has no number, or where its weighted trials carry too little for a range.
     """
     definition, (low, high) = result.definition, result.central()
-    bins = histogram(result.sample, low.value, high.value) if result.sample.n else None
-    if bins is None or math.isnan(low.value) or math.isnan(high.value):
+    if not result.sample.n:
         return None
     threshold = definition.threshold
     row = SummaryRow(
@@ -134,18 +137,52 @@ def _figure(result: ForecastResult, base: float | None) -> Figure | None:
         base=base,
         threshold=threshold,
         above=None if threshold is None else result.probability_above(threshold),
+        yes=result.yes,
+        kind=result.kind,
+        form=result.form,
+        categories=result.categories,
+        numbers=result.numbers_of_texts,
     )
-    return Figure(1, row, bins)
+    bins = bars_of(row, result.sample)
+    return None if bins is None else Figure(1, row, bins)
+
+
+def _shares(figure: Figure, behind: ForecastResult | None) -> Message:
+    """The share of each text, or of yes and no: name, share in words, in percent, and of the state behind."""
+    now = _shares_of(figure.answer.yes, figure.answer.categories)
+    before: Mapping[str, Estimate] = {}
+    if behind is not None and behind.sample.n:
+        before = _shares_of(behind.yes, behind.categories)
+    shown = [*dict.fromkeys([*now, *before])][:_MOST_TEXTS]
+    nothing = Estimate(0.0)
+    return {
+        "name": figure.answer.name,
+        "units": figure.answer.units,
+        "shares": [
+            [
+                text or "(empty)",
+                share_text(now[text]) if text in now else "0 %",
+                100.0 * now.get(text, nothing).value,
+                None if not before else 100.0 * before.get(text, nothing).value,
+            ]
+            for text in shown
+        ],
+    }
+
+
+def _shares_of(yes: Estimate | None, categories: Mapping[str, Estimate]) -> Mapping[str, Estimate]:
+    return categories if yes is None else {"yes": yes, "no": complement(yes)}
 
 
 def _beside(figure: Figure, now: ForecastResult, behind: RunResult | None) -> dict[str, Any]:
     """The numbers beside a chart, and the state behind it."""
     before = None if behind is None else behind.results.get(figure.answer.name)
-    if before is None or not before.sample.n:
-        return {"beside": [[label, *_texts(each, None)] for label, each in _numbers(now)], "said": None, "behind": None}
+    if before is None or not before.sample.n or before.kind is not now.kind:
+        beside = [[label, *_texts(label, each, None, now.form)] for label, each in _numbers(now)]
+        return {"beside": beside, "said": None, "behind": None}
     pairs = zip(_numbers(now), _numbers(before), strict=True)
     return {
-        "beside": [[label, *_texts(new, old)] for (label, new), (_, old) in pairs],
+        "beside": [[label, *_texts(label, new, old, now.form)] for (label, new), (_, old) in pairs],
         "said": _moved(figure, now, before),
         "behind": _bars_behind(figure, before.sample),
     }
@@ -158,7 +195,7 @@ def _numbers(result: ForecastResult) -> list[tuple[str, Estimate]]:
         found = percentiles(sample, _PERCENTS)
         _KNOWN[result] = [
             ("Mean", result.mean),
-            ("Standard deviation", result.standard_deviation),
+            (_SPREAD, result.standard_deviation),
             ("Minimum", minimum(sample)),
             *((f"{percent:g} %", found[percent]) for percent in _PERCENTS),
             ("Maximum", maximum(sample)),
@@ -166,43 +203,41 @@ def _numbers(result: ForecastResult) -> list[tuple[str, Estimate]]:
     return _KNOWN[result]
 
 
-def _texts(now: Estimate, before: Estimate | None) -> tuple[str, str, str]:
-    """The number, the one before, and by how much it has changed."""
-    shown = _text(now)
+def _texts(label: str, now: Estimate, before: Estimate | None, form: Form) -> tuple[str, str, str]:
+    """The number, the one before to the same decimal, and by how much it has changed."""
+    written = form.spread if label == _SPREAD else form.estimate
     if before is None:
-        return shown, "", ""
+        return written(now), "", ""
     apart = now.value - before.value
     if not math.isfinite(apart):
-        return shown, _text(before, shown), ""
+        return written(now), written(before), ""
     sign = "+" if apart > 0 else "−" if apart < 0 else ""
-    decimals = _decimals(shown)
-    said = f"{abs(apart):.{decimals}f}" if now.error is None else _text(Estimate(abs(apart), now.error))
-    return shown, _text(before, shown), sign + said.partition(" ± ")[0]
-
-
-def _decimals(shown: str) -> int:
-    return len(shown.partition(" ")[0].partition(".")[2])
-
-
-def _text(estimate: Estimate, like: str = "") -> str:
-    """The number with its error; with as many decimals as the number beside it, where both are written out."""
-    if math.isnan(estimate.value):
-        return ""
-    own = format_estimate(estimate.value, estimate.error)
-    if not like or "e" in f"{own}{like}".casefold() or _decimals(own) == _decimals(like):
-        return own
-    decimals = _decimals(like)
-    error = "" if estimate.error is None or " ± " not in own else f" ± {estimate.error:.{decimals}f}"
-    return f"{estimate.value:.{decimals}f}{error}"
+    if form.kind is Kind.DATE:
+        return written(now), written(before), sign + span_text(abs(apart))
+    decimals = form.decimals_of_both(now, before)
+    shown, old = (form.estimate(each, decimals) for each in (now, before))
+    return shown, old, sign + form.number(abs(apart), decimals)
 
 
 def _moved(figure: Figure, now: ForecastResult, before: ForecastResult) -> str:
     """`Nissan impact speed: mean 4.72 → 5.31 mph`."""
     units = f" {figure.answer.units}" if figure.answer.units else ""
-    new = _text(now.mean)
-    old = _text(before.mean, new).partition(" ± ")[0]
-    new = new.partition(" ± ")[0]
+    old, new = _texts("Mean", before.mean, now.mean, now.form)[:2]
+    old, new = (_without_error(text) for text in (old, new))
     return f"{figure.answer.name}: mean {old} → {new}{units}"
+
+
+def _without_error(text: str) -> str:
+    """`$11.8 ± 0.2` without the error, but with what stands after it: `32.0 ± 0.3 %` is `32.0 %`."""
+    value, _, error = text.partition(" ± ")
+    after = error.partition(" ")[2]
+    return f"{value} {after}" if after and not value.endswith(after) else value
+
+
+_SPREAD: Final = "Standard deviation"
+
+_MOST_TEXTS: Final = 30
+"""Texts of one forecast that the window shows."""
 
 
 def _bars_behind(figure: Figure, sample: Sample) -> dict[str, Any]:
@@ -308,7 +343,7 @@ def pair_of(simulation: RunResult, first: str, second: str) -> dict[str, Any] | 
         second: likewise.
     """
     columns: Mapping[str, Any] = {**simulation.inputs, **simulation.forecasts}
-    if first not in columns or second not in columns:
+    if first not in columns or second not in columns or not simulation.labels.keys().isdisjoint((first, second)):
         return None
     n = min(columns[first].size, columns[second].size, 50 * _POINTS)
     x, y = np.asarray(columns[first][:n]), np.asarray(columns[second][:n])
@@ -325,6 +360,7 @@ def pair_of(simulation: RunResult, first: str, second: str) -> dict[str, Any] | 
         "trials": int(x.size),
         "correlation": finite(rank_correlation(x, y).value) if x.size > 2 else None,
         "units": [_units(simulation, first), _units(simulation, second)],
+        "forms": [form_json(_form(simulation, name)) for name in (first, second)],
         "together": _together(simulation, (first, second)),
     }
 
@@ -341,7 +377,15 @@ def _together(simulation: RunResult, names: tuple[str, str]) -> list[dict[str, A
     figures = figures_of(simulation, names) if names[0] != names[1] else []
     if len(figures) < 2 or len({figure.answer.units for figure in figures}) > 1:
         return []
+    if any(figure.answer.is_share for figure in figures):
+        return []
     return [forecast_payload(simulation, figure, _VALUES_MOVING, fits=False) for figure in figures]
+
+
+def _form(simulation: RunResult, name: str) -> Form:
+    """How the numbers of a forecast are written; of an assumption nothing is known."""
+    result = simulation.results.get(name)
+    return PLAIN if result is None or result.kind is Kind.YES_NO else result.form
 
 
 def _units(simulation: RunResult, name: str) -> str:

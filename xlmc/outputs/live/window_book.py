@@ -109,7 +109,7 @@ def _number(assumption: Assumption, own: Assumption, key: str, heading: str, val
         "heading": heading,
         "value": None if isinstance(value, Cell) else value,
         "own": None if isinstance(before, Cell) else before,
-        "cell": str(value) if isinstance(value, Cell) else "",
+        "cell": assumption.stated.get(key, str(value)) if isinstance(value, Cell) else "",
         "drags": assumption.data is None and (key in _ON_AXIS or (key[:1] == "p" and key[1:2].isdigit())),
         "step": _step(0.0, abs(value)) if isinstance(value, float | int) else 1.0,
     }

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Final
 from xlmc.analysis.studies.methods import STATISTICS, Curve, Study
 from xlmc.outputs.methods.matplotlib_figure import OTHER, STYLES, Style
 from xlmc.outputs.methods.speed_chart import HOW_TO_READ, Line, Picture, column_of, guides_of, picture_of, spread
-from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.sheets.page import Page
 from xlmc.outputs.sheets.styles import FONT, GRID, INK, straight
@@ -67,7 +66,7 @@ class _Data:
         """Write points; gives their first and last row."""
         first = self._page.row
         for point in points:
-            self._page.line([Shown(name, look="name"), *(cells.exact(each, "General") for each in point)])
+            self._page.line([Shown(name, look="name"), *(Shown(each) for each in point)])
         return first, self._page.row - 1
 
 

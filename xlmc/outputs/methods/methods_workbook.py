@@ -76,11 +76,11 @@ def _length_cells(study: Study, curve: Curve, runs: Runs) -> list[Shown]:
         cells.count(runs.budget) if drawn else cells.BLANK,
         cells.count(max(each.n for each in runs.errors.values())),
         _number(runs.seconds),
-        cells.exact(runs.evaluations, "#,##0"),
+        Shown(runs.evaluations, "#,##0"),
         *(_number(100.0 * runs.shares[each]) for each in STATISTICS),
         _number(accepted),
         _number(runs.usual),
-        cells.exact(runs.effective, "#,##0"),
+        Shown(runs.effective, "#,##0"),
         cells.count(runs.failed),
         Shown("yes" if runs.measured else "by rate"),
     ]
@@ -94,7 +94,7 @@ def _floor(study: Study) -> list[Shown]:
 
 def _number(value: float | None) -> Shown:
     known = value is not None and np.isfinite(value)
-    return cells.exact(value if known else None, "0.0000")
+    return Shown(value if known else None, "0.0000")
 
 
 def _write_forecasts(page: Page, study: Study) -> None:

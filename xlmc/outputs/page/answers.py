@@ -7,12 +7,20 @@ from typing import TYPE_CHECKING
 
 from xlmc.analysis.results.statements import MEANING, statements
 from xlmc.analysis.results.statements.in_words import sampling_sentence
-from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
 from xlmc.outputs.document.element import EMPTY, Html, element
 from xlmc.outputs.document.html_writer import estimate_html, number, share_html
 from xlmc.outputs.sheets.results_sheet import base_sentences, opening_sentences, range_sentences
-from xlmc.outputs.summary import ERROR_SENTENCE, SummaryRow, base_text, percent, question, range_heading, summarise
+from xlmc.outputs.summary import (
+    ERROR_SENTENCE,
+    SummaryRow,
+    base_text,
+    end_texts,
+    percent,
+    question,
+    range_heading,
+    summarise,
+)
 
 if TYPE_CHECKING:
     from xlmc.analysis.results.statements import Statement
@@ -84,12 +92,15 @@ def _head(text: str, numbers: bool) -> Html:
 
 
 def _line(row: SummaryRow, mixed: bool, thresholds: bool) -> Html:
-    cells = [(estimate_html if row.yes is None else share_html)(row.answer), *map(estimate_html, row.spread)]
-    cells.append(EMPTY if row.base is None else number(row.base, base_text(row)))
+    cells = [share_html(row.answer) if row.is_share else estimate_html(row.mean, row.form.estimate)]
+    cells.append(estimate_html(row.spread[0], row.form.spread))
+    texts = zip(row.spread[1:], end_texts(row), strict=True)
+    cells += [number(end.value, text) if text else estimate_html(end) for end, text in texts]
+    cells.append(element("span", base_text(row)) if row.base is None else number(row.base, base_text(row)))
     if mixed:
         cells.append(element("span", percent(row.share)))
     if thresholds:
-        cells.append(EMPTY if row.threshold is None else number(row.threshold, show(row.threshold)))
+        cells.append(EMPTY if row.threshold is None else number(row.threshold, row.form.number(row.threshold)))
         cells.append(EMPTY if row.above is None else share_html(row.above))
     found = (element("td", cell, class_="number") for cell in cells)
     return element("tr", element("th", row.name, scope="row"), element("td", row.unit), *found)

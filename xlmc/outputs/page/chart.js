@@ -24,7 +24,7 @@ function drawForecast(element, forecast, trials, bins, state, { drawn, pointed, 
   const highest = Math.max(...counts, ...[...(line ?? []), ...(second ?? [])].map(([, y]) => y));
   const top = state.view === "frequency" ? highest * 1.08 : 100;
   const shape = state.view === "frequency" ? bars(edges, counts) : curve(trials, ends, state.view);
-  const options = chartOptions(widthOf(element), ends, top, forecast.units, state.view);
+  const options = chartOptions(widthOf(element), ends, top, forecast, state.view);
   if (bins.whole) options.axes[0].incrs = [1, 2, 5, 10, 20, 50, 100];
   options.hooks = {
     drawClear: [(chart) => band(chart, forecast.range)],
@@ -103,10 +103,22 @@ function fittedText({ name, parameters, distance }) {
   return `Red line: ${name} (${parameters}), fitted to the accepted trials; ${off}. No number of this page rests on it.`;
 }
 
+/** The days between the labels of dates and times, of which uPlot takes the least that has room. */
+const INCREMENTS = [
+  ...[1, 5, 10, 30, 60, 300, 600, 1800, 3600, 7200, 21600, 43200].map((seconds) => seconds / 86400),
+  ...[1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 5000, 10000],
+];
+
+/** The decimals that write multiples of a step. */
+function decimalsOf(step) {
+  return step > 0 ? Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)) : 0;
+}
+
 /** What all charts of the page have in common. */
-function chartOptions(width, ends, top, units, view) {
+function chartOptions(width, ends, top, { units, form }, view) {
   const thin = { stroke: "#8994A1", width: 1 };
   const axis = { stroke: INK, font: FONT, labelFont: FONT, labelSize: 22, ticks: { ...thin, size: 5 } };
+  const longest = Math.max(...ends.map((end) => formText(end, decimalsOf((ends[1] - ends[0]) / 5), form).length));
   const counted = (_, splits) => splits.map((n) => (Number.isInteger(n) ? countText(n) : ""));
   return {
     width,
@@ -119,6 +131,9 @@ function chartOptions(width, ends, top, units, view) {
       {
         ...axis,
         label: units || " ",
+        space: Math.max(50, 7 * longest + 20),
+        values: (_, splits) => splits.map((at) => formText(at, decimalsOf(splits[1] - splits[0]), form)),
+        ...(form.moment ? { incrs: INCREMENTS } : {}),
         size: 42,
         gap: 12,
         labelSize: 18,

@@ -8,15 +8,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from xlmc.montecarlo.statistics import complement
+from xlmc.outputs.document.charts import shares_chart
 from xlmc.outputs.document.element import EMPTY, Html, element, join, void
-from xlmc.outputs.document.html_writer import estimate_html
+from xlmc.outputs.document.html_writer import estimate_html, picture_html, share_html
 from xlmc.outputs.histogram import Figure
-from xlmc.outputs.page.payload import most_values, overlays_of
+from xlmc.outputs.page.payload import counted_figures, most_values, overlays_of
 from xlmc.outputs.summary import SummaryRow, percent
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
     from xlmc.montecarlo.simulation.simulation import RunResult
+    from xlmc.montecarlo.statistics import Estimate
 
 __all__ = ["charts", "overlays"]
 
@@ -40,12 +43,19 @@ _NOTHING = "No forecast has a number in an accepted trial: nothing to draw."
 
 def charts(simulation: RunResult, figures: Sequence[Figure]) -> Html:
     """The section with a chart for every forecast."""
+    counted = counted_figures(figures)
     return element(
         "section",
         element("h2", "Forecasts"),
-        *(_how_to_read(simulation, figures) if figures else [element("p", _NOTHING, class_="alarm")]),
+        *(_how_to_read(simulation, counted) if counted else []),
+        *([] if figures else [element("p", _NOTHING, class_="alarm")]),
         element("noscript", element("p", "The charts need JavaScript; every number below is here without it.")),
-        *(_chart(figure, simulation.results[figure.answer.name]) for figure in figures),
+        *(
+            _shares(figure)
+            if figure.answer.is_share
+            else _chart(figure, simulation.results[figure.answer.name], counted.index(figure))
+            for figure in figures
+        ),
         id="forecasts",
     )
 
@@ -66,7 +76,29 @@ def _how_to_read(simulation: RunResult, figures: Sequence[Figure]) -> Iterator[H
         )
 
 
-def _chart(figure: Figure, result: ForecastResult) -> Html:
+def _shares(figure: Figure) -> Html:
+    """The bars of an answer that is yes or no, or a text, and the share of each."""
+    answer = figure.answer
+    shares = answer.categories
+    if answer.yes is not None:
+        shares = {"yes": answer.yes, "no": complement(answer.yes)}
+    rows = (
+        element("tr", element("th", text or "(empty)", scope="row"), element("td", share_html(share), class_="number"))
+        for text, share in shares.items()
+    )
+    drawing = element(
+        "div",
+        picture_html(shares_chart(figure)),
+        element("p", figure.caption, class_="caption"),
+        class_="drawing",
+    )
+    caption = element("caption", "Share of the accepted trials")
+    table = element("table", caption, element("tbody", *rows), class_="beside")
+    panel = element("div", table, class_="panel")
+    return element("article", element("h3", figure.name), element("div", drawing, panel, class_="figure"))
+
+
+def _chart(figure: Figure, result: ForecastResult, index: int) -> Html:
     answer, number = figure.answer, figure.number
     about = f"chart-{number}"
     panel = element(
@@ -100,7 +132,7 @@ def _chart(figure: Figure, result: ForecastResult) -> Html:
         element("div", drawing, panel, class_="figure"),
         id=about,
         class_="forecast",
-        data_forecast=str(number - 1),
+        data_forecast=str(index),
     )
 
 
@@ -115,10 +147,16 @@ def _statistics(result: ForecastResult) -> Html:
         "Maximum": found.maximum,
     }
     rows = (
-        element("tr", element("th", label, scope="row"), element("td", estimate_html(estimate), class_="number"))
-        for label, estimate in shown.items()
+        element(
+            "tr", element("th", label, scope="row"), element("td", _statistic(result, label, each), class_="number")
+        )
+        for label, each in shown.items()
     )
     return element("table", element("caption", "All accepted trials"), element("tbody", *rows), class_="beside")
+
+
+def _statistic(result: ForecastResult, label: str, found: Estimate) -> Html:
+    return estimate_html(found, result.form.spread if label == "Standard deviation" else result.form.estimate)
 
 
 def _views(about: str) -> Html:
@@ -159,6 +197,7 @@ def _box(label: str, key: str, units: str) -> Html:
 
 def overlays(figures: Sequence[Figure]) -> Html:
     """The section with forecasts of one unit in one chart; nothing where no two have the same."""
+    figures = counted_figures(figures)
     groups = overlays_of(figures)
     if not groups:
         return EMPTY

@@ -27,6 +27,49 @@ function valueText(value, decimals) {
   return value.toFixed(Math.max(decimals, 0));
 }
 
+/**
+ * A number in the form of its forecast: 31.9 %, $48,210, 2026-03-01. `form` has what it is multiplied by, what stands
+ * before and after it, the signs of thousands and decimals, and of dates whether the `day` or the `time` is shown.
+ */
+function formText(value, decimals, form) {
+  if (!Number.isFinite(value)) return valueText(value, decimals);
+  if (form.moment) return momentText(value, form);
+  const scaled = Math.abs(value * form.factor);
+  const most = Math.max(0, decimals - Math.round(Math.log10(form.factor)));
+  const plain = scaled >= 1e15 || (scaled > 0 && scaled < 1e-4) ? String(Number(scaled.toPrecision(7))) : scaled.toFixed(most);
+  const [whole, part] = plain.split(".");
+  const grouped = plain.includes("e") ? whole : whole.replace(/\B(?=(\d{3})+$)/g, form.thousands);
+  const text = part === undefined ? grouped : `${grouped}${form.decimal}${part}`;
+  return `${value < 0 && /[1-9]/.test(text) ? "-" : ""}${form.before}${text}${form.after}`;
+}
+
+/** A date as 2026-03-01, with or without its time; a span of time as 49:15. */
+function momentText(value, { moment, epoch }) {
+  const seconds = Math.round(value * 86400);
+  const two = (number) => String(number).padStart(2, "0");
+  if (moment === "span") {
+    const [hours, rest] = [Math.floor(Math.abs(seconds) / 3600), Math.abs(seconds) % 3600];
+    return `${seconds < 0 ? "-" : ""}${hours}:${two(Math.floor(rest / 60))}${rest % 60 ? `:${two(rest % 60)}` : ""}`;
+  }
+  const at = new Date((seconds - epoch * 86400) * 1000).toISOString();
+  return moment === "day" ? at.slice(0, 10) : at.slice(0, 16).replace("T", " ");
+}
+
+/** What was typed in the form of a forecast, as `typed` gives it: 32 % is 0.32, 2026-03-01 is a serial number. */
+function formTyped(text, open, form) {
+  let plain = text.trim();
+  if (form.moment) {
+    const date = plain.match(/^(\d{4}-\d\d-\d\d)(?:[ T](\d\d:\d\d(?::\d\d)?))?$/);
+    if (date) return Date.parse(`${date[1]}T${date[2] ?? "00:00"}Z`) / 86400000 + form.epoch;
+    const span = plain.match(/^(\d+):(\d\d)(?::(\d\d))?$/);
+    if (span) return (Number(span[1]) + Number(span[2]) / 60 + Number(span[3] ?? 0) / 3600) / 24;
+    return typed(plain, open);
+  }
+  for (const affix of [form.before, form.after].map((each) => each.trim()).filter(Boolean)) plain = plain.replace(affix, "");
+  const value = typed(plain, open);
+  return value === null || !Number.isFinite(value) ? value : value / form.factor;
+}
+
 const MOST_TYPED = 200; // characters
 const GROUPS = [
   /^[1-9]\d{0,2}(?:,\d{3})+(?:\.\d*)?$/, // 6,700 and 1,234.5

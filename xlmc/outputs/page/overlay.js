@@ -29,8 +29,8 @@ class Overlay {
     const ends = [Math.min(...edges), Math.max(...edges)];
     const shapes = this.panels.map((panel) => this.shape(panel, ends));
     const top = this.view === "frequency" ? 1.08 * Math.max(...shapes.flat().map(([, y]) => y)) : 100;
-    const { units } = this.panels[0].forecast;
-    const options = chartOptions(widthOf(this.element), ends, top, units, this.view);
+    const { forecast, forecast: { units } } = this.panels[0];
+    const options = chartOptions(widthOf(this.element), ends, top, forecast, this.view);
     if (this.view === "frequency") {
       options.axes[1].label = `Accepted trials, % per ${units || "unit"}`;
       options.axes[1].values = (_, splits) => splits.map((split) => String(Number(split.toPrecision(6))));

@@ -100,7 +100,7 @@ class Panel {
   /** A line at a percentile. */
   percentile(percent) {
     const value = this.trials.quantile(percent / 100);
-    return { label: `${percent} %`, value, text: valueText(value, this.decimals + 1) };
+    return { label: `${percent} %`, value, text: this.written(value, this.decimals + 1) };
   }
 
   marks() {
@@ -122,12 +122,13 @@ class Panel {
   /** What was typed into a box. */
   type(key) {
     const { low, high, lowText, highText } = this.state;
-    const value = typed(this.box(key).value, { low: -Infinity, high: Infinity, share: null }[key]);
+    const open = { low: -Infinity, high: Infinity, share: null }[key], { value: text } = this.box(key);
+    const value = key === "share" ? typed(text, open) : formTyped(text, open, this.forecast.form);
     const why = this.whyNot(key, value);
     if (why) this.refuse(key, why);
     else if (key === "share") this.toCentral(value / 100);
-    else if (key === "low") this.set(value, high, { lowText: String(value), highText });
-    else this.set(low, value, { lowText, highText: String(value) });
+    else if (key === "low") this.set(value, high, { lowText: this.kept(key, value), highText });
+    else this.set(low, value, { lowText, highText: this.kept(key, value) });
   }
 
   /** Why this cannot stand in a box; nothing where it can. */
@@ -157,7 +158,20 @@ class Panel {
 
   /** An end as text, one digit finer than the step where it is not on it. */
   text(value, finer) {
-    return valueText(value, finer ? this.decimals + 1 : this.decimals);
+    return this.written(value, finer ? this.decimals + 1 : this.decimals);
+  }
+
+  /** A number in the form of the forecast. */
+  written(value, decimals) {
+    return formText(value, decimals, this.forecast.form);
+  }
+
+  /** A typed end as it was typed, but in the form of the forecast. */
+  kept(key, value) {
+    const { form } = this.forecast;
+    if (form.moment || !Number.isFinite(value)) return this.text(value, true);
+    const digits = String(Number((value * form.factor).toPrecision(12))).split(".")[1]?.length ?? 0;
+    return this.written(value, digits + Math.round(Math.log10(form.factor)));
   }
 
   /** Bring chart, grabbers, boxes and certainty up to date. */
@@ -231,8 +245,8 @@ class Panel {
     const unit = units ? ` ${units}` : "";
     if (this.state.view === "frequency") {
       const i = Math.min(Math.max(lastUpTo(bins.edges, value), 0), bins.counts.length - 1);
-      const [from, to] = [bins.edges[i], bins.edges[i + 1]].map((edge) => valueText(edge, bins.decimals));
-      const bar = bins.whole && !bins.numbers ? String(bins.edges[i] + 0.5) : `${from} to below ${to}`;
+      const [from, to] = [bins.edges[i], bins.edges[i + 1]].map((edge) => this.written(edge, bins.decimals));
+      const bar = bins.whole && !bins.numbers ? this.written(bins.edges[i] + 0.5, 0) : `${from} to below ${to}`;
       const percent = ((100 * bins.counts[i]) / trials).toFixed(2);
       return `${bar}${unit}: ${countText(bins.counts[i])} trials, ${percent} %`;
     }
@@ -240,7 +254,7 @@ class Panel {
     const { count } = reverse ? this.trials.between(value, Infinity) : this.trials.between(-Infinity, value);
     const { error } = shareOf(count, trials, this.z);
     const share = estimateText((100 * count) / trials, 100 * error);
-    return `${reverse ? "From" : "Up to"} ${valueText(value, this.decimals)}${unit}: ${share} %`;
+    return `${reverse ? "From" : "Up to"} ${this.written(value, this.decimals)}${unit}: ${share} %`;
   }
 
   /** What the lines stand for. */

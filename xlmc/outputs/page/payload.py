@@ -23,14 +23,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.montecarlo.columns import picked, release
-from xlmc.montecarlo.statistics import Estimate, format_estimate
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics.estimate import t_quantile
+from xlmc.montecarlo.statistics.number_text import signs
 from xlmc.outputs.histogram import Figure
 from xlmc.outputs.page.fitted_curves import FittedCurve, fitted_curves
 from xlmc.outputs.page.second_run import partner_of
-from xlmc.outputs.summary import percent
+from xlmc.outputs.summary import base_text, percent
 
 if TYPE_CHECKING:
+    from xlmc.montecarlo.definitions.forms import Form
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
     from xlmc.montecarlo.simulation.simulation import RunResult
 
@@ -39,6 +41,7 @@ __all__ = [
     "MOST_VALUES",
     "RankTable",
     "forecast_payload",
+    "form_json",
     "most_values",
     "overlays_of",
     "payload",
@@ -66,7 +69,8 @@ def payload_text(simulation: RunResult, figures: Sequence[Figure], beside: RunRe
 
 
 def payload(simulation: RunResult, figures: Sequence[Figure], beside: RunResult | None = None) -> dict[str, Any]:
-    """The payload as plain values; `beside` is a second run."""
+    """The payload as plain values; `beside` is a second run. Answers that are shares have no values to count."""
+    figures = counted_figures(figures)
     most = most_values(len(figures) * (1 if beside is None else 2))
     return {
         "z": t_quantile(math.inf, CONFIDENCE),
@@ -75,6 +79,11 @@ def payload(simulation: RunResult, figures: Sequence[Figure], beside: RunResult 
         ],
         "overlays": overlays_of(figures),
     }
+
+
+def counted_figures(figures: Sequence[Figure]) -> list[Figure]:
+    """The figures whose answers are numbers: trials are counted between two ends of them."""
+    return [figure for figure in figures if not figure.answer.is_share]
 
 
 def overlays_of(figures: Sequence[Figure]) -> list[list[int]]:
@@ -101,14 +110,15 @@ def forecast_payload(simulation: RunResult, figure: Figure, most: int, *, fits: 
     return {
         "name": answer.name,
         "units": answer.units,
+        "form": form_json(answer.form),
         **_trials(result, most, marks),
         "range": {
             "share": answer.share,
             "said": percent(answer.share),
             "low": low,
             "high": high,
-            "lowText": _value_text(answer.low),
-            "highText": _value_text(answer.high),
+            "lowText": answer.form.value(answer.low),
+            "highText": answer.form.value(answer.high),
         },
         "bins": _bins(figure),
         "fits": [_fit(each) for each in fitted_curves(result.sample.even, figure.bins)] if fits else [],
@@ -148,15 +158,22 @@ def _unless_all(usual: int, numbers: NDArray[np.int64]) -> list[int] | None:
     return None if bool(np.all(numbers == usual)) else numbers.tolist()
 
 
-def _value_text(found: Estimate) -> str:
-    """The value in the digits that its error supports, without the error."""
-    return format_estimate(found.value, found.error).partition(" ± ")[0]
+def form_json(form: Form) -> dict[str, Any]:
+    """How the script writes numbers of a forecast."""
+    before, after = form.affixes
+    thousands, decimal = signs()
+    moment = None
+    if form.kind is Kind.DATE:
+        moment = form.shows
+    signs_of = {"thousands": thousands, "decimal": decimal}
+    return {"factor": form.factor, "before": before, "after": after, "moment": moment, "epoch": form.epoch, **signs_of}
 
 
 def _bins(figure: Figure) -> dict[str, Any]:
     bins = figure.bins
+    to_number = 0.0 if bins.names is None else 0.5  # the script draws bars of whole numbers over these itself
     return {
-        "edges": [*bins.edges.tolist(), float(bins.upper_edges[-1])],
+        "edges": [edge + to_number for edge in (*bins.edges.tolist(), float(bins.upper_edges[-1]))],
         "counts": (bins.inside + bins.outside).tolist(),
         "below": bins.below,
         "above": bins.above,
@@ -167,10 +184,11 @@ def _bins(figure: Figure) -> dict[str, Any]:
 
 def _marks(figure: Figure) -> Iterator[tuple[str, float, str]]:
     answer = figure.answer
-    yield "Mean", answer.mean.value, _value_text(answer.mean)
-    for label, value in (("Base case", answer.base), ("Threshold", answer.threshold)):
-        if value is not None:
-            yield label, value, f"{value:.6g}"
+    yield "Mean", answer.mean.value, answer.form.value(answer.mean)
+    if answer.base is not None:
+        yield "Base case", answer.base, base_text(answer)
+    if answer.threshold is not None:
+        yield "Threshold", answer.threshold, answer.form.number(answer.threshold)
 
 
 @dataclass(frozen=True, slots=True)

@@ -67,6 +67,9 @@ _REFUSED: Final = (
 
 _SHOWN: Final = re.compile(r"(?<![\w.])(?:_xl\w+\.|\[\d+\]!)*(?:Risk|CB\.)\w+\(", re.IGNORECASE)
 
+_TEXTS: Final = re.compile(r'=.*(?:"|&|(?<![\w.])(?:TEXT|CONCAT|LOOKUP|VLOOKUP|XLOOKUP|INDEX|CHOOSE|LEFT|RIGHT|MID)\()')
+"""Formulas that may give a text."""
+
 _DATE: Final = re.compile(r'=.*"[^"]*\d[^"]*[-/.: ][^"]*\d[^"]*"')
 _CRITERIA: Final = ("COUNTIF", "COUNTIFS", "SUMIF", "SUMIFS", "AVERAGEIF", "AVERAGEIFS", "MAXIFS", "MINIFS")
 _DATABASE: Final = (
@@ -237,6 +240,7 @@ RULES: Final = (
     Rule(
         "0.12.0", "a column Use of xlmc_filters says whether a row is used", re.compile(r"^\W*use\W*$", re.IGNORECASE)
     ),
+    Rule("0.12.0", "a forecast whose answers are texts counts them, where its trials were lost", _TEXTS),
     Rule("0.12.0", "adjustment weights of matrices of rank correlations are honoured", _calls("RiskCorrmat")),
 )
 """The rules in the order of versions."""

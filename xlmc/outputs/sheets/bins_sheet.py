@@ -72,7 +72,10 @@ def _write_table(page: Page, figure: Figure) -> BinsAt:
     page.put(HEADER - 1, left, Shown(figure.axis, look="subtitle"))
     page.row = HEADER
     share = percent(figure.answer.share)
-    page.table(["Label", "From", "to below", f"Inside {share} range", "Outside", "Trials"], _rows(figure.bins), left)
+    inside, outside = f"Inside {share} range", "Outside"
+    if figure.answer.is_share:
+        inside, outside = "Accepted trials", " "
+    page.table(["Label", "From", "to below", inside, outside, "Trials"], _rows(figure.bins), left)
     last = page.row - 1
     for label, count in _rest(figure.bins):
         line = [Shown(label, look="label"), *[cells.BLANK] * (TABLE - 2), cells.count(count)]
@@ -84,19 +87,25 @@ def _rows(bins: Histogram) -> Iterator[list[Shown]]:
     columns = zip(bins.labels, bins.edges, bins.upper_edges, bins.inside, bins.outside, strict=True)
     for label, low, high, inside, outside in columns:
         edges = [Shown(float(edge), bins.edge_format) for edge in (low, high)]
+        if bins.names is not None:
+            edges = [cells.BLANK, cells.BLANK]
         yield [Shown(label), *edges, *(cells.count(int(count)) for count in (inside, outside, inside + outside))]
 
 
 def _rest(bins: Histogram) -> Iterator[tuple[str, int]]:
-    yield "Below", bins.below
-    yield "Above", bins.above
+    if bins.names is None:
+        yield "Below", bins.below
+        yield "Above", bins.above
+    elif bins.above:
+        yield "Rarer texts", bins.above
     yield "All", int(bins.inside.sum() + bins.outside.sum()) + bins.below + bins.above
 
 
 def histogram_chart(book: Workbook, at: BinsAt, bins: Histogram) -> ChartColumn:
     """The chart. Its texts are references to cells, so that none of them can be taken for a formula."""
     chart = book.add_chart({"type": "column", "subtype": "stacked"})
-    for column, colour in zip(_COUNTS, (DARK, LIGHT), strict=True):
+    only_inside = not bins.outside.any()
+    for column, colour in zip(_COUNTS[:1] if only_inside else _COUNTS, (DARK, LIGHT), strict=False):
         chart.add_series(
             {
                 "name": at.cell(at.header, column),
@@ -104,11 +113,11 @@ def histogram_chart(book: Workbook, at: BinsAt, bins: Histogram) -> ChartColumn:
                 "values": at.column(column),
                 "fill": {"color": colour},
                 "border": {"none": True},
-                "gap": 4,
+                "gap": 4 if bins.names is None else 40,
             }
         )
     marks = {"interval_unit": bins.step, "interval_tick": bins.step}
     chart.set_x_axis(across(at.cell(at.header - 1), **marks))
     chart.set_y_axis(upwards("Accepted trials", min=0))
-    finish(chart, at.cell(at.header - 2))
+    finish(chart, at.cell(at.header - 2), legend=not only_inside)
     return chart

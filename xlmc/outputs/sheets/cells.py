@@ -9,11 +9,15 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from xlmc.analysis.results.statements.in_words import number_text
+from xlmc.excel.functions.number_format import FormatError, parse_format
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.montecarlo.statistics.estimate import two_digit_exponent
+from xlmc.montecarlo.statistics.number_text import decimals_of, exact_text, fixed_text, two_digit_exponent
+from xlmc.montecarlo.statistics.number_text import number_text as plain_text
 
 __all__ = [
     "AT_LEAST",
@@ -56,10 +60,12 @@ _ROOM = 9
 
 _FORMAT = re.compile(r"(?P<grouped>#,##)?0(\.(?P<decimals>0+))?(?P<ending>%|E\+00)?")
 
+_WITH_WORDS = re.compile(r'(?:"(?P<before>[^"]*)")?(?P<digits>(?:#,##)?0(?:\.0+)?(?:E\+00)?)(?:"(?P<after>[^"]*)")?')
+
 _LONGEST = 11
 """Characters of a number that Excel shows in a cell without a format."""
 
-_LARGEST, _SMALLEST = 1e7, 1e-4
+_LARGEST, _SMALLEST = 1e15, 1e-4
 """A number outside these limits is shown with a power of ten."""
 
 
@@ -69,11 +75,13 @@ class Shown:
 
     Attributes:
         look: by default `text` for a text, and `number` for anything else.
+        date1904: whether a date counts days from 1904.
     """
 
     value: str | float | None
     format: str = "General"
     look: str = ""
+    date1904: bool = False
 
     def __post_init__(self) -> None:
         if not self.look:
@@ -86,9 +94,11 @@ _ROUNDING = 1e-14
 """An error of a share from which on it is none of sampling; Excel refuses formats of more than 30 decimals."""
 
 
-def exact(value: float | None, number: str = "General") -> Shown:
-    """A number that has no error: a setting, the base case."""
-    return Shown(value, number)
+def exact(value: float | None, form: Form = PLAIN, like: Estimate | None = None) -> Shown:
+    """A number that has no error: a setting, the base case; in the digits of an estimate beside it, if there is one."""
+    if like is not None and like.error:
+        return Shown(value, paired_format(like, form), date1904=form.date1904)
+    return Shown(value, _exact_format(value, form), date1904=form.date1904)
 
 
 def count(value: int) -> Shown:
@@ -97,11 +107,30 @@ def count(value: int) -> Shown:
 
 
 def estimate(
-    found: Estimate, look: str = "number", error_look: str = "error", *, like: Estimate | None = None
+    found: Estimate,
+    look: str = "number",
+    error_look: str = "error",
+    *,
+    like: Estimate | None = None,
+    form: Form = PLAIN,
+    spread: bool = False,
 ) -> list[Shown]:
-    """Two cells: the value, and its standard error in the same digits; without an error, in those of `like`."""
-    digits = paired_format(like if found.error is None and like is not None else found)
-    return [Shown(found.value, digits, look), _error(found.error, _error_format(found, digits), error_look)]
+    """Two cells: the value, and its standard error in the same digits; without an error, in those of `like`.
+
+    Args:
+        found: the number and its error.
+        look: of the value.
+        error_look: of the error.
+        like: a number beside it.
+        form: how the numbers are written.
+        spread: whether it is a standard deviation or a difference; of dates it is then a span of time.
+    """
+    digits = paired_format(like if found.error is None and like is not None else found, form)
+    error = _error_format(found, digits, form)
+    value = digits
+    if spread and form.kind is Kind.DATE:
+        value = error = _span_format(found.value, found.error)
+    return [Shown(found.value, value, look, form.date1904), _error(found.error, error, error_look)]
 
 
 def share(found: Estimate, look: str = "") -> list[Shown]:
@@ -110,30 +139,65 @@ def share(found: Estimate, look: str = "") -> list[Shown]:
     return [Shown(found.value, digits, look), _error(found.error, digits, "error")]
 
 
-def interval(found: Estimate, *, percent: bool = False) -> list[Shown]:
+def interval(found: Estimate, *, percent: bool = False, form: Form = PLAIN, spread: bool = False) -> list[Shown]:
     """Two cells: the ends of the 95 % interval, in the digits of the value."""
-    digits = share_format(found) if percent else paired_format(found)
+    digits = share_format(found) if percent else paired_format(found, form)
+    if spread and form.kind is Kind.DATE:
+        digits = _span_format(found.value, found.error)
     low, high = found.interval or (None, None)
-    return [_error(low, digits, "error"), _error(high, digits, "error")]
+    return [replace(_error(end, digits, "error"), date1904=form.date1904) for end in (low, high)]
 
 
 def _error(value: float | None, digits: str, look: str) -> Shown:
     return Shown(NONE if value is None else value, digits, look)
 
 
-def paired_format(estimate: Estimate) -> str:
+def paired_format(estimate: Estimate, form: Form = PLAIN) -> str:
     """The format of a value whose error stands in a cell of its own: two digits of the error."""
+    if form.kind is Kind.DATE:
+        return form.moment_code
     if estimate.error == 0.0:
-        return "General"
-    return _format(estimate.value, _paired_decimals(estimate))
+        return _exact_format(estimate.value, form)
+    return _in_form(_format(form.factor * estimate.value, _paired_decimals(estimate, form)), form)
 
 
-def _error_format(found: Estimate, digits: str) -> str:
-    """The format of the error beside a value; digits of its own where those of so large a value show nothing of it."""
-    decimals = _paired_decimals(found)
-    if found.error is None or decimals is None or "E" in digits:
+def _exact_format(value: float | None, form: Form) -> str:
+    if form.kind is Kind.DATE:
+        return form.moment_code
+    if form.factor == 1.0 and not any(form.affixes):
+        return "General" if value is None or not math.isfinite(value) else number_format(value)
+    digits = exact_text(form.factor * (value or 0.0)).partition(".")[2]
+    return _in_form("#,##0" + _fraction(len(digits)), form)
+
+
+def _in_form(digits: str, form: Form) -> str:
+    """The format of a number with what stands before and after it: a sign of money, or a percent sign."""
+    before, after = form.affixes
+    if digits == "General" or not (before or after):
         return digits
-    return digits if len(digits.partition(".")[2]) >= decimals - 1 else _format(found.error, decimals)
+    if form.factor != 1.0:
+        return f"{digits.replace(_COUNT, '0')}%"
+    return "".join((f'"{before}"' if before else "", digits, f'"{after}"' if after else ""))
+
+
+def _error_format(found: Estimate, digits: str, form: Form = PLAIN) -> str:
+    """The format of the error beside a value; digits of its own where those of so large a value show nothing of it."""
+    if form.kind is Kind.DATE:
+        return _span_format(found.error or 0.0, found.error)
+    decimals = _paired_decimals(found, form)
+    if found.error is None or decimals is None or "E" in digits or form.factor != 1.0:
+        return digits
+    bare = digits.split('"')[2] if digits.startswith('"') else digits.split('"')[0]
+    enough = len(bare.partition(".")[2]) >= decimals - 1
+    return digits if enough else _in_form(_format(found.error, decimals), form)
+
+
+def _span_format(days: float, error: float | None) -> str:
+    """The format of a span of time: days in the digits of the error, or a time where it is less than one."""
+    decimals = decimals_of(error or days)
+    if not math.isfinite(days) or abs(days) < 1.0 or decimals is None:
+        return "[h]:mm:ss"
+    return f'#,##0{_fraction(max(decimals, 0))}" days"'
 
 
 def share_format(estimate: Estimate) -> str:
@@ -142,20 +206,25 @@ def share_format(estimate: Estimate) -> str:
     return "0" + _fraction(max((4 if decimals is None else decimals) - 2, 0)) + "%"
 
 
-def spread_format(spread: float) -> str:
+def spread_format(spread: float, form: Form = PLAIN) -> str:
     """The format of single trials: four digits of their spread."""
-    return _format(spread, 3 - two_digit_exponent(spread)) if _usable(spread) else "General"
+    if form.kind is Kind.DATE:
+        return form.moment_code
+    scaled = form.factor * spread
+    return _in_form(_format(scaled, 3 - two_digit_exponent(scaled)), form) if _usable(spread) else "General"
 
 
 def number_format(value: float) -> str:
     """The format of a number that stands alone: six digits, or all that it has where these are fewer."""
     if float(value).is_integer():
-        return _COUNT if abs(value) < _LARGEST * 100 else "General"
+        return _COUNT if abs(value) < _LARGEST else "General"
+    if 0.0 < abs(value) < _SMALLEST:
+        return f"0{_fraction(len(f'{value:.12g}'.partition('e')[0].lstrip('-').partition('.')[2]))}E+00"
     return "General" if len(repr(value)) <= _DIGITS + 1 else _format(value, None)
 
 
-def _paired_decimals(estimate: Estimate) -> int | None:
-    return 1 - two_digit_exponent(estimate.error) if estimate.error and _usable(estimate.error) else None
+def _paired_decimals(estimate: Estimate, form: Form = PLAIN) -> int | None:
+    return decimals_of(None if estimate.error is None else form.factor * estimate.error)
 
 
 def _format(value: float, decimals: int | None) -> str:
@@ -193,30 +262,41 @@ def shown_text(shown: Shown) -> str:
         return value
     if not math.isfinite(value):
         return NONE if math.isnan(value) else "∞" if value > 0 else "−∞"
-    return _general(value) if shown.format == "General" else _format_number(value, shown.format)
+    return _general(value) if shown.format == "General" else _format_number(value, shown.format, shown.date1904)
 
 
 def _general(value: float) -> str:
-    text = number_text(value)
-    return text if len(text) <= _LONGEST else f"{value:.9g}"
+    return exact_text(value) if len(number_text(value)) <= _LONGEST else plain_text(value, 9)
 
 
-def _format_number(value: float, number_format: str) -> str:
+def _format_number(value: float, number_format: str, date1904: bool = False) -> str:
     if number_format == NOISE:
         return "noise"
     if number_format.startswith(AT_LEAST):
         return f"at least {_format_number(value, number_format.removeprefix(AT_LEAST))}"
     found = _FORMAT.fullmatch(number_format)
     if found is None:
-        raise ValueError(f"no number format of a result sheet: {number_format!r}")
+        return _text_in_form(value, number_format, date1904)
     decimals, ending = len(found["decimals"] or ""), found["ending"]
     if ending == "E+00":
         return f"{value:.{decimals}e}"
     if ending == "%":
-        return f"{_round(100.0 * value, decimals):.{decimals}f} %"
-    value = _round(value, decimals)
-    return f"{value:,.{decimals}f}" if found["grouped"] else f"{value:.{decimals}f}"
+        return f"{fixed_text(100.0 * value, decimals)} %"
+    return fixed_text(value, decimals) if found["grouped"] else f"{round(value, decimals) + 0.0:.{decimals}f}"
 
 
-def _round(value: float, decimals: int) -> float:
-    return round(value, decimals) + 0.0  # no negative zero
+def _text_in_form(value: float, number_format: str, date1904: bool) -> str:
+    """Write a date, a span of time, an amount of money or a number with words, as the format says.
+
+    Raises:
+        ValueError: the format does not write a number.
+    """
+    found = _WITH_WORDS.fullmatch(number_format)
+    if found is not None:
+        text = _format_number(abs(value), found["digits"])
+        sign = "-" if value < 0.0 and any(digit in text for digit in "123456789") else ""
+        return f"{sign}{found['before'] or ''}{text}{found['after'] or ''}"
+    try:
+        return parse_format(number_format).number(value, date1904)
+    except FormatError as error:
+        raise ValueError(f"no number format of a result sheet: {number_format!r}") from error

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from xlmc.analysis.results.statements import MEANING, certainties, stated_range, statements
+from xlmc.montecarlo.definitions.stating import NOT_ROUNDED
 from xlmc.montecarlo.statistics import proportion
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
@@ -83,7 +84,7 @@ def _write_own_ranges(page: Page, simulation: RunResult, trials: TrialsAt) -> No
         (index, result, simulation.forecasts[name][: trials.shown])
         for index, (name, result) in enumerate(simulation.results.items())
     ]
-    found = [each for each in found if not np.isnan(each[2]).all()]
+    found = [each for each in found if not np.isnan(each[2]).all() and each[1].kind not in NOT_ROUNDED]
     if not found:
         return
     from xlsxwriter.utility import xl_range_formula
@@ -120,7 +121,8 @@ def _write_line(page: Page, result: ForecastResult, values: NDArray[np.float64],
     share = proportion(int(np.count_nonzero((known >= spoken.low) & (known <= spoken.high))), known.size)
     page.line([Shown(definition.name, look="name"), Shown(definition.units)])
     for column_of_end, end in ((2, spoken.low), (3, spoken.high)):
-        page.put(row, column_of_end, Shown(end if math.isfinite(end) else None, "General", "typed"))
+        digits = cells.exact(end, result.form).format
+        page.put(row, column_of_end, Shown(end if math.isfinite(end) else None, digits, "typed"))
     low, high = xl_rowcol_to_cell(row, 2), xl_rowcol_to_cell(row, 3)
     certainty, trials = xl_rowcol_to_cell(row, 4), xl_rowcol_to_cell(row, 6 if errors else 5)
     inside = f'ISNUMBER({column})*((({low}="")+({column}>={low}))>0)*((({high}="")+({column}<={high}))>0)'

@@ -63,15 +63,17 @@ def cumulative_charts(book: Workbook, curves: Curves, simulation: RunResult, fig
     share = percent(answer.share)
     heads = ["Label", "Value", *[f"Inside {share} range", "Outside"] * len(_KINDS)]
     titles = [f"{figure.name}: {kind}" for _, kind, _ in _KINDS]
-    table = curves.write(titles, answer.units or "Value", heads, _rows(curve))
+    table = curves.write(
+        titles, answer.units or "Value", heads, _rows(curve, cells.exact(curve.at[0], answer.form).format)
+    )
     return [_chart(book, table, curve, number) for number in range(len(_KINDS))]
 
 
-def _rows(curve: _Cumulative) -> Iterator[list[Shown]]:
+def _rows(curve: _Cumulative, digits: str) -> Iterator[list[Shown]]:
     columns = (curve.at.tolist(), curve.at_most.tolist(), curve.above.tolist(), curve.central.tolist())
     for label, at, at_most, above, central in zip(curve.labels, *columns, strict=True):
         shares = (at_most, 0.0, above, 0.0) if central else (0.0, at_most, 0.0, above)
-        yield [Shown(label), Shown(at), *(Shown(share, SHARE) for share in shares)]
+        yield [Shown(label), Shown(at, digits), *(Shown(share, SHARE) for share in shares)]
 
 
 def _chart(book: Workbook, table: TableAt, curve: _Cumulative, number: int) -> ChartArea:
@@ -118,14 +120,15 @@ class _Cumulative:
 def _cumulative(sample: Sample, bins: Histogram, low: float, high: float) -> _Cumulative:
     """The curve over the range that the bins cover, the central range being [low, high]."""
     pieces = math.ceil(_POINTS / bins.edges.size)
-    first = round(float(bins.edges[0] / bins.width)) * pieces
+    first = round(float(bins.edges[0] / bins.width) * pieces)
     at = multiples(bins.width / pieces, first, bins.edges.size * pieces + 1)
     at[::pieces] = [*bins.edges, bins.upper_edges[-1]]
     x = sample.even
     reached = np.searchsorted(x, at, side="right")
     release(x)
     labels = [""] * at.size
-    labels[::pieces] = [*bins.labels, bins.last_label]
+    middle = 0 if bins.names is None else pieces // 2
+    labels[middle::pieces] = [*bins.labels, bins.last_label][: len(labels[middle::pieces])]
     return _Cumulative(
         at=at,
         at_most=reached / x.size,

@@ -68,7 +68,22 @@ def _write_answers(page: Page, simulation: RunResult) -> None:
         *base_sentences(simulation),
     ):
         page.wide(sentence, "remark", LAST)
+    write_texts(page, rows)
     _write_thresholds(page, rows)
+
+
+def write_texts(page: Page, rows: Sequence[SummaryRow]) -> None:
+    """Write how often each text is the answer; nothing where all answers are numbers."""
+    for row in rows:
+        if not row.categories:
+            continue
+        page.heading(f"{row.name}: how often each text is the answer")
+        head = f"{row.name} ({row.units})" if row.units else row.name
+        page.table([head, "Trials", "Share", "±", "95 % from", "to"], [_text(*each) for each in row.categories.items()])
+
+
+def _text(text: str, share: Estimate) -> list[Shown]:
+    return [Shown(text or "(empty)", look="name"), cells.count(round(share.value * share.n)), *_share(share)]
 
 
 def _headers(rows: Sequence[SummaryRow]) -> list[str]:
@@ -82,9 +97,13 @@ def _answer(row: SummaryRow, rows: Sequence[SummaryRow]) -> list[Shown]:
         Shown(row.name, look="name"),
         Shown(row.unit),
         cells.count(row.trials),
-        *(cells.estimate(row.mean, "answer") if row.yes is None else cells.share(row.yes, "answer")),
-        *(shown for each in row.spread for shown in cells.estimate(each, "answer")),
-        cells.exact(row.base, cells.paired_format(row.mean)) if row.yes is None else Shown(base_text(row)),
+        *(cells.share(row.answer, "answer") if row.is_share else cells.estimate(row.mean, "answer", form=row.form)),
+        *(
+            shown
+            for each in row.spread
+            for shown in cells.estimate(each, "answer", form=row.form, spread=each is row.spread[0])
+        ),
+        Shown(base_text(row)) if row.is_share else cells.exact(row.base, row.form, row.mean),
     ]
     return shown if len({other.share for other in rows}) < 2 else [*shown, Shown(percent(row.share))]
 
@@ -101,7 +120,7 @@ def _write_thresholds(page: Page, rows: Sequence[SummaryRow]) -> None:
             [
                 Shown(row.name, look="name"),
                 Shown(row.units),
-                cells.exact(row.threshold),
+                cells.exact(row.threshold, row.form),
                 *([Shown(cells.NONE)] * 4 if row.above is None else _share(row.above)),
             ]
             for row in found

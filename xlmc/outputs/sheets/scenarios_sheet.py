@@ -12,7 +12,6 @@ from xlmc.analysis.studies.scenario_answers import (
     impossible_scenarios,
     scenario_answers,
 )
-from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.simulation.simulation import FEW
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.outputs.sheets import cells
@@ -20,6 +19,7 @@ from xlmc.outputs.sheets.cells import BLANK, Shown
 from xlmc.outputs.summary import percent
 
 if TYPE_CHECKING:
+    from xlmc.montecarlo.definitions.forms import Form
     from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.sheets.page import Page
 
@@ -131,7 +131,14 @@ def range_heads(states: Sequence[ForecastAnswer]) -> list[str]:
 def above_head(states: Sequence[ForecastAnswer]) -> str:
     """The heading of its probability above a threshold; empty where no state has one."""
     thresholds = {each.forecast.threshold for each in states if each.forecast.threshold is not None}
-    return "" if not thresholds else f"Above {show(thresholds.pop())}" if len(thresholds) == 1 else "Above threshold"
+    form = states[0].form
+    return (
+        ""
+        if not thresholds
+        else f"Above {form.number(thresholds.pop())}"
+        if len(thresholds) == 1
+        else "Above threshold"
+    )
 
 
 def _different_wishes(found: Sequence[ScenarioAnswers]) -> Iterator[str]:
@@ -139,7 +146,10 @@ def _different_wishes(found: Sequence[ScenarioAnswers]) -> Iterator[str]:
     for index, own in enumerate(found[0].forecasts):
         name, states = own.forecast.name, [(each.name, each.forecasts[index].forecast) for each in found]
         if len({each.threshold for _, each in states}) > 1:
-            said = [f"{state!r} {'none' if each.threshold is None else show(each.threshold)}" for state, each in states]
+            limits = [
+                (state, "none" if each.threshold is None else own.form.number(each.threshold)) for state, each in states
+            ]
+            said = [f"{state!r} {limit}" for state, limit in limits]
             yield f"Thresholds of {name!r}: {', '.join(said)}."
         if len({each.central for _, each in states}) > 1:
             said = [f"{state!r} {percent(each.central)}" for state, each in states]
@@ -149,11 +159,18 @@ def _different_wishes(found: Sequence[ScenarioAnswers]) -> Iterator[str]:
 def _answers(name: str, answer: ForecastAnswer, above: bool) -> list[Shown]:
     found = [Shown(name, look="name")]
     for key, value in (("mean", answer.mean), ("low", answer.low), ("high", answer.high)):
-        found += [*cells.estimate(value, "answer"), *_difference(answer.differences.get(key))]
+        change = answer.differences.get(key)
+        if not answer.has_range:
+            both = [value, change] if key == "mean" else [None, None]
+            found += [
+                cell for each in both for cell in ([BLANK, BLANK] if each is None else cells.share(each, "answer"))
+            ]
+            continue
+        found += [*cells.estimate(value, "answer", form=answer.form), *_difference(change, answer.form)]
     for share in (answer.above, answer.differences.get("above")) if above else ():
         found += [BLANK, BLANK] if share is None else cells.share(share)
     return found
 
 
-def _difference(found: Estimate | None) -> list[Shown]:
-    return [BLANK, BLANK] if found is None else cells.estimate(found)
+def _difference(found: Estimate | None, form: Form) -> list[Shown]:
+    return [BLANK, BLANK] if found is None else cells.estimate(found, form=form, spread=True)

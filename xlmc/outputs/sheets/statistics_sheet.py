@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from xlmc.montecarlo.distributions.parameters import show
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.definitions.stating import NOT_ROUNDED, Kind
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.summary import ERROR_SENTENCE, percent
@@ -82,11 +83,14 @@ def _below_statistics(result: ForecastResult) -> dict[_Value, list[Shown]]:
     """The percentiles, the central range and what lies above the threshold, under labels that all forecasts share."""
     definition, above = result.definition, result.statistics.probability_above
     rows: dict[_Value, list[Shown]] = {row[0].value: row[1:] for row in _percentiles(result)}
-    low, high = (_with_interval(each, result.statistics.mean) for each in result.statistics.central)
+    if not rows:
+        return rows
+    form = result.form
+    low, high = (_with_interval(each, result.statistics.mean, form) for each in result.statistics.central)
     rows["Central range, share"] = [Shown(definition.central, _percent_format(definition.central)), *_NOTHING[1:]]
     rows |= {"Central range from": low, "Central range to": high}
     if above is not None:
-        rows["Threshold"] = [cells.exact(definition.threshold), *_NOTHING[1:]]
+        rows["Threshold"] = [cells.exact(definition.threshold, form), *_NOTHING[1:]]
         rows["Above threshold"] = [*cells.share(above), *cells.interval(above, percent=True)]
     return rows
 
@@ -113,6 +117,10 @@ def _statistics(result: ForecastResult) -> list[list[Shown]]:
     if result.sample.w is not None:
         effective = round(result.sample.effective)
         rows.append([Shown("Effective trials"), Shown(""), cells.count(effective), *[cells.BLANK] * 3])
+    if result.yes is not None:
+        return [*rows, [Shown("Yes"), Shown(""), *cells.share(result.yes), *cells.interval(result.yes, percent=True)]]
+    if result.kind is Kind.CATEGORY:
+        return [*rows, *(_text_row(*each) for each in [*result.categories.items()][:_MOST_TEXTS])]
     for label, unit, estimate in (
         ("Mean", units, found.mean),
         ("Median", units, found.median),
@@ -127,31 +135,56 @@ def _statistics(result: ForecastResult) -> list[list[Shown]]:
         ("Range width", units, found.range_width),
         ("Mean standard error", units, found.mean_standard_error),
     ):
-        rows.append([Shown(label), Shown(unit), *_with_interval(estimate, found.mean)])
+        form = result.form if label not in _PURE else PLAIN
+        like = found.mean if form is result.form else found.variance
+        rows.append([Shown(label), Shown(unit), *_with_interval(estimate, like, form, spread=label in _SPANS)])
     return rows
 
 
+def _text_row(text: str, share: Estimate) -> list[Shown]:
+    return [Shown(f"“{text}”"), Shown(""), *cells.share(share), *cells.interval(share, percent=True)]
+
+
+_MOST_TEXTS: Final = 20
+"""Texts of one forecast whose shares stand here; the sheet Results has them all."""
+
+_PURE: Final = ("Variance", "Skewness", "Kurtosis (normal 3)", "Coefficient of variation")
+"""Statistics that are not in the units of the forecast."""
+
+_SPANS: Final = ("Standard deviation", "Range width", "Mean standard error")
+"""Statistics that are differences: of dates they are spans of time."""
+
+
 def _percentiles(result: ForecastResult) -> list[list[Shown]]:
+    """The percentiles; none of answers that are yes or no, or texts."""
     found = result.statistics
+    if result.kind in NOT_ROUNDED:
+        return []
     return [
-        [Shown(f"{percentile:g} %"), *_with_interval(each, found.mean)]
+        [Shown(f"{percentile:g} %"), *_with_interval(each, found.mean, result.form)]
         for percentile, each in found.percentiles.items()
     ]
 
 
 def _range_and_threshold(result: ForecastResult) -> list[list[Shown]]:
     found, definition = result.statistics, result.definition
+    if result.kind in NOT_ROUNDED:
+        return []
     labels = [Shown(f"{percent(definition.central)} range {end}", look="name") for end in ("from", "to")]
-    rows = [[label, *_with_interval(each, found.mean)] for label, each in zip(labels, found.central, strict=True)]
+    rows = [
+        [label, *_with_interval(each, found.mean, result.form)]
+        for label, each in zip(labels, found.central, strict=True)
+    ]
     above = found.probability_above
     if definition.threshold is not None and above is not None:
         shown = [*cells.share(above), *cells.interval(above, percent=True)]
-        rows.append([Shown(f"Above {show(definition.threshold)}", look="name"), *shown])
+        rows.append([Shown(f"Above {result.form.number(definition.threshold)}", look="name"), *shown])
     return rows
 
 
-def _with_interval(estimate: Estimate, like: Estimate) -> list[Shown]:
-    return [*cells.estimate(estimate, like=like), *cells.interval(estimate)]
+def _with_interval(estimate: Estimate, like: Estimate, form: Form, *, spread: bool = False) -> list[Shown]:
+    pair = cells.estimate(estimate, like=like, form=form, spread=spread)
+    return [*pair, *cells.interval(estimate, form=form, spread=spread)]
 
 
 def _square(units: str) -> str:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.montecarlo.definitions.forms import PLAIN
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.simulation.simulation import weight_heading
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
@@ -77,7 +79,7 @@ def write_trials(page: Page, simulation: RunResult, rows: int = TRIAL_ROWS) -> T
     for column, heading in enumerate([Shown("Trial", look="header"), *(heading for heading, _ in columns)]):
         page.put(HEADER, column, heading)
     page.row = HEADER + 1
-    _write_values(page, simulation.trial_index[:shown], [values for _, values in columns])
+    _write_values(page, simulation, [values for _, values in columns], len(live))
     page.sheet.freeze_panes(HEADER + 1, 1)
     page.sheet.autofilter(HEADER, 0, HEADER + shown, len(columns))
     return TrialsAt(page.sheet.get_name(), shown, 1 + len(live))
@@ -108,11 +110,20 @@ def _heading(name: str, units: str, look: str) -> Shown:
     return Shown(f"{name} ({units})" if units else name, look=look)
 
 
-def _write_values(page: Page, index: NDArray[np.int64], columns: list[NDArray[np.float64]]) -> None:
-    page.numbers(page.row, 0, index.tolist(), "0", "trial")
-    for column, values in enumerate(columns, 1):
-        page.numbers(page.row, column, values.tolist(), cells.spread_format(_spread(values)))
-    page.row += index.size
+def _write_values(page: Page, simulation: RunResult, columns: list[NDArray[np.float64]], inputs: int) -> None:
+    """Write the trials: numbers in the form of each forecast, texts where these are the answer."""
+    shown, results = columns[0].size if columns else 0, list(simulation.results.values())
+    page.numbers(page.row, 0, simulation.trial_index[:shown].tolist(), "0", "trial")
+    for column, values in enumerate(columns):
+        result = results[column - inputs] if 0 <= column - inputs < len(results) else None
+        texts = None if result is None else simulation.labels.get(result.definition.name)
+        if texts is not None:
+            for row, number in enumerate(values.tolist(), page.row):
+                page.put(row, column + 1, Shown(cells.NONE if number != number else texts[int(number)]))
+            continue
+        form = PLAIN if result is None or result.kind is Kind.YES_NO else result.form
+        page.numbers(page.row, column + 1, values.tolist(), cells.spread_format(_spread(values), form))
+    page.row += shown
 
 
 def _spread(values: NDArray[np.float64]) -> float:

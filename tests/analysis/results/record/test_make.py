@@ -85,7 +85,7 @@ def test_every_assumption_is_there_with_what_became_of_it(record):
         "notes": "By: JD; Day: 3",
     }
     assert rows["length"]["cutoffs"] == "below 2"
-    assert rows["late"]["parameters"] == "Low 0, High S!D1"
+    assert rows["late"]["parameters"] == "Low 0, High 1.5 (S!D1: =A1*2-2.5)"
     assert [row["status"] for row in rows.values()] == ["drawn", "drawn", "not needed", "frozen", "drawn"]
 
 

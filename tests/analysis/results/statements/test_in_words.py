@@ -32,7 +32,7 @@ def test_limits(limits, text):
 
 
 DISTRIBUTIONS = [
-    ("Uniform", {"low": 6661.0, "high": 6861.0}, {}, "Uniform: Low 6661, High 6861"),
+    ("Uniform", {"low": 6661.0, "high": 6861.0}, {}, "Uniform: Low 6,661, High 6,861"),
     (
         "Normal",
         {"mean": 0.77, "std_dev": HERE},

@@ -30,8 +30,13 @@ GRID = np.arange(100_000) / 1000.0  # 0 to 99.999, every percentile known
 
 
 def test_a_range_that_is_surely_more_probable_than_not_is_called_so():
+    [said] = sentences(GRID, units="mph", central=0.51)
+    assert said.startswith("speed: more probable than not (5")
+
+
+def test_another_range_is_called_by_its_share():
     assert sentences(GRID, units="mph", central=0.6) == [
-        "speed: more probable than not (60.0 % ± 0.2 %) between 20.0 and 80.0 mph"
+        "speed: the 60 % range (60.0 % ± 0.2 %) lies between 20.0 and 80.0 mph"
     ]
 
 
@@ -186,7 +191,7 @@ def test_trials_without_a_number_are_told_of():
     run = Run([*GRID, math.nan], ["#NUM!"], units="mph", central=0.6, threshold=85.8)
     among = "; counted in the 100,000 of 100,001 accepted trials in which it is a number"
     assert [each.text for each in statements(run)] == [
-        f"speed: more probable than not (60.0 % ± 0.2 %) between 20.0 and 80.0 mph{among}",
+        f"speed: the 60 % range (60.0 % ± 0.2 %) lies between 20.0 and 80.0 mph{among}",
         f"P(speed > 85.8 mph) = 14.20 % ± 0.11 %{among}",
     ]
 

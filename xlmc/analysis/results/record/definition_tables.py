@@ -239,7 +239,7 @@ def assumption_section(simulation: RunResult) -> Section:
     rows: list[tuple[Value, ...]] = []
     for assumption in simulation.model.assumptions:
         described = status(simulation.model, assumption.name, assumption.frozen), assumption.distribution
-        given = parameters_text(assumption), cutoffs_text(assumption.cutoffs), assumption.base
+        given = parameters_text(assumption), cutoffs_text(assumption), assumption.base
         notes = assumption.units, assumption.source, notes_text(assumption.notes)
         rows.append((assumption.name, str(assumption.cell), *described, *given, *notes))
     return Section("assumptions", "Assumptions", table=RecordTable(_ASSUMPTION, tuple(rows)))

@@ -142,6 +142,7 @@ def _document(simulation: RunResult, columns: list[dict[str, Any]]) -> dict[str,
         "stopped": asdict(simulation.stopped),
         "rare": None if simulation.rare is None else asdict(simulation.rare),
         "origin": {"software": dict(origin.software), "processor": dict(origin.processor)},
+        **({"labels": {name: list(each) for name, each in simulation.labels.items()}} if simulation.labels else {}),
         **({} if changed is None else {"changed_from": asdict(changed)}),
         "columns": columns,
     }

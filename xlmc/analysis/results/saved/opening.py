@@ -247,7 +247,22 @@ def _simulation(found: Document, model: CompiledModel, columns: _Columns) -> Run
         origin=origin_of(found["origin"]),
         changed_from=changed_from_of(found.get("changed_from")),
         discards=_discards(found.get("discards", {}), model),
+        labels=_labels(found.get("labels", {}), model, forecasts),
     )
+
+
+def _labels(found: object, model: CompiledModel, forecasts: Mapping[str, Column]) -> dict[str, tuple[str, ...]]:
+    """Return the texts of forecasts whose answers are texts; a run saved before texts were answers has none of them."""
+    given = mapping(found, "its texts")
+    names = [model.forecasts[number].name for number in model.categories]
+    require(set(given) <= set(names), "its texts, which are read otherwise")
+    read = {name: tuple(texts(given[name], f"the texts of {name!r}")) for name in given}
+    for name in names:
+        read.setdefault(name, ())
+        numbers = (part[~np.isnan(part)] for part in parts(forecasts[name]))
+        known = all(bool(np.all((part >= 0) & (part < len(read[name])) & (part == np.floor(part)))) for part in numbers)
+        require(known, f"the texts of {name!r}")
+    return read
 
 
 def _discards(found: object, model: CompiledModel) -> dict[str, Counter[str]]:

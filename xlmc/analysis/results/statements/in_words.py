@@ -27,6 +27,7 @@ from xlmc.montecarlo.definitions.tables.table_rows import as_text
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.sampling.sampling_methods import GENERATOR, METHODS
 from xlmc.montecarlo.statistics import Estimate, proportion
+from xlmc.montecarlo.statistics.number_text import count_text, exact_text
 from xlmc.montecarlo.statistics.sample import MOST_GROUPS
 
 if TYPE_CHECKING:
@@ -44,6 +45,7 @@ __all__ = [
     "errors_text",
     "evidence_text",
     "generator_text",
+    "given_text",
     "limits_text",
     "method_text",
     "notes_text",
@@ -72,12 +74,17 @@ def number_text(value: Parameter) -> str:
     return str(value) if isinstance(value, Cell) else repr(float(value)).removesuffix(".0")
 
 
+def given_text(value: Parameter) -> str:
+    """Return a number as people read it, with all of its digits: `6,661`; or the cell that holds it."""
+    return str(value) if isinstance(value, Cell) else exact_text(value)
+
+
 def parameters_text(assumption: Assumption) -> str:
-    """`Low 6661, High 6861`; `Data Inputs!Q2:R9` for a distribution built from data."""
+    """`Low 6,661, High 6,861`; `Low 180,000 (=Estimate!B2)` where a formula gives it; `Data Inputs!Q2:R9` of data."""
     parts = []
     for key, heading in assumption.headings.items():
         if key not in CUTOFFS:
-            parts.append(f"{heading} {number_text(assumption.given[key])}")
+            parts.append(f"{heading} {assumption.stated.get(key) or given_text(assumption.given[key])}")
     if assumption.data is not None:
         parts.append(_data_text(assumption.data))
     return ", ".join(parts)
@@ -89,15 +96,16 @@ def _data_text(data: DataRange) -> str:
     return f"Data {data.text or data.area}{weights}{bandwidth}"
 
 
-def cutoffs_text(cutoffs: Mapping[str, Parameter]) -> str:
+def cutoffs_text(assumption: Assumption) -> str:
     """`below 0.5, above 0.9`: what is cut off; empty where nothing is."""
     sides = {"lower_cutoff": "below", "upper_cutoff": "above"}
-    return ", ".join(f"{sides[key]} {number_text(cutoff)}" for key, cutoff in cutoffs.items())
+    stated = assumption.stated
+    return ", ".join(f"{sides[key]} {stated.get(key) or given_text(end)}" for key, end in assumption.cutoffs.items())
 
 
 def distribution_text(assumption: Assumption) -> str:
     """Write a distribution: `Normal: Mean 0.77, Std dev 0.05; cut off below 0.6`."""
-    cutoffs = cutoffs_text(assumption.cutoffs)
+    cutoffs = cutoffs_text(assumption)
     ending = f"; cut off {cutoffs}" if cutoffs else ""
     return f"{assumption.distribution}: {parameters_text(assumption)}{ending}"
 
@@ -109,12 +117,17 @@ def limits_text(filter_: Filter) -> str:
     if filter_.evidence is not None:
         return evidence_text(filter_.evidence)
     limits = (
-        ("at least", filter_.at_least),
+        ("at_least", filter_.at_least),
         ("above", filter_.above),
-        ("at most", filter_.at_most),
+        ("at_most", filter_.at_most),
         ("below", filter_.below),
     )
-    return " and ".join(f"{relation} {number_text(bound)}" for relation, bound in limits if bound is not None) or "TRUE"
+    said = [
+        f"{key.replace('_', ' ')} {filter_.stated.get(key) or given_text(bound)}"
+        for key, bound in limits
+        if bound is not None
+    ]
+    return " and ".join(said) or "TRUE"
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,13 +157,13 @@ def evidence_text(evidence: Evidence) -> str:
     if not evidence.used or evidence.reading is None:
         return f"not used: {evidence.unused}"
     known = None if any(evidence.cells) else evidence.law
-    sizes = ", ".join(f"{SIZES[key]} {number_text(value)}" for key, value in evidence.sizes.items())
+    sizes = ", ".join(f"{SIZES[key]} {given_text(value)}" for key, value in evidence.sizes.items())
     ends_text = ""
     if isinstance(known, Within):
         ends = [("from", known.low), ("to", known.high)]
         ends_text = ": " + " ".join(f"{word} {end:.6g}" for word, end in ends if end is not None)
     given, weights = f" ({sizes})" if sizes else "", ", as weights" if evidence.weighed else ""
-    return f"reads {number_text(evidence.reading)}, {ERRORS[evidence.error].lower()}{given}{ends_text}{weights}"
+    return f"reads {given_text(evidence.reading)}, {ERRORS[evidence.error].lower()}{given}{ends_text}{weights}"
 
 
 def changes_text(scenario: Scenario) -> str:
@@ -212,8 +225,10 @@ def method_text(simulation: RunResult) -> str:
     if not plan.size:
         return f"{METHODS[plan.method].name}: independent trials"
     asked = simulation.settings.trials
-    more = "" if asked == plan.trials else f", whole ones, for the {asked:,} trials that were asked for"
-    return f"{METHODS[plan.method].name}: {plan.replicates} independent replicates of {plan.size:,} trials{more}"
+    more = "" if asked == plan.trials else f", whole ones, for the {count_text(asked)} trials that were asked for"
+    return (
+        f"{METHODS[plan.method].name}: {plan.replicates} independent replicates of {count_text(plan.size)} trials{more}"
+    )
 
 
 def errors_text(simulation: RunResult) -> str:

@@ -99,8 +99,9 @@ def _pair(simulation: RunResult, first: Forecast, second: Forecast) -> Pair | No
 def _limit(simulation: RunResult, forecast: Forecast) -> float:
     if forecast.threshold is not None:
         return forecast.threshold
-    median = simulation.results[forecast.name].statistics.median
-    return median.value if math.isnan(median.value) else rounded_value(median, forecast.report_to)[0]
+    result = simulation.results[forecast.name]
+    median = result.statistics.median
+    return median.value if math.isnan(median.value) else rounded_value(median, forecast.report_to, result.form)[0]
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ Each share stands with its error, and no number has more digits than its error s
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
@@ -18,8 +18,9 @@ from xlmc.analysis.results.statements.significant_digits import (
     surely_above,
 )
 from xlmc.montecarlo.definitions.stating import Role
-from xlmc.montecarlo.distributions.parameters import range_text, show
+from xlmc.montecarlo.distributions.parameters import range_text
 from xlmc.montecarlo.statistics import Estimate, complement, probability_above, probability_between
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
@@ -28,6 +29,9 @@ if TYPE_CHECKING:
 
 __all__ = ["MEANING", "Certainty", "Statement", "certainties", "stated_range", "statements"]
 
+
+LIKELIER: Final = 0.55
+"""The largest share of a range that is asked for to say where the answer more probably lies than not, such as 51 %."""
 
 MEANING: Final = (
     "Each share is a share of the accepted trials, counted for the range as it is printed here, and has its standard "
@@ -72,7 +76,7 @@ def stated_range(result: ForecastResult) -> RoundedRange | None:
         ends = result.percentile_at(100.0 * (1.0 - share)), None
     elif definition.role is Role.UPPER:
         ends = None, result.percentile_at(100.0 * share)
-    return rounded_range(result.sample, ends, share, definition.report_to)
+    return rounded_range(result.sample, ends, share, definition.report_to, result.form)
 
 
 def _of(result: ForecastResult) -> list[Statement]:
@@ -91,14 +95,31 @@ def _main(result: ForecastResult, part: str) -> Statement | None:
     """Return the sentence that answers the question; None if there are too few trials for one."""
     definition, trials = result.definition, result.statistics.trials
     name, units = definition.name, f" {definition.units}" if definition.units else ""
+    if result.categories:
+        return Statement(name, "probability", f"{name}: {_texts_text(result.categories)}{part}")
     if result.yes is not None:
         return Statement(name, "probability", f"{name}: {_yes_text(result, result.yes)}{part}")
     found = stated_range(result)
     if found is None:
         return None
     if definition.role.is_bound:
-        return Statement(name, "bound", f"{name}: {_bound_text(found, units, trials)}{part}")
+        text = _bound_text(found, definition.central, units, trials)
+        return Statement(name, "bound", f"{name}: {text}{part}")
     return Statement(name, "range", f"{name}: {_range_text(found, definition.central, units, trials)}{part}")
+
+
+def _texts_text(categories: Mapping[str, Estimate]) -> str:
+    """`high with probability 45.1 % ± 0.4 %, middle 30.3 % ± 0.4 %, low 24.6 % ± 0.3 %`."""
+    said = [f"{text or '(empty)'} {percent_text(share)}" for text, share in categories.items()]
+    first, share = next(iter(categories.items()))
+    if share.value == 1.0:
+        return f"{first or '(empty)'} in {percent_text(share)}"
+    more = f", and {len(said) - _MOST_TEXTS} rarer texts" if len(said) > _MOST_TEXTS else ""
+    return ", ".join([f"{first or '(empty)'} with probability {percent_text(share)}", *said[1:_MOST_TEXTS]]) + more
+
+
+_MOST_TEXTS: Final = 6
+"""Texts of one answer whose shares a sentence gives."""
 
 
 def _yes_text(result: ForecastResult, yes: Estimate) -> str:
@@ -128,10 +149,10 @@ def _probabilities(result: ForecastResult) -> Iterator[Statement]:
     definition, above = result.definition, result.statistics.probability_above
     name, units = definition.name, f" {definition.units}" if definition.units else ""
     if definition.threshold is not None and above is not None:
-        event = f"{name} > {show(definition.threshold)}{units}"
+        event = f"{name} > {result.form.number(definition.threshold)}{units}"
         yield Statement(name, "threshold", _probability_text(event, above, _relation(definition.role, "above")))
     if definition.asked is not None and result.certainty is not None:
-        event = f"{name} {range_text(*definition.asked)}{units}"
+        event = f"{name} {range_text(*definition.asked, result.form.number)}{units}"
         side = "below" if math.isinf(definition.asked[0]) else "above" if math.isinf(definition.asked[1]) else "between"
         relation = _relation(definition.role, side)
         yield Statement(name, "certainty", _probability_text(event, result.certainty, relation))
@@ -162,10 +183,12 @@ def _part_text(result: ForecastResult) -> str:
     """Which of the accepted trials the shares are of, where a forecast is not a number in all of them."""
     numbers, others, discarded = result.statistics.trials, result.faults.total(), result.discards.total()
     if discarded:
-        return f"; counted in the {numbers:,} of {numbers + others + discarded:,} accepted trials that its filters keep"
+        every = count_text(numbers + others + discarded)
+        return f"; counted in the {count_text(numbers)} of {every} accepted trials that its filters keep"
     if not others:
         return ""
-    return f"; counted in the {numbers:,} of {numbers + others:,} accepted trials in which it is a number"
+    every = count_text(numbers + others)
+    return f"; counted in the {count_text(numbers)} of {every} accepted trials in which it is a number"
 
 
 def _range_text(found: RoundedRange, nominal: float, units: str, trials: int) -> str:
@@ -177,6 +200,8 @@ def _range_text(found: RoundedRange, nominal: float, units: str, trials: int) ->
         between = f"equal to {found.low_text}{units}"
     elif share.value == 1.0:
         return f"{percent_text(share)}, {between}"
+    if nominal > LIKELIER:
+        return f"the {number_text(100.0 * nominal)} % range ({percent_text(share)}) lies {between}"
     if surely_above(share, EVEN):
         return f"more probable than not ({percent_text(share)}) {between}"
     if nominal > EVEN:
@@ -184,18 +209,18 @@ def _range_text(found: RoundedRange, nominal: float, units: str, trials: int) ->
     return f"{percent_text(share)} {between}"
 
 
-def _bound_text(found: RoundedRange, units: str, trials: int) -> str:
+def _bound_text(found: RoundedRange, nominal: float, units: str, trials: int) -> str:
     """`at least 22 mph, more probable than not (51.3 % ± 0.4 %)`."""
     share, side = found.share, found.words(units)
     if share.value == 1.0:
         return f"{side} in {_all(trials)}"
-    if surely_above(share, EVEN):
+    if surely_above(share, EVEN) and nominal <= LIKELIER:
         return f"{side}, more probable than not ({percent_text(share)})"
     return f"{side}, with a probability of at least {percent_text(share)}"
 
 
 def _all(trials: int) -> str:
-    return f"all {trials:,} trials" if trials > 1 else "the only trial"
+    return f"all {count_text(trials)} trials" if trials > 1 else "the only trial"
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,10 +254,11 @@ def certainties(result: ForecastResult) -> list[Certainty]:
     threshold, above = definition.threshold, result.statistics.probability_above
     if threshold is not None and above is not None and sample.n:
         at_most = probability_between(sample, -math.inf, threshold)
-        found.append(Certainty("at most", -math.inf, threshold, f"at most {show(threshold)}{units}", at_most))
-        found.append(Certainty("over", threshold, math.inf, f"above {show(threshold)}{units}", above))
+        limit = result.form.number(threshold)
+        found.append(Certainty("at most", -math.inf, threshold, f"at most {limit}{units}", at_most))
+        found.append(Certainty("over", threshold, math.inf, f"above {limit}{units}", above))
     if definition.asked is not None and result.certainty is not None:
-        words = f"{range_text(*definition.asked)}{units}"
+        words = f"{range_text(*definition.asked, result.form.number)}{units}"
         found.append(Certainty("asked", *definition.asked, words, result.certainty))
     return found
 

@@ -8,7 +8,10 @@ from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
 from typing import TYPE_CHECKING, Final
 
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics import Estimate, probability_between
+from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, is_far, number_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.statistics import Sample
@@ -54,7 +57,11 @@ class RoundedRange:
 
 
 def rounded_range(
-    sample: Sample, ends: tuple[Estimate | None, Estimate | None], nominal: float, resolution: float | None = None
+    sample: Sample,
+    ends: tuple[Estimate | None, Estimate | None],
+    nominal: float,
+    resolution: float | None = None,
+    form: Form = PLAIN,
 ) -> RoundedRange | None:
     """Round a range so that what is said of it holds for its ends as they are printed.
 
@@ -68,11 +75,13 @@ def rounded_range(
         ends: of the range; None for an end that is not stated.
         nominal: the share that it holds.
         resolution: the step of the ends, which is used unless their errors are larger.
+        form: how the ends are written.
     """
     known = [end for end in ends if end is not None]
     if any(math.isnan(end.value) for end in known):
         return None
-    rounding = _Rounding(sample, ends, _unit(known, resolution))
+    resolution = form.step(max((end.error or 0.0 for end in known), default=0.0)) or resolution
+    rounding = _Rounding(sample, ends, _unit(known, resolution), form)
     value = known[0].value
     if len(known) > 1 and value == known[1].value and (resolution is None or _is_multiple(value, resolution)):
         return rounding.single(value)
@@ -94,10 +103,11 @@ class _Rounding:
     sample: Sample
     ends: tuple[Estimate | None, Estimate | None]
     unit: Decimal | None
+    form: Form
 
     def single(self, value: float) -> RoundedRange:
         """Return the range of one value, which its text alone rounds."""
-        text = _text(_round(value, self.unit, ROUND_HALF_EVEN, _SINGLE_DIGITS))
+        text = _text(_round(value, self.unit, ROUND_HALF_EVEN, _SINGLE_DIGITS), self.form)
         return RoundedRange(value, value, text, text, probability_between(self.sample, value, value))
 
     def range(self, steps: Steps) -> RoundedRange:
@@ -105,7 +115,7 @@ class _Rounding:
         low, high = self._end(0, steps[0]), self._end(1, steps[1])
         first, last = -math.inf if low is None else float(low), math.inf if high is None else float(high)
         share = probability_between(self.sample, first, max(first, last))
-        first_text, last_text = ("" if end is None else _text(end) for end in (low, high))
+        first_text, last_text = ("" if end is None else _text(end, self.form) for end in (low, high))
         return RoundedRange(first, last, first_text, last_text, share)
 
     def _end(self, side: int, steps: int | None) -> Decimal | None:
@@ -158,7 +168,7 @@ def _widened(rounding: _Rounding, nominal: float) -> RoundedRange | None:
     return _least(rounding, [(most - 1, most), (most, most - 1), (most, most)], nominal)
 
 
-def rounded_value(found: Estimate, resolution: float | None = None) -> tuple[float, str]:
+def rounded_value(found: Estimate, resolution: float | None = None, form: Form = PLAIN) -> tuple[float, str]:
     """Write a number in the digits that its error and the resolution support, and the same in words; not for nan.
 
     >>> rounded_value(Estimate(11.8435, 0.019))
@@ -166,8 +176,8 @@ def rounded_value(found: Estimate, resolution: float | None = None) -> tuple[flo
     >>> rounded_value(Estimate(11.8435, 0.019), 0.5)
     (12.0, '12.0')
     """
-    value = _round(found.value, _unit([found], resolution), ROUND_HALF_EVEN)
-    return float(value), _text(value)
+    value = _round(found.value, _unit([found], form.step(found.error or 0.0) or resolution), ROUND_HALF_EVEN)
+    return float(value), _text(value, form)
 
 
 def percent_text(share: Estimate) -> str:
@@ -184,15 +194,15 @@ def percent_text(share: Estimate) -> str:
     if share.value in (0.0, 1.0):
         return _bound(share)
     if share.error is None:
-        return f"{100.0 * share.value:.3g} %"
+        return f"{number_text(100.0 * share.value, 3)} %"
     error = 100.0 * share.error
     mantissa, _, exponent = f"{error:.0e}".partition("e")
     decimals = max(0, -int(exponent) + (mantissa == "1"))
-    return f"{100.0 * share.value:.{decimals}f} % ± {error:.{decimals}f} %"
+    return f"{fixed_text(100.0 * share.value, decimals)} % ± {fixed_text(error, decimals)} %"
 
 
 def _bound(share: Estimate) -> str:
-    trials = f"0 of {share.n:,} trials" if share.value == 0.0 else f"all {share.n:,} trials"
+    trials = f"{'0 of' if share.value == 0.0 else 'all'} {count_text(share.n)} trials"
     reach = reach_text(share)
     return f"{trials}; {reach} with 95 % confidence" if reach else trials
 
@@ -247,7 +257,8 @@ def _round(value: float, unit: Decimal | None, rounding: str, significant: int =
     return found.normalize() if unit is None else found
 
 
-def _text(value: Decimal) -> str:
-    if value and abs(value.adjusted()) > _DIGITS:
+def _text(value: Decimal, form: Form) -> str:
+    if form.kind is not Kind.DATE and is_far(form.factor * float(value)):
         return f"{value:.{len(value.as_tuple().digits) - 1}e}"
-    return f"{value if value else abs(value):,f}"
+    exponent = value.as_tuple().exponent
+    return form.tick(float(value), -exponent if isinstance(exponent, int) else 0)

@@ -289,7 +289,7 @@ def _threshold(mine: Forecast, theirs: Forecast, factor: float) -> float | None:
 
 
 def _accepted_trials(run: RunResult, forecast: Forecast, factor: float) -> Accepted:
-    return Accepted.of(run.trial_index, run.forecasts[forecast.name] * factor)
+    return Accepted.of(run.trial_index, run.numbers_of(forecast.name) * factor)
 
 
 def _match_forecasts(

@@ -63,7 +63,7 @@ def fed_model(model: CompiledModel, source: RunResult, feeds: Mapping[str, str])
             message = f"the assumption {assumption.name!r} is drawn by a call in a formula"
             raise SimulationError(message, where=assumption.row, hint="give it a cell and a row in xlmc_assumptions")
         fed[assumption.name] = assumption
-        values.append(source.forecasts[forecast.name] * _factor(assumption, forecast))
+        values.append(source.numbers_of(forecast.name) * _factor(assumption, forecast))
     trials = np.stack(values)
     trials = trials[:, np.isfinite(trials).all(axis=0)]
     if trials.shape[1] < _FEWEST:

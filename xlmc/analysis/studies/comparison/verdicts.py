@@ -195,7 +195,7 @@ def _undecided_text(comparison: Comparison) -> Iterator[str]:
 def _too_few(comparison: Comparison, each: ForecastComparison) -> str:
     runs = ((comparison.first, each.first.name), (comparison.second, each.second.name))
     for book, (run, name) in zip(book_names(comparison), runs, strict=True):
-        numbers = int(np.count_nonzero(~np.isnan(run.forecasts[name])))
+        numbers = int(np.count_nonzero(~np.isnan(run.numbers_of(name))))
         if numbers < run.accepted and numbers < _ENOUGH:
             count = "none" if not numbers else f"only {numbers}"
             return f"it is a number in {count} of the {run.accepted:,} trials that {book} accepts"

@@ -150,6 +150,7 @@ def study(
         SimulationError: an argument is out of its range, or the reference accepts too few trials.
     """
     wanted = (accuracy.strip(), *as_tolerance(accuracy))
+    model = _without_texts(model)
     own = model.definitions.settings.seed if seed is None else seed
     _check(own, replicates, trials, reference_trials, model)
     tell = tell or (lambda _: None)
@@ -176,6 +177,23 @@ def study(
     return Study(
         model, own, wanted, reference, unfiltered, ladder, most, once, curves, engines, measuring.absent
     )  # fmt: skip
+
+
+def _without_texts(model: CompiledModel) -> CompiledModel:
+    """Return the model without forecasts whose answers are texts: no method is a way to compute their mean.
+
+    Raises:
+        SimulationError: it has no other forecasts.
+    """
+    if not model.categories:
+        return model
+    kept = tuple(each for number, each in enumerate(model.forecasts) if number not in model.categories)
+    if not kept:
+        message = "all answers of the workbook are texts, and methods are compared by numbers"
+        raise SimulationError(message, where=model.forecasts[0].cell, hint="Add a forecast that is a number")
+    names = {each.name for each in kept}
+    own = tuple(each for each in model.forecast_filters if {*each.only_for} <= names)
+    return model.changed(model.workbook, replace(model.definitions, forecasts=kept, forecast_filters=own))
 
 
 def quick_settings(given: Mapping[str, Any]) -> dict[str, Any]:

@@ -56,7 +56,8 @@ def sensitivities(
         SimulationError: no assumption that is drawn has one of these names.
     """
     model, known = simulation.model, _FOUND.setdefault(simulation, {})
-    wanted = tuple(i for i, each in enumerate(model.forecasts) if names is None or each.name in names)
+    found = [i for i, each in enumerate(model.forecasts) if names is None or each.name in names]
+    wanted = tuple(i for i in found if i not in model.categories)  # texts have no variance to explain
     asked = frozenset(_live_name(model, name) for name in assumptions)
     if (wanted, asked) not in known:
         known[wanted, asked] = _analyse(simulation, wanted, asked, told)

@@ -31,7 +31,7 @@ def model_runner(
 ) -> ModelRunner:
     """Make what runs the blocks of a model in this process, in one thread."""
     sampler, evaluator = model.sampler(seed, block, engine, plan), program.evaluator(block)
-    return ModelRunner(sampler, evaluator, block, len(model.forecasts), model.fallible)
+    return ModelRunner(sampler, evaluator, block, len(model.forecasts), model.fallible, model.categories)
 
 
 @dataclass(frozen=True)

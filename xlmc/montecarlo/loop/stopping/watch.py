@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from types import FrameType, TracebackType
 from typing import Any, Final
 
@@ -122,28 +122,29 @@ class Interruption:
         self.asked = True
 
 
-def chosen_rule(asked: Stopping, forecasts: Sequence[Forecast]) -> StopRule | None:
+def chosen_rule(asked: Stopping, forecasts: Sequence[Forecast], texts: Collection[int] = ()) -> StopRule | None:
     """Make the rule; None if the run is to run its trials.
 
     Raises:
-        SimulationError: there is no forecast of a name, or none at all.
+        SimulationError: there is no forecast of a name, or none at all, or its answers are texts: the numbers of those
+            are `texts`.
     """
     goal = asked.goal
     if goal is None:
         return None
     rule = RULES[goal.key]
-    return rule(goal, _named(asked.forecasts, forecasts)) if goal.of_forecasts else rule(goal)
+    return rule(goal, _named(asked.forecasts, forecasts, texts)) if goal.of_forecasts else rule(goal)
 
 
-def _named(names: Sequence[str], forecasts: Sequence[Forecast]) -> list[tuple[int, str, float]]:
-    index_of = {name_key(forecast.name): index for index, forecast in enumerate(forecasts)}
+def _named(names: Sequence[str], forecasts: Sequence[Forecast], texts: Collection[int]) -> list[tuple[int, str, float]]:
+    index_of = {name_key(each.name): index for index, each in enumerate(forecasts) if index not in texts}
     if not index_of:
         raise SimulationError("there is no forecast whose precision could be asked for", hint="Define a forecast")
     for name in names:
         if name_key(name) not in index_of:
-            hint = f"choose from {', '.join(repr(forecast.name) for forecast in forecasts)}"
+            hint = f"choose from {', '.join(repr(forecasts[index].name) for index in index_of.values())}"
             raise SimulationError(f"there is no forecast {name!r}", hint=hint)
-    found = dict.fromkeys(index_of[name_key(name)] for name in names) or range(len(forecasts))
+    found = dict.fromkeys(index_of[name_key(name)] for name in names) or index_of.values()
     return [(index, forecasts[index].name, forecasts[index].central) for index in found]
 
 

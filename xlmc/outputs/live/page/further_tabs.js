@@ -49,7 +49,7 @@ class PairView {
     this.layOver(pair.together);
   }
 
-  draw({ x, y, first, second, units }) {
+  draw({ x, y, first, second, units, forms }) {
     this.scatter?.destroy();
     if (!x.length) return;
     const reach = (values) => {
@@ -58,12 +58,12 @@ class PairView {
       return [low - room, high + room];
     };
     const [ends, sides] = [reach(x), reach(y)];
-    const options = chartOptions(widthOf(this.chart), ends, 1, "", "frequency");
+    const options = chartOptions(widthOf(this.chart), ends, 1, { units: "", form: forms[0] }, "frequency");
     const named = (name, unit) => (unit ? `${name}, ${unit}` : name);
     options.scales.y.range = sides;
     options.axes[0].label = named(first, units[0]);
     options.axes[1].label = named(second, units[1]);
-    options.axes[1].values = (_, splits) => splits.map((split) => String(Number(split.toPrecision(6))));
+    options.axes[1].values = (_, splits) => splits.map((at) => formText(at, decimalsOf(splits[1] - splits[0]), forms[1]));
     options.hooks = { draw: [(chart) => {
       const { ctx } = chart;
       ctx.fillStyle = "rgba(47, 109, 168, .45)";

@@ -43,6 +43,19 @@ function forecastElement({ name, units, marks }, number) {
   );
 }
 
+/** An answer that is yes or no, or a text: the share of each, and that of the state behind it. */
+function sharesElement({ name, shares }) {
+  const compared = shares.some(([, , , before]) => before !== null);
+  const heads = ["", "", "Now", ...(compared ? ["Behind"] : [])];
+  const bar = (value) => make("meter", { min: 0, max: 100, value, "aria-hidden": "true" });
+  return make("article", { class: "forecast shares" }, make("h3", {}, named(name)),
+    make("table", { class: "beside" }, make("caption", { text: "Share of the accepted trials" }),
+      make("thead", {}, make("tr", {}, ...heads.map((text) => (text ? make("th", { scope: "col", text }) : make("td"))))),
+      make("tbody", {}, ...shares.map(([label, text, now, before]) => make("tr", {},
+        make("th", { scope: "row" }, named(label)), make("td", {}, bar(now)), make("td", { class: "number", text }),
+        ...(compared ? [make("td", { class: "number", text: `${before.toFixed(2)} %` })] : []))))));
+}
+
 class LivePanel extends Panel {
   static behind = "";
 
@@ -106,7 +119,7 @@ class LivePanel extends Panel {
     this.chart?.destroy();
     this.reach(false);
     const { state, bins } = this;
-    const options = chartOptions(widthOf(this.find(".chart")), this.ends, this.top, this.forecast.units, state.view);
+    const options = chartOptions(widthOf(this.find(".chart")), this.ends, this.top, this.forecast, state.view);
     options.scales = { x: { time: false, range: () => this.ends }, y: { range: () => [0, this.top] } };
     if (bins.whole) options.axes[0].incrs = [1, 2, 5, 10, 20, 50, 100];
     options.hooks = {
@@ -178,7 +191,7 @@ class LivePanel extends Panel {
   tellAbove() {
     const text = this.find(".above").value;
     const place = this.find(".beyond");
-    const threshold = text.trim() ? typed(text, null) : null;
+    const threshold = text.trim() ? formTyped(text, null, this.forecast.form) : null;
     this.find(".above").toggleAttribute("aria-invalid", Boolean(text.trim()) && threshold === null);
     if (threshold === null) {
       place.textContent = text.trim() ? whyNoNumber(text) : "";

@@ -129,6 +129,9 @@ class RightSide {
       if (forecast === null) {
         entry.panel = null;
         entry.place.replaceChildren(make("h3", {}, named(name)), make("p", { class: "alarm", text: "Too few accepted trials have a number to draw a chart." }));
+      } else if (forecast.shares) {
+        entry.panel = null;
+        entry.place.replaceChildren(sharesElement(forecast));
       } else if (entry.panel) {
         entry.panel.update(forecast, stage === "moving");
       } else {

@@ -1,0 +1,279 @@
+"""One forecast of each kind, with and without a filter: outputs print the numbers of the JSON, each in its form."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+from datetime import date, timedelta
+
+import docx
+import openpyxl
+import pytest
+from openpyxl.worksheet.table import Table
+
+from xlmc.analysis.results.saved import open_run
+from xlmc.api import load
+from xlmc.outputs.live.frames import frame_of
+from xlmc.outputs.summary import summarise, summary_text
+
+FORECASTS = {
+    "Speed": ("=B1^2/10", "General", "m", 100),
+    "Cost": ("=B2*(1+B1/100)", '"$"#,##0', "", 260_000),
+    "End": ("=B6+B1*3", "yyyy-mm-dd", "", 46_180),
+    "Rate": ("=B7*0.8", "0.0%", "", 0.35),
+    "Events": ("=B5+1", "General", "events", 4),
+    "Avoided": ("=B1<36", "General", "", None),
+    "Never": ("=B1>1000", "General", "", None),
+    "Verdict": ('=IF(B1<28,"low",IF(B1<36,"middle","high"))', "General", "", None),
+    "Tiny": ("=B4*2", "General", "m", 3e-9),
+    "Huge": ("=B1*1E12/33", "General", "J", None),
+    "Duration": ("=B1/240", "[h]:mm", "", None),
+    "Fixed": ("=B2/8", '#,##0.00 "EUR"', "", None),
+}
+"""Name -> formula, number format, units, threshold."""
+
+KINDS = {
+    "Speed": "number",
+    "Cost": "currency",
+    "End": "date or time",
+    "Rate": "percent",
+    "Events": "whole number",
+    "Avoided": "yes/no",
+    "Never": "yes/no",
+    "Verdict": "category",
+    "Tiny": "number",
+    "Huge": "number",
+    "Duration": "date or time",
+    "Fixed": "currency",
+}
+
+INPUTS = {"B1": 30, "B2": 200_000, "B3": 180_000, "B4": 2e-9, "B5": 3, "B6": 46_082, "B7": 0.4}
+
+ASSUMPTIONS = [
+    ["Name", "Cell", "Distribution", "Low", "High", "Rate"],
+    ["Speed in", "=Model!B1", "Uniform", 25, 40, None],
+    ["Cost in", "=Model!B2", "Uniform", "=Model!B3", "=Model!B3*1.4", None],
+    ["Tiny in", "=Model!B4", "Uniform", 1e-9, 3e-9, None],
+    ["Count", "=Model!B5", "Poisson", None, None, 3.5],
+    ["Start", "=Model!B6", "Uniform", 46_000, 46_200, None],
+    ["Share", "=Model!B7", "Uniform", 0.3, 0.5, None],
+]
+
+
+def write_book(path, *, filtered, kinds=()):
+    """A workbook with a forecast of each kind; `kinds` are those that its column Kind names."""
+    book = openpyxl.Workbook()
+    model, tables = book.active, book.create_sheet("Tables")
+    model.title = "Model"
+    for place, value in INPUTS.items():
+        model[place] = value
+    rows = [["Name", "Cell", "Units", "Threshold", "Kind"]]
+    for row, (name, (formula, digits, units, threshold)) in enumerate(FORECASTS.items(), 10):
+        model[f"B{row}"] = formula
+        model[f"B{row}"].number_format = digits
+        rows.append([name, f"=Model!B{row}", units, threshold, dict(kinds).get(name)])
+    filled = {"xlmc_assumptions": ASSUMPTIONS, "xlmc_forecasts": rows}
+    filled["xlmc_settings"] = [["Setting", "Value"], ["Trials", 4_000]]
+    if filtered:
+        model["D1"] = "=B1+B5"
+        filled["xlmc_filters"] = [["Name", "Cell", "At most", "Because"], ["Limit", "=Model!D1", 42, "measured"]]
+    top = 1
+    for name, content in filled.items():
+        for line in content:
+            tables.append(line)
+        last = openpyxl.utils.get_column_letter(len(content[0]))
+        tables.add_table(Table(displayName=name, ref=f"A{top}:{last}{top + len(content) - 1}"))
+        tables.append([])
+        top += len(content) + 1
+    book.save(path)
+    return path
+
+
+@pytest.fixture(scope="module", params=[False, True], ids=["no-filters", "filters"])
+def outputs(request, tmp_path_factory):
+    """The run, its JSON, and where its other outputs are."""
+    folder = tmp_path_factory.mktemp("kinds")
+    run = load(write_book(folder / "book.xlsx", filtered=request.param)).simulate()
+    run.save(folder / "out.xlsx")
+    run.save_json(folder / "out.json")
+    run.save_page(folder / "out.html")
+    run.save_report(folder / "out.pdf")
+    run.save_report(folder / "out.docx")
+    run.keep(folder / "out.xlmcrun")
+    run.extract(folder / "out.csv")
+    return run, json.loads((folder / "out.json").read_text(encoding="utf-8")), folder
+
+
+def text_of(path):
+    """All that a PDF or Word file says, without its blanks."""
+    if path.suffix == ".pdf":
+        found = subprocess.run(["pdftotext", path, "-"], capture_output=True, check=True, encoding="utf-8").stdout
+    else:
+        document = docx.Document(str(path))
+        cells = (cell.text for table in document.tables for row in table.rows for cell in row.cells)
+        found = "\n".join([*(each.text for each in document.paragraphs), *cells])
+    return re.sub(r"\s+", "", found)
+
+
+def forecast(document, name):
+    return next(each for each in document["forecasts"] if each["name"] == name)
+
+
+def test_each_forecast_knows_its_kind(outputs):
+    run, document, folder = outputs
+    assert {each["name"]: each["kind"] for each in document["forecasts"]} == KINDS
+    assert {name: result.kind.value for name, result in run.results.items()} == KINDS
+    again = open_run(folder / "out.xlmcrun")
+    assert {name: result.kind.value for name, result in again.results.items()} == KINDS
+
+
+def test_texts_are_answers_and_not_lost(outputs):
+    run, document, folder = outputs
+    shares = {each["text"]: each["share"]["value"] for each in forecast(document, "Verdict")["categories"]}
+    speeds = run.inputs["Speed in"]
+    assert shares["low"] == pytest.approx((speeds < 28).mean())
+    assert shares["high"] == pytest.approx((speeds >= 36).mean())
+    assert sum(shares.values()) == pytest.approx(1.0)
+    assert document["trials"]["lost_to_errors"] == 0
+    assert not forecast(document, "Verdict")["without_number"]
+    frame = run.frame()
+    assert (frame["Verdict"] == "low").mean() == pytest.approx(shares["low"])
+    assert forecast(document, "Verdict")["base_case"] == "middle"
+    again = open_run(folder / "out.xlmcrun")
+    assert {text: share.value for text, share in again["Verdict"].categories.items()} == shares
+    lines = (folder / "out.csv").read_text(encoding="utf-8").splitlines()
+    column = lines[0].split(",").index("Verdict")
+    assert {line.split(",")[column] for line in lines[1:]} == {"low", "middle", "high"}
+
+
+NUMBER = r"-?[\d,]+(?:\.\d+)?(?:e[+-]\d+)?"
+
+
+def numbers_in(text):
+    """The value and the error of `$48,210 ± 870`, `5.44 ± 0.32 %` and `(2.3 ± 0.1)e-09`; one unit of the last digit."""
+    power = re.search(r"\)e([+-]\d+)", text)
+    scale = 10.0 ** int(power[1]) if power else 0.01 if text.endswith("%") else 1.0
+    plain = [found.replace(",", "") for found in re.findall(NUMBER, text.replace("(", "").partition(")e")[0])]
+    decimals = len(plain[-1].partition(".")[2])
+    zeros = min(len(each) - len(each.rstrip("0")) for each in plain) if not decimals else 0
+    return [float(each) * scale for each in plain], scale * 10.0 ** (zeros - decimals)
+
+
+def check(text, value, error):
+    found, unit = numbers_in(text)
+    assert found[0] == pytest.approx(value, abs=0.5001 * unit), text
+    assert found[1] == pytest.approx(error, abs=0.5001 * unit), text
+
+
+def table(run):
+    headings, rows = summary_text(summarise(run._run))
+    return {row[0]: dict(zip(headings, row, strict=True)) for row in rows}
+
+
+@pytest.mark.parametrize("name", ["Speed", "Cost", "Rate", "Events", "Tiny", "Huge", "Fixed"])
+def test_the_table_prints_the_json_to_its_digits(outputs, name):
+    run, document, _ = outputs
+    told, row = forecast(document, name), table(run)[name]
+    mean, spread = told["statistics"]["mean"], told["statistics"]["standard_deviation"]
+    check(row["Mean"], mean["value"], mean["error"])
+    check(row["SD"], spread["value"], spread["error"])
+    ends = next(row[key] for key in row if key.endswith("range")).split(" to ")
+    for text, end in zip(ends, ("low", "high"), strict=True):
+        if " ± " in text:
+            check(text, told["central_range"][end]["value"], told["central_range"][end]["error"])
+    decimals = {len(text.partition(" ")[0].partition(".")[2]) for text in ends}
+    assert len(decimals) == 1  # both ends of a range have the same
+    assert not re.search(r"\de\+(0\d|1[01])\b", " ".join(row.values()))
+
+
+def test_dates_are_dates(outputs):
+    run, document, folder = outputs
+    told, row = forecast(document, "End"), table(run)["End"]
+    day = date(1899, 12, 30) + timedelta(days=int(told["statistics"]["mean"]["value"]))
+    assert row["Mean"].startswith(f"{day} ± ")
+    assert row["SD"].endswith(" days")
+    assert row["Base case"] == "2026-05-30"
+    assert row["Threshold"] == "2026-06-07"
+    said = next(each for each in run.sentences if each.startswith("End: "))
+    assert re.search(r"between 2026-\d\d-\d\d and 2026-\d\d-\d\d$", said)
+    assert table(run)["Duration"]["Base case"] == "3:00"
+    for text in ((folder / "out.html").read_text(encoding="utf-8"), *map(text_of, sorted(folder.glob("out.[pd]*")))):
+        assert str(day) in text
+        assert "P(End&gt;2026-06-07)" in re.sub(r"\s+", "", text).replace("(End>", "(End&gt;")
+
+
+def test_yes_and_no_are_shares_with_exact_bounds(outputs):
+    run, document, _ = outputs
+    rows = table(run)
+    assert rows["Avoided"]["SD"] == rows["Never"]["SD"] == ""
+    trials = document["trials"]["accepted"]
+    assert forecast(document, "Never")["yes"]["value"] == 0.0
+    assert rows["Never"]["Mean"].startswith("0 %, at most 0.")
+    assert f"Never: yes in 0 of {trials:,} trials; at most" in "\n".join(run.sentences)
+
+
+def test_every_output_gives_the_shares_of_texts(outputs):
+    _, document, folder = outputs
+    shares = {each["text"]: each["share"] for each in forecast(document, "Verdict")["categories"]}
+    texts = [(folder / "out.html").read_text(encoding="utf-8"), *map(text_of, sorted(folder.glob("out.[pd]*")))]
+    for share in shares.values():
+        shown = f"{100 * share['value']:.2f} ± {100 * share['error']:.2f}"
+        assert all(shown.replace(" ", "") in re.sub(r"\s+", "", text) for text in texts), shown
+    rows = openpyxl.load_workbook(folder / "out.xlsx")["Results"].iter_rows(values_only=True)
+    sheet = {row[0]: row[2] for row in rows if row[0] in shares}
+    assert sheet == {t: each["value"] for t, each in shares.items()}
+
+
+def test_cells_have_the_formats_of_their_kinds(outputs):
+    _, _, folder = outputs
+    rows = openpyxl.load_workbook(folder / "out.xlsx")["Results"].iter_rows()
+    formats = {}
+    for row in rows:
+        formats.setdefault(row[0].value, row[3].number_format)  # of the first table, the answers
+    assert formats["End"] == "yyyy-mm-dd"
+    assert formats["Cost"].startswith('"$"#,##0')
+    assert formats["Rate"].endswith("%")
+    assert formats["Fixed"].endswith('" EUR"')
+    assert "E" not in formats["Huge"]
+
+
+def test_the_window_has_forms_and_shares(outputs):
+    run, _, _ = outputs
+    charts = frame_of(run._run, None, list(FORECASTS), None, moving=False, fits=False)["forecasts"]
+    assert charts["Rate"]["form"]["factor"] == 100.0
+    assert charts["Cost"]["form"]["before"] == "$"
+    assert charts["End"]["form"]["moment"] == "day"
+    assert [label for label, *_ in charts["Verdict"]["shares"]] == [*run["Verdict"].categories]
+    assert [label for label, *_ in charts["Avoided"]["shares"]] == ["yes", "no"]
+
+
+def test_a_range_given_by_a_formula_stands_with_its_value(outputs):
+    _, document, folder = outputs
+    said = "Low 180,000 (=Model!B3), High 252,000 (=Model!B3*1.4)"
+    assert document["assumptions"][1]["parameters"] == said
+    book = openpyxl.load_workbook(folder / "out.xlsx")
+    assert any(said in str(cell.value) for row in book["Assumptions"].iter_rows() for cell in row)
+    assert said in (folder / "out.html").read_text(encoding="utf-8")
+    for path in sorted(folder.glob("out.[pd]*")):
+        assert said.replace(" ", "") in text_of(path)
+
+
+def test_the_column_kind_overrides(tmp_path):
+    kinds = {"Speed": "currency", "Events": "category", "Avoided": "number", "Cost": "number"}
+    run = load(write_book(tmp_path / "book.xlsx", filtered=False, kinds=kinds)).simulate(trials=500)
+    assert {name: run[name].kind.value for name in kinds} == kinds
+    assert {"1", "2", "3"} <= set(run["Events"].categories)
+    assert "$" not in table(run)["Cost"]["Mean"]
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+@pytest.mark.parametrize("engine", ["numpy", "jit"])
+def test_texts_are_numbered_alike_however_they_are_computed(tmp_path, jobs, engine):
+    model = load(write_book(tmp_path / "book.xlsx", filtered=True))
+    one, other = (
+        model.simulate(trials=3_000),
+        model.simulate(trials=3_000, jobs=jobs, engine=engine, scheduler="threads"),
+    )
+    assert one._run.labels == other._run.labels
+    assert one.forecasts["Verdict"].tobytes() == other.forecasts["Verdict"].tobytes()

@@ -1,0 +1,273 @@
+"""How the numbers of a forecast are written: a number, a percentage, an amount of money, a date, as its cell shows it.
+
+Numbers stay as they are in the cell, a percentage as a share and a date as a serial number; a `Form` writes them.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from xlmc.errors import FormulaError
+from xlmc.excel.functions.number_format import FormatError, UnknownFormat, parse_format
+from xlmc.montecarlo.definitions.stating import Kind
+from xlmc.montecarlo.statistics.number_text import (
+    decimals_of,
+    exact_text,
+    fixed_text,
+    format_estimate,
+    is_far,
+    number_text,
+)
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.statistics import Estimate
+
+__all__ = ["PLAIN", "Form", "kind_of_format", "span_text"]
+
+_QUOTED: Final = re.compile(r'"([^"]*)"|\\(.)|\[\$([^\]-]*)(?:-[^\]]*)?\]|\[[^\]]*\]|_.|\*.')
+_DIGITS: Final = re.compile(r"[#0?][#0?,.\s]*")
+_SIGNS: Final = "$€£¥₹₽₩₺₴฿₫₱₪₦"
+_CODES: Final = re.compile(
+    r"\b(USD|EUR|GBP|JPY|CHF|CAD|AUD|NZD|CNY|INR|SEK|NOK|DKK|PLN|CZK|HUF|BRL|MXN|ZAR)\b|kr|zł|Kč"
+)
+_MOMENT: Final = re.compile(r"[ymdhs]", re.IGNORECASE)
+_DAY: Final = "yyyy-mm-dd"
+_DAY_AND_TIME: Final = "yyyy-mm-dd hh:mm"
+_SECONDS_A_DAY: Final = 86_400
+_IN_PERCENT: Final = (Kind.PERCENT, Kind.YES_NO)
+_SECONDS: Final = (1, 2, 5, 10, 30, 60, 120, 300, 600, 1800, 3600, 7200, 21_600, 43_200)
+_DAYS: Final = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 5000, 10_000)
+_STEPS: Final = tuple(map(float, [*_SECONDS, *(days * _SECONDS_A_DAY for days in _DAYS)]))
+"""Steps in which dates and times are stated, in seconds."""
+_UNITS: Final = ((1.0, 1.0, "days"), (1 / 24, 24.0, "h"), (1 / 1440, 1440.0, "min"), (0.0, 86400.0, "s"))
+"""From so many days on, a span is written in units of which a day has so many."""
+
+
+def kind_of_format(code: str) -> Kind | None:
+    """Return what a number format says that the numbers are; None where it does not say.
+
+    >>> [kind_of_format(code) for code in ("0.0%", '"$"#,##0', "d-mmm-yy", '0.0" mph"', "General")]
+    [<Kind.PERCENT: 'percent'>, <Kind.CURRENCY: 'currency'>, <Kind.DATE: 'date or time'>, None, None]
+    """
+    first = code.partition(";")[0]
+    bare = _QUOTED.sub("", first)
+    if bare.strip().casefold() in ("", "general", "standard", "@"):
+        return None
+    if "%" in bare:
+        return Kind.PERCENT
+    if any(_is_money(affix) for affix in _affixes(first)):
+        return Kind.CURRENCY
+    elapsed = re.search(r"\[[hms]+\]", first, re.IGNORECASE)
+    return Kind.DATE if elapsed or (_MOMENT.search(bare) and not _DIGITS.match(bare.strip())) else None
+
+
+def _is_money(affix: str) -> bool:
+    return any(sign in affix for sign in _SIGNS) or bool(_CODES.search(affix))
+
+
+def _affixes(first: str) -> tuple[str, str]:
+    """Return what a section writes before and after the digits, as plain text."""
+    marked = _QUOTED.sub(lambda found: "".join(part or "" for part in found.groups()), first)
+    found = _DIGITS.search(marked)
+    if found is None:
+        return "", ""
+    digits = found[0].rstrip()
+    return marked[: found.start()].lstrip("("), marked[found.start() + len(digits) :].rstrip(")")
+
+
+@dataclass(frozen=True, slots=True)
+class Form:
+    """The form of one forecast's numbers.
+
+    Attributes:
+        kind: what the numbers are.
+        code: the number format of the cell.
+        report_to: the resolution at which they are stated; None where their error alone decides.
+        date1904: whether days are counted from 1904.
+    """
+
+    kind: Kind = Kind.NUMBER
+    code: str = "General"
+    report_to: float | None = None
+    date1904: bool = False
+
+    @property
+    def factor(self) -> float:
+        """What a number is multiplied by before it is written: 100 for percentages and for shares of yes."""
+        return 100.0 if self.kind in _IN_PERCENT else 1.0
+
+    @property
+    def affixes(self) -> tuple[str, str]:
+        """What is written before and after each number."""
+        if self.kind in _IN_PERCENT:
+            return "", " %"
+        if self.kind is not Kind.CURRENCY:
+            return "", ""
+        before, after = _affixes(self.code.partition(";")[0])
+        return (before if _is_money(before) else ""), (after if _is_money(after) else "")
+
+    def number(self, value: float, decimals: int | None = None) -> str:
+        """Write a number without an error, to so many decimals of what is written; by default with all that it has, up
+        to six digits or more.
+        """
+        if not math.isfinite(value):
+            return ""
+        if self.kind is Kind.DATE:
+            return self._moment(value)
+        scaled = self._scaled(value)
+        text = exact_text(abs(scaled)) if decimals is None or is_far(scaled) else fixed_text(abs(scaled), decimals)
+        return self._signed(text, scaled < 0.0)
+
+    def beside(self, value: float, like: Estimate) -> str:
+        """Write a number without an error in the digits of another one; all of its own where it is an exact one."""
+        return self.number(value, self._decimals(like))
+
+    def value(self, found: Estimate) -> str:
+        """Return the number in the digits that its error supports, without the error."""
+        if math.isnan(found.value):
+            return ""
+        return self.number(found.value, self._decimals(found)) if found.error else self.rough(found.value)
+
+    def rough(self, value: float) -> str:
+        """Write a number whose error is not known, in six digits."""
+        if self.kind is Kind.DATE or not math.isfinite(value):
+            return self.number(value)
+        return self._signed(number_text(abs(self._scaled(value))), value < 0.0)
+
+    def estimate(self, found: Estimate, decimals: int | None = None) -> str:
+        """`11.799 ± 0.013`, `$48,210 ± 870`, `5.44 ± 0.32 %`, `2026-03-01 ± 1.2 days`; empty where there is no number.
+
+        Args:
+            found: the number and its error.
+            decimals: of both; by default those of the error in two digits.
+        """
+        if math.isnan(found.value):
+            return ""
+        if self.kind is Kind.DATE:
+            error = "" if not found.error else f" ± {span_text(found.error)}"
+            return f"{self._moment(found.value)}{error}"
+        if found.error is None:
+            return self.rough(found.value) if decimals is None else self.number(found.value, decimals)
+        if found.error == 0.0 and self.kind is Kind.WHOLE:
+            return exact_text(found.value)
+        scaled = self._scaled(found.value)
+        text = format_estimate(abs(scaled), abs(self._scaled(found.error)), decimals)
+        return self._signed(text, scaled < 0.0)
+
+    def ends(self, low: Estimate, high: Estimate, like: Estimate) -> str:
+        """`172.53 ± 0.70 to 243.16 ± 0.97`, both to the same decimal; ends without an error as `like`."""
+        decimals = self.decimals_of_both(low, high)
+        texts = []
+        for end in (low, high):
+            if end.error or self.kind is Kind.DATE:
+                texts.append(self.estimate(end, decimals))
+            elif decimals is not None:
+                texts.append(self.number(end.value, decimals))
+            else:
+                texts.append(self.estimate(end) if end.error == 0.0 else self.beside(end.value, like))
+        return " to ".join(texts)
+
+    def decimals_of_both(self, *found: Estimate) -> int | None:
+        """Return the decimals of two numbers that stand beside each other: those of the larger error."""
+        known = [decimals_of(self._scaled(each.error)) for each in found if each.error]
+        if any(is_far(self._scaled(each.value)) for each in found):
+            return None
+        return min((each for each in known if each is not None), default=None)
+
+    def spread(self, found: Estimate) -> str:
+        """Write a standard deviation or a difference, with its error: of dates a span of time."""
+        if self.kind is not Kind.DATE:
+            return self.estimate(found)
+        return "" if math.isnan(found.value) else span_text(found.value, found.error)
+
+    def width(self, value: float) -> str:
+        """Return the width of a bar: of dates a span of time."""
+        return self.number(value) if self.kind is not Kind.DATE else span_text(value, exact=True)
+
+    def tick(self, value: float, decimals: int) -> str:
+        """Write a number beside an axis, to so many decimals of the number itself."""
+        if self.kind is Kind.DATE:
+            return self._moment(value)
+        shift = 2 if self.kind in _IN_PERCENT else 0
+        return self._signed(fixed_text(abs(self._scaled(value)), max(decimals - shift, 0)), value < 0.0)
+
+    def rounded_width(self, width: float) -> float:
+        """Return the width of bars near another one, in which dates and times are round; of other numbers the same."""
+        if self.kind is not Kind.DATE:
+            return width
+        return min(_STEPS, key=lambda each: abs(math.log(each / (width * _SECONDS_A_DAY)))) / _SECONDS_A_DAY
+
+    def step(self, error: float) -> float | None:
+        """Return the step in which a number with this error is stated: of whole numbers 1, of dates and times a unit
+        that their format shows, or a longer one; None where powers of ten will do.
+        """
+        if self.kind is Kind.WHOLE:
+            return 1.0 if error < 2.0 else None
+        if self.kind is not Kind.DATE:
+            return None
+        code = _QUOTED.sub(lambda found: found[0] if found[0].startswith("[") else "", self.moment_code).casefold()
+        least = 1.0 if "s" in code else float(_SECONDS_A_DAY)
+        if "h" in code and "s" not in code:
+            least = 60.0 if re.search(r"h\W*m", code) else 3600.0
+        wanted = max(least, error * _SECONDS_A_DAY / 2.0)
+        return next((each for each in _STEPS if each >= wanted), _STEPS[-1]) / _SECONDS_A_DAY
+
+    def _decimals(self, found: Estimate) -> int | None:
+        return None if not found.error else decimals_of(self._scaled(found.error))
+
+    def _scaled(self, value: float) -> float:
+        return self.factor * value
+
+    def _signed(self, text: str, negative: bool) -> str:
+        before, after = self.affixes
+        sign = "-" if negative and any(digit in text.partition(" ")[0] for digit in "123456789") else ""
+        return f"{sign}{before}{text}{after}"
+
+    @property
+    def epoch(self) -> int:
+        """The serial number of 1 January 1970."""
+        return 24_107 if self.date1904 else 25_569
+
+    @property
+    def shows(self) -> str:
+        """What the format shows of a moment: the `day`, the `time` of a day too, or a `span` without a day."""
+        code = _QUOTED.sub(lambda found: found[0] if found[0].startswith("[") else "", self.moment_code).casefold()
+        if not re.search(r"[yd]", code):
+            return "span"
+        return "time" if re.search(r"[hs]", code) else "day"
+
+    @property
+    def moment_code(self) -> str:
+        """The format of dates: that of the cell, or ISO's."""
+        return self.code if kind_of_format(self.code) is Kind.DATE else _DAY
+
+    def _moment(self, value: float) -> str:
+        """Write a date or time, to the second; a number where it is none."""
+        rounded = round(value * _SECONDS_A_DAY) / _SECONDS_A_DAY
+        for code in (self.moment_code, _DAY_AND_TIME):
+            try:
+                return parse_format(code).number(rounded, self.date1904)
+            except (FormatError, UnknownFormat, FormulaError):
+                continue
+        return number_text(value)
+
+
+def span_text(days: float, error: float | None = None, *, exact: bool = False) -> str:
+    """Write a span of time in the units that suit it.
+
+    >>> span_text(0.084), span_text(12.31, 0.042), span_text(250.0, exact=True)
+    ('2.0 h', '12.310 ± 0.042 days', '250 days')
+    """
+    _, factor, unit = next(each for each in _UNITS if abs(days) >= each[0])
+    if error:
+        return f"{format_estimate(days * factor, error * factor)} {unit}"
+    if exact:
+        return f"{exact_text(days * factor)} {unit}"
+    return f"{fixed_text(days * factor, max(decimals_of(days * factor) or 0, 0))} {unit}"
+
+
+PLAIN: Final = Form()
+"""The form of numbers of which no more is known."""

@@ -223,7 +223,9 @@ def beside_mean(value: float, row: SummaryRow) -> str:
         return row.form.number(value)
     exact, error = row.form.number(value), row.mean.error
     decimals = decimals_of(row.form.factor * error) if error else None
-    return exact if len(exact) <= _LONG or decimals is None else row.form.number(value, decimals)
+    if len(exact) <= _LONG or decimals is None:
+        return exact
+    return min(exact, row.form.number(value, decimals), key=len)
 
 
 def range_heading(rows: Sequence[SummaryRow]) -> str:

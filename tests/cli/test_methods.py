@@ -147,7 +147,7 @@ def test_nothing_to_draw_with(xlmc, case_study, monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     outcome = xlmc("methods", case_study, "-o", "m.png")
     assert outcome.code == 2
-    assert "pip install 'xlmc[plots]'" in outcome.err
+    assert 'pip install "matplotlib>=3.8"' in outcome.err
 
 
 def test_an_accuracy_that_cannot_be_read(xlmc, case_study):

@@ -183,7 +183,7 @@ def test_without_llvmlite_the_engine_jit_says_what_to_install(xlmc, book, tmp_pa
     monkeypatch.setattr("xlmc.engine.llvm.find_spec", lambda name: None)
     outcome = xlmc("simulate", book, "-n", 1_000, "--engine", "jit")
     assert outcome.code == 2
-    assert 'pip install "xlmc[jit]"' in outcome.err
+    assert 'pip install "llvmlite>=0.45"' in outcome.err
     assert not (tmp_path / "case-results.xlsx").exists()
 
 

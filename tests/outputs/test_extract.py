@@ -170,7 +170,7 @@ def test_where_it_cannot_be_written(model, tmp_path, name):
 def test_parquet_without_pyarrow_is_a_message(model, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     monkeypatch.setattr("xlmc.outputs.extract.find_spec", lambda name: None)
-    with pytest.raises(SimulationError, match=r"need pyarrow, which is not installed.*xlmc\[parquet\]"):
+    with pytest.raises(SimulationError, match=r"need pyarrow, which is not installed.*pip install .pyarrow>=16"):
         Simulation(simulated(model, 5)).extract(tmp_path / "trials.parquet")
 
 

@@ -29,6 +29,7 @@ from xlmc.cli.methods import methods
 from xlmc.cli.mistakes import did_you_mean, mistake
 from xlmc.cli.new import new
 from xlmc.cli.open import open_window
+from xlmc.cli.options import OneOf
 from xlmc.cli.prepare import prepare_book
 from xlmc.cli.replay import replay
 from xlmc.cli.report import report
@@ -36,7 +37,7 @@ from xlmc.cli.scenario import scenario
 from xlmc.cli.screen import screen
 from xlmc.cli.simulate import INTERRUPTED, simulate
 from xlmc.cli.stability import stability
-from xlmc.cli.terminal import prepare, say
+from xlmc.cli.terminal import be_quiet, prepare, put, say
 from xlmc.cli.verify import verify
 from xlmc.errors import XlmcError
 from xlmc.montecarlo.loop.version import __version__
@@ -53,6 +54,18 @@ _NEW_OBJECTS: Final = 100_000
 """How many more objects than before make Python search for garbage; by itself it does so from 700 on."""
 _FROM_SIGNAL: Final = 128
 """Added to a signal's number, as shells do: 143 after SIGTERM, 129 after SIGHUP."""
+
+
+_BEGINNING: Final = """\b
+Where to begin:
+  xlmc prepare BOOK.xlsx        a workbook of your own: adds the tables, with rows to choose from
+  xlmc new blank BOOK.xlsx      a model that you write from scratch; xlmc new lists templates
+  xlmc check BOOK.xlsx          what xlmc understood, and every mistake with its cell
+  xlmc simulate BOOK.xlsx       runs it, and writes BOOK-results.xlsx
+  xlmc calculate BOOK.xlsx      only the values of its formulas, without Excel
+  xlmc help COMMAND             the options of a command
+"""
+"""What a person does first; click does not wrap what follows `\\b`."""
 
 
 class _Commands(click.Group):
@@ -87,6 +100,7 @@ class _Commands(click.Group):
 
 @click.group(
     cls=_Commands,
+    epilog=_BEGINNING,
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
@@ -94,13 +108,50 @@ class _Commands(click.Group):
 @click.option(
     "--no-kept-code", is_flag=True, help="With the engine jit, compile again and keep no code for later runs."
 )
+@click.option(
+    "-q", "--quiet", is_flag=True, help="Print no notes and no progress: only answers, warnings and problems."
+)
 @click.pass_context
-def xlmc(context: click.Context, no_kept_code: bool) -> None:
+def xlmc(context: click.Context, no_kept_code: bool, quiet: bool) -> None:
     """Monte Carlo simulation of Excel workbooks, without Excel."""
     if no_kept_code:
         os.environ["XLMC_KEEP_CODE"] = "0"
+    if quiet:
+        be_quiet()
     if context.invoked_subcommand is None:
         say(context.get_help())
+
+
+@click.command(name="help")
+@click.argument("command", required=False)
+@click.pass_context
+def show_help(context: click.Context, command: str | None) -> None:
+    """Tell where to begin, or the options of COMMAND."""
+    group = context.find_root()
+    if command is None:
+        say(group.get_help())
+        return
+    found = xlmc.get_command(group, command)
+    if found is None:
+        near = did_you_mean(command, xlmc.list_commands(group))
+        raise click.UsageError(f"there is no command {command!r}.{near}")
+    with click.Context(found, info_name=command, parent=group) as inner:
+        say(found.get_help(inner))
+
+
+@click.command(name="completion")
+@click.argument("shell", type=OneOf("bash", "zsh", "fish"))
+def completion(shell: str) -> None:
+    """Print what makes SHELL complete commands and options when you press Tab.
+
+    Add it to your shell once: xlmc completion bash >> ~/.bashrc, xlmc completion zsh >> ~/.zshrc, or xlmc completion
+    fish > ~/.config/fish/completions/xlmc.fish; then open a new terminal.
+    """
+    from click.shell_completion import get_completion_class
+
+    found = get_completion_class(shell)
+    assert found is not None  # the shells are those that click knows
+    put(found(xlmc, {}, "xlmc", "_XLMC_COMPLETE").source() + "\n")
 
 
 for _command in (
@@ -120,6 +171,8 @@ for _command in (
     screen,
     methods,
     stability,
+    show_help,
+    completion,
 ):
     xlmc.add_command(_command)
 
@@ -135,7 +188,7 @@ def main() -> None:
         say(f"xlmc: {mistake(error)}", err=True)
         sys.exit(BAD_INPUT)
     except XlmcError as error:
-        say(f"xlmc: {error}", err=True)
+        say(f"xlmc: {error}", err=True, cure=error.hint)
         sys.exit(BAD_INPUT)
     except (click.Abort, KeyboardInterrupt):
         say("xlmc: interrupted; nothing was written.", err=True)

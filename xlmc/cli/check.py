@@ -66,7 +66,7 @@ def check(book: Path) -> None:
     elif definitions.problems:
         notices((*workbook.notices, *definitions.notices))
     for problem in problems:
-        say(f"problem: {problem}", err=True)
+        say(f"problem: {problem}", err=True, cure=problem.hint)
     if problems:
         say(f"{len(problems)} problem{'s' * (len(problems) > 1)} found; nothing can be run yet.", err=True)
         raise click.exceptions.Exit(2)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from xlmc.cli.terminal import encodable, on_terminal
+from xlmc.cli.terminal import encodable, is_quiet, on_terminal
 from xlmc.excel.workbook.printable import printable
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def errors_line(standing: Progress) -> str:
 @contextmanager
 def progress_bar(quiet: bool) -> Iterator[OnProgress | None]:
     """Draw a bar and the standard errors below it on stderr while the trials run, if there is a terminal to draw on."""
-    if quiet or not on_terminal(err=True):
+    if quiet or is_quiet() or not on_terminal(err=True):
         yield None
         return
     from rich.console import Console, RenderableType
@@ -64,7 +64,7 @@ def progress_bar(quiet: bool) -> Iterator[OnProgress | None]:
 @contextmanager
 def step_line(quiet: bool) -> Iterator[Callable[[str], None] | None]:
     """Show a line on stderr that says which step is running; gives None if there is no terminal to show it on."""
-    if quiet or not on_terminal(err=True):
+    if quiet or is_quiet() or not on_terminal(err=True):
         yield None
         return
     from rich.console import Console

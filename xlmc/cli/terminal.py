@@ -8,6 +8,7 @@ from __future__ import annotations
 import codecs
 import errno
 import os
+import re
 import sys
 import unicodedata
 from collections.abc import Mapping
@@ -17,7 +18,18 @@ from typing import Final, TextIO
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.printable import printable
 
-__all__ = ["encodable", "on_terminal", "paragraph", "prepare", "put", "say", "say_json", "width"]
+__all__ = [
+    "be_quiet",
+    "encodable",
+    "is_quiet",
+    "on_terminal",
+    "paragraph",
+    "prepare",
+    "put",
+    "say",
+    "say_json",
+    "width",
+]
 
 PIPE_WIDTH: Final = 100
 """Columns of text in a pipe or a file."""
@@ -58,23 +70,65 @@ _READER_GONE: Final = (errno.EPIPE, errno.EINVAL)
 
 
 def prepare() -> None:
-    """Let stdout and stderr write something readable instead of what their encoding lacks."""
+    """Let stdout and stderr write something readable instead of what their encoding lacks, and print notes."""
+    global _quiet
+    _quiet = False
     for stream in (sys.stdout, sys.stderr):
         reconfigure = getattr(stream, "reconfigure", None)
         if reconfigure is not None:
             reconfigure(errors=_HANDLER)
 
 
-def say(text: object = "", *, err: bool = False) -> None:
+_quiet = False
+_NOTE: Final = "note: "
+_RED: Final = ("xlmc: ", "problem: ")
+"""What begins the messages about mistakes."""
+
+
+def be_quiet() -> None:
+    """Print no notes any more."""
+    global _quiet
+    _quiet = True
+
+
+def is_quiet() -> bool:
+    """Return whether notes and progress are not to be printed."""
+    return _quiet
+
+
+def say(text: object = "", *, err: bool = False, cure: str | None = None) -> None:
     """Print a text and a line feed; `err` to stderr, wrapped where that is a terminal.
+
+    There a message about a mistake begins in red, and its `cure`, a part of the text, is green.
 
     Raises:
         WorkbookError: stdout is a file that cannot be written.
     """
     shown = printable(str(text))
+    if err and _quiet and shown.startswith(_NOTE):
+        return
     if err and on_terminal(err=True):
         shown = "\n".join(_wrap_note(line) for line in shown.split("\n"))
+        if _is_coloured():
+            shown = _in_red(_in_green(shown, cure))
     put(f"{shown}\n", err=err)
+
+
+def _is_coloured() -> bool:
+    return os.name == "posix" and not os.environ.get("NO_COLOR") and os.environ.get("TERM", "dumb") != "dumb"
+
+
+def _in_red(text: str) -> str:
+    begins = next((each for each in _RED if text.startswith(each)), None)
+    return text if begins is None else f"\x1b[31m{begins}\x1b[0m{text.removeprefix(begins)}"
+
+
+def _in_green(text: str, cure: str | None) -> str:
+    """Return a message with its cure in green, on however many lines it stands."""
+    if not cure:
+        return text
+    pattern = r"\s+".join(map(re.escape, printable(cure).split()))
+    return re.sub(pattern, lambda found: f"\x1b[32m{found[0]}\x1b[0m", text, count=1, flags=re.IGNORECASE)
 
 
 def _wrap_note(line: str) -> str:

@@ -88,7 +88,7 @@ def check_extract_path(path: Path) -> None:
         SimulationError: it is `.parquet`, and pyarrow is not installed.
     """
     if _writer(path) is _write_parquet and find_spec("pyarrow") is None:
-        hint = "Install it: pip install 'xlmc[parquet]'; or write a .csv file"
+        hint = 'Install it: pip install "pyarrow>=16"; or write a .csv file'
         raise SimulationError("Parquet files need pyarrow, which is not installed", where=path, hint=hint)
 
 

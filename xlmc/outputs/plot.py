@@ -67,7 +67,7 @@ def plot(simulation: RunResult, name: str | None = None, kind: str | None = None
         SimulationError: matplotlib is not installed, there is no such kind or name, or there is nothing to draw.
     """
     if find_spec("matplotlib") is None:
-        hint = "Install it: pip install 'xlmc[plots]'"
+        hint = 'Install it: pip install "matplotlib>=3.8"'
         raise SimulationError("figures need matplotlib, which is not installed", hint=hint)
     if kind is None and ax is None:
         return _overview(simulation, name)

@@ -107,7 +107,7 @@ class Files:
                 check_extract_path(path)
             self._target(path).check()
             if self.show_figures and find_spec("matplotlib") is None:
-                hint = "Install it with `pip install 'xlmc[plots]'`, or ask for .xlsx"
+                hint = 'Install it with `pip install "matplotlib>=3.8"`, or ask for .xlsx'
                 raise WorkbookError("drawing needs matplotlib, which is not installed", where=path, hint=hint)
 
     def _target(self, path: Path) -> Target:

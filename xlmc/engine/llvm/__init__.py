@@ -49,7 +49,7 @@ def jit_program(
         SimulationError: llvmlite is not installed.
     """
     if not available():
-        hint = 'install it with `pip install "xlmc[jit]"`, or use the engine `numpy`'
+        hint = 'install it with `pip install "llvmlite>=0.45"`, or use the engine `numpy`'
         raise SimulationError("the engine `jit` needs the package llvmlite, which is not installed", hint=hint)
     from xlmc.engine.llvm.program import fastest_program
 

@@ -80,6 +80,6 @@ def check_report_path(path: Path) -> None:
         raise WorkbookError("a report must end in .pdf or .docx", where=path, hint=hint)
     for module, name in libraries.items():
         if find_spec(module) is None:
-            hint = "Install it: pip install 'xlmc[report]'"
+            hint = f'Install it: pip install "{name}"'
             raise SimulationError(f"reports need {name}, which is not installed", hint=hint)
     check_folder(path)

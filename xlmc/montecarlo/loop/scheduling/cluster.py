@@ -67,7 +67,7 @@ def _client(scheduler: str, workers: int | None) -> Iterator[Client]:
     try:
         from distributed import Client, LocalCluster
     except ImportError as error:
-        hint = "pip install 'xlmc[distributed]', or leave out --scheduler"
+        hint = 'pip install "dask[distributed]>=2024.8", or leave out --scheduler'
         raise SimulationError("Dask is not installed", hint=hint) from error
     if scheduler == "local":
         silent = {"silence_logs": logging.CRITICAL}  # what matters to a run comes as an exception

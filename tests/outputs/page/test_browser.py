@@ -635,3 +635,22 @@ def test_a_browser_that_ended_costs_no_other_test(browser, monkeypatch):
         assert not browser._answers()
         assert browser() is None
     assert started == [None]
+
+
+def test_a_large_page_opens_its_parts_and_finds_forecasts(chromium, shown, make, monkeypatch):
+    monkeypatch.setattr("xlmc.outputs.page.html_page._LARGE", 0)
+    assumptions = [make.uniform("x", "A1", 0.0, 1.0, base=0.5)]
+    forecasts = [make.forecast(f"output {j}", f"B{j + 1}") for j in range(20)]
+    cells = {"A1": 0.5} | {f"B{j + 1}": f"=A1*{j + 1}" for j in range(20)}
+    browser = shown(make.simulate(cells, assumptions, forecasts, trials=200))
+    number = "return document.querySelectorAll(arguments[0]).length"
+    assert browser.execute_script(number, ".chart canvas") < 20  # those in view alone
+    assert browser.execute_script(number, "#sensitivity svg") == 0
+    browser.execute_script("document.querySelector('button[data-all=open]').click()")
+    opened = "const done = arguments[0], look = () => document.querySelector('[data-packed]') ? setTimeout(look, 20)"
+    browser.execute_async_script(f"{opened} : done(); look()")
+    assert browser.execute_script(number, "#sensitivity svg") > 0
+    box = browser.find_element("css selector", "#forecasts input[type=search]")
+    box.send_keys("output 17")
+    assert browser.execute_script(number, ".forecast:not([hidden])") == 1
+    assert browser.execute_script(number, ".index a:not([hidden])") == 1

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import base64
+import gzip
 import hashlib
 import re
 
@@ -12,7 +13,7 @@ from xlmc.analysis.results.record import make_record
 from xlmc.api import Simulation
 from xlmc.errors import WorkbookError
 from xlmc.montecarlo.columns import column_store, on_disk
-from xlmc.outputs.page import page_text, payload, save_page
+from xlmc.outputs.page import html_page, page_text, payload, save_page
 from xlmc.outputs.summary import ERROR_SENTENCE
 
 RUNS = ["run", "none_accepted", "one_accepted"]
@@ -251,3 +252,26 @@ def test_statistics_stand_beside_each_chart(page_of, run):
         expected += [*(found.percentiles[each] for each in (5.0, 25.0, 50.0, 75.0, 95.0)), found.maximum]
         values = [float(node.attributes["value"]) for node in table.all("data")]
         assert values == [each.value for each in expected]
+
+
+def test_a_large_page_packs_what_it_shows_when_asked(run, page_of, monkeypatch):
+    whole = page_text(run)
+    monkeypatch.setattr(html_page, "_LARGE", 0)
+    packed = page_text(run)
+    assert len(packed) < len(whole)
+    found = re.findall(r'data-packed="([^"]+)"', packed)
+    sections = [gzip.decompress(base64.b64decode(each)).decode() for each in found]
+    assert len(sections) == 6
+    assert [each for each in sections if each not in whole] == []
+    data = re.search(r'id="payload">"([^"]+)"</script>', packed)[1]
+    assert gzip.decompress(base64.b64decode(data)).decode() in whole
+
+
+def test_many_assumptions_and_forecasts_make_no_heavy_page(make):
+    assumptions = [make.uniform(f"input {i}", f"A{i + 1}", 0.9 + i, 1.1 + i) for i in range(300)]
+    cells = {f"A{i + 1}": 1.0 + i for i in range(300)}
+    sums = {f"B{j + 1}": "=" + "+".join(f"{n + 1}*A{1 + (7 * j + 11 * n) % 300}" for n in range(12)) for j in range(60)}
+    forecasts = [make.forecast(f"output {j}", f"B{j + 1}", units="m") for j in range(60)]
+    text = page_text(make.simulate(cells | sums, assumptions, forecasts, trials=1000))
+    assert len(text) < 3_000_000
+    assert len(re.findall(r"<[a-z]", text)) < 15_000

@@ -65,6 +65,8 @@ __all__ = ["OUTPUTS", "SECTIONS", "Material", "Section"]
 _MOST_BARS, _MOST_OF_MANY = 6, 4
 _FEW: Final = 4
 """Forecasts whose figures are large, two a page; those of more stand three a page, and their influences in a table."""
+_MOST_FIGURES: Final = 12
+"""Forecasts that a report draws."""
 _LARGE, _SMALL = 160.0, 100.0
 """Widths of the figures of forecasts, in millimetres."""
 _NONE: Final = "–"
@@ -188,10 +190,14 @@ def _scene(material: Material) -> Iterator[Block]:
 def _forecasts(material: Material) -> Iterator[Block]:
     simulation = material.simulation
     width = _LARGE if len(material.forecasts) <= _FEW else _SMALL
-    for figure in figures_of(simulation):
+    shown = [figure for figure in figures_of(simulation) if figure.answer.name in material.forecasts]
+    if len(shown) > _MOST_FIGURES:
+        yield Paragraph(
+            f"Figures of the first {_MOST_FIGURES} of {len(shown)} forecasts. The sheet Charts of the result workbook "
+            "and the page show all of them; --forecasts chooses those of the report."
+        )
+    for figure in shown[:_MOST_FIGURES]:
         row, bins = figure.answer, figure.bins
-        if row.name not in material.forecasts:
-            continue
         units = f" {row.units}" if row.units else ""
         per = f" per {bins.form.width(bins.width)}{units}" if bins.names is None else ""
         caption = (

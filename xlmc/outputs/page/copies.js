@@ -2,16 +2,21 @@
 // Every table can be copied, and every chart saved as a picture.
 
 const Copies = {
-  start() {
-    for (const table of document.querySelectorAll("main table")) {
+  start(root = document) {
+    for (const table of root.querySelectorAll(root === document ? "main table" : "table")) {
       const copied = Copies.button("Copy table", (button) => Copies.say(button, Copies.copy(table)));
       table.before(Copies.row(copied, Copies.button("Save table", () => Copies.saveTable(table))));
     }
-    for (const drawn of document.querySelectorAll("svg.drawn")) {
+    for (const drawn of root.querySelectorAll("svg.drawn")) {
       const saved = () => Copies.save(Copies.standalone(drawn), Copies.name(drawn, "svg"));
       drawn.after(Copies.pictureRow(saved, () => Copies.painted(drawn)));
     }
-    for (const chart of document.querySelectorAll(".chart")) {
+    Copies.charts(root);
+  },
+
+  /** Buttons below the charts that are drawn already. */
+  charts(root) {
+    for (const chart of root.querySelectorAll(".chart:has(canvas)")) {
       const canvas = () => Copies.onWhite(chart.querySelector("canvas"));
       const saved = () => canvas().toBlob((picture) => Copies.save(picture, Copies.name(chart, "png")));
       chart.after(Copies.pictureRow(saved, async () => canvas()));

@@ -6,6 +6,7 @@ A Content-Security-Policy allows the scripts and styles that are in it, by their
 from __future__ import annotations
 
 import base64
+import gzip
 import hashlib
 from collections.abc import Iterator, Mapping
 from html import escape
@@ -64,8 +65,15 @@ _SCRIPTS = (
     "panel.js",
     "overlay.js",
     "copies.js",
+    "later.js",
     "start.js",
 )
+
+_MANY = 13
+"""Forecasts from which on none are laid over each other, as in `later.js`."""
+_LARGE = 3_000_000
+"""Characters of a page from which on some sections are packed."""
+_PACKED = ("certainty", "statistics", "sensitivity", "limits", "assumptions", "record")
 
 _LICENCE = "uplot/LICENSE"
 
@@ -149,7 +157,7 @@ def page_text(simulation: RunResult, *, beside: RunResult | None = None, command
         "answer": answers(simulation),
         "second": EMPTY if beside is None else second_run(simulation, beside),
         "forecasts": charts(simulation, figures),
-        "overlay": overlays(figures),
+        "overlay": overlays(figures) if len(figures) < _MANY else EMPTY,
         "certainty": certainty(simulation),
         "scenarios": scenarios(simulation),
         "pairs": pairs(simulation),
@@ -169,6 +177,10 @@ def page_text(simulation: RunResult, *, beside: RunResult | None = None, command
         for key, (heading, blocks) in further.items()
     }
     links = _LINKS | {key: heading for key, (heading, _) in further.items()}
+    data = payload_text(simulation, figures, beside)
+    if sum(len(part.source) for part in parts.values()) + len(data) > _LARGE:
+        parts |= {key: _packed_section(key, parts[key]) for key in _PACKED if parts[key] != EMPTY}
+        data = f'"{_packed(data)}"'
     styles, scripts = _code()
     return Template(_asset("page.html")).substitute(
         policy=escape(page_policy()),
@@ -177,9 +189,22 @@ def page_text(simulation: RunResult, *, beside: RunResult | None = None, command
         styles="".join(f"<style>{style}</style>\n" for style in styles),
         header=_header(simulation, {key: links[key] for key, part in parts.items() if part != EMPTY}).source,
         sections=join(list(parts.values())).source,
-        data=payload_text(simulation, figures, beside),
+        data=data,
         scripts="".join(f"<script>{script}</script>\n" for script in scripts),
     )
+
+
+def _packed_section(key: str, part: Html) -> Html:
+    """Make a section that holds another one packed until its button is pressed: many elements make browsers slow."""
+    button = element("button", "Show", type="button", data_packed=_packed(part.source))
+    said = element("p", button, " This page is large: this part is shown when it is asked for.", class_="how")
+    return element("section", element("h2", _LINKS[key]), said, id=key)
+
+
+def _packed(text: str) -> str:
+    """Pack a text, in letters that can stand in an attribute."""
+    packed = gzip.compress(text.encode("utf-8", "xmlcharrefreplace"), mtime=0)
+    return base64.b64encode(packed).decode()
 
 
 def plain_page(title: str, below: str, content: Html) -> str:

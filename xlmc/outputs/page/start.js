@@ -2,23 +2,39 @@
 // Everything begins here, once the page has been read.
 
 (function start() {
-  const { z, forecasts, overlays } = JSON.parse(document.getElementById("payload").textContent);
-  const places = [...document.querySelectorAll(".forecast")];
-  const panels = places.map((place) => new Panel(place, forecasts[Number(place.dataset.forecast)], z));
-  for (const place of document.querySelectorAll(".overlay")) {
-    new Overlay(place, overlays[Number(place.dataset.overlay)].map((i) => panels[i]));
-  }
-  document.documentElement.classList.add("ready");
+  const read = JSON.parse(document.getElementById("payload").textContent);
+  if (typeof read === "string") Later.text(read).then((text) => begin(JSON.parse(text)));
+  else begin(read);
 
-  Copies.start();
+  function begin({ z, forecasts, overlays }) {
+    const places = [...document.querySelectorAll(".forecast")];
+    const panels = [];
+    const draw = (place) => panels.push(new Panel(place, forecasts[Number(place.dataset.forecast)], z));
+    if (places.length < Later.many) places.forEach(draw);
+    else {
+      Later.index(places);
+      Later.whenSeen(places, (place) => {
+        draw(place);
+        Copies.charts(place);
+      });
+    }
+    for (const place of document.querySelectorAll(".overlay")) {
+      new Overlay(place, overlays[Number(place.dataset.overlay)].map((i) => panels[i]));
+    }
+    document.documentElement.classList.add("ready");
 
-  // On paper stands what the lines of a chart mean, not what the pointer is at.
-  addEventListener("beforeprint", () => panels.forEach((panel) => panel.read(null)));
+    Later.start();
+    Copies.start();
 
-  // What is open is printed, too.
-  for (const button of document.querySelectorAll("button[data-all]")) {
-    button.addEventListener("click", () => {
-      for (const each of document.querySelectorAll("details")) each.open = button.dataset.all === "open";
-    });
+    // On paper stands what the lines of a chart mean, not what the pointer is at.
+    addEventListener("beforeprint", () => panels.forEach((panel) => panel.read(null)));
+
+    // What is open is printed, too.
+    for (const button of document.querySelectorAll("button[data-all]")) {
+      button.addEventListener("click", async () => {
+        if (button.dataset.all === "open") await Later.openAll();
+        for (const each of document.querySelectorAll("details")) each.open = button.dataset.all === "open";
+      });
+    }
   }
 })();

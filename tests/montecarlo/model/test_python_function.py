@@ -164,3 +164,10 @@ def test_definitions_that_cannot_be_used_are_refused(arguments, message):
 def test_other_processes_are_refused_in_words(model):
     with pytest.raises(SimulationError, match="Use threads"):
         model.simulate(100_000, jobs=2, scheduler="processes")
+
+
+@pytest.mark.parametrize("name", ["ROW", "INDEX", "a/b: c?", "LAMBDA"])
+def test_a_model_may_have_any_name(name, tmp_path):
+    run = xlmc.model(lambda x: 2 * x, {"x": Uniform(1, 2)}, ["y"], name=name).simulate(1_000)
+    assert np.array_equal(run.forecasts["y"], 2 * run.inputs["x"])
+    assert run.save(tmp_path / "a.xlsx").is_file()

@@ -7,6 +7,7 @@ that follows it is a function of Excel that no file holds: sampling, filters, st
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -42,6 +43,9 @@ Vectorised = Callable[..., Mapping[str, ArrayLike] | ArrayLike]
 _SHEET: Final = "Model"
 _TRIED: Final = 3
 """Trials that a function is tried with, to see that it takes arrays."""
+
+_NO_FILE: Final = re.compile(r'[\x00-\x1f<>:"/\\|?*]')
+"""What no name of a file may have."""
 
 _MADE: Final = datetime(2000, 1, 1, tzinfo=UTC)
 """The time in the file, the same for each, so that the same model is the same file."""
@@ -191,12 +195,12 @@ def function_model(
     row = Function(
         called, (Anything(repeat=True),), body, Kind.NUMBER, facts=Facts(spills=True), home="a function of Python"
     )
-    call = ir.Call(called, inputs, given=row)
+    call = ir.Call(f"PYTHON.{called}", inputs, given=row)  # which no pass takes for a function of Excel
     python = {
         cell: ir.Call("INDEX", (call, ir.Number(1.0), ir.Number(1.0 + outputs.index(output))))
         for cell, output in cells.items()
     }
-    path = Path(f"{called}.xlsx")
+    path = Path(f"{_NO_FILE.sub('_', called)}.xlsx")
     return build_model(read_workbook(data, path.name), path, python=python)
 
 

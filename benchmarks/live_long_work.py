@@ -24,10 +24,10 @@ from pathlib import Path
 import openpyxl
 from openpyxl.worksheet.table import Table
 
-from xlmc.outputs.live.desk import Desk, Window
-from xlmc.outputs.live.kept_scenarios import Keeper
 from xlmc.outputs.live.library import Library
-from xlmc.outputs.live.protocol import Message, Said, read_message, written
+from xlmc.outputs.live.open_book import OpenBook, Window
+from xlmc.outputs.live.protocol import Message, PageMessage, read_message, written
+from xlmc.outputs.live.stored_scenarios import Keeper
 
 MOVES = 200
 UNIFORMS, FORECASTS = 300, 60
@@ -62,26 +62,26 @@ async def measure(folder: Path, moves: int) -> None:
     """Move, save, and print."""
     book = long_book(folder / "book.xlsx")
     other = long_book(folder / "other.xlsx", first=1.6)
-    desk = Desk(book, Library(Keeper(folder / "state"), book=book), offer=lambda page: "")
-    desk.start()
-    window = desk.join()
+    opened = OpenBook(book, Library(Keeper(folder / "state"), book=book), offer=lambda page: "")
+    opened.start()
+    window = opened.join()
     await _next(window, lambda said: said["kind"] == "rest")
     firsts, wholes = [], []
     for move in range(moves):
         tab = TABS[move % len(TABS)]
         names = ["Answer 1", "Answer 2", "Answer 3"]
         view = {"kind": "view", "forecasts": names, "chosen": names, "tab": tab, "first": names[0], "second": names[1]}
-        _say(desk, window, {**view, "fits": False})
+        _say(opened, window, {**view, "fits": False})
         await _drain(window, WAIT)
         began = time.perf_counter()
         number = {"of": "assumption", "name": f"Input {1 + move % 60}", "key": "high", "value": 1.6 + move / 1000}
-        _say(desk, window, {"kind": "set", **number, "held": False, "seq": move + 1})
+        _say(opened, window, {"kind": "set", **number, "held": False, "seq": move + 1})
         await _next(window, partial(_answers, seq=move + 1))
         firsts.append(time.perf_counter() - began)
         await _next(window, partial(_answers, seq=move + 1, trials=50_000))
         wholes.append(time.perf_counter() - began)
     saves = [await _saved(window, other if turn % 2 else book, book, folder) for turn in range(SAVES)]
-    await desk.close()
+    await opened.close()
     print(f"{UNIFORMS} uniforms, {FORECASTS} forecasts, {moves} moves, tabs in turn: {', '.join(TABS)}")
     for said, seconds in (
         ("first answer", firsts),
@@ -105,9 +105,9 @@ async def _saved(window: Window, source: Path, book: Path, folder: Path) -> floa
     return time.perf_counter() - began
 
 
-def _say(desk: Desk, window: Window, said: Message) -> None:
-    message: Said = read_message(written(said))
-    desk.hear(window, message)
+def _say(opened: OpenBook, window: Window, said: Message) -> None:
+    message: PageMessage = read_message(written(said))
+    opened.hear(window, message)
 
 
 def _answers(said: Message, seq: int, trials: int = 0) -> bool:

@@ -493,7 +493,7 @@ class Model:
             SimulationError: there is no such assumption, or a setting is out of its range.
             DefinitionError: the change is not possible.
         """
-        from xlmc.montecarlo.definitions.scenarios import Change, Held, Redrawn, Scenario
+        from xlmc.montecarlo.definitions.scenarios import Change, Frozen, Redrawn, Scenario
         from xlmc.montecarlo.model.keywords import assumption_named
 
         settings = {name: value for name, value in named.items() if name in _SETTINGS}
@@ -504,7 +504,7 @@ class Model:
             if isinstance(value, Distribution):
                 found.append(Redrawn(assumption, value))
             elif isinstance(value, Real) and not isinstance(value, bool):
-                found.append(Held(assumption, float(value)))
+                found.append(Frozen(assumption, float(value)))
             else:
                 hint = "Give a distribution, such as xlmc.Uniform(0.6, 0.8), or a number to hold it at"
                 raise SimulationError(f"{name!r} cannot be {value!r}", hint=hint)
@@ -523,10 +523,10 @@ class Model:
             SimulationError: there is no such assumption.
             DefinitionError: it has no base value.
         """
-        from xlmc.montecarlo.definitions.scenarios import Held, Scenario
+        from xlmc.montecarlo.definitions.scenarios import Frozen, Scenario
         from xlmc.montecarlo.model.keywords import assumption_named
 
-        held = tuple(Held(assumption_named(self._compiled, name)) for name in names)
+        held = tuple(Frozen(assumption_named(self._compiled, name)) for name in names)
         return self._with(Scenario("changed in Python", held))
 
     def _with(self, scenario: Scenario) -> Model:

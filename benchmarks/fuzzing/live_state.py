@@ -13,8 +13,8 @@ from fuzzing.inputs import Disagreement, Input, Reached
 from fuzzing.json_changes import edited
 from xlmc.errors import XlmcError
 from xlmc.outputs.live.adjustments import Adjustments
-from xlmc.outputs.live.kept_scenarios import Keeper
 from xlmc.outputs.live.library import Library
+from xlmc.outputs.live.stored_scenarios import Keeper
 
 __all__ = ["make", "run"]
 

@@ -136,7 +136,7 @@ def test_the_models_of_a_switch_are_made_once(own):
     first = session._models.moving(session.adjustments)
     session.receive(change("w", "high", 4.0, held=True))
     second = session._models.moving(session.adjustments)
-    assert first.kept is second.kept
+    assert first.reusing is second.reusing
     assert first.model.lowering is second.model.lowering
 
 

@@ -17,7 +17,7 @@ from xlmc.excel.workbook.package import read_parts
 from xlmc.excel.workbook.writer import package_bytes
 from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.live.guard import SECRET, proof
-from xlmc.outputs.live.protocol import Said
+from xlmc.outputs.live.protocol import PageMessage
 
 CASE = EXAMPLES["intersection"]
 SIMPLE = EXAMPLES["skid-100-ft"]
@@ -128,7 +128,7 @@ def _headings_above(sheet, row):
 
 
 def change(name, key, value, *, of="assumption", held=False, seq=1):
-    return Said("set", {"of": of, "name": name, "key": key, "value": value, "held": held, "seq": seq})
+    return PageMessage("set", {"of": of, "name": name, "key": key, "value": value, "held": held, "seq": seq})
 
 
 def settle(session, clock=lambda: 0.0):

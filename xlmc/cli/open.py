@@ -63,8 +63,8 @@ def _leading_to(link: str, folder: Path) -> str:
 
 
 def _library(book: Path | None) -> Library:
-    from xlmc.outputs.live.kept_scenarios import Keeper, state_folder
     from xlmc.outputs.live.library import Library, Sample
+    from xlmc.outputs.live.stored_scenarios import Keeper, state_folder
 
     samples = [
         Sample(name if units == "imperial" else f"{name} ({units.upper()})", template.question, path)

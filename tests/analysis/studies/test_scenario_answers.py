@@ -9,7 +9,7 @@ import pytest
 
 from xlmc.analysis.studies.scenario_answers import model_of, scenario_answers
 from xlmc.errors import DefinitionError, SimulationError
-from xlmc.montecarlo.definitions.scenarios import Held, Limits, Range, Scenario
+from xlmc.montecarlo.definitions.scenarios import Frozen, Limits, Range, Scenario
 from xlmc.montecarlo.definitions.stopping import stopping
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import simulate
@@ -18,7 +18,7 @@ CELLS = {"A1": 0.5, "A2": 0.5, "B1": "=A1+A2^2", "B2": "=A1-A2"}
 GIVEN = {"a": {"cell": "A1", "low": 0, "high": 1}, "b": {"cell": "A2", "low": 0, "high": 1}}
 SCENARIOS = (
     Scenario("narrow", (Range("a", 0.2, 0.6),)),
-    Scenario("held", (Held("b", 0.25),), "measured"),
+    Scenario("held", (Frozen("b", 0.25),), "measured"),
     Scenario("open", (Limits("f", {"at_most": 0.9}),)),
     Scenario("same", ()),
 )

@@ -20,7 +20,7 @@ from xlmc.api import Model, Simulation
 from xlmc.errors import DefinitionError, SimulationError, WorkbookError
 from xlmc.excel.address import parse_address
 from xlmc.excel.workbook.reader import read_workbook
-from xlmc.montecarlo.definitions.scenarios import Band, Held, Limits, Range, Scenario, Typed
+from xlmc.montecarlo.definitions.scenarios import Band, Frozen, Limits, Range, Scenario, Typed
 from xlmc.montecarlo.model.applied_changes import applied
 from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.simulation.simulate import simulate
@@ -37,7 +37,7 @@ STATES = {
         {"Inputs!G17": 0.7, "Inputs!H17": 0.8, "'Results wanted'!D16": 0.5, "Inputs!D28": -20.0},
     ),
     "held at a value, and the lowest tenth": (
-        (Held(FRICTION, 0.7), Band("Chevrolet post-impact deceleration", 0, 10)),
+        (Frozen(FRICTION, 0.7), Band("Chevrolet post-impact deceleration", 0, 10)),
         {"Inputs!D17": 0.7, "Inputs!P17": True, "Inputs!O11": 0.635},
     ),
     "a text": ((Typed(parse_address("Inputs!F17"), "Triangular"), Typed(parse_address("Inputs!I17"), 0.8)), None),
@@ -141,7 +141,7 @@ def test_what_cannot_be_computed_is_left_to_excel(small):
 @pytest.mark.parametrize(
     ("changes", "error", "message"),
     [
-        ((Held("a", 1.5),), DefinitionError, "needs a column Frozen for 'a', and the table has none"),
+        ((Frozen("a", 1.5),), DefinitionError, "needs a column Frozen for 'a', and the table has none"),
         ((Range("b", 0.5, 2.0),), WorkbookError, "Sheet!C3: the cell holds a formula, which would be lost"),
         ((Range("u", 0.5, None),), DefinitionError, "changes 'u', which stands in no table"),
         ((Typed(parse_address("Sheet!E9"), 1.0),), WorkbookError, "Sheet!E9: the cell holds a formula"),
@@ -205,5 +205,5 @@ def test_a_correlated_assumption_is_held():
     """Its correlation, which then has no effect, is no longer read from the file."""
     model = load("examples/intersection-momentum.xlsx")
     correlation = model.definitions.correlations[0]
-    edited = edited_workbook(model, Scenario("held", (Held(correlation.first),)))
+    edited = edited_workbook(model, Scenario("held", (Frozen(correlation.first),)))
     assert len(edited.cells) == 1

@@ -14,7 +14,7 @@ from xlmc.excel.address import parse_address
 from xlmc.excel.workbook.injection.cell_edit import with_contents
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.writer import package_bytes
-from xlmc.montecarlo.definitions.scenarios import Band, Drawn, Held, Limits, Numbers, Range, Typed
+from xlmc.montecarlo.definitions.scenarios import Band, Drawn, Frozen, Limits, Numbers, Range, Typed
 from xlmc.montecarlo.distributions import FAMILIES
 from xlmc.montecarlo.model.applied_changes import applied
 from xlmc.montecarlo.model.loading import build_model, load
@@ -39,8 +39,8 @@ KINDS = {
     "a range": ([Range(FRICTION, 0.7, 0.8)], {"G17": 0.7, "H17": 0.8}),
     "one end": ([Range(ANGLE, None, 195.0)], {"H8": 195.0}),
     "numbers": ([Numbers(FRICTION, {"low": 0.5, "upper_cutoff": 0.9})], {"G17": 0.5, "O17": 0.9}),
-    "held": ([Held(FRICTION)], {"P17": True}),
-    "held at a value": ([Held(ANGLE, 184.0)], {"P8": True, "D8": 184.0}),
+    "held": ([Frozen(FRICTION)], {"P17": True}),
+    "held at a value": ([Frozen(ANGLE, 184.0)], {"P8": True, "D8": 184.0}),
     "the lowest tenth": ([Band(FRICTION, 0, 10)], {"O17": LOWEST}),
     "the highest tenth": ([Band(FRICTION, 90, 100)], {"N17": HIGHEST}),
     "limits": ([Limits(TANGENT, {"at_most": 0.5})], {f"{WANTED}!D16": 0.5}),
@@ -55,7 +55,7 @@ KINDS = {
         {f"{WANTED}!{cell}": value for cell, value in ONE_ROAD.items()},
     ),
     "several": (
-        [Range(FRICTION, 0.65, 0.9), Held(ANGLE, 187.0), Limits(TANGENT, {"at_most": 1.0}), *typed(D28=-10.0)],
+        [Range(FRICTION, 0.65, 0.9), Frozen(ANGLE, 187.0), Limits(TANGENT, {"at_most": 1.0}), *typed(D28=-10.0)],
         {"G17": 0.65, "H17": 0.9, "P8": True, "D8": 187.0, f"{WANTED}!D16": 1.0, "D28": -10.0},
     ),
 }
@@ -134,7 +134,7 @@ def test_what_only_moves_ranges_shares_nodes_and_programs(case):
     other_limit = applied(case, [Limits(TANGENT, {"at_most": 0.4})])
     assert other_limit.lowering is case.lowering
     assert other_limit.program("numpy") is not case.program("numpy")
-    assert applied(case, [Held(FRICTION)]).lowering is not case.lowering
+    assert applied(case, [Frozen(FRICTION)]).lowering is not case.lowering
 
 
 def test_many_limits_do_not_pile_up_nodes(book):
@@ -162,7 +162,7 @@ def test_rows_whose_cells_other_formulas_read(book_of_rows, subtests):
     """A cell of a row that a formula reads, a range about the cell itself, a row that is frozen."""
     for kind, (changes, cells) in {
         "read by a formula": ([Range("a", 2.0, 3.0)], {"Inputs!C2": 2.0, "Inputs!D2": 3.0}),
-        "about its own cell": ([Held("a", 1.5)], {"Inputs!B2": 1.5, "Inputs!E2": True}),
+        "about its own cell": ([Frozen("a", 1.5)], {"Inputs!B2": 1.5, "Inputs!E2": True}),
         "a formula in the row": ([Range("b", None, 7.0)], {"Inputs!D3": 7.0}),
         "a cell that a filter reads": ([Limits("f", {"below": 9.0})], {"Wanted!C5": 9.0}),
         "drawn again": (
@@ -233,7 +233,7 @@ def test_a_draw_in_a_cell(tmp_path, subtests):
     plain = book('RiskUniform(1,2,RiskName("u"))')
     for kind, (changes, draw) in {
         "a range": ([Range("u", 1.5, None)], 'RiskUniform(1.5,2,RiskName("u"))'),
-        "held": ([Held("u", 1.25)], "1.25"),
+        "held": ([Frozen("u", 1.25)], "1.25"),
         "cut off": ([Numbers("u", {"upper_cutoff": 1.5})], 'RiskUniform(1,2,RiskName("u"),RiskTruncate(,1.5))'),
     }.items():
         with subtests.test(kind):
@@ -248,7 +248,7 @@ def test_a_draw_in_a_cell(tmp_path, subtests):
         ([Limits("Restitution", {"at_most": 1})], "there is no filter 'Restitution'"),
         ([Range(FRICTION, 0.8, 0.7)], f"{FRICTION}: Low (0.8) is above High (0.7)"),
         ([Limits(TANGENT, {"at_most": -1})], f"{TANGENT}: At least (0) and At most (-1) contradict each other"),
-        ([Held(FRICTION, 0.7), Range(FRICTION, 0.6, 0.7)], f"{FRICTION!r} is frozen"),
+        ([Frozen(FRICTION, 0.7), Range(FRICTION, 0.6, 0.7)], f"{FRICTION!r} is frozen"),
         ([Band(FRICTION, 10, 10)], "a band from P10 to P10 holds nothing"),
         ([Typed(parse_address("Input!D28"), 1.0)], "the workbook has no sheet 'Input'"),
         ([Typed(parse_address("'Results wanted'!B41"), 1.0)], "is a cell of the table xlmc_settings"),

@@ -10,9 +10,9 @@ from chromium_browser import Browser
 from live_books import Running
 from needed_programs import missing
 
-from xlmc.outputs.live.kept_scenarios import Keeper
 from xlmc.outputs.live.library import Library
 from xlmc.outputs.live.server import LiveServer, bound_socket
+from xlmc.outputs.live.stored_scenarios import Keeper
 
 
 @pytest.fixture(scope="session")

@@ -16,7 +16,7 @@ from live_books import simple, wide_book
 from simulated import simulated
 from websockets.sync.server import serve
 
-from xlmc.montecarlo.definitions.scenarios import Held, Limits, Numbers
+from xlmc.montecarlo.definitions.scenarios import Frozen, Limits, Numbers
 from xlmc.montecarlo.model.applied_changes import applied
 from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.live.server import bound_socket
@@ -191,7 +191,7 @@ def test_by_mouse(chromium, running, tmp_path):
     page.at_rest(lambda: page.type(page.box(filters, "At most"), "19.5"))
     changes = (
         Numbers(FRICTION, {"high": 0.9}),
-        Held(DISTANCE, 51.0),
+        Frozen(DISTANCE, 51.0),
         Limits("Plausible 1", {"at_most": 19.5}),
     )
     assert accepted(case, *changes) in page.stand

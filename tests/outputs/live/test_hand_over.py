@@ -18,7 +18,7 @@ from xlmc.excel.workbook.package import read_parts
 from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.live import hand_over
 from xlmc.outputs.live.hand_over import save_result, write_changes
-from xlmc.outputs.live.protocol import Said
+from xlmc.outputs.live.protocol import PageMessage
 from xlmc.outputs.live.session import Session
 from xlmc.outputs.replay import recorded_run, replay
 
@@ -86,10 +86,10 @@ def test_files_are_named_by_the_scenario(book):
     session = Session(load(book))
     name, mean = first(session.own)
     session.receive(change(name, "mean", mean * 0.98))
-    session.receive(Said("keep", {"name": "wet / cold..\\road"}))
+    session.receive(PageMessage("keep", {"name": "wet / cold..\\road"}))
     settle(session)
     assert save_result(session.at_rest(), book, "json").name == "case-wet _ cold.._road-results.json"
-    session.receive(Said("show", {"name": ""}))
+    session.receive(PageMessage("show", {"name": ""}))
     settle(session)
     assert save_result(session.at_rest(), book, "json").name == "case-results.json"
 

@@ -17,7 +17,7 @@ from xlmc.montecarlo.model.loading import build_model, load
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.outputs.live.adjustments import LIMITS, Adjustments, changes_of
 from xlmc.outputs.live.moving_models import KnownModels
-from xlmc.outputs.live.protocol import Said
+from xlmc.outputs.live.protocol import PageMessage
 from xlmc.outputs.live.session import Session
 
 FRICTION, WEIGHT = "Chevrolet post-impact deceleration", "Nissan weight"
@@ -112,7 +112,7 @@ def test_after_any_moves_the_numbers_at_rest_are_those_of_the_edited_workbook(mi
             continue  # the next move comes before this state is at rest
         settle(session)
         if session._problem is not None:
-            session.receive(Said("reset", {"of": "assumption", "name": ""}))
+            session.receive(PageMessage("reset", {"of": "assumption", "name": ""}))
             continue
         expected = simulate(short(edited(mixed, changes_of(case.definitions, session.adjustments))))
         assert_same(session.rest, expected, (seed, step, session.adjustments))
@@ -151,11 +151,11 @@ def _move(session, model, chance):
             session.receive(change(limited.name, key, limit, of="filter", held=True))
             _some_work(session, chance)
     elif kind < 0.86:
-        session.receive(Said("keep", {"name": chance.choice("ab")}))
+        session.receive(PageMessage("keep", {"name": chance.choice("ab")}))
     elif kind < 0.92:
-        session.receive(Said("show", {"name": chance.choice(["", "a", "b"])}))
+        session.receive(PageMessage("show", {"name": chance.choice(["", "a", "b"])}))
     elif kind < 0.96:
-        session.receive(Said("reset", {"of": "assumption", "name": row.name}))
+        session.receive(PageMessage("reset", {"of": "assumption", "name": row.name}))
     else:
         session.replace_book(short(load(model.path)), [])
 

@@ -19,10 +19,10 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from xlmc.errors import XlmcError
 from xlmc.excel.workbook.writer import TakenError
 from xlmc.outputs.live.guard import MOST_UPLOADED, SECRET, Guard, proof
-from xlmc.outputs.live.kept_scenarios import Keeper
 from xlmc.outputs.live.library import Library, Sample
 from xlmc.outputs.live.protocol import MOST_BYTES
 from xlmc.outputs.live.server import SCRIPTS, STYLES, bound_socket
+from xlmc.outputs.live.stored_scenarios import Keeper
 
 ELSEWHERE = "http://evil.example"
 

@@ -16,7 +16,7 @@ from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.outputs.live.adjustments import Adjustments
 from xlmc.outputs.live.jobs import MOVING_TRIALS, Outcome, SupersededError
-from xlmc.outputs.live.protocol import Said, written
+from xlmc.outputs.live.protocol import PageMessage, written
 from xlmc.outputs.live.session import Session
 from xlmc.outputs.live.window_book import filter_rows
 
@@ -75,7 +75,7 @@ def test_at_rest_the_numbers_are_those_of_simulate_with_the_same_numbers_in_the_
     session, typed, rows = Session(model), openpyxl.load_workbook(path), rows_of(model)
     filters = {each.name for each in model.filters}
     for name, changes in SCENARIOS.items():
-        session.receive(Said("reset", {"of": "assumption", "name": ""}))
+        session.receive(PageMessage("reset", {"of": "assumption", "name": ""}))
         for (row, heading), value in changes.items():
             of = "filter" if row in filters else "assumption"
             session.receive(change(row, KEYS[heading], value, of=of))
@@ -122,7 +122,7 @@ def test_evidence_is_used_as_simulate_uses_it(model_of, way, monkeypatch):
     session.finish(job, outcome)
     for tab in ("matters", "pairs", "tables"):
         view = {"forecasts": ["x"], "chosen": ["x"], "tab": tab, "first": "x", "second": "v", "fits": True}
-        session.receive(Said("view", view))
+        session.receive(PageMessage("view", view))
         for message in settle(session):
             written(message)
 
@@ -132,7 +132,7 @@ def test_while_a_handle_moves_a_run_of_fifty_thousand_trials_comes_first(case):
     settle(session)
     session.receive(change(FRICTION, "high", 0.9, held=True, seq=7))
     job = session.job()
-    assert (job.stage, job.held) == ("moving", True)
+    assert (job.stage, job.dragged) == ("moving", True)
     (frame,) = session.finish(job, job.run(lambda: True, lambda share: None, lambda: 0.0))
     assert (frame["stage"], frame["trials"], frame["seq"]) == ("moving", MOVING_TRIALS, 7)
     assert frame["shapes"][FRICTION]["high"] == pytest.approx(0.9, abs=1e-3)
@@ -159,7 +159,7 @@ def test_the_newest_is_done_and_what_is_older_is_given_up(case):
 
 def test_a_stopped_run_is_not_begun_again_until_something_changes(case):
     session = Session(case[1])
-    session.receive(Said("stop", {}))
+    session.receive(PageMessage("stop", {}))
     assert session.job() is None
     session.receive(change(FRICTION, "high", 0.9))
     assert session.job() is not None
@@ -213,7 +213,7 @@ def test_the_state_behind_and_the_difference_in_numbers(case):
     mean = {label: rest for label, *rest in told["beside"]}["Mean"]
     assert mean[0].startswith(f"{session.rest['Nissan delta-V'].mean.value:.2f}"[:4])
     assert mean[1].startswith(f"{session.behind['Nissan delta-V'].mean.value:.2f}"[:4])
-    session.receive(Said("pin", {}))
+    session.receive(PageMessage("pin", {}))
     settle(session)
     assert session._last["frame "]["forecasts"]["Nissan delta-V"]["behind"] is None
 
@@ -221,21 +221,21 @@ def test_the_state_behind_and_the_difference_in_numbers(case):
 def test_scenarios_are_kept_shown_and_dropped(case):
     session = Session(case[1])
     session.receive(change(FRICTION, "high", 0.85))
-    session.receive(Said("keep", {"name": " dry "}))
-    assert session.kept == {"dry": Adjustments({FRICTION: {"high": 0.85}})}
+    session.receive(PageMessage("keep", {"name": " dry "}))
+    assert session.stored == {"dry": Adjustments({FRICTION: {"high": 0.85}})}
     assert not session.unkept
-    session.receive(Said("show", {"name": ""}))
+    session.receive(PageMessage("show", {"name": ""}))
     assert not session.adjustments
-    (state,) = session.receive(Said("show", {"name": "dry"})).all
+    (state,) = session.receive(PageMessage("show", {"name": "dry"})).all
     assert state["shown"] == "dry"
     assert state["changes"] == [f"{FRICTION}: High 0.95 → 0.85"]
     session.receive(change(FRICTION, "high", 0.8))
     assert session.shown == ""
     assert session.unkept.assumptions == {FRICTION: {"high": 0.8}}
-    session.receive(Said("drop", {"name": "dry"}))
-    assert session.kept == {}
+    session.receive(PageMessage("drop", {"name": "dry"}))
+    assert session.stored == {}
     with pytest.raises(XlmcError):
-        session.receive(Said("show", {"name": "dry"}))
+        session.receive(PageMessage("show", {"name": "dry"}))
 
 
 def test_what_was_not_kept_is_offered(case):
@@ -244,7 +244,7 @@ def test_what_was_not_kept_is_offered(case):
     (state,) = [each for each in session.greeting() if each["kind"] == "state"]
     assert state["offered"] == [f"{FRICTION}: High 0.95 → 0.85", "gone: high 1 (no longer in the workbook)"]
     assert session.unkept == lost
-    session.receive(Said("restore", {"take": True}))
+    session.receive(PageMessage("restore", {"take": True}))
     assert session.adjustments.assumptions == {FRICTION: {"high": 0.85}}
 
 
@@ -273,7 +273,7 @@ def test_all_tabs_are_made_of_the_run_at_rest(case):
     session = Session(case[1])
     names = [each.name for each in case[1].forecasts]
     for tab, first, second in (("matters", "", ""), ("tables", "", ""), ("pairs", FRICTION, names[1])):
-        session.receive(Said("view", seen(names[:1], tab, first, second, fits=True)))
+        session.receive(PageMessage("view", seen(names[:1], tab, first, second, fits=True)))
         *sketched, part = [each for each in settle(session) if each["kind"] == "part"]
         assert {each["tab"] for each in (*sketched, part)} == {tab}
         if tab == "pairs":
@@ -288,7 +288,7 @@ def test_what_matters_follows_while_a_handle_moves_unless_it_takes_long(case, mo
     monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", 1_000)
     session = Session(case[1])
     names = [each.name for each in case[1].forecasts]
-    session.receive(Said("view", seen(names, "matters")))
+    session.receive(PageMessage("view", seen(names, "matters")))
     settle(session)
     for number, (seconds, stages, sketched) in enumerate(
         [(0.01, ["moving", "sketch"], 1), (9.0, ["moving", "sketch"], 0), (9.0, ["moving"], 0)]
@@ -314,8 +314,8 @@ def test_all_scenarios_are_compared_in_one_table(case):
     session = Session(case[1])
     settle(session)
     session.receive(change(FRICTION, "high", 0.85))
-    session.receive(Said("keep", {"name": "dry <b>road"}))
-    session.receive(Said("compare", {}))
+    session.receive(PageMessage("keep", {"name": "dry <b>road"}))
+    session.receive(PageMessage("compare", {}))
     (part,) = [each for each in settle(session) if each["kind"] == "part"]
     assert part["tab"] == "scenarios"
     assert "dry &lt;b&gt;road" in part["html"]
@@ -326,11 +326,11 @@ def test_all_scenarios_are_compared_in_one_table(case):
 
 def test_the_usual_variants_are_scenarios(case):
     session = Session(case[1])
-    session.receive(Said("variants", {}))
-    names = [*session.kept]
+    session.receive(PageMessage("variants", {}))
+    names = [*session.stored]
     assert names[:2] == ["every range half as wide", "every range one and a half times as wide"]
     assert "Restitution, tangential at most 0.125 (half)" in names
-    narrow = session.kept["every range half as wide"].assumptions
+    narrow = session.stored["every range half as wide"].assumptions
     assert narrow[FRICTION] == {"low": 0.6875, "high": 0.8625}
     assert len(narrow) == len(case[1].live)
 
@@ -361,15 +361,15 @@ def test_evidence_has_no_limit_to_be_moved(tmp_path):
     assert (row["limits"], row["keeps"]) == ([], "reads 12, uniform (Plus or minus 1): from 11 to 13")
     with pytest.raises(XlmcError, match="no filter 'EDR' with 'at_most' to be set"):
         session.receive(change("EDR", "at_most", 14.0, of="filter"))
-    session.receive(Said("variants", {}))
-    assert any("Restitution" in name for name in session.kept)
-    assert not any("EDR" in name for name in session.kept)
+    session.receive(PageMessage("variants", {}))
+    assert any("Restitution" in name for name in session.stored)
+    assert not any("EDR" in name for name in session.stored)
 
 
 def test_a_tab_that_fails_is_told_once_and_tried_again_with_the_next_state(case):
     session = Session(case[1])
     settle(session)
-    session.receive(Said("view", seen([], "tables")))
+    session.receive(PageMessage("view", seen([], "tables")))
     told = []
     while (job := session.job()) is not None:
         failed = job.stage == "part"
@@ -397,10 +397,10 @@ def test_a_state_that_is_not_possible_cannot_be_saved_and_that_is_said(case):
 def test_a_scenario_that_is_not_possible_is_one_row_of_the_comparison(case):
     session = Session(case[1])
     session.receive(change(FRICTION, "high", 0.85))
-    session.receive(Said("keep", {"name": "dry"}))
+    session.receive(PageMessage("keep", {"name": "dry"}))
     session.receive(change(FRICTION, "high", 0.1))
-    session.receive(Said("keep", {"name": "crossed"}))
-    session.receive(Said("compare", {}))  # also where the state that is shown is not possible itself
+    session.receive(PageMessage("keep", {"name": "crossed"}))
+    session.receive(PageMessage("compare", {}))  # also where the state that is shown is not possible itself
     (part,) = [each for each in settle(session) if each["kind"] == "part"]
     html = part["html"]
     assert html.count("Not possible: ") == 1
@@ -415,11 +415,11 @@ def test_long_work_is_given_up_for_a_move_and_taken_up_again(case, stage, monkey
     session = Session(case[1])
     names = [each.name for each in case[1].forecasts]
     session.receive(change(FRICTION, "high", 0.85))
-    session.receive(Said("keep", {"name": "dry"}))
+    session.receive(PageMessage("keep", {"name": "dry"}))
     if stage == "part":
-        session.receive(Said("view", seen(names[:2], "matters")))
+        session.receive(PageMessage("view", seen(names[:2], "matters")))
     else:
-        session.receive(Said("compare", {}))
+        session.receive(PageMessage("compare", {}))
     job, shares = until(session, stage), []
 
     def told(share):
@@ -439,23 +439,23 @@ def test_long_work_is_given_up_for_a_move_and_taken_up_again(case, stage, monkey
 def test_what_a_person_stops_is_not_begun_again_until_something_changes(case):
     session = Session(case[1])
     names = [each.name for each in case[1].forecasts]
-    session.receive(Said("view", seen(names[:1], "tables")))
+    session.receive(PageMessage("view", seen(names[:1], "tables")))
     job = until(session, "part")
-    session.receive(Said("stop", {}))
+    session.receive(PageMessage("stop", {}))
     (over,) = done(session, job)
     assert over["stage"] == "stopped"
     assert session.job() is None
     for view in (seen(names[:1]), seen(names[:1], "tables")):  # the tab is closed, and opened again
-        session.receive(Said("view", view))
+        session.receive(PageMessage("view", view))
     assert any(each["kind"] == "part" for each in settle(session))
 
 
 def test_a_tab_that_is_closed_is_not_made(case):
     session = Session(case[1])
     names = [each.name for each in case[1].forecasts]
-    session.receive(Said("view", seen(names[:1], "matters")))
+    session.receive(PageMessage("view", seen(names[:1], "matters")))
     job = until(session, "part")
-    session.receive(Said("view", seen(names[:1], "tables")))
+    session.receive(PageMessage("view", seen(names[:1], "tables")))
     assert not session.wanted(job)
     assert [each["tab"] for each in settle(session) if each["kind"] == "part"] == ["tables"]
 
@@ -464,7 +464,7 @@ def test_tabs_are_of_the_forecasts_that_are_chosen(case):
     session = Session(case[1])
     first, *others = [each.name for each in case[1].forecasts]
     for tab in ("matters", "tables"):
-        session.receive(Said("view", seen([first], tab)))
+        session.receive(PageMessage("view", seen([first], tab)))
         *_, part = [each["html"] for each in settle(session) if each["kind"] == "part"]
         assert f"<h3>{first}</h3>" in part
         assert not any(f"<h3>{name}</h3>" in part for name in others)
@@ -484,12 +484,12 @@ def test_a_mean_of_few_accepted_trials_is_marked(tmp_path):
 
 def test_several_numbers_at_once_are_one_state(case):
     session = Session(case[1])
-    (state,) = session.receive(Said("numbers", numbers(FRICTION, low=0.8, high=1.4))).all
+    (state,) = session.receive(PageMessage("numbers", numbers(FRICTION, low=0.8, high=1.4))).all
     assert session.adjustments.assumptions == {FRICTION: {"low": 0.8, "high": 1.4}}
     assert session.version == 1
     assert state["undo"]
     with pytest.raises(XlmcError, match="to be set"):
-        session.receive(Said("numbers", numbers(FRICTION, low=0.7, mean=1.0)))
+        session.receive(PageMessage("numbers", numbers(FRICTION, low=0.7, mean=1.0)))
     assert session.adjustments.assumptions == {FRICTION: {"low": 0.8, "high": 1.4}}
 
 
@@ -501,19 +501,19 @@ def test_changes_are_undone_and_done_again(case):
     session = Session(case[1])
 
     def undo(kind="undo"):
-        (state,) = session.receive(Said(kind, {})).all
-        return session.adjustments.assumptions.get(FRICTION), [*session.kept], (state["undo"], state["redo"])
+        (state,) = session.receive(PageMessage(kind, {})).all
+        return session.adjustments.assumptions.get(FRICTION), [*session.stored], (state["undo"], state["redo"])
 
     for value, held in ((0.86, True), (0.87, True), (0.87, False), (0.9, False)):  # one drag, and what was typed
         session.receive(change(FRICTION, "high", value, held=held))
-    session.receive(Said("keep", {"name": "a"}))
+    session.receive(PageMessage("keep", {"name": "a"}))
     session.receive(change(FRICTION, "high", 0.8))
-    session.receive(Said("keep", {"name": "a"}))
-    session.receive(Said("drop", {"name": "a"}))
+    session.receive(PageMessage("keep", {"name": "a"}))
+    session.receive(PageMessage("drop", {"name": "a"}))
     assert undo() == ({"high": 0.8}, ["a"], (True, True))
-    assert session.kept["a"].assumptions[FRICTION] == {"high": 0.8}
+    assert session.stored["a"].assumptions[FRICTION] == {"high": 0.8}
     assert undo()[1] == ["a"]
-    assert session.kept["a"].assumptions[FRICTION] == {"high": 0.9}
+    assert session.stored["a"].assumptions[FRICTION] == {"high": 0.9}
     assert undo() == ({"high": 0.9}, ["a"], (True, True))
     assert undo() == ({"high": 0.9}, [], (True, True))
     assert undo()[0] == {"high": 0.87}
@@ -531,7 +531,7 @@ def test_a_drag_that_is_given_up_leaves_nothing_to_undo(case):
     session = Session(case[1])
     (state,) = session.receive(change(FRICTION, "high", 0.9)).all
     assert state["undo"]
-    session.receive(Said("undo", {}))
+    session.receive(PageMessage("undo", {}))
     for value, held in ((0.86, True), (0.87, True), (0.95, False)):
         (told,) = session.receive(change(FRICTION, "high", value, held=held)).all
     assert (told["kind"], told["undo"], told["changes"]) == ("state", False, [])
@@ -540,9 +540,9 @@ def test_a_drag_that_is_given_up_leaves_nothing_to_undo(case):
 def test_undoing_takes_nothing_away_that_another_window_kept(case):
     session = Session(case[1])
     session.receive(change(FRICTION, "high", 0.86))
-    session.receive(Said("keep", {"name": "mine"}))
-    session.adopt({**session.kept, "theirs": Adjustments({FRICTION: {"high": 0.7}})})
-    session.receive(Said("undo", {}))
-    assert [*session.kept] == ["theirs"]
-    session.receive(Said("redo", {}))
-    assert {*session.kept} == {"mine", "theirs"}
+    session.receive(PageMessage("keep", {"name": "mine"}))
+    session.adopt({**session.stored, "theirs": Adjustments({FRICTION: {"high": 0.7}})})
+    session.receive(PageMessage("undo", {}))
+    assert [*session.stored] == ["theirs"]
+    session.receive(PageMessage("redo", {}))
+    assert {*session.stored} == {"mine", "theirs"}

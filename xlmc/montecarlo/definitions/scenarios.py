@@ -17,7 +17,7 @@ __all__ = [
     "Band",
     "Change",
     "Drawn",
-    "Held",
+    "Frozen",
     "Limits",
     "Numbers",
     "Range",
@@ -30,7 +30,7 @@ __all__ = [
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
+class Frozen:
     """An assumption is not drawn: it is held at a value, or at its cell's own where that is None."""
 
     assumption: str
@@ -132,7 +132,7 @@ class Tabulated:
     where: Cell | None = None
 
 
-Change = Held | Drawn | Range | Band | Numbers | Redrawn | Limits | Switched | Typed | Tabulated
+Change = Frozen | Drawn | Range | Band | Numbers | Redrawn | Limits | Switched | Typed | Tabulated
 """One change. `where` is the cell that asks for it, for messages; None where a program does."""
 
 

@@ -13,7 +13,7 @@ For a picture that follows a hand: load the workbook once, keep the model, and f
     moved = applied(model, [Range("Friction", 0.6, 0.8)])     # always of the model that was loaded, from one thread
     run = simulate(moved, trials=50_000, engine="jit")
 
-or, to move limits as fast as ranges, and to draw nothing twice, keep a `KeptRunner` (`kept_runner.py`), too.
+or, to move limits as fast as ranges, and to draw nothing twice, keep a `ReusingRunner` (`kept_runner.py`), too.
 
 Draws are keyed by the seed and an assumption's name, so those of assumptions that are not changed stay what they were.
 """
@@ -37,7 +37,7 @@ from xlmc.montecarlo.definitions.scenarios import (
     Band,
     Change,
     Drawn,
-    Held,
+    Frozen,
     Limits,
     Numbers,
     Range,
@@ -269,7 +269,7 @@ def _refuse_contradiction(filter_: Filter, change: Limits) -> None:
 def _other(assumption: Assumption, change: Change, lowering: Lowering) -> Assumption:
     """Return the assumption with a change."""
     match change:
-        case Held(_, value):
+        case Frozen(_, value):
             base = assumption.base if value is None else value
             if base is None:
                 message = f"the assumption {assumption.name!r} has no base value to be held at"
@@ -328,7 +328,7 @@ def _check(assumption: Assumption, change: Change) -> None:
     """Refuse numbers that are not a distribution, and a distribution for what is not drawn."""
     where = change.where or assumption.row
     if assumption.frozen:
-        if isinstance(change, Held):
+        if isinstance(change, Frozen):
             return
         message = f"{assumption.name!r} is frozen, so that its distribution does not matter"
         raise DefinitionError(message, where=where, hint="let it be drawn in the scenario, too, or leave it out")

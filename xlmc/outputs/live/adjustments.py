@@ -15,7 +15,17 @@ from typing import Any, Final
 from xlmc.analysis.results.statements.in_words import number_text
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import Assumption, Definitions, Filter, Parameter
-from xlmc.montecarlo.definitions.scenarios import Band, Change, Drawn, Held, Limits, Numbers, Range, Scenario, Switched
+from xlmc.montecarlo.definitions.scenarios import (
+    Band,
+    Change,
+    Drawn,
+    Frozen,
+    Limits,
+    Numbers,
+    Range,
+    Scenario,
+    Switched,
+)
 
 __all__ = [
     "BAND",
@@ -82,7 +92,7 @@ class Adjustments:
                 found = found.having(of, name, key, value)
         return found
 
-    def held(self, definitions: Definitions) -> Adjustments:
+    def frozen_part(self, definitions: Definitions) -> Adjustments:
         """The part of it that says what is held and where, and which rows are used; nothing that has no effect."""
         found = Adjustments()
         for name, (_, used) in definitions.switches.items():
@@ -196,7 +206,7 @@ def _of_assumption(assumption: Assumption, given: dict[str, Amount]) -> Iterator
     frozen = given.pop("frozen", assumption.frozen)
     if frozen:
         if base is not None or not assumption.frozen:
-            yield Held(name, None if base is None else float(base))
+            yield Frozen(name, None if base is None else float(base))
         return
     if assumption.frozen:
         yield Drawn(name)
@@ -233,7 +243,7 @@ def _row_of(change: Change) -> tuple[str, str]:
     match change:
         case Limits(name) | Switched(name):
             return "filter", name
-        case Held(name) | Drawn(name) | Band(name) | Range(name) | Numbers(name):
+        case Frozen(name) | Drawn(name) | Band(name) | Range(name) | Numbers(name):
             return "assumption", name
     raise TypeError(change)
 
@@ -241,7 +251,7 @@ def _row_of(change: Change) -> tuple[str, str]:
 def _values(change: Change, assumptions: Mapping[str, Assumption]) -> dict[str, Amount] | None:
     """Key -> value of one change; None where it is none of these."""
     match change:
-        case Held(_, value):
+        case Frozen(_, value):
             return {"frozen": True} | ({} if value is None else {"base": value})
         case Drawn():
             return {"frozen": False}
@@ -272,10 +282,10 @@ def _assumption(assumption: Assumption, changed: Changed) -> Assumption:
     given = dict(changed.get(assumption.name, {}))
     if not given:
         return assumption
-    held: dict[str, Any] = {key: given.pop(key) for key in ("base", "frozen") if key in given}
+    frozen_part: dict[str, Any] = {key: given.pop(key) for key in ("base", "frozen") if key in given}
     for key in BAND:
         given.pop(key, None)
-    return replace(assumption.with_numbers({key: float(value) for key, value in given.items()}), **held)
+    return replace(assumption.with_numbers({key: float(value) for key, value in given.items()}), **frozen_part)
 
 
 def _filter(filter_: Filter, changed: Changed) -> Filter:
@@ -290,11 +300,11 @@ def in_words(definitions: Definitions, adjustments: Adjustments) -> list[str]:
     for of, name, key, value in adjustments._each():
         own = own_values(definitions, of, name)
         if key in own:
-            said = changed_text(definitions, of, name, key, own[key], value)
+            label = changed_text(definitions, of, name, key, own[key], value)
         else:
             number = ("off", "on")[value] if isinstance(value, bool) else number_text(value)
-            said = f"{LIMITS.get(key, key.replace('_', ' '))} {number} (no longer in the workbook)"
-        found.append(f"{name}: {said}")
+            label = f"{LIMITS.get(key, key.replace('_', ' '))} {number} (no longer in the workbook)"
+        found.append(f"{name}: {label}")
     return found
 
 
@@ -326,20 +336,20 @@ def usual_variants(definitions: Definitions) -> dict[str, Adjustments]:
     Ranges are those of the assumptions with numbers `low` and `high`; a limit of 0 stays.
     """
     found: dict[str, Adjustments] = {}
-    for said, factor in (("half as wide", 0.5), ("one and a half times as wide", 1.5)):
+    for label, factor in (("half as wide", 0.5), ("one and a half times as wide", 1.5)):
         made = Adjustments()
         for name, low, high in _ranges(definitions):
             middle, half = 0.5 * (low + high), 0.5 * (high - low) * factor
             for key, end in (("low", middle - half), ("high", middle + half)):
                 made = made.having("assumption", name, key, float(f"{end:.12g}"))  # 0.6875, not 0.6874999999999999
         if made:
-            found[f"every range {said}"] = made
+            found[f"every range {label}"] = made
     for filter_ in definitions.filters:
         for key, limit in movable_limits(filter_).items():
             if isinstance(limit, Cell) or not limit:
                 continue
-            for said, factor in (("half", 0.5), ("twice", 2.0)):
-                name = f"{filter_.name} {LIMITS[key]} {number_text(limit * factor)} ({said})"
+            for label, factor in (("half", 0.5), ("twice", 2.0)):
+                name = f"{filter_.name} {LIMITS[key]} {number_text(limit * factor)} ({label})"
                 found[name] = Adjustments().having("filter", filter_.name, key, limit * factor)
     return found
 

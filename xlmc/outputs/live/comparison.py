@@ -26,24 +26,24 @@ class Comparison:
 
     Args:
         own: the workbook's model.
-        kept: scenarios of the window, by name; they take the place of the workbook's of the same name.
+        stored: scenarios of the window, by name; they take the place of the workbook's of the same name.
         piece: trials after which it is looked whether the table is still wanted.
     """
 
-    def __init__(self, own: CompiledModel, kept: Mapping[str, Adjustments], piece: int) -> None:
-        fitting = {name: each.only(own.definitions) for name, each in kept.items()}
+    def __init__(self, own: CompiledModel, stored: Mapping[str, Adjustments], piece: int) -> None:
+        fitting = {name: each.only(own.definitions) for name, each in stored.items()}
         mine = [scenario_of(own.definitions, name, each) for name, each in fitting.items()]
         self._own, self._piece = own, piece
-        self._scenarios = [*(each for each in own.definitions.scenarios if each.name not in kept), *mine]
+        self._scenarios = [*(each for each in own.definitions.scenarios if each.name not in stored), *mine]
         self._base: RunResult | None = None
         self._runs: dict[str, RunResult | str] = {}
 
-    def html(self, go_on: Callable[[], None], tell: Callable[[float], None]) -> str:
+    def html(self, go_on: Callable[[], None], report_share: Callable[[float], None]) -> str:
         """Do what is not done yet, and write the table; a scenario that is not possible is a row that says why.
 
         Args:
             go_on: called again and again; what it raises ends the work until this is called again.
-            tell: takes the share that is done.
+            report_share: takes the share that is done.
 
         Raises:
             XlmcError: the workbook as it is cannot be run.
@@ -53,7 +53,7 @@ class Comparison:
         def watch(progress: Progress) -> None:
             go_on()
             done = len(self._runs) + (self._base is not None)
-            tell((done + progress.share) / count)
+            report_share((done + progress.share) / count)
 
         if self._base is None:
             options = RunOptions(scenarios=True)

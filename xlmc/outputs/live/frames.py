@@ -277,23 +277,23 @@ def rest_of(simulation: RunResult) -> Message:
     }
 
 
-def matters_html(simulation: RunResult, names: Collection[str], tell: Callable[[float], None]) -> str:
+def matters_html(simulation: RunResult, names: Collection[str], report_share: Callable[[float], None]) -> str:
     """Which assumptions some answers depend on, and what another limit of a filter would change.
 
     Args:
         simulation: the run.
         names: of the forecasts.
-        tell: takes the share that is done.
+        report_share: takes the share that is done.
     """
     if simulation.weighting is not None:
-        said = "Each trial has a weight of its own, by the evidence; what matters is not known of such trials."
-        return join([element("p", said, class_="remark")]).source
+        note = "Each trial has a weight of its own, by the evidence; what matters is not known of such trials."
+        return join([element("p", note, class_="remark")]).source
     chosen = [name for name in simulation.results if name in names]
     if not chosen:
         return _of_chosen(simulation, chosen).source
-    found = sensitivities(simulation, chosen, told=lambda share: tell(_MEASURING * share))
+    found = sensitivities(simulation, chosen, progress=lambda share: report_share(_MEASURING * share))
     parts = [_of_chosen(simulation, chosen), dependence(found)]
-    tell(0.5 + _MEASURING / 2.0)
+    report_share(0.5 + _MEASURING / 2.0)
     return join([*parts, limits(found)]).source
 
 
@@ -302,11 +302,11 @@ def _of_chosen(simulation: RunResult, names: Sequence[str]) -> Html:
     count, every = len(names), len(simulation.results)
     if count == every:
         return EMPTY
-    said = f"Of {count} of {every} answers: those that are chosen above." if count else "Choose an answer above."
-    return element("p", said, class_="remark")
+    note = f"Of {count} of {every} answers: those that are chosen above." if count else "Choose an answer above."
+    return element("p", note, class_="remark")
 
 
-def tables_html(simulation: RunResult, names: Collection[str], tell: Callable[[float], None]) -> str:
+def tables_html(simulation: RunResult, names: Collection[str], report_share: Callable[[float], None]) -> str:
     """The tables that the page of results has; of single forecasts, those of some. See `matters_html`."""
     chosen = [name for name in simulation.results if name in names]
     makers: tuple[Callable[[], Html], ...] = (
@@ -317,7 +317,7 @@ def tables_html(simulation: RunResult, names: Collection[str], tell: Callable[[f
     )
     parts = [_of_chosen(simulation, chosen)]
     for number, make in enumerate(makers):
-        tell(number / len(makers))
+        report_share(number / len(makers))
         parts.append(make())
     return join(parts).source
 

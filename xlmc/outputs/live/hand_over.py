@@ -159,15 +159,15 @@ def write_changes(state: AtRest, book: Path, *, into: bool) -> str:
         raise SimulationError("nothing is changed", hint="move something first")
     if not into:
         path = write_edited(edited, unused_path(book.with_name(f"{book.stem}{_label(state)}{copy_ending(book)}")))
-        return f"Written: {path}. {_told(edited)}"
+        return f"Written: {path}. {_summary(edited)}"
     refuse_into_source(book, edited.sha256, "wait until it was read again")
-    kept = unused_path(book.with_name(f"{book.stem}-before{book.suffix}"))
-    write_workbook(kept, state.own.workbook.data, lambda: refuse_existing(kept))
+    copy_path = unused_path(book.with_name(f"{book.stem}-before{book.suffix}"))
+    write_workbook(copy_path, state.own.workbook.data, lambda: refuse_existing(copy_path))
     write_edited(edited, book, overwrite=True)
-    return f"Typed into {book.name}. {_told(edited)} The workbook as it was: {kept.name}"
+    return f"Typed into {book.name}. {_summary(edited)} The workbook as it was: {copy_path.name}"
 
 
-def _told(edited: EditedWorkbook) -> str:
+def _summary(edited: EditedWorkbook) -> str:
     """How many cells were typed into, and what Excel must still do."""
     count = len(edited.cells)
     cells = f"{count} cells were typed into" if count > 1 else "1 cell was typed into"

@@ -20,12 +20,12 @@ class Moment:
 
     Attributes:
         adjustments: what differed from the workbook.
-        kept: scenarios by name.
+        stored: scenarios by name.
         shown: the scenario that was shown; empty for none.
     """
 
     adjustments: Adjustments
-    kept: Mapping[str, Adjustments]
+    stored: Mapping[str, Adjustments]
     shown: str = field(compare=False)
 
 
@@ -61,7 +61,7 @@ class History:
     def learn(self, more: Mapping[str, Adjustments]) -> None:
         """Take scenarios that another window on this workbook kept: undoing must not take them away."""
         for those in (self._before, self._after):
-            those[:] = [replace(each, kept={**each.kept, **more}) for each in those]
+            those[:] = [replace(each, stored={**each.stored, **more}) for each in those]
 
     def undo(self, now: Moment, fitting: Callable[[Moment], Moment]) -> Moment | None:
         """The last moment that differs from now, as `fitting` makes it of what was noted; None where there is none."""

@@ -19,7 +19,7 @@ from xlmc.outputs.live.adjustments import Adjustments
 from xlmc.outputs.live.comparison import Comparison
 from xlmc.outputs.live.frames import Bases, bases_of, frame_of, matters_html, pair_of, rest_of, tables_html
 from xlmc.outputs.live.moving_models import KnownModels
-from xlmc.outputs.live.protocol import Message, Said
+from xlmc.outputs.live.protocol import Message, PageMessage
 from xlmc.outputs.live.window_book import shapes_of
 
 if TYPE_CHECKING:
@@ -84,9 +84,9 @@ class View:
     fits: bool = False
 
     @classmethod
-    def of(cls, said: Iterable[Said], order: Sequence[str]) -> View:
+    def of(cls, sent: Iterable[PageMessage], order: Sequence[str]) -> View:
         """The union of what the windows show, with the forecasts in the order of the workbook."""
-        views = list(said)
+        views = list(sent)
         seen = {name for each in views for name in each["forecasts"]}
         chosen = {name for each in views for name in each["chosen"]}
         of = tuple(name for name in order if name in chosen)
@@ -94,10 +94,10 @@ class View:
         return cls(tuple(name for name in order if name in seen), tuple(tabs), any(each["fits"] for each in views))
 
 
-def _tab(said: Said, chosen: tuple[str, ...]) -> Tab:
-    if said["tab"] == "pairs":
-        return Tab("pairs", said["first"], said["second"])
-    return Tab(said["tab"], chosen=chosen if said["tab"] in ("matters", "tables") else ())
+def _tab(sent: PageMessage, chosen: tuple[str, ...]) -> Tab:
+    if sent["tab"] == "pairs":
+        return Tab("pairs", sent["first"], sent["second"])
+    return Tab(sent["tab"], chosen=chosen if sent["tab"] in ("matters", "tables") else ())
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,9 +116,9 @@ class Outcome:
 
 
 Wanted = Callable[[], bool]
-Tell = Callable[[float], None]
+ReportShare = Callable[[float], None]
 Clock = Callable[[], float]
-Work = Callable[[Wanted, Tell, Clock], Outcome]
+Work = Callable[[Wanted, ReportShare, Clock], Outcome]
 """Is given what says whether it is still wanted, what takes the share done, and a clock."""
 
 
@@ -129,21 +129,21 @@ class Job:
     Attributes:
         stage: which.
         version: of the state that it is of.
-        held: whether a handle is held: there is hurry then, and more to come.
+        dragged: whether a handle is held: there is hurry then, and more to come.
         run: does it. It raises `SupersededError` where it is not wanted any more.
         done: what is up to date when it was run -> the state that it is up to date with.
     """
 
     stage: Stage
     version: int
-    held: bool
+    dragged: bool
     run: Work
     done: Mapping[str | Tab, object]
 
 
-PARTS: Final[Mapping[str, Callable[[RunResult, Tab, Tell], Message]]] = {
-    "matters": lambda run, tab, tell: {"html": matters_html(run, tab.chosen, tell)},
-    "tables": lambda run, tab, tell: {"html": tables_html(run, tab.chosen, tell)},
+PARTS: Final[Mapping[str, Callable[[RunResult, Tab, ReportShare], Message]]] = {
+    "matters": lambda run, tab, report_share: {"html": matters_html(run, tab.chosen, report_share)},
+    "tables": lambda run, tab, report_share: {"html": tables_html(run, tab.chosen, report_share)},
     "pairs": lambda run, tab, _: {"pair": pair_of(run, tab.first, tab.second)},
 }
 """Tab whose contents are made of a run at rest -> what makes them."""
@@ -164,7 +164,7 @@ class StateRun:
         models: what gives its model.
         view: what can be seen.
         behind: the state to be drawn behind it; None where there is none.
-        way: how evidence is used while states move.
+        method: how evidence is used while states move.
         trials: of a run that moves.
         piece: trials after which it is looked whether the run is still wanted.
         watched: whether that is looked at all; a run that is quick ends sooner than the next move comes.
@@ -178,19 +178,19 @@ class StateRun:
     models: KnownModels
     view: View
     behind: RunResult | None
-    way: str | None
+    method: str | None
     trials: int
     piece: int
     watched: bool
     draws: bool
 
-    def run(self, wanted: Wanted, tell: Tell, clock: Clock) -> Outcome:
+    def run(self, wanted: Wanted, report_share: ReportShare, clock: Clock) -> Outcome:
         """See `Work`."""
 
         def watch(progress: Progress) -> None:
             if not wanted():
                 raise SupersededError
-            tell(progress.share)
+            report_share(progress.share)
 
         with looking(_giving_up(wanted)) if self.watched else nullcontext():
             return self._run(watch if self.watched else None, clock)
@@ -206,22 +206,22 @@ class StateRun:
             else:
                 moving = self.models.moving(self.adjustments)
                 model, base = moving.model, moving.base
-                pieces = -(-self.trials // min(self.piece, moving.kept.largest_block))
+                pieces = -(-self.trials // min(self.piece, moving.reusing.largest_block))
                 runner = moving.runner(-(-self.trials // pieces))
                 begun = clock()
-                way = self.way or "rejection"
+                method = self.method or "rejection"
                 options = RunOptions(
                     trials=self.trials,
                     sampling="mc",
-                    engine=moving.kept.engine,
-                    evidence=way,
+                    engine=moving.reusing.engine,
+                    evidence=method,
                     keep_inputs=KEPT_INPUTS if self.draws else 0,
                     keep_prior=False,
                 )
                 found = run_model(
                     model,
                     options,
-                    own_runner=None if self.way == "weights" else runner,  # it computes other filters
+                    own_runner=None if self.method == "weights" else runner,  # it computes other filters
                     progress=watched,
                     follow=(),
                 )
@@ -258,7 +258,7 @@ def charts_of(simulation: RunResult, behind: RunResult | None, seq: int, sight: 
 def sketched_tab(simulation: RunResult, version: int, tab: Tab, most: float) -> Work:
     """What matters, of the run of a state that moves; given up where it takes more than `most` seconds."""
 
-    def run(_wanted: Wanted, _tell: Tell, clock: Clock) -> Outcome:
+    def run(_wanted: Wanted, _report_share: ReportShare, clock: Clock) -> Outcome:
         begun = clock()
         with looking(_giving_up(lambda: clock() - begun < most)):
             message = _part(simulation, version, tab, lambda share: None)
@@ -270,9 +270,9 @@ def sketched_tab(simulation: RunResult, version: int, tab: Tab, most: float) -> 
 def tab_of(simulation: RunResult, version: int, tab: Tab) -> Work:
     """The contents of an open tab."""
 
-    def run(wanted: Wanted, tell: Tell, _clock: Clock) -> Outcome:
+    def run(wanted: Wanted, report_share: ReportShare, _clock: Clock) -> Outcome:
         with looking(_giving_up(wanted)):
-            return Outcome((_part(simulation, version, tab, tell),))
+            return Outcome((_part(simulation, version, tab, report_share),))
 
     return run
 
@@ -285,10 +285,10 @@ def scenario_table(comparison: Comparison, asked: int) -> Work:
         asked: how often the table was asked for.
     """
 
-    def run(wanted: Wanted, tell: Tell, _clock: Clock) -> Outcome:
+    def run(wanted: Wanted, report_share: ReportShare, _clock: Clock) -> Outcome:
         try:
             with looking(go_on := _giving_up(wanted)):
-                html = comparison.html(go_on, tell)
+                html = comparison.html(go_on, report_share)
         except XlmcError as error:
             html = join([element("p", str(error), class_="warning")]).source
         message = {"kind": "part", "tab": "scenarios", "version": asked, "html": html}
@@ -311,5 +311,5 @@ def _frame(stage: str, version: int, seq: int, charts: Message) -> Message:
     return {"kind": "frame", "stage": stage, "version": version, "seq": seq, **charts}
 
 
-def _part(simulation: RunResult, version: int, tab: Tab, tell: Tell) -> Message:
-    return {"kind": "part", "tab": tab.key, "version": version, **PARTS[tab.key](simulation, tab, tell)}
+def _part(simulation: RunResult, version: int, tab: Tab, report_share: ReportShare) -> Message:
+    return {"kind": "part", "tab": tab.key, "version": version, **PARTS[tab.key](simulation, tab, report_share)}

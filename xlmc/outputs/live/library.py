@@ -19,7 +19,7 @@ from xlmc.excel.workbook.package import is_old_workbook
 from xlmc.excel.workbook.printable import printable
 from xlmc.excel.workbook.target import refuse_existing, unused_path
 from xlmc.excel.workbook.writer import write_workbook
-from xlmc.outputs.live.kept_scenarios import Keeper
+from xlmc.outputs.live.stored_scenarios import Keeper
 
 __all__ = ["Library", "Sample"]
 

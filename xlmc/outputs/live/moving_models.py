@@ -2,7 +2,7 @@
 
 A state at rest has the model that the edited workbook would have. It is made from one in which the same assumptions are
 held at the same values: in such a model a moved number needs no formula to be looked at again. A state that moves has
-what a `KeptRunner` can run: an assumption that was frozen a moment ago is still drawn there, as a distribution that has
+what a `ReusingRunner` can run: an assumption that was frozen a moment ago is still drawn there, as a distribution with
 a single value.
 """
 
@@ -18,7 +18,7 @@ from xlmc.errors import XlmcError
 from xlmc.excel.formula import Graph
 from xlmc.montecarlo.definitions.definitions import Assumption, Definitions
 from xlmc.montecarlo.loop.blocks import ModelRunner
-from xlmc.montecarlo.loop.kept_runner import KeptRunner
+from xlmc.montecarlo.loop.reusing_runner import ReusingRunner
 from xlmc.montecarlo.model.applied_changes import applied, changed_cells
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.outputs.live.adjustments import Adjustments, changes_of
@@ -36,7 +36,7 @@ _IN_SHAPES: Final = re.compile(r"\$?\b[A-Za-z]{1,3}\$?\d+\b|\d+(\.\d+)?")
 _KEPT: Final = 3
 """Sets of held assumptions whose models are kept."""
 
-_Held = tuple[tuple[str, bool, float | None], ...]
+_State = tuple[tuple[str, bool, float | None], ...]
 """Each assumption that is held or drawn differently from the workbook: its name, whether it is held, and where. Each
 filter or row of evidence that is used or not, likewise: its name, and whether it is used, with no place.
 """
@@ -48,20 +48,20 @@ class Moving:
 
     Attributes:
         model: of the state.
-        kept: what it has in common with the states before.
+        reusing: what it has in common with the states before.
     """
 
     model: CompiledModel
-    kept: KeptRunner
+    reusing: ReusingRunner
 
     def runner(self, block: int) -> ModelRunner:
         """Runs its blocks, of so many trials each."""
-        return self.kept.runner(self.model, min(block, self.kept.largest_block))
+        return self.reusing.runner(self.model, min(block, self.reusing.largest_block))
 
     @property
     def base(self) -> dict[str, float | None] | None:
         """The forecasts at the base case; None where there is none."""
-        return self.kept.base(self.model)
+        return self.reusing.base(self.model)
 
 
 class KnownModels:
@@ -74,8 +74,8 @@ class KnownModels:
 
     def __init__(self, own: CompiledModel, trials: int) -> None:
         self.own, self._trials = own, trials
-        self._holding: dict[_Held, CompiledModel] = {(): own}
-        self._kept: dict[_Held, KeptRunner] = {}
+        self._holding: dict[_State, CompiledModel] = {(): own}
+        self._runners: dict[_State, ReusingRunner] = {}
         self._last: tuple[CompiledModel, Adjustments, CompiledModel] | None = None
 
     def at_rest(self, adjustments: Adjustments) -> CompiledModel:
@@ -84,11 +84,11 @@ class KnownModels:
         Raises:
             DefinitionError, FormulaError: as for `applied`.
         """
-        held = _held(self.own.definitions, adjustments)
-        if not held:
+        state = _state_of(self.own.definitions, adjustments)
+        if not state:
             return self._moved(self.own, adjustments)
         try:
-            holding = self._of_held(held, adjustments)
+            holding = self._of_state(state, adjustments)
         except XlmcError:  # what is drawn now may have no distribution before its numbers are changed, too
             return applied(self.own, changes_of(self.own.definitions, adjustments))
         return self._moved(holding, adjustments.numbers(self.own.definitions))
@@ -100,18 +100,18 @@ class KnownModels:
             DefinitionError, FormulaError: as for `applied`.
             SimulationError: a filter or a forecast cannot be computed.
         """
-        held = _held(self.own.definitions, adjustments)
+        state = _state_of(self.own.definitions, adjustments)
         numbers = adjustments.numbers(self.own.definitions)
-        still = _held_values(self.own, held)
+        still = _frozen_values(self.own, state)
         if still is not None:
             model = self._moved(self.own, numbers)
             model = model.changed(model.workbook, _holding_still(model.definitions, still)) if still else model
-            kept = self._kept_runner((), self.own)
-            if kept.holds_for(model):
-                return Moving(model, kept)
+            reusing = self._runner_of((), self.own)
+            if reusing.holds_for(model):
+                return Moving(model, reusing)
         model = self.at_rest(adjustments)
-        kept = self._kept_runner(held, self._holding.get(held, model))
-        return Moving(model, kept if kept.holds_for(model) else self._new_runner(model))
+        reusing = self._runner_of(state, self._holding.get(state, model))
+        return Moving(model, reusing if reusing.holds_for(model) else self._new_runner(model))
 
     def _moved(self, model: CompiledModel, adjustments: Adjustments) -> CompiledModel:
         """The model with other numbers; a state is first run with few trials, then with more, then at rest."""
@@ -120,23 +120,23 @@ class KnownModels:
             self._last = model, adjustments, applied(model, changes) if changes else model
         return self._last[2]
 
-    def _of_held(self, held: _Held, adjustments: Adjustments) -> CompiledModel:
+    def _of_state(self, state: _State, adjustments: Adjustments) -> CompiledModel:
         """The workbook's own model but for what is held; the last ones are kept."""
-        if held not in self._holding:
-            changes = changes_of(self.own.definitions, adjustments.held(self.own.definitions))
-            self._holding[held] = applied(self.own, changes)
+        if state not in self._holding:
+            changes = changes_of(self.own.definitions, adjustments.frozen_part(self.own.definitions))
+            self._holding[state] = applied(self.own, changes)
             for old in [each for each in self._holding if each][:-_KEPT]:
                 self._holding.pop(old)
-                self._kept.pop(old, None)
-        return self._holding[held]
+                self._runners.pop(old, None)
+        return self._holding[state]
 
-    def _kept_runner(self, held: _Held, model: CompiledModel) -> KeptRunner:
-        if held not in self._kept or not self._kept[held].holds_for(model):
-            self._kept[held] = self._new_runner(model)
-        return self._kept[held]
+    def _runner_of(self, state: _State, model: CompiledModel) -> ReusingRunner:
+        if state not in self._runners or not self._runners[state].holds_for(model):
+            self._runners[state] = self._new_runner(model)
+        return self._runners[state]
 
-    def _new_runner(self, model: CompiledModel) -> KeptRunner:
-        return KeptRunner(model, _engine(model), model.definitions.settings.seed, self._trials)
+    def _new_runner(self, model: CompiledModel) -> ReusingRunner:
+        return ReusingRunner(model, _engine(model), model.definitions.settings.seed, self._trials)
 
 
 def _engine(model: CompiledModel) -> str:
@@ -153,12 +153,12 @@ def _shapes(graph: Graph) -> int:
     return len({_IN_SHAPES.sub("#", graph.text(cell)) for cell in graph.formulas})
 
 
-def _held(definitions: Definitions, adjustments: Adjustments) -> _Held:
-    held = adjustments.held(definitions)
+def _state_of(definitions: Definitions, adjustments: Adjustments) -> _State:
+    state = adjustments.frozen_part(definitions)
     found: list[tuple[str, bool, float | None]] = [
-        (name, bool(each["used"]), None) for name, each in held.filters.items()
+        (name, bool(each["used"]), None) for name, each in state.filters.items()
     ]
-    changed = held.assumptions
+    changed = state.assumptions
     for assumption in definitions.assumptions if changed else ():
         given = changed.get(assumption.name)
         if given is not None:
@@ -168,12 +168,12 @@ def _held(definitions: Definitions, adjustments: Adjustments) -> _Held:
     return tuple(found)
 
 
-def _held_values(own: CompiledModel, held: _Held) -> dict[str, float] | None:
+def _frozen_values(own: CompiledModel, state: _State) -> dict[str, float] | None:
     """The value of each assumption that is held; None where holding it changes more than the values of draws."""
     named = {each.name: each for each in own.live}
     grouped = {name for group in own.groups for name in group.names}
     found: dict[str, float] = {}
-    for name, frozen, base in held:
+    for name, frozen, base in state:
         assumption = named.get(name)
         value = base if base is not None or assumption is None else assumption.base
         if not frozen or value is None or assumption is None or assumption.cells or assumption.data is not None:

@@ -72,7 +72,7 @@ from typing import Any, Final
 
 from xlmc.errors import XlmcError
 
-__all__ = ["MOST_BYTES", "Message", "ProtocolError", "Said", "read_message", "written"]
+__all__ = ["MOST_BYTES", "Message", "PageMessage", "ProtocolError", "read_message", "written"]
 
 MOST_BYTES: Final = 1 << 16
 """The fields of each kind of message from the page."""
@@ -92,7 +92,7 @@ class ProtocolError(XlmcError):
 
 
 @dataclass(frozen=True, slots=True)
-class Said:
+class PageMessage:
     """A message from the page, checked."""
 
     kind: str
@@ -190,7 +190,7 @@ _FIELDS: Final[Mapping[str, Mapping[str, Callable[[object], bool]]]] = {
 }
 
 
-def read_message(text: str | bytes) -> Said:
+def read_message(text: str | bytes) -> PageMessage:
     """What the page said.
 
     Raises:
@@ -209,7 +209,7 @@ def read_message(text: str | bytes) -> Said:
     for name, fits in wanted.items():
         if name not in found or not fits(found[name]):
             raise ProtocolError(f"{name!r} of a message {kind!r} is not what it must be")
-    return Said(str(kind), {name: found[name] for name in wanted})
+    return PageMessage(str(kind), {name: found[name] for name in wanted})
 
 
 def written(message: Message) -> str:

@@ -27,10 +27,10 @@ from starlette.types import Message as AsgiMessage
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from xlmc.errors import XlmcError
-from xlmc.outputs.live.desk import Desk
 from xlmc.outputs.live.guard import HEADERS, MOST_UPLOADED, PRINTED, Guard, proof
 from xlmc.outputs.live.library import Library
-from xlmc.outputs.live.protocol import MOST_BYTES, Message, ProtocolError, Said, read_message, written
+from xlmc.outputs.live.open_book import OpenBook
+from xlmc.outputs.live.protocol import MOST_BYTES, Message, PageMessage, ProtocolError, read_message, written
 from xlmc.outputs.live.timed_requests import TimedRequests
 
 __all__ = ["IDLE_SECONDS", "LiveServer", "bound_socket"]
@@ -131,7 +131,7 @@ class LiveServer:
         self._socket, self._library, self._idle, self._clock = sock, library, idle, clock
         self.port: int = sock.getsockname()[1]
         self.guard = Guard(self.port, clock)
-        self._desks: dict[str, Desk] = {}
+        self._open_books: dict[str, OpenBook] = {}
         self._windows: set[WebSocket] = set()
         self._last_seen = clock()
         routes = [
@@ -177,7 +177,7 @@ class LiveServer:
             await self._server.serve([self._socket])
         finally:
             watching.cancel()
-            await asyncio.gather(*(desk.close() for desk in self._desks.values()))
+            await asyncio.gather(*(open_book.close() for open_book in self._open_books.values()))
 
     async def _end_when_idle(self) -> None:
         while True:
@@ -219,8 +219,8 @@ class LiveServer:
         if not is_own or not self.guard.use_ticket(headers.get("x-xlmc-ticket")):
             return _refusal("This page may not do that.")
         too_large = JSONResponse({"trouble": f"The file is larger than {MOST_UPLOADED >> 20} MB."}, 413)
-        said = request.headers.get("content-length", "")
-        if not said.isdigit() or int(said) > MOST_UPLOADED:
+        sent = request.headers.get("content-length", "")
+        if not sent.isdigit() or int(sent) > MOST_UPLOADED:
             return too_large
         data = bytearray()
         try:
@@ -248,7 +248,7 @@ class LiveServer:
             if path is None:
                 await window.close(_NO_BOOK)
             else:
-                await self._speak(window, self._desk(key, path))
+                await self._speak(window, self._open_book(key, path))
 
         await self._admit(window, speak)
 
@@ -257,14 +257,14 @@ class LiveServer:
 
         async def speak() -> None:
             if self._library.only is not None:
-                await _tell(window, {"kind": "open", "key": self._library.only})
-            await _tell(window, self._books())
+                await _send(window, {"kind": "open", "key": self._library.only})
+            await _send(window, self._books())
             while True:
-                said = await _said(window)
-                if said.kind == "ticket":
-                    await _tell(window, {"kind": "ticket", "ticket": self.guard.new_ticket()})
-                elif said.kind == "copy":
-                    await _tell(window, await self._copied(said["key"]))
+                sent = await _receive(window)
+                if sent.kind == "ticket":
+                    await _send(window, {"kind": "ticket", "ticket": self.guard.new_ticket()})
+                elif sent.kind == "copy":
+                    await _send(window, await self._copied(sent["key"]))
 
         await self._admit(window, speak)
 
@@ -299,7 +299,7 @@ class LiveServer:
                 return
             self._windows.add(window)
             try:
-                await _tell(window, {"kind": "welcome", "secret": self.guard.secret})
+                await _send(window, {"kind": "welcome", "secret": self.guard.secret})
                 await speak()
             finally:
                 self._windows.discard(window)
@@ -312,26 +312,26 @@ class LiveServer:
     async def _is_known(self, window: WebSocket) -> bool:
         """Return whether the page has proved that it knows its key, to which this end has proved the same."""
         async with asyncio.timeout(_HELLO_SECONDS):
-            hello = await _said(window, "hello")
+            hello = await _receive(window, "hello")
             key = self.guard.key(hello["name"])
             if key is None:
                 return False
             ends: tuple[str, str] = (hello["nonce"], secrets.token_hex(32))
-            await _tell(window, {"kind": "proof", "nonce": ends[1], "proof": proof(key, "server", *ends)})
-            said = (await _said(window, "proof"))["proof"]
+            await _send(window, {"kind": "proof", "nonce": ends[1], "proof": proof(key, "server", *ends)})
+            sent = (await _receive(window, "proof"))["proof"]
         wanted = proof(key, "page", *ends)
-        is_right = hmac.compare_digest(said.encode("utf-8", "surrogatepass"), wanted.encode())
+        is_right = hmac.compare_digest(sent.encode("utf-8", "surrogatepass"), wanted.encode())
         return is_right and self.guard.use(hello["name"])
 
-    def _desk(self, key: str, path: Path) -> Desk:
-        if key not in self._desks:
-            self._desks[key] = Desk(path, self._library, self.guard.new_page)
+    def _open_book(self, key: str, path: Path) -> OpenBook:
+        if key not in self._open_books:
+            self._open_books[key] = OpenBook(path, self._library, self.guard.new_page)
             self._library.opened(path)
-            self._desks[key].start()
-        return self._desks[key]
+            self._open_books[key].start()
+        return self._open_books[key]
 
-    async def _speak(self, socket: WebSocket, desk: Desk) -> None:
-        window = desk.join()
+    async def _speak(self, socket: WebSocket, open_book: OpenBook) -> None:
+        window = open_book.join()
 
         async def send() -> None:
             while True:
@@ -340,14 +340,14 @@ class LiveServer:
         sending = asyncio.create_task(send())
         try:
             while True:
-                desk.hear(window, await _said(socket))
+                open_book.hear(window, await _receive(socket))
         finally:
-            desk.leave(window)
+            open_book.leave(window)
             sending.cancel()
             await asyncio.gather(sending, return_exceptions=True)
 
 
-async def _said(socket: WebSocket, kind: str | None = None) -> Said:
+async def _receive(socket: WebSocket, kind: str | None = None) -> PageMessage:
     """Return the next message.
 
     Raises:
@@ -360,13 +360,13 @@ async def _said(socket: WebSocket, kind: str | None = None) -> Said:
     text = message.get("text")
     if text is None:
         raise ProtocolError("a message is not text")
-    said = read_message(str(text))
-    if kind is not None and said.kind != kind:
-        raise ProtocolError(f"a message {said.kind!r} comes before {kind!r}")
-    return said
+    sent = read_message(str(text))
+    if kind is not None and sent.kind != kind:
+        raise ProtocolError(f"a message {sent.kind!r} comes before {kind!r}")
+    return sent
 
 
-async def _tell(socket: WebSocket, message: Message) -> None:
+async def _send(socket: WebSocket, message: Message) -> None:
     if socket.application_state is WebSocketState.CONNECTED:  # the server may have said goodbye meanwhile
         await socket.send_text(written(message))
 

@@ -46,7 +46,7 @@ from xlmc.outputs.live.jobs import (
 )
 from xlmc.outputs.live.moving_models import KnownModels
 from xlmc.outputs.live.pace import Pace
-from xlmc.outputs.live.protocol import Message, Said
+from xlmc.outputs.live.protocol import Message, PageMessage
 from xlmc.outputs.live.window_book import assumption_rows, book_message, filter_rows, known_scenario, scenario_rows
 
 if TYPE_CHECKING:
@@ -75,16 +75,16 @@ class Session:
 
     Args:
         model: the workbook's.
-        kept: scenarios by name.
+        stored: scenarios by name.
         offered: a state that was not kept under a name when the window was last closed.
     """
 
     def __init__(
-        self, model: CompiledModel, kept: Mapping[str, Adjustments] | None = None, offered: Adjustments | None = None
+        self, model: CompiledModel, stored: Mapping[str, Adjustments] | None = None, offered: Adjustments | None = None
     ) -> None:
         self.own = model
         self.adjustments = Adjustments()
-        self.kept: dict[str, Adjustments] = dict(kept or {})
+        self.stored: dict[str, Adjustments] = dict(stored or {})
         self.offered = offered or Adjustments()
         self.shown = ""
         self.version = 0
@@ -94,7 +94,7 @@ class Session:
         self._behind_of: tuple[int, Adjustments] | None = None
         self.view = View(tuple(each.name for each in model.forecasts[:OPENS_WITH]))
         self._pin_next = True
-        self._held = False
+        self._dragged = False
         self._seq = 0
         self._done: dict[str | Tab, object] = {}
         self._models = KnownModels(model, MOVING_TRIALS)
@@ -126,7 +126,7 @@ class Session:
             "assumptions": assumption_rows(self.own, self.adjustments),
             "filters": filter_rows(self.own, self.adjustments),
             "changes": in_words(self.own.definitions, self.adjustments),
-            "scenarios": list(scenario_rows(self.own.definitions, self.kept)),
+            "scenarios": list(scenario_rows(self.own.definitions, self.stored)),
             "shown": self.shown,
             "offered": in_words(self.own.definitions, self.offered),
             "behind": self.behind_is,
@@ -134,41 +134,41 @@ class Session:
         }
 
     def _known(self, name: str) -> Adjustments | None:
-        return known_scenario(self.own.definitions, self.kept, name)
+        return known_scenario(self.own.definitions, self.stored, name)
 
     def _trouble(self) -> list[Message]:
         return [{"kind": "trouble", "about": "state", "text": self._problem or ""}]
 
     # What windows say
 
-    def receive(self, said: Said) -> Replies:
+    def receive(self, sent: PageMessage) -> Replies:
         """Take a message.
 
         Raises:
             XlmcError: it asks for what there is not.
         """
-        if said.kind in ("undo", "redo"):
-            return self._go(said.kind)
+        if sent.kind in ("undo", "redo"):
+            return self._go(sent.kind)
         before = self._moment
-        changed = self._take(said)
-        dragged = (said["of"], said["name"], said["key"]) if said.kind == "set" and said["held"] else None
-        if said.kind not in ("view", "stop", "compare"):
+        changed = self._take(sent)
+        dragged = (sent["of"], sent["name"], sent["key"]) if sent.kind == "set" and sent["held"] else None
+        if sent.kind not in ("view", "stop", "compare"):
             self._history.note(before, self._moment, dragged)
         if isinstance(changed, Replies):
             return changed
         return Replies(all=[self._state()] if changed else [])
 
-    def _take(self, said: Said) -> Replies | bool:
+    def _take(self, sent: PageMessage) -> Replies | bool:
         """Do what a message asks for; what to say, or whether the state is another one now."""
-        match said.kind:
+        match sent.kind:
             case "set":
-                return self._set(said)
+                return self._set(sent)
             case "numbers":
-                return self._set_all(said)
+                return self._set_all(sent)
             case "reset":
-                self._change(self.adjustments.without(said["of"], said["name"]) if said["name"] else Adjustments())
+                self._change(self.adjustments.without(sent["of"], sent["name"]) if sent["name"] else Adjustments())
             case "view":
-                self.look(View.of([said], [each.name for each in self.own.forecasts]))
+                self.look(View.of([sent], [each.name for each in self.own.forecasts]))
                 return False
             case "pin":
                 self.behind, self._behind_of = self.at_rest().run, self._now
@@ -178,22 +178,22 @@ class Session:
                 return False
             case "restore":
                 found, self.offered = self.offered, Adjustments()
-                if said["take"]:
-                    self._held = False
+                if sent["take"]:
+                    self._dragged = False
                     self._change(found.only(self.own.definitions))
             case "keep":
-                self._keep(said["name"].strip())
+                self._keep(sent["name"].strip())
             case "show":
-                self._show(said["name"])
+                self._show(sent["name"])
             case "compare":
                 self._compare += 1
-                self._comparison = Comparison(self.own, self.kept, self._pace.piece(resting=True))
+                self._comparison = Comparison(self.own, self.stored, self._pace.piece(resting=True))
                 return False
             case "variants":
-                self.kept |= usual_variants(self.own.definitions)
+                self.stored |= usual_variants(self.own.definitions)
             case "drop":
-                self.kept.pop(said["name"], None)
-                self.shown = "" if self.shown == said["name"] else self.shown
+                self.stored.pop(sent["name"], None)
+                self.shown = "" if self.shown == sent["name"] else self.shown
         return True
 
     def _stop(self) -> None:
@@ -204,30 +204,30 @@ class Session:
 
     @property
     def _moment(self) -> Moment:
-        return Moment(self.adjustments, dict(self.kept), self.shown)
+        return Moment(self.adjustments, dict(self.stored), self.shown)
 
     def _go(self, where: str) -> Replies:
         """Undo, or redo."""
 
         def fitting(each: Moment) -> Moment:
-            return Moment(each.adjustments.only(self.own.definitions), each.kept, each.shown)
+            return Moment(each.adjustments.only(self.own.definitions), each.stored, each.shown)
 
         go = self._history.undo if where == "undo" else self._history.redo
         found = go(self._moment, fitting)
         if found is not None:
-            self.kept, self._held = dict(found.kept), False
+            self.stored, self._dragged = dict(found.stored), False
             if found.adjustments != self.adjustments:
                 self._change(found.adjustments)
-            self.shown = found.shown if found.shown in self.kept or not found.shown else ""
+            self.shown = found.shown if found.shown in self.stored or not found.shown else ""
         return Replies(all=[self._state()])
 
-    def _set(self, said: Said) -> Replies | bool:
-        of, name, key, value = said["of"], said["name"], said["key"], said["value"]
-        self._adjust(of, name, {key: value}, said["seq"])
-        self._held = said["held"]
+    def _set(self, sent: PageMessage) -> Replies | bool:
+        of, name, key, value = sent["of"], sent["name"], sent["key"], sent["value"]
+        self._adjust(of, name, {key: value}, sent["seq"])
+        self._dragged = sent["held"]
         own = own_values(self.own.definitions, of, name)
         moved = {"kind": "moved", "of": of, "name": name, "key": key, "value": own[key] if value is None else value}
-        return Replies(all=[moved]) if self._held else True
+        return Replies(all=[moved]) if self._dragged else True
 
     def let_go(self) -> Message:
         """Take it that no handle is held any more: the window that held one is gone. The state."""
@@ -260,21 +260,21 @@ class Session:
     def _keep(self, name: str) -> None:
         if not name:
             raise XlmcError("a scenario needs a name")
-        self.kept[name] = self.adjustments
+        self.stored[name] = self.adjustments
         self.shown = name
 
     def _show(self, name: str) -> None:
         found = self._known(name) if name else Adjustments()
         if found is None:
             raise XlmcError(f"there is no scenario {name!r} that can be shown")
-        self._held = False
+        self._dragged = False
         self._change(found)
         self.shown = name
 
-    def adopt(self, kept: Mapping[str, Adjustments]) -> None:
+    def adopt(self, stored: Mapping[str, Adjustments]) -> None:
         """Take the scenarios that there are once those that another window kept are among them."""
-        self._history.learn({name: each for name, each in kept.items() if name not in self.kept})
-        self.kept = dict(kept)
+        self._history.learn({name: each for name, each in stored.items() if name not in self.stored})
+        self.stored = dict(stored)
 
     def replace_book(self, model: CompiledModel, news: Sequence[str]) -> list[Message]:
         """Take the workbook as it was saved meanwhile.
@@ -285,7 +285,7 @@ class Session:
         """
         self.own = model
         before, self.adjustments = self.adjustments, self.adjustments.only(model.definitions)
-        if before != self.adjustments and before not in self.kept.values() and not self.offered:
+        if before != self.adjustments and before not in self.stored.values() and not self.offered:
             self.offered = before  # what no longer fits is not lost: it may fit again
         self.version += 1
         self._models = KnownModels(model, MOVING_TRIALS)
@@ -325,7 +325,7 @@ class Session:
                 done: dict[str | Tab, object] = {stage: version}
                 if stage == "rest":
                     done["shown"] = self._sight
-                return Job(stage, version, self._held, self._work(stage), done)
+                return Job(stage, version, self._dragged, self._work(stage), done)
         return None
 
     def _shown(self) -> Job | None:
@@ -333,13 +333,13 @@ class Session:
         if self.rest is None or not self._is_at_rest or self._done.get("shown") == self._sight:
             return None
         work = charts_of(self.rest, self._compared, self._seq, self._sight)
-        return Job("shown", self.version, self._held, work, {"shown": self._sight})
+        return Job("shown", self.version, self._dragged, work, {"shown": self._sight})
 
     def _of_scenarios(self) -> Job | None:
         if self._comparison is None or self._done.get("compare", 0) == self._compare:
             return None
         work = scenario_table(self._comparison, self._compare)
-        return Job("compare", self.version, self._held, work, {"compare": self._compare})
+        return Job("compare", self.version, self._dragged, work, {"compare": self._compare})
 
     def _part(self) -> Job | None:
         """The contents of an open tab."""
@@ -348,7 +348,7 @@ class Session:
         for tab in self.view.tabs:
             if tab.key in PARTS and self._done.get(tab) != self.version:
                 work = tab_of(self.rest, self.version, tab)
-                return Job("part", self.version, self._held, work, {tab: self.version})
+                return Job("part", self.version, self._dragged, work, {tab: self.version})
         return None
 
     def look(self, view: View) -> None:
@@ -390,7 +390,7 @@ class Session:
     @property
     def unkept(self) -> Adjustments:
         """What would be lost with the windows: the state now, unless a scenario holds it, or what is still offered."""
-        if self.adjustments and self.adjustments not in self.kept.values():
+        if self.adjustments and self.adjustments not in self.stored.values():
             return self.adjustments
         return self.offered
 
@@ -414,7 +414,7 @@ class Session:
             models=self._models,
             view=self.view,
             behind=self._compared,
-            way="rejection" if self.rest is None else self.rest.settings.evidence,
+            method="rejection" if self.rest is None else self.rest.settings.evidence,
             trials=pace.quick_trials if stage == "quick" else MOVING_TRIALS,
             piece=pace.piece(resting=resting),
             watched=resting or (pace.is_slow and stage == "moving"),
@@ -459,17 +459,17 @@ class Session:
         if job.stage == "sketch":
             self._sketch_seconds = outcome.seconds or 0.0
         self._remember(outcome.messages)
-        told = list(outcome.messages)
+        messages = list(outcome.messages)
         if outcome.problem is not None or job.stage in self._failed:
-            told.append({"kind": "trouble", "about": job.stage, "text": outcome.problem or ""})
+            messages.append({"kind": "trouble", "about": job.stage, "text": outcome.problem or ""})
         if outcome.problem is None:
             self._failed.discard(job.stage)
         else:
             self._failed.add(job.stage)
             if job.stage == "compare":
                 self._done["compare"] = self._compare
-                told.append(_over(job, "stopped"))
-        return told
+                messages.append(_over(job, "stopped"))
+        return messages
 
     def superseded(self, job: Job) -> list[Message]:
         """A job was given up: something newer is wanted, or a person stopped it."""

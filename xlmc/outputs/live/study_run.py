@@ -60,7 +60,7 @@ class StudyRun:
         data: bytes | None = None,
     ) -> None:
         self.what = what
-        self._books, self._tell, self._of, self._data = books, tell, of, data
+        self._books, self._send, self._of, self._data = books, tell, of, data
         self._step, self._begun, self._cancelled = "", time.monotonic(), False
         self._process: asyncio.subprocess.Process | None = None
         self.last: Message = self._message("running", "")
@@ -78,7 +78,7 @@ class StudyRun:
     async def _run(self, books: Sequence[Path]) -> None:
         command = [sys.executable, "-m", "xlmc", self.what, *map(str, books), *STUDIES[self.what]]
         given = {**os.environ, "COLUMNS": _COLUMNS, "NO_COLOR": "1", "PYTHONIOENCODING": "utf-8", "TERM": "dumb"}
-        steps = _Steps(self._step_told)
+        steps = _Steps(self._note_step)
         try:
             self._process = await asyncio.create_subprocess_exec(
                 *command,
@@ -99,9 +99,9 @@ class StudyRun:
         finally:
             telling.cancel()
             steps.end()
-        said = out.decode("utf-8", "replace")[:_MOST] or steps.noted[-_MOST:]
+        output = out.decode("utf-8", "replace")[:_MOST] or steps.noted[-_MOST:]
         state = "cancelled" if self._cancelled else "done" if self._process.returncode in (0, 1) else "failed"
-        self._say(state, "\n".join(map(printable, said.splitlines())))
+        self._say(state, "\n".join(map(printable, output.splitlines())))
 
     @property
     def is_running(self) -> bool:
@@ -125,7 +125,7 @@ class StudyRun:
             await asyncio.sleep(1.0)
             self._say("running", "")
 
-    def _step_told(self, step: str) -> None:
+    def _note_step(self, step: str) -> None:
         if step != self._step:
             self._step = step
             self._say("running", "")
@@ -143,18 +143,18 @@ class StudyRun:
 
     def _say(self, state: str, text: str) -> None:
         self.last = self._message(state, text)
-        self._tell(self.last)
+        self._send(self.last)
 
 
 class _Steps:
     """The command's standard error: a terminal, where the system has such, so that it tells what it is doing.
 
     Args:
-        told: takes each step.
+        note: takes each step.
     """
 
-    def __init__(self, told: Callable[[str], None]) -> None:
-        self._told, self.noted = told, ""
+    def __init__(self, note: Callable[[str], None]) -> None:
+        self._note, self.noted = note, ""
         self._ours: int | None = None
         self.of_command: int = asyncio.subprocess.STDOUT
         if hasattr(os, "openpty"):
@@ -181,4 +181,4 @@ class _Steps:
             return
         self.noted += text
         for step in _STEP.findall(text):
-            self._told(step.strip())
+            self._note(step.strip())

@@ -114,9 +114,11 @@ def _settings(before: CompiledModel, after: CompiledModel) -> Iterator[str]:
 
 def _cells(before: CompiledModel, after: CompiledModel) -> Iterator[str]:
     """The needed cells that hold another formula or another typed number; those of assumptions are told above."""
-    told = {each.cell for model in (before, after) for each in model.assumptions}
+    assumptions = {each.cell for model in (before, after) for each in model.assumptions}
     cells = [
-        cell for cell in sorted((before.read | after.read) - told) if _content(before, cell) != _content(after, cell)
+        cell
+        for cell in sorted((before.read | after.read) - assumptions)
+        if _content(before, cell) != _content(after, cell)
     ]
     if cells:
         named = ", ".join(map(str, cells[:_MOST_CELLS]))
@@ -126,5 +128,5 @@ def _cells(before: CompiledModel, after: CompiledModel) -> Iterator[str]:
 
 def _content(model: CompiledModel, cell: object) -> object:
     """The formula, where there is one: its saved value may be other because an assumption's is."""
-    held = model.workbook.content(cell)  # type: ignore[arg-type]  # a cell
-    return held.formula or held.value
+    content = model.workbook.content(cell)  # type: ignore[arg-type]  # a cell
+    return content.formula or content.value

@@ -136,16 +136,16 @@ def shapes_of(model: CompiledModel, names: Sequence[str] | None = None) -> dict[
 
 def _shape(values: NDArray[np.float64]) -> dict[str, Any] | None:
     """The shape of `(q,)` quantiles; None where they are not numbers."""
-    held = values[np.isfinite(values)]
-    if held.size < _SHAPE_DRAWS // 2:
+    finite_draws = values[np.isfinite(values)]
+    if finite_draws.size < _SHAPE_DRAWS // 2:
         return None
-    first, last = float(held[0]), float(held[-1])
-    middle = held[held.size // 200 : held.size - held.size // 200]
+    first, last = float(finite_draws[0]), float(finite_draws[-1])
+    middle = finite_draws[finite_draws.size // 200 : finite_draws.size - finite_draws.size // 200]
     if last - first > 3.0 * (middle[-1] - middle[0]) > 0.0:  # a long tail would leave the rest in one bar
         first, last = float(middle[0]), float(middle[-1])
     if not last > first:
         return {"low": first, "high": last, "heights": [1.0]}
-    counts, _ = np.histogram(held, _SHAPE_BARS, (first, last))
+    counts, _ = np.histogram(finite_draws, _SHAPE_BARS, (first, last))
     return {"low": first, "high": last, "heights": [round(float(h), 3) for h in counts / counts.max()]}
 
 
@@ -235,19 +235,19 @@ def _settings_text(model: CompiledModel) -> str:
     return f"{settings.trials:,} trials, {METHODS[settings.sampling].name}, seed {settings.seed}"
 
 
-def scenario_rows(definitions: Definitions, kept: Mapping[str, Adjustments]) -> Iterator[Message]:
+def scenario_rows(definitions: Definitions, stored: Mapping[str, Adjustments]) -> Iterator[Message]:
     """The scenarios of the workbook, then those kept in the window, which replace one of the same name."""
     for scenario in definitions.scenarios:
-        if scenario.name not in kept:
+        if scenario.name not in stored:
             shows = adjustments_of(definitions, scenario) is not None
             yield {"name": scenario.name, "changes": [changes_text(scenario)], "own": True, "shows": shows}
-    for name, each in kept.items():
+    for name, each in stored.items():
         yield {"name": name, "changes": in_words(definitions, each), "own": False, "shows": True}
 
 
-def known_scenario(definitions: Definitions, kept: Mapping[str, Adjustments], name: str) -> Adjustments | None:
+def known_scenario(definitions: Definitions, stored: Mapping[str, Adjustments], name: str) -> Adjustments | None:
     """A scenario by name; None where there is none, or none that can be shown."""
-    if name in kept:
-        return kept[name].only(definitions)
+    if name in stored:
+        return stored[name].only(definitions)
     found = next((each for each in definitions.scenarios if each.name == name), None)
     return None if found is None else adjustments_of(definitions, found)

@@ -6,7 +6,7 @@ import pytest
 
 from xlmc.analysis.results.statements.in_words import changes_text
 from xlmc.excel.address import parse_address
-from xlmc.montecarlo.definitions.scenarios import Band, Drawn, Held, Limits, Numbers, Range, Typed
+from xlmc.montecarlo.definitions.scenarios import Band, Drawn, Frozen, Limits, Numbers, Range, Typed
 
 TABLE = {"xlmc_scenarios": "Scenarios!A1:C2"}
 
@@ -33,8 +33,8 @@ def changes_of(read, blocks):
 INSIDE = {"at_least": 0.0, "at_most": 0.5, "above": None, "below": None}
 
 GRAMMAR = [
-    ("Friction", 0.7, Held("Friction", 0.7), "Friction = 0.7"),
-    (" friction ", "frozen", Held("Friction", None), "Friction frozen"),
+    ("Friction", 0.7, Frozen("Friction", 0.7), "Friction = 0.7"),
+    (" friction ", "frozen", Frozen("Friction", None), "Friction frozen"),
     ("Gravity", "Drawn", Drawn("Gravity"), "Gravity drawn"),
     ("Friction", ".6 to 0.8", Range("Friction", 0.6, 0.8), "Friction from 0.6 to 0.8"),
     ("Friction", "60 % – 80%", Range("Friction", 0.6, 0.8), "Friction from 0.6 to 0.8"),
@@ -42,8 +42,8 @@ GRAMMAR = [
     ("Friction", "at most .8", Range("Friction", None, 0.8), "Friction at most 0.8"),
     ("Friction", "P0 to p10", Band("Friction", 0.0, 10.0), "Friction from P0 to P10"),
     ("grip", "P2.5 to P97.5", Band("Friction", 2.5, 97.5), "Friction from P2.5 to P97.5"),
-    ("Inputs!B5", 0.7, Held("Friction", 0.7), "Friction = 0.7"),
-    ("Friction", "0.72", Held("Friction", 0.72), "Friction = 0.72"),
+    ("Inputs!B5", 0.7, Frozen("Friction", 0.7), "Friction = 0.7"),
+    ("Friction", "0.72", Frozen("Friction", 0.72), "Friction = 0.72"),
     ("Friction low", 0.5, Typed("Inputs!D5", 0.5), "Friction low = 0.5"),
     ("Friction Distribution", "Uniform", Typed("Inputs!C5", "Uniform"), "Friction Distribution = Uniform"),
     ("Reaction lower_cutoff", "none", Typed("Inputs!I4", None), "Reaction lower_cutoff = nothing"),

@@ -13,7 +13,7 @@ from xlmc.montecarlo.definitions.scenarios import (
     Band,
     Change,
     Drawn,
-    Held,
+    Frozen,
     Limits,
     Numbers,
     Range,
@@ -173,9 +173,9 @@ def changes_text(scenario: Scenario) -> str:
 
 def _change_text(change: Change) -> str:
     match change:
-        case Held(name, None):
+        case Frozen(name, None):
             return f"{name} frozen"
-        case Held(name, value):
+        case Frozen(name, value):
             return f"{name} = {_plain_number(value)}"
         case Drawn(name):
             return f"{name} drawn"

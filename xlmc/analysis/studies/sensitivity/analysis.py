@@ -39,7 +39,7 @@ _FOUND: Final[WeakKeyDictionary[RunResult, dict[tuple[tuple[int, ...], frozenset
 def sensitivities(
     simulation: RunResult,
     names: Collection[str] | None = None,
-    told: Callable[[float], None] = lambda share: None,
+    progress: Callable[[float], None] = lambda share: None,
     *,
     assumptions: Collection[str] = (),
 ) -> Sensitivities:
@@ -48,7 +48,7 @@ def sensitivities(
     Args:
         simulation: the run.
         names: of the forecasts that are wanted; None for all. Of fewer, more trials may be examined.
-        told: takes the share of the work that is done.
+        progress: takes the share of the work that is done.
         assumptions: names of those that are measured for every forecast; of more than 20, else only the 20 are that
             matter most for each.
 
@@ -60,7 +60,7 @@ def sensitivities(
     wanted = tuple(i for i in found if i not in model.categories)  # texts have no variance to explain
     asked = frozenset(_live_name(model, name) for name in assumptions)
     if (wanted, asked) not in known:
-        known[wanted, asked] = _analyse(simulation, wanted, asked, told)
+        known[wanted, asked] = _analyse(simulation, wanted, asked, progress)
     return known[wanted, asked]
 
 
@@ -76,15 +76,15 @@ def _live_name(model: CompiledModel, name: str) -> str:
 
 
 def _analyse(
-    simulation: RunResult, wanted: Sequence[int], asked: Collection[str], told: Callable[[float], None]
+    simulation: RunResult, wanted: Sequence[int], asked: Collection[str], progress: Callable[[float], None]
 ) -> Sensitivities:
     model = simulation.model
     forecasts = [model.forecasts[index] for index in wanted]
     chosen = choose(simulation, forecasts, asked)
-    found = influences(simulation, chosen, forecasts, lambda share: told(0.5 * share))
+    found = influences(simulation, chosen, forecasts, lambda share: progress(0.5 * share))
     moves = one_at_a_time(model, [a.name for a in model.live], wanted, MEASURED, asked)
     reason = why_not(simulation) if model.live else "Sobol indices are not given: no assumption is drawn"
-    told(0.5)
+    progress(0.5)
     sobol = SobolRun(0, {})
     if not reason:
         sobol = pick_and_freeze(
@@ -92,7 +92,7 @@ def _analyse(
             _measured_for(chosen, wanted),
             simulation.trials,
             simulation.settings.seed,
-            lambda share: told(0.5 + 0.5 * share),
+            lambda share: progress(0.5 + 0.5 * share),
         )
     limits = limit_trials(simulation, _MOST_LIMITS, wanted[:_MOST_LIMIT_FORECASTS])
     return Sensitivities(

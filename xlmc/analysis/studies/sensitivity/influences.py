@@ -124,9 +124,9 @@ def influences(
     simulation: RunResult,
     chosen: Chosen,
     forecasts: Sequence[Forecast],
-    told: Callable[[float], None] = lambda share: None,
+    progress: Callable[[float], None] = lambda share: None,
 ) -> list[Influences]:
-    """Measure the influences of the chosen assumptions on each of these forecasts; `told` takes the share done."""
+    """Measure the influences of the chosen assumptions on each of these forecasts; `progress` takes the share done."""
     rows, replicate = _examined_rows(simulation, _trials_for(sum(map(len, chosen.names))))
     units = {a.name: a.units for a in simulation.model.live}
     draws = {name: _read_draws(simulation, name, rows) for name in chosen.most_influential}
@@ -137,7 +137,7 @@ def influences(
         known = ~np.isnan(y)
         table = tables.setdefault(known.tobytes(), _Table(draws, _units_of(replicate, known), known))
         found.append(table.influences({name: units[name] for name in names}, y[known], others, len(units)))
-        told(len(found) / len(forecasts))
+        progress(len(found) / len(forecasts))
     for trials in _FINE_TRIALS:
         pairs = sum(len(each.coarse) for each in found)
         most = min(trials, _FINE_VALUES // max(pairs, 1))

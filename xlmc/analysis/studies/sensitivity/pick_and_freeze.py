@@ -77,7 +77,7 @@ def pick_and_freeze(
     assumptions: Mapping[str, Sequence[int]],
     trials: int,
     seed: int,
-    told: Callable[[float], None] = lambda share: None,
+    progress: Callable[[float], None] = lambda share: None,
 ) -> SobolRun:
     """Return the indices of a model without correlations, whatever its filters; of very many assumptions, of the first
     ones.
@@ -87,7 +87,7 @@ def pick_and_freeze(
         assumptions: name of a live one -> numbers of the forecasts for which its indices are wanted.
         trials: of the run; no more than half as many are evaluated, but some at least.
         seed: of the run. The trials are its first ones by Monte Carlo, and those that follow them.
-        told: takes the share that is done.
+        progress: takes the share that is done.
     """
     evaluations = max(_LEAST_EVALUATED, min(_MOST_EVALUATED, trials // 2))
     chosen = list(assumptions)[: max(evaluations // _LEAST_PAIRS - 2, 1)]
@@ -100,7 +100,7 @@ def pick_and_freeze(
     found: dict[str, dict[int, tuple[Estimate, Estimate]]] = {}
     for name in chosen:
         c = _answers(evaluator, {**first, name: second[name]}, pairs, block)
-        told(len(found) / len(chosen))
+        progress(len(found) / len(chosen))
         found[name] = {number: sobol_indices(a[number], b[number], c[number]) for number in assumptions[name]}
     return SobolRun(pairs, found)
 

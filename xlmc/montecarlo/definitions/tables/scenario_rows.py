@@ -26,7 +26,7 @@ from xlmc.montecarlo.definitions.scenarios import (
     Band,
     Change,
     Drawn,
-    Held,
+    Frozen,
     Limits,
     Numbers,
     Range,
@@ -248,12 +248,12 @@ def _of_assumption(heading: str, assumption: Assumption) -> _Column:
     def take(content: CellContent, where: Cell) -> Change:
         value = content.value
         if isinstance(value, int | float) and not isinstance(value, bool | ErrorCode):
-            return Held(name, float(value), where)
+            return Frozen(name, float(value), where)
         text = as_text(value)
         if text.casefold() in ("frozen", "drawn"):
-            return Held(name, None, where) if text.casefold() == "frozen" else Drawn(name, where)
+            return Frozen(name, None, where) if text.casefold() == "frozen" else Drawn(name, where)
         if re.fullmatch(_NUMBER, text):  # typed into a cell that was made a text, as ranges are
-            return Held(name, _number(text), where)
+            return Frozen(name, _number(text), where)
         if found := _BAND.fullmatch(text):
             return Band(name, float(found[1]), float(found[2]), where)
         if found := _RANGE.fullmatch(text):

@@ -15,7 +15,7 @@ from simulated import simulated
 
 from xlmc.analysis.results.saved import open_run
 from xlmc.montecarlo.model.loading import load
-from xlmc.outputs.live.desk import Window
+from xlmc.outputs.live.open_book import Window
 
 
 @pytest.fixture
@@ -26,7 +26,7 @@ def book(tmp_path):
 @pytest.fixture
 def soon_settled(monkeypatch):
     """A file that cannot be read is taken for faulty after a tenth of a second, and not after two."""
-    monkeypatch.setattr("xlmc.outputs.live.desk._SETTLING", (0.0, 0.1))
+    monkeypatch.setattr("xlmc.outputs.live.open_book._SETTLING", (0.0, 0.1))
 
 
 def saved_as_excel_does(source, book):

@@ -1,6 +1,6 @@
 """What the runs of one workbook have in common while its ranges and limits are moved, kept from run to run.
 
-A `KeptRunner` holds for all models that `CompiledModel.changed` makes of one model by other numbers, because
+A `ReusingRunner` holds for all models that `CompiledModel.changed` makes of one model by other numbers, because
 
 * limits of filters are data to it, not code: its program computes the quantities that filters look at, and the limits
   are compared with them afterwards;
@@ -32,7 +32,7 @@ from xlmc.montecarlo.model.needed import filter_condition, filter_limits
 from xlmc.montecarlo.sampling.draws import Draw, DrawStage, Sampler
 from xlmc.montecarlo.statistics.estimate import finite
 
-__all__ = ["KeptRunner"]
+__all__ = ["ReusingRunner"]
 
 Floats = NDArray[np.float64]
 
@@ -50,7 +50,7 @@ Known = tuple[int, tuple[int, ...]]
 """First trial, and the number of the version of each column of draws: what tells draws that are kept from others."""
 
 
-class KeptRunner:
+class ReusingRunner:
     """See the module. For one thread.
 
     Args:

@@ -13,10 +13,10 @@ from live_books import settle, small
 from xlmc.errors import WorkbookError
 from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.live.adjustments import Adjustments
-from xlmc.outputs.live.kept_scenarios import Keeper
 from xlmc.outputs.live.library import Library
-from xlmc.outputs.live.protocol import Said
+from xlmc.outputs.live.protocol import PageMessage
 from xlmc.outputs.live.session import Session
+from xlmc.outputs.live.stored_scenarios import Keeper
 
 
 def changed(name, key="high", value=0.9, of="assumption"):
@@ -52,13 +52,13 @@ def test_a_kept_state_of_another_workbook_is_shown_with_what_no_longer_fits(book
     assert "(no longer in the workbook)" in shown["old"][0]
     assert "(no longer in the workbook)" in state["offered"][0]
     assert "(no longer" not in shown["whole"][0]
-    session.receive(Said("show", {"name": "old"}))
-    session.receive(Said("compare", {}))
+    session.receive(PageMessage("show", {"name": "old"}))
+    session.receive(PageMessage("compare", {}))
     messages = settle(session)
     assert [each["text"] for each in messages if each["kind"] == "trouble" and each["text"]] == []
-    session.receive(Said("restore", {"take": True}))
+    session.receive(PageMessage("restore", {"take": True}))
     settle(session)
-    assert session.kept["old"] == strange
+    assert session.stored["old"] == strange
 
 
 def test_a_workbook_that_loses_an_assumption_keeps_what_was_set_of_it(book):
@@ -66,7 +66,7 @@ def test_a_workbook_that_loses_an_assumption_keeps_what_was_set_of_it(book):
     session = Session(load(book))
     name = session.own.assumptions[0].name
     session.receive(
-        Said("set", {"of": "assumption", "name": name, "key": "frozen", "value": True, "held": False, "seq": 1})
+        PageMessage("set", {"of": "assumption", "name": name, "key": "frozen", "value": True, "held": False, "seq": 1})
     )
     before = session.adjustments
     made = openpyxl.load_workbook(book)
@@ -143,7 +143,7 @@ def test_two_programs_on_one_workbook_take_nothing_from_each_other(book, keeper)
 
 
 def test_a_lock_of_a_program_that_died_does_not_hold_for_ever(book, keeper, monkeypatch):
-    monkeypatch.setattr("xlmc.outputs.live.kept_scenarios._PATIENCE", 0.05)
+    monkeypatch.setattr("xlmc.outputs.live.stored_scenarios._PATIENCE", 0.05)
     keeper.keep(book, {"a": changed("x")}, Adjustments())
     (file,) = keeper._folder.glob("*.json")
     file.with_suffix(".lock").touch()
@@ -185,7 +185,7 @@ def test_many_large_scenarios_are_read_back_and_too_many_are_not_written(tmp_pat
     (path,) = (tmp_path / "state").glob("*.json")
     assert path.stat().st_size > 4 << 20
     assert Keeper(tmp_path / "state").scenarios(book) == (kept, Adjustments())
-    monkeypatch.setattr("xlmc.outputs.live.kept_scenarios._MOST_BYTES", path.stat().st_size)
+    monkeypatch.setattr("xlmc.outputs.live.stored_scenarios._MOST_BYTES", path.stat().st_size)
     with pytest.raises(WorkbookError, match="there are too many"):
         keeper.keep(book, {**kept, "one more": large}, Adjustments())
     assert Keeper(tmp_path / "state").scenarios(book) == (kept, Adjustments())

@@ -11,7 +11,7 @@ from xlmc.engine.llvm.machine import machine
 from xlmc.montecarlo.definitions.scenarios import Limits, Numbers, Range
 from xlmc.montecarlo.loop import kept_runner
 from xlmc.montecarlo.loop.blocks import Task
-from xlmc.montecarlo.loop.kept_runner import KeptRunner
+from xlmc.montecarlo.loop.reusing_runner import ReusingRunner
 from xlmc.montecarlo.model.applied_changes import applied
 from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.simulation.simulate import simulate
@@ -78,7 +78,7 @@ def test_a_kept_runner_gives_what_a_new_one_gives(book, case, engine, which, mon
     model = case if which == "case study" else book(*ODD)
     if which == "too large to keep":
         monkeypatch.setattr(kept_runner, "_MOST_BYTES", 100)
-    kept = KeptRunner(model, engine, 5, TRIALS)
+    kept = ReusingRunner(model, engine, 5, TRIALS)
     for number, changes in enumerate(moves(model)):
         moved = applied(model, changes)
         assert kept.holds_for(moved)
@@ -91,7 +91,7 @@ def test_a_kept_runner_gives_what_a_new_one_gives(book, case, engine, which, mon
 
 def test_what_did_not_change_is_not_computed_again(book, monkeypatch):
     model = book(*ODD)
-    kept = KeptRunner(model, "numpy", 5, TRIALS)
+    kept = ReusingRunner(model, "numpy", 5, TRIALS)
     run(model, kept)
     draws, evaluator = kept._runners[BLOCK]
     before = {name: each.values for (name, start), each in draws._columns.items() if start == 0}
@@ -113,7 +113,7 @@ def test_draws_that_depend_on_each_other_are_drawn_as_ever(book):
     cells = {"A1": 0.5, "A2": 1.0, "A3": "=A1+1", "B1": "=A1+A2"}
     inputs = {"u": UNIT, "v": {"cell": "A2", "low": 0.0, "high": "A3"}}
     model = book(cells, inputs, {"x": "B1"}, {"f": {"cell": "B1", "at_most": 2.0}})
-    kept = KeptRunner(model, "numpy", 5, TRIALS)
+    kept = ReusingRunner(model, "numpy", 5, TRIALS)
     for changes in ([], [Range("u", 0.2, 0.9)], [Limits("f", {"at_most": 1.5})], [Limits("f", {"at_most": 1.0})]):
         moved = applied(model, changes)
         assert_same(run(moved, kept), simulate(moved, trials=TRIALS, seed=5))
@@ -121,7 +121,7 @@ def test_draws_that_depend_on_each_other_are_drawn_as_ever(book):
 
 def test_a_kept_runner_does_not_hold_for_other_nodes_or_other_kinds_of_limits(book):
     model = book(*ODD)
-    kept = KeptRunner(model, "numpy", 5, TRIALS)
+    kept = ReusingRunner(model, "numpy", 5, TRIALS)
     assert not kept.holds_for(book(*ODD))
     assert not kept.holds_for(applied(model, [Limits("by a cell", {"at_least": 0.3})]))
 
@@ -149,7 +149,7 @@ def test_another_limit_makes_no_other_native_code(case):
 
 def test_a_block_says_its_draws_start_where_it_does(book):
     model = book(*ODD)
-    kept = KeptRunner(model, "numpy", 5, TRIALS)
+    kept = ReusingRunner(model, "numpy", 5, TRIALS)
     runner = kept.runner(model, 100)
     whole = model.sampler(5, 300).draw(0)["u"]
     for start in (0, 200, 100, 0):

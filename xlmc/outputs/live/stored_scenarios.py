@@ -100,16 +100,16 @@ class Keeper:
         try:
             with self._alone(path):
                 theirs, _ = self._scenarios(path)
-                kept = _merged(self._seen.get(path, {}), scenarios, theirs)
-                if kept or unkept:
-                    named = {name: each.as_json() for name, each in kept.items()}
+                stored = _merged(self._seen.get(path, {}), scenarios, theirs)
+                if stored or unkept:
+                    named = {name: each.as_json() for name, each in stored.items()}
                     self._write(path, {"book": str(book), "scenarios": named, "unkept": unkept.as_json()})
                 else:
                     path.unlink(missing_ok=True)
         except OSError as error:
             raise _unwritable(path, error) from error
-        self._seen[path] = dict(kept)
-        return kept
+        self._seen[path] = dict(stored)
+        return stored
 
     def recent(self) -> list[Path]:
         """The workbooks that were opened last and are still there, the last first.
@@ -131,10 +131,10 @@ class Keeper:
             WorkbookError: they cannot be written.
         """
         others = [each for each in self.recent() if each != book]
-        kept = [str(each) for each in (book, *others)][:_MOST_RECENT]
+        stored = [str(each) for each in (book, *others)][:_MOST_RECENT]
         path = self._folder / "recent.json"
         try:
-            self._write(path, {"books": kept})
+            self._write(path, {"books": stored})
         except OSError as error:
             raise _unwritable(path, error) from error
 

@@ -19,7 +19,7 @@ from xlmc.outputs.live.adjustments import Adjustments, in_words
 from xlmc.outputs.live.hand_over import KINDS, edited_state, page_of, save_result, write_changes
 from xlmc.outputs.live.jobs import Job, Outcome, SupersededError, View
 from xlmc.outputs.live.library import Library
-from xlmc.outputs.live.protocol import Message, Said, written
+from xlmc.outputs.live.protocol import Message, PageMessage, written
 from xlmc.outputs.live.session import Session
 from xlmc.outputs.live.study_run import OF_THE_FILE, StudyRun
 from xlmc.outputs.live.what_changed import what_changed
@@ -27,7 +27,7 @@ from xlmc.outputs.live.what_changed import what_changed
 if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
 
-__all__ = ["Desk", "Window"]
+__all__ = ["OpenBook", "Window"]
 
 _PAUSE: Final = 0.15
 """Seconds that a held handle must be still before the longer runs begin."""
@@ -85,7 +85,7 @@ class Window:
         return self._waiting.pop(next(iter(self._waiting)))
 
 
-class Desk:
+class OpenBook:
     """See the module.
 
     Args:
@@ -160,39 +160,39 @@ class Desk:
             self.session.look(View.of(views, [each.name for each in self.session.own.forecasts]))
             self._wake.set()
 
-    def hear(self, window: Window, said: Said) -> None:
+    def hear(self, window: Window, sent: PageMessage) -> None:
         """Take what a window says."""
-        if said.kind == "view":
-            window.view = said
+        if sent.kind == "view":
+            window.view = sent
             self._look()
-        if self.session is None or said.kind in ("view", "hello"):
+        if self.session is None or sent.kind in ("view", "hello"):
             return
-        if said.kind == "study":
-            self._ask(window, said["what"], said["other"])
+        if sent.kind == "study":
+            self._ask(window, sent["what"], sent["other"])
             return
-        if said.kind == "cancel":
+        if sent.kind == "cancel":
             if self._study is not None:
                 self._later(self._study.cancel())
             return
-        if said.kind == "save":
-            self._later(self._save(said["what"]))
+        if sent.kind == "save":
+            self._later(self._save(sent["what"]))
             return
-        if said.kind == "print":
+        if sent.kind == "print":
             self._later(self._print(window))
             return
         if said.kind in ("set", "numbers"):
             window.holds = said.kind == "set" and said["held"]
         try:
-            replies = self.session.receive(said)
+            replies = self.session.receive(sent)
         except XlmcError as error:
             self._refuse(window, str(error))
             return
-        if said.kind in _CHANGING:
+        if sent.kind in _CHANGING:
             self._is_over(window)
         for message in replies.own:
             window.put(message)
-        self._tell(replies.all)
-        if said.kind in _CHANGING and not (said.kind == "set" and said["held"]):
+        self._send(replies.all)
+        if sent.kind in _CHANGING and not (sent.kind == "set" and sent["held"]):
             self._keep()
         self._wake.set()
 
@@ -213,14 +213,14 @@ class Desk:
         self._tasks.append(task)
         task.add_done_callback(lambda done: self._tasks.remove(done) if done in self._tasks else None)
 
-    def _tell(self, messages: Iterable[Message]) -> None:
+    def _send(self, messages: Iterable[Message]) -> None:
         for message in messages:
             text = written(message)
             for window in self._windows:
                 window.put(message, text)
 
-    def _tell_study(self, message: Message) -> None:
-        self._tell([message])
+    def _send_study(self, message: Message) -> None:
+        self._send([message])
 
     def _say(self, about: str, text: str) -> None:
         """Tell of a trouble, or, with an empty text, that it is over."""
@@ -228,20 +228,20 @@ class Desk:
             self._trouble[about] = text
         elif self._trouble.pop(about, None) is None:
             return
-        self._tell([{"kind": "trouble", "about": about, "text": text}])
+        self._send([{"kind": "trouble", "about": about, "text": text}])
 
     def _keep(self) -> None:
         if self.session is None:
             return
         try:
-            kept = self._keeper.keep(self.path, self.session.kept, self.session.unkept)
+            stored = self._keeper.keep(self.path, self.session.stored, self.session.unkept)
         except WorkbookError as error:
             self._say("keeping", str(error))
             return
         self._say("keeping", "")
-        if kept != self.session.kept:  # another window on this workbook kept some, too
-            self.session.adopt(kept)
-            self._tell(self.session.greeting()[1:2])
+        if stored != self.session.stored:  # another window on this workbook kept some, too
+            self.session.adopt(stored)
+            self._send(self.session.greeting()[1:2])
 
     async def _beside(self, what: Callable[[], T]) -> T:
         """Read or write a file while runs go on."""
@@ -270,12 +270,12 @@ class Desk:
     async def _work(self) -> None:
         while (model := await self._read()) is None:
             await self._changed()
-        kept, unkept = self._kept_before()
-        self.session = Session(model, kept, unkept)
-        self._tell(self.session.greeting())
+        stored, unkept = self._stored_before()
+        self.session = Session(model, stored, unkept)
+        self._send(self.session.greeting())
         while True:
             job = self.session.job()
-            if job is None or (job.held and job.stage not in ("quick", "moving", "sketch")):
+            if job is None or (job.dragged and job.stage not in ("quick", "moving", "sketch")):
                 try:
                     await asyncio.wait_for(self._wake.wait(), None if job is None else _PAUSE)
                     self._wake.clear()
@@ -285,7 +285,7 @@ class Desk:
             if job is not None:
                 await self._do(self.session, job)
 
-    def _kept_before(self) -> tuple[dict[str, Adjustments], Adjustments]:
+    def _stored_before(self) -> tuple[dict[str, Adjustments], Adjustments]:
         try:
             return self._keeper.scenarios(self.path)
         except WorkbookError as error:
@@ -293,13 +293,13 @@ class Desk:
             return {}, Adjustments()
 
     async def _do(self, session: Session, job: Job) -> None:
-        loop, told = asyncio.get_running_loop(), [time.monotonic()]
+        loop, last_sent = asyncio.get_running_loop(), [time.monotonic()]
 
         def tell(share: float) -> None:
-            if time.monotonic() - told[0] > _TOLD_EVERY:
-                told[0] = time.monotonic()
-                said = {"kind": "running", "version": job.version, "stage": job.stage, "share": share}
-                loop.call_soon_threadsafe(self._tell, [said])
+            if time.monotonic() - last_sent[0] > _TOLD_EVERY:
+                last_sent[0] = time.monotonic()
+                sent = {"kind": "running", "version": job.version, "stage": job.stage, "share": share}
+                loop.call_soon_threadsafe(self._send, [sent])
 
         def run() -> Outcome:
             return job.run(lambda: session.wanted(job), tell, time.monotonic)
@@ -307,11 +307,11 @@ class Desk:
         try:
             outcome = await loop.run_in_executor(self._pool, run)
         except SupersededError:
-            self._tell(session.superseded(job))
+            self._send(session.superseded(job))
             return
         except Exception as error:  # a fault of xlmc's own must not end the window
             outcome = Outcome(problem=f"xlmc has failed: {type(error).__name__}: {error}")
-        self._tell(session.finish(job, outcome))
+        self._send(session.finish(job, outcome))
 
     async def _save(self, what: str) -> None:
         """Write what is shown; say where, or why not."""
@@ -327,7 +327,7 @@ class Desk:
             self._say("save", str(error))
         else:
             self._say("save", "")
-            self._tell([{"kind": "news", "text": text, "link": ""}])
+            self._send([{"kind": "news", "text": text, "link": ""}])
 
     async def _print(self, window: Window) -> None:
         """Make the page of what is shown, and tell the window that asked where it is; or why there is none."""
@@ -356,7 +356,7 @@ class Desk:
         self._say("study", "")
         session = self.session
         if what in OF_THE_FILE or session is None or not session.adjustments:
-            self._begin(StudyRun(what, [self.path, *others], self._tell_study))
+            self._begin(StudyRun(what, [self.path, *others], self._send_study))
         else:
             self._later(self._ask_of_state(session, what, others))
 
@@ -374,7 +374,7 @@ class Desk:
             return
         of = in_words(own.definitions, adjustments)
         if self._study is None or not self._study.is_running:
-            self._begin(StudyRun(what, [self.path, *others], self._tell_study, of, edited.data))
+            self._begin(StudyRun(what, [self.path, *others], self._send_study, of, edited.data))
 
     # The file
 
@@ -397,7 +397,7 @@ class Desk:
         before = session.own
         model = await self._read()
         if model is not None:
-            self._tell(session.replace_book(model, what_changed(before, model)))
+            self._send(session.replace_book(model, what_changed(before, model)))
             self._say("save", "")
             self._wake.set()
 

@@ -9,7 +9,7 @@ import pytest
 
 from xlmc.engine.llvm.machine import machine
 from xlmc.montecarlo.definitions.scenarios import Limits, Numbers, Range
-from xlmc.montecarlo.loop import kept_runner
+from xlmc.montecarlo.loop import reusing_runner
 from xlmc.montecarlo.loop.blocks import Task
 from xlmc.montecarlo.loop.reusing_runner import ReusingRunner
 from xlmc.montecarlo.model.applied_changes import applied
@@ -77,7 +77,7 @@ def run(model, kept, block=BLOCK):
 def test_a_kept_runner_gives_what_a_new_one_gives(book, case, engine, which, monkeypatch):
     model = case if which == "case study" else book(*ODD)
     if which == "too large to keep":
-        monkeypatch.setattr(kept_runner, "_MOST_BYTES", 100)
+        monkeypatch.setattr(reusing_runner, "_MOST_BYTES", 100)
     kept = ReusingRunner(model, engine, 5, TRIALS)
     for number, changes in enumerate(moves(model)):
         moved = applied(model, changes)

@@ -54,7 +54,7 @@ ENDINGS = {
     "template": "xlsx",
 }
 KINDS = (*ENDINGS, COLUMNS)
-FULL = ("the disk is full", "no room left on the disk", "larger than may be written here", "File too large")
+FULL = ("the disk is full", "no space left on the disk", "larger than may be written here", "File too large")
 
 
 @dataclass

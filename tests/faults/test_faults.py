@@ -195,7 +195,7 @@ def test_a_run_that_is_asked_to_end_clears_away(small_book, tmp_path, temporary)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 143
     assert (tmp_path / "message").read_text("utf-8") == "xlmc: ended by SIGTERM; no file is left half-written.\n"
     assert list(temporary.iterdir()) == []
-    assert sorted(left.name for left in tmp_path.iterdir()) == ["temporary", "message"]
+    assert sorted(left.name for left in tmp_path.iterdir()) == ["message", "temporary"]
 
 
 def test_the_next_run_removes_the_columns_of_a_killed_one(small_book, tmp_path, temporary, monkeypatch):

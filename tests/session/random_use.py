@@ -15,13 +15,13 @@ import time
 
 import openpyxl
 from openpyxl.worksheet.table import Table
+from xlmc.outputs.live.stored_scenarios import Keeper
 
 from xlmc.errors import XlmcError
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.montecarlo.model.loading import build_model, load
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.outputs.live.hand_over import edited_state
-from xlmc.outputs.live.kept_scenarios import Keeper
 
 PATIENCE = 120.0
 """Seconds after which a window counts as stuck."""
@@ -300,7 +300,7 @@ class Use:
 
     def _moment(self):
         session = self.desk.session
-        return session.adjustments, dict(session.kept)
+        return session.adjustments, dict(session.stored)
 
     def still(self):
         """Wait until nothing is done any more, and every client has heard of it."""
@@ -327,14 +327,14 @@ class Use:
         """Be still, and look whether every scenario is there."""
         self.still()
         session = self.desk.session
-        assert set(session.kept) == self.kept, (set(session.kept) ^ self.kept, self.done[-12:])
-        assert Keeper(self.state).scenarios(self.book.path)[0] == session.kept
+        assert set(session.stored) == self.kept, (set(session.stored) ^ self.kept, self.done[-12:])
+        assert Keeper(self.state).scenarios(self.book.path)[0] == session.stored
 
     def _standing(self):
         """What is known of a window that is stuck."""
         desk = self.desk
         session = desk.session
-        kept = ("version", "_done", "_stopped_at", "_problem", "_held", "_current", "_stopped")
+        kept = ("version", "_done", "_stopped_at", "_problem", "_dragged", "_current", "_stopped")
         same = session is not None and session.own.workbook.sha256 == read_workbook(self.book.path).sha256
         found = {name: getattr(session, name, None) for name in kept}
         ended = [(task, task.done()) for task in desk._tasks]

@@ -47,7 +47,7 @@ def test_rules_are_in_the_order_of_versions_and_none_is_of_the_future():
 
 
 @pytest.mark.parametrize(
-    ("message", "formula", "met"),
+    ("made", "formula", "met"),
     [
         ("TRUNC", "=1+trunc(A1,2)", True),
         ("TRUNC", "=MYTRUNC(A1)", False),

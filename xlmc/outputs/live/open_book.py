@@ -61,7 +61,7 @@ class Window:
     """What one window shows, and what is still to be sent to it."""
 
     def __init__(self) -> None:
-        self.view: Said | None = None
+        self.view: PageMessage | None = None
         self.refused = self.holds = False
         self._waiting: dict[tuple[str, ...], str] = {}
         self._more = asyncio.Event()
@@ -148,7 +148,7 @@ class OpenBook:
         """A window was closed; a handle that it held is let go."""
         self._windows.discard(window)
         if window.holds and self.session is not None:
-            self._tell([self.session.let_go()])
+            self._send([self.session.let_go()])
             self._keep()
             self._wake.set()
         self._look()
@@ -180,8 +180,8 @@ class OpenBook:
         if sent.kind == "print":
             self._later(self._print(window))
             return
-        if said.kind in ("set", "numbers"):
-            window.holds = said.kind == "set" and said["held"]
+        if sent.kind in ("set", "numbers"):
+            window.holds = sent.kind == "set" and sent["held"]
         try:
             replies = self.session.receive(sent)
         except XlmcError as error:

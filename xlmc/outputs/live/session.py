@@ -230,13 +230,13 @@ class Session:
         return Replies(all=[moved]) if self._dragged else True
 
     def let_go(self) -> Message:
-        """Take it that no handle is held any more: the window that held one is gone. The state."""
-        self._held = False
+        """Take it that no handle is dragged any more, as its window is gone; returns the state."""
+        self._dragged = False
         return self._state()
 
-    def _set_all(self, said: Said) -> bool:
-        self._adjust(said["of"], said["name"], said["values"], said["seq"])
-        self._held = False
+    def _set_all(self, sent: PageMessage) -> bool:
+        self._adjust(sent["of"], sent["name"], sent["values"], sent["seq"])
+        self._dragged = False
         return True
 
     def _adjust(self, of: str, name: str, values: Mapping[str, Amount | None], seq: int) -> None:

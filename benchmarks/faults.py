@@ -119,7 +119,7 @@ def fill_columns(folder: Path, values: int) -> None:
             keeper = column_store.ColumnStore({"a": np.dtype(np.float64)})
             for _ in range(values // 1_000):
                 keeper.add("a", np.ones(1_000))
-                keeper.settle()
+                keeper.write_if_full()
             del keeper
     finally:
         tempfile.tempdir = before

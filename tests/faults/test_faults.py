@@ -170,7 +170,7 @@ def test_a_program_that_is_asked_to_end_clears_away(small_book, tmp_path, tempor
 
 
 def forked(book, tmp_path, temporary):
-    """The number of a process that runs the command line; what it tells goes to the file `told`."""
+    """The number of a process that runs the command line; what it says goes to the file `message`."""
 
     def work():
         os.dup2(os.open(tmp_path / "message", os.O_WRONLY | os.O_CREAT), 2)

@@ -15,13 +15,13 @@ import time
 
 import openpyxl
 from openpyxl.worksheet.table import Table
-from xlmc.outputs.live.stored_scenarios import Keeper
 
 from xlmc.errors import XlmcError
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.montecarlo.model.loading import build_model, load
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.outputs.live.hand_over import edited_state
+from xlmc.outputs.live.stored_scenarios import Keeper
 
 PATIENCE = 120.0
 """Seconds after which a window counts as stuck."""
@@ -178,8 +178,8 @@ class Use:
         return window
 
     @property
-    def desk(self):
-        return self.server.server._desks[self.server.library.only]
+    def open_book(self):
+        return self.server.server._open_books[self.server.library.only]
 
     def close(self):
         for each in self.clients:
@@ -299,7 +299,7 @@ class Use:
         assert self._moment() == before, (back, self.done[-10:])
 
     def _moment(self):
-        session = self.desk.session
+        session = self.open_book.session
         return session.adjustments, dict(session.stored)
 
     def still(self):
@@ -313,7 +313,7 @@ class Use:
         while not self._quiet():
             assert time.monotonic() < end, ("stuck", self._standing(), self.done[-12:])
             time.sleep(0.01)
-        session = self.desk.session
+        session = self.open_book.session
         for client in self.clients:
             wanted = "trouble" if session._is_faulty else "rest"
             while not self._has_heard(client, wanted):
@@ -326,23 +326,23 @@ class Use:
     def settle(self):
         """Be still, and look whether every scenario is there."""
         self.still()
-        session = self.desk.session
+        session = self.open_book.session
         assert set(session.stored) == self.kept, (set(session.stored) ^ self.kept, self.done[-12:])
         assert Keeper(self.state).scenarios(self.book.path)[0] == session.stored
 
     def _standing(self):
         """What is known of a window that is stuck."""
-        desk = self.desk
-        session = desk.session
+        open_book = self.open_book
+        session = open_book.session
         kept = ("version", "_done", "_stopped_at", "_problem", "_dragged", "_current", "_stopped")
         same = session is not None and session.own.workbook.sha256 == read_workbook(self.book.path).sha256
         found = {name: getattr(session, name, None) for name in kept}
-        ended = [(task, task.done()) for task in desk._tasks]
-        return {"same file": same, "stamp": desk._stamp, "trouble": desk._trouble, "ended": ended, **found}
+        ended = [(task, task.done()) for task in open_book._tasks]
+        return {"same file": same, "stamp": open_book._stamp, "trouble": open_book._trouble, "ended": ended, **found}
 
     def _quiet(self):
-        desk = self.server.server._desks.get(self.server.library.only)
-        session = None if desk is None else desk.session
+        open_book = self.server.server._open_books.get(self.server.library.only)
+        session = None if open_book is None else open_book.session
         if session is None:
             return False
         if session.own.workbook.sha256 != read_workbook(self.book.path).sha256:
@@ -350,7 +350,7 @@ class Use:
         return session._is_at_rest or session._is_faulty or session._stopped_at == session.version
 
     def _has_heard(self, client, wanted):
-        session = self.desk.session
+        session = self.open_book.session
         found = {each["kind"]: each for each in client.heard}
         if found.get("state", {}).get("version") != session.version:
             return False
@@ -363,7 +363,7 @@ class Use:
     def check(self):
         """Compare what is shown with what the edited workbook gives."""
         self.settle()
-        session = self.desk.session
+        session = self.open_book.session
         if not session._is_at_rest or session._is_faulty:
             return
         own = load(self.book.path)

@@ -120,7 +120,9 @@ def read_definitions(
     names = {key: name for key, (name, _) in uncertain.names.items()}
     assumptions = *assumptions, *dialogs.assumptions, *calls.assumptions
     frozen = [each.name for each in assumptions if each.frozen]
-    correlations = read_correlations(workbook, tables["xlmc_correlations"], names, frozen, findings)
+    correlations = read_correlations(
+        workbook, tables["xlmc_correlations"], tables["xlmc_correlation_matrix"], names, frozen, findings
+    )
     correlations = *correlations, *_take_pairs(correlations, dialogs.correlations, findings)
     more = in_cell_correlations(workbook, calls.assumptions, calls.draws, correlations, findings)
     copulas = in_cell_copulas(workbook, calls.assumptions, calls.draws, (*correlations, *more), findings)

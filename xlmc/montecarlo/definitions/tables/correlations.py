@@ -1,8 +1,8 @@
-"""The rows of `xlmc_correlations`: Spearman rank correlations between assumptions."""
+"""Spearman rank correlations between assumptions: the rows of `xlmc_correlations`, and square tables of them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from xlmc.errors import DefinitionError
 from xlmc.excel.address import Cell
@@ -24,6 +24,7 @@ _Pairs = dict[frozenset[str], Cell]
 def read_correlations(
     workbook: Workbook,
     tables: Iterable[DefinitionTable],
+    matrices: Iterable[DefinitionTable],
     names: Mapping[str, str],
     frozen: Iterable[str],
     findings: Findings,
@@ -32,7 +33,8 @@ def read_correlations(
 
     Args:
         workbook: where they are read.
-        tables: the tables that hold them.
+        tables: the lists of pairs.
+        matrices: the square tables: names in the first column, the same names as headings.
         names: every assumption, also one with a mistake of its own: name key -> name as defined.
         frozen: the names of assumptions that do not vary.
         findings: takes mistakes and remarks.
@@ -40,7 +42,65 @@ def read_correlations(
     frozen_names, pairs = frozenset(frozen), _Pairs()
     rows = rows_of(workbook, tables, _KNOWN, _KNOWN, findings)
     found = [_correlation(row, names, frozen_names, pairs, findings) for row in rows]
+    for matrix in matrices:
+        found += _of_matrix(workbook, matrix, names, frozen_names, pairs, findings)
     return tuple(each for each in found if each is not None)
+
+
+def _of_matrix(
+    workbook: Workbook,
+    matrix: DefinitionTable,
+    names: Mapping[str, str],
+    frozen: frozenset[str],
+    pairs: _Pairs,
+    findings: Findings,
+) -> Iterator[Correlation]:
+    """Yield the correlations of a square table; either half of it may be blank."""
+    first, *headings = matrix.columns.values()
+    columns = {
+        column: findings.attempt(_named, names, heading, matrix.heading_cell(column)) for heading, column in headings
+    }
+    values: dict[frozenset[str], tuple[Parameter, Cell]] = {}
+    for row in rows_of(workbook, [matrix], (), [heading for heading, _ in matrix.columns.values()], findings):
+        name = findings.attempt(_assumption_named, row, first[0], names)
+        for (heading, _), other in zip(headings, columns.values(), strict=True):
+            if name is None or other is None or not row.filled(heading):
+                continue
+            value, where = findings.attempt(_coefficient, row, heading), row.cell(heading)
+            if value is None:
+                continue
+            if name == other:
+                if static_value(value, workbook) not in (1.0, None):
+                    message = f"The correlation of {name!r} with itself is 1"
+                    findings.problem(message, where, "Type 1, or clear the cell")
+                continue
+            pair = frozenset((name, other))
+            if pair not in values:
+                values[pair] = value, where
+            elif static_value(values[pair][0], workbook) != static_value(value, workbook):
+                message = f"The matrix gives {name!r} and {other!r} two correlations, here and in {values[pair][1]}"
+                findings.problem(message, where, "Correct one of them, or clear one half of the matrix")
+    for pair, (value, where) in values.items():
+        if pair in pairs:
+            one, other = sorted(pair)
+            message = f"{one!r} and {other!r} are correlated here and in {pairs[pair]}"
+            findings.problem(message, where, "Clear one of them")
+        elif not pair & frozen and value != 0.0:
+            pairs[pair] = where
+            one, other = sorted(pair, key=[*names.values()].index)
+            yield Correlation(one, other, value, where)
+
+
+def _named(names: Mapping[str, str], typed: str, where: Cell) -> str:
+    """Return the assumption's name as defined.
+
+    Raises:
+        DefinitionError: there is no such assumption.
+    """
+    if name_key(typed) in names:
+        return names[name_key(typed)]
+    hint = did_you_mean(typed, names.values()) if names else "Define the assumption in the table xlmc_assumptions"
+    raise DefinitionError(f"There is no assumption {typed!r}", where=where, hint=hint)
 
 
 def _correlation(
@@ -63,16 +123,12 @@ def _assumption_named(row: Row, heading: str, names: Mapping[str, str]) -> str:
     Raises:
         DefinitionError: there is no such assumption.
     """
-    typed = required_text(row, heading)
-    if name_key(typed) in names:
-        return names[name_key(typed)]
-    hint = did_you_mean(typed, names.values()) if names else "Define the assumption in the table xlmc_assumptions"
-    raise DefinitionError(f"There is no assumption {typed!r}", where=row.cell(heading), hint=hint)
+    return _named(names, required_text(row, heading), row.cell(heading))
 
 
-def _coefficient(row: Row) -> Parameter:
-    value = parameter(row, "Correlation")
-    where = row.cell("Correlation")
+def _coefficient(row: Row, heading: str = "Correlation") -> Parameter:
+    value = parameter(row, heading)
+    where = row.cell(heading)
     if value is None:
         raise DefinitionError("Correlation is blank", where=where, hint="Type a number from -1 to 1")
     known = static_value(value, row.workbook)

@@ -25,6 +25,7 @@ KINDS = (
     "xlmc_evidence",
     "xlmc_checks",
     "xlmc_correlations",
+    "xlmc_correlation_matrix",
     "xlmc_scenarios",
     "xlmc_settings",
     CONVERTED,

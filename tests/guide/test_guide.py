@@ -32,16 +32,16 @@ EDITS = {
 
 TRAPEZOID = {"F": "Trapezoid", "G": 0.60, "J": 0.70, "K": 0.85, "H": 0.95}
 CHANGES = {
-    "e_t at most 0.10": {("Results wanted", "D22"): 0.10},
-    "e_t at most 0.50": {("Results wanted", "D22"): 0.50},
-    "e_t at most 1": {("Results wanted", "D22"): 1},
+    "e_t at most 0.10": {("Results wanted", "D26"): 0.10},
+    "e_t at most 0.50": {("Results wanted", "D26"): 0.50},
+    "e_t at most 1": {("Results wanted", "D26"): 1},
     "both decelerations Trapezoid: 0.60, 0.70, 0.85, 0.95": {
         ("Inputs", f"{column}{row}"): value for row in (11, 17) for column, value in TRAPEZOID.items()
     },
-    "decelerations correlated by 0.8: one road": {("Results wanted", "C42"): 0.8},
+    "decelerations correlated by 0.8: one road": {("Results wanted", "C47"): 0.8},
 }
 
-CHECKS = ("energy", "closing", "angles", "forward", "restitution", "friction", "all")
+CHECKS = ("energy", "closing", "angles", "forward", "restitution", "friction", "run-out", "all")
 """The rows of the physics checks at the end of sheet Model."""
 
 LIMITS = "Filter limits"
@@ -160,7 +160,7 @@ def test_numbers_in_sentences(run):
     few = simulated(run.model, trials=2000, seed=999)
     slow = few["Nissan impact speed"].mean
     simpler = simulated(load(ROOT / "examples" / "intersection-momentum.xlsx"))
-    base = run.model.workbook.sheets["Results wanted"].cells[22, 2].value
+    base = run.model.workbook.sheets["Results wanted"].cells[26, 2].value
     beta = run.frame()["Chevrolet departure angle"].mean()
     message = [
         f"between {low.value:.1f} and {high.value:.1f} mph",
@@ -191,7 +191,7 @@ def test_a_wrong_angle_turns_checks_false(workbook, changed):
     assert right["Inputs"].cells[3, 1].value == "All physics checks hold at the base case"
     assert "physics check fails" in wrong["Inputs", 2, 0]
     failing = {f"D{row + 1}" for (sheet, row, column), value in wrong.items() if sheet == "Model" and value is False}
-    checks = {f"D{row}": check for row, check in enumerate(CHECKS, 102)}
+    checks = {f"D{row}": check for row, check in enumerate(CHECKS, 127)}
     in_order = sorted(failing, key=lambda cell: int(cell[1:]))
     assert [checks[cell] for cell in in_order] == ["angles", "forward", "restitution", "all"]
     assert all(right["Model"].cells[int(cell[1:]), 4].value is True for cell in checks)

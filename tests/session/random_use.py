@@ -145,11 +145,9 @@ class Book:
                 else:
                     lock.write_bytes(b"a person")
             case _:
-                self.rows.append(self.row(dice.randint(1, 5))) if not self._taken() else None
+                free = {1, 2, 3, 4, 5} - {each["cell"] for each in self.rows}
+                self.rows += [self.row(cell) for cell in sorted(free)[:1]]
         self.write()
-
-    def _taken(self):
-        return len({each["cell"] for each in self.rows}) < len(self.rows) or len(self.rows) >= 5
 
 
 class Use:

@@ -356,7 +356,7 @@ class Use:
             return True
         if wanted == "trouble":
             return any(each["kind"] == "trouble" and each["text"] for each in client.heard)
-        return found.get("rest", {}).get("version") == session.version
+        return all(found.get(kind, {}).get("version") == session.version for kind in ("rest", "frame"))
 
     def check(self):
         """Compare what is shown with what the edited workbook gives."""

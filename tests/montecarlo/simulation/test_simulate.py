@@ -2,12 +2,14 @@ from __future__ import annotations
 
 import gc
 import tempfile
+import weakref
 
 import numpy as np
 import pytest
 from simulated import simulated
 
 from xlmc.analysis.results.record.make import fingerprint
+from xlmc.analysis.results.statements import statements
 from xlmc.errors import FormulaError, SimulationError
 from xlmc.montecarlo.columns import column_store, on_disk
 from xlmc.montecarlo.simulation import simulate as module
@@ -405,3 +407,18 @@ def test_without_filters_every_trial_is_accepted_exactly(book):
     assert simulated(book(CELLS, GIVEN, FORECASTS, every), 300).acceptance == proportion(300, 300)
     may_fail = {"A1": GIVEN["A1"], "A4": {"cell": "A4", "low": "A1", "high": 9}}
     assert simulated(book(CELLS, may_fail, {"z": "A4"}), 300).acceptance.interval[0] < 1.0
+
+
+@pytest.mark.parametrize("more", [{}, {"sampling": "lhs500"}])
+def test_the_columns_of_a_run_go_with_it_at_once(model, more):
+    """Nothing of a run holds it in a circle, which Python would leave until much later."""
+    gc.collect()
+    gc.disable()
+    try:
+        run = simulated(model, 5_000, seed=1, **more)
+        kept = weakref.ref(run), weakref.ref(next(iter(run.forecasts.values())))
+        statements(run), run.warnings, [each.statistics for each in run.results.values()]
+        del run
+        assert [each() for each in kept] == [None, None]
+    finally:
+        gc.enable()

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -178,15 +178,18 @@ class RunResult:
 
     @cached_property
     def results(self) -> dict[str, ForecastResult]:
-        """Every forecast's result, in the order of the workbook."""
+        """Every forecast's result, in the order of the workbook.
+
+        They do not hold the run: its columns are large, and go with it at once.
+        """
         return {
             f.name: ForecastResult(
                 f,
                 partial(self.forecasts.__getitem__, f.name),
                 self.faults[f.name],
-                lambda: self.replicate,
+                partial(self.plan.replicate_of, self.trial_index),
                 self.discards.get(f.name, Counter()),
-                lambda: None if self.weighting is None else self.weighting.weights,
+                partial(_weights, self._weigh),
                 still=f.cell in self.model.still,
                 labels=self.labels.get(f.name),
                 code=self.model.formats[f.name],
@@ -198,7 +201,11 @@ class RunResult:
     @cached_property
     def weighting(self) -> Weighting | None:
         """The weights of the accepted trials; None if they count alike."""
-        return weighting_of(self.model, self.inputs)
+        return self._weigh()
+
+    @cached_property
+    def _weigh(self) -> Callable[[], Weighting | None]:
+        return cache(partial(weighting_of, self.model, self.inputs))
 
     @property
     def replicate(self) -> Replicates | None:
@@ -447,3 +454,8 @@ def assumption_heading(name: str, forecasts: Collection[str]) -> str:
 def weight_heading(others: Collection[str]) -> str:
     """Name the weights of trials in such a table, beside columns with these names."""
     return "Weight" if "Weight" not in others else "Weight of the trial"
+
+
+def _weights(weigh: Callable[[], Weighting | None]) -> NDArray[np.float64] | None:
+    found = weigh()
+    return None if found is None else found.weights

@@ -259,6 +259,16 @@ def test_a_range_given_by_a_formula_stands_with_its_value(outputs):
         assert said.replace(" ", "") in text_of(path)
 
 
+def test_without_filters_nothing_stands_before_and_after(outputs):
+    run, _, folder = outputs
+    texts = [(folder / "out.html").read_text(encoding="utf-8"), *map(text_of, sorted(folder.glob("out.[pd]*")))]
+    sheet = openpyxl.load_workbook(folder / "out.xlsx")["Assumptions"]
+    texts.append("".join(str(cell.value) for row in sheet.iter_rows() for cell in row))
+    filtered = bool(run.model.filters)
+    assert all(("Filterskeeponly" in re.sub(r"\s+", "", text)) == filtered for text in texts)
+    assert any(cell.value == "before" for row in sheet.iter_rows() for cell in row) == filtered
+
+
 def test_the_column_kind_overrides(tmp_path):
     kinds = {"Speed": "currency", "Events": "category", "Avoided": "number", "Cost": "number"}
     run = load(write_book(tmp_path / "book.xlsx", filtered=False, kinds=kinds)).simulate(trials=500)

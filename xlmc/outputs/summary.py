@@ -255,6 +255,8 @@ def share_text(estimate: Estimate) -> str:
         return f"{100.0 * estimate.value:g} %, {reach}"
     if math.isnan(estimate.value) or estimate.error is None:
         return ""
+    if estimate.error == 0.0 and estimate.value in (0.0, 1.0):
+        return f"{100.0 * estimate.value:g} %"
     return f"{format_estimate(100.0 * estimate.value, 100.0 * estimate.error)} %"
 
 

@@ -245,6 +245,11 @@ class RunResult:
         sizes[-1] -= sizes.sum() - self.trials
         return statistics.replicated_proportion(self.accepted_by_replicate, sizes)
 
+    @property
+    def filters_act(self) -> bool:
+        """Whether something rejects or weights trials, so that accepted draws may differ from all draws."""
+        return bool(self.model.filters) or self.weighting is not None or self.accepted != self.trials
+
     @cached_property
     def accepted_by_replicate(self) -> Replicates:
         """How many trials each replicate has accepted; of none where the trials themselves are independent."""

@@ -325,22 +325,31 @@ def _scenarios(material: Material) -> Iterator[Block]:
 
 def _assumptions(material: Material) -> Iterator[Block]:
     simulation = material.simulation
-    yield Paragraph(
-        "Filters keep only the combinations in which they hold. So an assumption that they bear on "
-        "is distributed differently among the accepted trials, although its range is the same. In the pictures, the "
-        "draws before filtering are pale, and the line is the accepted ones."
-    )
+    acts = simulation.filters_act
+    if acts:
+        yield Paragraph(
+            "Filters keep only the combinations in which they hold. So an assumption that they bear on "
+            "is distributed differently among the accepted trials, although its range is the same. In the pictures, "
+            "the draws before filtering are pale, and the line is the accepted ones."
+        )
     rows: list[Sequence[Content]] = [_assumption_row(simulation, each) for each in simulation.model.assumptions]
     heads = (
         "Assumption",
         "Distribution and source",
-        "Mean, before and accepted",
-        "SD, before and accepted",
+        "Mean, before and accepted" if acts else "Mean",
+        "SD, before and accepted" if acts else "SD",
         "Picture",
     )
-    yield material.table("The assumptions before and after filtering.", heads, rows, (1.9, 2.9, 1.9, 1.7, 1.95))
+    yield material.table(
+        "The assumptions before and after filtering." if acts else "The assumptions.",
+        heads,
+        rows,
+        (1.9, 2.9, 1.9, 1.7, 1.95),
+    )
     early = max((values.size for values in simulation.prior.values()), default=0)
-    said = f"Before filtering: the first {early:,} trials. ± is the standard error."
+    said = (
+        f"{'Before filtering: t' if simulation.filters_act else 'T'}he first {early:,} trials. ± is the standard error."
+    )
     if simulation.kept_inputs < simulation.accepted:
         said += f" Accepted: the first {simulation.kept_inputs:,} of {simulation.accepted:,} accepted trials."
     yield Paragraph(said, "small")
@@ -367,7 +376,7 @@ def _assumption_row(simulation: RunResult, each: Assumption) -> list[Content]:
     if found is None:
         base = "" if each.base is None else f"{each.base:.9g}"
         return [name, words, f"{status(simulation.model, each.name, each.frozen)}: {base}", _NONE, _NONE]
-    both = (found.prior, found.accepted)
+    both = (found.prior, found.accepted) if simulation.filters_act else (found.prior,)
     shape = shape_chart(simulation, each.name)
     return [
         name,

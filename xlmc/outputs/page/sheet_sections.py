@@ -134,8 +134,8 @@ def assumptions(simulation: RunResult) -> Html:
     table = element("table", element("thead", element("tr", *heads)), *bodies)
     return element(
         "section",
-        element("h2", "Assumptions, before filtering and accepted"),
-        element("p", MEANING),
+        element("h2", "Assumptions, before filtering and accepted" if simulation.filters_act else "Assumptions"),
+        *([element("p", MEANING)] if simulation.filters_act else []),
         *(element("p", said, class_="remark") for said in _remarks(simulation)),
         element("div", table, class_="wide-table paired"),
         correlations.html,
@@ -145,7 +145,8 @@ def assumptions(simulation: RunResult) -> Html:
 
 def _remarks(simulation: RunResult) -> Iterator[str]:
     early = max((values.size for values in simulation.prior.values()), default=0)
-    yield f"Before filtering: the first {early:,} trials. ± is the standard error."
+    of = "Before filtering: t" if simulation.filters_act else "T"
+    yield f"{of}he first {early:,} trials. ± is the standard error."
     if simulation.plan.size:
         yield STRATIFIED
     if simulation.kept_inputs < simulation.accepted:
@@ -160,6 +161,8 @@ def _assumption(simulation: RunResult, assumption: Assumption) -> Html:
     if found is None:
         why = element("td", status(simulation.model, assumption.name, assumption.frozen), colspan=str(_COLUMNS))
         return element("tbody", named, element("tr", why))
+    if not simulation.filters_act:
+        return element("tbody", named, element("tr", *_marginal(found.prior, "all"), element("td"), element("td")))
     before = element("tr", *_marginal(found.prior, "before"), element("td"), element("td"))
     return element("tbody", named, before, element("tr", *_marginal(found.accepted, "accepted"), *_changes(found)))
 

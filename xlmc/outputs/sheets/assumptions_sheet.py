@@ -92,7 +92,8 @@ def write_assumptions(page: Page, book: Workbook, simulation: RunResult, curves:
     page.height = _ROW
     starts = [0, *range(_NAMED - 1, _NAMED - 1 + len(_HEADS) - 1)]
     looks = ["header left", *["header"] * (len(_HEADS) - 1)]
-    page.line([Shown(head, look=look) for head, look in zip(_HEADS, looks, strict=True)], starts)
+    heads = _HEADS if simulation.filters_act else (*_HEADS[:-1], "Draws")
+    page.line([Shown(head, look=look) for head, look in zip(heads, looks, strict=True)], starts)
     for assumption in simulation.model.assumptions:
         page.may_begin()
         _write_assumption(page, simulation, assumption)
@@ -100,10 +101,12 @@ def write_assumptions(page: Page, book: Workbook, simulation: RunResult, curves:
     _draw_shapes(page, book, simulation, curves)
     write_correlations(page, simulation)
     page.heading("What this shows")
-    page.wide(MEANING, "paragraph", _READABLE)
-    page.wide(_CHANGE, "paragraph", _READABLE)
+    if simulation.filters_act:
+        page.wide(MEANING, "paragraph", _READABLE)
+        page.wide(_CHANGE, "paragraph", _READABLE)
     early = max((values.size for values in simulation.prior.values()), default=0)
-    page.wide(f"Before filtering: the first {early:,} trials. ± is the standard error.", "paragraph", _READABLE)
+    of = "Before filtering: t" if simulation.filters_act else "T"
+    page.wide(f"{of}he first {early:,} trials. ± is the standard error.", "paragraph", _READABLE)
     if simulation.plan.size:
         page.wide(STRATIFIED, "paragraph", _READABLE)
     if simulation.kept_inputs < simulation.accepted:
@@ -177,6 +180,8 @@ def _statistics(simulation: RunResult, assumption: Assumption) -> tuple[list[Sho
     if found is None:
         why = Shown(status(simulation.model, assumption.name, assumption.frozen))
         return [why, *_blank(_STATISTICS + 1)], _blank(_STATISTICS + 2, "second"), _blank(_STATISTICS + 2)
+    if not simulation.filters_act:
+        return [Shown("all"), *_before(found)[1:]], _blank(_STATISTICS + 2, "second"), _blank(_STATISTICS + 2)
     return _before(found), _accepted(found), _change(found)
 
 

@@ -194,6 +194,8 @@ def _search_lines(simulation: RunResult) -> list[list[Shown]]:
 
 
 def _share(found: Estimate) -> list[Shown]:
+    if found.error == 0.0 and found.value in (0.0, 1.0):
+        return [Shown(found.value, "0%"), *[cells.BLANK] * 3]
     return [*cells.share(found), *cells.interval(found, percent=True)]
 
 

@@ -246,3 +246,10 @@ def test_studies_have_the_names_of_the_commands(tmp_path):
         xlmc.fit([1, 2, 3], by="r2")
     with pytest.raises(WorkbookError, match="already"):
         xlmc.convert(book, tmp_path / "b.xlsx")
+
+
+def test_steps_are_told_by_either_name_of_the_argument(book):
+    steps = {"tell": [], "told": []}
+    for name, found in steps.items():
+        xlmc.compare(book, book, trials=1_000, seed=1, causes=False, **{name: found.append})
+    assert steps["tell"] == steps["told"] != []

@@ -74,7 +74,7 @@ def run(model, kept, block=BLOCK):
     ("which", "engine"),
     [("case study", "numpy"), ("errors", "numpy"), ("errors", "jit"), ("too large to keep", "jit")],
 )
-def test_a_kept_runner_gives_what_a_new_one_gives(book, case, engine, which, monkeypatch):
+def test_a_reusing_runner_gives_what_a_new_one_gives(book, case, engine, which, monkeypatch):
     model = case if which == "case study" else book(*ODD)
     if which == "too large to keep":
         monkeypatch.setattr(reusing_runner, "_MOST_BYTES", 100)
@@ -119,7 +119,7 @@ def test_draws_that_depend_on_each_other_are_drawn_as_ever(book):
         assert_same(run(moved, kept), simulate(moved, trials=TRIALS, seed=5))
 
 
-def test_a_kept_runner_does_not_hold_for_other_nodes_or_other_kinds_of_limits(book):
+def test_a_reusing_runner_does_not_hold_for_other_nodes_or_other_kinds_of_limits(book):
     model = book(*ODD)
     kept = ReusingRunner(model, "numpy", 5, TRIALS)
     assert not kept.holds_for(book(*ODD))

@@ -13,7 +13,7 @@ For a picture that follows a hand: load the workbook once, keep the model, and f
     moved = applied(model, [Range("Friction", 0.6, 0.8)])     # always of the model that was loaded, from one thread
     run = simulate(moved, trials=50_000, engine="jit")
 
-or, to move limits as fast as ranges, and to draw nothing twice, keep a `ReusingRunner` (`kept_runner.py`), too.
+or, to move limits as fast as ranges, and to draw nothing twice, keep a `ReusingRunner` (`reusing_runner.py`), too.
 
 Draws are keyed by the seed and an assumption's name, so those of assumptions that are not changed stay what they were.
 """

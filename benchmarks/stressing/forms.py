@@ -85,7 +85,7 @@ PRINTED: Final[Mapping[str, str]] = {
 
 def _of_templates() -> dict[str, str]:
     """The cells of the planar-impact template, in SI units, that are not evidence here."""
-    sections = edition(model_sections(), Edition.SI)
+    sections = edition(model_sections(more=False), Edition.SI)
     rows: tuple[Equation, ...] = tuple(row for section in sections for row in section.equations)
     force = edition(for_both(FORCE), Edition.SI)
     rows += tuple(row for row in force if row.symbol in ("dV1_long", "dV1_right", "PDOF_1"))

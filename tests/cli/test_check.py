@@ -83,7 +83,8 @@ def test_limits_that_are_computed_from_the_own_cell_are_shown_as_numbers(xlmc, s
     outcome = xlmc("check", spoiled("Inputs", C2="=B2*0.97", D2="=B2*1.03"))
     assert outcome.code == 0, outcome.err
     shown = f"Low {base * 0.97:g}, High {base * 1.03:g}"
-    assert f"Uniform: {shown}" in outcome.out
+    in_table = f"Low {base * 0.97:g} (Inputs!C2: =B2*0.97), High {base * 1.03:g} (Inputs!D2: =B2*1.03)"
+    assert f"Uniform: {in_table}" in outcome.out
     text = " ".join(outcome.err.split())
     assert f"computed from the base value of the assumption's own cell ({base:g}): {shown}" in text
 

@@ -3,13 +3,16 @@ from __future__ import annotations
 import math
 
 import pytest
+from committed_books import BOOKS
 
 from xlmc.analysis.results.statements import statements
+from xlmc.excel.workbook.reader import read_workbook
+from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.montecarlo.statistics import Estimate, format_estimate, proportion
 from xlmc.outputs.summary import (
-    ERROR_SENTENCE,
     base_case,
+    error_sentence,
     estimate_text,
     percent,
     question,
@@ -136,8 +139,11 @@ def test_no_number_is_no_text():
     assert estimate_text(Estimate(17.0213, 0.0023)) == "17.0213 ± 0.0023"
 
 
-def test_the_sentence_says_what_monte_carlo_error_is_not():
-    assert "not reconstruction error" in ERROR_SENTENCE
+def test_words_for_crashes_stand_in_books_of_crash_templates_only():
+    crash = error_sentence(read_workbook(BOOKS["skid"]))
+    assert "not reconstruction error: it does not say whether the model fits the crash" in crash
+    other = error_sentence(Workbook("beam.xlsx", {}))
+    assert "not model error: it does not say whether the model is right" in other
 
 
 def test_the_base_case_is_computed_with_frozen_cells_held(run):

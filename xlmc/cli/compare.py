@@ -133,13 +133,14 @@ def _pairs(given: tuple[str, ...], option: str, form: str) -> dict[str, str]:
 
 def _report(found: Comparison) -> StudyReport:
     from xlmc.analysis.studies.comparison.verdicts import book_names, verdict_text
+    from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
     from xlmc.outputs.document.parts import Table, blocks_of
     from xlmc.outputs.study_report import StudyReport
 
-    books = book_names(found)
+    books, words = book_names(found), vocabulary_of(found.first.model.workbook)
     headings = ("", "First", "Second", "Difference", "Tolerance")
     tables = [Table(_title(each), headings, tuple(_rows(each)), (1, 2, 3, 4)) for each in found.forecasts]
-    blocks = blocks_of([*verdict_text(found), *tables, *_sentences(found), _MEANING])
+    blocks = blocks_of([*verdict_text(found), *tables, *_sentences(found), words.fill(_MEANING)])
     title, below = "Do two models give the same answer?", f"{books[0]} (first) and {books[1]} (second)"
     return StudyReport(title, below, blocks, "Comparison", partial(_as_json, found))
 
@@ -165,7 +166,7 @@ _MEANING = (
     "books share. The last two lines of a table compare the answers as a whole: the average difference of all "
     "percentiles (Wasserstein's distance), and the largest difference of the cumulative curves (Kolmogorov's "
     "distance). A verdict is given only where a difference is at least three errors away from the tolerance. It says "
-    "that two models agree, not that either fits the crash."
+    "that two models agree, not that either {fits}."
 )
 
 

@@ -158,7 +158,7 @@ def show_run(run: RunResult) -> None:
     from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
     from xlmc.outputs.document import further_sections
     from xlmc.outputs.document.parts import Heading
-    from xlmc.outputs.summary import ERROR_SENTENCE, summarise, summary_text
+    from xlmc.outputs.summary import error_sentence, summarise, summary_text
 
     show_first(run)
     headings, rows = summary_text(summarise(run))
@@ -178,7 +178,7 @@ def show_run(run: RunResult) -> None:
     _show_scenarios(run)
     for heading, blocks in further_sections(run, "terminal").values():
         show([Heading(heading), *blocks])
-    say(paragraph(ERROR_SENTENCE))
+    say(paragraph(error_sentence(run.model.workbook)))
     for notice in run.notices_of_run:
         say(paragraph(f"{notice}."))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from xlmc.outputs.sheets.save import save as save_sheets
 from xlmc.outputs.sheets.trials_sheet import TRIAL_ROWS
-from xlmc.outputs.summary import ERROR_SENTENCE, SummaryRow, summarise, summary_text
+from xlmc.outputs.summary import SummaryRow, error_sentence, summarise, summary_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from xlmc.outputs.sheets.book import ResultSheet, Writing
     from xlmc.outputs.sheets.page import Page
 
-__all__ = ["ERROR_SENTENCE", "SummaryRow", "save", "summarise", "summary_text"]
+__all__ = ["SummaryRow", "error_sentence", "save", "summarise", "summary_text"]
 
 _TAB = 31
 """Characters of a sheet's name, Excel's limit."""

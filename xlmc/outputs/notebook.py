@@ -11,7 +11,7 @@ from xlmc.montecarlo.distributions.parameters import show
 from xlmc.outputs.document import further_sections
 from xlmc.outputs.document.html_writer import blocks_html
 from xlmc.outputs.histogram import figures_of
-from xlmc.outputs.summary import ERROR_SENTENCE, summarise, summary_text
+from xlmc.outputs.summary import error_sentence, summarise, summary_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
@@ -73,7 +73,7 @@ def run_html(run: RunResult) -> str:
             else "",
             *_sentences("Notice", map(str, run.notices)),
             *(f"<h3>{escape(heading)}</h3>{blocks_html(blocks).source}" for heading, blocks in further),
-            f"<p style='font-size:smaller'>{escape(ERROR_SENTENCE)}</p>",
+            f"<p style='font-size:smaller'>{escape(error_sentence(run.model.workbook))}</p>",
         )
     )
 

@@ -14,6 +14,7 @@ from xlmc.analysis.results.statements.in_words import discards_of, limits_text
 from xlmc.engine.engine import UNDECIDED_RESULT
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
+from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.distributions.parameters import range_text, show
 from xlmc.montecarlo.loop.categories import labelled
 from xlmc.montecarlo.model.certain_filters import breakable
@@ -25,11 +26,11 @@ from xlmc.montecarlo.statistics.number_text import count_text, decimals_of
 
 if TYPE_CHECKING:
     from xlmc.engine.engine import Column
+    from xlmc.excel.workbook.workbook import Workbook
     from xlmc.montecarlo.definitions.definitions import Filter
     from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = [
-    "ERROR_SENTENCE",
     "BaseCase",
     "Phrase",
     "SummaryRow",
@@ -38,6 +39,7 @@ __all__ = [
     "base_text",
     "central_text",
     "end_texts",
+    "error_sentence",
     "estimate_text",
     "percent",
     "question",
@@ -47,13 +49,11 @@ __all__ = [
     "summary_text",
 ]
 
-ERROR_SENTENCE = (
+_ERROR_SENTENCE = (
     "± is the standard error that comes from a limited number of trials (Monte Carlo error): infinitely many trials "
     "would give a number within twice ± of the one shown, with about 95 % confidence. Monte Carlo error is not "
-    "reconstruction error: it does not say whether the model fits the crash, or whether the ranges of the assumptions "
-    "are right."
+    "{model_error}: it does not say whether the model {fits}, or whether the ranges of the assumptions are right."
 )
-"""What no table of results may be without."""
 
 MIXED = "Central range"
 
@@ -123,6 +123,11 @@ class SummaryRow:
 
 
 _NOTHING = Estimate(math.nan)
+
+
+def error_sentence(workbook: Workbook) -> str:
+    """Return what no table of results of a workbook may be without."""
+    return vocabulary_of(workbook).fill(_ERROR_SENTENCE)
 
 
 def summarise(simulation: RunResult, names: Collection[str] | None = None) -> list[SummaryRow]:

@@ -47,7 +47,7 @@ def test_nothing_to_say_is_no_section(make, page_of):
     run = make.simulate({"A1": 0.5, "B1": "=A1*2"}, assumptions, [make.forecast("x", "B1")], trials=50)
     found = sensitivities(run)
     assert limits(found) == EMPTY
-    assert dependence(found) != EMPTY
+    assert dependence(found, run.model.workbook) != EMPTY
     page = page_of(run)
     assert page.all("section", id="limits") == []
     assert "No assumption moves it." in page.all("section", id="sensitivity")[0].text

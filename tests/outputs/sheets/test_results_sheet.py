@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.outputs.summary import ERROR_SENTENCE
+from xlmc.outputs.summary import error_sentence
 
 
 def test_table_2_holds_the_simulations_numbers(run, book, row_of):
@@ -98,9 +98,9 @@ def test_too_many_errors_are_a_red_warning(run, book):
     assert book["Results"]["A4"].value.startswith("S!")  # then the cell that they were lost in
 
 
-def test_notices_and_sentences_stand_on_the_sheet(book, rows_of):
+def test_notices_and_sentences_stand_on_the_sheet(run, book, rows_of):
     texts = [row[0] for row in rows_of(book["Results"]) if row]
-    assert ERROR_SENTENCE in texts
+    assert error_sentence(run.model.workbook) in texts
     assert "The 51 % range is central: 24.5 % of the accepted trials lie below it, 24.5 % above." in texts
     assert "The base case has every assumption at the value in its cell." in texts
     assert "S!A3: no forecast or filter needs the assumption 'idle'" in texts

@@ -71,6 +71,7 @@ def _read(data: bytes, name: str, where: str) -> Workbook:
             macintosh=b"Macintosh" in parts.get("docProps/app.xml", b""),
             iteration=iteration_of(structure.calculation),
             may_be_stale=_may_be_stale(structure.calculation),
+            category=_category(parts),
             notices=tuple(_workbook_notices(parts, structure, name)),
             parts=parts,
             sha256=hashlib.sha256(data).hexdigest(),
@@ -117,6 +118,7 @@ _REASONS = (
 
 _BROKEN: Final = re.compile(rb"""\srefreshError\s*=\s*["'](?:1|true)["']""")
 
+_CATEGORY: Final = re.compile(rb"<(?:\w+:)?category[^>]*>([^<]*)<")
 _SAVED_AT: Final = re.compile(rb"<dcterms:modified[^>]*>\s*(\d{4}-\d\d-\d\d)")
 
 
@@ -177,6 +179,12 @@ def _on_links(parts: Mapping[str, bytes], structure: Structure) -> Iterator[str]
                 f"links to {', '.join(dict.fromkeys(broken))} are broken: what reads them is #REF!, as in Excel. "
                 "Update or break the links in Excel (Data, Edit Links)"
             )
+
+
+def _category(parts: Mapping[str, bytes]) -> str:
+    """Return the category in the workbook's properties."""
+    found = _CATEGORY.search(parts.get("docProps/core.xml", b""))
+    return found[1].decode(errors="replace").strip() if found else ""
 
 
 def _age(parts: Mapping[str, bytes]) -> str:

@@ -247,6 +247,7 @@ class Workbook:
         macintosh: last saved by Excel for the Macintosh, whose CHAR and CODE use its own character set.
         iteration: how cells that need each other in a circle are computed; None if they are an error.
         may_be_stale: saved values may be older than the formulas: calculation is manual, or Excel has yet to do it.
+        category: the category in its properties; empty if there is none.
         parts: every part of the zip package in its order, name -> bytes, as in the file.
         origin: the parts of the file that it was read from, where values have been typed since and it has no `parts`.
         sha256: of the file.
@@ -264,6 +265,7 @@ class Workbook:
     macintosh: bool = False
     iteration: Iteration | None = None
     may_be_stale: bool = False
+    category: str = ""
     notices: tuple[Notice, ...] = ()
     parts: Mapping[str, bytes] = field(default_factory=dict, repr=False)
     origin: Mapping[str, bytes] = field(default_factory=dict, repr=False)

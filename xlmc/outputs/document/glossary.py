@@ -9,7 +9,7 @@ __all__ = ["GLOSSARY", "WORDS_OF_EVIDENCE", "WORDS_OF_SCENARIOS"]
 GLOSSARY: Final = (
     (
         "Trial",
-        "one possible crash. One value is drawn for each uncertain input, and the workbook is calculated with them.",
+        "one possible {case}. One value is drawn for each uncertain input, and the workbook is calculated with them.",
     ),
     (
         "Assumption",
@@ -18,7 +18,7 @@ GLOSSARY: Final = (
     ("Forecast", "a cell whose values are wanted: the answer."),
     (
         "Filter",
-        "a cell with limits that a possible crash must meet, such as a restitution between 0 and 1. A trial that is "
+        "a cell with limits that a possible {case} must meet{such_as}. A trial that is "
         "outside the limits of a filter is rejected.",
     ),
     ("Accepted", "a trial is accepted if it meets all filters. All answers are those of the accepted trials."),

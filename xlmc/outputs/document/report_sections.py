@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.record.definition_tables import correlations_met
-from xlmc.analysis.results.statements import MEANING, statements
+from xlmc.analysis.results.statements import meaning, statements
 from xlmc.analysis.results.statements.in_words import (
     REJECTED_SENTENCE,
     discards_of,
@@ -21,6 +21,7 @@ from xlmc.analysis.results.statements.in_words import (
 from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenario_answers
 from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.analysis.studies.sensitivity.measures import noise
+from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.diagnostics.checking import checks_sentence
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
@@ -40,12 +41,12 @@ from xlmc.outputs.scenario_tables import SCENARIO_HEADS, answer_heads, answer_ro
 from xlmc.outputs.sheets.results_sheet import base_sentences, opening_sentences, range_sentences
 from xlmc.outputs.sheets.scenarios_sheet import scenario_sentences, scenario_warnings
 from xlmc.outputs.summary import (
-    ERROR_SENTENCE,
     SummaryRow,
     answer_text,
     base_text,
     central_text,
     end_texts,
+    error_sentence,
     estimate_text,
     percent,
     question,
@@ -135,11 +136,11 @@ def _answer(material: Material) -> Iterator[Block]:
     told = [each for each in statements(simulation) if each.forecast in material.forecasts]
     if told:
         yield Bullets(tuple(f"{each.text}." for each in told))
-        yield Paragraph(MEANING, "small")
+        yield Paragraph(meaning(simulation.model.workbook), "small")
     rows = [row for row in summarise(simulation) if row.name in material.forecasts]
     yield _answers(material, rows)
     yield from _texts(material, rows)
-    yield Paragraph(ERROR_SENTENCE, "small")
+    yield Paragraph(error_sentence(simulation.model.workbook), "small")
     ended = [] if simulation.stopped == ALL_TRIALS else [f"The run ended when {simulation.stopped.sentence}."]
     remarks = (sampling_sentence(simulation), *range_sentences(rows), *base_sentences(simulation), *ended)
     yield Paragraph(" ".join(remarks), "small")
@@ -390,7 +391,7 @@ def _assumption_row(simulation: RunResult, each: Assumption) -> list[Content]:
 def _sensitivity(material: Material) -> Iterator[Block]:
     if material.simulation.weighting is not None:
         return
-    found = sensitivities(material.simulation)
+    found, fits = sensitivities(material.simulation), vocabulary_of(material.simulation.model.workbook).fits
     shown = [each for each in found.forecasts if each.forecast in material.forecasts]
     if not shown:
         return
@@ -398,7 +399,7 @@ def _sensitivity(material: Material) -> Iterator[Block]:
         "Variance explained: how much of the forecast's variance would vanish, on average, if the assumption's true "
         "value were known. It is found from the accepted trials; shares need not add up to 100 %. “Noise” means: no "
         "more than chance alone would show. The rank correlation says whether the forecast rises (above 0) or falls "
-        "with the assumption. No sensitivity says whether the model fits the crash."
+        f"with the assumption. No sensitivity says whether the model {fits}."
     )
     lines: list[tuple[str, ...]] = []
     most = _MOST_BARS if len(shown) <= _FEW else _MOST_OF_MANY
@@ -498,7 +499,8 @@ def _glossary(material: Material) -> Iterator[Block]:
         *(WORDS_OF_EVIDENCE if simulation.agreement is not None else ()),
         *(WORDS_OF_SCENARIOS if simulation.settings.scenarios else ()),
     ]
-    yield Bullets(tuple(f"{word}: {meaning}" for word, meaning in words), "small")
+    fill = vocabulary_of(simulation.model.workbook).fill
+    yield Bullets(tuple(f"{word}: {fill(says)}" for word, says in words), "small")
 
 
 _STATED: Final = {"page": "The answer", "sheets": "Results", "terminal": "the first table", "notebook": "Answers"}
@@ -514,7 +516,7 @@ SECTIONS: Final[dict[str, Section]] = {
         {"page": "Forecasts", "sheets": "Charts", "terminal": "charts are for files", "notebook": "Answers"},
     ),
     "filters": Section(
-        "Filters: what a possible crash must meet",
+        "Filters: what a trial must meet",
         _filters,
         {
             "page": "Trials and filters",

@@ -44,7 +44,7 @@ from xlmc.outputs.page.sheet_sections import (
 )
 from xlmc.outputs.sheets.results_sheet import opening_sentences
 from xlmc.outputs.sheets.scenarios_sheet import write_scenario_tables
-from xlmc.outputs.summary import ERROR_SENTENCE, SummaryRow, base_case, share_text
+from xlmc.outputs.summary import SummaryRow, base_case, error_sentence, share_text
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.scenario_answers import ScenarioAnswers
@@ -264,7 +264,7 @@ def rest_of(simulation: RunResult) -> Message:
     counts = zip(simulation.model.filters, simulation.tally.rejected, simulation.tally.only, strict=True)
     return {
         "sentences": [each.text for each in statements(simulation)],
-        "meaning": ERROR_SENTENCE,
+        "meaning": error_sentence(simulation.model.workbook),
         "warnings": [str(each) for each in opening_sentences(simulation)],
         "notices": [str(each) for each in simulation.notices_of_run],
         "sampling": sampling_sentence(simulation),
@@ -292,7 +292,7 @@ def matters_html(simulation: RunResult, names: Collection[str], report_share: Ca
     if not chosen:
         return _of_chosen(simulation, chosen).source
     found = sensitivities(simulation, chosen, progress=lambda share: report_share(_MEASURING * share))
-    parts = [_of_chosen(simulation, chosen), dependence(found)]
+    parts = [_of_chosen(simulation, chosen), dependence(found, simulation.model.workbook)]
     report_share(0.5 + _MEASURING / 2.0)
     return join([*parts, limits(found)]).source
 

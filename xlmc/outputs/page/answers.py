@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from xlmc.analysis.results.statements import MEANING, statements
+from xlmc.analysis.results.statements import meaning, statements
 from xlmc.analysis.results.statements.in_words import sampling_sentence
 from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
 from xlmc.outputs.document.element import EMPTY, Html, element
 from xlmc.outputs.document.html_writer import estimate_html, number, share_html
 from xlmc.outputs.sheets.results_sheet import base_sentences, opening_sentences, range_sentences
 from xlmc.outputs.summary import (
-    ERROR_SENTENCE,
     SummaryRow,
     base_text,
     end_texts,
+    error_sentence,
     percent,
     question,
     range_heading,
@@ -39,7 +39,7 @@ def answers(simulation: RunResult) -> Html:
         element("p", *_question(simulation)),
         *_statements(simulation),
         _table(rows),
-        element("p", ERROR_SENTENCE, class_="meaning"),
+        element("p", error_sentence(simulation.model.workbook), class_="meaning"),
         *(element("p", sentence, class_="remark") for sentence in _remarks(simulation, rows)),
         id="answer",
     )
@@ -58,7 +58,7 @@ def _statements(simulation: RunResult) -> Iterator[Html]:
     """The sentences and what they mean; nothing where all forecasts are diagnostics."""
     if said := statements(simulation):
         yield element("ul", *(element("li", *_statement(each)) for each in said), class_="statements")
-        yield element("p", MEANING, class_="remark")
+        yield element("p", meaning(simulation.model.workbook), class_="remark")
 
 
 def _statement(statement: Statement) -> Iterator[Html | str]:

@@ -162,7 +162,7 @@ def page_text(simulation: RunResult, *, beside: RunResult | None = None, command
         "scenarios": scenarios(simulation),
         "pairs": pairs(simulation),
         "statistics": statistics(simulation),
-        "sensitivity": EMPTY if found is None else dependence(found),
+        "sensitivity": EMPTY if found is None else dependence(found, simulation.model.workbook),
         "checks": checks(simulation),
         "evidence": evidence(simulation),
         "filters": filters(simulation),

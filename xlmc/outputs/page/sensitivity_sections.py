@@ -23,18 +23,19 @@ from xlmc.outputs.sheets.sensitivity_sheet import (
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.sensitivity import FilterLimit, ForecastSensitivity, Sensitivities
+    from xlmc.excel.workbook.workbook import Workbook
 
 __all__ = ["dependence", "limits"]
 
 
-def dependence(found: Sensitivities) -> Html:
+def dependence(found: Sensitivities, source: Workbook) -> Html:
     """The section with what each forecast depends on; nothing where there is no forecast."""
     if not found.forecasts:
         return EMPTY
     return element(
         "section",
         element("h2", "Sensitivity: what the answers depend on"),
-        *(element("p", said, class_="remark") for said in sensitivity_sentences(found)),
+        *(element("p", said, class_="remark") for said in sensitivity_sentences(found, source)),
         *(_forecast(each, found) for each in found.forecasts),
         id="sensitivity",
     )

@@ -120,7 +120,7 @@ def _pairs(page: Page, run: Writing) -> None:
 
 
 def _sensitivity(page: Page, run: Writing) -> None:
-    sensitivity_sheet.write_sensitivity(page, run.book, run.dependence, run.name)
+    sensitivity_sheet.write_sensitivity(page, run.book, run.dependence, run.simulation.model.workbook)
 
 
 def _limits(page: Page, run: Writing) -> None:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from xlmc.analysis.results.statements import MEANING, certainties, stated_range, statements
+from xlmc.analysis.results.statements import certainties, meaning, stated_range, statements
 from xlmc.montecarlo.definitions.stating import NOT_ROUNDED
 from xlmc.montecarlo.statistics import proportion
 from xlmc.outputs.sheets import cells
@@ -50,7 +50,7 @@ def write_certainty(page: Page, simulation: RunResult, trials: TrialsAt) -> None
         for statement in said:
             page.wide(f"{statement.text}.", "quote", LAST)
         page.row += 1
-        page.wide(MEANING, "remark", LAST)
+        page.wide(meaning(simulation.model.workbook), "remark", LAST)
     page.heading("Certainty of ranges")
     write_ranges(page, simulation)
     _write_own_ranges(page, simulation, trials)

@@ -12,7 +12,7 @@ from xlmc.montecarlo.statistics import Estimate, proportion
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.accounting import write_accounting, write_checks
 from xlmc.outputs.sheets.cells import Shown
-from xlmc.outputs.summary import ERROR_SENTENCE, SummaryRow, base_case, base_text, percent, range_heading, summarise
+from xlmc.outputs.summary import SummaryRow, base_case, base_text, error_sentence, percent, range_heading, summarise
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
@@ -63,7 +63,7 @@ def _write_answers(page: Page, simulation: RunResult) -> None:
     page.row += 1
     for sentence in (
         sampling_sentence(simulation),
-        ERROR_SENTENCE,
+        error_sentence(simulation.model.workbook),
         *range_sentences(rows),
         *base_sentences(simulation),
     ):

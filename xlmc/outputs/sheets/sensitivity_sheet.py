@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from xlmc.analysis.studies.sensitivity.influences import MEASURED
 from xlmc.analysis.studies.sensitivity.measures import Noise, noise
+from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.sheets.sensitivity_charts import (
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from xlsxwriter.workbook import Workbook
 
     from xlmc.analysis.studies.sensitivity import Bar, ForecastSensitivity, Influence, Sensitivities
+    from xlmc.excel.workbook.workbook import Workbook as SourceBook
     from xlmc.montecarlo.statistics import Estimate
     from xlmc.outputs.sheets.page import Page
 
@@ -97,15 +99,15 @@ _TORNADO_CHART: Final = (
 _BENT: Final = "Where the table says that it does not only rise or fall, the bar hides what lies between."
 
 
-def write_sensitivity(page: Page, book: Workbook, found: Sensitivities, name: str) -> None:
+def write_sensitivity(page: Page, book: Workbook, found: Sensitivities, source: SourceBook) -> None:
     """Write the sheet: two charts of each forecast, which are printed; below all of them its others and its tables.
 
     The charts draw the tables that stand below them, so room is left for them.
     """
-    page.title("Sensitivity: what the answers depend on", f"{name}: {found.accepted:,} accepted trials")
+    page.title("Sensitivity: what the answers depend on", f"{source.name}: {found.accepted:,} accepted trials")
     bent = f" {_BENT}" if any(map(_is_bent, found.forecasts)) else ""
     printed_only = _printed_sentence(len(found.forecasts))
-    for sentence in (*sensitivity_sentences(found), _EXPLAINED_CHART, f"{_TORNADO_CHART}{bent}", printed_only):
+    for sentence in (*sensitivity_sentences(found, source), _EXPLAINED_CHART, f"{_TORNADO_CHART}{bent}", printed_only):
         page.wide(sentence, "remark", CHARTED)
     tops = []
     for forecast in found.forecasts:
@@ -120,7 +122,7 @@ def write_sensitivity(page: Page, book: Workbook, found: Sensitivities, name: st
         bottom, page.row = page.row, top + _HEADING
         place_rows(page, charts, _FIRST_ROWS, _brief(forecast))
         page.row = bottom
-    page.set_up_printing(name, printed=printed, columns=(0, CHARTED))
+    page.set_up_printing(source.name, printed=printed, columns=(0, CHARTED))
 
 
 def _printed_sentence(forecasts: int) -> str:
@@ -141,11 +143,12 @@ def _is_drawn(forecast: ForecastSensitivity) -> bool:
     return bool(forecast.influences or forecast.bars)
 
 
-def sensitivity_sentences(found: Sensitivities) -> list[str]:
+def sensitivity_sentences(found: Sensitivities, source: SourceBook) -> list[str]:
     """What the numbers are, and rest on."""
     said = [
         "Influences are those among the accepted trials: filters change which assumptions matter. ± is the standard "
-        "error that comes from a limited number of trials. No sensitivity says whether the model fits the crash."
+        "error that comes from a limited number of trials. No sensitivity says whether the model "
+        f"{vocabulary_of(source).fits}."
     ]
     if found.sobol_reason:
         said.append(f"{found.sobol_reason}.")

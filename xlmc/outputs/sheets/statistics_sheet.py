@@ -9,7 +9,7 @@ from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import NOT_ROUNDED, Kind
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
-from xlmc.outputs.summary import ERROR_SENTENCE, percent
+from xlmc.outputs.summary import error_sentence, percent
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
@@ -46,7 +46,7 @@ def write_statistics(page: Page, simulation: RunResult) -> None:
     page.title("Statistics of the accepted trials", below)
     results = list(simulation.results.values())
     last = len(_COLUMNS) * min(max(len(results), 1), _ACROSS)
-    page.wide(f"{ERROR_SENTENCE} A variance has the square of the units.", "remark", last)
+    page.wide(f"{error_sentence(simulation.model.workbook)} A variance has the square of the units.", "remark", last)
     for start in range(0, len(results), _ACROSS):
         page.row += 1
         if start:

@@ -100,5 +100,5 @@ def test_two_items_may_be_about_one_cell_and_numbers_may_be_formulas(read, block
     assert found.problems == ()
     assert list(found.evidence[0].cells) == [Cell("Answers", 41, 3), Cell("Answers", 41, 6)]
     assert [str(notice) for notice in found.notices] == [
-        "Answers!I42: The evidence 'Video' gives no Source, the first thing an opponent asks for"
+        "Answers!I42: The evidence 'Video' gives no Source, the first thing that a reader asks for"
     ]

@@ -5,23 +5,23 @@
 
 from xlmc.analysis.results.statements.pairs import PAIRS, Pair, pairs_of
 from xlmc.analysis.results.statements.sentences import (
-    MEANING,
     Certainty,
     Statement,
     certainties,
+    meaning,
     stated_range,
     statements,
 )
 from xlmc.analysis.results.statements.significant_digits import RoundedRange, percent_text, reach_text
 
 __all__ = [
-    "MEANING",
     "PAIRS",
     "Certainty",
     "Pair",
     "RoundedRange",
     "Statement",
     "certainties",
+    "meaning",
     "pairs_of",
     "percent_text",
     "reach_text",

@@ -18,29 +18,35 @@ from xlmc.analysis.results.statements.significant_digits import (
     surely_above,
 )
 from xlmc.montecarlo.definitions.stating import Role
+from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.distributions.parameters import range_text
 from xlmc.montecarlo.statistics import Estimate, complement, probability_above, probability_between
 from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 if TYPE_CHECKING:
+    from xlmc.excel.workbook.workbook import Workbook
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
     from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.montecarlo.statistics import Sample
 
-__all__ = ["MEANING", "Certainty", "Statement", "certainties", "stated_range", "statements"]
+__all__ = ["Certainty", "Statement", "certainties", "meaning", "stated_range", "statements"]
 
 
 LIKELIER: Final = 0.55
 """The largest share of a range that is asked for to say where the answer more probably lies than not, such as 51 %."""
 
-MEANING: Final = (
+_MEANING: Final = (
     "Each share is a share of the accepted trials, counted for the range as it is printed here, and has its standard "
     "error beside it. “More probable than not” is said only where the whole 95 % interval of the share lies above "
     "50 %; ends are rounded outwards until it does. Of a bound one side alone is stated, and a share of trials in "
     "which the bound lies there is a least probability. All of this holds only if the model and the ranges of its "
-    "assumptions are right: the error given is Monte Carlo error, not reconstruction error."
+    "assumptions are right: the error given is Monte Carlo error, not {model_error}."
 )
-"""The note that stands below the sentences."""
+
+
+def meaning(workbook: Workbook) -> str:
+    """Return the note that stands below the sentences of a workbook."""
+    return vocabulary_of(workbook).fill(_MEANING)
 
 
 @dataclass(frozen=True, slots=True)

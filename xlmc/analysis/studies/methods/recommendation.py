@@ -20,6 +20,7 @@ from xlmc.analysis.studies.methods.need import ENGINE_READY, NO_TIME, Choice, Ne
 from xlmc.analysis.studies.methods.sampled import MONTE_CARLO, Sampled
 from xlmc.analysis.studies.methods.study import Study
 from xlmc.montecarlo.definitions.run_options import RunOptions
+from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 
 __all__ = ["Parts", "parts_of", "recommendation"]
 
@@ -31,7 +32,7 @@ _NOTABLE: Final = 0.05
 
 _ERROR_WORDS: Final = (
     "All errors here are those of computing the answer, measured against the reference; none says whether the model "
-    "fits the crash, or whether the ranges of the assumptions are right."
+    "{fits}, or whether the ranges of the assumptions are right."
 )
 
 _BEYOND: Final = 3.0
@@ -67,7 +68,7 @@ def _paragraphs(study: Study) -> list[str]:
     sentences += [_missed_text(study, curve, each) for curve, each in once if each.reaches == "no"]
     sentences += [_undecided_text(study, curve, each) for curve, each in once if each.reaches == "unknown"]
     sentences += _bounds_text(study)
-    return [*sentences, _ERROR_WORDS]
+    return [*sentences, vocabulary_of(study.model.workbook).fill(_ERROR_WORDS)]
 
 
 def _accuracy_text(study: Study) -> str:

@@ -28,6 +28,7 @@ from xlmc.montecarlo.definitions.tables.table_rows import (
     rows_of,
     static_value,
 )
+from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key, plain
 
@@ -121,7 +122,8 @@ def _evidence(
         return None
     if not source:
         where = row.cell("Source") if row.has("Source") else row.where
-        findings.notice(f"The evidence {name!r} gives no Source, the first thing an opponent asks for", where)
+        asker = vocabulary_of(row.workbook).asker
+        findings.notice(f"The evidence {name!r} gives no Source, the first thing that {asker} asks for", where)
     return found
 
 

@@ -25,6 +25,7 @@ from xlmc.montecarlo.definitions.tables.table_rows import (
     rows_of,
     static_value,
 )
+from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.distributions.parameters import show
 
 __all__ = ["LIMITS", "LIMIT_HINT", "contradiction", "read_checks", "read_filters"]
@@ -87,8 +88,9 @@ def _filter(
         return None
     if not because:
         where = row.cell("Because") if row.has("Because") else row.where
+        asker = vocabulary_of(row.workbook).asker
         findings.notice(
-            f"The filter {name!r} gives no evidence under Because, the first thing an opponent asks for", where
+            f"The filter {name!r} gives no evidence under Because, the first thing that {asker} asks for", where
         )
     known: dict[str, Any] = {
         **limits,

@@ -98,7 +98,7 @@ def compare(
         say_json(report.as_json())
     else:
         show(blocks_of([report.below, *report.blocks]))
-        written.report_failures()
+        written.print_paths()
     runs = list(zip(book_names(found), (found.first, found.second), strict=True))
     notices([replace(notice, where=name) for name, run in runs for notice in direction_notices(run.results.values())])
     doubts = [f"{name}: {warning}" for name, run in runs for warning in run.warnings]

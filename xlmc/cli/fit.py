@@ -111,7 +111,7 @@ def fit(
         if edited is not None and into is not None:
             done = "a new row" if edited.row.is_new else "its row"
             say(f"Written: {chosen.name} for {label(name)}, {done} in {into}, {edited.row.where}")
-        written.report_failures()
+        written.print_paths()
     for caution in _cautions(found):
         say(f"warning: {caution}", err=True)
     written.check()

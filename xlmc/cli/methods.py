@@ -86,7 +86,7 @@ def methods(
         say()
         for advice in recommendation(found):
             say(f"{paragraph(advice)}\n")
-        written.report_failures()
+        written.print_paths()
     written.check()
     if found.reference.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)

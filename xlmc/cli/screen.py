@@ -112,7 +112,7 @@ def screen(
         say_json(report.as_json())
     else:
         show(blocks_of([f"{report.below.partition(':')[0]}: what it could do without", *report.blocks]))
-        written.report_failures()
+        written.print_paths()
     warnings(found.run.warnings, found.run.refused)
     written.check()
     if found.run.warnings:

@@ -64,7 +64,7 @@ def stability(
         say_json(report.as_json())
     else:
         _show(found, all_cells)
-        written.report_failures()
+        written.print_paths()
     warnings(found.run.warnings, found.run.refused)
     written.check()
     if found.wrong or found.run.warnings:

@@ -67,7 +67,7 @@ def verify(
         say_json(report.as_json())
     else:
         show(blocks_of(_blocks(found, _SHOWN)))
-        written.report_failures()
+        written.print_paths()
     written.check()
     if found.count(Status.DIFFERING):
         raise click.exceptions.Exit(DIFFERS)

@@ -23,8 +23,8 @@ class Written(NamedTuple):
     paths: list[Path]
     complete: bool
 
-    def report_failures(self) -> None:
-        """Print where they are."""
+    def print_paths(self) -> None:
+        """Print the paths of the files that were written."""
         for path in self.paths:
             say(f"Written: {path}")
 

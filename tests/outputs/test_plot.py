@@ -88,7 +88,7 @@ def test_nothing_to_draw_is_a_message(none_accepted):
 
 def test_without_matplotlib_it_is_a_message(run, monkeypatch):
     monkeypatch.setattr("xlmc.outputs.plot.find_spec", lambda name: None)
-    with pytest.raises(SimulationError, match=r"need matplotlib, which is not installed.*xlmc\[plots\]"):
+    with pytest.raises(SimulationError, match=r"need matplotlib, which is not installed.*pip install \"matplotlib"):
         Simulation(run).plot()
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from xlmc import outputs
 from xlmc.outputs.page import payload
 from xlmc.outputs.replay import sheets as repeated_sheets
 from xlmc.outputs.sheets import assumptions_sheet, book, save
@@ -69,6 +70,7 @@ def leave_out_shapes(patch: pytest.MonkeyPatch) -> None:
 
 def keep_few_trials(patch: pytest.MonkeyPatch, rows: int = FEW) -> None:
     """Have the sheet Trials hold so many rows where a caller does not say how many, as long as the patch lasts."""
-    patch.setitem(save.save.__kwdefaults__, "rows", rows)
+    for write in (outputs.save, save.save):
+        patch.setitem(write.__kwdefaults__, "rows", rows)
     patch.setitem(book.build_sheets.__kwdefaults__, "rows", rows)
     patch.setattr(repeated_sheets, "TRIAL_ROWS", rows)

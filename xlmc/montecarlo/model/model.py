@@ -18,7 +18,7 @@ from xlmc.engine.graph.lowering import Lowering, lower_until_complete
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
 from xlmc.engine.passes.bounds import Bounds, NodeBounds
 from xlmc.errors import Notice, SimulationError
-from xlmc.excel.address import Cell
+from xlmc.excel.address import Cell, host_of
 from xlmc.excel.formula import ir
 from xlmc.excel.functions import Kind
 from xlmc.excel.workbook.injection.content_types import roles
@@ -521,7 +521,8 @@ class CompiledModel:
     def formats(self) -> dict[str, str]:
         """The number format of each forecast's cell, by name; `General` where it has none or the file does not say."""
         book, parts = self.workbook, self.workbook.parts or self.workbook.origin
-        cells = {each.name: (book.sheets[each.cell.sheet].part, each.cell.a1) for each in self.forecasts}
+        hosts = {each.name: host_of(each.cell) for each in self.forecasts}
+        cells = {name: (book.sheets[host.sheet].part, host.a1) for name, host in hosts.items()}
         if not parts:
             return dict.fromkeys(cells, "General")
         found = cell_formats(parts, roles(parts).workbook, cells.values())

@@ -163,7 +163,7 @@ def test_without_dask(model, monkeypatch):
     monkeypatch.setattr(builtins, "__import__", without)
     with pytest.raises(SimulationError, match="Dask is not installed") as caught:
         simulated(model, 1000, scheduler="local", workers=1)
-    assert "xlmc[distributed]" in caught.value.hint
+    assert 'pip install "dask[distributed]' in caught.value.hint
 
 
 @pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="Windows blocks no signals")

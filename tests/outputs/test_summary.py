@@ -8,6 +8,7 @@ from committed_books import BOOKS
 from xlmc.analysis.results.statements import statements
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.workbook import Workbook
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.montecarlo.statistics import Estimate, format_estimate, proportion
 from xlmc.outputs.summary import (
@@ -202,3 +203,21 @@ def test_numbers_far_from_0_keep_the_digits_that_tell_them_apart(make):
     assert any("P(x > 45,321.755)" in each for each in said)
     assert any("x from 45,321.7512 to 45,321.7588" in each for each in said)
     assert any(each.startswith("c: 1,234,567.8 in all") for each in said)
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected"),
+    [
+        ("=A1>1000", Kind.YES_NO),
+        ("=IF(A1>1000,1,0)", Kind.YES_NO),
+        ("=IF(A1>0.5,1,IF(A1>1000,0,1))", Kind.YES_NO),
+        ("=(A1>0.5)*1", Kind.YES_NO),
+        ("=A1*0", Kind.NUMBER),
+        ("=MAX(0,A1-1000)", Kind.NUMBER),
+        ("=IF(A1>1000,5,0)", Kind.NUMBER),
+    ],
+)
+def test_a_number_that_happens_to_be_0_in_all_trials_is_no_answer_by_yes_or_no(make, formula, expected):
+    cells = {"A1": 0.5, "B1": formula}
+    run = make.simulate(cells, [make.uniform("a", "A1", 0.0, 1.0)], [make.forecast("x", "B1")], trials=50)
+    assert run["x"].kind is expected

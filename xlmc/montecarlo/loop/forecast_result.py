@@ -57,6 +57,7 @@ class ForecastResult:
         labels: the texts that its numbers stand for; None where its answers are numbers.
         code: the number format of its cell.
         date1904: whether the workbook counts days from 1904.
+        two_valued: its formula gives TRUE and FALSE, or 1 and 0, and nothing else.
     """
 
     def __init__(
@@ -72,9 +73,10 @@ class ForecastResult:
         labels: Sequence[str] | None = None,
         code: str = "General",
         date1904: bool = False,
+        two_valued: bool = False,
     ) -> None:
         self.definition, self.faults, self._still = definition, faults, still
-        self._labels, self._code, self._date1904 = labels, code, date1904
+        self._labels, self._code, self._date1904, self._two_valued = labels, code, date1904, two_valued
         self.discards: Counter[str] = Counter() if discards is None else discards
         self._column, self._replicate, self._weights = column, replicate, weights
 
@@ -93,6 +95,7 @@ class ForecastResult:
             None if weights is None else weights[known],
             None if replicate is None else replicate[known],
             still=self._still,
+            two_valued=self._two_valued or self.definition.kind is Kind.YES_NO,
         )
 
     @cached_property
@@ -108,17 +111,21 @@ class ForecastResult:
 
     @cached_property
     def kind(self) -> Kind:
-        """What its answers are: what its row says; else texts, or yes and no where all are 1 or 0; else a date, a
-        percentage or an amount of money where the format of its cell shows one; whole numbers where all are, in a
-        cell that shows no decimals; else a number.
+        """What its answers are: what its row says; else texts; yes and no where its formula gives nothing else; a date,
+        a percentage or an amount of money where the format of its cell shows one; yes and no where both 1 and 0 occur
+        and nothing else; whole numbers where all are, in a cell that shows no decimals; else a number.
         """
         if self._labels is not None:
             return Kind.CATEGORY
         if self.definition.kind is not None:
             return self.definition.kind
-        if self.sample.yes_no:
+        if self.sample.yes_no and self._two_valued:
             return Kind.YES_NO
-        return kind_of_format(self._code) or (Kind.WHOLE if self.sample.whole else Kind.NUMBER)
+        if (shown := kind_of_format(self._code)) is not None:
+            return shown
+        if self.sample.yes_no and self.sample.x[0] < self.sample.x[-1]:
+            return Kind.YES_NO
+        return Kind.WHOLE if self.sample.whole else Kind.NUMBER
 
     @cached_property
     def form(self) -> Form:

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from xlmc.engine.engine import TEXT_RESULT, Column, Evaluator, Program, Target
 from xlmc.engine.engines import ENGINES
+from xlmc.engine.graph.graph import Constant, Select
 from xlmc.engine.graph.lowering import Lowering, lower_until_complete
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
 from xlmc.engine.passes.bounds import Bounds, NodeBounds
@@ -21,6 +22,7 @@ from xlmc.errors import Notice, SimulationError
 from xlmc.excel.address import Cell, host_of
 from xlmc.excel.formula import ir
 from xlmc.excel.functions import Kind
+from xlmc.excel.functions.values import Value
 from xlmc.excel.workbook.injection.content_types import roles
 from xlmc.excel.workbook.number_formats import cell_formats
 from xlmc.excel.workbook.workbook import Workbook
@@ -159,6 +161,10 @@ def _lower_checks(workbook: Workbook, definitions: Definitions, live: Collection
 
 _TRIED: Final = 64
 """Trials that tell whether an answer is a text."""
+
+
+def _is_one_or_zero(value: Value) -> bool:
+    return value.numbers.size == 1 and value.numbers.item() in (0.0, 1.0)
 
 
 def _are_texts(column: Column) -> bool:
@@ -516,6 +522,27 @@ class CompiledModel:
             columns = self.evaluator(targets, _TRIED).filters(self.sampler(0, _TRIED).draw(0), _TRIED)
             found |= {number for number, column in zip(unsure, columns, strict=True) if _are_texts(column)}
         return tuple(sorted(found))
+
+    @cached_property
+    def two_valued(self) -> frozenset[str]:
+        """The names of the forecasts whose formulas give TRUE and FALSE, or 1 and 0 by `IF`, and nothing else."""
+        targets = zip(self.forecasts, self._forecast_targets, strict=True)
+        return frozenset(each.name for each, target in targets if self._is_two_valued(self.lowering.target(target)))
+
+    def _is_two_valued(self, node: int) -> bool:
+        """Return whether a node, or what `IF` chooses there from, is a logical, or a constant 1 or 0."""
+        dag, seen, waiting = self.lowering.dag, set[int](), [node]
+        while waiting:
+            at = waiting.pop()
+            found = dag.nodes[at]
+            if at in seen or dag.types[at] is Kind.LOGICAL:
+                continue
+            seen.add(at)
+            if isinstance(found, Select):
+                waiting += [found.yes, found.no]
+            elif not (isinstance(found, Constant) and dag.types[at] is Kind.NUMBER and _is_one_or_zero(found.value)):
+                return False
+        return True
 
     @cached_property
     def formats(self) -> dict[str, str]:

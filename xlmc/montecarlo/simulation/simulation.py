@@ -194,6 +194,7 @@ class RunResult:
                 labels=self.labels.get(f.name),
                 code=self.model.formats[f.name],
                 date1904=self.model.workbook.date1904,
+                two_valued=f.name in self.model.two_valued,
             )
             for f in self.model.forecasts
         }

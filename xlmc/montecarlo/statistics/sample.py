@@ -41,6 +41,7 @@ class Sample:
         group: (n,) the replicate of each trial, 0 … groups − 1, None if the trials themselves are independent.
         groups: how many replicates there are, at most 64.
         still: no draw reaches the values: they are the same in every trial there could be.
+        two_valued: where all values are 0, or all 1, the other one is the only further value that there could be.
     """
 
     x: Floats
@@ -48,6 +49,7 @@ class Sample:
     group: Groups | None = None
     groups: int = 0
     still: bool = False
+    two_valued: bool = True
 
     @classmethod
     def of(
@@ -57,6 +59,7 @@ class Sample:
         replicate: ArrayLike | None = None,
         *,
         still: bool = False,
+        two_valued: bool = True,
     ) -> Sample:
         """Read (n,) values, nonnegative weights and integer replicate ids; a `Sample` is returned as it is.
 
@@ -74,7 +77,7 @@ class Sample:
             raise ValueError("values must be finite; trials without a number are left out before")
         w = None if weights is None else _normalise(np.asarray(weights, dtype=np.float64), x)
         ids = None if replicate is None else _check_shape(np.asarray(replicate), x, "replicate ids")
-        return cls(*_sort(x, w, ids), still=still)
+        return cls(*_sort(x, w, ids), still=still, two_valued=two_valued)
 
     @property
     def n(self) -> int:
@@ -99,6 +102,8 @@ class Sample:
         """Whether every value is 0 or 1, of two trials or more, and draws decide which."""
         if self.still or self.n < 2 or self.x[0] not in (0.0, 1.0) or self.x[-1] not in (0.0, 1.0):
             return False
+        if self.x[0] == self.x[-1]:
+            return self.two_valued
         first = int(np.searchsorted(self.x, 0.0, side="right"))
         return first == self.n or bool(self.x[first] == 1.0)
 

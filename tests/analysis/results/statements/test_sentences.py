@@ -19,7 +19,8 @@ class Run:
 
     def __init__(self, values, faults=(), **definition):
         forecast = Forecast("speed", Cell("S", 1, 1), Cell("S", 1, 1), **definition)
-        self.results = {"speed": ForecastResult(forecast, lambda: np.asarray(values, float), Counter(faults))}
+        result = ForecastResult(forecast, lambda: np.asarray(values, float), Counter(faults), two_valued=True)
+        self.results = {"speed": result}
 
 
 def sentences(values, **definition):

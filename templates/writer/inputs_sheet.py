@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from xlsxwriter.worksheet import Worksheet
 
 from templates.description import ALL_CHECKS, PARAMETER_COLUMNS, Input, Template
@@ -37,12 +39,7 @@ def draw_inputs(sheet: Worksheet, styles: Styles, template: Template, at: dict[s
     begin_sheet(sheet, styles, template.title, template.subtitle, _WIDTHS)
     _draw_status(sheet, styles, values)
     _draw_vehicles(sheet, styles, template)
-    _fold_columns(sheet)
-    sheet.set_row(HEADER_ROW, 32)
-    add_table(sheet, styles, "xlmc_assumptions", HEADER_ROW, _HEADERS, len(template.assumptions))
-    for given in template.assumptions:
-        _draw_assumption(sheet, styles, given, at[given.symbol][1], values)
-    _guard_table(sheet, styles, HEADER_ROW + 1, HEADER_ROW + len(template.assumptions))
+    _draw_table(sheet, styles, "xlmc_assumptions", template.assumptions, at, values)
     _draw_fixed(sheet, styles, "Held fixed", template.constants, at, values)
     _draw_fixed(sheet, styles, "Optional: leave blank what does not apply", template.optional, at, values)
     repeat_header(sheet, HEADER_ROW, 1)
@@ -52,14 +49,21 @@ def draw_inputs(sheet: Worksheet, styles: Styles, template: Template, at: dict[s
 def draw_waiting(sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: Values) -> None:
     """Write the sheet of the inputs that wait: a second table of assumptions, its rows without values and frozen."""
     begin_sheet(sheet, styles, template.title, template.waiting_note, _WIDTHS)
-    _fold_columns(sheet)
-    sheet.set_row(HEADER_ROW, 32)
-    add_table(sheet, styles, "xlmc_assumptions_more", HEADER_ROW, _HEADERS, len(template.waiting))
-    for given in template.waiting:
-        _draw_assumption(sheet, styles, given, at[given.symbol][1], values)
-    _guard_table(sheet, styles, HEADER_ROW + 1, HEADER_ROW + len(template.waiting))
+    _draw_table(sheet, styles, "xlmc_assumptions_more", template.waiting, at, values)
     repeat_header(sheet, HEADER_ROW, 1)
     fit_to_pages(sheet)
+
+
+def _draw_table(
+    sheet: Worksheet, styles: Styles, name: str, rows: Sequence[Input], at: dict[str, Place], values: Values
+) -> None:
+    """Write a table of assumptions of this name below its header."""
+    _fold_columns(sheet)
+    sheet.set_row(HEADER_ROW, 32)
+    add_table(sheet, styles, name, HEADER_ROW, _HEADERS, len(rows))
+    for given in rows:
+        _draw_assumption(sheet, styles, given, at[given.symbol][1], values)
+    _guard_table(sheet, styles, HEADER_ROW + 1, HEADER_ROW + len(rows))
 
 
 def _fold_columns(sheet: Worksheet) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Final
+from typing import Final, TypeGuard
 
 from xlmc.engine.graph.lowering import Lowering
 from xlmc.errors import ErrorCode
@@ -61,7 +61,7 @@ def relative_difference(saved: object, got: object) -> float | None:
     """Return the difference of two numbers relative to the larger one; None where one is no number."""
     if not _is_number(saved) or not _is_number(got):
         return None
-    first, second = float(saved), float(got)  # type: ignore[arg-type]
+    first, second = float(saved), float(got)
     return abs(first - second) / max(abs(first), abs(second), 5e-324)
 
 
@@ -70,7 +70,7 @@ def _is_settled(lowering: Lowering, cell: Cell, saved: CellValue, got: object) -
     iteration = lowering.graph.workbook.iteration
     if iteration is None or cell not in lowering.graph.circles or not (_is_number(saved) and _is_number(got)):
         return False
-    return abs(float(saved) - float(got)) < iteration.change  # type: ignore[arg-type]
+    return abs(float(saved) - float(got)) < iteration.change
 
 
 def _is_sine_of_32_bits(lowering: Lowering, cell: Cell, saved: CellValue, got: object) -> bool:
@@ -79,8 +79,8 @@ def _is_sine_of_32_bits(lowering: Lowering, cell: Cell, saved: CellValue, got: o
     if step is None or step[0] not in _PERIODIC or not (_is_number(saved) and _is_number(got)):
         return False
     (angle,) = step[1]
-    return abs(float(saved) - float(got)) <= abs(float(angle.numbers[0])) * _PI_CUT  # type: ignore[arg-type]
+    return abs(float(saved) - float(got)) <= abs(float(angle.numbers[0])) * _PI_CUT
 
 
-def _is_number(value: object) -> bool:
+def _is_number(value: object) -> TypeGuard[int | float]:
     return isinstance(value, int | float) and not isinstance(value, bool | ErrorCode)

@@ -101,8 +101,6 @@ class Distribution:
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Distribution) and vars(self) == vars(other)
 
-    __hash__ = None  # type: ignore[assignment]
-
     def draw(self, name: str) -> Draw:
         """Return how an assumption of this name is drawn from it."""
         return Draw.of(name, family_named(self.family), self.given)

@@ -217,8 +217,8 @@ class ModelRunner:
             forecasts[number], labels[number] = labelled(forecasts[number])
         used = _spoiled([*invalid.values()], columns, survivors, forecasts, self.block)
         if used.any():
-            accepted_block = ~used[survivors]
-            survivors, forecasts = survivors[accepted_block], [column.at(accepted_block) for column in forecasts]
+            sound = ~used[survivors]
+            survivors, forecasts = survivors[sound], [column.at(sound) for column in forecasts]
         survivors = survivors[: np.searchsorted(survivors, trials)]
         lost = undecided | used[:trials]
         counted = {name: np.count_nonzero(bad[:trials] & used[:trials]) for name, bad in invalid.items()}
@@ -242,21 +242,21 @@ class ModelRunner:
         )
 
     def _prior(
-        self, drawn: Mapping[str, Floats] | None, accepted_block: dict[str, Floats], accepted: int, task: Task
+        self, drawn: Mapping[str, Floats] | None, accepted_draws: dict[str, Floats], accepted: int, task: Task
     ) -> dict[str, Floats] | None:
-        """Return the draws of all trials of a block, if they are asked for: those of accepted trials, where these are
-        all.
+        """Return the draws of all trials of a block, if they are asked for.
 
         Args:
             drawn: the block's draws; where it is None they are drawn once more.
-            accepted_block: those of the accepted trials; empty where they were not asked for.
+            accepted_draws: those of the accepted trials, which are returned if all are accepted; empty where they were
+                not asked for.
             accepted: how many trials are accepted.
             task: what was asked for.
         """
         if not task.prior:
             return None
         if task.inputs and accepted == task.trials:
-            return accepted_block
+            return accepted_draws
         drawn = self._sampler.draw(task.start) if drawn is None else drawn
         return {name: values[: task.trials] for name, values in drawn.items()}
 
@@ -267,24 +267,22 @@ class ModelRunner:
         return [Column(np.empty(0)) for _ in range(self._width)]
 
 
-def _block_of(accepted_block: AcceptedBlock, prior: dict[str, Floats] | None, trials: int) -> Block:
+def _block_of(found: AcceptedBlock, prior: dict[str, Floats] | None, trials: int) -> Block:
     """Make a block of so many trials without errors; `prior` are the draws of all, if they are asked for."""
-    faults: list[Counter[str]] = [Counter() for _ in accepted_block.forecasts]
-    errors: list[Counter[str]] = [Counter() for _ in accepted_block.only]
-    tally = FilterTally(
-        np.diagonal(accepted_block.together).copy(), accepted_block.only, accepted_block.together, errors, 0
-    )
+    faults: list[Counter[str]] = [Counter() for _ in found.forecasts]
+    errors: list[Counter[str]] = [Counter() for _ in found.only]
+    tally = FilterTally(np.diagonal(found.together).copy(), found.only, found.together, errors, 0)
     return Block(
         trials,
-        accepted_block.accepted,
-        accepted_block.draws,
-        accepted_block.forecasts,
+        found.accepted,
+        found.draws,
+        found.forecasts,
         faults,
         tally,
         Counter(),
         0,
         prior,
-        accepted_block.discards,
+        found.discards,
     )
 
 

@@ -357,7 +357,8 @@ def _renamed(row: _T, names: Mapping[str, str]) -> _T:
     found: Any = row
     if isinstance(found, Filter) and found.evidence is not None:
         found = replace(found, evidence=replace(found.evidence, name=names[found.evidence.name]))
-    return replace(found, name=names[found.name])  # type: ignore[no-any-return]
+    renamed: _T = replace(found, name=names[found.name])
+    return renamed
 
 
 def _of_book(notice: Notice, book: str) -> Notice:
@@ -387,20 +388,20 @@ def _moved_tree(tree: ir.Expression | FormulaError, book: str) -> ir.Expression 
 def _moved_all(value: _T, book: str) -> _T:
     """Return a definition with all its cells in the joined workbook."""
     found: Any = value
+    moved: Any = value
     if isinstance(found, Cell):
-        return _moved(found, book)  # type: ignore[return-value]
-    if isinstance(found, Area):
-        return replace(found, sheet=f"[{book}]{found.sheet}")  # type: ignore[return-value]
-    if isinstance(found, tuple):
-        return tuple(_moved_all(each, book) for each in found)  # type: ignore[return-value]
-    if isinstance(found, Mapping):
-        return {key: _moved_all(each, book) for key, each in found.items()}  # type: ignore[return-value]
-    if is_dataclass(found) and not isinstance(found, type):
+        moved = _moved(found, book)
+    elif isinstance(found, Area):
+        moved = replace(found, sheet=f"[{book}]{found.sheet}")
+    elif isinstance(found, tuple):
+        moved = tuple(_moved_all(each, book) for each in found)
+    elif isinstance(found, Mapping):
+        moved = {key: _moved_all(each, book) for key, each in found.items()}
+    elif is_dataclass(found) and not isinstance(found, type):
         names = [each.name for each in fields(found) if each.name not in _KEPT_AS_THEY_ARE]
-        changes: Any = {name: _moved_all(getattr(found, name), book) for name in names}
-        moved: Any = replace(found, **changes)
-        return moved  # type: ignore[no-any-return]
-    return value
+        moved = replace(found, **{name: _moved_all(getattr(found, name), book) for name in names})
+    result: _T = moved
+    return result
 
 
 def _all(parts: Iterable[Collection[_T]]) -> tuple[_T, ...]:

@@ -105,7 +105,6 @@ def choose(simulation: RunResult, forecasts: Sequence[Forecast], asked: Collecti
     rows, _ = _examined_rows(simulation, LOOK_TRIALS)
     if len(live) <= MEASURED or rows.size < _LEAST_TRIALS or not forecasts:
         return Chosen(tuple(tuple(live) for _ in forecasts), np.zeros(len(forecasts)), {})
-    rows = rows[:LOOK_TRIALS]
     look = first_look(
         [_read_draws(simulation, name, rows) for name in live],
         [_read(simulation.forecasts[each.name], rows) for each in forecasts],

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from xlmc.cli.terminal import paragraph, put, say, say_json
+from xlmc.cli.terminal import paragraph, plain, put, say, say_json
 
 if TYPE_CHECKING:
     from xlmc.engine.calculation import Calculation
@@ -130,7 +130,7 @@ class _Answers:
 
     def as_json(self) -> object:
         """Return the cells with their values; one such object for each row of values."""
-        rows = [{str(cell): _plain(self.value(cell, at)) for cell in self.wanted} for at in range(len(self.typed))]
+        rows = [{str(cell): plain(self.value(cell, at)) for cell in self.wanted} for at in range(len(self.typed))]
         if self.table is None or not self.table.headings:
             return rows[0]
         return [{**given, **row} for given, row in zip(self.table.given, rows, strict=True)]
@@ -260,15 +260,9 @@ def _cells(count: int) -> str:
     return "cell" if count == 1 else "cells"
 
 
-def _plain(value: CellValue) -> object:
-    from xlmc.errors import ErrorCode
-
-    return value.text if isinstance(value, ErrorCode) else value
-
-
 def _exact(value: CellValue) -> object:
     """Return a value for CSV: a number with all its digits, TRUE and FALSE as Excel writes them."""
-    match _plain(value):
+    match plain(value):
         case bool() as logical:
             return "TRUE" if logical else "FALSE"
         case float() as number if number.is_integer() and abs(number) < 1e15:

@@ -200,7 +200,7 @@ def _aliased(given: Mapping[_Kind, Path | tuple[Path, ...] | None]) -> Iterator[
 
 
 class ReportContents(NamedTuple):
-    """What the reports are to hold, as it was typed: a field for each of `_CONTENTS`; see `report.document.Wanted`."""
+    """What the reports are to hold, as it was typed: a field for each of `_CONTENTS`; see `outputs.document.Wanted`."""
 
     case: tuple[str, ...] = ()
     sections: str | None = None

@@ -158,7 +158,7 @@ def show_run(run: RunResult) -> None:
     from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
     from xlmc.outputs.document import further_sections
     from xlmc.outputs.document.parts import Heading
-    from xlmc.outputs.summary import error_sentence, summarise, summary_text
+    from xlmc.outputs.summary import error_sentence, rejection_rows, summarise, summary_text
 
     show_first(run)
     headings, rows = summary_text(summarise(run))
@@ -169,7 +169,7 @@ def show_run(run: RunResult) -> None:
     say(ended + paragraph(sampling_sentence(run)) + "\n")
     if run.model.filters:
         of = "Trials rejected" if run.rare is None else f"Trials rejected of {run.trials:,} drawn before the search"
-        table(of, ("Filter", "Keeps", "Rejected", "Only by it"), _rejections(run), right=(2, 3))
+        table(of, ("Filter", "Keeps", "Rejected", "Only by it"), rejection_rows(run), right=(2, 3))
     if run.model.forecast_filters:
         of = f"Discarded of {run.accepted:,} accepted trials, for one forecast only"
         table(of, ("Filter", "Only for", "Keeps", "Discarded", "Share"), _discards(run), right=(3, 4))
@@ -251,10 +251,3 @@ def _discards(run: RunResult) -> list[tuple[str, ...]]:
         (found.filter.name, found.forecast, limits_text(found.filter), f"{found.trials:,}", share_text(found.share))
         for found in discards_of(run)
     ]
-
-
-def _rejections(run: RunResult) -> list[tuple[str, ...]]:
-    from xlmc.analysis.results.statements.in_words import limits_text
-
-    counts = zip(run.model.filters, run.tally.rejected, run.tally.only, strict=True)
-    return [(f.name, limits_text(f), f"{rejected:,}", f"{only:,}") for f, rejected, only in counts]

@@ -24,6 +24,7 @@ __all__ = [
     "is_quiet",
     "on_terminal",
     "paragraph",
+    "plain",
     "prepare",
     "put",
     "say",
@@ -242,3 +243,10 @@ def _readable(character: str) -> str:
 
 
 codecs.register_error(_HANDLER, _readable_instead)
+
+
+def plain(value: object) -> object:
+    """Return a value as JSON and CSV hold it: an error as its text."""
+    from xlmc.errors import ErrorCode
+
+    return value.text if isinstance(value, ErrorCode) else value

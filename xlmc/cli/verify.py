@@ -10,7 +10,7 @@ import click
 
 from xlmc.cli.blocks import show
 from xlmc.cli.study_output import STUDY, study_options
-from xlmc.cli.terminal import say_json
+from xlmc.cli.terminal import plain, say_json
 from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
@@ -86,18 +86,12 @@ def _entry(cell: CellCheck) -> dict[str, object]:
         "cell": str(cell.cell),
         "formula": cell.formula,
         "status": cell.status.value,
-        "expected": _plain(cell.expected),
-        "got": _plain(cell.got),
+        "expected": plain(cell.expected),
+        "got": plain(cell.got),
         "relative_difference": cell.difference,
         "reason": cell.reason,
     }
     return {key: value for key, value in entry.items() if value not in (None, "")}
-
-
-def _plain(value: object) -> object:
-    from xlmc.errors import ErrorCode
-
-    return value.text if isinstance(value, ErrorCode) else value
 
 
 def _blocks(found: Verification, most: int) -> list[str | Block]:
@@ -110,7 +104,7 @@ def _blocks(found: Verification, most: int) -> list[str | Block]:
     differing = found.of(Status.DIFFERING)
     if differing:
         rows = tuple(
-            (str(c.cell), c.formula, str(_plain(c.expected)), str(_plain(c.got)), _percent(c.difference))
+            (str(c.cell), c.formula, str(plain(c.expected)), str(plain(c.got)), _percent(c.difference))
             for c in differing[:most]
         )
         blocks.append(Table("Differing", ("Cell", "Formula", "Excel saved", "xlmc", "Relative"), rows, (4,)))

@@ -11,7 +11,7 @@ from xlmc.montecarlo.distributions.parameters import show
 from xlmc.outputs.document import further_sections
 from xlmc.outputs.document.html_writer import blocks_html
 from xlmc.outputs.histogram import figures_of
-from xlmc.outputs.summary import error_sentence, summarise, summary_text
+from xlmc.outputs.summary import error_sentence, rejection_rows, summarise, summary_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
@@ -56,10 +56,7 @@ def run_html(run: RunResult) -> str:
     headings, lines = summary_text(rows)
     drawn = {each.answer.name: _histogram(each.bins) for each in figures_of(run)}
     pictures = [drawn.get(row.name, "") for row in rows]
-    filters = [
-        (each.name, limits_text(each), f"{rejected:,}", f"{only:,}")
-        for each, rejected, only in zip(run.model.filters, run.tally.rejected, run.tally.only, strict=True)
-    ]
+    filters = rejection_rows(run)
     further = further_sections(run, "notebook").values()
     changed = [] if run.changed_from is None else [run.changed_from.sentence]
     return "".join(

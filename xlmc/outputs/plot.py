@@ -272,7 +272,7 @@ def _draw_histogram(axes: Axes, each: Drawn) -> None:
     most = max(1.0, float((bins.inside + bins.outside).max()))  # 0 where all trials lie outside, below and above
     mean = float(_near(each, np.array(answer.mean.value)))
     axes.vlines(mean, 0.0, 1.05 * most, color=INK, linewidth=1.2, label=f"mean: {estimate_text(answer.mean)}")
-    axes.set_title(_heading(each), loc="left", color=INK, fontsize=10, fontweight="bold", parse_math=False)
+    axes.set_title(_heading(each), **_TITLE)
     axes.set_ylabel(f"Trials per {bins.width:g}" + (f" {answer.units}" if answer.units else ""), parse_math=False)
     axes.set_ylim(0, 1.5 * most)
     axes.legend(loc="upper left", fontsize=8, frameon=False, ncols=1)

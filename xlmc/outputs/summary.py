@@ -20,7 +20,7 @@ from xlmc.montecarlo.loop.categories import labelled
 from xlmc.montecarlo.model.certain_filters import breakable
 from xlmc.montecarlo.model.draw_binding import base_point
 from xlmc.montecarlo.rare.account import probability_text
-from xlmc.montecarlo.statistics import Estimate, format_estimate
+from xlmc.montecarlo.statistics import Estimate, complement, format_estimate
 from xlmc.montecarlo.statistics.estimate import finite
 from xlmc.montecarlo.statistics.number_text import count_text, decimals_of
 
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from xlmc.engine.engine import Column
     from xlmc.excel.workbook.workbook import Workbook
     from xlmc.montecarlo.definitions.definitions import Filter
+    from xlmc.montecarlo.loop.forecast_result import ForecastResult
     from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = [
@@ -44,7 +45,9 @@ __all__ = [
     "percent",
     "question",
     "range_heading",
+    "rejection_rows",
     "share_text",
+    "shares_of",
     "summarise",
     "summary_text",
 ]
@@ -387,3 +390,14 @@ def _of_some(simulation: RunResult) -> Iterator[Phrase]:
 
 def _count_text(count: int, one: str, several: str) -> str:
     return f"{count} {one if count == 1 else several}"
+
+
+def shares_of(answer: SummaryRow | ForecastResult) -> Mapping[str, Estimate]:
+    """Return the share of each text, or of yes and no; nothing of numbers."""
+    return answer.categories if answer.yes is None else {"yes": answer.yes, "no": complement(answer.yes)}
+
+
+def rejection_rows(simulation: RunResult) -> list[tuple[str, str, str, str]]:
+    """Return a row for each filter: its name, what it keeps, how many trials it rejected, and how many it alone did."""
+    counts = zip(simulation.model.filters, simulation.tally.rejected, simulation.tally.only, strict=True)
+    return [(f.name, limits_text(f), f"{rejected:,}", f"{only:,}") for f, rejected, only in counts]

@@ -6,9 +6,9 @@ import math
 from typing import TYPE_CHECKING
 
 from xlmc.analysis.studies.sensitivity.measures import noise
-from xlmc.montecarlo.statistics import complement
 from xlmc.outputs.document.parts import Bar, Bars, Chart, Line, Lines, Shape
 from xlmc.outputs.filter_effect import shapes_of
+from xlmc.outputs.summary import shares_of
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.sensitivity import FilterLimit, ForecastSensitivity
@@ -58,8 +58,7 @@ def tornado_chart(found: ForecastSensitivity, most: int, title: str) -> Chart:
 
 def shares_chart(figure: Figure) -> Chart:
     """Draw the share of each text, or of yes and no, with its error."""
-    answer = figure.answer
-    shares = answer.categories if answer.yes is None else {"yes": answer.yes, "no": complement(answer.yes)}
+    shares = shares_of(figure.answer)
     bars = tuple(_share(text or "(empty)", share, pale=False) for text, share in [*shares.items()][:_MOST_TEXTS])
     return Chart("", "Accepted trials, %", Bars(bars), f"{figure.name}: {figure.said}", 125.0)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from xml.sax.saxutils import escape, quoteattr
+from html import escape
 
 import numpy as np
 from numpy.typing import NDArray
@@ -273,9 +273,9 @@ def text_at(
     turned: bool = False,
 ) -> str:
     """A text, whatever is in it."""
-    look = f'font-family={quoteattr(FONT)} font-size="{size:g}" fill="{fill}" text-anchor="{anchor}"'
+    look = f'font-family="{FONT}" font-size="{size:g}" fill="{fill}" text-anchor="{anchor}"'
     turn = f' transform="rotate(-90 {x:.2f} {y:.2f})"' if turned else ""
-    return f'<text x="{x:.2f}" y="{y:.2f}" {look}{turn}>{escape(printable(value))}</text>'
+    return f'<text x="{x:.2f}" y="{y:.2f}" {look}{turn}>{escape(printable(value), quote=False)}</text>'
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,7 +20,6 @@ from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics import (
     Estimate,
     Sample,
-    complement,
     maximum,
     minimum,
     percentiles,
@@ -44,7 +43,7 @@ from xlmc.outputs.page.sheet_sections import (
 )
 from xlmc.outputs.sheets.results_sheet import opening_sentences
 from xlmc.outputs.sheets.scenarios_sheet import write_scenario_tables
-from xlmc.outputs.summary import SummaryRow, base_case, error_sentence, share_text
+from xlmc.outputs.summary import SummaryRow, base_case, error_sentence, share_text, shares_of
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.scenario_answers import ScenarioAnswers
@@ -149,10 +148,10 @@ def _figure(result: ForecastResult, base: float | None) -> Figure | None:
 
 def _shares(figure: Figure, behind: ForecastResult | None) -> Message:
     """The share of each text, or of yes and no: name, share in words, in percent, and of the state behind."""
-    now = _shares_of(figure.answer.yes, figure.answer.categories)
+    now = shares_of(figure.answer)
     before: Mapping[str, Estimate] = {}
     if behind is not None and behind.sample.n:
-        before = _shares_of(behind.yes, behind.categories)
+        before = shares_of(behind)
     shown = [*dict.fromkeys([*now, *before])][:_MOST_TEXTS]
     nothing = Estimate(0.0)
     return {
@@ -168,10 +167,6 @@ def _shares(figure: Figure, behind: ForecastResult | None) -> Message:
             for text in shown
         ],
     }
-
-
-def _shares_of(yes: Estimate | None, categories: Mapping[str, Estimate]) -> Mapping[str, Estimate]:
-    return categories if yes is None else {"yes": yes, "no": complement(yes)}
 
 
 def _beside(figure: Figure, now: ForecastResult, behind: RunResult | None) -> dict[str, Any]:

@@ -249,10 +249,7 @@ def _share_text(share: float, floor: float) -> str:
 
 def percent_text(share: float) -> str:
     """`2.4`: two significant digits, whole numbers from 10 on."""
-    value = 100.0 * share
-    if not np.isfinite(value):
-        return _NONE
-    return f"{value:,.0f}" if abs(value) >= 10 else f"{value:#.2g}"
+    return _number(100.0 * share)
 
 
 def slope_text(slope: float) -> str:

@@ -8,13 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from xlmc.montecarlo.statistics import complement
 from xlmc.outputs.document.charts import shares_chart
 from xlmc.outputs.document.element import EMPTY, Html, element, join, void
 from xlmc.outputs.document.html_writer import estimate_html, picture_html, share_html
 from xlmc.outputs.histogram import Figure
 from xlmc.outputs.page.payload import counted_figures, most_values, overlays_of
-from xlmc.outputs.summary import SummaryRow, percent
+from xlmc.outputs.summary import SummaryRow, percent, shares_of
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
@@ -78,10 +77,7 @@ def _how_to_read(simulation: RunResult, figures: Sequence[Figure]) -> Iterator[H
 
 def _shares(figure: Figure) -> Html:
     """The bars of an answer that is yes or no, or a text, and the share of each."""
-    answer = figure.answer
-    shares = answer.categories
-    if answer.yes is not None:
-        shares = {"yes": answer.yes, "no": complement(answer.yes)}
+    shares = shares_of(figure.answer)
     rows = (
         element("tr", element("th", text or "(empty)", scope="row"), element("td", share_html(share), class_="number"))
         for text, share in shares.items()

@@ -287,3 +287,24 @@ def test_texts_are_numbered_alike_however_they_are_computed(tmp_path, jobs, engi
     )
     assert one._run.labels == other._run.labels
     assert one.forecasts["Verdict"].tobytes() == other.forecasts["Verdict"].tobytes()
+
+
+def test_a_book_of_texts_alone_has_a_workbook_though_no_mean_moves_with_its_limits(tmp_path):
+    book = openpyxl.Workbook()
+    sheet = book.active
+    sheet.title = "Model"
+    sheet["A1"], sheet["B1"] = 0.5, '=IF(A1>0.5,"high","low")'
+    for name, rows in {
+        "xlmc_assumptions": (["Name", "Cell", "Distribution", "Low", "High"], ["a", "=Model!A1", "Uniform", 0, 1]),
+        "xlmc_forecasts": (["Name", "Cell"], ["Text", "=Model!B1"]),
+        "xlmc_filters": (["Name", "Cell", "At least", "Because"], ["f", "=Model!A1", 0.2, "seen"]),
+    }.items():
+        at = book.create_sheet(name)
+        for row in rows:
+            at.append(row)
+        at.add_table(Table(displayName=name, ref=at.dimensions))
+    book.save(tmp_path / "texts.xlsx")
+    run = load(tmp_path / "texts.xlsx").simulate(trials=400, seed=1)
+    run.save(tmp_path / "texts-results.xlsx")
+    limits = openpyxl.load_workbook(tmp_path / "texts-results.xlsx")["Filter limits"]
+    assert any("at least 0.2" in str(row[0]) for row in limits.iter_rows(values_only=True))

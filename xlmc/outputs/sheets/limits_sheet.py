@@ -92,7 +92,7 @@ def _write_limit(page: Page, book: Workbook, limit: FilterLimit, units: dict[str
     bottom, page.row = page.row, top
     place_rows(page, [_acceptance_chart(book, limit, acceptance)])
     page.row = bottom
-    return [_moved_chart(book, limit, tables, units)]
+    return [_moved_chart(book, limit, tables, units)] if tables else []
 
 
 def write_acceptance(page: Page, limit: FilterLimit) -> TableAt:

@@ -741,10 +741,15 @@ def sensitivities(run: Simulation, *, assumptions: Collection[str] = ()) -> Sens
             measured for a forecast only if they are among the 20 that matter most for it.
 
     Raises:
-        SimulationError: no assumption that is drawn has one of these names.
+        SimulationError: no assumption that is drawn has one of these names, or evidence weights the trials.
     """
     from xlmc.analysis.studies.sensitivity import sensitivities
 
+    if run.weights is not None:
+        raise SimulationError(
+            "Evidence weights the trials of this run, and sensitivities count them alike",
+            hint='Run it with evidence="rejection"',
+        )
     return sensitivities(run._run, assumptions=assumptions)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from xlmc.analysis.results.statements import certainties, statements
+from xlmc.api import Simulation, sensitivities
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.montecarlo.statistics import Sample
@@ -144,3 +145,10 @@ def test_a_weighted_sample_is_as_even_as_its_effective_size():
     assert Sample.of([3.0, 1.0]).even.tolist() == [1.0, 3.0]
     found = histogram(sample, 1.0, 3.0)
     assert found.counted == 3
+
+
+def test_sensitivities_of_weighted_trials_are_refused_in_python(model):
+    """They would count all trials alike, which is another answer."""
+    run = simulate(model(), trials=2_000, evidence="weights")
+    with pytest.raises(SimulationError, match=r'Evidence weights the trials of this run.*evidence="rejection"'):
+        sensitivities(Simulation(run))

@@ -105,7 +105,7 @@ class Calculator:
         lowering = self._lowered(book, targets, right, audit=False)
         faults = {cell: why for cell, why in self._faults.items() if cell not in again} | dict(_faults(lowering))
         faults |= dict.fromkeys(what_if, _WHAT_IF)
-        lost = [cell for cell in faults if self._loses_value(cell)]
+        lost = dict.fromkeys(cell for cell in faults if self._loses_value(cell))
         unknown = dict.fromkeys(sorted(self._downstream(lost)), DEPENDS) if lost else {}
         kept = {cell: why for cell, why in faults.items() if cell not in lost}
         for cell in [cell for cell in unknown if cell not in lost and not self._loses_value(cell)]:

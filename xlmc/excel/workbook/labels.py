@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import Final
 
-from xlmc.excel.address import Cell, column_letters
+from xlmc.excel.address import Cell
 from xlmc.excel.workbook.printable import label
 from xlmc.excel.workbook.workbook import Workbook
 
@@ -109,6 +109,6 @@ def _is_unit(text: str) -> bool:
 
 def _stands_for(book: Workbook, text: str, cell: Cell) -> bool:
     return text.replace("$", "").casefold() in (
-        f"{cell.sheet}!{column_letters(cell.column)}{cell.row}".casefold(),
-        f"'{cell.sheet}'!{column_letters(cell.column)}{cell.row}".casefold(),
+        f"{cell.sheet}!{cell.a1}".casefold(),
+        f"'{cell.sheet}'!{cell.a1}".casefold(),
     )

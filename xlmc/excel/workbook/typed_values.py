@@ -80,7 +80,8 @@ def typed_change(book: Workbook, text: str) -> tuple[Cell, CellValue]:
         hint = "Write the cell, an equals sign and the value: --set Inputs!B3=4.2"
         raise WorkbookError(f"{text!r} is no change of a cell", hint=hint)
     try:
-        return changeable_cell(book, place), typed_value(value, book)
+        cell = place if isinstance(place, Cell) else changeable_cell(book, place)
+        return cell, typed_value(value, book)
     except (KeyError, ValueError) as error:
         raise WorkbookError(f"--set {text}: {error.args[0]}") from None
 
@@ -116,7 +117,7 @@ def read_value_rows(path: Path, book: Workbook) -> ValueRows:
             said = f"line {number} has {len(row)} values, and there are {len(headings)} headings"
             raise WorkbookError(said, where=path, hint=hint)
         texts = [*row, *[""] * (len(headings) - len(row))]
-        rows.append({cell: _typed(path, number, book, headings[at], texts[at])[1] for at, cell in cells.items()})
+        rows.append({cell: _typed(path, number, book, cell, texts[at])[1] for at, cell in cells.items()})
         given.append(
             {heading: rows[-1][cells[at]] if at in cells else texts[at] for at, heading in enumerate(headings)}
         )
@@ -129,9 +130,10 @@ def _cells_of(headings: list[str]) -> Iterator[tuple[int, str]]:
     return ((at, heading) for at, heading in enumerate(headings) if not heading.startswith(_NOTE))
 
 
-def _typed(path: Path, line: int, book: Workbook, place: str, value: str) -> tuple[Cell, CellValue]:
+def _typed(path: Path, line: int, book: Workbook, place: str | Cell, value: str) -> tuple[Cell, CellValue]:
     try:
-        return changeable_cell(book, place), typed_value(value, book)
+        cell = place if isinstance(place, Cell) else changeable_cell(book, place)
+        return cell, typed_value(value, book)
     except KeyError as error:
         hint = f"Name a cell; a heading that begins with {_NOTE} is a note" if line == 1 else None
         raise WorkbookError(f"line {line}: {error.args[0]}", where=path, hint=hint) from None

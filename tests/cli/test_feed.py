@@ -82,3 +82,16 @@ def test_what_cannot_be_fed_is_one_message(xlmc, typed, message):
     done = xlmc("simulate", "skid-100-ft.xlsx", "--feed", typed)
     assert (done.code, done.err.count("\n")) == (2, 1)
     assert message in done.err
+
+
+@pytest.mark.parametrize("ending", ["", ".html"])
+def test_a_workbook_that_feeds_is_never_replaced(fed, tmp_path, ending):
+    before = (tmp_path / "intersection-momentum.xlsx").read_bytes()
+    target = "intersection-momentum.xlsx"
+    if ending:
+        (tmp_path / f"link{ending}").symlink_to(tmp_path / target)
+        target = f"link{ending}"
+    refused = fed("-o", target, "--overwrite")
+    assert refused.code == 2
+    assert "this is the file that is read" in refused.err
+    assert (tmp_path / "intersection-momentum.xlsx").read_bytes() == before

@@ -233,6 +233,7 @@ class Outputs(NamedTuple):
         overwrite: replace files that are not ours too.
         contents: what the reports are to hold.
         beside: the saved run that the page shows beside this one.
+        fed_by: the workbooks whose answers feed assumptions.
     """
 
     source: Path
@@ -243,6 +244,7 @@ class Outputs(NamedTuple):
     overwrite: bool = False
     contents: ReportContents = ReportContents()
     beside: Path | None = None
+    fed_by: tuple[Path, ...] = ()
 
     def of(self, *kinds: _Kind) -> list[Path]:
         """Return the named files of some kinds."""
@@ -353,7 +355,7 @@ class Outputs(NamedTuple):
     @property
     def _read(self) -> list[Path]:
         """The files that are read: no output may replace them."""
-        return [path for path in (self.source, self.beside) if path is not None]
+        return [path for path in (self.source, self.beside, *self.fed_by) if path is not None]
 
     def _with_free_default(self, like: Path) -> Outputs:
         from xlmc.excel.workbook.target import Target, free_target, refuse_read

@@ -73,7 +73,8 @@ def simulate(
         load(book)  # says so
     feeds = read_feeds(feed)
     default = None if in_place or output else results_beside(book)
-    wanted = Outputs(book, book.name, (*output, *also), default, in_place, overwrite, contents)
+    fed_by = tuple(Path(each.source) for each in feeds)
+    wanted = Outputs(book, book.name, (*output, *also), default, in_place, overwrite, contents, fed_by=fed_by)
     if in_place and len(wanted.books) > 1:
         raise click.UsageError("--in-place and -o with a workbook cannot both be given.")
     outputs = wanted.check(book) if os.path.exists(book) else wanted  # `load` says that there is no book

@@ -51,7 +51,7 @@ def test_a_mutant_is_one_change_of_what_is_run():
 @pytest.mark.parametrize(
     ("module", "tests"),
     [
-        ("xlmc/api.py", ["tests/test_api.py"]),
+        ("xlmc/api/models.py", ["tests/api"]),
         ("xlmc/montecarlo/sampling/latin.py", ["tests/montecarlo/sampling/test_latin.py", "tests/montecarlo/sampling"]),
         ("xlmc/excel/functions/criteria.py", ["tests/excel/functions/test_criteria.py", "tests/excel/functions"]),
         ("xlmc/__main__.py", []),

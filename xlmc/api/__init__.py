@@ -1,0 +1,28 @@
+"""What people use in Python: the model of a workbook, its runs, and all that can be asked of either.
+
+What docs/python.md lists stays as it is from version to version.
+"""
+
+from __future__ import annotations
+
+from xlmc.api.books import check, convert, replay, verify
+from xlmc.api.models import Model, Simulation, load, model, open_run
+from xlmc.api.studies import compare, fit, methods, screen, sensitivities, stability
+
+__all__ = [
+    "Model",
+    "Simulation",
+    "check",
+    "compare",
+    "convert",
+    "fit",
+    "load",
+    "methods",
+    "model",
+    "open_run",
+    "replay",
+    "screen",
+    "sensitivities",
+    "stability",
+    "verify",
+]

@@ -1,0 +1,88 @@
+"""Checks, verification, replay and conversion of a workbook's file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from xlmc.errors import DefinitionError, XlmcError
+from xlmc.montecarlo.model import loading
+
+if TYPE_CHECKING:
+    from xlmc.analysis.studies.verify import Verification
+    from xlmc.outputs.replay import Replayed
+
+__all__ = ["check", "convert", "replay", "verify"]
+
+
+def check(path: str | Path) -> tuple[XlmcError, ...]:
+    """Return every problem of a workbook, each with its cell: what keeps it from being run, and impossible scenarios.
+
+    Raises:
+        WorkbookError: the file cannot be read.
+    """
+    from xlmc.analysis.studies.scenario_answers import scenario_faults
+    from xlmc.engine.engines import ENGINES
+    from xlmc.excel.workbook.reader import read_workbook
+    from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+    from xlmc.montecarlo.model.labels import calculate_labels
+
+    problems = read_definitions(calculate_labels(read_workbook(path)), ENGINES).problems
+    if problems:
+        return problems
+    try:
+        return tuple(scenario_faults(loading.load(path)).values())
+    except XlmcError as error:
+        return (error,)
+
+
+def verify(path: str | Path, *, everything: bool = False) -> Verification:
+    """Compute the formulas of a workbook again at the base case, and compare with the values that Excel saved.
+
+    Args:
+        path: of the workbook.
+        everything: every formula cell, not only those that forecasts and filters need.
+
+    Raises:
+        WorkbookError: the file cannot be read.
+        DefinitionError: it defines neither a forecast nor a filter, and not everything is asked for.
+    """
+    from xlmc.analysis.studies.verify import verify
+    from xlmc.engine.engines import ENGINES
+    from xlmc.excel.workbook.reader import read_workbook
+    from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+    from xlmc.montecarlo.model.labels import calculate_labels
+
+    workbook = read_workbook(path)
+    if everything:
+        return verify(workbook)
+    definitions = read_definitions(calculate_labels(workbook), ENGINES)
+    if not definitions.forecasts and not definitions.filters:
+        message, hint = "The workbook has no forecasts and no filters", "Give everything=True to check every formula"
+        raise DefinitionError(message, where=workbook.name, hint=hint)
+    return verify(workbook, definitions)
+
+
+def replay(path: str | Path, *, jobs: int = 1) -> Replayed:
+    """Repeat the run that a result workbook or a saved run records, and say whether it is identical.
+
+    Raises:
+        WorkbookError: the file cannot be read, or holds no record.
+        XlmcError: its workbook cannot be run.
+    """
+    from xlmc.outputs.replay import replay
+
+    return replay(path, jobs=jobs)
+
+
+def convert(path: str | Path, to: str | Path, *, overwrite: bool = False) -> Path:
+    """Write a copy of a workbook of Crystal Ball or @RISK with its definitions as tables, and give the path back.
+
+    Raises:
+        WorkbookError: there is nothing to convert, or the file cannot be written.
+        DefinitionError, FormulaError: the workbook cannot be understood.
+    """
+    from xlmc.outputs.conversion.convert import convert
+
+    convert(loading.load(path), Path(to), overwrite=overwrite)
+    return Path(to)

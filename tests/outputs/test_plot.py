@@ -1,13 +1,18 @@
 from __future__ import annotations
 
+import re
 import sys
 
 import numpy as np
+import openpyxl
 import pytest
+from openpyxl.worksheet.table import Table
 
-from xlmc.api import Simulation
+from xlmc.api import Simulation, load
 from xlmc.errors import SimulationError
+from xlmc.montecarlo.diagnostics.weighing import Weighting
 from xlmc.outputs.histogram import figures_of
+from xlmc.outputs.plot import KINDS
 
 pytest.importorskip("matplotlib")
 
@@ -101,3 +106,128 @@ def test_numbers_that_span_all_doubles_are_drawn(make, tmp_path, monkeypatch, en
     Simulation(run).plot().savefig(tmp_path / "run.png", dpi=50)
     assert (tmp_path / "run.png").stat().st_size > 10_000
     assert np.isfinite(run["vast"].statistics.mode.value)
+
+
+_FORMULAS = {
+    "number": ("=A1*3", "General"),
+    "date": ("=46000+A1*30", "yyyy-mm-dd"),
+    "money": ("=A1*1000", '"$"#,##0'),
+    "share": ("=A1/9", "0.0%"),
+    "yes or no": ("=A1>0.8", "General"),
+    "text": ('=IF(A1>0.8,"late","early")', "General"),
+}
+"""What a forecast is -> its formula, and the number format of its cell."""
+
+_SHARES_ONLY = {"cumulative": ("yes or no", "text"), "trend": ("yes or no", "text"), "tornado": ("text",)}
+_SHARES_ONLY["scatter"] = _SHARES_ONLY["tornado"]
+
+
+@pytest.fixture(scope="module", params=["even", "weighted"])
+def mixed(request, tmp_path_factory):
+    """A run with a forecast of each kind, whose trials count alike, or by weights.
+
+    The assumption `A` is uniform on 0 to 1; `B` on 0 to 1 too, and the reading of it is .9.
+    """
+    book = openpyxl.Workbook()
+    model, tables = book.active, book.create_sheet("Tables")
+    model.title = "M"
+    model["A1"], model["A2"], model["A3"] = 0.6, 0.5, "=A2*1"
+    rows = [["Name", "Cell"]]
+    for number, (name, (formula, digits)) in enumerate(_FORMULAS.items(), start=1):
+        model[f"B{number}"], model[f"B{number}"].number_format = formula.replace("A1", "(A1*0.2+A2*0.8)"), digits
+        rows.append([name, f"=M!B{number}"])
+    filled = {
+        "xlmc_assumptions": [
+            ["Name", "Cell", "Distribution", "Low", "High"],
+            ["A", "=M!A1", "Uniform", 0, 1],
+            ["B", "=M!A2", "Uniform", 0, 1],
+        ],
+        "xlmc_forecasts": rows,
+        "xlmc_evidence": [["Name", "Cell", "Reading", "Error", "Std dev"], ["seen", "=M!A3", 0.9, "normal", 0.05]],
+    }
+    if request.param == "even":
+        del filled["xlmc_evidence"]
+    top = 1
+    for name, content in filled.items():
+        for line in content:
+            tables.append(line)
+        last = openpyxl.utils.get_column_letter(len(content[0]))
+        tables.add_table(Table(displayName=name, ref=f"A{top}:{last}{top + len(content) - 1}"))
+        tables.append([])
+        top += len(content) + 1
+    path = tmp_path_factory.mktemp(request.param) / "book.xlsx"
+    book.save(path)
+    return load(path).simulate(3_000, seed=1, **({} if request.param == "even" else {"evidence": "weights"}))
+
+
+@pytest.mark.parametrize("name", _FORMULAS)
+@pytest.mark.parametrize("kind", [None, *(kind for kind in KINDS if kind != "before-after")])
+def test_each_kind_of_picture_shows_each_kind_of_answer_or_says_why_not(mixed, tmp_path, monkeypatch, kind, name):
+    leave_out_layout(monkeypatch)
+    if name in _SHARES_ONLY.get(kind, ()):
+        with pytest.raises(SimulationError, match=rf"{name}.*kind=\"histogram\""):
+            mixed.plot(name, kind)
+        return
+    mixed.plot(name, kind).savefig(tmp_path / "run.png", dpi=30)
+
+
+@pytest.mark.parametrize(
+    ("name", "pattern"),
+    [
+        ("date", r"20\d\d-\d\d-\d\d"),
+        ("money", r"\\\$[\d,]+"),
+        ("share", r"[\d.]+ %"),
+        ("yes or no", "no|yes"),
+        ("text", "early|late"),
+    ],
+)
+def test_numbers_beside_an_axis_have_the_form_of_the_cell(mixed, name, pattern):
+    figure = mixed.plot(name, "histogram")
+    figure.draw_without_rendering()
+    written = [label.get_text() for label in figure.axes[0].get_xticklabels()]
+    assert written
+    assert all(re.fullmatch(pattern, text) for text in written if text)
+
+
+def test_dots_of_a_scatter_are_as_the_trials_count(mixed):
+    """Their mean is the statistics' own, within its error, whether trials are weighted or not."""
+    for name in ("number", "date"):
+        dots = np.asarray(mixed.plot(name, "scatter").axes[0].lines[0].get_ydata())
+        mean = mixed[name].statistics.mean
+        assert abs(dots.mean() - mean.value) < 5.0 * mixed[name].statistics.standard_deviation.value / dots.size**0.5
+    assert "rank correlation" in mixed.plot("number", "scatter").axes[0].get_title("left")
+
+
+def test_what_never_varies_follows_nothing(make):
+    run = make.simulate({"A1": 0.3, "B1": "=A1>9"}, [make.uniform("a", "A1", 0.0, 1.0)], [make.forecast("never", "B1")])
+    with pytest.raises(SimulationError, match="'never' is the same in all accepted trials"):
+        Simulation(run).plot(kind="scatter")
+
+
+def test_trials_are_drawn_in_proportion_to_their_weights():
+    weights = np.array([1.0, 0.0, 0.25, 0.5, 0.25, 1.0] * 50)
+    rows = Weighting(weights, 0.5, 1.0).even_rows(weights.size)
+    found = np.bincount(rows, minlength=weights.size).reshape(-1, 6).sum(axis=0)
+    assert rows.size == int(weights.sum() ** 2 / (weights**2).sum())
+    assert found == pytest.approx(rows.size * weights.reshape(-1, 6).sum(axis=0) / weights.sum(), abs=2.0)
+    assert not Weighting(np.zeros(3), 0.0, 0.0).even_rows(3).size
+
+
+def test_the_assumption_that_weights_move_most_is_shown(mixed):
+    title = mixed.plot(kind="before-after").axes[0].get_title("left")
+    if mixed.weights is not None:
+        assert title.startswith("B,")
+
+
+def test_a_trend_holds_what_shares_an_axis(mixed):
+    figure = mixed.plot("money", "trend")
+    assert [label.get_text() for label in figure.axes[0].get_xticklabels()] == ["money"]
+
+
+def test_texts_have_their_names_below_the_bars_and_no_range(mixed):
+    [axes] = mixed.plot("text", "histogram").axes
+    shares = mixed["text"].categories
+    assert [label.get_text() for label in axes.get_xticklabels()] == [*shares]
+    [legend] = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert legend.startswith(next(iter(shares)))
+    assert "mean" not in legend

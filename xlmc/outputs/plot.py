@@ -1,4 +1,9 @@
-"""A run as a figure of matplotlib: histograms and cumulative shares, and one picture each of what else is asked."""
+"""A run as a figure of matplotlib: histograms and cumulative shares, and one picture each of what else is asked.
+
+Numbers beside an axis have the form of the forecast's cell: a date, a percentage, an amount of money. Yes/no answers
+and texts have a bar for each, and no curve, range or rank: the order of their numbers says nothing. Where evidence
+weights the trials, each picture shows them as the statistics count them.
+"""
 
 from __future__ import annotations
 
@@ -12,18 +17,20 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.analysis.studies.sensitivity import sensitivities
+from xlmc.analysis.studies.sensitivity.one_at_a_time import one_at_a_time
 from xlmc.errors import SimulationError
-from xlmc.montecarlo.distributions.parameters import show
+from xlmc.montecarlo.definitions.forms import Form
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 from xlmc.montecarlo.statistics import rank_correlation
 from xlmc.outputs.histogram import Figure as Drawn
-from xlmc.outputs.histogram import figures_of
+from xlmc.outputs.histogram import figures_of, short_name
 from xlmc.outputs.sheets.styles import DARK, GRID, INK, LIGHT
-from xlmc.outputs.summary import central_text, estimate_text, percent
+from xlmc.outputs.summary import answer_text, central_text, percent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
     from xlmc.montecarlo.simulation.simulation import RunResult
@@ -39,6 +46,9 @@ _POINTS: Final = 1_001
 _LONGEST: Final = 55
 _BARS, _DOTS = 12, 4_000
 """The most bars of a tornado, and dots of a scatter."""
+
+_STEPS, _NAMES = 3, 8
+"""Steps between dates or amounts of money, and texts, that an axis has room for."""
 
 _TITLE: Final[Mapping[str, Any]] = {
     "loc": "left",
@@ -98,7 +108,7 @@ def notebook_figure(width: float, height: float) -> Figure:
 
 def _overview(simulation: RunResult, name: str | None) -> Figure:
     """One row for each forecast that has a number in an accepted trial: histogram and cumulative share."""
-    drawn = figures_of(simulation, None if name is None else [simulation[_known(simulation, name)].definition.name])
+    drawn = figures_of(simulation, None if name is None else [_known(simulation, name)])
     if not drawn:
         raise _nothing()
     figure = notebook_figure(_WIDTH, _HEAD + _HEIGHT * len(drawn))
@@ -106,7 +116,10 @@ def _overview(simulation: RunResult, name: str | None) -> Figure:
     figure.suptitle(_title(simulation), color=INK, fontsize=12, fontweight="bold", parse_math=False)
     for (left, right), each in zip(rows, drawn, strict=True):
         _draw_histogram(left, each)
-        _draw_cumulative(right, each, simulation)
+        if each.answer.is_share:
+            right.set_axis_off()  # a step for each answer, in an order that says nothing
+        else:
+            _draw_cumulative(right, each, simulation)
     return figure
 
 
@@ -134,61 +147,90 @@ def _one(simulation: RunResult, name: str | None) -> Drawn:
     return found[0]
 
 
+def _number(simulation: RunResult, name: str | None, kind: str, *, shares: bool = False) -> Drawn:
+    """Return the same among forecasts that are numbers, which this kind of picture needs.
+
+    Args:
+        simulation: the run.
+        name: of a forecast, or None.
+        kind: of the picture.
+        shares: whether yes/no answers count as numbers, 1 and 0.
+
+    Raises:
+        SimulationError: the forecast has another kind of answers, or all have.
+    """
+    found = figures_of(simulation, None if name is None else [_known(simulation, name)])
+    if not found:
+        raise _nothing()
+    fit = [each for each in found if not each.answer.categories and (shares or each.answer.yes is None)]
+    if not fit:
+        what = "texts" if found[0].answer.categories else "yes or no"
+        hint = 'Draw its shares: kind="histogram"'
+        raise SimulationError(f"The answers of {found[0].answer.name!r} are {what}: no {kind} shows them", hint=hint)
+    return fit[0]
+
+
 def _histogram(axes: Axes, simulation: RunResult, name: str | None) -> None:
     _draw_histogram(axes, _one(simulation, name))
 
 
 def _cumulative(axes: Axes, simulation: RunResult, name: str | None) -> None:
-    each = _one(simulation, name)
+    each = _number(simulation, name, "cumulative curve")
     _draw_cumulative(axes, each, simulation)
-    axes.set_title(f"{_heading(each)}: cumulative", loc="left", color=INK, fontsize=10, fontweight="bold")
+    axes.set_title(f"{_heading(each)}: cumulative", **_TITLE)
 
 
 def _tornado(axes: Axes, simulation: RunResult, name: str | None) -> None:
     """Each assumption moved alone from its 10th to its 90th percentile, the widest bar on top."""
-    each = _one(simulation, name)
-    found = sensitivities(simulation, [each.answer.name])[each.answer.name]
-    bars = [bar for bar in found.bars if bar.low is not None and bar.high is not None][:_BARS]
-    if not bars or found.base is None:
+    each, model = _number(simulation, name, "tornado", shares=True), simulation.model
+    index = next(i for i, forecast in enumerate(model.forecasts) if forecast.name == each.answer.name)
+    found = one_at_a_time(model, [a.name for a in model.live], [index], _BARS)
+    bars, base = [bar for bar in found.bars[index] if bar.low is not None and bar.high is not None], found.base[index]
+    if not bars or base is None:
         hint = "Look at the base case: xlmc check says which cell is an error there"
         raise SimulationError(f"{each.answer.name!r} has no number at the base case", hint=hint)
-    lows, highs = (np.array([getattr(bar, end) for bar in bars], float) - found.base for end in ("low", "high"))
+    lows, highs = (np.array([getattr(bar, end) for bar in bars], float) - base for end in ("low", "high"))
     places = np.arange(len(bars))[::-1]
-    axes.barh(places, lows, left=found.base, color=LIGHT, label="at the 10th percentile of the assumption")
-    axes.barh(places, highs, left=found.base, color=DARK, label="at its 90th percentile")
-    axes.axvline(found.base, color=INK, linewidth=1.0)
+    axes.barh(places, lows, left=base, color=LIGHT, label="at the 10th percentile of the assumption")
+    axes.barh(places, highs, left=base, color=DARK, label="at its 90th percentile")
+    axes.axvline(base, color=INK, linewidth=1.0)
     axes.set_yticks(places, [_short(bar.assumption) for bar in bars], parse_math=False)
     axes.set_title(f"{_heading(each)}: one assumption at a time, no filter", **_TITLE)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), fontsize=8, frameon=False, ncols=2)
     _plain(axes, each.answer.units or "value")
+    _write_numbers(axes.xaxis, each)
 
 
 def _scatter(axes: Axes, simulation: RunResult, name: str | None) -> None:
-    """Draw the forecast over the draws of the assumption that it follows most."""
-    each = _one(simulation, name)
-    answer = simulation.results[each.answer.name].column[: simulation.kept_inputs]
+    """Draw the forecast over the draws of the assumption that it follows most; of weighted trials an even choice."""
+    each, kept = _number(simulation, name, "scatter", shares=True), simulation.kept_inputs
+    weighting = simulation.weighting
+    rows = slice(kept) if weighting is None else weighting.even_rows(kept)
+    answer = simulation.results[each.answer.name].column[rows]
     known = ~np.isnan(answer)
-    ranks = {
-        other: rank_correlation(draws[known], answer[known]).value
-        for other, draws in simulation.inputs.items()
-        if known.sum() > 2
-    }
+    draws = {other: column[rows][known] for other, column in simulation.inputs.items()}
+    answer = answer[known]
+    ranks = {other: rank_correlation(x, answer).value for other, x in draws.items()} if answer.size > 2 else {}
     ranks = {other: rank for other, rank in ranks.items() if not math.isnan(rank)}
+    if answer.size > 2 and np.all(answer == answer[0]):
+        raise SimulationError(f"{each.answer.name!r} is the same in all accepted trials", hint="It follows nothing")
     if not ranks:
         raise SimulationError(f"no assumption was drawn that {each.answer.name!r} could follow", hint="Run more trials")
     most = max(ranks, key=lambda other: abs(ranks[other]))
-    x, y = simulation.inputs[most][known][:_DOTS], answer[known][:_DOTS]
-    axes.plot(x, y, ".", color=DARK, markersize=2.5, alpha=0.5)
+    axes.plot(draws[most][:_DOTS], answer[:_DOTS], ".", color=DARK, markersize=2.5, alpha=0.5)
     units = next(a.units for a in simulation.model.assumptions if a.name == most)
     axes.set_ylabel(", ".join(filter(None, (each.name, each.answer.units))), parse_math=False)
     axes.set_title(f"{_heading(each)}: rank correlation {ranks[most]:.2f}", **_TITLE)
     _plain(axes, ", ".join(filter(None, (most, units))))
+    _write_numbers(axes.yaxis, each)
 
 
 def _trend(axes: Axes, simulation: RunResult, name: str | None) -> None:
-    """Central ranges of the forecasts that have the units of the first, side by side."""
-    first = _one(simulation, name)
-    rows = [each for each in figures_of(simulation) if each.answer.units == first.answer.units]
+    """Central ranges of the forecasts that have the units of the first, and its kind of numbers, side by side."""
+    first = _number(simulation, name, "trend")
+    rows = [
+        each for each in figures_of(simulation) if not each.answer.is_share and _measure_of(each) == _measure_of(first)
+    ]
     places = np.arange(len(rows))
     shades = {0.95: "#DCE6F1", 0.8: "#B8CCE4", first.answer.share: DARK}
     for share, shade in sorted(shades.items(), reverse=True):
@@ -204,6 +246,15 @@ def _trend(axes: Axes, simulation: RunResult, name: str | None) -> None:
     axes.legend(loc="best", fontsize=8, frameon=False)
     _plain(axes, "")
     axes.set_ylabel(first.answer.units or "value", parse_math=False)
+    _write_numbers(axes.yaxis, first)
+
+
+def _measure_of(each: Drawn) -> tuple[object, ...]:
+    """Return what the numbers of two forecasts must share to stand on one axis."""
+    form = each.answer.form
+    if form.kind in (Kind.NUMBER, Kind.WHOLE):
+        return (each.answer.units,)
+    return each.answer.units, form.kind, form.affixes, form.shows if form.kind is Kind.DATE else ""
 
 
 def _before_after(axes: Axes, simulation: RunResult, name: str | None) -> None:
@@ -228,10 +279,11 @@ def _before_after(axes: Axes, simulation: RunResult, name: str | None) -> None:
 
 def _moved(simulation: RunResult, name: str) -> float:
     """How far apart the distributions before and after filtering are: the largest difference of cumulative shares."""
-    before, after = np.sort(simulation.prior[name]), np.sort(simulation.inputs[name])
-    return float(
-        np.abs(np.searchsorted(after, before, "right") / after.size - np.arange(1, before.size + 1) / before.size).max()
-    )
+    before, weighting = np.sort(simulation.prior[name]), simulation.weighting
+    after = simulation.inputs[name]
+    after = np.sort(after if weighting is None else after[weighting.even_rows(after.size)])
+    shares = np.searchsorted(after, before, "right") / after.size
+    return float(np.abs(shares - np.arange(1, before.size + 1) / before.size).max())
 
 
 KINDS: Final[Mapping[str, Callable[[Axes, RunResult, str | None], None]]] = {
@@ -263,23 +315,56 @@ def _title(simulation: RunResult) -> str:
     return f"{name}: {simulation.accepted:,} of {simulation.trials:,} trials accepted, seed {simulation.settings.seed}"
 
 
+def _write_numbers(axis: Axis, each: Drawn) -> None:
+    """Write the numbers beside an axis as the cell of the forecast shows them."""
+    from matplotlib.ticker import MaxNLocator, MultipleLocator
+
+    form = each.answer.form
+    if each.answer.yes is not None:
+        axis.set_ticks([0.0, 1.0], ["no", "yes"])
+    elif form.kind not in (Kind.NUMBER, Kind.WHOLE):
+        axis.set_major_locator(MaxNLocator(_STEPS))
+        if form.kind is Kind.DATE:
+            low, high = axis.get_view_interval()
+            axis.set_major_locator(MultipleLocator(form.rounded_width(max((high - low) / _STEPS, 1e-5))))
+        axis.set_major_formatter(lambda value, _: _tick(form, value))
+
+
+def _tick(form: Form, value: float) -> str:
+    return form.number(float(f"{value:.12g}")).replace("$", r"\$")  # which would begin a formula
+
+
 def _draw_histogram(axes: Axes, each: Drawn) -> None:
     bins, answer = each.bins, each.answer
     edges = np.append(bins.edges, bins.upper_edges[-1])
-    inside = f"central {percent(answer.share)}: {central_text(answer)}"
-    axes.stairs(bins.inside + bins.outside, edges, fill=True, color=LIGHT, label="other accepted trials")
-    axes.stairs(bins.inside, edges, fill=True, color=DARK, label=inside)
     most = max(1.0, float((bins.inside + bins.outside).max()))  # 0 where all trials lie outside, below and above
-    mean = float(_near(each, np.array(answer.mean.value)))
-    axes.vlines(mean, 0.0, 1.05 * most, color=INK, linewidth=1.2, label=f"mean: {estimate_text(answer.mean)}")
+    if answer.is_share:
+        axes.stairs(bins.inside + bins.outside, edges, fill=True, color=DARK, label=_shares_text(each))
+    else:
+        inside = f"central {percent(answer.share)}: {central_text(answer)}"
+        axes.stairs(bins.inside + bins.outside, edges, fill=True, color=LIGHT, label="other accepted trials")
+        axes.stairs(bins.inside, edges, fill=True, color=DARK, label=inside.replace("$", r"\$"))
+        mean = float(_near(each, np.array(answer.mean.value)))
+        text = f"mean: {answer_text(answer)}".replace("$", r"\$")
+        axes.vlines(mean, 0.0, 1.05 * most, color=INK, linewidth=1.2, label=text)
     axes.set_title(_heading(each), **_TITLE)
-    axes.set_ylabel(f"Trials per {bins.width:g}" + (f" {answer.units}" if answer.units else ""), parse_math=False)
+    per = "" if bins.names is not None else f" per {bins.form.width(bins.width)}"
+    per += f" {answer.units}" if per and answer.units else ""
+    axes.set_ylabel(f"Trials{per}", parse_math=False)
     axes.set_ylim(0, 1.5 * most)
-    axes.legend(loc="upper left", fontsize=8, frameon=False, ncols=1)
+    axes.legend(loc="upper left", fontsize=8, frameon=False, ncols=1).set_in_layout(False)
     if bins.below or bins.above:
         text = f"not drawn: {bins.below:,} below, {bins.above:,} above"
+        if answer.categories:
+            text = f"not drawn: {bins.above:,} trials of rarer texts"
         axes.annotate(text, (0.99, 0.95), xycoords="axes fraction", ha="right", va="top", fontsize=8)
     _dress(axes, each, edges)
+
+
+def _shares_text(each: Drawn) -> str:
+    """Return the share of yes, or of the most frequent text, in words."""
+    of = "yes" if each.answer.yes is not None else short_name(each.answer.unit)
+    return f"{of}: {answer_text(each.answer)}".replace("$", r"\$")
 
 
 def _draw_cumulative(axes: Axes, each: Drawn, simulation: RunResult) -> None:
@@ -292,7 +377,8 @@ def _draw_cumulative(axes: Axes, each: Drawn, simulation: RunResult) -> None:
     axes.hlines([tail, 100.0 - tail], *_ends(each), color=INK, linewidth=0.7, linestyle=":")
     if answer.threshold is not None:
         threshold = float(_near(each, np.array(answer.threshold)))
-        axes.axvline(threshold, color="#9C0006", linewidth=1.0, label=f"threshold {show(answer.threshold)}")
+        text = f"threshold {answer.form.number(answer.threshold)}".replace("$", r"\$")
+        axes.axvline(threshold, color="#9C0006", linewidth=1.0, label=text)
         axes.legend(loc="upper left", fontsize=8, frameon=False)
     axes.set_ylim(0, 100)
     axes.set_ylabel("Trials not above, %")
@@ -314,6 +400,14 @@ def _heading(each: Drawn) -> str:
     return _short(each.name)
 
 
-def _dress(axes: Axes, each: Drawn, edges: np.typing.NDArray[np.float64]) -> None:
+def _dress(axes: Axes, each: Drawn, edges: Floats) -> None:
     axes.set_xlim(float(edges[0]), float(edges[-1]))
     _plain(axes, each.answer.units or "value")
+    if each.answer.is_share:
+        ends = each.bins.edges + 0.5 * each.bins.width
+        named = [(x, text) for x, text in zip(ends.tolist(), each.bins.labels, strict=True) if text]
+        named = named[:: -(-len(named) // _NAMES)]
+        axes.set_xticks([x for x, _ in named], [textwrap.fill(text, 16) for _, text in named], parse_math=False)
+        axes.set_xlabel(each.axis, parse_math=False)
+    else:
+        _write_numbers(axes.xaxis, each)

@@ -60,6 +60,18 @@ class Weighting:
         squares = float(np.sum(self.weights * self.weights))
         return float(np.sum(self.weights)) ** 2 / squares if squares else 0.0
 
+    def even_rows(self, most: int) -> NDArray[np.intp]:
+        """Return rows of equal weight for the first `most` weighted ones: drawn in proportion to the weights, in order.
+
+        They are as many as carry as much, so that a heavy trial stands among them several times.
+        """
+        weights = self.weights[:most]
+        reached = np.cumsum(weights)
+        if not weights.size or not reached[-1]:
+            return np.empty(0, np.intp)
+        count = max(1, int(reached[-1] ** 2 / np.sum(weights**2)))
+        return np.asarray(np.searchsorted(reached, (np.arange(count) + 0.5) / count * reached[-1]))
+
     @property
     def sentence(self) -> str:
         """What weights mean for the numbers, and how large they are."""

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Final
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import NDArray
 
 from xlmc.analysis.results.record import make_record
 from xlmc.analysis.results.statements import statements
@@ -47,7 +46,6 @@ from xlmc.outputs.summary import SummaryRow, base_case, error_sentence, share_te
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.scenario_answers import ScenarioAnswers
-    from xlmc.montecarlo.diagnostics.weighing import Weighting
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
     from xlmc.montecarlo.simulation.simulation import RunResult
 
@@ -343,7 +341,7 @@ def pair_of(simulation: RunResult, first: str, second: str) -> dict[str, Any] | 
     n = min(columns[first].size, columns[second].size, 50 * _POINTS)
     x, y = np.asarray(columns[first][:n]), np.asarray(columns[second][:n])
     if simulation.weighting is not None:
-        chosen = _evenly(simulation.weighting, n)
+        chosen = simulation.weighting.even_rows(n)
         x, y = x[chosen], y[chosen]
     both = np.isfinite(x) & np.isfinite(y)
     x, y = x[both], y[both]
@@ -358,13 +356,6 @@ def pair_of(simulation: RunResult, first: str, second: str) -> dict[str, Any] | 
         "forms": [form_json(_form(simulation, name)) for name in (first, second)],
         "together": _together(simulation, (first, second)),
     }
-
-
-def _evenly(weighting: Weighting, n: int) -> NDArray[np.intp]:
-    """Trials of equal weight for the first `n` weighted ones: drawn in proportion to the weights, in order."""
-    reached = np.cumsum(weighting.weights[:n])
-    count = max(1, int(reached[-1] ** 2 / np.sum(weighting.weights[:n] ** 2)))
-    return np.asarray(np.searchsorted(reached, (np.arange(count) + 0.5) / count * reached[-1]))
 
 
 def _together(simulation: RunResult, names: tuple[str, str]) -> list[dict[str, Any]]:

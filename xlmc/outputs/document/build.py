@@ -67,11 +67,11 @@ def check_wanted_of(wanted: Wanted, model: CompiledModel) -> None:
 
 
 def build(simulation: RunResult, wanted: Wanted, *, command: str | None = None) -> Document:
-    """The report of a run; the same run and the same wishes give the same document.
+    """Build the report of a run; the same run and the same selection give the same document.
 
     Args:
         simulation: the finished run.
-        wanted: what it is to hold.
+        wanted: what is typed on the first page, and the selected sections, forecasts and paper.
         command: what the person typed, for the record.
 
     Raises:
@@ -121,7 +121,7 @@ def further_sections(simulation: RunResult, output: str) -> dict[str, tuple[str,
 
 
 def _forecasts(wanted: Wanted, model: CompiledModel) -> tuple[str, ...]:
-    """The names of the forecasts that are wanted, as the workbook spells them.
+    """Return the names of the selected forecasts, as the workbook spells them.
 
     Raises:
         SimulationError: there is no such forecast.

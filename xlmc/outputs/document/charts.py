@@ -29,14 +29,17 @@ def shape_chart(simulation: RunResult, name: str) -> Chart | None:
 
 
 def influence_chart(found: ForecastSensitivity, most: int, title: str = "") -> Chart:
-    """The variance of a forecast that each assumption explains, the largest on top; pale what may be noise."""
+    """Chart the share of a forecast's variance that each assumption explains, in %, the largest on top.
+
+    Bars that may be noise are pale.
+    """
     pairs = zip(found.influences[:most], noise(found), strict=False)
     bars = tuple(_share(each.assumption, each.explained, weak.explained) for each, weak in pairs)
     return _bars(title, "Variance explained", "Share of the variance explained, %", bars)
 
 
 def contribution_chart(found: ForecastSensitivity, most: int, title: str) -> Chart:
-    """The squared rank correlation of each assumption, as Crystal Ball shows it."""
+    """Chart the squared rank correlation of each assumption, in % of their sum and signed, as Crystal Ball shows it."""
     pairs = zip(found.influences[:most], noise(found), strict=False)
     bars = tuple(_share(each.assumption, each.contribution, weak.correlation) for each, weak in pairs)
     return _bars(title, title, "Squared rank correlation, % of all, signed", bars)

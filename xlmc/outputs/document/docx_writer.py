@@ -41,7 +41,7 @@ _BODY, _SMALL, _CELL = 10.5, 9.0, 8.5
 
 
 def docx_bytes(drawn: Document) -> bytes:
-    """The document as a Word file.
+    """Return the document as a Word file.
 
     Raises:
         SimulationError: a picture holds a character that no font has.

@@ -46,7 +46,7 @@ Floats = NDArray[np.float64]
 
 
 def forecast_drawing(figure: Figure, result: ForecastResult, width: float) -> Drawing:
-    """The frequency of a forecast's accepted trials, and below it their cumulative share, over one axis.
+    """Draw the frequency of a forecast's accepted trials, and below it their cumulative share, over one axis.
 
     Args:
         figure: the forecast.
@@ -99,7 +99,7 @@ def forecast_drawing(figure: Figure, result: ForecastResult, width: float) -> Dr
 
 
 def drawn(chart: Chart) -> Drawing:
-    """A chart as SVG."""
+    """Draw a chart as SVG."""
     match chart.data:
         case Bars():
             return _bars(chart, chart.data)
@@ -180,7 +180,7 @@ def _lines(chart: Chart, shown: Lines) -> Drawing:
 
 
 def _finite(line: Line) -> list[tuple[float, float, float | None]]:
-    """The points that can be drawn, each with its error."""
+    """Return the points with a finite height as (x, y, error); the error is None where there is none."""
     return [(p[0], p[1], p[2] if len(p) > 2 else None) for p in line.points if math.isfinite(p[1])]
 
 
@@ -212,7 +212,7 @@ def _shape(chart: Chart, shown: Shape) -> Drawing:
 
 
 def end_text(end: float, span: float) -> str:
-    """An end of the draws, to some thousandths of what they reach over.
+    """Return an end of the draws as text, rounded to some thousandths of their span, which is 0 or more.
 
     >>> end_text(0.0002339, 10.0), end_text(0.60003, 0.35)
     ('0', '0.6')
@@ -238,7 +238,15 @@ def _grid(scale: Scale, left: float, right: float, form: str) -> list[str]:
 
 
 def drawing(found: Iterable[str], width: float, height: float, said: str, printed: float) -> Drawing:
-    """The drawing; `printed` is its width in millimetres, `said` what it shows."""
+    """Return SVG elements as one drawing.
+
+    Args:
+        found: the elements.
+        width: of the drawing area, in its own units.
+        height: of the drawing area, in its own units.
+        said: what it shows, for readers who cannot see it.
+        printed: its width on paper, in millimetres.
+    """
     size = f'width="{width:g}" height="{height:g}" viewBox="0 0 {width:g} {height:g}"'
     return Drawing(f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{"".join(found)}</svg>', said, printed)
 
@@ -251,13 +259,13 @@ def _rect(x: float, y: float, width: float, height: float, fill: str, *, opacity
 def line_to(
     x1: float, y1: float, x2: float, y2: float, stroke: str, width: float = 0.7, *, dashed: bool = False
 ) -> str:
-    """A straight line."""
+    """Draw a straight line."""
     ends = f'x1="{x1:.2f}" y1="{y1:.2f}" x2="{x2:.2f}" y2="{y2:.2f}"'
     return f'<line {ends} stroke="{stroke}" stroke-width="{width:g}"{_DASHES * dashed}/>'
 
 
 def path_of(points: Sequence[tuple[float, float]], stroke: str, width: float, *, dashed: bool = False) -> str:
-    """A line through points."""
+    """Draw a line through points."""
     steps = " ".join(f"{'L' if index else 'M'}{x:.2f} {y:.2f}" for index, (x, y) in enumerate(points))
     return f'<path d="{steps}" fill="none" stroke="{stroke}" stroke-width="{width:g}"{_DASHES * dashed}/>'
 
@@ -272,7 +280,7 @@ def text_at(
     fill: str = INK,
     turned: bool = False,
 ) -> str:
-    """A text, whatever is in it."""
+    """Write a text at a point; markup in it is escaped."""
     look = f'font-family="{FONT}" font-size="{size:g}" fill="{fill}" text-anchor="{anchor}"'
     turn = f' transform="rotate(-90 {x:.2f} {y:.2f})"' if turned else ""
     return f'<text x="{x:.2f}" y="{y:.2f}" {look}{turn}>{escape(printable(value), quote=False)}</text>'
@@ -289,7 +297,7 @@ class Scale:
     step: float
 
     def __call__(self, value: float) -> float:
-        """The coordinate of a number."""
+        """Return the coordinate of a number."""
         return self.start + (self.stop - self.start) * (value - self.low) / (self.high - self.low)
 
     @property
@@ -299,12 +307,12 @@ class Scale:
         return [float(f"{index * self.step:.12g}") for index in range(first, last + 1)]
 
     def text(self, tick: float) -> str:
-        """A tick in the digits that the step needs."""
+        """Return the text of a tick, with a true minus sign."""
         return f"{tick:g}".replace("-", "−")
 
 
 def scale_of(values: list[float], start: float, stop: float, *, most: int = 6) -> Scale:
-    """A scale that reaches over all finite values, with a little room, and has `most` ticks at most.
+    """Return a scale from `start` to `stop` over all finite values, with a small margin and at most `most` ticks.
 
     >>> scale_of([0.0, 0.93], 0.0, 100.0).ticks
     [0.0, 0.2, 0.4, 0.6, 0.8]

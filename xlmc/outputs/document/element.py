@@ -22,7 +22,7 @@ class Html:
 
     @staticmethod
     def of_svg(svg: str, said: str, look: str) -> Html:
-        """An SVG drawing of our own making, whose texts are escaped already, with what it shows."""
+        """Return an SVG drawing, whose texts are escaped already, with its CSS class and what it shows."""
         named = f'<svg class="{look}" role="img" aria-label="{escape(said)}" '
         return Html(svg.replace("<svg ", named, 1))
 
@@ -31,7 +31,7 @@ EMPTY = Html("")
 
 
 def element(name: str, /, *children: Html | str, **attributes: str | None) -> Html:
-    """An element; strings in it are escaped, attributes that are None are left out.
+    """Return an element; strings in it are escaped, attributes that are None are left out.
 
     An attribute's underscores stand for hyphens, one at its end for nothing: `class_`, `data_forecast`.
 
@@ -43,12 +43,12 @@ def element(name: str, /, *children: Html | str, **attributes: str | None) -> Ht
 
 
 def void(name: str, /, **attributes: str | None) -> Html:
-    """An element that holds nothing and has no end: `input`."""
+    """Return an element without content and end tag, such as `input`."""
     return Html(f"<{name}{_attributes(attributes)}>")
 
 
 def join(children: tuple[Html | str, ...] | list[Html]) -> Html:
-    """The children as HTML, one after the other."""
+    """Join children as HTML; strings are escaped."""
     return Html("".join([each.source if isinstance(each, Html) else escape(each) for each in children]))
 
 
@@ -60,5 +60,5 @@ def _attributes(attributes: dict[str, str | None]) -> str:
 
 @cache
 def _name(key: str) -> str:
-    """An attribute's name, as the page has it."""
+    """Return the name of an attribute in HTML."""
     return key.rstrip("_").replace("_", "-")

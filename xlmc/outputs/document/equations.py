@@ -30,7 +30,7 @@ class Equation(NamedTuple):
 
 
 def equations_of(model: CompiledModel) -> list[Equation]:
-    """The equations of the cells that the answers need, where a sheet has the columns Quantity and Equation.
+    """Return the equations of the cells that the answers need, where a sheet has the columns Quantity and Equation.
 
     A row counts if one of its cells is a forecast or a filter, or is read by one.
     """

@@ -34,7 +34,7 @@ _LOOKS = {"text": None, "small": "remark"}
 
 
 def blocks_html(blocks: Iterable[Block]) -> Html:
-    """The blocks one after the other; a heading of the first level is the page's second."""
+    """Return the blocks as HTML; a heading of the first level is the page's second."""
     return join([_html(block) for block in blocks])
 
 
@@ -56,14 +56,14 @@ def _html(block: Block) -> Html:
 
 
 def picture_html(picture: Picture, look: str = "drawn") -> Html:
-    """A picture as SVG in the page itself; its look is `drawn`, or `shape` within a line."""
+    """Return a picture as SVG in the page itself; its look is `drawn`, or `shape` within a line."""
     shown = drawn(picture) if isinstance(picture, Chart) else picture
     plain = shown.svg.replace(f' font-family="{FONT}"', "")  # the page has a font of its own
     return Html.of_svg(plain, shown.said, look)
 
 
 def _table(table: Table) -> Html:
-    """A table, which scrolls where it is wider than the page."""
+    """Return a table, which scrolls where it is wider than the page."""
     at_right = table.at_right
     heads = [_head(text, index in at_right) for index, text in enumerate(table.heads)]
     body = [element("tr", *(_cell(cell, index, at_right) for index, cell in enumerate(row))) for row in table.rows]
@@ -96,7 +96,7 @@ def _cell(cell: Content, index: int, at_right: frozenset[int]) -> Html:
 
 
 def _lines(text: str) -> Iterable[Html | str]:
-    """A text, each line of it below the other."""
+    """Yield the lines of a text with breaks between them."""
     first, *rest = text.split("\n")
     yield first
     for each in rest:
@@ -105,14 +105,14 @@ def _lines(text: str) -> Iterable[Html | str]:
 
 
 def shown_html(shown: Shown) -> Html:
-    """What the sheet shows, as HTML; a number carries its full value with it."""
+    """Return the text that a cell shows, as HTML; a number carries its full value."""
     if isinstance(shown.value, str) or shown.value is None or not math.isfinite(shown.value):
         return element("span", shown_text(shown))
     return number(shown.value, shown_text(shown))
 
 
 def number(value: float, shown: str) -> Html:
-    """A number as it is shown, with its full value for programs that read the page."""
+    """Return a number as shown, with its full value for programs that read the page."""
     return element("data", shown, value=number_text(value))
 
 

@@ -232,7 +232,7 @@ _WIDEST, _NARROW, _FEW = 40, 14, 8
 
 
 def cell_text(cell: Content) -> str:
-    """What a cell says, as text."""
+    """Return the text of a cell; of a picture, what it shows."""
     if isinstance(cell, Shown):
         return shown_text(cell)
     return cell if isinstance(cell, str) else cell.said

@@ -53,7 +53,7 @@ def save_report(
 
 
 def document_bytes(document: Document, ending: str) -> bytes:
-    """A document as a file with that ending, `.pdf` or `.docx`.
+    """Return a document as the bytes of a file with the ending `.pdf` or `.docx`.
 
     Raises:
         SimulationError: a library is missing, or no font has a character.

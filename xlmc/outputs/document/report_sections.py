@@ -91,7 +91,7 @@ class Material:
     tables: int = field(default=0)
 
     def figure(self, drawing: Picture, caption: str) -> Figure:
-        """A figure with the next number."""
+        """Return a figure with the next number."""
         self.figures += 1
         return Figure(drawing, f"Figure {self.figures}. {caption}")
 
@@ -103,7 +103,7 @@ class Material:
         widths: Sequence[float],
         right: Sequence[int] = (),
     ) -> Table:
-        """A table with the next number."""
+        """Return a table with the next number."""
         self.tables += 1
         numbered = f"Table {self.tables}. {caption}"
         return Table("", tuple(heads), tuple(map(tuple, rows)), tuple(right), tuple(widths), numbered)
@@ -428,7 +428,7 @@ def _influence_rows(found: ForecastSensitivity, most: int) -> Iterator[tuple[str
 
 
 def explained_text(found: Influence) -> str:
-    """The variance explained, `at least 81.4 ± 1.2 %` where it is a lower bound."""
+    """Return the share of variance explained as text, `at least 81.4 ± 1.2 %` where it is a lower bound."""
     return f"{'at least ' if found.explained_at_least else ''}{share_text(found.explained)}"
 
 

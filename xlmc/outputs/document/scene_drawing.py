@@ -42,7 +42,7 @@ class _Line:
 
 
 def scene_drawing(workbook: Workbook) -> Drawing | None:
-    """The first chart of the sheet Scene; None where the workbook has none.
+    """Draw the first chart of the sheet Scene; return None if the workbook has none.
 
     Raises:
         WorkbookError: the part of a chart is no XML.
@@ -56,7 +56,7 @@ def scene_drawing(workbook: Workbook) -> Drawing | None:
 
 
 def _line(series: Element) -> _Line | None:
-    """A series of points on the sheet; None where it is on another, holds too much, or is not shown."""
+    """Return a series of points on the sheet; None if it is on another sheet, is too long, or is not shown."""
     where = [said.text or "" for said in series.iterfind("./*/{*}numRef/{*}f")]
     if len(where) != 2 or not all(map(_SHEET.match, where)):
         return None
@@ -76,12 +76,12 @@ def _line(series: Element) -> _Line | None:
 
 
 def _words(element: Element) -> str:
-    """The text of a title or of a name; where a name is a reference, what the program has stored of it."""
+    """Return the text of a title or of a name; of a reference, the text that the program has stored."""
     return " ".join(said.text.strip() for tag in ("t", "v") for said in element.iterfind(f".//{{*}}{tag}") if said.text)
 
 
 def _numbers(axis: Element | None) -> dict[int, float]:
-    """The stored numbers by their place; those that are none are left out."""
+    """Return the stored numbers by their index; texts and blanks are left out."""
     found = {}
     for point in () if axis is None else axis.iterfind(".//{*}numCache/{*}pt"):
         said = point.find("{*}v")
@@ -95,13 +95,13 @@ def _numbers(axis: Element | None) -> dict[int, float]:
 
 
 def _widened(scale: Scale, least: float) -> Scale:
-    """The scale with room above and below, so that it reaches over so much at least."""
+    """Return the scale widened on both sides until it spans `least` or more."""
     room = (least - (scale.high - scale.low)) / 2
     return scale if room <= 0 else scale_of([scale.low - room, scale.high + room], 0.0, 1.0, most=4)
 
 
 def _with_step(scale: Scale, step: float) -> Scale:
-    """The scale with a coarser step, where that leaves it two ticks."""
+    """Return the scale with a coarser step if that leaves it two ticks, else unchanged."""
     coarser = replace(scale, step=step)
     return coarser if len(coarser.ticks) > 1 else scale
 

@@ -66,7 +66,7 @@ _STYLE: Final = """
 
 
 def pdf_bytes(document: Document) -> bytes:
-    """The document as PDF.
+    """Return the document as PDF.
 
     Raises:
         SimulationError: it holds a character that no font has.
@@ -89,7 +89,7 @@ def pictures(drawings: Sequence[Picture]) -> list[bytes]:
 
 
 def _compiled(source: str, **options: Any) -> Any:
-    """What Typst makes of a source: with the fonts that it brings along; where they lack a letter, with the system's.
+    """Compile a source with Typst's own fonts, or with those of the system where Typst's lack a letter.
 
     Raises:
         SimulationError: no font has a character, or Typst refuses the source for another reason.
@@ -133,7 +133,7 @@ def _cover(document: Document) -> Iterator[str]:
 
 
 def _block(block: Block, leads: bool) -> Iterator[str]:
-    """What is typeset; a paragraph that leads to a table or a figure stands on the page that this begins on."""
+    """Yield the Typst code of a block; a paragraph that `leads` to a table or a figure stays on its page."""
     match block:
         case Heading(text, level):
             yield f"#heading(level: {level}, {_text(text)})"
@@ -182,6 +182,6 @@ def _image(picture: Picture) -> str:
 
 
 def _text(text: str) -> str:
-    """A string literal of Typst."""
+    """Return a text as a string literal of Typst."""
     escaped = printable(text).replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\t", "\\t")
     return f'"{escaped}"'

@@ -78,7 +78,7 @@ def write_blocks(page: Page, blocks: Iterable[Block], book: Workbook, numbers: C
 
 
 def sheet_widths(blocks: Iterable[Block]) -> list[float]:
-    """The widths of the sheet's columns: wider where a table has long texts."""
+    """Return the widths of the sheet's columns, in characters: wider where a table has long texts."""
     widths = list(_WIDTHS)
     for block in blocks:
         if isinstance(block, Table) and not _is_wrapped(block):
@@ -114,7 +114,7 @@ def _write_table(page: Page, table: Table) -> None:
 
 
 def _cell(cell: Content, index: int, is_number: bool) -> Shown:
-    """A cell of the sheet: a text that is a number becomes one; a number with its error stays text."""
+    """Return a cell of the sheet: a text that is a number becomes one; a number with its error stays text."""
     if isinstance(cell, Shown):
         return cell
     text = cell.said if isinstance(cell, Drawing | Chart) else cell

@@ -55,14 +55,14 @@ def _question(simulation: RunResult) -> Iterator[Html | str]:
 
 
 def _statements(simulation: RunResult) -> Iterator[Html]:
-    """The sentences and what they mean; nothing where all forecasts are diagnostics."""
+    """Yield the sentences and what they mean; nothing if all forecasts are diagnostics."""
     if said := statements(simulation):
         yield element("ul", *(element("li", *_statement(each)) for each in said), class_="statements")
         yield element("p", meaning(simulation.model.workbook), class_="remark")
 
 
 def _statement(statement: Statement) -> Iterator[Html | str]:
-    """The sentence, with the name before its colon in bold."""
+    """Yield the sentence, with the name before its colon in bold."""
     name = f"{statement.forecast}: "
     if statement.text.startswith(name):
         yield element("b", element("bdi", statement.forecast))

@@ -52,7 +52,7 @@ class FittedCurve:
 
 
 def fitted_curves(x: Floats, bins: Histogram) -> list[FittedCurve]:
-    """The best first, by Akaike's criterion; none where there are too few trials, or all are equal.
+    """Fit distributions, the best first by Akaike's criterion; return none if trials are too few or all equal.
 
     Args:
         x: `(n,)` ascending, in memory or on disk.

@@ -41,7 +41,7 @@ _NOTHING = "No forecast has a number in an accepted trial: nothing to draw."
 
 
 def charts(simulation: RunResult, figures: Sequence[Figure]) -> Html:
-    """The section with a chart for every forecast."""
+    """Return the section with a chart for every forecast."""
     counted = counted_figures(figures)
     return element(
         "section",
@@ -76,7 +76,7 @@ def _how_to_read(simulation: RunResult, figures: Sequence[Figure]) -> Iterator[H
 
 
 def _shares(figure: Figure) -> Html:
-    """The bars of an answer that is yes or no, or a text, and the share of each."""
+    """Return the bars of an answer that is yes or no, or a text, and the share of each."""
     shares = shares_of(figure.answer)
     rows = (
         element("tr", element("th", text or "(empty)", scope="row"), element("td", share_html(share), class_="number"))
@@ -133,7 +133,7 @@ def _chart(figure: Figure, result: ForecastResult, index: int) -> Html:
 
 
 def _statistics(result: ForecastResult) -> Html:
-    """The numbers that a reader of the chart asks for first; the section Statistics has all."""
+    """Return the numbers that a reader of the chart asks for first; the section Statistics has all."""
     found = result.statistics
     shown = {
         "Mean": found.mean,
@@ -192,7 +192,7 @@ def _box(label: str, key: str, units: str) -> Html:
 
 
 def overlays(figures: Sequence[Figure]) -> Html:
-    """The section with forecasts of one unit in one chart; nothing where no two have the same."""
+    """Return the section with forecasts of one unit in one chart; nothing if no two share a unit."""
     figures = counted_figures(figures)
     groups = overlays_of(figures)
     if not groups:

@@ -143,7 +143,7 @@ def check_page_path(path: Path) -> None:
 
 
 def page_text(simulation: RunResult, *, beside: RunResult | None = None, command: str | None = None) -> str:
-    """The page of a run; the same run gives the same text.
+    """Return the page of a run as HTML; the same run gives the same text.
 
     Args:
         simulation: the finished run.
@@ -208,7 +208,7 @@ def _packed(text: str) -> str:
 
 
 def plain_page(title: str, below: str, content: Html) -> str:
-    """A page without scripts, in the style of the others: a title, the line below it, and what is to be read."""
+    """Return a page without scripts, in the style of the others: a title, the line below it, and the content."""
     styles = [_asset(path) for path in _PLAIN_STYLES]
     header = element("header", element("h1", title), element("p", below, class_="subtitle"))
     return Template(_asset("plain.html")).substitute(
@@ -225,12 +225,12 @@ def _asset(path: str) -> str:
 
 
 def _code() -> tuple[list[str], list[str]]:
-    """The styles and the scripts of a page."""
+    """Return the styles and the scripts of a page."""
     return [_asset(path) for path in _STYLES], [_asset(path) for path in _SCRIPTS]
 
 
 def page_policy() -> str:
-    """The Content-Security-Policy of a page: its own scripts and styles, and nothing else."""
+    """Return the Content-Security-Policy of a page: its own scripts and styles, and nothing else."""
     styles, scripts = _code()
     return "; ".join(
         (
@@ -261,6 +261,6 @@ def _header(simulation: RunResult, parts: Mapping[str, str]) -> Html:
 
 
 def _buttons() -> Iterator[Html]:
-    """The buttons for the tables that are closed at first; only open tables are printed."""
+    """Yield the buttons for the tables that are closed at first; only open tables are printed."""
     for key, label in (("open", "Open all tables"), ("closed", "Close them")):
         yield element("button", label, type="button", data_all=key)

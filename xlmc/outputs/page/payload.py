@@ -63,13 +63,13 @@ Counts = NDArray[np.int64]
 
 
 def payload_text(simulation: RunResult, figures: Sequence[Figure], beside: RunResult | None = None) -> str:
-    """The JSON, which holds no character that could end the element it stands in."""
+    """Return the payload as JSON without any character that could end its HTML element."""
     text = json.dumps(payload(simulation, figures, beside), allow_nan=False, separators=(",", ":"))
     return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
 
 
 def payload(simulation: RunResult, figures: Sequence[Figure], beside: RunResult | None = None) -> dict[str, Any]:
-    """The payload as plain values; `beside` is a second run. Answers that are shares have no values to count."""
+    """Return the payload as plain values; `beside` is a second run. Answers that are shares have no values to count."""
     figures = counted_figures(figures)
     most = most_values(len(figures) * (1 if beside is None else 2))
     return {
@@ -82,12 +82,12 @@ def payload(simulation: RunResult, figures: Sequence[Figure], beside: RunResult 
 
 
 def counted_figures(figures: Sequence[Figure]) -> list[Figure]:
-    """The figures whose answers are numbers: trials are counted between two ends of them."""
+    """Return the figures whose answers are numbers, so that trials between two limits can be counted."""
     return [figure for figure in figures if not figure.answer.is_share]
 
 
 def overlays_of(figures: Sequence[Figure]) -> list[list[int]]:
-    """The figures, counted from 0, that one overlay can show: two or more in one unit."""
+    """Return the indices of the figures of each overlay: two or more in one unit."""
     by_units: dict[str, list[int]] = {}
     for index, figure in enumerate(figures):
         by_units.setdefault(figure.answer.units, []).append(index)
@@ -95,7 +95,7 @@ def overlays_of(figures: Sequence[Figure]) -> list[list[int]]:
 
 
 def forecast_payload(simulation: RunResult, figure: Figure, most: int, *, fits: bool = True) -> dict[str, Any]:
-    """What one forecast's chart is drawn and counted from.
+    """Return the data that one forecast's chart is drawn and counted from.
 
     Args:
         simulation: the finished run.
@@ -137,7 +137,7 @@ def _trials(result: ForecastResult, most: int, marks: Iterable[float] = ()) -> d
 
 
 def _second(figure: Figure, beside: RunResult | None, most: int) -> dict[str, Any] | None:
-    """The trials of the same forecast in the second run; None where there is none."""
+    """Return the trials of the same forecast in the second run; None if there is none."""
     partner = None if beside is None else partner_of(figure.answer, beside)
     if beside is None or partner is None:
         return None
@@ -217,7 +217,7 @@ def most_values(forecasts: int) -> int:
 
 
 def rank_table(x: Floats, most: int, marks: Iterable[float] = ()) -> RankTable:
-    """The table of ascending `(n,)` trials.
+    """Return the rank table of ascending `(n,)` trials.
 
     Args:
         x: in memory or on disk; none of them NaN.

@@ -33,7 +33,7 @@ _Given = dict[tuple[str, str], tuple[str, str]]
 
 
 def second_run(first: RunResult, second: RunResult) -> Html:
-    """The section that says what the second run is, and how its answers differ."""
+    """Return the section that says what the second run is, and how its answers differ."""
     model, rows = second.model, summarise(first)
     said = (
         f": {second.evaluated:,} trials, {second.accepted:,} accepted; seed {second.settings.seed}. In each chart the "
@@ -55,7 +55,7 @@ def second_run(first: RunResult, second: RunResult) -> Html:
 
 
 def partner_of(row: SummaryRow, second: RunResult) -> SummaryRow | None:
-    """The forecast of the second run that has the same name and units, and a number in some accepted trial."""
+    """Return the second run's forecast of the same name and units, if some accepted trial has a number; else None."""
     for each in summarise(second):
         if name_key(each.name) == name_key(row.name) and each.units == row.units and each.trials:
             return each
@@ -82,7 +82,7 @@ def _lines(first: SummaryRow, second: SummaryRow) -> Iterator[Html]:
 
 
 def _numbers(first: SummaryRow, second: SummaryRow) -> Iterator[tuple[str, Estimate, Estimate, bool]]:
-    """What, in the first run, in the second, and whether it is a share."""
+    """Yield each statistic's name, its values in the first and the second run, and whether it is a share."""
     if first.yes is not None and second.yes is not None:
         yield "Yes", first.yes, second.yes, True
         return

@@ -29,7 +29,7 @@ __all__ = ["dependence", "limits"]
 
 
 def dependence(found: Sensitivities, source: Workbook) -> Html:
-    """The section with what each forecast depends on; nothing where there is no forecast."""
+    """Return the section with what each forecast depends on; nothing if there is no forecast."""
     if not found.forecasts:
         return EMPTY
     return element(
@@ -71,7 +71,7 @@ def _tables(found: ForecastSensitivity, whole: Sensitivities) -> Iterator[Html]:
 
 
 def limits(found: Sensitivities) -> Html:
-    """The section with how the answers move with each limit; nothing where no filter has one."""
+    """Return the section with how the answers move with each limit; nothing if no filter has one."""
     if not (found.filter_limits or found.varying_limits or found.omitted_limits):
         return EMPTY
     units = {each.forecast: each.units for each in found.forecasts}
@@ -98,7 +98,7 @@ def _limit(limit: FilterLimit, units: dict[str, str]) -> Html:
 
 
 def _answer_charts(limit: FilterLimit, units: dict[str, str]) -> Iterator[Html]:
-    """A chart for the forecasts of each unit: changes in different units have no common axis."""
+    """Yield a chart for the forecasts of each unit: changes in different units have no common axis."""
     by_unit: dict[str, list[int]] = {}
     for index, slope in enumerate(limit.slopes):
         by_unit.setdefault(units[slope.forecast], []).append(index)

@@ -76,7 +76,7 @@ def pairs(simulation: RunResult) -> Html:
 
 
 def scenarios(simulation: RunResult) -> Html:
-    """The answers of the workbook's scenarios beside its own; nothing where they were not run."""
+    """Return the answers of the workbook's scenarios beside its own; nothing if they were not run."""
     found = scenario_answers(simulation)
     if not found:
         return EMPTY
@@ -99,7 +99,7 @@ def statistics(simulation: RunResult, names: Collection[str] | None = None) -> H
 
 
 def checks(simulation: RunResult) -> Html:
-    """The checks; nothing where the workbook has none."""
+    """Return the checks; nothing if the workbook has none."""
     if not simulation.checks:
         return EMPTY
     flow = Flow()
@@ -154,7 +154,7 @@ def _remarks(simulation: RunResult) -> Iterator[str]:
 
 
 def _assumption(simulation: RunResult, assumption: Assumption) -> Html:
-    """An assumption's name above two rows, in a table body of their own so that they stay together."""
+    """Return an assumption's name above two rows, in a table body of their own so that they stay together."""
     found = filter_effect_of(simulation, assumption.name)
     shape = EMPTY if found is None else _shape(simulation, assumption.name)
     named = element("tr", element("th", shape, *_name_line(assumption), scope="rowgroup", colspan=str(_COLUMNS)))
@@ -168,7 +168,7 @@ def _assumption(simulation: RunResult, assumption: Assumption) -> Html:
 
 
 def _shape(simulation: RunResult, name: str) -> Html:
-    """A small picture of the draws before filtering and of the accepted ones; nothing where all draws are one value."""
+    """Draw the draws before filtering and the accepted ones in a small picture; nothing if all draws are one value."""
     found = shape_chart(simulation, name)
     return EMPTY if found is None else picture_html(found, "shape")
 
@@ -197,7 +197,7 @@ def _change(found: Estimate, marked: bool) -> Html:
 
 
 def notices(simulation: RunResult) -> Html:
-    """The notices; nothing where there are none."""
+    """Return the notices; nothing if there are none."""
     if not simulation.notices:
         return EMPTY
     notices = (element("p", str(notice), class_="notice") for notice in simulation.notices)
@@ -205,7 +205,7 @@ def notices(simulation: RunResult) -> Html:
 
 
 def record(found: Record) -> Html:
-    """The record of the run: every part of it can be opened, and what is open is printed."""
+    """Return the record of the run: every part of it can be opened, and open parts are printed."""
     said = "What the numbers depend on, and how to repeat them. Every number is in full. Only open parts are printed."
     return element(
         "section",

@@ -151,7 +151,7 @@ class Files:
 
 
 def _document(report: StudyReport, ending: str) -> bytes:
-    """The report as a document, without a date: what a study finds depends on no clock."""
+    """Return the report as a document without a date: what a study finds depends on no clock."""
     from xlmc.outputs.document import document_bytes
 
     blocks = (Paragraph(report.below), *report.blocks)
@@ -159,7 +159,7 @@ def _document(report: StudyReport, ending: str) -> bytes:
 
 
 def _page(report: StudyReport) -> str:
-    """The report as one HTML page that needs no other file."""
+    """Return the report as one HTML page that needs no other file."""
     from xlmc.outputs.document.html_writer import blocks_html
     from xlmc.outputs.page import plain_page
 
@@ -167,7 +167,7 @@ def _page(report: StudyReport) -> str:
 
 
 def book_parts(report: StudyReport) -> dict[str, bytes]:
-    """The report as the parts of a workbook."""
+    """Return the report as the parts of a workbook."""
     from xlmc.outputs.document.xlsx_writer import sheet_widths, write_blocks
     from xlmc.outputs.sheets.exact_book import ExactBook
 

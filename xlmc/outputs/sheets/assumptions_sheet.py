@@ -137,7 +137,7 @@ def _draw_shapes(page: Page, book: Workbook, simulation: RunResult, curves: Curv
 
 
 def _shape_chart(book: Workbook, table: TableAt, column: int) -> Chart:
-    """A chart without axes, over the lines of an assumption: columns before filtering, a line of the accepted."""
+    """Chart an assumption without axes, over its two rows: columns before filtering, a line for the accepted draws."""
     chart = book.add_chart({"type": "column"})
     chart.add_series(
         {
@@ -175,7 +175,7 @@ def _write_assumption(page: Page, simulation: RunResult, assumption: Assumption)
 
 
 def _statistics(simulation: RunResult, assumption: Assumption) -> tuple[list[Shown], list[Shown], list[Shown]]:
-    """The cells of the draws before filtering, of the accepted ones and of the change; or why it is not drawn."""
+    """Return the cells of the draws before filtering, of the accepted ones and of the change; or why there are none."""
     found = filter_effect_of(simulation, assumption.name)
     if found is None:
         why = Shown(status(simulation.model, assumption.name, assumption.frozen))

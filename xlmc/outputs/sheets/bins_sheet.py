@@ -46,11 +46,11 @@ class BinsAt:
     left: int
 
     def cell(self, row: int, column: int = 0) -> Reference:
-        """A reference to one cell, its column counted from `left`."""
+        """Return a reference to one cell, its column counted from `left`."""
         return [self.sheet, row, self.left + column]
 
     def column(self, column: int) -> Reference:
-        """A reference to the bins of one column."""
+        """Return a reference to the bins of one column."""
         return [self.sheet, self.header + 1, self.left + column, self.last, self.left + column]
 
 
@@ -102,7 +102,7 @@ def _rest(bins: Histogram) -> Iterator[tuple[str, int]]:
 
 
 def histogram_chart(book: Workbook, at: BinsAt, bins: Histogram) -> ChartColumn:
-    """The chart. Its texts are references to cells, so that none of them can be taken for a formula."""
+    """Chart a histogram. Its texts are references to cells, so that none can be taken for a formula."""
     chart = book.add_chart({"type": "column", "subtype": "stacked"})
     only_inside = not bins.outside.any()
     for column, colour in zip(_COUNTS[:1] if only_inside else _COUNTS, (DARK, LIGHT), strict=False):

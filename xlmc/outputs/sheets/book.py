@@ -201,7 +201,7 @@ def build_sheets(
     rows: int = trials_sheet.TRIAL_ROWS,
     further: Sequence[ResultSheet] = (),
 ) -> dict[str, bytes]:
-    """The result sheets of a run, as the parts of a workbook that holds them alone.
+    """Return the result sheets of a run, as the parts of a workbook that holds them alone.
 
     Args:
         simulation: the finished run.

@@ -95,7 +95,7 @@ _ROUNDING = 1e-14
 
 
 def exact(value: float | None, form: Form = PLAIN, like: Estimate | None = None) -> Shown:
-    """A number that has no error: a setting, the base case; in the digits of an estimate beside it, if there is one."""
+    """Show a number without error, such as a setting, in the digits of an estimate `like` it, if one is given."""
     if like is not None and like.error:
         return Shown(value, paired_format(like, form), date1904=form.date1904)
     return Shown(value, _exact_format(value, form), date1904=form.date1904)
@@ -153,7 +153,7 @@ def _error(value: float | None, digits: str, look: str) -> Shown:
 
 
 def paired_format(estimate: Estimate, form: Form = PLAIN) -> str:
-    """The format of a value whose error stands in a cell of its own: two digits of the error."""
+    """Return the format of a value whose error stands in a cell of its own: two digits of the error."""
     if form.kind is Kind.DATE:
         return form.moment_code
     if estimate.error == 0.0:
@@ -171,7 +171,7 @@ def _exact_format(value: float | None, form: Form) -> str:
 
 
 def _in_form(digits: str, form: Form) -> str:
-    """The format of a number with what stands before and after it: a sign of money, or a percent sign."""
+    """Return the format of a number with what stands before and after it: a sign of money, or a percent sign."""
     before, after = form.affixes
     if digits == "General" or not (before or after):
         return digits
@@ -181,7 +181,7 @@ def _in_form(digits: str, form: Form) -> str:
 
 
 def _error_format(found: Estimate, digits: str, form: Form = PLAIN) -> str:
-    """The format of the error beside a value; digits of its own where those of so large a value show nothing of it."""
+    """Return the format of the error beside a value; digits of its own where those of the value would show 0."""
     if form.kind is Kind.DATE:
         return _span_format(found.error or 0.0, found.error)
     decimals = _paired_decimals(found, form)
@@ -193,7 +193,7 @@ def _error_format(found: Estimate, digits: str, form: Form = PLAIN) -> str:
 
 
 def _span_format(days: float, error: float | None) -> str:
-    """The format of a span of time: days in the digits of the error, or a time where it is less than one."""
+    """Return the format of a span in days: days in the digits of the error, or hours where it is less than a day."""
     decimals = decimals_of(error or days)
     if not math.isfinite(days) or abs(days) < 1.0 or decimals is None:
         return "[h]:mm:ss"
@@ -207,7 +207,7 @@ def share_format(estimate: Estimate) -> str:
 
 
 def spread_format(spread: float, form: Form = PLAIN) -> str:
-    """The format of single trials: four digits of their spread."""
+    """Return the format of single trials: four digits of their spread."""
     if form.kind is Kind.DATE:
         return form.moment_code
     scaled = form.factor * spread
@@ -215,7 +215,7 @@ def spread_format(spread: float, form: Form = PLAIN) -> str:
 
 
 def number_format(value: float) -> str:
-    """The format of a number that stands alone: six digits, or all that it has where these are fewer."""
+    """Return the format of a number that stands alone: six digits, or all that it has where these are fewer."""
     if float(value).is_integer():
         return _COUNT if abs(value) < _LARGEST else "General"
     if 0.0 < abs(value) < _SMALLEST:
@@ -250,7 +250,7 @@ def _usable(number: float) -> bool:
 
 
 def shown_text(shown: Shown) -> str:
-    """What the sheet shows.
+    """Return the text that the sheet shows.
 
     Raises:
         ValueError: there is no such number format.

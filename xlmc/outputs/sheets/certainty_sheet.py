@@ -135,5 +135,5 @@ def _write_line(page: Page, result: ForecastResult, values: NDArray[np.float64],
 
 
 def _error(share: float, trials: int) -> float:
-    """The standard error as the formula has it: 1.96 is the 97.5th percentile of the normal distribution."""
+    """Return the standard error of a share as the sheet's formula computes it, with 1.96 for the normal quantile."""
     return max(math.sqrt(share * (1.0 - share) / trials), 1.96 / (2.0 * (trials + 1.96**2)))

@@ -118,7 +118,7 @@ class _Cumulative:
 
 
 def _cumulative(sample: Sample, bins: Histogram, low: float, high: float) -> _Cumulative:
-    """The curve over the range that the bins cover, the central range being [low, high]."""
+    """Return the cumulative curve over the range of the bins; the central range is [low, high]."""
     pieces = math.ceil(_POINTS / bins.edges.size)
     first = round(float(bins.edges[0] / bins.width) * pieces)
     at = multiples(bins.width / pieces, first, bins.edges.size * pieces + 1)
@@ -153,7 +153,7 @@ def group_by_units(figures: Sequence[Figure]) -> list[list[Figure]]:
 
 
 def overlay_chart(book: Workbook, curves: Curves, group: Sequence[Figure]) -> ChartScatter:
-    """The frequency curves of figures with the same units."""
+    """Chart the frequency curves of figures with the same units."""
     units = group[0].answer.units
     chart = straight(book.add_chart({"type": "scatter", "subtype": "straight"}))
     tables: list[TableAt] = []
@@ -179,7 +179,7 @@ def overlay_chart(book: Workbook, curves: Curves, group: Sequence[Figure]) -> Ch
 
 
 def _polygon(figure: Figure) -> Iterator[list[Shown]]:
-    """The middles of the bars and their density, closed with a bar of none at either end."""
+    """Yield the middles of the bars and their density, closed with an empty bar at either end."""
     bins, trials = figure.bins, figure.bins.counted
     middles = [*(float(edge) + bins.width / 2.0 for edge in bins.edges)]
     density = [float(count) / trials / bins.width for count in bins.inside + bins.outside]
@@ -189,7 +189,7 @@ def _polygon(figure: Figure) -> Iterator[list[Shown]]:
 
 
 def trend_chart(book: Workbook, curves: Curves, simulation: RunResult, group: Sequence[Figure]) -> ChartStock:
-    """The central range of each figure as a box, with a line from its 5th to its 95th percentile."""
+    """Chart the central range of each figure as a box, with a line from its 5th to its 95th percentile."""
     units, shares = group[0].answer.units, {figure.answer.share for figure in group}
     central = f"{percent(shares.pop())} range" if len(shares) == 1 else "Central range"
     heads = ["Forecast", f"{central} from", "95th percentile", "5th percentile", f"{central} to"]
@@ -206,7 +206,7 @@ def trend_chart(book: Workbook, curves: Curves, simulation: RunResult, group: Se
 
 
 def _ranges(simulation: RunResult, group: Sequence[Figure]) -> Iterator[list[Shown]]:
-    """The ranges in the order of a stock chart: open, high, low, close."""
+    """Yield the ranges in the order of a stock chart: open, high, low, close."""
     for figure in group:
         low, high = (each.value for each in percentiles(simulation.results[figure.answer.name].sample, _TAILS).values())
         digits = cells.paired_format(figure.answer.mean)

@@ -33,7 +33,7 @@ class TableAt:
     rows: int
 
     def title(self, number: int = 0) -> Reference:
-        """The first title or the second."""
+        """Return a reference to the first title or the second."""
         return [self.sheet, _TITLES + number, self.left]
 
     @property
@@ -44,11 +44,11 @@ class TableAt:
         return [self.sheet, HEADER, self.left + column]
 
     def cell(self, row: int) -> Reference:
-        """A cell of the first column, its row counted from the one below the headings."""
+        """Return a reference to a cell of the first column, its row counted from the one below the headings."""
         return [self.sheet, HEADER + 1 + row, self.left]
 
     def column(self, column: int) -> Reference:
-        """The cells of a column below its heading."""
+        """Return a reference to the cells of a column below its heading."""
         return [self.sheet, HEADER + 1, self.left + column, HEADER + self.rows, self.left + column]
 
 

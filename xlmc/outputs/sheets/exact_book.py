@@ -43,7 +43,7 @@ class _Run:
         return self.row + len(self.numbers)
 
     def cells(self, start: int, end: int) -> array[float]:
-        """The numbers from a row to before another."""
+        """Return the numbers of the rows from `start` up to `end`, which is left out."""
         return self.numbers[start - self.row : end - self.row]
 
 
@@ -86,7 +86,7 @@ class ExactSheet(Worksheet):  # type: ignore[misc]  # the library has no types
         self._in_column[column].append(run)
 
     def _bands(self) -> list[_Band]:
-        """The rows of runs, cut where one begins or ends; where runs overlap, the later one counts."""
+        """Return the rows of runs, cut where one begins or ends; where runs overlap, the later one counts."""
         cuts = sorted({edge for run in self._runs for edge in (run.row, run.end)})
         found = []
         for start, end in pairwise(cuts):
@@ -134,7 +134,7 @@ class ExactSheet(Worksheet):  # type: ignore[misc]  # the library has no types
             self.fh.write(f"{self._opening(row)}{written}</row>")
 
     def _opening(self, row: int) -> str:
-        """The tag that begins a row; XlsxWriter writes it once for all rows that differ in their number alone."""
+        """Return the tag that begins a row; XlsxWriter writes it once for rows that differ in their number alone."""
         span, info = self.row_spans.get(row // 16), self.row_info.get(row)
         key = (span, info and (info.height, info.row_format, info.hidden, info.level, info.collapsed))
         behind = self._openings.get(key)
@@ -148,7 +148,7 @@ class ExactSheet(Worksheet):  # type: ignore[misc]  # the library has no types
         return f'<row r="{row + 1}"{behind}'
 
     def _get_range_data(self, row_start: int, col_start: int, row_end: int, col_end: int) -> Any:
-        """The cells that a chart shows, those of runs among them."""
+        """Return the cells that a chart shows, those of runs among them."""
         whole = self.table
         try:
             self.table = self._with_runs(row_start, col_start, row_end, col_end)
@@ -157,7 +157,7 @@ class ExactSheet(Worksheet):  # type: ignore[misc]  # the library has no types
             self.table = whole
 
     def _with_runs(self, top: int, left: int, bottom: int, right: int) -> dict[int, dict[int, Any]]:
-        """The cells of these rows and columns; of sheets that are wide, charts look at few."""
+        """Return the cells of these rows and columns; of wide sheets, charts read few."""
         found: dict[int, dict[int, Any]] = {}
         for run in chain.from_iterable(self._in_column.get(column, ()) for column in range(left, right + 1)):
             start, end = max(top, run.row), min(bottom + 1, run.end)
@@ -188,7 +188,7 @@ class ExactSheet(Worksheet):  # type: ignore[misc]  # the library has no types
         self.fh.write(f"<c{written}><v>{repr(float(number)).removesuffix('.0')}</v></c>")
 
     def _find_spans(self, bands: Sequence[_Band]) -> None:
-        """The first and last column of every 16 rows; result sheets have no comments, which would count, too."""
+        """Find the first and last column of every 16 rows; result sheets have no comments, which would count, too."""
         found: dict[int, tuple[int, int]] = {}
 
         def add(group: int, first: int, last: int) -> None:
@@ -219,7 +219,7 @@ class ExactBook(Workbook):  # type: ignore[misc]  # the library has no types
         return self._packager.parts
 
     def add_chart(self, options: dict[str, Any]) -> Any:
-        """A chart, which writes the numbers that it keeps in one piece."""
+        """Add a chart that writes its stored numbers in one piece."""
         chart = super().add_chart(options)
         chart._write_num_cache = MethodType(_write_kept_numbers, chart)
         return chart

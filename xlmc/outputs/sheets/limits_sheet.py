@@ -186,13 +186,13 @@ def _across(limit: FilterLimit) -> str:
 
 
 def _share_axis(limit: FilterLimit) -> dict[str, float]:
-    """The axis of the shares: from 0 to above the whiskers, and never beyond 100 %."""
+    """Return the axis of the shares: from 0 to above the whiskers, and never beyond 100 %."""
     tops = [each.acceptance.value + (each.acceptance.error or 0.0) for each in limit.points]
     return bounds(0.0, min(1.0, max(tops, default=0.0)))
 
 
 def moved_caption(limit: FilterLimit) -> str:
-    """What the chart of the changes shows."""
+    """Return the caption of the chart of the changes."""
     return (
         f"How far each forecast's mean moves from that with the limit as it is ({number_text(limit.limit)}); whiskers "
         f"are standard errors of the change. Other filters and limits stay.{_nothing_moves(limit)}"
@@ -200,7 +200,7 @@ def moved_caption(limit: FilterLimit) -> str:
 
 
 def _nothing_moves(limit: FilterLimit) -> str:
-    """What changes of 0 ± 0 mean."""
+    """Return the sentence on changes of 0 ± 0; empty if some change is not."""
     if len({point.trials for point in limit.points}) > 1:
         return ""
     return " No trial that everything else keeps lies between these limits, so nothing moves; with more trials it may."

@@ -220,12 +220,12 @@ class Page:
 
 
 def cut(value: str) -> str:
-    """The text, or as much of it as a cell holds, with a mark."""
+    """Return the text, or as much of it as a cell holds, with a mark."""
     return value if len(value) <= LONGEST_TEXT else value[: LONGEST_TEXT - 6] + " [cut]"
 
 
 def _plain(value: str) -> str:
-    """A text as the head and the foot of a page take it: `&` begins a code there, and Excel takes 255 characters."""
+    """Escape a text for the head and foot of a page: `&` begins a code there, and Excel takes 255 characters."""
     return value[:120].replace("&", "&&")
 
 

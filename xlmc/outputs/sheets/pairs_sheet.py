@@ -107,7 +107,7 @@ def _name_and_limit(pair: Pair, index: int) -> str:
 
 
 def pair_sentences(simulation: RunResult, pairs: Sequence[Pair]) -> list[str]:
-    """What the table is of."""
+    """Return the sentences that say what the table of pairs shows."""
     trials, ranked = {pair.trials for pair in pairs}, {pair.ranked for pair in pairs}
     said = "A limit is the forecast's threshold or, if it has none, its median; it is used as the number printed here."
     said += " Probabilities are shares of the accepted trials in which both forecasts are numbers"
@@ -124,7 +124,7 @@ def pair_sentences(simulation: RunResult, pairs: Sequence[Pair]) -> list[str]:
 def _drawings(
     book: Workbook, curves: Curves, simulation: RunResult, pairs: Sequence[Pair], trials: TrialsAt
 ) -> list[Drawing]:
-    """A scatter chart for each pair, from the first trials in which all forecasts of these pairs are numbers."""
+    """Chart each pair as a scatter, from the first trials in which all forecasts of these pairs are numbers."""
     names = {forecast.name for pair in pairs for forecast in (pair.first, pair.second)}
     forecasts = [forecast for forecast in simulation.model.forecasts if forecast.name in names]
     known = _trials_with_numbers([simulation.forecasts[each.name] for each in forecasts])
@@ -144,7 +144,7 @@ def _drawings(
 
 
 def _trials_with_numbers(columns: Sequence[NDArray[np.float64]]) -> NDArray[np.intp]:
-    """The first trials in which all are numbers: a text among the points would turn a chart's axis into 1, 2, 3."""
+    """Return the first trials in which all are numbers: a text among the points would make a chart's axis 1, 2, 3."""
     early = [column[: 20 * POINTS] for column in columns]
     return np.flatnonzero(~np.any([np.isnan(column) for column in early], axis=0))[:POINTS]
 
@@ -152,7 +152,7 @@ def _trials_with_numbers(columns: Sequence[NDArray[np.float64]]) -> NDArray[np.i
 def _points(
     curves: Curves, simulation: RunResult, trials: TrialsAt, forecast: Forecast, known: NDArray[np.intp]
 ) -> _Points:
-    """A forecast's values in these trials: where they stand on the sheet Trials, or else in a table of their own."""
+    """Return a forecast's values in these trials: those on the sheet Trials, or else a table of their own."""
     values = simulation.forecasts[forecast.name][known]
     limits = bounds(float(values.min()), float(values.max()))
     if known[-1] < min(known.size, trials.shown):

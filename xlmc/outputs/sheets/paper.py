@@ -82,7 +82,7 @@ def _on(
     upright: bool,
     whole: bool,
 ) -> Layout:
-    """The layout on pages of a width and a height."""
+    """Return the layout on pages of a width and a height, in points."""
     across = min(1.0, page[0] / width)
     both = min(across, page[1] / max(sum(heights), 1.0))
     if whole and (both >= SMALLEST or both == across):
@@ -92,7 +92,7 @@ def _on(
 
 
 def _breaks(room: float, heights: Sequence[float], begins: Sequence[int], repeated: float) -> tuple[list[int], int]:
-    """The rows that begin a page, each with as many of the parts between `begins` as it has room for; all pages."""
+    """Return the rows that begin a page and the number of pages; parts between `begins` stay together if they fit."""
     edges = [0, *sorted({row for row in begins if 0 < row < len(heights)}), len(heights)]
     breaks: list[int] = []
     filled, pages = 0.0, 1

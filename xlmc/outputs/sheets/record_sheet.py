@@ -101,7 +101,7 @@ def _write_table(page: Page, section: str, table: RecordTable) -> None:
 
 
 def _column_starts(keys: Sequence[str]) -> tuple[list[int], int]:
-    """The column of the sheet at which each column of a table starts, and at which the last one ends."""
+    """Return the sheet's column at which each column of a table starts, and at which the last one ends."""
     starts, column = [], _FIRST
     for key in keys:
         starts.append(column)
@@ -114,7 +114,7 @@ def _write_key(page: Page, row: int, key: str) -> None:
 
 
 def _cell(value: Value, look: str, key: str = "") -> Shown:
-    """A value as it is shown; the cell keeps all digits of a number."""
+    """Return a value as it is shown; the cell keeps all digits of a number."""
     if value is None or value == "":
         return Shown(NONE, look=look)
     if isinstance(value, str | bool) or key in _PLAIN:

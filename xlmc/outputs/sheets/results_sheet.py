@@ -42,8 +42,10 @@ def write_results(page: Page, simulation: RunResult) -> None:
 
 
 def opening_sentences(simulation: RunResult) -> list[str]:
-    """What stands before the answers: of what they are, where that is no workbook that a person knows; why not to use
-    them, checks that fail first; then the trials lost to errors.
+    """Return the sentences before the answers.
+
+    They say which changed workbook was run, if one was; why not to use the answers, failed checks first; and how many
+    trials were lost to errors.
     """
     ended = simulation.stopped
     missing = simulation.refused
@@ -129,7 +131,7 @@ def _write_thresholds(page: Page, rows: Sequence[SummaryRow]) -> None:
 
 
 def range_sentences(rows: Sequence[SummaryRow]) -> list[str]:
-    """What a central range is."""
+    """Return the sentence that says what a central range is."""
     shares = {row.share for row in rows}
     if len(shares) != 1:
         return ["Central ranges leave out as many accepted trials below as above."]
@@ -139,7 +141,7 @@ def range_sentences(rows: Sequence[SummaryRow]) -> list[str]:
 
 
 def base_sentences(simulation: RunResult) -> list[str]:
-    """What the base case is, and which filters it would not pass."""
+    """Return the sentences that say what the base case is, and which filters it would not pass."""
     found = base_case(simulation)
     if found is None:
         return ["There is no base case: the cell of an assumption is blank."]
@@ -187,7 +189,7 @@ def _weight_lines(simulation: RunResult) -> list[list[Shown]]:
 
 
 def _search_lines(simulation: RunResult) -> list[list[Shown]]:
-    """What was evaluated where accepted trials are rare."""
+    """Return the row with the number of evaluations, if accepted trials are rare."""
     if simulation.rare is None:
         return []
     return [[Shown("Evaluated in all", look="name"), cells.count(simulation.rare.evaluations), *[cells.BLANK] * 4]]

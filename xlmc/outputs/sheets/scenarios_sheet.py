@@ -92,7 +92,7 @@ def scenario_warnings(found: Sequence[ScenarioAnswers]) -> list[str]:
 
 
 def scenario_sentences(found: Sequence[ScenarioAnswers]) -> Iterator[str]:
-    """What the differences are, and what their errors."""
+    """Yield the sentences that say what the differences and their errors are."""
     few = [f"{each.name!r} ({each.run.accepted:,})" for each in found if 0 < each.run.accepted < FEW]
     if few:
         yield f"Few trials were accepted: {', '.join(few)}. Errors of means and differences can be too small there."
@@ -123,13 +123,13 @@ def _accepted(each: ScenarioAnswers) -> list[Shown]:
 
 
 def range_heads(states: Sequence[ForecastAnswer]) -> list[str]:
-    """The headings of mean and central range of a forecast in all states, which may ask for different ranges."""
+    """Return the headings of mean and central range of a forecast in all states, which may ask for different ranges."""
     shares = {percent(each.forecast.central) for each in states}
     return ["Mean", f"{shares.pop()} range from" if len(shares) == 1 else "Central range from", "to"]
 
 
 def above_head(states: Sequence[ForecastAnswer]) -> str:
-    """The heading of its probability above a threshold; empty where no state has one."""
+    """Return the heading of its probability above a threshold; empty if no state has one."""
     thresholds = {each.forecast.threshold for each in states if each.forecast.threshold is not None}
     form = states[0].form
     return (

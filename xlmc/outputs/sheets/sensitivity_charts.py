@@ -89,23 +89,23 @@ class TableAt:
     last: int
 
     def heading(self, column: int) -> list[str | int]:
-        """A reference to a column's heading."""
+        """Return a reference to a column's heading."""
         return [self.sheet, self.header, column]
 
     def column(self, column: int) -> list[str | int]:
-        """A reference to the numbers of a column."""
+        """Return a reference to the numbers of a column."""
         return [self.sheet, self.first, column, self.last, column]
 
     def row(self, index: int, first: int, last: int) -> list[str | int]:
-        """A reference to some columns of a row, which is counted from the first."""
+        """Return a reference to the columns `first` to `last` of a row, which is counted from the first."""
         return [self.sheet, self.first + index, first, self.first + index, last]
 
     def cell(self, index: int, column: int) -> list[str | int]:
-        """A reference to one cell, its row counted from the first."""
+        """Return a reference to one cell, its row counted from the first."""
         return [self.sheet, self.first + index, column]
 
     def formula(self, column: int) -> str:
-        """The numbers of a column as the text of a formula, which error bars take."""
+        """Return a reference to the numbers of a column as the text of a formula, which error bars take."""
         from xlsxwriter.utility import xl_range_formula
 
         return f"={xl_range_formula(self.sheet, self.first, column, self.last, column)}"
@@ -214,7 +214,7 @@ def _axes(chart: ChartBar, axis: str, number: str) -> None:
 
 
 def spider_chart(book: Workbook, at: TableAt, title: str, axis: str, first: int, last: int) -> ChartLine:
-    """The changes over the percentiles, which are the headings of the columns from `first` to `last`."""
+    """Chart the changes over the percentiles, which are the headings of the columns from `first` to `last`."""
     chart = straight(book.add_chart({"type": "line"}))
     for index in range(min(MOST_LINES, at.last - at.first + 1)):
         chart.add_series(
@@ -293,7 +293,7 @@ def _line(index: int) -> dict[str, Any]:
 
 
 def _finish(chart: Any, title: str) -> Any:
-    """The chart with its title; `place_rows` gives it its size."""
+    """Return the chart with its title; `place_rows` gives it its size."""
     chart.set_title(
         {"name": no_reference(title), "name_font": {"size": 12, "bold": True, "color": INK}, "overlay": False}
     )

@@ -144,7 +144,7 @@ def _is_drawn(forecast: ForecastSensitivity) -> bool:
 
 
 def sensitivity_sentences(found: Sensitivities, source: SourceBook) -> list[str]:
-    """What the numbers are, and rest on."""
+    """Return the sentences that say what the numbers are and rest on."""
     said = [
         "Influences are those among the accepted trials: filters change which assumptions matter. ± is the standard "
         "error that comes from a limited number of trials. No sensitivity says whether the model "
@@ -204,7 +204,7 @@ def _write_details(
 
 
 def _brief(forecast: ForecastSensitivity) -> list[str] | None:
-    """The captions of its first two charts, which the top of the sheet explains; None where they are of one kind."""
+    """Return the captions of its first two charts, which the top of the sheet explains; None without both of them."""
     if not (forecast.influences and forecast.bars):
         return None
     return ["Variance explained.", f"Tornado about the base case{_base_text(forecast)}."]
@@ -265,14 +265,14 @@ def _with_floor(found: Estimate, floor: float, is_noise: bool) -> list[Shown]:
 
 
 def _at_least(found: Influence, shown: list[Shown]) -> list[Shown]:
-    """The cells of the variance explained, with the words before the number where it is a lower bound."""
+    """Return the cells of the variance explained, with `at least` before the number if it is a lower bound."""
     if not found.explained_at_least or shown[0].format == cells.NOISE:
         return shown
     return [replace(shown[0], format=cells.AT_LEAST + shown[0].format), *shown[1:]]
 
 
 def _as_noise(shown: list[Shown], is_noise: bool) -> list[Shown]:
-    """A value and its error; the value, where it is noise, shows as that word: the cell keeps the number."""
+    """Return a value and its error; a value that is noise shows as that word, and its cell keeps the number."""
     return [replace(shown[0], format=cells.NOISE), *shown[1:]] if is_noise else shown
 
 
@@ -301,7 +301,7 @@ def influence_charts(book: Workbook, at: TableAt, found: ForecastSensitivity, so
 
 
 def influence_captions(found: ForecastSensitivity, pairs: int) -> list[str]:
-    """A caption for each chart: what it is and what it is not."""
+    """Return a caption for each chart of influences: what it is and what it is not."""
     dependence = (
         "Dependence (index of Cramér and von Mises): 0 only if no part of the forecast's distribution depends on the "
         "assumption, 100 % if nothing else matters. Unlike variance explained it also shows an assumption that "
@@ -356,7 +356,7 @@ def _move_row(bar: Bar, base: float, widest: float) -> list[Shown]:
 
 
 def move_charts(book: Workbook, at: TableAt, found: ForecastSensitivity) -> list[Any]:
-    """The charts: tornado and spider."""
+    """Return the charts: tornado and spider."""
     units = f" ({found.units})" if found.units else ""
     axis = f"Change of the forecast from its base case{units}"
     first, last = _CHANGES, _CHANGES + 4
@@ -367,7 +367,7 @@ def move_charts(book: Workbook, at: TableAt, found: ForecastSensitivity) -> list
 
 
 def move_captions(found: ForecastSensitivity) -> list[str]:
-    """A caption for each chart: what it is and what it is not."""
+    """Return a caption for tornado and spider: what each is and what it is not."""
     tornado = _TORNADO_CHART.replace("its base case", f"its base case{_base_text(found)}")
     if _is_bent(found):
         tornado += f" {_BENT}"

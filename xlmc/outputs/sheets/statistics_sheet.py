@@ -80,7 +80,7 @@ def _write_rows(page: Page, head: str, found: Sequence[dict[_Value, list[Shown]]
 
 
 def _below_statistics(result: ForecastResult) -> dict[_Value, list[Shown]]:
-    """The percentiles, the central range and what lies above the threshold, under labels that all forecasts share."""
+    """Return percentiles, central range and the share above the threshold, under labels that all forecasts share."""
     definition, above = result.definition, result.statistics.probability_above
     rows: dict[_Value, list[Shown]] = {row[0].value: row[1:] for row in _percentiles(result)}
     if not rows:
@@ -156,7 +156,7 @@ _SPANS: Final = ("Standard deviation", "Range width", "Mean standard error")
 
 
 def _percentiles(result: ForecastResult) -> list[list[Shown]]:
-    """The percentiles; none of answers that are yes or no, or texts."""
+    """Return the rows of percentiles; none of answers that are yes or no, or texts."""
     found = result.statistics
     if result.kind in NOT_ROUNDED:
         return []

@@ -124,7 +124,7 @@ class Styles:
         self._made: dict[tuple[str, str], Format] = {}
 
     def __call__(self, look: str, number_format: str = "General") -> Format:
-        """The format of a look (`header`, `number`, …) that shows numbers in this way.
+        """Return the format of a look (`header`, `number`, …) that shows numbers in this way.
 
         Raises:
             KeyError: there is no such look.
@@ -136,7 +136,7 @@ class Styles:
 
 
 def axis_format(number_format: str) -> str:
-    """The format of an axis's numbers, with a minus sign (U+2212) that no program parts from its number.
+    """Return the format of an axis's numbers, with a minus sign (U+2212) that no program parts from its number.
 
     LibreOffice breaks a label after the hyphen that stands for a minus, and shows 80 for -80 with the hyphen above.
 
@@ -147,7 +147,7 @@ def axis_format(number_format: str) -> str:
 
 
 def no_reference(text: str) -> str:
-    r"""The text of a title or an axis so that it stays text, whatever it says.
+    r"""Return the text of a title or an axis so that it stays text, whatever it says.
 
     XlsxWriter takes words that hold `Sheet!A1`, say as units, for a reference, and writes one that does not exist. An
     invisible word joiner (U+2060) behind the exclamation mark keeps them words.
@@ -159,7 +159,7 @@ def no_reference(text: str) -> str:
 
 
 def straight(chart: Any) -> Any:
-    """The chart, with lines that run straight from point to point, said of every series.
+    """Return the chart with lines that run straight from point to point, set for every series.
 
     The standard takes a series that says nothing for a smooth one (ECMA-376, 21.2.2.194), and XlsxWriter says nothing.
     """
@@ -180,7 +180,7 @@ def finish(chart: Chart, title: Reference, *, legend: bool = True) -> None:
 
 
 def across(name: Reference | None = None, **more: Any) -> dict[str, Any]:
-    """The horizontal axis."""
+    """Return the options of the horizontal axis."""
     named: dict[str, Any] = {} if name is None else {"name": name, "name_font": {**FONT, "bold": False}}
     return {
         **named,
@@ -194,7 +194,7 @@ def across(name: Reference | None = None, **more: Any) -> dict[str, Any]:
 
 
 def upwards(name: str | Reference, number_format: str = "#,##0", **more: Any) -> dict[str, Any]:
-    """The vertical axis."""
+    """Return the options of the vertical axis."""
     return {
         "name": no_reference(name) if isinstance(name, str) else name,
         "name_font": {**FONT, "bold": False, "rotation": -90},
@@ -208,7 +208,7 @@ def upwards(name: str | Reference, number_format: str = "#,##0", **more: Any) ->
 
 
 def bounds(lowest: float, highest: float) -> dict[str, float]:
-    """An axis's limits about such numbers, in four to ten round steps; nothing for numbers without a spread.
+    """Return an axis's limits about these numbers, in four to ten round steps; nothing for numbers without a spread.
 
     >>> bounds(18.9, 26.6)
     {'min': 18.0, 'max': 27.0, 'major_unit': 1.0}

@@ -53,11 +53,11 @@ class TrialsAt:
     first_forecast: int
 
     def heading(self, index: int) -> Reference:
-        """The heading of a forecast, its name and units."""
+        """Return a reference to the heading of a forecast, its name and units."""
         return [self.sheet, HEADER, self.first_forecast + index]
 
     def column(self, index: int, most: int | None = None) -> Reference:
-        """The cells of a forecast, or its first `most`; there is none without trials."""
+        """Return a reference to the cells of a forecast, or to its first `most`; there is none without trials."""
         column, rows = self.first_forecast + index, self.shown if most is None else most
         return [self.sheet, HEADER + 1, column, HEADER + rows, column]
 

@@ -6,14 +6,19 @@ import json
 import re
 import subprocess
 from datetime import date, timedelta
+from functools import cache
+from pathlib import Path
 
 import docx
 import openpyxl
 import pytest
+from click.testing import CliRunner
 from openpyxl.worksheet.table import Table
 
 from xlmc.analysis.results.saved import open_run
 from xlmc.api import load
+from xlmc.cli import xlmc
+from xlmc.montecarlo.statistics import format_estimate
 from xlmc.outputs.live.frames import frame_of
 from xlmc.outputs.summary import summarise, summary_text
 
@@ -308,3 +313,62 @@ def test_a_book_of_texts_alone_has_a_workbook_though_no_mean_moves_with_its_limi
     run.save(tmp_path / "texts-results.xlsx")
     limits = openpyxl.load_workbook(tmp_path / "texts-results.xlsx")["Filter limits"]
     assert any("at least 0.2" in str(row[0]) for row in limits.iter_rows(values_only=True))
+
+
+@pytest.fixture(scope="module")
+def studied(tmp_path_factory):
+    """The text and the JSON of a study of the books with and without filters, made once for each command."""
+    folder = tmp_path_factory.mktemp("studies")
+    plain, filtered = (write_book(folder / name, filtered=name == "b.xlsx") for name in ("a.xlsx", "b.xlsx"))
+    commands = {
+        "compare": ["compare", str(plain), str(filtered), "--no-causes"],
+        "screen": ["screen", str(filtered)],
+    }
+
+    @cache
+    def run(name):
+        names = [str(folder / f"{name}.{ending}") for ending in ("json", "html", "pdf", "docx", "xlsx")]
+        files = [part for each in names for part in ("-o", each)]
+        found = CliRunner().invoke(xlmc, [*commands[name], *files, "--quiet"])
+        assert found.exit_code in (0, 1), found.output
+        return re.sub(r"\s+", " ", found.output), json.loads(Path(names[0]).read_text(encoding="utf-8")), folder
+
+    return run
+
+
+def test_a_comparison_writes_every_forecast_in_its_form(studied):
+    text, document, folder = studied("compare")
+    found = {each["name"]: each for each in document["forecasts"]}
+    assert "lost" not in text
+    assert "is a number in none" not in text
+    for name, before, after in (("Cost", "$", ""), ("Fixed", "", " EUR"), ("Rate", "", " %")):
+        change, factor = found[name]["mean"], 100.0 if name == "Rate" else 1.0
+        for key in ("first", "second", "difference"):
+            shown = format_estimate(factor * abs(change[key]["value"]), factor * change[key]["error"])
+            assert f"{'-' * (change[key]['value'] < 0)}{before}{shown}{after}" in text, (name, key)
+    day = date(1899, 12, 30) + timedelta(days=int(found["End"]["mean"]["first"]["value"]))
+    assert f"{day} ± " in text
+    assert "P(> 2026-06-07)" in text
+    assert not re.search(r"\b46[,.]?\d{3}\b", text)  # no serial number of a day
+    for name, labels in (("Avoided", {"yes"}), ("Never", {"yes"}), ("Verdict", {"low", "middle", "high"})):
+        assert set(found[name]["shares"]) == labels
+        for each in found[name]["shares"].values():
+            difference = each["difference"]
+            assert format_estimate(100 * difference["value"], 100 * difference["error"]) in text
+    assert found["Never"]["verdict"] == "within"
+    assert found["Verdict"]["verdict"] == "beyond"
+    page = re.sub(r"\s+", "", (folder / "compare.html").read_text(encoding="utf-8"))
+    for other in (page, text_of(folder / "compare.pdf"), text_of(folder / "compare.docx")):
+        assert f"{day}±" in other
+        assert "P(middle),%" in other
+
+
+def test_a_screening_judges_texts_and_dates_as_such(studied):
+    text, document, _ = studied("screen")
+    assert document["forecasts_without_numbers"] == []
+    held = next(each for each in document["held_alone"] if each["names"] == ["Speed in"])["forecasts"]
+    moved = held["Verdict"]["shares"]["high"]["difference"]
+    assert f"{format_estimate(100 * moved['value'], 100 * moved['error'])} points" in text
+    assert "P(> 2026-06-07)" in text
+    assert not re.search(r"\b46[,.]?\d{3}\b", text)
+    assert not re.search(r"\de\+", text)

@@ -176,22 +176,24 @@ def _title(each: ForecastComparison) -> str:
 
 
 def _rows(each: ForecastComparison) -> list[tuple[str, ...]]:
-    from xlmc.analysis.studies.comparison.verdicts import amount, is_chance
+    from xlmc.analysis.studies.comparison.verdicts import amount, is_chance, tolerance_text
     from xlmc.outputs.summary import estimate_text, percent
 
-    found = each.difference
+    found, form = each.difference, each.difference.form
     rows = []
     for number, change in found.changes:
         label = f"{percent(found.share)} range, {number}" if number.endswith("end") else number
+        both, apart = (change.first, change.second), change.difference
         if is_chance(number):
-            shares = [amount(number, one, "") for one in (change.first, change.second, change.difference)]
-            values = [share.removesuffix(" points") for share in shares]
+            values = [amount(number, one, form).removesuffix(" points") for one in (*both, apart)]
             rows.append((f"{label}, %", *values, f"{100 * each.limits[number]:.3g}"))
         else:
-            values = [estimate_text(estimate) for estimate in (change.first, change.second, change.difference)]
-            rows.append((label, *values, "" if isnan(each.tolerance) else f"{each.tolerance:.4g}"))
-    rows.append(("percentiles, on average", "", "", estimate_text(found.wasserstein), ""))
-    rows.append(("cumulative curves, at most", "", "", estimate_text(found.kolmogorov), ""))
+            written = form.spread if number == "SD" else form.estimate
+            difference = "" if isnan(apart.value) else form.spread(apart)
+            rows.append((label, *map(written, both), difference, tolerance_text(each.tolerance, form)))
+    if not found.shares:
+        rows.append(("percentiles, on average", "", "", form.spread(found.wasserstein), ""))
+        rows.append(("cumulative curves, at most", "", "", estimate_text(found.kolmogorov), ""))
     return rows
 
 
@@ -233,7 +235,7 @@ def _entry(each: ForecastComparison, books: tuple[str, str]) -> dict[str, object
         "name_in_second": each.second.name,
         "units": each.first.units,
         "second_multiplied_by": each.factor,
-        "tolerance": each.tolerance,
+        "tolerance": finite(each.tolerance),
         "tolerance_stated": each.stated,
         "tolerances": dict(each.limits),
         "verdict": each.judgement.verdict.value,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
-from math import isfinite
+from math import isfinite, isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -168,8 +168,10 @@ def _table(found: Screening, title: str, costs: Sequence[Cost], *first: tuple[st
 
 def _at_ends(found: Screening, ends: Sequence[AtEnds]) -> Table:
     """Make a table of what holding each assumption at an end of its range costs."""
+    from xlmc.montecarlo.statistics.number_text import number_text
+
     pairs = [
-        (f"{each.name} = {value:.4g}", cost)
+        (f"{each.name} = {number_text(value)}", cost)
         for each in ends
         for value, cost in zip(each.values, each.costs, strict=True)
     ]
@@ -200,7 +202,7 @@ def _of_forecast(found: Screening, name: str) -> Table:
             (
                 ", ".join(cost.names),
                 number,
-                amount(number, change.difference, ""),
+                amount(number, change.difference, cost.forecasts[name].form),
                 "" if name in cost.lost else _size(size),
             )
         )
@@ -221,14 +223,17 @@ def _most_moved(found: Screening, cost: Cost, name: str) -> tuple[str, float]:
 
 def _tolerance(found: Screening, name: str) -> str:
     """Return the tolerance of a forecast in words: `1 mph, and P(> 18) 1.2 points`."""
-    from xlmc.analysis.studies.comparison.verdicts import is_chance, points
+    from xlmc.analysis.studies.comparison.verdicts import is_chance, points, tolerance_text
 
     value, stated = found.tolerances[name]
-    text = f"{value:.3g} {found.run[name].definition.units}".rstrip() + ("" if stated else " (a tenth of the SD)")
+    result = found.run[name]
     costs = (*found.single, *found.groups, *found.sets, *found.filters)
     limits = costs[0].forecasts[name].tolerances(value, found.chance) if costs else {}
     chances = [f"{number} {points(limit)}" for number, limit in limits.items() if is_chance(number)]
-    return ", and ".join([text, *chances])
+    if isnan(value) or (costs and costs[0].forecasts[name].shares):
+        return ", ".join(chances)
+    text = f"{tolerance_text(value, result.form)} {result.definition.units}".rstrip()
+    return ", and ".join([text + ("" if stated else " (a tenth of the SD)"), *chances])
 
 
 def _names(costs: Sequence[Cost]) -> list[str]:
@@ -272,7 +277,7 @@ def _verdicts(found: Screening) -> Iterable[str]:
         yield f"No forecast or filter needs {'; '.join(found.idle)}."
     if found.valueless:
         yield (
-            f"Not judged, with a number in fewer than two accepted trials: {'; '.join(found.valueless)}. What these "
+            f"Not judged, with an answer in fewer than two accepted trials: {'; '.join(found.valueless)}. What these "
             "forecasts need is not known."
         )
     if found.baseless:
@@ -313,7 +318,7 @@ def _meaning(found: Screening) -> Iterable[str]:
     yield (
         "Cost: the largest change of any number, divided by its tolerance; above 1 the answer changes. The numbers of "
         "a forecast are its mean, SD, both ends of its central range, and the probability of being above its "
-        f"threshold where it has one. Tolerances: {tolerances}{accepted}."
+        f"threshold where it has one; of yes/no answers and texts their shares. Tolerances: {tolerances}{accepted}."
     )
     yield (
         f"{found.runs} runs of {found.run.trials:,} trials, seed {found.run.settings.seed}, over the same draws; ± is "
@@ -324,6 +329,7 @@ def _meaning(found: Screening) -> Iterable[str]:
 
 def _as_json(found: Screening) -> dict[str, object]:
     from xlmc.cli.study_output import estimate_json
+    from xlmc.montecarlo.statistics.estimate import finite
 
     run = found.run
     return {
@@ -331,7 +337,9 @@ def _as_json(found: Screening) -> dict[str, object]:
         "trials": run.trials,
         "seed": run.settings.seed,
         "acceptance": estimate_json(run.acceptance),
-        "tolerances": {name: {"value": value, "stated": stated} for name, (value, stated) in found.tolerances.items()},
+        "tolerances": {
+            name: {"value": finite(value), "stated": stated} for name, (value, stated) in found.tolerances.items()
+        },
         "chance_tolerance": found.chance,
         "acceptance_tolerance": found.acceptance_tolerance,
         "not_needed_by_any_cell": found.idle,

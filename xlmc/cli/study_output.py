@@ -46,10 +46,12 @@ def estimate_json(estimate: Estimate) -> dict[str, float | None]:
 
 
 def difference_json(found: Difference) -> dict[str, object]:
-    """Return the four numbers of a forecast in two runs, and the distances."""
+    """Return the four numbers of a forecast in two runs, and the distances; of texts their shares."""
     from xlmc.montecarlo.statistics.estimate import finite
 
+    shares = {"shares": {label: _change(each) for label, each in found.shares.items()}} if found.shares else {}
     return {
+        **shares,
         "mean": _change(found.mean),
         "standard_deviation": _change(found.standard_deviation),
         "central_range": {"share": found.share, "low": _change(found.low), "high": _change(found.high)},

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from xlmc.analysis.studies.comparison.cost import Cost
 from xlmc.analysis.studies.comparison.differences import acceptance, difference
-from xlmc.analysis.studies.comparison.paired_statistics import Accepted
+from xlmc.analysis.studies.comparison.paired_statistics import Accepted, named_shares
 from xlmc.analysis.studies.comparison.tolerances import (
     Tolerances,
     Verdict,
@@ -45,6 +45,7 @@ from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate
+from xlmc.montecarlo.statistics.number_text import number_text
 
 __all__ = ["ACCEPTANCE_TOLERANCE", "ENDS", "AtEnds", "Cost", "Expected", "ScreenArguments", "Screening", "screen"]
 
@@ -124,7 +125,7 @@ class Screening:
         acceptance_tolerance: relative.
         idle: assumptions that no forecast or filter needs.
         baseless: assumptions without a base value, which cannot be held.
-        valueless: forecasts that are a number in fewer than two accepted trials, which judge nothing.
+        valueless: forecasts that have an answer in fewer than two accepted trials, which judge nothing.
         unasked: forecasts that were not to judge.
         expected: the cheap ranking, the cheapest first.
         single: each assumption held alone, in that order.
@@ -248,15 +249,23 @@ class _Screen:
     ) -> None:
         self._run, self._chance, self._acceptance_tolerance = run, chance, acceptance_tolerance
         self._engine, self._jobs, self._tell = engine, jobs, tell
-        self._accepted = {f.name: Accepted.of(run.trial_index, run.numbers_of(f.name)) for f in run.model.forecasts}
+        self._accepted = {f.name: Accepted.of_run(run, f.name) for f in run.model.forecasts}
         wanted = [f for f in run.model.forecasts if not asked or f.name in asked]
         self._unasked = tuple(f.name for f in run.model.forecasts if f not in wanted)
         self._judged = [f for f in wanted if self._accepted[f.name].m >= _FEWEST]
         self._valueless = tuple(f.name for f in wanted if f not in self._judged)
         if not self._judged:
-            message = "no forecast is a number in two accepted trials or more"
+            message = "no forecast has an answer in two accepted trials or more"
             raise SimulationError(message, hint="xlmc simulate tells in which cells the trials are lost to errors")
-        self._tolerances = {f.name: stated.of(f, self._accepted[f.name].scale) for f in self._judged}
+        self._shares = {name: named_shares(each, each) for name, each in self._accepted.items()}
+        if all(self._shares[f.name] for f in self._judged):
+            stated.refuse_for_shares(self._judged)
+        self._tolerances = {
+            f.name: stated.of_share(f, self._accepted[f.name].scale, chance)
+            if self._shares[f.name]
+            else stated.of(f, self._accepted[f.name].scale)
+            for f in self._judged
+        }
         self._runs = 1
 
     def screening(self, sets: Sequence[tuple[str, ...]], *, ends: bool) -> Screening:
@@ -304,7 +313,8 @@ class _Screen:
     def _at_ends(self, name: str) -> AtEnds:
         low, high = (float(end) for end in np.quantile(self._run.prior[name], ENDS, method="inverted_cdf"))
         costs = tuple(
-            self._cost([name], [name], (), f"{name} held at {value:.4g}", {name: value}) for value in (low, high)
+            self._cost([name], [name], (), f"{name} held at {number_text(value)}", {name: value})
+            for value in (low, high)
         )
         return AtEnds(name, (low, high), (costs[0], costs[1]))
 
@@ -333,7 +343,11 @@ class _Screen:
         accepted = acceptance(self._run, run)
         found = {
             f.name: difference(
-                self._accepted[f.name], Accepted.of(run.trial_index, run.numbers_of(f.name)), f.central, f.threshold
+                self._accepted[f.name],
+                Accepted.of_run(run, f.name),
+                f.central,
+                f.threshold,
+                self._run.results[f.name].form,
             )
             for f in self._judged
         }
@@ -391,8 +405,11 @@ class _Screen:
         share = float(near.mean() / np.mean(np.abs(prior - base) <= width))
         sizes = [abs(share - 1.0) / self._acceptance_tolerance]
         for forecast in self._judged:
-            values, tolerance = self._run.numbers_of(forecast.name)[: drawn.size], self._tolerances[forecast.name][0]
-            sizes.append(_largest_move(values, near, forecast, tolerance, self._chance))
+            values, tolerance = self._run.forecasts[forecast.name][: drawn.size], self._tolerances[forecast.name][0]
+            if shares := self._shares[forecast.name]:
+                sizes.append(_largest_move_of_shares(values, near, shares.values(), tolerance, self._chance))
+            else:
+                sizes.append(_largest_move(values, near, forecast, tolerance, self._chance))
         return max(sizes)
 
 
@@ -444,6 +461,26 @@ def _largest_move(
         before, after = (float(np.mean(x > forecast.threshold)) for x in (every, some))
         limit = chance_tolerance(before) if chance is None else chance
         sizes.append(in_tolerances(Estimate(after - before), limit))
+    return max(sizes)
+
+
+def _largest_move_of_shares(
+    values: Floats,
+    near: NDArray[np.bool_],
+    shares: Iterable[tuple[float, ...]],
+    tolerance: float,
+    chance: float | None,
+) -> float:
+    """Return the same of the shares of answers that are counted."""
+    known = ~np.isnan(values)
+    every, some = values[known], values[known & near]
+    if some.size < _FEWEST:
+        return float("inf")
+    sizes = []
+    for positions in shares:
+        before, after = (float(np.isin(x, positions).mean()) for x in (every, some))
+        default = chance_tolerance(before) if chance is None else chance
+        sizes.append(in_tolerances(Estimate(after - before), default if np.isnan(tolerance) else tolerance))
     return max(sizes)
 
 

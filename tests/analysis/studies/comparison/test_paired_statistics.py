@@ -21,14 +21,19 @@ from xlmc.analysis.studies.comparison.paired_statistics import (
     quantile_of,
     standard_deviation_of,
 )
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics.yes_no import are_yes_no
 
 SAMPLES = arrays(np.float64, st.integers(2, 60), elements=st.floats(-1e6, 1e6).map(lambda x: round(x, 3)))
 
 
-def run_of(values, trials=None):
+def run_of(values, trials=None, kind=Kind.NUMBER):
     values = np.asarray(values, np.float64)
-    return Accepted.of(np.arange(values.size) if trials is None else np.asarray(trials), values)
+    return Accepted.of(np.arange(values.size) if trials is None else np.asarray(trials), values, kind)
+
+
+def answers_of(values, trials=None):
+    return run_of(values, trials, Kind.YES_NO)
 
 
 def both_ways(rng, n):
@@ -155,28 +160,28 @@ def test_the_interval_of_a_difference_of_yes_no_answers_holds_it(share, changes)
     for _ in range(400):
         first, u = rng.random(n) < share, rng.random(n)
         second = np.where(first, u >= changes / 2, u < changes)
-        found = difference(run_of(first.astype(float)), run_of(second.astype(float)), 0.51, 0.5)
+        found = difference(answers_of(first), answers_of(second), 0.51, 0.5)
         truth = (1 - share) * changes - share * changes / 2
         for each in (found.mean.difference, found.above.difference):
             assert each.error > 0.0
             assert each.interval[0] <= each.value <= each.interval[1]
         held += found.mean.difference.interval[0] <= truth <= found.mean.difference.interval[1]
-        assert found.mean.difference == found.above.difference
+        assert found.mean.difference == found.above.difference == found.shares["yes"].difference
         assert found.kolmogorov.error == found.wasserstein.error == found.mean.difference.error
         assert found.standard_deviation.difference.error > 0.0 or share == 0.5
     assert held / 400 >= 0.95 - 3 * np.sqrt(0.95 * 0.05 / 400)
 
 
 def test_no_yes_in_any_trial_leaves_what_a_share_of_none_leaves():
-    found = difference(run_of(np.zeros(200_000)), run_of(np.zeros(200_000)), 0.51, 0.5)
+    found = difference(answers_of(np.zeros(200_000)), answers_of(np.zeros(200_000)), 0.51, 0.5)
     assert found.mean.difference.interval == pytest.approx((-1.92e-5, 1.92e-5), rel=0.01)
     assert found.standard_deviation.difference.error == pytest.approx(4.9e-6**0.5, rel=0.01)
     assert found.kolmogorov.interval == pytest.approx((0.0, 1.92e-5), rel=0.01)
 
 
 def test_where_the_runs_accept_other_trials_a_share_is_not_known_exactly_either():
-    first = Accepted(np.arange(1_000), np.zeros(1_000))
-    second = Accepted(np.arange(1, 1_001), np.zeros(1_000))
+    first = answers_of(np.zeros(1_000))
+    second = answers_of(np.zeros(1_000), np.arange(1, 1_001))
     found = difference(first, second, 0.51, 0.5)
     assert found.mean.difference.interval == pytest.approx((-0.0038, 0.0038), rel=0.01)
 
@@ -187,3 +192,39 @@ def test_equal_numbers_in_every_trial_are_on_the_same_side_of_a_threshold():
     assert found.above.difference.error == 0.0
     moved = difference(run_of(values), run_of(values + 0.001), 0.51, 5.0)
     assert moved.above.difference.error > 0.0
+
+
+def test_a_number_that_is_0_in_all_trials_is_no_answer_of_yes_and_no():
+    """=MAX(0, x − 1000) is 0 in every trial of either run, which says nothing of shares."""
+    found = difference(run_of(np.zeros(1_000)), run_of(np.zeros(1_000)), 0.51)
+    assert not found.shares
+    assert [name for name, _ in found.changes] == ["mean", "SD", "lower end", "upper end"]
+    assert all(change.difference.error == 0.0 for _, change in found.changes)
+
+
+def test_texts_are_compared_by_their_shares_whatever_stands_for_them():
+    rng, n = np.random.default_rng(5), 5_000
+    first = rng.integers(0, 3, n)
+    changed = rng.random(n) < 0.1
+    second = np.where(changed & (first == 0), 1, first)  # some "low" become "middle"
+    one = Accepted.of(np.arange(n), first.astype(float), Kind.CATEGORY, ("low", "middle", "high"))
+    codes = np.array([2.0, 0.0, 1.0])  # the second run met its texts in another order
+    other = Accepted.of(np.arange(n), codes[second], Kind.CATEGORY, ("middle", "high", "low"))
+    found = difference(one, other, 0.51)
+    moved = np.mean(first != second)
+    assert [*found.shares] == sorted(("low", "middle", "high"), key=lambda t: -found.shares[t].first.value)
+    assert found.shares["low"].difference.value == pytest.approx(-moved)
+    assert found.shares["middle"].difference.value == pytest.approx(moved)
+    assert found.shares["high"].difference.value == 0.0
+    assert found.shares["high"].difference.error > 0.0  # that no trial changed does not say that none can
+    assert found.typical == pytest.approx(moved**0.5)
+    assert found.largest == 1.0
+
+
+def test_rare_texts_stand_together_and_texts_are_not_compared_with_numbers():
+    codes = np.concatenate([np.full(100 - 10 * k, float(k)) for k in range(9)])
+    run = Accepted.of(np.arange(codes.size), codes, Kind.CATEGORY, tuple("abcdefghi"))
+    found = difference(run, run, 0.51)
+    assert [*found.shares] == [*"abcdef", "any other text"]
+    assert sum(each.first.value for each in found.shares.values()) == pytest.approx(1.0)
+    assert not difference(run, run_of(codes), 0.51).shares

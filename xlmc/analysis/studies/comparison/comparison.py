@@ -73,8 +73,9 @@ class ForecastComparison:
 
     Attributes:
         factor: by which the second's numbers were multiplied, to be in the first's unit.
-        tolerance: in that unit; `stated` where it was asked for, else a tenth of the standard deviation.
-        limits: number -> its tolerance; that of P(> threshold) is a share.
+        tolerance: in that unit; `stated` where it was asked for, else a tenth of the standard deviation; nan of
+            shares of which none is stated.
+        limits: number -> its tolerance; that of a probability is a share.
         cause: where the difference is beyond the tolerance.
         rivalry: where each book answers from inputs that the other has not; None if one of them has all.
     """
@@ -97,14 +98,19 @@ class ForecastComparison:
 
     @property
     def same_in_every_trial(self) -> bool:
-        """In every trial that both books accept they give one number, to 1e-9 of it."""
+        """In every trial that both books accept they give one number, to 1e-9 of it, or one text."""
+        if self.difference.shares:
+            return self.difference.largest == 0.0
         size = abs(self.difference.mean.first.value) + self.difference.standard_deviation.first.value
         return self.difference.largest <= 1e-9 * size
 
     @property
     def only_distributions_agree(self) -> bool:
         """The answers agree as a whole, but in one and the same trial the books differ by more than the tolerance."""
-        return self.judgement.verdict is Verdict.WITHIN and self.difference.typical > self.tolerance
+        apart, tolerance = self.difference.typical, self.tolerance
+        if self.difference.shares:  # the share of the trials in which the answers differ
+            apart, tolerance = apart**2, max(self.limits.values())
+        return self.judgement.verdict is Verdict.WITHIN and apart > tolerance
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,6 +225,8 @@ def compare(
         search.compare_pair(mine, theirs, factor, stated)
         for (mine, theirs), factor in zip(matched, factors, strict=True)
     )
+    if all(each.difference.shares for each in forecasts):
+        stated.refuse_for_shares([each.first for each in forecasts])
     return Comparison(
         first=books[0],
         second=books[1],
@@ -248,27 +256,31 @@ class _Search:
         self._causes = causes
 
     def compare_pair(self, mine: Forecast, theirs: Forecast, factor: float, stated: Tolerances) -> ForecastComparison:
-        tolerance, was_stated = stated.of(mine, _accepted_trials(self._books[0], mine, 1.0).scale)
-        found = self._difference((), mine, theirs, factor)
+        found, own = self._difference((), mine, theirs, factor), Accepted.of_run(self._books[0], mine.name)
+        if found.shares:
+            tolerance, was_stated = stated.of_share(mine, own.scale, self._chance)
+        else:
+            tolerance, was_stated = stated.of(mine, own.scale)
         limits = found.tolerances(tolerance, self._chance)
         judgement = judge({name: (change.difference, limits[name]) for name, change in found.changes})
-        rivals, cause = self._rivalry(mine, theirs, factor), None
+        rivals, cause = None if found.shares else self._rivalry(mine, theirs, factor), None
         if judgement.verdict is Verdict.BEYOND and self._causes and rivals is None:
             cause = self._cause(mine, theirs, factor, limits)
         return ForecastComparison(mine, theirs, factor, tolerance, was_stated, limits, found, judgement, cause, rivals)
 
     def _rivalry(self, mine: Forecast, theirs: Forecast, factor: float) -> Rivalry | None:
         first, second = self._books
-        answers = _accepted_trials(first, mine, 1.0), _accepted_trials(second, theirs, factor)
+        answers = Accepted.of_run(first, mine.name), Accepted.of_run(second, theirs.name, factor)
         return rivalry(self._books, (mine, theirs), answers)
 
     def _difference(self, steps: Iterable[Step], mine: Forecast, theirs: Forecast, factor: float) -> Difference:
         first, second = self._variations.pair(steps)
         return difference(
-            _accepted_trials(first, mine, 1.0),
-            _accepted_trials(second, theirs, factor),
+            Accepted.of_run(first, mine.name),
+            Accepted.of_run(second, theirs.name, factor),
             mine.central,
             _threshold(mine, theirs, factor),
+            self._books[0].results[mine.name].form,
         )
 
     def _cause(self, mine: Forecast, theirs: Forecast, factor: float, limits: Mapping[str, float]) -> Cause:
@@ -286,10 +298,6 @@ def _threshold(mine: Forecast, theirs: Forecast, factor: float) -> float | None:
     if mine.threshold is not None or theirs.threshold is None:
         return mine.threshold
     return theirs.threshold * factor
-
-
-def _accepted_trials(run: RunResult, forecast: Forecast, factor: float) -> Accepted:
-    return Accepted.of(run.trial_index, run.numbers_of(forecast.name) * factor)
 
 
 def _match_forecasts(

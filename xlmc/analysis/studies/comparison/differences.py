@@ -15,7 +15,8 @@ Barrio, Giné & Matrán 1999).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from math import isnan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,12 +25,17 @@ from xlmc.analysis.studies.comparison.paired_statistics import (
     Accepted,
     Pair,
     Statistic,
+    in_one_code,
     mean_of,
+    named_shares,
     quantile_of,
     share_above,
+    share_of,
     standard_deviation_of,
 )
 from xlmc.analysis.studies.comparison.tolerances import chance_tolerance
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import with_error
@@ -64,8 +70,10 @@ class Difference:
         threshold: of the forecast; None if it has none.
         above: P(> threshold); None without a threshold.
         kolmogorov, wasserstein: distances of the two distributions, as above.
-        largest: the largest difference in a trial that both accept; nan without such trials.
+        largest: the largest difference in a trial that both accept, 1 between two texts; nan without such trials.
         typical: the root mean square of these differences; nan without such trials.
+        shares: `yes`, or each text -> its share, where the answers are counted; of texts there is nothing else.
+        form: how the numbers are written.
     """
 
     mean: Change
@@ -79,30 +87,38 @@ class Difference:
     typical: float
     threshold: float | None = None
     above: Change | None = None
+    shares: Mapping[str, Change] = field(default_factory=dict)
+    form: Form = PLAIN
 
     @property
     def changes(self) -> Iterator[tuple[str, Change]]:
-        """The numbers that an answer is judged by, each with its name: four, and the probability where one is asked."""
+        """The numbers that an answer is judged by, each with its name: four, and the probability where one is asked;
+        where answers are counted, their shares alone.
+        """
+        if self.shares:
+            yield from ((f"P({label})", change) for label, change in self.shares.items())
+            return
         yield "mean", self.mean
         yield "SD", self.standard_deviation
         yield "lower end", self.low
         yield "upper end", self.high
-        if self.above is not None:
-            yield f"P(> {self.threshold:.15g})", self.above
+        if self.above is not None and self.threshold is not None:
+            yield f"P(> {self.form.number(self.threshold)})", self.above
 
     def tolerances(self, tolerance: float, chance: float | None) -> Mapping[str, float]:
         """Return number -> its tolerance.
 
         Args:
-            tolerance: of mean, SD and central range, in the forecast's unit.
-            chance: of the probability; None for `chance_tolerance` of it.
+            tolerance: of mean, SD and central range, in the forecast's unit; of shares, nan where none is stated.
+            chance: of a probability, and of such shares; None for `chance_tolerance` of it.
         """
-        found = dict.fromkeys((name for name, _ in self.changes), tolerance)
-        if self.above is not None:
-            found[f"P(> {self.threshold:.15g})"] = (
-                chance_tolerance(self.above.first.value) if chance is None else chance
-            )
-        return found
+
+        def of_chance(change: Change) -> float:
+            return chance_tolerance(change.first.value) if chance is None else chance
+
+        if self.shares:
+            return {name: of_chance(each) if isnan(tolerance) else tolerance for name, each in self.changes}
+        return {name: of_chance(each) if each is self.above else tolerance for name, each in self.changes}
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,7 +157,9 @@ def _relative(both: int, mine: int, theirs: int) -> Estimate:
     return Estimate(ratio - 1.0, max(ratio * square**0.5, 1.0 / first), n=first)
 
 
-def difference(first: Accepted, second: Accepted, share: float, threshold: float | None = None) -> Difference:
+def difference(
+    first: Accepted, second: Accepted, share: float, threshold: float | None = None, form: Form = PLAIN
+) -> Difference:
     """Compare a forecast in two runs over the same trials.
 
     Args:
@@ -149,13 +167,21 @@ def difference(first: Accepted, second: Accepted, share: float, threshold: float
         second: those of the other, in the same unit.
         share: of the trials, held by the central range.
         threshold: what P(> threshold) is compared for; None for no such number.
+        form: how the first's numbers are written.
     """
+    first, second = in_one_code(first, second)
     pair = Pair(first, second)
     tail = (1.0 - share) / 2.0
 
     def change(mine: Statistic, theirs: Statistic) -> Change:
         return Change(mine.estimate, theirs.estimate, pair.difference(mine, theirs))
 
+    shares = {
+        label: change(*(share_of(each, positions) for each in (first, second)))
+        for label, positions in named_shares(first, second).items()
+    }
+    if Kind.CATEGORY in (first.kind, second.kind):
+        return _of_texts(pair, share, shares, form)
     mean = change(mean_of(first), mean_of(second))
     deviation = change(standard_deviation_of(first), standard_deviation_of(second))
     yes_no = first.sample.yes_no and second.sample.yes_no
@@ -171,6 +197,28 @@ def difference(first: Accepted, second: Accepted, share: float, threshold: float
         typical=float(np.sqrt(np.mean(pair.apart**2))) if pair.apart.size else float("nan"),
         threshold=threshold,
         above=None if threshold is None else change(share_above(first, threshold), share_above(second, threshold)),
+        shares=shares,
+        form=form,
+    )
+
+
+def _of_texts(pair: Pair, share: float, shares: Mapping[str, Change], form: Form) -> Difference:
+    """Return what there is of answers that are texts; nothing where only one run has texts."""
+    none = Estimate(np.nan)
+    nothing, apart = Change(none, none, none), pair.apart != 0.0
+    known = apart.size and bool(shares)
+    return Difference(
+        mean=nothing,
+        standard_deviation=nothing,
+        low=nothing,
+        high=nothing,
+        share=share,
+        kolmogorov=none,
+        wasserstein=none,
+        largest=float(apart.max()) if known else float("nan"),
+        typical=float(apart.mean()) ** 0.5 if known else float("nan"),
+        shares=shares,
+        form=form,
     )
 
 

@@ -15,24 +15,32 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.montecarlo import statistics
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics import Estimate, Sample
 from xlmc.montecarlo.statistics.estimate import with_error
 from xlmc.montecarlo.statistics.proportions import least_error
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = [
     "Accepted",
     "Influence",
     "Pair",
     "Statistic",
+    "in_one_code",
     "mean_of",
+    "named_shares",
     "quantile_of",
     "range_of",
     "share_above",
+    "share_of",
     "standard_deviation_of",
 ]
 
@@ -43,26 +51,51 @@ Indices = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class Accepted:
-    """The accepted trials of one run in which a forecast is a number.
+    """The accepted trials of one run in which a forecast has an answer.
 
     Attributes:
         trials: `(m,)` their indices, ascending.
-        values: `(m,)` the forecast.
+        values: `(m,)` the forecast: a number, 1 for yes and 0 for no, or the position of its text in `texts`.
+        kind: what the answers are.
+        texts: all texts that there are, where the answers are texts.
     """
 
     trials: NDArray[np.int64]
     values: Floats
+    kind: Kind = Kind.NUMBER
+    texts: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, trials: NDArray[np.int64], values: Floats) -> Accepted:
-        """Leave out the trials in which the forecast is no number, NaN."""
+    def of(
+        cls,
+        trials: NDArray[np.int64],
+        values: Floats,
+        kind: Kind = Kind.NUMBER,
+        texts: tuple[str, ...] = (),
+    ) -> Accepted:
+        """Leave out the trials in which the forecast has no answer, NaN; any number but 0 is a yes."""
         known = ~np.isnan(values)
-        return cls(np.asarray(trials)[known], np.asarray(values)[known])
+        found = np.asarray(values)[known]
+        return cls(
+            np.asarray(trials)[known], (found != 0.0).astype(np.float64) if kind is Kind.YES_NO else found, kind, texts
+        )
+
+    @classmethod
+    def of_run(cls, run: RunResult, name: str, factor: float = 1.0) -> Accepted:
+        """Return the answers of a forecast in a run, its numbers multiplied by a factor."""
+        texts = run.labels.get(name)
+        values = run.forecasts[name] if texts is not None else run.forecasts[name] * factor
+        return cls.of(run.trial_index, values, run.results[name].kind, tuple(texts or ()))
 
     @cached_property
     def sample(self) -> Sample:
         """The values in ascending order."""
-        return Sample.of(self.values)
+        return Sample.of(self.values, two_valued=self.kind is Kind.YES_NO)
+
+    @property
+    def is_share(self) -> bool:
+        """Whether the answers are counted: of yes and no, and of texts."""
+        return self.kind in (Kind.YES_NO, Kind.CATEGORY) or self.sample.yes_no
 
     @property
     def m(self) -> int:
@@ -70,9 +103,56 @@ class Accepted:
 
     @property
     def scale(self) -> float:
-        """The standard deviation; of yes in all trials, or of no, the largest that yes and no can have."""
+        """The standard deviation, of texts that of the most frequent one; of yes in all trials, or of no, and of one
+        text in all, the largest that a share can have.
+        """
+        if self.kind is Kind.CATEGORY:
+            share = float(np.bincount(self.values.astype(np.intp)).max() / self.m) if self.m else 0.0
+            return (share * (1.0 - share)) ** 0.5 or 0.5
         found = statistics.standard_deviation(self.sample).value
         return 0.5 if found == 0.0 and self.sample.yes_no else found
+
+    def says(self, positions: tuple[float, ...]) -> Bools:
+        """`(m,)` whether the answer is one of these."""
+        return np.isin(self.values, positions)
+
+
+_MOST_TEXTS: Final = 6
+"""Texts of one forecast that are compared each for itself."""
+
+
+def in_one_code(first: Accepted, second: Accepted) -> tuple[Accepted, Accepted]:
+    """Return both with the same texts in the same positions; as they are where either has numbers."""
+    if first.kind is not Kind.CATEGORY or second.kind is not Kind.CATEGORY:
+        return first, second
+    texts = tuple(dict.fromkeys((*first.texts, *second.texts)))
+    where = np.array([float(texts.index(each)) for each in second.texts])
+    values = where[second.values.astype(np.intp)] if second.m else second.values
+    return replace(first, texts=texts), replace(second, values=values, texts=texts)
+
+
+def named_shares(first: Accepted, second: Accepted) -> dict[str, tuple[float, ...]]:
+    """Return what two runs are compared by where their answers are counted: `yes`, or each text -> its positions.
+
+    Nothing where either has numbers other than 0 and 1. Of many texts the rarer ones stand together.
+
+    Args:
+        first: of one run.
+        second: of the other, in one code with the first; see `in_one_code`.
+    """
+    if first.kind is Kind.CATEGORY and second.kind is Kind.CATEGORY:
+        count = len(first.texts)
+        often = [np.bincount(each.values.astype(np.intp), minlength=count) for each in (first, second)]
+        order = [
+            p for p in sorted(range(count), key=lambda p: (-often[0][p], -often[1][p])) if often[0][p] + often[1][p]
+        ]
+        found = {first.texts[p] or "(empty)": (float(p),) for p in order[:_MOST_TEXTS]}
+        rest = tuple(map(float, order[_MOST_TEXTS:]))
+        return found | ({"any other text": rest} if rest else {})
+    kinds = {first.kind, second.kind}
+    if Kind.CATEGORY in kinds or Kind.YES_NO not in kinds:
+        return {}
+    return {"yes": (1.0,)} if all(bool(np.isin(each.values, (0.0, 1.0)).all()) for each in (first, second)) else {}
 
 
 @dataclass(frozen=True)
@@ -125,11 +205,19 @@ def standard_deviation_of(run: Accepted) -> Statistic:
 
 def share_above(run: Accepted, threshold: float) -> Statistic:
     """Estimate the share p of trials above a threshold; a trial pulls it by ([x > threshold] − p)/m."""
-    above = run.values > threshold
+    return _share(run, run.values > threshold)
+
+
+def _share(run: Accepted, hits: Bools) -> Statistic:
     if run.m < 2:
-        return Statistic(Estimate(float(above.mean()) if run.m else np.nan), None)
-    found = statistics.proportion(int(above.sum()), run.m)
-    return Statistic(found, Influence((above - float(above.mean())) / run.m), above)
+        return Statistic(Estimate(float(hits.mean()) if run.m else np.nan), None)
+    found = statistics.proportion(int(hits.sum()), run.m)
+    return Statistic(found, Influence((hits - float(hits.mean())) / run.m), hits)
+
+
+def share_of(run: Accepted, positions: tuple[float, ...]) -> Statistic:
+    """Estimate the share p of trials whose answer is one of these; a trial pulls it by ([it is] − p)/m."""
+    return _share(run, run.says(positions))
 
 
 def quantile_of(run: Accepted, p: float) -> Statistic:
@@ -208,9 +296,9 @@ class Pair:
 
     @property
     def _same_number(self) -> bool:
-        """Whether both runs accept the same trials and give the same number in each, which is not only yes or no."""
+        """Whether both runs accept the same trials and give the same number in each, which is not only counted."""
         one_sided = any(rows.size for rows in self.only)
-        return not (one_sided or np.any(self.apart) or self.first.sample.yes_no)
+        return not (one_sided or np.any(self.apart) or self.first.is_share)
 
     def _of_shares(self, found: Estimate, first: Bools, second: Bools) -> Estimate:
         """Return the difference of two shares, never 0 ± 0; its interval is that of two counts where nothing else

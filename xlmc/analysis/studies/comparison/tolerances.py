@@ -175,6 +175,32 @@ class Tolerances:
         found = next((value for each in self.general if (value := each.of(forecast, deviation)) is not None), None)
         return (_SHARE_OF_SD * deviation, False) if found is None else (found, True)
 
+    def of_share(self, forecast: Forecast, deviation: float, chance: float | None) -> tuple[float, bool]:
+        """Return the tolerance of the shares of a forecast whose answers are counted, and whether it was stated.
+
+        It is that of its name; else `chance`, if one is stated, or that share of its standard deviation which all
+        forecasts have. Otherwise nan: see `chance_tolerance`.
+
+        Raises:
+            SimulationError: the tolerance stated for it is in a unit.
+        """
+        if name_key(forecast.name) in self.single:
+            return self.of(forecast, deviation)
+        shares = [each.value / 100.0 * deviation for each in self.general if each.unit == "%"]
+        return (shares[0], True) if shares and chance is None else (math.nan, False)
+
+    def refuse_for_shares(self, forecasts: Sequence[Forecast]) -> None:
+        """Refuse a number that is stated for all forecasts where the answers of all are counted.
+
+        Raises:
+            SimulationError: one is stated.
+        """
+        for each in self.general:
+            if each.unit != "%":
+                message = f"the tolerance {each.text!r} holds for no forecast: all answers are yes or no, or texts"
+                hint = f"state percentage points (--chance 2, chance=2), or '{forecasts[0].name}=0.02'"
+                raise SimulationError(message, hint=hint)
+
 
 _NUMBER_AND_UNIT = re.compile(r"\s*(?P<number>[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(?P<unit>[^\d\s].*?)?\s*")
 

@@ -13,9 +13,20 @@ from xlmc.analysis.studies.comparison.cost import Cost
 from xlmc.analysis.studies.comparison.differences import Change
 from xlmc.analysis.studies.comparison.rivalry import Rivalry, RivalVerdict
 from xlmc.analysis.studies.comparison.tolerances import Judgement, Verdict
+from xlmc.montecarlo.definitions.forms import Form, span_text
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics import Estimate, format_estimate
 
-__all__ = ["amount", "book_names", "inputs_text", "is_chance", "points", "undecided_text", "verdict_text"]
+__all__ = [
+    "amount",
+    "book_names",
+    "inputs_text",
+    "is_chance",
+    "points",
+    "tolerance_text",
+    "undecided_text",
+    "verdict_text",
+]
 
 
 def book_names(comparison: Comparison) -> tuple[str, str]:
@@ -62,9 +73,13 @@ def _apart_in_trials(comparison: Comparison) -> Iterator[str]:
 def _only_as_a_whole(each: ForecastComparison) -> str:
     """Two answers with one distribution that are not one number, as 10 + z and 10 − z."""
     found, units = each.difference, f" {each.first.units}" if each.first.units else ""
+    if found.shares:
+        told = f"give another answer in {100 * found.typical**2:.2g} % of the trials that both accept"
+    else:
+        typical, largest = (f"{tolerance_text(one, found.form)}{units}" for one in (found.typical, found.largest))
+        told = f"give numbers that differ by {typical} (root mean square), {largest} at most"
     return (
-        f"Of {_name(each)} only the distributions agree, and the trials do not: from the same draws the books give "
-        f"numbers that differ by {found.typical:.3g}{units} (root mean square), {found.largest:.3g}{units} at most. "
+        f"Of {_name(each)} only the distributions agree, and the trials do not: from the same draws the books {told}. "
         "What is computed from it together with other answers may not agree."
     )
 
@@ -107,7 +122,8 @@ def _rival(each: ForecastComparison, found: Rivalry, books: tuple[str, str]) -> 
     """Which of two models tells more of an answer, and whether they agree."""
     if books[0] == books[1]:  # one book that answers twice
         books = (repr(each.first.name), repr(each.second.name))
-    deviations, widths = (_spreads(spread, each.first.units) for spread in (found.deviation, found.width))
+    spreads = (found.deviation, found.width)
+    deviations, widths = (_spreads(spread, each.difference.form, each.first.units) for spread in spreads)
     share = f"{100 * each.difference.share:.3g} % range"
     if found.sharper is not None:
         mine, theirs = found.sharper, 1 - found.sharper
@@ -123,8 +139,8 @@ def _rival(each: ForecastComparison, found: Rivalry, books: tuple[str, str]) -> 
     return f"{_name(each)}: {tells}. {_AGREE[found.agreement].format(chance=_chance_text(found))}"
 
 
-def _spreads(spread: Change, units: str) -> list[str]:
-    return [f"{format_estimate(e.value, e.error)} {units}".rstrip() for e in (spread.first, spread.second)]
+def _spreads(spread: Change, form: Form, units: str) -> list[str]:
+    return [f"{form.spread(each)} {units}".rstrip() for each in (spread.first, spread.second)]
 
 
 _AGREE = {
@@ -175,7 +191,8 @@ def _because(cause: Cause, each: ForecastComparison, books: tuple[str, str]) -> 
 
 def _trial_by_trial(each: ForecastComparison, both: int) -> str:
     if each.same_in_every_trial:
-        same = f"In each of the {both:,} trials that both accept they give the same number"
+        what = "answer" if each.difference.shares else "number"
+        same = f"In each of the {both:,} trials that both accept they give the same {what}"
         return f" {same}: they differ only in which trials they accept."
     return ""
 
@@ -194,8 +211,13 @@ def _undecided_text(comparison: Comparison) -> Iterator[str]:
 
 def _too_few(comparison: Comparison, each: ForecastComparison) -> str:
     runs = ((comparison.first, each.first.name), (comparison.second, each.second.name))
+    texts = [run.results[name].kind is Kind.CATEGORY for run, name in runs]
+    if texts[0] != texts[1]:
+        books = book_names(comparison)
+        mine, theirs = (books[texts.index(kind)] for kind in (True, False))
+        return f"its answers are texts in {mine} and numbers in {theirs}, which cannot be compared"
     for book, (run, name) in zip(book_names(comparison), runs, strict=True):
-        numbers = int(np.count_nonzero(~np.isnan(run.numbers_of(name))))
+        numbers = int(np.count_nonzero(~np.isnan(run.forecasts[name])))
         if numbers < run.accepted and numbers < _ENOUGH:
             count = "none" if not numbers else f"only {numbers}"
             return f"it is a number in {count} of the {run.accepted:,} trials that {book} accepts"
@@ -253,16 +275,21 @@ def _name(each: ForecastComparison) -> str:
 
 
 def _tolerance(each: ForecastComparison) -> str:
+    if each.difference.shares:
+        return _join_names([f"{points(limit)} of {number}" for number, limit in each.limits.items()])
     chances = [f"{number} to {points(limit)}" for number, limit in each.limits.items() if is_chance(number)]
-    return " and ".join([f"{each.tolerance:.4g} {each.first.units}".rstrip(), *chances])
+    return " and ".join(
+        [f"{tolerance_text(each.tolerance, each.difference.form)} {each.first.units}".rstrip(), *chances]
+    )
 
 
 def _differs(each: ForecastComparison, number: str, difference: Estimate) -> str:
-    return f"{'' if is_chance(number) else 'the '}{number} differs by {amount(number, difference, each.first.units)}"
+    form, units = each.difference.form, each.first.units
+    return f"{'' if is_chance(number) else 'the '}{number} differs by {amount(number, difference, form, units)}"
 
 
 def is_chance(number: str) -> bool:
-    """Whether a number is the probability P(> threshold)."""
+    """Whether a number is a probability: P(> threshold), P(yes) or that of a text."""
     return number.startswith("P(")
 
 
@@ -271,14 +298,21 @@ def points(share: float) -> str:
     return f"{100 * share:.3g} point{'s' * (share != 0.01)}"
 
 
-def amount(number: str, estimate: Estimate, units: str) -> str:
-    """Write a number, or a difference of it, with its error: of a probability in percentage points."""
+def tolerance_text(value: float, form: Form) -> str:
+    """Write a tolerance, or another difference without an error, in four digits at most; of dates a span of time."""
+    if not math.isfinite(value):
+        return ""
+    return span_text(value) if form.kind is Kind.DATE else form.rough(float(f"{value:.4g}"))
+
+
+def amount(number: str, estimate: Estimate, form: Form, units: str = "") -> str:
+    """Write a difference of a number with its error: of a probability in percentage points, of dates a span of time."""
     if math.isnan(estimate.value):
         return "no number"
     if is_chance(number):
         scaled = None if estimate.error is None else 100 * estimate.error
         return f"{format_estimate(100 * estimate.value, scaled)} points"
-    return f"{format_estimate(estimate.value, estimate.error)} {units}".rstrip()
+    return f"{form.spread(estimate)} {units}".rstrip()
 
 
 def _join_names(names: Sequence[str]) -> str:

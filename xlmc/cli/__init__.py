@@ -1,6 +1,6 @@
 """The command line: `xlmc new`, `xlmc prepare`, `xlmc check`, `xlmc fit`, `xlmc verify`, `xlmc calculate`,
 `xlmc simulate`, `xlmc open`, `xlmc report`, `xlmc replay`, `xlmc compare`, `xlmc screen`, `xlmc methods`,
-`xlmc stability`.
+`xlmc stability`, `xlmc uncertainty`.
 
 Exit codes: 0 done; 1 the run finished but its answer must not be used as it is; 2 bad input, with the cell and what
 to do; 130 interrupted by Ctrl-C; 143 ended by SIGTERM. Modules here import what costs time inside their functions.
@@ -38,6 +38,7 @@ from xlmc.cli.screen import screen
 from xlmc.cli.simulate import INTERRUPTED, simulate
 from xlmc.cli.stability import stability
 from xlmc.cli.terminal import be_quiet, prepare, put, say
+from xlmc.cli.uncertainty import uncertainty
 from xlmc.cli.verify import verify
 from xlmc.errors import XlmcError
 from xlmc.montecarlo.loop.version import __version__
@@ -171,6 +172,7 @@ for _command in (
     screen,
     methods,
     stability,
+    uncertainty,
     show_help,
     completion,
 ):

@@ -348,6 +348,7 @@ def _assumption(simulation: RunResult, each: Assumption) -> Json:
         "cutoffs": cutoffs_text(each),
         "base": each.base,
         "source": each.source,
+        "uncertain": each.uncertain,
         "prior": None,
         "accepted": None,
         "shift": None,

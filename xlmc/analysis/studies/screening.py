@@ -18,7 +18,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 from typing import Final, TypedDict
 
 import numpy as np
@@ -36,11 +35,10 @@ from xlmc.analysis.studies.comparison.tolerances import (
     judge,
     read_tolerances,
 )
-from xlmc.analysis.studies.comparison.variations import with_changes, with_plain_sampling
+from xlmc.analysis.studies.comparison.variations import names_of, with_changes, with_plain_sampling
 from xlmc.errors import SimulationError
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import Assumption, Forecast
-from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.montecarlo.simulation.simulation import RunResult
@@ -221,8 +219,8 @@ def screen(
         message = f"the tolerance of the acceptance is {acceptance_tolerance:g}"
         raise SimulationError(message, hint="give a positive number, such as 0.1 for a tenth")
     stated = read_tolerances([tolerance] if isinstance(tolerance, str) else tolerance, model.forecasts)
-    wanted = [_names_of(pattern, [a.name for a in model.live], "assumption that is drawn") for pattern in sets]
-    asked = [name for text in judged_by for name in _names_of(text, [f.name for f in model.forecasts], "forecast")]
+    wanted = [names_of(pattern, [a.name for a in model.live], "assumption that is drawn") for pattern in sets]
+    asked = [name for text in judged_by for name in names_of(text, [f.name for f in model.forecasts], "forecast")]
     tell = tell or (lambda _: None)
     tell("the book as it is")
     run = simulate(with_plain_sampling(model), trials=trials, seed=seed, engine=engine, jobs=jobs)
@@ -486,19 +484,3 @@ def _largest_move_of_shares(
 
 def _names_text(names: Sequence[str]) -> str:
     return names[0] if len(names) == 1 else f"{len(names)} at once"
-
-
-def _names_of(text: str, known: Sequence[str], kind: str) -> tuple[str, ...]:
-    """Return the known names that a list of patterns fits.
-
-    Raises:
-        SimulationError: a pattern fits none.
-    """
-    found: dict[str, None] = {}
-    for pattern in text.split(","):
-        fitting = [name for name in known if fnmatchcase(name_key(name), name_key(pattern))]
-        if not fitting:
-            hint = f"there are {', '.join(map(repr, known))}"
-            raise SimulationError(f"no {kind} has the name {pattern.strip()!r}", hint=hint)
-        found |= dict.fromkeys(fitting)
-    return tuple(found)

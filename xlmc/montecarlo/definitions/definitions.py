@@ -90,6 +90,7 @@ class Assumption:
         checked: how it is drawn by the numbers that the row held as it was read, which are a distribution; None if
             one was not known then. A run checks all numbers that are not these, whoever gives them.
         stated: key of a parameter or cutoff that a formula computes -> its value at the base case, and the formula.
+        uncertain: it varies from lack of knowledge: it has one value, which nobody knows. Others vary by scatter.
     """
 
     name: str
@@ -107,6 +108,7 @@ class Assumption:
     call: InFormula | None = None
     checked: Draw | None = field(default=None, compare=False, repr=False)
     stated: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
+    uncertain: bool = False
 
     @property
     def family(self) -> Family:

@@ -1,4 +1,4 @@
-"""How a forecast is stated: what it is to the question asked, what its numbers are, and how finely it is reported."""
+"""The words of a row: what a forecast is to the question asked, what its numbers are, and why an assumption varies."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from xlmc.montecarlo.distributions.spelling import plain
 
-__all__ = ["NOT_ROUNDED", "Kind", "Named", "Role", "named"]
+__all__ = ["NOT_ROUNDED", "Kind", "Named", "Role", "Uncertainty", "named"]
 
 
 class Role(StrEnum):
@@ -36,6 +36,13 @@ class Kind(StrEnum):
     CURRENCY = "currency"
 
 
+class Uncertainty(StrEnum):
+    """Why an assumption varies: nobody knows its one value, or it has another value each time."""
+
+    UNCERTAIN = "uncertain"
+    VARIABLE = "variable"
+
+
 NOT_ROUNDED = (Kind.YES_NO, Kind.CATEGORY)
 """Kinds whose numbers stand for words, so that they are not rounded."""
 
@@ -48,11 +55,11 @@ _ALSO = {
     "date/time": Kind.DATE,
 }
 
-Named = TypeVar("Named", Role, Kind)
+Named = TypeVar("Named", Role, Kind, Uncertainty)
 
 
 def named(kind: type[Named], text: str) -> Named | None:
-    """Return the role or kind that a person means, whatever its case and blanks; None for another word.
+    """Return the word of a kind that a person means, whatever its case and blanks; None for another word.
 
     >>> named(Role, "Lower Bound"), named(Kind, "Yes or no"), named(Kind, "speed")
     (<Role.LOWER: 'lower bound'>, <Kind.YES_NO: 'yes/no'>, None)

@@ -16,14 +16,14 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["GENERATOR", "METHODS", "REPLICATES", "Margin", "SamplingMethod"]
+__all__ = ["GENERATOR", "METHODS", "REPLICATES", "STRATA", "Margin", "SamplingMethod"]
 
 GENERATOR: Final = "PCG64DXSM"
 
 REPLICATES: Final = 16
 """The fewest replicates of a run: their spread, and so every error, is known to 1/√30 = 18 %."""
 
-_STRATA: Final = 16_384
+STRATA: Final = 16_384
 """The most trials in a replicate. More intervals gain nothing: with 16,384, some 4·10⁻⁹ remains of the variance that
 one input alone explains, if the forecast is smooth."""
 
@@ -114,7 +114,7 @@ _ROWS: Final = (
         "Latin hypercube",
         _SORTED,
         _latin_hypercube,
-        _at_most(_STRATA),
+        _at_most(STRATA),
         also=("latinhypercube",),
         limit="filters take its gain away: what they accept is no marginal",
     ),

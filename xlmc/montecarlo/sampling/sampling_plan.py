@@ -2,15 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.montecarlo.sampling.sampling_methods import METHODS, REPLICATES, Margin
+from xlmc.montecarlo.sampling.latin import LatinHypercube
+from xlmc.montecarlo.sampling.sampling_methods import METHODS, REPLICATES, STRATA, Margin
+from xlmc.montecarlo.sampling.streams import Stream
 
-__all__ = ["SamplingPlan"]
+__all__ = ["MOST_OUTER", "Repeated", "SamplingPlan"]
+
+MOST_OUTER: Final = STRATA
+"""The most draws of an outer loop: intervals of its Latin hypercube."""
+
+
+class Repeated:
+    """The uniforms of an assumption that keeps each draw for several trials.
+
+    Args:
+        margin: gives the draws, by their numbers.
+        times: trials that keep a draw.
+    """
+
+    def __init__(self, margin: Margin, times: int) -> None:
+        self._margin, self._times = margin, times
+
+    def uniforms(self, start: int, out: NDArray[np.float64]) -> None:
+        """See `Margin`."""
+        first, last = start // self._times, -(-(start + out.size) // self._times)
+        drawn = np.empty(last - first)
+        self._margin.uniforms(first, drawn)
+        out[:] = np.repeat(drawn, self._times)[start - first * self._times :][: out.size]
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,12 +47,25 @@ class SamplingPlan:
         trials: how many are run: whole replicates, and so sometimes more than were asked for.
         size: trials in a replicate; 0 where the trials themselves are independent.
         order: the assumptions in the order of their Sobol dimensions; empty to take them as they are listed.
+        outer: assumptions that are drawn once for each replicate, all others once for each trial in it.
     """
 
     method: str
     trials: int
     size: int = 0
     order: tuple[str, ...] = ()
+    outer: frozenset[str] = frozenset()
+
+    @classmethod
+    def nested(cls, outer: Collection[str], draws: int, trials: int) -> SamplingPlan:
+        """Make the plan of two loops: a Latin hypercube of outer draws, and for each so many independent trials.
+
+        Args:
+            outer: the assumptions that the outer loop draws.
+            draws: of the outer loop, 1 to `MOST_OUTER`.
+            trials: for each of them.
+        """
+        return cls("mc", draws * trials, trials, outer=frozenset(outer))
 
     @classmethod
     def of(cls, method: str, trials: int) -> SamplingPlan:
@@ -61,7 +99,14 @@ class SamplingPlan:
             SimulationError: the method cannot draw so many assumptions.
         """
         dimensions = {name: dimension for dimension, name in enumerate(self.order or names)}
+        if self.outer:
+            return [self._nested_margin(seed, name) for name in names]
         return METHODS[self.method].margins(seed, {name: dimensions[name] for name in names}, self.size)
+
+    def _nested_margin(self, seed: int, name: str) -> Margin:
+        if name not in self.outer:
+            return Stream(seed, name)
+        return Repeated(LatinHypercube(seed, name, self.replicates), self.size)
 
     def replicate_of(self, trials: NDArray[np.int64]) -> NDArray[np.int64] | None:
         """Return the replicate of each trial, (n,); None if the trials themselves are independent."""

@@ -85,12 +85,14 @@ def run_model(
     own_runner: ModelRunner | None = None,
     pieces: int = BLOCK,
     follow: Collection[str] | None = None,
+    plan: SamplingPlan | None = None,
 ) -> RunResult:
     """Run a model; see `Model.simulate`.
 
     A runner that is given, of this model, seed and sampling method, runs the blocks. A run of a given number of trials
     is computed in pieces of at most `pieces` trials, a power of two, for who wants `progress` more often: its numbers
     are the same. `progress` is told the means of the forecasts to `follow`; by default of all.
+    A `plan` that is given, for as many trials as the options ask for, says how they are drawn.
     """
     settings, keep_inputs = options.settings(model.definitions.settings), options.keep_inputs
     refuse_other_sampling(settings.sampling, settings.stopping)
@@ -98,7 +100,7 @@ def run_model(
     if settings.evidence == "weights":
         model, keep_inputs = weighing(model), None  # weights are computed from the draws
     largest = model.program(settings.engine).largest_block if own_runner is None else own_runner.block
-    plan = plan_sampling(model, settings)
+    plan = plan or plan_sampling(model, settings)
     rule, looks = chosen_rule(settings.stopping, model.forecasts, model.categories), rare_switch(model, settings)
     watch = Watch(rule, plan.trials, settings.stopping.seconds, time.monotonic)
     teller = None if progress is None else ProgressTracker([f.name for f in model.forecasts], _followed(model, follow))

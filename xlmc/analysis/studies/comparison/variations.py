@@ -6,15 +6,17 @@ Every assumption has a random stream of its own, so a variation draws the same n
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from fnmatch import fnmatchcase
 
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.definitions import Assumption
 from xlmc.montecarlo.definitions.stopping import NO_GOAL
+from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.model import CompiledModel
 
-__all__ = ["with_changes", "with_plain_sampling"]
+__all__ = ["names_of", "with_changes", "with_plain_sampling"]
 
 
 def with_changes(
@@ -83,3 +85,19 @@ def _assumption(
             data=other.data,
         )
     return assumption
+
+
+def names_of(text: str, known: Sequence[str], kind: str) -> tuple[str, ...]:
+    """Return the known names that a list of patterns fits.
+
+    Raises:
+        SimulationError: a pattern fits none.
+    """
+    found: dict[str, None] = {}
+    for pattern in text.split(","):
+        fitting = [name for name in known if fnmatchcase(name_key(name), name_key(pattern))]
+        if not fitting:
+            hint = f"there are {', '.join(map(repr, known))}"
+            raise SimulationError(f"no {kind} has the name {pattern.strip()!r}", hint=hint)
+        found |= dict.fromkeys(fitting)
+    return tuple(found)

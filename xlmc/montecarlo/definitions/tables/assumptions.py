@@ -12,6 +12,7 @@ from xlmc.montecarlo.definitions.cell_references import cell_of_reference, formu
 from xlmc.montecarlo.definitions.computed import Computed
 from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Parameter
 from xlmc.montecarlo.definitions.problems import Findings
+from xlmc.montecarlo.definitions.stating import Uncertainty
 from xlmc.montecarlo.definitions.tables.data import OPTIONS, cached_data_family, given_data, refuse_options
 from xlmc.montecarlo.definitions.tables.identity import Claims, identify
 from xlmc.montecarlo.definitions.tables.reserved_tables import DefinitionTable
@@ -24,6 +25,7 @@ from xlmc.montecarlo.definitions.tables.table_rows import (
     required_text,
     rows_of,
     static_value,
+    word_in,
 )
 from xlmc.montecarlo.distributions import FAMILIES, Family, ParameterSpec, family_named
 from xlmc.montecarlo.distributions.by_moments import COV, COV_SHARE, by_moments
@@ -32,7 +34,7 @@ from xlmc.montecarlo.distributions.parameters import MEAN, STD_DEV, show
 from xlmc.montecarlo.distributions.spelling import name_key, plain
 from xlmc.montecarlo.sampling.draws import Draw
 
-__all__ = ["PARAMETERS", "is_percentile", "read_assumptions"]
+__all__ = ["PARAMETERS", "UNCERTAINTY", "is_percentile", "read_assumptions"]
 
 _OURS = (heading for family in FAMILIES.values() for spec in family.parameters for heading in spec.headings)
 
@@ -47,9 +49,24 @@ _FURTHER = (*COV.headings, *COV_SHARE.headings, *PLUS_MINUS, *PLUS_MINUS_PERCENT
 PARAMETERS = tuple(dict.fromkeys((*_OURS, "Data", *_FURTHER)))
 """Every column that means a parameter of some distribution, beside percentiles: filled in, it is no note."""
 
+UNCERTAINTY = "Kind of uncertainty"
+"""The column that says whether an assumption varies from lack of knowledge or by scatter."""
+
 _LIMITS = frozenset({"low", "minimum", "min", "high", "maximum", "max"})
 
-_FIXED = ("Name", "Value", "Cell", "Distribution", *CUTOFFS.values(), "Units", "Source", "Frozen", "Call in", "Call")
+_FIXED = (
+    "Name",
+    "Value",
+    "Cell",
+    "Distribution",
+    *CUTOFFS.values(),
+    "Units",
+    "Source",
+    "Frozen",
+    UNCERTAINTY,
+    "Call in",
+    "Call",
+)
 _KNOWN = (*_FIXED, *PARAMETERS, *OPTIONS)
 
 _HEADING = re.compile(r"p(\d{1,3}(?:\.\d+)?)")
@@ -117,6 +134,7 @@ def _assumption(
             given = _given(row, kind, findings)
         data = None if kind.data is None else findings.attempt(given_data, row, kind, computed, findings)
         family = kind if data is None else findings.attempt(cached_data_family, data, kind, row.workbook)
+    uncertainty = findings.attempt(word_in, row, UNCERTAINTY, Uncertainty)
     units = findings.attempt(optional_text, row, "Units") or ""
     source = findings.attempt(optional_text, row, "Source") or ""
     if len(findings.problems) > before or not (identity and kind):
@@ -137,6 +155,7 @@ def _assumption(
         units=units,
         source=source,
         frozen=frozen,
+        uncertain=uncertainty is Uncertainty.UNCERTAIN,
         notes=row.notes(known),
         own_family=None if family is FAMILIES[kind.name] else family,
         data=data,

@@ -12,12 +12,19 @@ from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.computed import Computed
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.problems import Findings
-from xlmc.montecarlo.definitions.stating import NOT_ROUNDED, Kind, Named, Role, named
+from xlmc.montecarlo.definitions.stating import NOT_ROUNDED, Kind, Role
 from xlmc.montecarlo.definitions.tables.identity import Claims, identify
 from xlmc.montecarlo.definitions.tables.reserved_tables import DefinitionTable
-from xlmc.montecarlo.definitions.tables.table_rows import Row, central_share, number, number_in, optional_text, rows_of
+from xlmc.montecarlo.definitions.tables.table_rows import (
+    Row,
+    central_share,
+    number,
+    number_in,
+    optional_text,
+    rows_of,
+    word_in,
+)
 from xlmc.montecarlo.distributions.parameters import show
-from xlmc.montecarlo.distributions.spelling import nearest
 
 __all__ = ["read_forecasts"]
 
@@ -59,8 +66,8 @@ def _forecast(row: Row, computed: Computed, central: float, claims: Claims, find
     threshold = findings.attempt(number, row, "Threshold")
     asked = findings.attempt(_asked, row)
     units = findings.attempt(optional_text, row, "Units") or ""
-    kind = findings.attempt(_named, row, "Kind", Kind)
-    role = findings.attempt(_named, row, "Role", Role) or Role.ANSWER
+    kind = findings.attempt(word_in, row, "Kind", Kind)
+    role = findings.attempt(word_in, row, "Role", Role) or Role.ANSWER
     report_to = findings.attempt(_resolution, row, units)
     findings.attempt(_refuse_misfits, row, kind, role)
     if len(findings.problems) > before or not identity:
@@ -79,23 +86,6 @@ def _forecast(row: Row, computed: Computed, central: float, claims: Claims, find
         kind=kind,
         role=role,
     )
-
-
-def _named(row: Row, heading: str, words: type[Named]) -> Named | None:
-    """Return the role or kind in the cell; None if it is blank.
-
-    Raises:
-        DefinitionError: the cell holds another word.
-    """
-    text = optional_text(row, heading)
-    found = named(words, text) if text else None
-    if text and found is None:
-        known = [each.value for each in words]
-        meant = nearest(text, known)
-        hint = f"Did you mean {meant}? " if meant else ""
-        hint += f"Type {', '.join(known[:-1])} or {known[-1]}; a column of notes needs another heading"
-        raise DefinitionError(f"{row.heading(heading)} {text!r} is unknown", where=row.cell(heading), hint=hint)
-    return found
 
 
 def _resolution(row: Row, units: str) -> float | None:

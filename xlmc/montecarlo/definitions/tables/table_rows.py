@@ -15,6 +15,7 @@ from xlmc.excel.workbook.printable import label
 from xlmc.excel.workbook.workbook import CellContent, CellValue, Workbook
 from xlmc.montecarlo.definitions.definitions import Parameter
 from xlmc.montecarlo.definitions.problems import Findings
+from xlmc.montecarlo.definitions.stating import Named, named
 from xlmc.montecarlo.definitions.tables.reserved_tables import NEAR_MISS, DefinitionTable
 from xlmc.montecarlo.distributions.spelling import name_key, nearest, plain
 
@@ -34,6 +35,7 @@ __all__ = [
     "required_text",
     "rows_of",
     "static_value",
+    "word_in",
 ]
 
 _MISSPELT = 0.85  # likeness above which a heading is taken for one that the table lacks
@@ -247,6 +249,23 @@ def static_value(given: Parameter | None, workbook: Workbook) -> float | None:
         return given
     value = workbook.content(given).value
     return float(value) if isinstance(value, int | float) and not isinstance(value, bool | ErrorCode) else None
+
+
+def word_in(row: Row, heading: str, words: type[Named]) -> Named | None:
+    """Return which of some words the cell holds; None if it is blank.
+
+    Raises:
+        DefinitionError: the cell holds another word.
+    """
+    text = optional_text(row, heading)
+    found = named(words, text) if text else None
+    if text and found is None:
+        known = [each.value for each in words]
+        meant = nearest(text, known)
+        hint = f"Did you mean {meant}? " if meant else ""
+        hint += f"Type {', '.join(known[:-1])} or {known[-1]}; a column of notes needs another heading"
+        raise DefinitionError(f"{row.heading(heading)} {text!r} is unknown", where=row.cell(heading), hint=hint)
+    return found
 
 
 def logical(row: Row, heading: str) -> bool:

@@ -1,0 +1,271 @@
+"""`xlmc uncertainty`: how far an answer's distribution is uncertain where some inputs are not known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from xlmc.cli.blocks import show
+from xlmc.cli.options import WholeNumber, engine_option, jobs_option
+from xlmc.cli.study_output import STUDY, study_options
+from xlmc.cli.terminal import say_json
+from xlmc.cli.writing import write_files
+
+if TYPE_CHECKING:
+    from xlmc.analysis.studies.uncertainty import Band, ForecastBands, TwoLoops
+    from xlmc.outputs.document.parts import Block, Figure, Table
+    from xlmc.outputs.study_report import StudyReport
+
+__all__ = ["uncertainty"]
+
+NOT_TO_BE_USED = 1
+
+
+@click.command()
+@click.argument("book", type=click.Path(path_type=Path))
+@click.option("--outer", type=WholeNumber(1), default=250, show_default=True, help="Draws of what is uncertain.")
+@click.option(
+    "--inner", type=WholeNumber(1), default=1_000, show_default=True, help="Trials of what varies, for each of them."
+)
+@click.option("--confidence", type=float, default=90.0, show_default=True, help="Of the bands, in percent.")
+@click.option(
+    "--percentile",
+    type=float,
+    multiple=True,
+    help="A percentile whose band is told; may be given several times.  [default: 5, 50, 95]",
+)
+@click.option(
+    "--uncertain",
+    multiple=True,
+    metavar="ASSUMPTION",
+    help="These assumptions are uncertain, whatever their rows say: names joined by commas, * for any letters; may be"
+    " given several times.",
+)
+@click.option(
+    "--forecast",
+    multiple=True,
+    help="Tell of these forecasts only: names joined by commas, * for any letters; may be given several times.",
+)
+@click.option("--seed", type=WholeNumber(0), help="Seed of the run.  [default: the book's, else 999]")
+@engine_option
+@jobs_option
+@study_options(STUDY)
+@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
+def uncertainty(
+    book: Path,
+    outer: int,
+    inner: int,
+    confidence: float,
+    percentile: tuple[float, ...],
+    uncertain: tuple[str, ...],
+    forecast: tuple[str, ...],
+    seed: int | None,
+    engine: str | None,
+    jobs: int,
+    output: tuple[Path, ...],
+    also: tuple[Path, ...],
+    overwrite: bool,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Tell how uncertain the distributions of BOOK's answers are: what is not known is drawn in an outer loop, what
+    varies in an inner one.
+    """
+    from xlmc.analysis.studies import uncertainty as study
+    from xlmc.cli.printing import warnings
+    from xlmc.cli.progress_bar import step_line
+    from xlmc.montecarlo.model.loading import load
+    from xlmc.outputs.document.parts import blocks_of
+    from xlmc.outputs.study_report import Files
+
+    model = load(book)
+    files = Files((*output, *also), [book], overwrite=overwrite)
+    files.check()
+    with step_line(quiet) as tell:
+        found = study.uncertainty(
+            model,
+            outer=outer,
+            inner=inner,
+            confidence=confidence,
+            percents=percentile or study.PERCENTS,
+            uncertain=uncertain,
+            judged=forecast,
+            seed=seed,
+            engine=engine,
+            jobs=jobs,
+            tell=tell,
+        )
+    report = _report(found)
+    written = write_files(files.writers(report))
+    if as_json:
+        say_json(report.as_json())
+    else:
+        show(blocks_of([report.below, *report.blocks]))
+        written.print_paths()
+    warnings(found.run.warnings, found.run.refused)
+    written.check()
+    if found.run.warnings:
+        raise click.exceptions.Exit(NOT_TO_BE_USED)
+
+
+def _report(found: TwoLoops) -> StudyReport:
+    from xlmc.outputs.document.parts import blocks_of
+    from xlmc.outputs.study_report import StudyReport
+
+    below = (
+        f"{found.run.model.workbook.name}: {found.outer:,} outer draws, {found.inner:,} trials each, "
+        f"seed {found.run.settings.seed}"
+    )
+    blocks = blocks_of([*_sentences(found), *_tables(found), *_meaning(found)])
+    title = "How uncertain are the distributions of the answers?"
+    return StudyReport(title, below, blocks, "Uncertainty", partial(_as_json, found))
+
+
+def _sentences(found: TwoLoops) -> Iterator[str]:
+    from xlmc.analysis.studies.uncertainty import DEVIATION
+
+    for each in found.forecasts:
+        for band in each.bands:
+            if band.number != DEVIATION:
+                yield f"{_subject(each, band)} is between {_ends(each, band)} with {found.confidence:g} % confidence."
+    if found.texts:
+        yield f"Not told, since the answers are texts: {'; '.join(found.texts)}."
+    if found.valueless:
+        yield f"No number in any accepted trial: {'; '.join(found.valueless)}."
+
+
+def _subject(each: ForecastBands, band: Band) -> str:
+    name = each.definition.name
+    return f"{name}: {band.number}" if band.number.startswith("P(") else f"The {band.number} of {name}"
+
+
+def _ends(each: ForecastBands, band: Band) -> str:
+    """`41.2 and 47.9 mph`, both in the digits that the larger of their errors supports."""
+    decimals = band.form.decimals_of_both(band.low, band.high)
+    ends = " and ".join(band.form.number(end.value, decimals) for end in (band.low, band.high))
+    units = f" {each.definition.units}" if each.definition.units and not band.is_share else ""
+    return f"{ends}{units}"
+
+
+def _tables(found: TwoLoops) -> Iterator[Block]:
+    for each in found.forecasts:
+        yield _table(found, each)
+        if any(low != high for low, high in zip(each.low, each.high, strict=True)) and not each.bands[0].is_share:
+            yield _curve(found, each)
+    if len(found.uncertain) > 1 and found.forecasts:
+        yield _causes(found)
+
+
+def _title(each: ForecastBands) -> str:
+    return f"{each.definition.name}, {each.definition.units}" if each.definition.units else each.definition.name
+
+
+def _table(found: TwoLoops, each: ForecastBands) -> Table:
+    from xlmc.analysis.studies.uncertainty import DEVIATION
+    from xlmc.outputs.document.parts import Table
+
+    rows = []
+    for band in each.bands:
+        text = band.form.spread if band.number == DEVIATION else band.form.estimate
+        rows.append((band.number, *map(text, (band.pooled, band.low, band.high))))
+    heads = ("Number", "All trials", "Band from", "Band to")
+    return Table(_title(each), heads, tuple(rows), (1, 2, 3))
+
+
+def _curve(found: TwoLoops, each: ForecastBands) -> Figure:
+    from xlmc.outputs.document.parts import Chart, Figure, Line, Lines
+
+    shares = each.shares.tolist()
+    columns = (("All trials", each.curve), ("Band, lower end", each.low), ("Band, upper end", each.high))
+    lines = tuple(Line(name, tuple(zip(values.tolist(), shares, strict=True))) for name, values in columns)
+    name = each.definition.name
+    said = f"{name}: the cumulative curve of all trials, and its {found.confidence:g} % band"
+    return Figure(Chart("", _title(each), Lines(lines, "Cumulative share", share=True), said), said)
+
+
+def _causes(found: TwoLoops) -> Table:
+    from xlmc.outputs.document.parts import Table
+    from xlmc.outputs.summary import estimate_text
+
+    shown = found.forecasts
+    rows = tuple((name, *(estimate_text(each.causes[name]) for each in shown)) for name in found.uncertain)
+    title = "What makes the bands wide: rank correlation of each uncertain assumption with the mean"
+    heads = ("Uncertain", *(each.definition.name for each in shown))
+    return Table(title, heads, rows, tuple(range(1, len(heads))))
+
+
+def _meaning(found: TwoLoops) -> Iterator[str]:
+    run = found.run
+    yield (
+        f"Uncertain, drawn in the outer loop: {'; '.join(found.uncertain)}. "
+        f"Variable, drawn in the inner loop: {'; '.join(found.variable) or 'none'}."
+    )
+    if run.accepted < run.trials:
+        empty = f" Of {found.empty:,} outer draws no trial was accepted." if found.empty else ""
+        yield (
+            f"Of {run.trials:,} trials {run.accepted:,} were accepted. An outer draw counts by its accepted "
+            f"trials.{empty}"
+        )
+    if found.wide:
+        each, band = max(found.wide, key=lambda one: one[1].excess)
+        yield (
+            f"Too wide by up to {band.excess:.0%} ({band.number} of {each.definition.name}): {found.inner:,} inner "
+            "trials scatter. More of them (--inner) make the bands narrower."
+        )
+    yield (
+        "Each outer draw is one thing that may be true, and its inner trials show what then varies. All trials: both "
+        f"together, as xlmc simulate has them. Band: the central {found.confidence:g} % of what the outer draws give. "
+        "± is the standard error (Monte Carlo error) of a number; more outer draws (--outer) make that of the ends "
+        "smaller."
+    )
+
+
+def _as_json(found: TwoLoops) -> dict[str, object]:
+    run = found.run
+    return {
+        "book": str(run.model.path),
+        "outer": found.outer,
+        "inner": found.inner,
+        "seed": run.settings.seed,
+        "confidence": found.confidence,
+        "trials": run.trials,
+        "accepted": run.accepted,
+        "outer_draws_without_accepted_trials": found.empty,
+        "uncertain": found.uncertain,
+        "variable": found.variable,
+        "forecasts": [_forecast_json(each) for each in found.forecasts],
+        "forecasts_of_texts": found.texts,
+        "forecasts_without_numbers": found.valueless,
+    }
+
+
+def _forecast_json(each: ForecastBands) -> dict[str, object]:
+    from xlmc.cli.study_output import estimate_json
+
+    columns = (column.tolist() for column in (each.shares, each.curve, each.low, each.high))
+    return {
+        "name": each.definition.name,
+        "cell": str(each.definition.cell),
+        "units": each.definition.units,
+        "outer_draws": each.draws,
+        "numbers": [
+            {
+                "number": band.number,
+                "all_trials": estimate_json(band.pooled),
+                "low": estimate_json(band.low),
+                "high": estimate_json(band.high),
+                "too_wide_by": band.excess,
+            }
+            for band in each.bands
+        ],
+        "curve": [
+            {"share": share, "all_trials": value, "low": low, "high": high}
+            for share, value, low, high in zip(*columns, strict=True)
+        ],
+        "rank_correlations_with_mean": {name: estimate_json(one) for name, one in each.causes.items()},
+    }

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
         screen,
         sensitivities,
         stability,
+        uncertainty,
         verify,
     )
     from xlmc.montecarlo.definitions.distribution import (
@@ -81,6 +82,7 @@ __all__ = [
     "screen",
     "sensitivities",
     "stability",
+    "uncertainty",
     "verify",
 ]
 
@@ -116,6 +118,7 @@ _MODULES = {
     "screen": "api",
     "sensitivities": "api",
     "stability": "api",
+    "uncertainty": "api",
     "verify": "api",
 }
 

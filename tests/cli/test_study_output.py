@@ -1,4 +1,4 @@
-"""What screen, compare and stability find, as a sheet and as a page."""
+"""What studies find, as a sheet and as a page."""
 
 from __future__ import annotations
 
@@ -31,12 +31,28 @@ def book(tmp_path):
     return path
 
 
-@pytest.fixture(params=["screen", "compare", "stability"])
+TRIALS = ("-n", "2000")
+OPTIONS = {
+    "screen": TRIALS,
+    "compare": TRIALS,
+    "stability": TRIALS,
+    "uncertainty": ("--uncertain", "a", "--outer", "40", "--inner", "50"),
+}
+
+
+@pytest.fixture(params=OPTIONS)
 def command(request, book):
-    return [request.param, *[book] * (2 if request.param == "compare" else 1), "-n", "2000", "--quiet"]
+    books = [book] * (2 if request.param == "compare" else 1)
+    return [request.param, *books, *OPTIONS[request.param], "--quiet"]
 
 
-SAYS = {"screen": "P(> 1.5)", "compare": "P(> 1.5), %", "stability": "What cells amplify and lose"}
+SAYS = {
+    "screen": "P(> 1.5)",
+    "compare": "P(> 1.5), %",
+    "stability": "What cells amplify and lose",
+    "uncertainty": "The 95th percentile of Speed is between",
+}
+NO_RUN = ("compare", "uncertainty")
 
 
 def test_sheet_and_page_say_what_the_terminal_says(xlmc, command, tmp_path):
@@ -73,7 +89,7 @@ def test_documents_say_what_the_terminal_says(xlmc, command, tmp_path):
 def test_every_kind_is_written_by_its_ending(xlmc, command, book, tmp_path):
     for library in ("typst", "docx", "pyarrow"):
         pytest.importorskip(library)
-    of_the_run = [] if command[0] == "compare" else ["csv", "parquet", "xlmcrun"]
+    of_the_run = [] if command[0] in NO_RUN else ["csv", "parquet", "xlmcrun"]
     names = [f"found.{ending}" for ending in ("xlsx", "pdf", "docx", "html", "json", *of_the_run)]
     outcome = xlmc(*command, *(part for name in names for part in ("-o", tmp_path / name)))
     assert outcome.code == 0, outcome.err
@@ -95,7 +111,7 @@ def test_what_cannot_be_written_is_refused_before_anything_is_run(xlmc, command,
         (["-o", book], "this is the file that is read"),
         (["-o", tmp_path / "found.txt"], "the ending .txt is none of a file that this command writes"),
         (["-o", tmp_path / "found.xlsm"], "the ending .xlsm is none of a file that this command writes"),
-        *([] if command[0] != "compare" else [(["-o", tmp_path / "found.csv"], "the ending .csv is none")]),
+        *([] if command[0] not in NO_RUN else [(["-o", tmp_path / "found.csv"], "the ending .csv is none")]),
         (["--html", tmp_path / "found.xlsx"], "must end in .html"),
         (["--html", tmp_path / "nowhere" / "found.html"], "nowhere"),
         (["--pdf", tmp_path / "found.docx"], "must end in .pdf"),

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from xlmc.api.books import check, convert, replay, verify
 from xlmc.api.models import Model, Simulation, load, model, open_run
-from xlmc.api.studies import compare, fit, methods, screen, sensitivities, stability
+from xlmc.api.studies import compare, fit, methods, screen, sensitivities, stability, uncertainty
 
 __all__ = [
     "Model",
@@ -24,5 +24,6 @@ __all__ = [
     "screen",
     "sensitivities",
     "stability",
+    "uncertainty",
     "verify",
 ]

@@ -17,8 +17,9 @@ if TYPE_CHECKING:
     from xlmc.analysis.studies.screening import ScreenArguments, Screening
     from xlmc.analysis.studies.sensitivity import Sensitivities
     from xlmc.analysis.studies.stability import Stability
+    from xlmc.analysis.studies.uncertainty import TwoLoops, UncertaintyArguments
 
-__all__ = ["compare", "fit", "methods", "screen", "sensitivities", "stability"]
+__all__ = ["compare", "fit", "methods", "screen", "sensitivities", "stability", "uncertainty"]
 
 
 def sensitivities(run: Simulation, *, assumptions: Collection[str] = ()) -> Sensitivities:
@@ -150,6 +151,25 @@ def stability(model: Model, *, trials: int | None = None, seed: int | None = Non
     from xlmc.analysis.studies.stability import stability
 
     return stability(model._compiled, trials=trials, seed=seed, jobs=jobs)
+
+
+def uncertainty(model: Model, **options: Unpack[UncertaintyArguments]) -> TwoLoops:
+    """Draw what is uncertain in an outer loop and what varies in an inner one, and find the bands of each answer.
+
+    The model and its workbook stay as they are. The inner trials are plain Monte Carlo, whatever its settings say.
+
+    Args:
+        model: with assumptions that are `Uncertain` under `Kind of uncertainty`, or that `uncertain` names.
+        options: `outer`, `inner`, `confidence`, `percents`, `uncertain`, `judged`, `seed`, `engine`, `jobs` and
+            `tell`, which `xlmc.analysis.studies.uncertainty.uncertainty` describes.
+
+    Raises:
+        SimulationError: an argument is out of its range, or no trial is accepted.
+        DefinitionError: no assumption is uncertain, or an uncertain one depends on one that varies.
+    """
+    from xlmc.analysis.studies.uncertainty import uncertainty
+
+    return uncertainty(model._compiled, **options)
 
 
 def fit(values: ArrayLike, *, kind: str | None = None, by: str = "aic") -> Fitting:

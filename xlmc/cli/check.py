@@ -16,7 +16,7 @@ from xlmc.errors import sentence
 
 if TYPE_CHECKING:
     from xlmc.excel.workbook.workbook import Workbook
-    from xlmc.montecarlo.definitions.definitions import Correlation, Definitions, Forecast
+    from xlmc.montecarlo.definitions.definitions import Assumption, Correlation, Definitions, Forecast
     from xlmc.montecarlo.diagnostics.cell_errors import BaseErrors
     from xlmc.montecarlo.diagnostics.checking import CheckResult
     from xlmc.montecarlo.model.model import CompiledModel
@@ -116,6 +116,10 @@ def _error_lines(model: CompiledModel, errors: BaseErrors) -> Iterator[str]:
         yield f"Cells that are errors because of these: {named}{more}."
 
 
+def _standing(assumption: Assumption) -> str:
+    return "frozen" if assumption.frozen else "uncertain" * assumption.uncertain
+
+
 def _show_definitions(definitions: Definitions, model: CompiledModel | None) -> None:
     from xlmc.analysis.results.statements.in_words import distribution_text, evidence_text, limits_text
     from xlmc.cli.printing import table
@@ -125,7 +129,7 @@ def _show_definitions(definitions: Definitions, model: CompiledModel | None) -> 
     table(
         "Assumptions",
         ("Name", "Cell", "Units", "Distribution", ""),
-        [(a.name, str(a.cell), a.units, distribution_text(a), "frozen" * a.frozen) for a in definitions.assumptions],
+        [(a.name, str(a.cell), a.units, distribution_text(a), _standing(a)) for a in definitions.assumptions],
     )
     stated = any(f.says_how for f in definitions.forecasts)
     table(

@@ -127,12 +127,9 @@ def _report(found: TwoLoops) -> StudyReport:
 
 
 def _sentences(found: TwoLoops) -> Iterator[str]:
-    from xlmc.analysis.studies.uncertainty import DEVIATION
-
     for each in found.forecasts:
-        for band in each.bands:
-            if band.number != DEVIATION:
-                yield f"{_subject(each, band)} is between {_ends(each, band)} with {found.confidence:g} % confidence."
+        for band in each.told:
+            yield f"{_subject(each, band)} is between {_ends(each, band)} with {found.confidence:g} % confidence."
     if found.texts:
         yield f"Not told, since the answers are texts: {'; '.join(found.texts)}."
     if found.valueless:

@@ -147,6 +147,12 @@ class ForecastBands:
     draws: int
     causes: Mapping[str, Estimate]
 
+    @property
+    def told(self) -> list[Band]:
+        """The bands that are told in sentences: all probabilities, and of other numbers the first and the last."""
+        numbers = [band for band in self.bands if not band.is_share]
+        return [*dict.fromkeys((*numbers[:1], *numbers[-1:])), *(band for band in self.bands if band.is_share)]
+
 
 @dataclass(frozen=True, slots=True)
 class TwoLoops:
@@ -178,8 +184,8 @@ class TwoLoops:
 
     @property
     def wide(self) -> list[tuple[ForecastBands, Band]]:
-        """The bands that more inner trials would make notably narrower."""
-        return [(each, band) for each in self.forecasts for band in each.bands if band.excess > _NOTABLE]
+        """The bands told in sentences that more inner trials would make notably narrower."""
+        return [(each, band) for each in self.forecasts for band in each.told if band.excess > _NOTABLE]
 
     def __getitem__(self, name: str) -> ForecastBands:
         """Return the bands of a forecast.

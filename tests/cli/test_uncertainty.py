@@ -1,0 +1,73 @@
+"""`xlmc uncertainty`, and the page that shows it."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import re
+from pathlib import Path
+
+import openpyxl
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def book(tmp_path_factory):
+    spec = importlib.util.spec_from_file_location("unknown_mean", ROOT / "examples" / "unknown_mean.py")
+    script = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(script)
+    path = tmp_path_factory.mktemp("unknown") / "unknown-mean.xlsx"
+    script.write(path)
+    return path
+
+
+def _words(text):
+    """Numbers apart: the last digits differ between processors."""
+    return re.sub(r"\d[\d.]*(e[-+]?\d+)?", "#", " ".join(text.split()))
+
+
+def test_the_page_shows_the_output(xlmc, book):
+    outcome = xlmc("uncertainty", book)
+    assert outcome.code == 0
+    page = (ROOT / "docs" / "uncertainty.md").read_text(encoding="utf-8")
+    begin = "<!-- output of `xlmc uncertainty unknown-mean.xlsx` -->\n```text\n"
+    shown = page.partition(begin)[2].partition("\n```")[0]
+    assert "with 90 % confidence" in shown
+    assert _words(outcome.out) == _words(shown)
+
+
+def test_json_holds_the_bands_and_the_curve(xlmc, book):
+    outcome = xlmc("uncertainty", book, "--outer", "40", "--inner", "50", "--percentile", "97.5", "--json", "--quiet")
+    found = json.loads(outcome.out)
+    assert (found["outer"], found["inner"], found["seed"], found["accepted"]) == (40, 50, 999, 2_000)
+    assert found["uncertain"] == ["Mean friction", "Scatter of friction", "Skid"]
+    friction, speed = found["forecasts"]
+    assert [each["number"] for each in speed["numbers"]] == ["mean", "SD", "97.5th percentile", "P(> 50)"]
+    assert all(each["low"]["value"] <= each["high"]["value"] for each in friction["numbers"])
+    assert {"share", "all_trials", "low", "high"} == set(friction["curve"][0])
+    assert speed["rank_correlations_with_mean"]["Mean friction"]["value"] > 0.8
+
+
+def test_the_sheet_has_a_chart_of_three_lines(xlmc, book, tmp_path):
+    sheet = tmp_path / "found.xlsx"
+    assert xlmc("uncertainty", book, "--outer", "40", "--inner", "50", "--forecast", "Speed", "-o", sheet).code == 0
+    made = openpyxl.load_workbook(sheet)
+    (chart,) = made["Uncertainty"]._charts
+    assert len(chart.series) == 3
+
+
+def test_check_and_results_say_what_is_uncertain(xlmc, book):
+    assert xlmc("check", book).out.count(" uncertain") == 3
+    outcome = xlmc("simulate", book, "-n", "2000", "-o", "run.json", "--quiet")
+    assert outcome.code == 0, outcome.err
+    rows = json.loads(Path("run.json").read_text(encoding="utf-8"))["assumptions"]
+    assert [row["uncertain"] for row in rows] == [True, True, False, True]
+
+
+def test_a_book_without_uncertain_assumptions_is_refused_with_the_cure(xlmc, case_study):
+    outcome = xlmc("uncertainty", case_study)
+    assert outcome.code == 2
+    assert "Uncertain under Kind of uncertainty" in outcome.err
+    assert "--uncertain" in outcome.err

@@ -10,6 +10,7 @@ from xlmc.montecarlo.model import loading
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.verify import Verification
+    from xlmc.api.models import Model
     from xlmc.outputs.replay import Replayed
 
 __all__ = ["check", "convert", "replay", "verify"]
@@ -63,8 +64,13 @@ def verify(path: str | Path, *, everything: bool = False) -> Verification:
     return verify(workbook, definitions)
 
 
-def replay(path: str | Path, *, jobs: int = 1) -> Replayed:
+def replay(path: str | Path, *, jobs: int = 1, model: Model | None = None) -> Replayed:
     """Repeat the run that a result workbook or a saved run records, and say whether it is identical.
+
+    Args:
+        path: a result workbook, or a saved run.
+        jobs: threads or processes.
+        model: of `xlmc.model`, where a function of Python computed the run.
 
     Raises:
         WorkbookError: the file cannot be read, or holds no record.
@@ -72,7 +78,7 @@ def replay(path: str | Path, *, jobs: int = 1) -> Replayed:
     """
     from xlmc.outputs.replay import replay
 
-    return replay(path, jobs=jobs)
+    return replay(path, jobs=jobs, python=None if model is None else model._compiled.definitions.python)
 
 
 def convert(path: str | Path, to: str | Path, *, overwrite: bool = False) -> Path:

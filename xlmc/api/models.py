@@ -221,6 +221,8 @@ class Model:
         from xlmc.analysis.studies.scenario_answers import model_of
         from xlmc.montecarlo.definitions.scenarios import Scenario
 
+        if not scenario.changes:
+            return self
         own = self._compiled if self._changes is None else self._changes.own
         before = () if self._changes is None else self._changes.scenario.changes
         every = Scenario(scenario.name, (*before, *scenario.changes))
@@ -360,13 +362,22 @@ def model(
     return Model(function_model(function, assumptions, forecasts, filters, correlations=correlations, name=name))
 
 
-def open_run(path: str | Path) -> Simulation:
+def open_run(path: str | Path, model: Model | None = None) -> Simulation:
     """Return the run that `Simulation.keep` saved in a file: every statistic is the same to the last bit.
 
+    Args:
+        path: of the file.
+        model: of `xlmc.model`, where a function of Python computed the run, which no file holds; changes of the model
+            stand in the file.
+
     Raises:
+        SimulationError: the model is of another function than the run.
         WorkbookError: the file cannot be read, or is no saved run.
         XlmcError: its workbook cannot be understood any more.
     """
-    from xlmc.analysis.results.saved import open_run
+    from xlmc.analysis.results.saved import open_run, refuse_other_function
 
-    return Simulation(open_run(path))
+    run = open_run(path, None if model is None else model._compiled.definitions.python)
+    if model is not None:
+        refuse_other_function(run, path)
+    return Simulation(run)

@@ -8,6 +8,8 @@ import pytest
 import xlmc
 from xlmc import Normal, Triangular, Uniform
 from xlmc.errors import DefinitionError, FormulaError, SimulationError
+from xlmc.excel.address import Cell
+from xlmc.montecarlo.definitions.scenarios import Frozen, Limits, Numbers, Range, Scenario, Typed
 
 G = 9.80665
 
@@ -94,7 +96,7 @@ def test_every_file_is_written_and_names_the_function(run, tmp_path):
     assert all(path.stat().st_size > 10_000 for path in pages)
     with pytest.raises(DefinitionError, match=r"Python function .*skid computes 'Speed'.*Run it from Python"):
         xlmc.load(tmp_path / "a.xlsx")
-    with pytest.raises(DefinitionError, match="Run it from Python"):
+    with pytest.raises(DefinitionError, match=r"Run it from Python.*open_run\(path, model\)"):
         xlmc.open_run(run.keep(tmp_path / "a.xlmcrun"))
 
 
@@ -135,7 +137,12 @@ def test_it_can_be_changed_and_frozen(model):
         (lambda x: float(x), "failed: TypeError"),
         (lambda x: x[:1].repeat(2), r"with the shape \(2,\) for 1 trial"),
         (lambda x: {"z": x}, "does not give 'y'"),
-        (lambda x: np.full(x.shape, "a"), "gives no numbers as 'y'"),
+        (lambda x: np.full(x.shape, "a"), "gives no numbers as 'y', but texts"),
+        (lambda x: np.full(x.shape, "1.5"), "gives no numbers as 'y', but texts"),
+        (lambda x: np.array([None] * x.size), "gives no numbers as 'y', but objects"),
+        (lambda x: x + 1j, "gives no numbers as 'y', but complex ones.*real or imaginary part"),
+        (lambda x: np.ma.masked_greater(x, 0.4), r"but a masked array.*filled\(numpy.nan\)"),
+        (lambda x: np.full(x.shape, "2026-01-01", "M8[D]"), "gives no numbers as 'y', but dates"),
         (lambda z: z, "failed: TypeError"),
         (lambda x: x + np.random.default_rng().random(x.shape), "for the same values"),
     ],
@@ -164,6 +171,76 @@ def test_definitions_that_cannot_be_used_are_refused(arguments, message):
 def test_other_processes_are_refused_in_words(model):
     with pytest.raises(SimulationError, match="Use threads"):
         model.simulate(100_000, jobs=2, scheduler="processes")
+
+
+CHANGES = {
+    "as it is": lambda model: model,
+    "held at a value": lambda model: model.with_(friction=0.7),
+    "other settings": lambda model: model.with_(trials=900),
+    "frozen": lambda model: model.frozen("grade", "distance"),
+    "another family": lambda model: model.with_(distance=xlmc.Weibull(20, 6, 3, units="yd", source="chain")),
+    "cut off": lambda model: model.with_(distance=Normal(25, 0.5, lower_cutoff=24.5)),
+    "twice": lambda model: model.with_(friction=Triangular(0.6, 0.7, 0.8)).frozen("distance"),
+    "limits": lambda model: model.scenario(Scenario("other limits", (Limits("Speed", {"above": None, "below": 70}),))),
+}
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_a_changed_model_is_saved_and_read_back_equal(model, tmp_path, change):
+    run = CHANGES[change](model).simulate(1_000, seed=2)
+    run.save(tmp_path / "a.xlsx")
+    run.save_report(tmp_path / "a.docx")
+    opened = xlmc.open_run(run.keep(tmp_path / "a.xlmcrun"), model)
+    assert opened.accepted == run.accepted > 0
+    for name, values in run.forecasts.items():
+        assert np.array_equal(opened.forecasts[name], values)
+    assert {name: result.statistics.mean for name, result in opened.results.items()} == {
+        name: result.statistics.mean for name, result in run.results.items()
+    }
+    assert [(a.name, a.units, a.source, a.frozen, a.given, a.base) for a in opened.model.assumptions] == [
+        (a.name, a.units, a.source, a.frozen, a.given, a.base) for a in run.model.assumptions
+    ]
+    influences = [
+        [(i.assumption, i.explained) for i in xlmc.sensitivities(r)["Speed"].influences] for r in (run, opened)
+    ]
+    assert influences[0] == influences[1]
+    for file in ("a.xlsx", "a.xlmcrun"):
+        assert xlmc.replay(tmp_path / file, model=model).to_the_last_bit
+
+
+def test_a_saved_run_is_not_opened_beside_another_function(run, tmp_path):
+    path = run.keep(tmp_path / "a.xlmcrun")
+    same = {"Possible": {"because": "gouges"}, "Speed": {"above": 62, "because": "recorder"}}
+    forecasts = {"Speed": {"units": "km/h", "threshold": 65}, "Energy": "J/kg"}
+    other = xlmc.model(lambda **x: {**skid(**x), "Energy": x["grade"]}, RANGES, forecasts, same)
+    with pytest.raises(SimulationError, match="gives other numbers as 'Energy'"):
+        xlmc.open_run(path, other)
+    fewer = xlmc.model(lambda friction: friction, {"friction": RANGES["friction"]}, {"Speed": "km/h"})
+    with pytest.raises(DefinitionError, match="does not hold it"):
+        xlmc.open_run(path, fewer)
+
+
+def test_frozen_without_names_changes_nothing(model):
+    assert repr(model.frozen()) == repr(model)
+    assert model.frozen().simulate(100)._run.changed_from is None
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda value: Frozen("friction", value),
+        lambda value: Range("friction", 0.5, value),
+        lambda value: Numbers("distance", {"lower_cutoff": value}),
+        lambda value: Limits("Speed", {"above": value}),
+        lambda value: Typed(Cell("Model", 3, 1), value),
+    ],
+)
+def test_no_change_is_to_something_else_than_a_number(model, change, value):
+    with pytest.raises(DefinitionError, match="no cell can hold"):
+        model.scenario(Scenario("odd", (change(value),)))
+    with pytest.raises(DefinitionError, match="no cell can hold"):
+        model.with_(friction=value)
 
 
 @pytest.mark.parametrize("name", ["ROW", "INDEX", "a/b: c?", "LAMBDA"])

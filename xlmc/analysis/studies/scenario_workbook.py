@@ -179,7 +179,10 @@ def _refuse_difference(wanted: CompiledModel, found: CompiledModel, scenario: Sc
 
 
 def _definitions(model: CompiledModel) -> list[object]:
-    assumptions = [(a.name, a.frozen, a.base, a.distribution, a.parameters, a.cutoffs) for a in model.assumptions]
+    assumptions = [
+        (a.name, a.frozen, a.base, a.distribution, a.parameters, a.cutoffs, a.units, a.source)
+        for a in model.assumptions
+    ]
     filters = [(f.name, f.at_least, f.at_most, f.above, f.below) for f in (*model.filters, *model.forecast_filters)]
     frozen = {a.name for a in model.assumptions if a.frozen}  # whose correlations have no effect, and are not read
     rows = [c for c in model.definitions.correlations if frozen.isdisjoint((c.first, c.second))]

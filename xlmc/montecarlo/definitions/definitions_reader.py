@@ -193,7 +193,10 @@ def _refuse_without_function(rows: Iterable[Forecast | Filter], python: Containe
     lost = [each for each in rows if COMPUTED_BY in each.notes and each.cell not in python]
     if lost:
         names = ", ".join(dict.fromkeys(repr(each.name) for each in lost))
-        hint = "Run it from Python, where the function is: xlmc.model(function, …)"
+        hint = (
+            "Run it from Python, where the function is: xlmc.model(function, …); a saved run is opened beside it: "
+            "xlmc.open_run(path, model)"
+        )
         by = lost[0].notes[COMPUTED_BY]
         findings.problem(f"The {by} computes {names}, and a workbook does not hold it", lost[0].cell, hint)
 

@@ -20,6 +20,7 @@ Draws are keyed by the seed and an assumption's name, so those of assumptions th
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
@@ -122,6 +123,7 @@ def _typed(changes: Iterable[Change]) -> dict[Cell, CellValue]:
 def _with_typed(model: CompiledModel, changes: Sequence[Change]) -> CompiledModel:
     """Make the model with what is typed into cells, switched or tabulated, before any other change."""
     for change in changes:
+        _refuse_no_number(change)
         if isinstance(change, Typed):
             _refuse_cell(model, change)
         elif isinstance(change, Switched):
@@ -171,6 +173,28 @@ def changed_cells(model: CompiledModel, definitions: Definitions) -> tuple[dict[
             if missing:
                 lacking[old.name] = missing
     return cells, lacking
+
+
+def _refuse_no_number(change: Change) -> None:
+    """Refuse NaN and infinity, which no cell can hold."""
+    values: Iterable[object]
+    match change:
+        case Frozen():
+            what, values = change.assumption, (change.value,)
+        case Typed():
+            what, values = str(change.cell), (change.value,)
+        case Limits():
+            what, values = change.filter, change.values.values()
+        case Numbers():
+            what, values = change.assumption, change.values.values()
+        case Range():
+            what, values = change.assumption, (change.low, change.high)
+        case _:
+            return
+    for value in values:
+        if isinstance(value, float) and not math.isfinite(value):
+            message = f"{what!r} is changed to {value}, which no cell can hold"
+            raise DefinitionError(message, where=change.where, hint="give a number, or None to take a limit away")
 
 
 def _refuse_cell(model: CompiledModel, change: Typed) -> None:

@@ -11,6 +11,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from numbers import Real
 from pathlib import Path
 from typing import Any, Final, TypedDict
 
@@ -28,7 +29,7 @@ from xlmc.montecarlo.definitions.definitions import CUTOFFS
 from xlmc.montecarlo.definitions.definitions_reader import COMPUTED_BY
 from xlmc.montecarlo.definitions.distribution import Distribution
 from xlmc.montecarlo.definitions.tables.filters import LIMITS
-from xlmc.montecarlo.distributions import family_named
+from xlmc.montecarlo.distributions import FAMILIES, family_named
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.loading import build_model
 from xlmc.montecarlo.model.model import CompiledModel
@@ -155,16 +156,37 @@ class _Body:
         if name not in result:
             hint = f"It gives {', '.join(map(str, result)) or 'nothing'}"
             raise FormulaError(f"{self.label} does not give {name!r}", hint=hint)
-        try:
-            values = np.asarray(result[name], np.float64)
-        except (TypeError, ValueError) as error:
-            hint = "Give numbers or logicals"
-            raise FormulaError(f"{self.label} gives no numbers as {name!r}: {error}", hint=hint) from error
+        values = self._numbers(name, result[name])
         if values.shape not in ((), (1,), (n,)):
             hint = "It must take arrays, and give an array of the same length: use numpy.where in place of if"
             message = f"{self.label} gives {name!r} with the shape {values.shape} for {n} trials"
             raise FormulaError(message, hint=hint)
         return np.broadcast_to(values, (n,))
+
+    def _numbers(self, name: str, given: ArrayLike) -> Floats:
+        """Return what the function gives as an array of numbers.
+
+        Raises:
+            FormulaError: it is something else, which NumPy would make numbers of: complex numbers lose a part, masked
+                ones show what is behind the mask, texts and dates count something.
+        """
+        message, hint = f"{self.label} gives no numbers as {name!r}", "Give numbers or logicals"
+        if isinstance(given, np.ma.MaskedArray):
+            cure = "Give NaN where there is no number: result.filled(numpy.nan)"
+            raise FormulaError(f"{message}, but a masked array", hint=cure)
+        try:
+            found = np.asarray(given)
+            if found.dtype.kind == "O" and all(isinstance(each, Real) for each in found.ravel()):
+                found = found.astype(np.float64)
+        except (TypeError, ValueError, OverflowError) as error:
+            raise FormulaError(f"{message}: {error}", hint=hint) from error
+        if found.dtype.kind == "c":
+            cure = "Give its real or imaginary part, or its absolute value"
+            raise FormulaError(f"{message}, but complex ones", hint=cure)
+        if found.dtype.kind not in "biuf":
+            what = {"U": "texts", "S": "bytes", "M": "dates", "m": "spans of time"}.get(found.dtype.kind, "objects")
+            raise FormulaError(f"{message}, but {what}", hint=hint)
+        return found.astype(np.float64)
 
 
 def function_model(
@@ -278,9 +300,10 @@ def _written(
     """
     import xlsxwriter
 
-    specs = {
-        spec.heading: spec.key for each in assumptions.values() for spec in family_named(each.family).parameters
-    } | {heading: key for key, heading in CUTOFFS.items()}
+    families = [family_named(each.family) for each in assumptions.values()]
+    families += [each for each in FAMILIES.values() if each.data is None]  # from which it may be drawn in a change
+    specs = {spec.heading: spec.key for family in families for spec in family.parameters}
+    specs |= {heading: key for key, heading in CUTOFFS.items()}
     drawn = [
         {
             "Name": name,
@@ -289,6 +312,7 @@ def _written(
             "Distribution": each.family,
             **{heading: each.given.get(key) for heading, key in specs.items()},
             "Source": each.source,
+            "Frozen": None,
         }
         for name, each in assumptions.items()
     ]
@@ -297,7 +321,8 @@ def _written(
         for name, said in forecasts.items()
     ]
     tests = [
-        {"Name": name, "Value": base[name], **_headed(said, _FILTER), COMPUTED_BY: by} for name, said in filters.items()
+        {"Name": name, "Value": base[name], **_headed(said, _FILTER), COMPUTED_BY: by, "Use": None}
+        for name, said in filters.items()
     ]
     pairs = [{"First": a, "Second": b, "Correlation": value} for (a, b), value in correlations.items()]
     stream = io.BytesIO()
@@ -309,7 +334,7 @@ def _written(
     sheet.write_string(
         0, 0, f"Computed by the {by}, which this workbook does not hold", book.add_format({"bold": True})
     )
-    top = 2
+    top, shown, last = 2, 0, 0
     places: list[list[Cell]] = []
     for kind, rows in (
         ("xlmc_assumptions", drawn),
@@ -320,13 +345,16 @@ def _written(
         places.append([Cell(_SHEET, top + 2 + number, 2) for number in range(len(rows))])
         if not rows:
             continue
-        headings = [heading for heading in rows[0] if any(row[heading] not in (None, "") for row in rows)]
+        filled = [heading for heading in rows[0] if any(row[heading] not in (None, "") for row in rows)]
+        headings = [*filled, *(heading for heading in rows[0] if heading not in filled)]  # which changes fill
+        shown, last = max(shown, len(filled)), max(last, len(headings))
         for number, row in enumerate(rows, start=top + 1):
             for column, heading in enumerate(headings):
                 _write(sheet, number, column, row[heading])
         table = {"name": kind, "columns": [{"header": heading} for heading in headings], "autofilter": False}
         sheet.add_table(top, 0, top + len(rows), len(headings) - 1, table)
         top += len(rows) + 3
+    sheet.set_column(shown, last, 14, None, {"hidden": True})
     book.close()
     named = {**dict(zip(places[1], forecasts, strict=True)), **dict(zip(places[2], filters, strict=True))}
     return stream.getvalue(), tuple(places[0]), named

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -40,6 +40,7 @@ from xlmc.outputs.replay.versions import Rule, recorded_version, rules_since
 
 if TYPE_CHECKING:
     from xlmc.excel.address import Cell
+    from xlmc.excel.formula import ir
     from xlmc.excel.workbook.workbook import Workbook
     from xlmc.montecarlo.definitions.definitions import Settings
     from xlmc.montecarlo.definitions.feeds import Feed
@@ -108,7 +109,12 @@ class Replayed:
 
 
 def replay(
-    path: str | Path, *, books: Iterable[str | Path] = (), jobs: int = 1, progress: OnProgress | None = None
+    path: str | Path,
+    *,
+    books: Iterable[str | Path] = (),
+    jobs: int = 1,
+    progress: OnProgress | None = None,
+    python: Mapping[Cell, ir.Expression] | None = None,
 ) -> Replayed:
     """Repeat a recorded run, and compare it with its record.
 
@@ -117,6 +123,7 @@ def replay(
         books: workbooks that fed the run, where they do not lie beside the result workbook.
         jobs: threads or processes.
         progress: as for `Model.simulate`.
+        python: the cells that a function of Python computes, each with the call; None for none.
 
     Raises:
         WorkbookError: the file cannot be read, holds no record, or one by an xlmc that recorded less; or a workbook
@@ -126,12 +133,13 @@ def replay(
     """
     path = Path(path)
     if path.suffix.casefold() == SUFFIX or is_saved_run(path):
-        run = open_run(path)
+        run = open_run(path, python)
         return _replay(run.model.workbook, make_record(run), run.model, jobs, progress)
     with naming_file(str(path)):
         workbook = read_workbook(path)
         record = read_record(workbook)
-        return _replay(workbook, record, None, jobs, progress, path, _fed_by(record, path, books))
+        model = build_model(workbook, path, python=python) if python else None
+        return _replay(workbook, record, model, jobs, progress, path, _fed_by(record, path, books))
 
 
 def _fed_by(record: Record, path: Path, books: Iterable[str | Path]) -> tuple[Feed, ...]:

@@ -9,6 +9,6 @@ from __future__ import annotations
 
 from xlmc.analysis.results.saved.archive import SUFFIX
 from xlmc.analysis.results.saved.keeping import keep
-from xlmc.analysis.results.saved.opening import is_saved_run, open_run
+from xlmc.analysis.results.saved.opening import is_saved_run, open_run, refuse_other_function
 
-__all__ = ["SUFFIX", "is_saved_run", "keep", "open_run"]
+__all__ = ["SUFFIX", "is_saved_run", "keep", "open_run", "refuse_other_function"]

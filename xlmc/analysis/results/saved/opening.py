@@ -32,6 +32,8 @@ from xlmc.analysis.results.saved.run_json import (
     whole,
 )
 from xlmc.errors import SimulationError, WorkbookError, XlmcError
+from xlmc.excel.address import Cell
+from xlmc.excel.formula import ir
 from xlmc.excel.workbook.package import LIMITS
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.montecarlo.columns import ColumnStore, parts
@@ -45,13 +47,17 @@ from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 from xlmc.montecarlo.simulation.simulation import RunResult
 
-__all__ = ["is_saved_run", "open_run"]
+__all__ = ["is_saved_run", "open_run", "refuse_other_function"]
 
 _LARGEST_DOCUMENT: Final = 64 << 20
+_TRIED: Final = 1_000
+"""Accepted trials that show whether a function of Python is the one that was run."""
+
 _KINDS: Final = {"trial": "<i8", "input": "<f8", "prior": "<f8", "forecast": "<f8"}
 
 Document = Mapping[str, Any]
 Column = NDArray[Any]
+Python = Mapping[Cell, ir.Expression]
 
 
 def is_saved_run(path: Path) -> bool:
@@ -65,11 +71,15 @@ def is_saved_run(path: Path) -> bool:
         return False
 
 
-def open_run(path: str | Path) -> RunResult:
+def open_run(path: str | Path, python: Python | None = None) -> RunResult:
     """Open the run that was saved in a file, with the model of its workbook: every statistic is the same to the last
     bit.
 
     Columns go into memory, or, where they are large together, into temporary files.
+
+    Args:
+        path: of the file.
+        python: the cells that a function of Python computes, each with the call; None for none.
 
     Raises:
         WorkbookError: the file cannot be read, is no saved run, or is damaged.
@@ -78,7 +88,7 @@ def open_run(path: str | Path) -> RunResult:
     path = Path(path)
     with open_package(path) as package:
         found = _document(package, path)
-        model = _model(package, found, path)
+        model = _model(package, found, path, python)
         try:
             if settings_of(found["settings"]).evidence == "weights":
                 model = weighing(model)
@@ -87,6 +97,22 @@ def open_run(path: str | Path) -> RunResult:
             return _simulation(found, model, columns)
         except (KeyError, ValueError, SimulationError) as error:
             raise _damage_error(path, error) from error
+
+
+def refuse_other_function(run: RunResult, path: str | Path) -> None:
+    """Refuse a run that its model's function of Python did not compute, as the first accepted trials show.
+
+    Raises:
+        SimulationError: the function gives other numbers for their draws.
+    """
+    rows = slice(min(run.kept_inputs, _TRIED))
+    draws = {name: np.array(column[rows]) for name, column in run.inputs.items()}
+    if not draws or not rows.stop:
+        return
+    for name, found in run.model.function(draws).items():
+        if name not in run.labels and not np.array_equal(found, run.forecasts[name][rows], equal_nan=True):
+            message = f"the function gives other numbers as {name!r} than this run has"
+            raise SimulationError(message, where=Path(path), hint="Give the model that was run")
 
 
 def _document(package: Package, path: Path) -> Document:
@@ -106,12 +132,12 @@ def _document(package: Package, path: Path) -> Document:
     return dict(found)
 
 
-def _model(package: Package, found: Document, path: Path) -> CompiledModel:
+def _model(package: Package, found: Document, path: Path, python: Python | None) -> CompiledModel:
     try:
         about = build(_Book, found["workbook"], "its workbook")
     except (KeyError, ValueError) as error:
         raise _damage_error(path, error) from error
-    alone = _model_of(package, WORKBOOK, about, path)
+    alone = _model_of(package, WORKBOOK, about, path, python)
     if "feeds" not in found:
         return alone
     try:
@@ -124,7 +150,7 @@ def _model(package: Package, found: Document, path: Path) -> CompiledModel:
     return joined(alone, feeds, sources)
 
 
-def _model_of(package: Package, entry: str, about: _Book, path: Path) -> CompiledModel:
+def _model_of(package: Package, entry: str, about: _Book, path: Path, python: Python | None = None) -> CompiledModel:
     """Return the model of a workbook in the package.
 
     Raises:
@@ -137,7 +163,7 @@ def _model_of(package: Package, entry: str, about: _Book, path: Path) -> Compile
         data = reader.read()
     if hashlib.sha256(data).hexdigest() != about.sha256:
         raise WorkbookError("the workbook in the saved run is not the one that was run", where=path, hint=AGAIN)
-    return build_model(read_workbook(data, name), Path(name))
+    return build_model(read_workbook(data, name), Path(name), python=python)
 
 
 @dataclass(frozen=True, slots=True)

@@ -68,6 +68,10 @@ def _columns(old: Assumption | Filter, new: Assumption | Filter) -> Iterator[tup
         for key, heading in CUTOFFS.items():
             if old.cutoffs.get(key) != new.cutoffs.get(key):
                 yield (heading,), _number(new.cutoffs.get(key))
+        if old.units != new.units:
+            yield ("Units",), new.units
+        if old.source != new.source:
+            yield ("Source",), new.source
     elif isinstance(old, Filter) and isinstance(new, Filter):
         for key, heading in LIMITS.items():
             if getattr(old, key) != getattr(new, key):

@@ -12,6 +12,7 @@ from pathlib import Path
 import openpyxl
 import pytest
 from openpyxl.styles import Font
+from openpyxl.workbook.defined_name import DefinedName
 from openpyxl.worksheet.formula import ArrayFormula
 
 from xlmc import excel
@@ -158,7 +159,7 @@ def test_what_cannot_be_computed_keeps_its_value_unless_a_change_reaches_it(xlmc
 def workbook_file(tmp_path):
     """Write cells, formulas with the values that a program saved."""
 
-    def write(cells):
+    def write(cells, **names):
         rows = {}
         for place, content in cells.items():
             formula, value = content if isinstance(content, tuple) else ("", content)
@@ -169,6 +170,7 @@ def workbook_file(tmp_path):
         )
         made = openpyxl.Workbook()
         made.active.title = "S"
+        made.defined_names.update({name: DefinedName(name, attr_text=text) for name, text in names.items()})
         made.save(tmp_path / "empty.xlsx")
         found = parts(tmp_path / "empty.xlsx")
         xml = found["xl/worksheets/sheet1.xml"].decode()
@@ -226,6 +228,52 @@ def test_volatile_functions_are_computed_when_asked(xlmc, workbook_file):
     assert 0 <= found["S!A4"] < 1
 
 
+@pytest.mark.parametrize(
+    ("text", "kept"),
+    [("S!A1,Other!B1\n3,\n", None), ("Cell,Value\nS!A1,3\nOther!B1,\n", None), ("Cell,Value\nS!A1,3\n", "untouched")],
+    ids=["a blank field", "a blank value", "a cell that is not named"],
+)
+def test_only_a_field_that_is_left_blank_empties_its_cell(xlmc, book, tmp_path, text, kept):
+    (tmp_path / "v.csv").write_text(text, encoding="utf-8")
+    assert xlmc("calculate", book, "--values", "v.csv", "-o", "copy.xlsx").code == 1  # NOSUCHFUNCTION has no value
+    found = excel.load("copy.xlsx")
+    assert (found["Other!B1"], found["S!A2"]) == (kept, 9.0)
+
+
+@pytest.mark.parametrize("place", ["S!B:C", "S!B1:C1048576", "Whole"])
+def test_whole_columns_end_with_the_last_filled_row(xlmc, workbook_file, place):
+    path = workbook_file({"A1": 1.0, "B2": 2.0, "C3": ("=A1+B2", 3.0)}, Whole="S!$B:$C")
+    outcome = xlmc("calculate", path, "--cells", place, "--json")
+    assert json.loads(outcome.out) == {
+        "S!B1": None,
+        "S!C1": None,
+        "S!B2": 2.0,
+        "S!C2": None,
+        "S!B3": None,
+        "S!C3": 3.0,
+    }
+    rows = xlmc("calculate", path, "--cells", "S!2:3", "--json")
+    assert list(json.loads(rows.out)) == ["S!A2", "S!B2", "S!C2", "S!A3", "S!B3", "S!C3"]
+
+
+@pytest.mark.parametrize(
+    ("typed", "value", "found"),
+    [
+        ("#DIV/0!", ErrorCode.DIV0, ErrorCode.DIV0),
+        ("#n/a", ErrorCode.NA, ErrorCode.NA),
+        ("'#N/A", "#N/A", ErrorCode.VALUE),
+    ],
+)
+def test_an_error_value_is_typed_as_such(xlmc, book, tmp_path, typed, value, found):
+    (tmp_path / "v.csv").write_text(f"S!A1,#note\n{typed},n\n", encoding="utf-8")
+    for given in (["--set", f"S!A1={typed}"], ["--values", "v.csv"]):
+        xlmc("calculate", book, *given, "-o", "copy.xlsx", "--overwrite")
+        copy = excel.load("copy.xlsx")
+        assert (copy["S!A1"], copy["S!A2"]) == (value, found)
+    rows = json.loads(xlmc("calculate", book, "--values", "v.csv", "--cells", "S!A2", "--json").out)
+    assert rows == [{"S!A1": value if isinstance(value, str) else value.text, "#note": "n", "S!A2": found.text}]
+
+
 MISTAKES = {
     "a formula": (["--set", "S!A2=4"], ["S!A2", "holds a formula", "computed from"]),
     "an array formula": (["--set", "S!C2=4"], ["S!C1 fills the cell"]),
@@ -247,6 +295,15 @@ MISTAKES = {
     "a heading": (["--values", "heading.csv", "--cells", "S!A2"], ["line 1", "'Speed' is no cell", "#"]),
     "a value": (["--values", "comma.csv", "--cells", "S!A2"], ["line 2", "0.5"]),
     "too many values": (["--values", "long.csv", "--cells", "S!A2"], ["line 2 has 2 values"]),
+    "too few values": (["--values", "short.csv", "-o", "copy.xlsx"], ["line 2 has 1 value", "2 headings", "separator"]),
+    "too few of several rows": (["--values", "rows.csv", "--cells", "S!A2"], ["line 4 has 1 value", "2 headings"]),
+    "a cell without its value": (["--values", "listed.csv", "-o", "copy.xlsx"], ["line 3 has 1 value", "separator"]),
+    "a list with thousands": (["--values", "commas.csv", "-o", "copy.xlsx"], ["line 2 has 3 values", "commas"]),
+    "an output twice": (["-o", "copy.xlsx", "-o", "./copy.xlsx"], ["copy.xlsx", "two outputs"]),
+    "a table twice": (["-o", "copy.csv", "-o", "copy.csv", "--cells", "S!A2"], ["copy.csv", "two outputs"]),
+    "an empty name": (["-o", ""], ["--output", "name of the file is empty"]),
+    "a folder": (["-o", "."], ["this is a folder"]),
+    "a blank column": (["--cells", "S!Z:Z"], ["S!Z:Z", "holds nothing"]),
 }
 
 
@@ -256,6 +313,10 @@ def test_a_mistake_is_one_message_and_nothing_is_written(xlmc, book, tmp_path, a
     (tmp_path / "heading.csv").write_text("Speed\n1\n", encoding="utf-8")
     (tmp_path / "comma.csv").write_text('S!A1\n"0,5"\n', encoding="utf-8")
     (tmp_path / "long.csv").write_text("S!A1\n1,2\n", encoding="utf-8")
+    (tmp_path / "short.csv").write_text("S!A1,Other!B1\n1\n", encoding="utf-8")
+    (tmp_path / "rows.csv").write_text("S!A1;Other!B1\n1;a\n2;\n3\n", encoding="utf-8")
+    (tmp_path / "listed.csv").write_text("Cell,Value\nS!A1,\nOther!B1\n", encoding="utf-8")
+    (tmp_path / "commas.csv").write_text("Cell,Value\nS!A1,1,234\n", encoding="utf-8")
     before = book.read_bytes()
     outcome = xlmc("calculate", book, *arguments)
     assert outcome.code == 2

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import shlex
+from pathlib import Path
 
 import pytest
 from committed_books import BOOKS
 from fewer_sheets import SHORT, keep_few_trials, keep_sheets
 
 import xlmc as library
+from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.reader import read_workbook
 
 FEEDS = {
@@ -76,7 +78,15 @@ def test_python_gives_the_numbers_of_the_command(xlmc, fed, tmp_path):
 
 @pytest.mark.parametrize(
     ("typed", "message"),
-    [("no equals sign", "is not written as one"), ("x=missing.xlsx!y", "there is no such file")],
+    [
+        ("no equals sign", "is not written as one"),
+        ("x=missing.xlsx!y", "there is no such file"),
+        ("x=skid-100-ft.xlsx!y", "skid-100-ft.xlsx: this is the workbook that is run, and it cannot feed itself"),
+        ("x=./skid-100-ft.xlsx!y", "skid-100-ft.xlsx: this is the workbook that is run, and it cannot feed itself"),
+        (f"{TYPED[1]},{TYPED[3]}", "holds two. Give --feed once for each"),
+        (f"skid-100.xlsx!{TYPED[1]}", "no workbook of this run is called 'skid-100.xlsx', so it cannot be fed. Did"),
+    ],
+    ids=["no equals sign", "no file", "itself", "itself by another path", "two in one", "a misspelt first book"],
 )
 def test_what_cannot_be_fed_is_one_message(xlmc, typed, message):
     done = xlmc("simulate", "skid-100-ft.xlsx", "--feed", typed)
@@ -95,3 +105,44 @@ def test_a_workbook_that_feeds_is_never_replaced(fed, tmp_path, ending):
     assert refused.code == 2
     assert "this is the file that is read" in refused.err
     assert (tmp_path / "intersection-momentum.xlsx").read_bytes() == before
+
+
+def test_the_workbook_that_is_run_may_be_named_in_a_feed(xlmc, fed):
+    assert fed("-o", "plain.json").code == 0
+    named = [part if part == "--feed" else f"skid-100-ft.xlsx!{part}" for part in TYPED]
+    assert xlmc("simulate", "skid-100-ft.xlsx", "-n", 5_000, *named, "-o", "named.json").code == 0
+    found = [json.loads(Path(f"{name}.json").read_text(encoding="utf-8"))["forecasts"] for name in ("plain", "named")]
+    assert found[0] == found[1]
+
+
+WRITERS = {
+    "save": (".xlsx", lambda run, path: run.save(path, overwrite=True)),
+    "save_page": (".html", lambda run, path: run.save_page(path, overwrite=True)),
+    "keep": (".xlmcrun", lambda run, path: run.keep(path, overwrite=True)),
+    "extract": (".csv", lambda run, path: run.extract(path, overwrite=True)),
+    "save_json": (".json", lambda run, path: run.save_json(path, overwrite=True)),
+    "save_report": (".docx", lambda run, path: run.save_report(path, overwrite=True)),
+}
+
+
+@pytest.mark.parametrize(("ending", "write"), WRITERS.values(), ids=WRITERS)
+def test_python_never_replaces_a_workbook_that_feeds(tmp_path, ending, write):
+    other = tmp_path / "intersection-momentum.xlsx"
+    before = other.read_bytes()
+    feeds = {mine: f"{tmp_path}/{theirs}" for mine, theirs in FEEDS.items()}
+    run = library.load(tmp_path / "skid-100-ft.xlsx", feeds=feeds).simulate(500)
+    path = other if ending == ".xlsx" else tmp_path / f"link{ending}"
+    if path != other:
+        path.hardlink_to(other)
+    with pytest.raises(WorkbookError, match="this is the file that is read"):
+        write(run, path)
+    assert other.read_bytes() == before
+    free = tmp_path / f"free{ending}"
+    assert write(run, free) == free
+
+
+def test_a_page_never_replaces_the_workbook_of_the_run_beside_it(tmp_path):
+    first, second = (library.load(tmp_path / f"{name}.xlsx") for name in ("skid-100-ft", "intersection-momentum"))
+    (tmp_path / "page.html").hardlink_to(tmp_path / "intersection-momentum.xlsx")
+    with pytest.raises(WorkbookError, match="this is the file that is read"):
+        first.simulate(500).save_page(tmp_path / "page.html", beside=second.simulate(500), overwrite=True)

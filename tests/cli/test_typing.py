@@ -77,7 +77,7 @@ def test_a_number_out_of_range(one_line, typed, message):
         (("new", "skid", "x"), "Name it x.xlsx"),
         (("screen", BOOK, "--acceptance", "-1"), "--acceptance: "),
         (("simulate", BOOK, "-j", "1e9"), "--jobs: 1,000,000,000 is too large."),
-        (("simulate", ""), "folder"),
+        (("simulate", ""), "BOOK: The name of the file is empty"),
         (("simulate", "."), "folder"),
     ],
 )

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
+from xlmc.cli.options import FilePath
 from xlmc.cli.terminal import paragraph, plain, put, say, say_json
 
 if TYPE_CHECKING:
@@ -29,19 +30,19 @@ _MOST_TOLD: Final = 12
 
 
 @click.command()
-@click.argument("book", type=click.Path(path_type=Path))
+@click.argument("book", type=FilePath())
 @click.option(
     "-o",
     "--output",
     "outputs",
-    type=click.Path(path_type=Path),
+    type=FilePath(),
     multiple=True,
     help="Write a copy with the values (.xlsx), or the --cells (.csv, .json); may be repeated.",
 )
 @click.option("--set", "changes", metavar="CELL=VALUE", multiple=True, help="Type a value in first; may be repeated.")
 @click.option(
     "--values",
-    type=click.Path(path_type=Path),
+    type=FilePath(),
     metavar="FILE.csv",
     help="Type in values of a CSV file: headings are cells, each row is calculated on its own.",
 )
@@ -133,7 +134,8 @@ class _Answers:
         rows = [{str(cell): plain(self.value(cell, at)) for cell in self.wanted} for at in range(len(self.typed))]
         if self.table is None or not self.table.headings:
             return rows[0]
-        return [{**given, **row} for given, row in zip(self.table.given, rows, strict=True)]
+        given = ({heading: plain(value) for heading, value in each.items()} for each in self.table.given)
+        return [{**texts, **row} for texts, row in zip(given, rows, strict=True)]
 
     def as_csv(self) -> str:
         """Return the lines as CSV."""
@@ -176,10 +178,12 @@ def _check(
 ) -> None:
     """Refuse, before anything is computed, what could not be written."""
     from xlmc.errors import WorkbookError
-    from xlmc.excel.workbook.target import Target, copy_ending
+    from xlmc.excel.workbook.target import Target, copy_ending, refuse_folder, refuse_same_file
 
+    refuse_same_file(outputs)
     read = [book, *([] if values is None else [values])]
     for path in outputs:
+        refuse_folder(path)
         ending = path.suffix.casefold()
         if ending in _TABLES and not wanted:
             raise click.UsageError(f"which cells is {path} to hold? Name them: --cells Results!B2:B9")

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from xlmc.cli.options import FilePath
 from xlmc.cli.terminal import paragraph, say
 from xlmc.errors import sentence
 
@@ -29,7 +30,7 @@ _MOST_CELLS = 12
 
 
 @click.command()
-@click.argument("book", type=click.Path(path_type=Path))
+@click.argument("book", type=FilePath())
 def check(book: Path) -> None:
     """Show the assumptions, forecasts and filters of BOOK as xlmc understands them, and every problem with its cell.
 

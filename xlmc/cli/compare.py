@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.blocks import show
-from xlmc.cli.options import WholeNumber, chance_option, engine_option, jobs_option, tolerance_option
+from xlmc.cli.options import FilePath, WholeNumber, chance_option, engine_option, jobs_option, tolerance_option
 from xlmc.cli.study_output import STUDY, study_options
 from xlmc.cli.terminal import say_json
 from xlmc.cli.writing import write_files
@@ -28,8 +28,8 @@ UNDECIDED = 1
 
 
 @click.command()
-@click.argument("first", type=click.Path(path_type=Path))
-@click.argument("second", type=click.Path(path_type=Path))
+@click.argument("first", type=FilePath())
+@click.argument("second", type=FilePath())
 @tolerance_option
 @chance_option
 @click.option("--pair", multiple=True, help="'A=B': forecast A of the first book is forecast B of the second.")

@@ -6,17 +6,18 @@ from pathlib import Path
 
 import click
 
+from xlmc.cli.options import FilePath
 from xlmc.cli.terminal import paragraph, say
 
 __all__ = ["convert"]
 
 
 @click.command()
-@click.argument("book", type=click.Path(readable=False, path_type=Path))
+@click.argument("book", type=FilePath())
 @click.option(
     "-o",
     "--output",
-    type=click.Path(readable=False, path_type=Path),
+    type=FilePath(),
     help="The new workbook.  [default: BOOK-converted.xlsx]",
 )
 @click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")

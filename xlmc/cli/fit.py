@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from xlmc.cli.blocks import show
-from xlmc.cli.options import OneOf
+from xlmc.cli.options import FilePath, OneOf
 from xlmc.cli.study_output import STUDY, study_options
 from xlmc.cli.terminal import say, say_json
 from xlmc.cli.writing import NOT_WRITTEN, write_files, written_or_reported
@@ -51,7 +51,7 @@ _BOOK_AND_RANGE = re.compile(r"(?P<book>.+\.(?:xlsx|xlsm|xltx|xltm|xls))!(?P<ran
 @click.option("--distribution", help="The distribution of that row.  [default: the best]")
 @click.option(
     "--into",
-    type=click.Path(path_type=Path),
+    type=FilePath(),
     help="Write the row into the table xlmc_assumptions of this workbook: into the row of that name, or below all.",
 )
 @study_options(STUDY)

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from xlmc.cli.blocks import show
-from xlmc.cli.options import WholeNumber
+from xlmc.cli.options import FilePath, WholeNumber
 from xlmc.cli.study_output import study_options
 from xlmc.cli.terminal import paragraph, say, say_json
 from xlmc.cli.writing import write_files
@@ -20,7 +20,7 @@ NOT_TO_BE_USED = 1
 
 
 @click.command()
-@click.argument("book", type=click.Path(path_type=Path))
+@click.argument("book", type=FilePath())
 @click.option(
     "--accuracy",
     default="1%",

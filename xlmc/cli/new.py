@@ -11,7 +11,7 @@ from typing import Final
 import click
 
 from xlmc.cli.mistakes import did_you_mean
-from xlmc.cli.options import OneOf
+from xlmc.cli.options import FilePath, OneOf
 from xlmc.cli.terminal import paragraph, say
 from xlmc.errors import WorkbookError
 
@@ -34,7 +34,7 @@ _NO_TEMPLATE: Final = re.compile(r"^~\$|-results(-\d+)?$")
 
 @click.command()
 @click.argument("template", required=False)
-@click.argument("book", required=False, type=click.Path(readable=False, path_type=Path))
+@click.argument("book", required=False, type=FilePath())
 @click.option("--units", type=OneOf(*_UNITS), default="imperial", show_default=True, help="Units of the copy.")
 @click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")
 def new(template: str | None, book: Path | None, units: str, overwrite: bool) -> None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.new import templates
-from xlmc.cli.options import WholeNumber
+from xlmc.cli.options import FilePath, WholeNumber
 from xlmc.cli.terminal import say
 from xlmc.errors import WorkbookError
 
@@ -26,7 +26,7 @@ _LAST_PORT = 65_535
 
 
 @click.command(name="open")
-@click.argument("book", required=False, type=click.Path(readable=False, path_type=Path), metavar="[BOOK|FOLDER]")
+@click.argument("book", required=False, type=FilePath(), metavar="[BOOK|FOLDER]")
 @click.option("--no-browser", is_flag=True, help="Print the link, and open no browser.")
 @click.option("--port", type=WholeNumber(1, _LAST_PORT), help="Port of the window.  [default: a free one]")
 def open_window(book: Path | None, no_browser: bool, port: int | None) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any, TypeVar
 
 import click
@@ -12,6 +13,7 @@ from xlmc.montecarlo.definitions.setting_kinds import Names, Seconds, Switch, Wh
 from xlmc.montecarlo.definitions.stopping import GOALS, Option
 
 __all__ = [
+    "FilePath",
     "OneOf",
     "WholeNumber",
     "chance_option",
@@ -51,6 +53,23 @@ class WholeNumber(click.ParamType):  # type: ignore[type-arg]  # no generic befo
         if self._most is not None and found > self._most:
             self.fail(f"{found:,} is too large. Type {self._most:,} or less.", param, ctx)
         return found
+
+
+class FilePath(click.Path):
+    """The path of a file, which may be missing; whoever reads or writes it says why it cannot."""
+
+    def __init__(self) -> None:
+        super().__init__(readable=False, path_type=Path)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the path that was typed.
+
+        Raises:
+            BadParameter: it is empty, as a variable of a script is that was never set.
+        """
+        if value == "":
+            self.fail("The name of the file is empty. Type one.", param, ctx)
+        return super().convert(value, param, ctx)
 
 
 class OneOf(click.Choice):  # type: ignore[type-arg]  # likewise

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol, TypeVar, cas
 
 import click
 
-from xlmc.cli.options import OneOf
+from xlmc.cli.options import FilePath, OneOf
 from xlmc.cli.terminal import say
 from xlmc.cli.writing import written_or_reported
 from xlmc.excel.workbook.package import WORKBOOKS
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 __all__ = ["Outputs", "ReportContents", "output_options", "results_beside", "with_files", "with_options"]
 
 F = TypeVar("F", bound=Callable[..., Any])
-
-_PATH = click.Path(readable=False, path_type=Path)  # a file that may not be read is refused later, with a hint
 
 
 class _Kind(NamedTuple):
@@ -79,23 +77,29 @@ _KINDS: Final = (_BOOK, _RUN, _PAGE, _JSON, _PDF, _DOCX, _TRIALS)
 """In the order in which they are written."""
 
 _ALIASES: Final = {
-    "html": (_PAGE, click.option("--html", type=_PATH, metavar="PAGE.html", help="Also write the page.")),
-    "json_path": (_JSON, click.option("--json", "json_path", type=_PATH, metavar="FILE.json", help="Also write JSON.")),
+    "html": (_PAGE, click.option("--html", type=FilePath(), metavar="PAGE.html", help="Also write the page.")),
+    "json_path": (
+        _JSON,
+        click.option("--json", "json_path", type=FilePath(), metavar="FILE.json", help="Also write JSON."),
+    ),
     "extract": (
         _TRIALS,
         click.option(
             "--extract",
-            type=_PATH,
+            type=FilePath(),
             multiple=True,
             metavar="FILE.csv|FILE.parquet",
             help="Also write the accepted trials; may be given several times.",
         ),
     ),
-    "pdf": (_PDF, click.option("--pdf", type=_PATH, metavar="REPORT.pdf", help="Also write the report, as PDF.")),
-    "docx": (_DOCX, click.option("--docx", type=_PATH, metavar="REPORT.docx", help="Also write the report for Word.")),
+    "pdf": (_PDF, click.option("--pdf", type=FilePath(), metavar="REPORT.pdf", help="Also write the report, as PDF.")),
+    "docx": (
+        _DOCX,
+        click.option("--docx", type=FilePath(), metavar="REPORT.docx", help="Also write the report for Word."),
+    ),
     "save_run": (
         _RUN,
-        click.option("--save-run", type=_PATH, metavar="FILE.xlmcrun", help="Also save the run."),
+        click.option("--save-run", type=FilePath(), metavar="FILE.xlmcrun", help="Also save the run."),
     ),
 }
 """Options from the time when each kind of file had one: with them alone the default is written, too."""
@@ -160,7 +164,7 @@ def with_files(text: str, aliases: Iterable[str]) -> Callable[[F], F]:
     The command is given the files of `-o` as `output`, the others as `also`.
     """
     names = list(aliases)
-    option = click.option("-o", "--output", type=_PATH, multiple=True, metavar="FILE", help=text)
+    option = click.option("-o", "--output", type=FilePath(), multiple=True, metavar="FILE", help=text)
 
     def add(command: F) -> F:
         @wraps(command)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
+from xlmc.cli.options import FilePath
 from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
@@ -21,10 +22,10 @@ _MOST_TOLD: Final = 40
 
 
 @click.command(name="prepare")
-@click.argument("book", type=click.Path(path_type=Path))
+@click.argument("book", type=FilePath())
 @click.option("--assumption", "assumptions", metavar="CELLS", multiple=True, help="Uncertain numbers; may be repeated.")
 @click.option("--forecast", "forecasts", metavar="CELLS", multiple=True, help="Answers; may be repeated.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="The copy.  [default: BOOK-prepared.xlsx]")
+@click.option("-o", "--output", type=FilePath(), help="The copy.  [default: BOOK-prepared.xlsx]")
 @click.option("--in-place", is_flag=True, help="Add the tables to BOOK itself.")
 @click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")
 def prepare_book(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.check import failing_lines
-from xlmc.cli.options import jobs_option
+from xlmc.cli.options import FilePath, jobs_option
 from xlmc.cli.terminal import say, say_json
 
 if TYPE_CHECKING:
@@ -26,12 +26,12 @@ _LONGEST = 60
 
 
 @click.command()
-@click.argument("recorded", metavar="RESULTS", type=click.Path(path_type=Path))
+@click.argument("recorded", metavar="RESULTS", type=FilePath())
 @click.option(
     "--book",
     "books",
     multiple=True,
-    type=click.Path(path_type=Path),
+    type=FilePath(),
     help="A workbook that fed the run, where it does not lie beside RESULTS; may be given several times.",
 )
 @jobs_option

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from xlmc.cli.options import FilePath
 from xlmc.cli.output_options import Outputs, ReportContents, output_options, results_beside
 from xlmc.cli.terminal import say
 from xlmc.cli.writing import NOT_WRITTEN
@@ -21,8 +22,8 @@ NOT_TO_BE_USED = 1
 
 
 @click.command()
-@click.argument("run", metavar="RUN|RESULTS", type=click.Path(readable=False, path_type=Path))
-@click.argument("second", metavar="[RUN]", required=False, type=click.Path(readable=False, path_type=Path))
+@click.argument("run", metavar="RUN|RESULTS", type=FilePath())
+@click.argument("second", metavar="[RUN]", required=False, type=FilePath())
 @output_options("RUN-results.xlsx", without=["save_run"])
 @click.option("--quiet", is_flag=True, help="Print no notes.")
 def report(

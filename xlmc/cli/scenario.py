@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from xlmc.cli.options import FilePath
 from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
@@ -19,9 +20,9 @@ _MOST_TOLD = 8
 
 
 @click.command()
-@click.argument("book", type=click.Path(path_type=Path))
+@click.argument("book", type=FilePath())
 @click.argument("name", required=False)
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Write a copy of BOOK with NAME typed in.")
+@click.option("-o", "--output", type=FilePath(), help="Write a copy of BOOK with NAME typed in.")
 @click.option("--in-place", is_flag=True, help="Type it into BOOK itself.")
 @click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")
 def scenario(book: Path, name: str | None, output: Path | None, in_place: bool, overwrite: bool) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.blocks import show
-from xlmc.cli.options import WholeNumber, chance_option, engine_option, jobs_option, tolerance_option
+from xlmc.cli.options import FilePath, WholeNumber, chance_option, engine_option, jobs_option, tolerance_option
 from xlmc.cli.study_output import STUDY_OF_A_RUN, study_options
 from xlmc.cli.terminal import say_json
 from xlmc.cli.writing import write_files
@@ -27,7 +27,7 @@ NOT_TO_BE_USED = 1
 
 
 @click.command()
-@click.argument("book", type=click.Path(path_type=Path))
+@click.argument("book", type=FilePath())
 @tolerance_option
 @chance_option
 @click.option(

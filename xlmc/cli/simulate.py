@@ -11,6 +11,7 @@ import click
 
 from xlmc.cli.blocks import show
 from xlmc.cli.options import (
+    FilePath,
     WholeNumber,
     feed_option,
     jobs_option,
@@ -36,7 +37,7 @@ _MOST_MOVED = 4
 
 
 @click.command()
-@click.argument("book", type=click.Path(readable=False, path_type=Path))
+@click.argument("book", type=FilePath())
 @run_options
 @feed_option
 @jobs_option

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.blocks import show
-from xlmc.cli.options import WholeNumber, jobs_option
+from xlmc.cli.options import FilePath, WholeNumber, jobs_option
 from xlmc.cli.study_output import STUDY_OF_A_RUN, study_options
 from xlmc.cli.terminal import paragraph, say, say_json
 from xlmc.cli.writing import write_files
@@ -26,7 +26,7 @@ NOT_TO_BE_USED = 1
 
 
 @click.command()
-@click.argument("book", type=click.Path(path_type=Path))
+@click.argument("book", type=FilePath())
 @click.option("--cells", "all_cells", is_flag=True, help="List every needed cell, not only forecasts and filters.")
 @click.option("-n", "--trials", type=WholeNumber(1), help="Trials of the run.  [default: the book's, else 200000]")
 @click.option("--seed", type=WholeNumber(0), help="Seed of the run.  [default: the book's, else 999]")

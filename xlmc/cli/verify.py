@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.blocks import show
+from xlmc.cli.options import FilePath
 from xlmc.cli.study_output import STUDY, study_options
 from xlmc.cli.terminal import plain, say_json
 from xlmc.cli.writing import write_files
@@ -25,7 +26,7 @@ _SHOWN, _WRITTEN = 50, 2_000
 
 
 @click.command()
-@click.argument("book", type=click.Path(path_type=Path))
+@click.argument("book", type=FilePath())
 @click.option("--all", "everything", is_flag=True, help="Check every formula cell, not only the needed ones.")
 @study_options(STUDY)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")

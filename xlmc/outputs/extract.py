@@ -73,7 +73,7 @@ def extract(simulation: RunResult, path: Path, *, command: str | None = None, ov
     """
     write = _writer(path)
     check_extract_path(path)
-    target = Target(path, simulation.model.workbook.name, overwrite, read=[simulation.model.path])
+    target = Target(path, simulation.model.workbook.name, overwrite, read=simulation.model.files)
     target.check()
     with whole_file(path, target.check) as file:
         write(simulation, file, command)

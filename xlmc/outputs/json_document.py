@@ -164,7 +164,7 @@ def save_json(simulation: RunResult, path: Path, *, command: str | None = None, 
         WorkbookError: the file cannot be written, or does not end in `.json`.
     """
     check_json_path(path)
-    target = Target(path, simulation.model.workbook.name, overwrite, read=[simulation.model.path])
+    target = Target(path, simulation.model.workbook.name, overwrite, read=simulation.model.files)
     target.check()
     write_workbook(path, sealed_json(document(simulation, command=command), target.book), target.check)
     return path

@@ -97,9 +97,9 @@ def test_percentiles_cannot_vary(book):
     assert (caught.value.where, caught.value.hint) == ("S!B2", "give it by its parameters, or by numbers")
 
 
-@pytest.mark.parametrize("formula", ["=1/0", '="x"'])
-def test_a_parameter_that_is_no_number(book, formula):
-    with pytest.raises(DefinitionError, match="the parameter is an error") as caught:
+@pytest.mark.parametrize(("formula", "message"), [("=1/0", "the error #DIV/0!"), ('="x"', "the error #VALUE!")])
+def test_a_parameter_that_is_no_number(book, formula, message):
+    with pytest.raises(DefinitionError, match=f"High of 'a' is {message}") as caught:
         book({"A1": 1.0, "B1": formula}, {"a": {"cell": "A1", "low": 0, "high": "B1"}}, {"x": "A1"})
     assert caught.value.where == "S!B1"
 
@@ -248,7 +248,7 @@ def test_a_notice_says_what_was_done(book):
             "Type the measured value into S!A1",
             "S!C1",
         ),
-        ({"C1": "=1/(A1-100)"}, {}, "the parameter is an error", "correct the cell's formula", "S!C1"),
+        ({"C1": "=1/(A1-100)"}, {}, "Low of 'v' is the error #DIV/0!", "Correct the cell's formula", "S!C1"),
         (
             {"C1": '=INDIRECT("A"&1)*0.97'},
             {},

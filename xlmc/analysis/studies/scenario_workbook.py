@@ -21,7 +21,14 @@ from xlmc.excel.workbook.lazy_sheets import with_values
 from xlmc.excel.workbook.package import is_old_workbook
 from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.reader import read_workbook
-from xlmc.excel.workbook.target import Target, copy_ending, is_same_file, refuse_into_source, refuse_read
+from xlmc.excel.workbook.target import (
+    Target,
+    copy_ending,
+    is_same_file,
+    refuse_folder,
+    refuse_into_source,
+    refuse_read,
+)
 from xlmc.excel.workbook.workbook import CellValue, Workbook
 from xlmc.excel.workbook.writer import write_workbook
 from xlmc.montecarlo.definitions.computed import Computed
@@ -49,6 +56,7 @@ class EditedWorkbook:
         has_results: it holds result sheets of a run, which are not of this scenario.
         data: the file.
         sha256: of the file as it was read.
+        read: the files that the model was read from.
     """
 
     path: Path
@@ -59,6 +67,7 @@ class EditedWorkbook:
     has_results: bool
     data: bytes = field(repr=False)
     sha256: str = ""
+    read: tuple[Path, ...] = ()
 
     @property
     def calculates(self) -> bool:
@@ -98,7 +107,7 @@ def edited_workbook(model: CompiledModel, scenario: Scenario | str) -> EditedWor
     )
     typed = {cell: (book.content(cell).value, value) for cell, value in sorted(cells.items())}
     results = bool(result_sheets(book.parts))
-    return EditedWorkbook(model.path, found, typed, len(shown.values), left, results, data, book.sha256)
+    return EditedWorkbook(model.path, found, typed, len(shown.values), left, results, data, book.sha256, model.files)
 
 
 def write_edited(edited: EditedWorkbook, path: Path, *, overwrite: bool = False) -> Path:
@@ -110,6 +119,7 @@ def write_edited(edited: EditedWorkbook, path: Path, *, overwrite: bool = False)
     """
     ending = copy_ending(edited.path)
     if path.suffix.casefold() != ending.casefold():
+        refuse_folder(path)
         hint = f"Name it {path.with_suffix(ending).name!r}"
         raise WorkbookError(f"a copy of a {edited.path.suffix} workbook must end in {ending}", where=path, hint=hint)
 
@@ -117,7 +127,7 @@ def write_edited(edited: EditedWorkbook, path: Path, *, overwrite: bool = False)
         if overwrite and is_same_file(path, edited.path):
             refuse_into_source(path, edited.sha256, "Try again")
             return
-        refuse_read(path, [edited.path], "Name another file, or type the scenario into the workbook with --in-place")
+        refuse_read(path, edited.read, "Name another file, or type the scenario into the workbook with --in-place")
         Target(path, "", overwrite).check()
 
     check()

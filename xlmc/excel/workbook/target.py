@@ -21,6 +21,7 @@ __all__ = [
     "free_target",
     "is_same_file",
     "refuse_existing",
+    "refuse_folder",
     "refuse_into_old_workbook",
     "refuse_into_source",
     "refuse_other_ending",
@@ -81,6 +82,8 @@ class Target:
             return f"cannot be read ({error.strerror or error})"
         if seal is None and ending not in _SEALED:
             return f"xlmc cannot tell who wrote a {ending or 'file without ending'}"
+        if seal is None and not self.book:
+            return "it may hold work of yours"  # copies of workbooks bear no mark, whoever wrote them
         if seal is None:
             return "xlmc did not write it, or another program has saved it since"
         if not same_name(seal.book, self.book):
@@ -202,8 +205,7 @@ def refuse_other_ending(path: Path, endings: Sequence[str], noun: str = "") -> N
     Raises:
         WorkbookError: the ending is another, or the path leads to a folder.
     """
-    if os.path.isdir(path):
-        raise WorkbookError("this is a folder, not a file", where=path, hint="Name a file")
+    refuse_folder(path)
     ending = path.suffix.casefold()
     if ending in endings:
         return
@@ -212,6 +214,16 @@ def refuse_other_ending(path: Path, endings: Sequence[str], noun: str = "") -> N
         raise WorkbookError(f"{noun} must end in {' or '.join(endings)}", where=path, hint=hint)
     message = f"the ending {label(ending)} is none of a file that this command writes" if ending else "it has no ending"
     raise WorkbookError(message, where=path, hint=f"The ending says what is written: {', '.join(endings)}")
+
+
+def refuse_folder(path: Path) -> None:
+    """Refuse a folder where a file is to be written.
+
+    Raises:
+        WorkbookError: the path leads to one.
+    """
+    if os.path.isdir(path):
+        raise WorkbookError("this is a folder, not a file", where=path, hint="Name a file")
 
 
 def is_same_file(path: Path, other: Path) -> bool:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from xlmc.errors import WorkbookError
+from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.places import changeable_cell
 from xlmc.excel.workbook.workbook import CellValue, Workbook
@@ -18,6 +18,8 @@ from xlmc.excel.workbook.workbook import CellValue, Workbook
 __all__ = ["ValueRows", "read_value_rows", "typed_change", "typed_value"]
 
 _LOGICALS: Final = {"TRUE": True, "FALSE": False}
+_ERRORS: Final = {code.text: code for code in ErrorCode if code not in (ErrorCode.GETTING_DATA, ErrorCode.SPILL)}
+"""Errors that Excel takes as such where they are typed."""
 _COMMA: Final = re.compile(r"[+-]?\d+,\d+")
 _THOUSANDS: Final = re.compile(r"[+-]?\d{1,3},\d{3}")
 _NOTE: Final = "#"
@@ -41,7 +43,8 @@ class ValueRows:
 
 
 def typed_value(text: str, book: Workbook) -> CellValue:
-    """Return what Excel makes of a text that is typed into a cell: a number, a date, TRUE or FALSE, a text, nothing.
+    """Return what Excel makes of a text that is typed into a cell: a number, a date, TRUE or FALSE, an error value, a
+    text, nothing.
 
     An apostrophe in front makes a text of anything, as in Excel.
 
@@ -57,6 +60,8 @@ def typed_value(text: str, book: Workbook) -> CellValue:
         return None
     if bare.upper() in _LOGICALS:
         return _LOGICALS[bare.upper()]
+    if bare.upper() in _ERRORS:
+        return _ERRORS[bare.upper()]
     if bare.startswith("=") and len(bare) > 1:
         raise ValueError(f"{bare!r} is a formula: type its value")
     if _COMMA.fullmatch(bare) and not _THOUSANDS.fullmatch(bare):
@@ -100,7 +105,8 @@ def read_value_rows(path: Path, book: Workbook) -> ValueRows:
     if [heading.casefold() for heading in headings[:2]] == ["cell", "value"]:
         listed = {}
         for number, row in body:
-            place, value = (*row, "", "")[:2]
+            _refuse_other_length(path, number, row, headings)
+            place, value = row[:2]
             cell, typed = _typed(path, number, book, place, value)
             if cell in listed:
                 raise WorkbookError(f"line {number}: {cell} stands here a second time", where=path)
@@ -112,18 +118,28 @@ def read_value_rows(path: Path, book: Workbook) -> ValueRows:
     given: list[Mapping[str, CellValue]] = []
     rows = []
     for number, row in body:
-        if len(row) > len(headings):
-            hint = "Put a text with commas in quotation marks" if "," in "".join(row) else "Check the line"
-            said = f"line {number} has {len(row)} values, and there are {len(headings)} headings"
-            raise WorkbookError(said, where=path, hint=hint)
-        texts = [*row, *[""] * (len(headings) - len(row))]
-        rows.append({cell: _typed(path, number, book, cell, texts[at])[1] for at, cell in cells.items()})
-        given.append(
-            {heading: rows[-1][cells[at]] if at in cells else texts[at] for at, heading in enumerate(headings)}
-        )
+        _refuse_other_length(path, number, row, headings)
+        rows.append({cell: _typed(path, number, book, cell, row[at])[1] for at, cell in cells.items()})
+        given.append({heading: rows[-1][cells[at]] if at in cells else row[at] for at, heading in enumerate(headings)})
     if not rows:
         raise WorkbookError("the file holds headings, and no row of values", where=path)
     return ValueRows(tuple(headings), tuple(given), tuple(rows))
+
+
+def _refuse_other_length(path: Path, line: int, row: list[str], headings: list[str]) -> None:
+    """Refuse a row with more or fewer values than headings: each would be typed into a wrong cell, or one emptied.
+
+    Raises:
+        WorkbookError: it has.
+    """
+    if len(row) == len(headings):
+        return
+    values = "1 value" if len(row) == 1 else f"{len(row)} values"
+    message = f"line {line} has {values}, and there are {len(headings)} headings"
+    hint = "To empty a cell, leave its field blank and keep the separator"
+    if len(row) > len(headings):
+        hint = "Put a text with a comma in it in quotation marks, and type numbers without commas"
+    raise WorkbookError(message, where=path, hint=hint)
 
 
 def _cells_of(headings: list[str]) -> Iterator[tuple[int, str]]:

@@ -34,6 +34,7 @@ from xlmc.montecarlo.definitions.tables.evidence_rows import as_filter, read_evi
 from xlmc.montecarlo.definitions.tables.filters import read_checks, read_filters
 from xlmc.montecarlo.definitions.tables.forecasts import read_forecasts
 from xlmc.montecarlo.definitions.tables.identity import Claims
+from xlmc.montecarlo.definitions.tables.read_once import refuse_varying
 from xlmc.montecarlo.definitions.tables.reserved_tables import (
     CONVERTED,
     DefinitionTable,
@@ -138,6 +139,7 @@ def read_definitions(
     unavailable = {**calls.unavailable, **dict.fromkeys(faults_of(workbook, what_if.stale), TABLE_REASON)}
     remark_on_unavailable(calls.unavailable, findings)
     rewritten = {**dialogs.rewritten, **calls.rewritten, **faults_of(workbook, what_if.varying), **python}
+    refuse_varying(workbook, tables, assumptions, rewritten, findings)
     asked = forecasts
     refused = tuple(DefinitionError(damage, where=workbook.name, hint=SAVE_AGAIN) for damage in dialogs.damages)
     if dialogs.refused:

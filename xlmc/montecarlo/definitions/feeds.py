@@ -18,6 +18,8 @@ __all__ = ["Feed", "Feeding", "read_feeds"]
 
 _FORM: Final = "write 'Assumption=other.xlsx!Forecast'"
 _IN_BOOK: Final = re.compile(r"(?P<book>.*?\.\w{3,5})!(?P<name>.*)", re.DOTALL)
+_SECOND: Final = re.compile(r"[,;].*=.*\.\w{3,5}!", re.DOTALL)
+"""What follows in a name where two feeds stand in one text."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,4 +94,7 @@ def _feed(mine: str, theirs: str) -> Feed:
     book, assumption = ("", mine.strip()) if own is None else (own["book"].strip(), own["name"].strip())
     if other is None or not assumption or not other["name"].strip():
         raise SimulationError(f"the feed {f'{mine}={theirs}'!r} is not written as one", hint=_FORM)
+    if _SECOND.search(other["name"]):
+        message = f"the feed {f'{mine}={theirs}'!r} holds two"
+        raise SimulationError(message, hint="give --feed once for each (in Python: an entry of the dict for each)")
     return Feed(assumption, Path(book).name if book else "", other["name"].strip(), other["book"].strip())

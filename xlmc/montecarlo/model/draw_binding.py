@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from xlmc.engine.engine import Evaluator, Target
 from xlmc.engine.graph.lowering import Lowering, lower_cells
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
-from xlmc.errors import DefinitionError, Notice
+from xlmc.errors import DefinitionError, ErrorCode, Notice
 from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.formula import Graph, Resolver, build_graph, ir
 from xlmc.excel.functions.values import ERROR, TEXT
@@ -58,7 +58,10 @@ def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
     """
     data = assumption.data
     family = assumption.family if data is None else _from_data(assumption.family, data, assumption.name, lowering)
-    computed = {key: _fold_cell(cell, lowering) for key, cell in assumption.formulas.items()}
+    computed = {
+        key: _fold_cell(cell, lowering, f"{assumption.headings[key]} of {assumption.name!r}")
+        for key, cell in assumption.formulas.items()
+    }
     given = {**assumption.given, **computed}
     draw = Draw.of(assumption.name, family, given)
     if family.given_by and draw.varying:  # the member is searched for once
@@ -76,7 +79,7 @@ def _from_data(family: Family, data: DataRange, name: str, lowering: Lowering) -
         raise _varying_data(name, drawn)
 
     def number(cell: Cell) -> float:
-        value = _fold_cell(cell, lowering)
+        value = _fold_cell(cell, lowering, f"The data of {name!r}")
         if isinstance(value, Cell):
             raise _varying_data(name, cell)
         return value
@@ -92,8 +95,13 @@ def _varying_data(name: str, cell: Cell) -> VaryingError:
     )
 
 
-def _fold_cell(cell: Cell, lowering: Lowering) -> Parameter:
+def _fold_cell(cell: Cell, lowering: Lowering, what: str) -> Parameter:
     """Return the number of a parameter's cell; the cell where an assumption reaches it.
+
+    Args:
+        cell: the cell.
+        lowering: that has it.
+        what: the parameter in words, for the message.
 
     Raises:
         DefinitionError: the cell is an error or a text.
@@ -102,7 +110,9 @@ def _fold_cell(cell: Cell, lowering: Lowering) -> Parameter:
     if value is None:
         return cell
     if int(value.kinds[0]) >= ERROR or int(value.kinds[0]) == TEXT:
-        raise DefinitionError("the parameter is an error", where=cell, hint="correct the cell's formula")
+        found = value.objects().ravel()[0]
+        shown = f"the error {found.text}" if isinstance(found, ErrorCode) else f"the text {found!r}, not a number"
+        raise DefinitionError(f"{what} is {shown}", where=cell, hint="Correct the cell's formula")
     return float(value.numbers[0])
 
 
@@ -171,9 +181,10 @@ def _with_evidence_numbers(filter_: Filter, lowering: Lowering) -> Filter:
 
 def _number(evidence: Evidence, value: Parameter | None, lowering: Lowering) -> float:
     assert value is not None, "a row without a reading is no filter"
-    found = _fold_cell(value, lowering) if isinstance(value, Cell) else value
+    what = f"A number of the evidence {evidence.name!r}"
+    found = _fold_cell(value, lowering, what) if isinstance(value, Cell) else value
     if isinstance(found, Cell):
-        message = f"A number of the evidence {evidence.name!r} varies with an assumption"
+        message = f"{what} varies with an assumption"
         hint = (
             "A reading and its error are fixed: where a reading rests on uncertain inputs, let Cell be the difference "
             "of the model's quantity and what they give, with Reading 0"
@@ -184,10 +195,12 @@ def _number(evidence: Evidence, value: Parameter | None, lowering: Lowering) -> 
 
 def _with_coefficient(row: Correlation, lowering: Lowering) -> Correlation:
     """Return the row with a number for the rank correlation, which a formula may compute."""
-    value = _fold_cell(row.value, lowering) if isinstance(row.value, Cell) else row.value
+    what = f"The rank correlation of {row.first!r} and {row.second!r}"
+    value = _fold_cell(row.value, lowering, what) if isinstance(row.value, Cell) else row.value
     if isinstance(value, Cell):
-        message = f"The rank correlation of {row.first!r} and {row.second!r} varies with an assumption"
-        raise DefinitionError(message, where=value, hint="A correlation is one number for all trials: type it")
+        raise DefinitionError(
+            f"{what} varies with an assumption", where=value, hint="A correlation is one number for all trials: type it"
+        )
     if not -1 <= value <= 1:
         message = f"Correlation ({show(value)}) must lie between -1 and 1"
         raise DefinitionError(message, where=row.row, hint="Correct the formula: a rank correlation is from -1 to 1")
@@ -241,7 +254,7 @@ class _Own:
             message = f"{own.headings[key]} of {own.name!r} depends on the assumption's own cell, which is blank"
             raise DefinitionError(message, where=cell, hint=f"Type the measured value into {own.cell}")
         others = (a for a in self._definitions.assumptions if not a.frozen and a.cell != own.cell)
-        value = self._computed(cell)
+        value = self._computed(cell, f"{own.headings[key]} of {own.name!r}")
         if isinstance(value, Cell) and own.frozen:
             return None
         if isinstance(value, Cell):
@@ -252,14 +265,14 @@ class _Own:
             raise DefinitionError(message, where=cell, hint=hint)
         return value
 
-    def _computed(self, cell: Cell) -> Parameter:
+    def _computed(self, cell: Cell, what: str) -> Parameter:
         """Return what the cell is with the assumption at its base value; the cell where another assumption
         reaches it.
         """
         assumptions, own = self._definitions.assumptions, self._assumption.cell
         drawn = {a.cell: a.name for a in assumptions if not a.frozen and a.cell != own}
         frozen = {a.cell: a.base for a in assumptions if a.cell not in drawn and a.base is not None}
-        return _fold_cell(cell, lower_cells(self._resolver, [cell], drawn, frozen))
+        return _fold_cell(cell, lower_cells(self._resolver, [cell], drawn, frozen), what)
 
 
 def _notice(assumption: Assumption, numbers: Mapping[str, float]) -> Notice:

@@ -108,14 +108,18 @@ class _Joining:
         self._notices.append(Notice(said, _moved(assumption.cell, book)))
 
     def _book(self, name: str) -> str:
-        """Return the key of a workbook that was named by its file name, or not at all."""
-        if not name:
-            return name
+        """Return the key of a workbook that was named by its file name, or not at all.
+
+        Raises:
+            SimulationError: no workbook of the run is called so.
+        """
+        if name.casefold() in ("", self._model.path.name.casefold()):
+            return ""
         found = next((each for each in self._books if each.casefold() == name.casefold()), None)
         if found is None:
-            known = f"{self._model.path.name}, and {', '.join(filter(None, self._books))}"
-            message = f"{name} is fed, but feeds nothing" if name != self._model.path.name else f"{name} feeds itself"
-            raise SimulationError(message, where=name, hint=f"the workbooks of this run are {known}")
+            message = f"no workbook of this run is called {name!r}, so it cannot be fed"
+            known = [self._model.path.name, *filter(None, self._books)]
+            raise SimulationError(message, where=name, hint=did_you_mean(name, known))
         return found
 
     def definitions(self) -> Definitions:

@@ -68,6 +68,10 @@ def fed(model: CompiledModel, feeds: Sequence[Feed]) -> CompiledModel:
     paths: dict[str, Path] = {}
     for feed in feeds:
         source = Path(feed.source)
+        if source.resolve() == model.path.resolve():
+            message = "this is the workbook that is run, and it cannot feed itself, nor one that feeds it"
+            hint = "run the workbook at the end of the chain, or compute the answer where it is needed"
+            raise SimulationError(message, where=feed.file, hint=hint)
         if paths.setdefault(feed.file, source).resolve() != source.resolve():
             message = f"two of the workbooks are called {feed.file!r}"
             raise SimulationError(message, where=feed.file, hint="rename one of the files")
@@ -155,7 +159,8 @@ def _without_dashes(model: CompiledModel) -> CompiledModel:
 
 
 def _joined(problems: Sequence[DefinitionError]) -> DefinitionError:
-    return problems[0] if len(problems) == 1 else DefinitionsError("\n".join(map(str, problems)))
+    lines = dict.fromkeys(map(str, problems))  # a column is found faulty in each of its rows
+    return problems[0] if len(lines) == 1 else DefinitionsError("\n".join(lines))
 
 
 def filter_faults(model: CompiledModel) -> list[DefinitionError]:

@@ -326,6 +326,12 @@ class CompiledModel:
         return {a.cell for a in self.live if a.name not in still}
 
     @property
+    def files(self) -> tuple[Path, ...]:
+        """The files that it was read from, its workbook first: no output may replace one of them."""
+        feeding = self.definitions.feeding
+        return (self.path, *dict.fromkeys(Path(each.source) for each in (() if feeding is None else feeding.feeds)))
+
+    @property
     def evidence(self) -> tuple[Evidence, ...]:
         """The rows of `xlmc_evidence`, with numbers where they are used; those that are not used among them."""
         used = {each.name: each.evidence for each in self.filters if each.evidence is not None}

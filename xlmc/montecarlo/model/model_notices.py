@@ -63,7 +63,11 @@ def still_notices(needed: Needed, moving: Set[Cell], forecasts: Sequence[Forecas
     """Say which forecasts are the same in every trial: `same` is what `still_cells` gives for the other arguments."""
     still = [forecast for forecast in forecasts if forecast.cell in same]
     if forecasts and len(still) == len(forecasts):
-        why = "no assumption is drawn" if not needed.live else "no assumption that is drawn reaches a forecast"
+        why = (
+            "no assumption is drawn, as when all are Frozen"
+            if not needed.live
+            else "no assumption that is drawn reaches a forecast"
+        )
         if needed.live and not moving:
             why = "the range of every assumption that is drawn has a single value"
         return [Notice(f"nothing varies: {why}, so every trial gives the base case again", still[0].cell)]

@@ -303,7 +303,10 @@ class RunResult:
         if self.accepted == 0 and self.stopped.by != "search":
             most = self.acceptance.interval
             fewer = "" if most is None else f", or accept fewer than {most[1]:.2g} of the trials"
-            found.append(f"no trial was accepted: the filters contradict the assumptions{fewer}{self._by_itself}")
+            why = f"the filters contradict the assumptions{fewer}{self._by_itself}"
+            if self.error_trials >= self.trials:
+                why = "every trial was lost to an error in a cell"
+            found.append(f"no trial was accepted: {why}")
         if not self.stopped.reached and not self.stopped.interrupted:
             found.append(self.stopped.sentence)
         if self.error_trials > ERROR_SHARE * self.trials:

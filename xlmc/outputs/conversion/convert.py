@@ -65,7 +65,7 @@ def convert(model: CompiledModel, path: Path, *, overwrite: bool = False) -> Con
         WorkbookError: there is nothing to convert, or the file cannot be written.
         DefinitionError: the new workbook would not be right.
     """
-    target = Target(path, "", overwrite, read=[model.path])
+    target = Target(path, "", overwrite, read=model.files)
     target.check()
     workbook, definitions = model.workbook, model.definitions
     tables = tuple(new_tables(workbook, definitions))

@@ -45,7 +45,7 @@ def save_report(
         WorkbookError: the file has another ending, or cannot be written.
     """
     check_report_path(path)
-    target = Target(path, simulation.model.workbook.name, overwrite, read=[simulation.model.path])
+    target = Target(path, simulation.model.workbook.name, overwrite, read=simulation.model.files)
     target.check()
     document = build(simulation, wanted, command=command)
     write_workbook(path, document_bytes(document, path.suffix), target.check)

@@ -122,7 +122,8 @@ def save_page(
         WorkbookError: the file has another ending, or cannot be written.
     """
     check_page_path(path)
-    target = Target(path, simulation.model.workbook.name, overwrite, read=[simulation.model.path])
+    read = (*simulation.model.files, *(() if beside is None else beside.model.files))
+    target = Target(path, simulation.model.workbook.name, overwrite, read=read)
     target.check()
     # Half of a surrogate pair, which a damaged name can hold, has no UTF-8: the browser shows a reference's mark.
     text = page_text(simulation, beside=beside, command=command).encode("utf-8", "xmlcharrefreplace")

@@ -12,7 +12,14 @@ from xlmc.errors import SimulationError, WorkbookError
 from xlmc.excel.workbook.inject import inject, result_sheets
 from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.seal import sealed_parts
-from xlmc.excel.workbook.target import Target, copy_ending, is_same_file, refuse_into_source, refuse_read
+from xlmc.excel.workbook.target import (
+    Target,
+    copy_ending,
+    is_same_file,
+    refuse_folder,
+    refuse_into_source,
+    refuse_read,
+)
 from xlmc.excel.workbook.writer import write_workbook
 from xlmc.montecarlo.diagnostics.result_cells import filled_sheets
 from xlmc.outputs.sheets.book import ResultSheet, build_sheets
@@ -76,7 +83,7 @@ def check_ending(path: Path, source: Path) -> None:
     """Refuse an ending that is not the workbook's, and results of a workbook without an ending.
 
     Raises:
-        WorkbookError: the ending is another, or there is none.
+        WorkbookError: the ending is another, there is none, or the path leads to a folder.
     """
     if not source.suffix:
         hint = f"Rename it, such as {source.name.strip('.') + '.xlsx'!r}: Excel opens no result without an ending"
@@ -84,6 +91,7 @@ def check_ending(path: Path, source: Path) -> None:
     # Excel opens no file whose ending says that it has macros when it has none, or the other way round.
     ending = copy_ending(source)
     if path.suffix.casefold() != ending.casefold():
+        refuse_folder(path)
         hint = f"Name it {path.with_suffix(ending).name!r}"
         raise WorkbookError(f"results of a {source.suffix} workbook must end in {ending}", where=path, hint=hint)
 
@@ -94,7 +102,7 @@ def _check(simulation: RunResult, path: Path, *, overwrite: bool) -> None:
         refuse_into_source(path, simulation.model.workbook.sha256, "Run again, or write to another file")
         return
     hint = "Name another file, or write the result sheets into it with --in-place (in Python: overwrite=True)"
-    refuse_read(path, [simulation.model.path], hint)
+    refuse_read(path, simulation.model.files, hint)
     Target(path, simulation.model.workbook.name, overwrite).check()
 
 

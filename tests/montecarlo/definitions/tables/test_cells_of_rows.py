@@ -95,7 +95,9 @@ def test_a_column_that_is_not_there_is_blank(row_with):
         (required_text, None, "Thing is blank", "Fill in thing, or clear the whole row"),
         (logical, "perhaps", "Thing holds 'perhaps', neither TRUE nor FALSE", "Type TRUE or FALSE"),
         (logical, 1, "Thing holds '1', neither TRUE nor FALSE", "Type TRUE or FALSE"),
-        (logical, ErrorCode.REF, "Thing holds '#REF!', neither TRUE nor FALSE", "Type TRUE or FALSE"),
+        (logical, ErrorCode.REF, "Thing holds the error #REF!", "Correct the cell"),
+        (logical, "=A1", "Thing has never been calculated", "run xlmc calculate"),
+        (number, "-5,25", "Thing holds the text '-5,25', not a number", "such as -5.25"),
     ],
 )
 def test_what_a_cell_must_not_hold(row_with, reader, value, message, hint):

@@ -19,7 +19,12 @@ MISTAKES = [
     ({"Answers!E2": "fast"}, "Answers!E2", "Threshold holds the text 'fast'", "Type a number"),
     ({"Answers!E2": ErrorCode.NA}, "Answers!E2", "Threshold holds the error #N/A", "Correct the cell"),
     ({"Answers!B2": ("=Model!Z9", 0.0)}, "Model!Z9", "The forecast cell is blank", "Point to the cell with the result"),
-    ({"Answers!B2": ("=Model!A1", "Speed")}, "Model!A1", "The forecast cell holds the text 'Speed'", "Type a number"),
+    (
+        {"Answers!B2": ("=Model!A1", "Speed")},
+        "Model!A1",
+        "The forecast cell holds the text 'Speed'",
+        "Point to the cell with the result",
+    ),
     ({"Model!C1": ErrorCode.NUM, "Answers!B2": "=Model!C1"}, "Model!C1", "holds the error #NUM!", "Correct the cell"),
 ]
 

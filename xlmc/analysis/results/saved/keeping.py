@@ -60,7 +60,7 @@ def keep(simulation: RunResult, path: Path, *, overwrite: bool = False) -> Path:
     if not simulation.model.workbook.data:
         message = "the run cannot be saved: its workbook was not read from a file"
         raise SimulationError(message, hint="read it with xlmc.load")
-    target = Target(path, simulation.model.workbook.name, overwrite, read=[simulation.model.path])
+    target = Target(path, simulation.model.workbook.name, overwrite, read=simulation.model.files)
     target.check()
     with whole_file(path, target.check) as file:
         write_entries(file, _entries(simulation), blank_seal(target.book))

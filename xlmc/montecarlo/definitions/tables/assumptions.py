@@ -31,7 +31,7 @@ from xlmc.montecarlo.distributions import FAMILIES, Family, ParameterSpec, famil
 from xlmc.montecarlo.distributions.by_moments import COV, COV_SHARE, by_moments
 from xlmc.montecarlo.distributions.by_percentiles import by_percentiles
 from xlmc.montecarlo.distributions.parameters import MEAN, STD_DEV, show
-from xlmc.montecarlo.distributions.spelling import name_key, plain
+from xlmc.montecarlo.distributions.spelling import name_key, nearest, plain
 from xlmc.montecarlo.sampling.draws import Draw
 
 __all__ = ["PARAMETERS", "UNCERTAINTY", "is_percentile", "read_assumptions"]
@@ -68,6 +68,8 @@ _FIXED = (
     "Call",
 )
 _KNOWN = (*_FIXED, *PARAMETERS, *OPTIONS)
+
+_SLIP = 0.7  # likeness above which a column may be meant for one that a distribution needs
 
 _HEADING = re.compile(r"p(\d{1,3}(?:\.\d+)?)")
 
@@ -120,7 +122,9 @@ def _assumption(
     call = findings.attempt(_call, row)
     identity = identify(row, claims, findings)
     frozen = findings.attempt(logical, row, "Frozen") or False
+    told = len(findings.problems)
     base = None if identity is None else findings.attempt(_base, row.workbook, computed, identity[1], frozen, findings)
+    has_cell = identity is not None and len(findings.problems) == told
     kind = findings.attempt(_family, row)
     given: dict[str, Parameter] = {}
     family = data = None
@@ -129,7 +133,7 @@ def _assumption(
         if frozen and base is not None and kind is FAMILIES["Uniform"] and _is_bare(row, kind):
             given = {"low": base, "high": base}  # held at its value, whatever its range would be
         elif any(map(row.filled, (*PLUS_MINUS, *PLUS_MINUS_PERCENT))):
-            given = findings.attempt(_around, row, kind, base, findings) or {}
+            given = (findings.attempt(_around, row, kind, base, findings) or {}) if has_cell else {}
         else:
             given = _given(row, kind, findings)
         data = None if kind.data is None else findings.attempt(given_data, row, kind, computed, findings)
@@ -301,8 +305,20 @@ def _heading_of(row: Row, family: Family, spec: ParameterSpec) -> str:
     if present:
         message = f"{name} needs {row.heading(present[0])}, and this cell is blank"
         raise DefinitionError(message, where=row.cell(present[0]), hint="Type a number, or a formula that gives one")
+    slip = next((each for each in row.headings if _is_slip_of(each, spec)), None)
+    if slip is not None:
+        message = f"The column {slip!r} is not read: did you mean {spec.heading}?"
+        where = row.table.heading_cell(row.table.columns[plain(slip)][1])
+        raise DefinitionError(message, where=where, hint=f"Rename the column {spec.heading}")
     message = f"{name} needs {spec.heading}, and the table has no such column"
     raise DefinitionError(message, where=row.where, hint=f"Add a column {spec.heading}")
+
+
+def _is_slip_of(heading: str, spec: ParameterSpec) -> bool:
+    """Whether a column that nobody reads may be meant for a parameter that the table lacks."""
+    if plain(heading) in {plain(each) for each in _KNOWN} or is_percentile(heading):
+        return False
+    return nearest(heading, spec.headings, _SLIP) is not None
 
 
 def _refuse_unused(row: Row, family: Family, findings: Findings) -> None:
@@ -381,6 +397,9 @@ def _around(row: Row, family: Family, base: float | None, findings: Findings) ->
             findings.notice(
                 f"{heading} {show(distance)} is read as {show(distance)} %, not {show(100 * distance)} %", where
             )
+        if base == 0.0:
+            hint = "Give the distance itself under ±, or give Low and High"
+            raise DefinitionError(f"{heading} of a value of 0 is no distance", where=where, hint=hint)
         distance *= abs(base) / 100
     if not distance > 0:
         raise DefinitionError(f"{heading} must be above 0", where=where, hint="Give a positive number")

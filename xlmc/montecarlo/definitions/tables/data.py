@@ -23,6 +23,13 @@ OPTIONS = ("Cumulative", "Bandwidth")
 """Columns that say how to read the data of some distribution."""
 
 
+_NO_WEIGHTS = 6
+"""Columns from which on data are values alone."""
+
+_SUM_TOLERANCE = 0.002
+"""How far from 1 probabilities are together that were rounded."""
+
+
 def given_data(row: Row, family: Family, computed: Computed, findings: Findings) -> DataRange:
     """Return the data that the row names.
 
@@ -45,7 +52,23 @@ def given_data(row: Row, family: Family, computed: Computed, findings: Findings)
         message = f"{family.name} takes {columns} columns ({family.data.content}), and {area} has {area.columns}"
         raise DefinitionError(message, where=where, hint="Correct the range")
     values = area_values(row.workbook, area, computed)
-    return DataRange(area, values, logical(row, "Cumulative"), parameter(row, "Bandwidth"))
+    found = DataRange(area, values, logical(row, "Cumulative"), parameter(row, "Bandwidth"))
+    if family.data is not None and "Cumulative" in family.data.options and not found.cumulative:
+        _remark_on_sum(found, row.workbook, findings)
+    return found
+
+
+def _remark_on_sum(data: DataRange, workbook: Workbook, findings: Findings) -> None:
+    """Point out weights that look like probabilities and are not 1 together: they are taken as shares of their sum."""
+    if not 1 < data.area.columns < _NO_WEIGHTS:
+        return
+    at = min(data.area.columns, 3) - 1
+    weights = [static_value(row[at], workbook) for row in data.rows if any(each is not None for each in row)]
+    known = [each for each in weights if each is not None]
+    total = sum(known)
+    if len(known) == len(weights) > 1 and max(known) < 1 and 0.5 < total < 1.5 and abs(total - 1) > _SUM_TOLERANCE:
+        message = f"The probabilities sum to {show(total)}, not to 1: each is taken as its share of {show(total)}"
+        findings.notice(message, Cell(data.area.sheet, data.area.top, data.area.left + at))
 
 
 def area_values(workbook: Workbook, area: Area, computed: Computed) -> tuple[tuple[Parameter | None, ...], ...]:

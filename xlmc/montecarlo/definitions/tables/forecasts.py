@@ -17,6 +17,7 @@ from xlmc.montecarlo.definitions.tables.identity import Claims, identify
 from xlmc.montecarlo.definitions.tables.reserved_tables import DefinitionTable
 from xlmc.montecarlo.definitions.tables.table_rows import (
     Row,
+    as_text,
     central_share,
     number,
     number_in,
@@ -165,6 +166,9 @@ def _remark_on_constant(workbook: Workbook, cell: Cell, findings: Findings) -> N
     content = workbook.content(cell)
     if content.is_blank:
         raise DefinitionError("The forecast cell is blank", where=cell, hint="Point to the cell with the result")
+    if isinstance(content.value, str) and content.formula is None:
+        message = f"The forecast cell holds the text {as_text(content.value)!r}"
+        raise DefinitionError(message, where=cell, hint="Point to the cell with the result")
     if not isinstance(content.value, bool):
         number_in("The forecast cell", content, cell)
     findings.notice("The forecast is a constant: it does not depend on anything", cell)

@@ -5,6 +5,7 @@ Each reader of a cell raises a `DefinitionError` that names the cell and says wh
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, NoReturn, Protocol
@@ -45,6 +46,9 @@ _TOLD = frozenset({"units", "source", "because"})
 
 _MOST_NAMED: Final = 4
 """Rows that one notice names."""
+
+_DECIMAL_COMMA: Final = re.compile(r"[+-]?\d+,(?:\d{1,2}|\d{4,})")
+"""A text that is a number to those who write commas for points; `1,234` has thousands."""
 
 _WORDS = {"true": True, "yes": True, "on": True, "false": False, "no": False, "off": False}
 
@@ -286,6 +290,8 @@ def logical_in(what: str, content: CellContent, where: Cell) -> bool:
     value = content.value
     if isinstance(value, bool):
         return value
+    if value is None or isinstance(value, ErrorCode):
+        refuse(what, content, where)
     word = _WORDS.get(value.strip().casefold()) if isinstance(value, str) else None
     if word is None:
         message = f"{what} holds {as_text(value)!r}, neither TRUE nor FALSE"
@@ -362,7 +368,8 @@ def refuse(what: str, content: CellContent, where: Cell) -> NoReturn:
     """Say what the cell holds where it should hold something else."""
     match content.value:
         case None:
-            message, hint = f"{what} has never been calculated", "Open the workbook in Excel, calculate it and save it"
+            message = f"{what} has never been calculated"
+            hint = "Open the workbook in Excel, calculate it and save it, or run xlmc calculate on it"
         case ErrorCode() as code:
             message, hint = f"{what} holds the error {code.text}", "Correct the cell, or what it depends on"
         case bool() as value:
@@ -370,6 +377,9 @@ def refuse(what: str, content: CellContent, where: Cell) -> NoReturn:
         case value:
             message = f"{what} holds the text {as_text(value)!r}, not a number"
             hint = "Type it again as a number" if _reads_as_number(str(value)) else "Type a number"
+            text = str(value).strip()
+            if _DECIMAL_COMMA.fullmatch(text):
+                hint = f"Type the number with the decimal mark of your Excel, such as {text.replace(',', '.')}"
     raise DefinitionError(message, where=where, hint=hint)
 
 
